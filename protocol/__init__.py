@@ -1,0 +1,30 @@
+"""The wire between browsers, bots and the server: codes, messages, codec, snapshot layout."""
+
+from protocol.codec import decode_client, decode_server, encode, encode_snapshot
+from protocol.codes import (
+    VERSION,
+    ByeCode,
+    ClientCode,
+    CloseCode,
+    ErrorCode,
+    Kind,
+    Reason,
+    ServerCode,
+)
+from protocol.errors import ProtocolError
+
+__all__ = [
+    "VERSION",
+    "ByeCode",
+    "ClientCode",
+    "CloseCode",
+    "ErrorCode",
+    "Kind",
+    "ProtocolError",
+    "Reason",
+    "ServerCode",
+    "decode_client",
+    "decode_server",
+    "encode",
+    "encode_snapshot",
+]

@@ -1,0 +1,101 @@
+"""The one table of everything on the wire that is a number: versions, codes, limits.
+
+`docs/protocol.md` explains each entry; `client_web/src/net/codes.ts` repeats the numbers for
+the browser and `tests/protocol/test_codes.py` holds the two together.
+"""
+
+from enum import IntEnum, StrEnum
+
+VERSION = 1
+"""Version of the protocol. Both sides must speak the same one."""
+
+MAX_CLIENT_FRAME_BYTES = 2048
+"""A larger frame from a client ends the connection (close code 1009)."""
+
+MAX_NAME_CHARS = 32
+MAX_CHAT_CHARS = 300
+MAX_TOKEN_CHARS = 64
+
+
+class ClientCode(IntEnum):
+    """First element of every message that a client sends."""
+
+    HELLO = 1
+    MOVE = 2
+    WALK_TO = 3
+    CHAT = 4
+    PING = 5
+    WATCH = 6
+
+
+class ServerCode(IntEnum):
+    """First element of every message that the server sends."""
+
+    WELCOME = 64
+    ENTER = 65
+    LEAVE = 66
+    SNAPSHOT = 67
+    CHAT = 68
+    NOTICE = 69
+    ERROR = 70
+    BYE = 71
+    PONG = 72
+    PLAN = 73
+    CENSUS = 74
+
+
+class Kind(StrEnum):
+    """What moves an avatar."""
+
+    PERSON = "person"
+    ACTOR = "actor"
+
+
+class Reason(IntEnum):
+    """Why an actor does what it does; people carry NONE."""
+
+    NONE = 0
+    MOVING = 1
+    GIVING_WAY = 2
+    WAITING = 3
+    REPLANNING = 4
+    NO_PATH = 5
+    ARRIVED = 6
+
+
+class ErrorCode(StrEnum):
+    """Machine-readable name inside an `error` message."""
+
+    UNSUPPORTED_VERSION = "unsupported_version"
+    MALFORMED = "malformed"
+    INVALID = "invalid"
+    HELLO_EXPECTED = "hello_expected"
+    HELLO_TIMEOUT = "hello_timeout"
+    TOO_LARGE = "too_large"
+    FLOODING = "flooding"
+    SERVER_FULL = "server_full"
+    NO_PATH = "no_path"
+
+
+class CloseCode(IntEnum):
+    """WebSocket close codes; 4000 and above are ours."""
+
+    NORMAL = 1000
+    GOING_AWAY = 1001
+    TOO_LARGE = 1009
+    UNSUPPORTED_VERSION = 4001
+    MALFORMED = 4002
+    INVALID = 4003
+    FLOODING = 4004
+    HELLO_EXPECTED = 4005
+    HELLO_TIMEOUT = 4006
+    SERVER_FULL = 4007
+    TOO_SLOW = 4008
+    REPLACED = 4009
+
+
+class ByeCode(StrEnum):
+    """Why the server ends a connection in good order."""
+
+    SHUTDOWN = "shutdown"
+    REPLACED = "replaced"

@@ -1,0 +1,241 @@
+"""Every message, as a pydantic model. Field names are those on the wire.
+
+What comes from a client is checked strictly: unknown fields, wrong types, infinities and
+over-long texts are refused. Positions are metres on the ground plane with the layer they are
+on; directions are radians, counter-clockwise from +x; speeds are metres a second.
+"""
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+from protocol.codes import (
+    MAX_CHAT_CHARS,
+    MAX_NAME_CHARS,
+    MAX_TOKEN_CHARS,
+    ByeCode,
+    ClientCode,
+    ErrorCode,
+    Kind,
+    Reason,
+    ServerCode,
+)
+
+Metres = Annotated[float, Field(ge=-100_000.0, le=100_000.0, allow_inf_nan=False)]
+Layer = Annotated[int, Field(ge=0, le=255)]
+EntityId = Annotated[int, Field(ge=0, le=0xFFFF_FFFF)]
+Sequence = Annotated[int, Field(ge=0, le=0xFFFF_FFFF)]
+Name = Annotated[
+    str, StringConstraints(strip_whitespace=True, min_length=1, max_length=MAX_NAME_CHARS)
+]
+
+
+class FromClient(BaseModel):
+    """Base of what a client sends: strict, frozen, nothing unknown."""
+
+    model_config = ConfigDict(strict=True, frozen=True, extra="forbid")
+    code: ClassVar[ClientCode]
+
+
+class FromServer(BaseModel):
+    """Base of what the server sends. Unknown fields are ignored, so that clients outlive additions."""
+
+    model_config = ConfigDict(frozen=True, extra="ignore")
+    code: ClassVar[ServerCode]
+
+
+# --- client → server --------------------------------------------------------------------------
+
+
+class Hello(FromClient):
+    """First message: who comes in. With a live resume token the same avatar is taken up again."""
+
+    code = ClientCode.HELLO
+    name: Name
+    version: Annotated[int, Field(ge=0, le=0xFFFF)]
+    resume: Annotated[str, Field(max_length=MAX_TOKEN_CHARS)] | None = None
+    at: Annotated[tuple[Metres, Metres, Layer], Field(strict=False)] | None = None
+    """Wished place (x, y, layer) of a new avatar; the server takes the nearest free one."""
+
+
+class Move(FromClient):
+    """Walk in a direction until told otherwise. Speed 0 stands still. The newest wins."""
+
+    code = ClientCode.MOVE
+    seq: Sequence
+    direction: Annotated[float, Field(ge=-1000.0, le=1000.0, allow_inf_nan=False)]
+    speed: Annotated[float, Field(ge=0.0, le=100.0, allow_inf_nan=False)]
+
+
+class WalkTo(FromClient):
+    """Walk to a point around what stands in the way; a later `move` cancels it."""
+
+    code = ClientCode.WALK_TO
+    seq: Sequence
+    x: Metres
+    y: Metres
+    layer: Layer = 0
+
+
+class ChatLine(FromClient):
+    """Say something to everyone who has the speaker in view."""
+
+    code = ClientCode.CHAT
+    text: Annotated[
+        str, StringConstraints(strip_whitespace=True, min_length=1, max_length=MAX_CHAT_CHARS)
+    ]
+
+
+class Ping(FromClient):
+    """Ask for a pong with the same nonce."""
+
+    code = ClientCode.PING
+    nonce: Sequence
+
+
+class Watch(FromClient):
+    """Ask for the plans of one actor in view (id), or for none any more (None)."""
+
+    code = ClientCode.WATCH
+    id: EntityId | None
+
+
+ClientMessage = Hello | Move | WalkTo | ChatLine | Ping | Watch
+
+# --- server → client --------------------------------------------------------------------------
+
+
+class Welcome(FromServer):
+    """Answer to hello: the avatar's id, the whole scene, and how time runs here."""
+
+    code = ServerCode.WELCOME
+    version: int
+    id: EntityId
+    name: str
+    resume: str
+    resumed: bool
+    scene: dict[str, Any]
+    tick: int
+    tick_rate: int
+    server_time: float
+    radius: float
+    max_speed: float
+    origin: tuple[float, float]
+    """World position (x, y) of the snapshot's coordinate (0, 0), metres."""
+
+
+class Entity(BaseModel):
+    """One avatar as it comes into view."""
+
+    model_config = ConfigDict(frozen=True, extra="ignore")
+    id: EntityId
+    kind: Kind
+    name: str
+    layer: Layer
+    x: float
+    y: float
+    heading: float
+    radius: float
+
+
+class Enter(FromServer):
+    """Avatars that come into view."""
+
+    code = ServerCode.ENTER
+    tick: int
+    entities: list[Entity]
+
+
+class Leave(FromServer):
+    """Avatars that go out of view or out of the world."""
+
+    code = ServerCode.LEAVE
+    tick: int
+    ids: list[EntityId]
+
+
+class Snapshot(FromServer):
+    """Where everyone in view is. `block` holds packed records, see `protocol.snapshot`."""
+
+    code = ServerCode.SNAPSHOT
+    tick: int
+    ack: Sequence
+    block: bytes
+
+
+class Chat(FromServer):
+    """A line that somebody in view said."""
+
+    code = ServerCode.CHAT
+    id: EntityId
+    name: str
+    text: str
+
+
+class Notice(FromServer):
+    """A sentence from the server for the person to read."""
+
+    code = ServerCode.NOTICE
+    text: str
+
+
+class Error(FromServer):
+    """What was wrong with something the client sent. `error` is for programs, `text` for people."""
+
+    code = ServerCode.ERROR
+    error: ErrorCode
+    text: str
+
+
+class Bye(FromServer):
+    """The server ends the connection in good order."""
+
+    code = ServerCode.BYE
+    reason: ByeCode
+    text: str
+
+
+class Pong(FromServer):
+    """Answer to ping."""
+
+    code = ServerCode.PONG
+    nonce: Sequence
+    server_time: float
+
+
+class Circle(BaseModel):
+    """Where a person may be at one predicted time: centre, layer and radius (two sigma)."""
+
+    model_config = ConfigDict(frozen=True, extra="ignore")
+    x: float
+    y: float
+    layer: Layer
+    radius: float
+
+
+class Plan(FromServer):
+    """Why the watched actor does what it does, about five times a second."""
+
+    code = ServerCode.PLAN
+    tick: int
+    id: EntityId
+    reason: Reason
+    behaviour: Literal["go_to", "wander", "patrol", "guide", "idle"]
+    goal: tuple[float, float, Layer] | None
+    path: list[tuple[float, float, Layer, float]]
+    """Points (x, y, layer, seconds from now)."""
+    people: list[list[Circle]]
+    """For every person near the actor: the predicted circles, soonest first."""
+
+
+class Census(FromServer):
+    """How many people and actors the whole world holds, about once a second."""
+
+    code = ServerCode.CENSUS
+    people: int
+    actors: int
+
+
+ServerMessage = (
+    Welcome | Enter | Leave | Snapshot | Chat | Notice | Error | Bye | Pong | Plan | Census
+)

@@ -1,0 +1,83 @@
+"""The packed block inside a snapshot: one fixed record an avatar, little-endian.
+
+Positions are whole centimetres from the `origin` that `welcome` gave, so a zone may measure up
+to 655 m a side. The height is not sent: it follows from the scene, the layer and the position.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+RECORD = np.dtype(
+    [
+        ("id", "<u4"),
+        ("layer", "u1"),
+        ("reason", "u1"),
+        ("x", "<u2"),
+        ("y", "<u2"),
+        ("heading", "u1"),
+        ("speed", "u1"),
+    ]
+)
+"""12 bytes. x, y in cm; heading in 1/256 turns from +x; speed in 2 cm/s, saturating at 5.1 m/s."""
+
+POSITION_M = 0.01
+HEADING_RAD = 2.0 * np.pi / 256.0
+SPEED_MPS = 0.02
+MAX_EXTENT_M = 0xFFFF * POSITION_M
+
+Records = npt.NDArray[np.void]
+
+
+def pack_records(
+    ids: npt.NDArray[np.integer],
+    layers: npt.NDArray[np.integer],
+    reasons: npt.NDArray[np.integer],
+    positions_m: npt.NDArray[np.floating],
+    headings_rad: npt.NDArray[np.floating],
+    speeds_mps: npt.NDArray[np.floating],
+    origin_m: tuple[float, float],
+) -> Records:
+    """Quantise N avatars into records.
+
+    Parameters
+    ----------
+    ids, layers, reasons : integer (N,)
+    positions_m : float (N, 2), metres, world frame
+    headings_rad : float (N,), radians from +x, any turn
+    speeds_mps : float (N,), metres a second
+    origin_m : the zone's lower corner
+
+    Returns
+    -------
+    RECORD (N,). What lies outside the range is clamped to its edge.
+    """
+    records = np.empty(len(ids), dtype=RECORD)
+    records["id"] = ids
+    records["layer"] = layers
+    records["reason"] = reasons
+    cm = np.clip(np.rint((positions_m - np.asarray(origin_m)) / POSITION_M), 0, 0xFFFF)
+    records["x"] = cm[:, 0]
+    records["y"] = cm[:, 1]
+    records["heading"] = np.rint(headings_rad / HEADING_RAD).astype(np.int64) & 0xFF
+    records["speed"] = np.clip(np.rint(speeds_mps / SPEED_MPS), 0, 0xFF)
+    return records
+
+
+def unpack_block(block: bytes) -> Records:
+    """Records of a block, as a read-only view.
+
+    Raises
+    ------
+    ValueError
+        The block's length is no multiple of the record's.
+    """
+    if len(block) % RECORD.itemsize:
+        raise ValueError(
+            f"snapshot block of {len(block)} bytes is no multiple of {RECORD.itemsize}"
+        )
+    return np.frombuffer(block, dtype=RECORD)
+
+
+def positions_m(records: Records, origin_m: tuple[float, float]) -> npt.NDArray[np.float64]:
+    """World positions of records, float64 (N, 2), metres."""
+    return np.stack([records["x"], records["y"]], axis=1) * POSITION_M + np.asarray(origin_m)
