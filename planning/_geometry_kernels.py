@@ -1,0 +1,248 @@
+"""Plane geometry on bare arrays: points, segments, and a bucket index of segments."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning._jit import kernel
+
+
+class SegmentIndex(NamedTuple):
+    """Segments of one layer, listed by square bucket (CSR).
+
+    A bucket lists every segment that passes within `reach_m` of it, so that all segments within
+    `reach_m` of a point are in the point's own bucket.
+    """
+
+    segments: NDArray[np.float64]
+    """(S, 4): x0, y0, x1, y1, metres."""
+    starts: NDArray[np.int64]
+    """(ny * nx + 1,): where each bucket's list begins."""
+    members: NDArray[np.int64]
+    """Row numbers of segments, bucket after bucket."""
+    x0: float
+    y0: float
+    bucket_m: float
+    nx: int
+    ny: int
+
+
+@kernel
+def point_segment_distance(
+    px: float, py: float, ax: float, ay: float, bx: float, by: float
+) -> tuple[float, float, float]:
+    """Distance from a point to a segment, and the closest point of the segment."""
+    dx = bx - ax
+    dy = by - ay
+    length2 = dx * dx + dy * dy
+    u = 0.0
+    if length2 > 0.0:
+        u = min(1.0, max(0.0, ((px - ax) * dx + (py - ay) * dy) / length2))
+    cx = ax + u * dx
+    cy = ay + u * dy
+    return np.hypot(px - cx, py - cy), cx, cy
+
+
+@kernel
+def segments_cross(
+    ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
+) -> bool:
+    """Whether segment ab meets segment cd, touching included."""
+    rx = bx - ax
+    ry = by - ay
+    sx = dx - cx
+    sy = dy - cy
+    den = rx * sy - ry * sx
+    qx = cx - ax
+    qy = cy - ay
+    if abs(den) < 1e-15:
+        if abs(qx * ry - qy * rx) > 1e-12:
+            return False
+        length2 = rx * rx + ry * ry
+        if length2 == 0.0:
+            return point_segment_distance(ax, ay, cx, cy, dx, dy)[0] < 1e-12
+        t0 = (qx * rx + qy * ry) / length2
+        t1 = t0 + (sx * rx + sy * ry) / length2
+        return max(min(t0, t1), 0.0) <= min(max(t0, t1), 1.0)
+    t = (qx * sy - qy * sx) / den
+    u = (qx * ry - qy * rx) / den
+    return 0.0 <= t <= 1.0 and 0.0 <= u <= 1.0
+
+
+@kernel
+def closest_approach(rx: float, ry: float, dx: float, dy: float) -> float:
+    """Smallest distance while a relative position (rx, ry) changes evenly by (dx, dy)."""
+    length2 = dx * dx + dy * dy
+    u = 0.0
+    if length2 > 1e-12:
+        u = min(1.0, max(0.0, -(rx * dx + ry * dy) / length2))
+    return np.hypot(rx + u * dx, ry + u * dy)
+
+
+@kernel
+def bucket_of(index: SegmentIndex, x: float, y: float) -> int:
+    """Bucket that holds a point; points outside fall to the nearest bucket."""
+    i = min(index.nx - 1, max(0, int((x - index.x0) / index.bucket_m)))
+    j = min(index.ny - 1, max(0, int((y - index.y0) / index.bucket_m)))
+    return j * index.nx + i
+
+
+@kernel
+def nearest_segment(index: SegmentIndex, x: float, y: float) -> tuple[float, float, float]:
+    """Distance to the nearest segment of the point's bucket and its closest point; inf if none."""
+    best = np.inf
+    bx = x
+    by = y
+    b = bucket_of(index, x, y)
+    for k in range(index.starts[b], index.starts[b + 1]):
+        s = index.segments[index.members[k]]
+        d, cx, cy = point_segment_distance(x, y, s[0], s[1], s[2], s[3])
+        if d < best:
+            best = d
+            bx = cx
+            by = cy
+    return best, bx, by
+
+
+@kernel
+def crosses_any(index: SegmentIndex, ax: float, ay: float, bx: float, by: float) -> bool:
+    """Whether the short way from a to b meets a segment listed in the bucket of a.
+
+    The way must be shorter than the index's reach.
+    """
+    b = bucket_of(index, ax, ay)
+    for k in range(index.starts[b], index.starts[b + 1]):
+        s = index.segments[index.members[k]]
+        if segments_cross(ax, ay, bx, by, s[0], s[1], s[2], s[3]):
+            return True
+    return False
+
+
+@kernel
+def slide_step(
+    index: SegmentIndex, x: float, y: float, dx: float, dy: float, clearance: float
+) -> tuple[float, float]:
+    """Move a disc by a short step, pushed out of segments; stays where it is when that fails."""
+    nx = x + dx
+    ny = y + dy
+    before = nearest_segment(index, x, y)[0]
+    allowed = min(clearance, before) - 1e-9
+    for _ in range(4):
+        d, cx, cy = nearest_segment(index, nx, ny)
+        if d >= allowed:
+            break
+        if d < 1e-9:
+            return x, y
+        push = (min(clearance, before) - d) / d
+        nx += (nx - cx) * push
+        ny += (ny - cy) * push
+    if nearest_segment(index, nx, ny)[0] < allowed or crosses_any(index, x, y, nx, ny):
+        return x, y
+    return nx, ny
+
+
+@kernel
+def slide(
+    index: SegmentIndex,
+    bounds: tuple[float, float, float, float],
+    x: float,
+    y: float,
+    dx: float,
+    dy: float,
+    clearance: float,
+) -> tuple[float, float]:
+    """Move a disc by (dx, dy), sliding along segments and kept inside the bounds.
+
+    The way is cut into pieces shorter than half the clearance, so that no wall is jumped over.
+    """
+    length = np.hypot(dx, dy)
+    if length == 0.0:
+        return x, y
+    room = nearest_segment(index, x, y)[0]
+    if room > clearance + length:
+        pieces = 1
+    else:
+        pieces = int(np.ceil(length / max(0.5 * clearance, 0.02)))
+    for _ in range(pieces):
+        x, y = slide_step(index, x, y, dx / pieces, dy / pieces, clearance)
+        x = min(bounds[2], max(bounds[0], x))
+        y = min(bounds[3], max(bounds[1], y))
+    return x, y
+
+
+@kernel
+def slide_many(
+    index: SegmentIndex,
+    bounds: tuple[float, float, float, float],
+    positions: NDArray[np.float64],
+    displacements: NDArray[np.float64],
+    clearance: float,
+    out: NDArray[np.float64],
+) -> None:
+    """`slide` for N discs: (N, 2), (N, 2) -> out (N, 2)."""
+    for i in range(len(positions)):
+        out[i, 0], out[i, 1] = slide(
+            index,
+            bounds,
+            positions[i, 0],
+            positions[i, 1],
+            displacements[i, 0],
+            displacements[i, 1],
+            clearance,
+        )
+
+
+@kernel
+def lower_to_segments(
+    field: NDArray[np.float32],
+    segments: NDArray[np.float64],
+    x0: float,
+    y0: float,
+    cell: float,
+    reach: float,
+) -> None:
+    """Lower a field (ny, nx), preset to `reach`, to the distances of cell centres from segments."""
+    ny, nx = field.shape
+    for s in range(len(segments)):
+        ax, ay, bx, by = segments[s]
+        i0 = max(0, int((min(ax, bx) - reach - x0) / cell) - 1)
+        i1 = min(nx, int((max(ax, bx) + reach - x0) / cell) + 2)
+        j0 = max(0, int((min(ay, by) - reach - y0) / cell) - 1)
+        j1 = min(ny, int((max(ay, by) + reach - y0) / cell) + 2)
+        for j in range(j0, j1):
+            for i in range(i0, i1):
+                d = point_segment_distance(
+                    x0 + (i + 0.5) * cell, y0 + (j + 0.5) * cell, ax, ay, bx, by
+                )[0]
+                if d < field[j, i]:
+                    field[j, i] = d
+
+
+@kernel
+def negate_inside(
+    field: NDArray[np.float32],
+    ring: NDArray[np.float64],
+    x0: float,
+    y0: float,
+    cell: float,
+) -> None:
+    """Negate a field of distances (ny, nx) at cell centres inside a closed ring (K, 2)."""
+    ny, nx = field.shape
+    n = len(ring)
+    for j in range(ny):
+        py = y0 + (j + 0.5) * cell
+        for i in range(nx):
+            px = x0 + (i + 0.5) * cell
+            inside = False
+            b = n - 1
+            for a in range(n):
+                if (ring[a, 1] > py) != (ring[b, 1] > py):
+                    x = (ring[b, 0] - ring[a, 0]) * (py - ring[a, 1]) / (
+                        ring[b, 1] - ring[a, 1]
+                    ) + ring[a, 0]
+                    if px < x:
+                        inside = not inside
+                b = a
+            if inside:
+                field[j, i] = -abs(field[j, i])

@@ -1,0 +1,49 @@
+"""How kernels are compiled: numba, without the interpreter's lock, cached by what they say."""
+
+import hashlib
+import logging
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar, cast
+
+import numba
+
+F = TypeVar("F", bound=Callable[..., object])
+
+
+def _source_digest() -> str:
+    """Digest of every module in this package that holds kernels.
+
+    numba's own cache looks at the file of the outermost function alone, so an edit of a helper
+    in another file would go unnoticed. One digest for all of them makes that impossible.
+    """
+    digest = hashlib.sha256(numba.__version__.encode())
+    for path in sorted(Path(__file__).parent.glob("_*.py")):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _open_cache() -> bool:
+    """Point numba at a folder of its own for this very source; False where none can be written."""
+    for base in (Path.home() / ".cache", Path(tempfile.gettempdir())):
+        folder = base / "esplanade" / f"kernels-{_source_digest()}"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / ".writable").touch()
+        except OSError:
+            continue
+        numba.config.CACHE_DIR = str(folder)
+        return True
+    logging.getLogger(__name__).warning(
+        "no folder to keep compiled kernels in; they are compiled anew at each start"
+    )
+    return False
+
+
+_CACHED = _open_cache()
+
+
+def kernel(function: F) -> F:
+    """Compile a function of arrays and scalars; it runs without the interpreter's lock."""
+    return cast(F, numba.njit(nogil=True, cache=_CACHED, error_model="numpy")(function))
