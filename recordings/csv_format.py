@@ -1,0 +1,52 @@
+"""Comma-separated recordings: a header `t,id,x,y`, then one sample a line (seconds, metres)."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Final
+
+from recordings.errors import RecordingError, read_text
+from recordings.sample import Sample
+
+HEADER: Final = ["t", "id", "x", "y"]
+
+
+def read_csv(path: Path) -> Iterator[Sample]:
+    """Samples in the order of the file; blank lines are passed over.
+
+    Raises
+    ------
+    RecordingError
+        Empty file, wrong header, wrong number of columns, or a t, x or y that is no number.
+    """
+    lines = read_text(path).splitlines()
+    if not lines:
+        raise RecordingError(path, "is empty, expected the header t,id,x,y")
+    header = [cell.strip() for cell in lines[0].split(",")]
+    if header != HEADER:
+        raise RecordingError(path, f"expected the header t,id,x,y, not {lines[0]!r:.60}", 1)
+    for number, line in enumerate(lines[1:], start=2):
+        if line.strip():
+            yield _sample(path, number, line)
+
+
+def _sample(path: Path, number: int, line: str) -> Sample:
+    cells = [cell.strip() for cell in line.split(",")]
+    if len(cells) != len(HEADER):
+        raise RecordingError(path, f"expected 4 columns t,id,x,y, not {len(cells)}", number)
+    t, pedestrian, x, y = cells
+    if not pedestrian:
+        raise RecordingError(path, "expected a pedestrian's id, not an empty cell", number)
+    return Sample(
+        number,
+        _number(path, number, "t", t),
+        pedestrian,
+        _number(path, number, "x", x),
+        _number(path, number, "y", y),
+    )
+
+
+def _number(path: Path, line: int, column: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise RecordingError(path, f"{column} is {text!r:.40}, expected a number", line) from None

@@ -1,0 +1,30 @@
+"""What goes wrong while reading a recording."""
+
+from pathlib import Path
+
+
+class RecordingError(ValueError):
+    """A file that is no recording; says which file, which line (from 1), what was expected."""
+
+    def __init__(self, path: Path, text: str, line: int | None = None) -> None:
+        where = str(path) if line is None else f"{path}:{line}"
+        super().__init__(f"{where}: {text}")
+        self.path = path
+        self.line = line
+        self.text = text
+
+
+def read_text(path: Path) -> str:
+    """The whole file as UTF-8 text, a byte order mark left out.
+
+    Raises
+    ------
+    RecordingError
+        The file cannot be read, or is not UTF-8.
+    """
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise RecordingError(path, f"cannot be read: {error.strerror or error}") from None
+    except UnicodeDecodeError as error:
+        raise RecordingError(path, f"is not UTF-8 text (byte {error.start})") from None

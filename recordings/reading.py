@@ -1,0 +1,81 @@
+"""From a file to a `Crowd`.
+
+A format is one module that turns a file into samples in file order; everything that must hold
+for any recording is checked here, once. A further format is a further row in `_FORMATS`.
+"""
+
+import math
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from recordings.crowd import Crowd, Track
+from recordings.csv_format import read_csv
+from recordings.errors import RecordingError
+from recordings.sample import MAX_METRES, Sample
+
+_FORMATS: Final[dict[str, Callable[[Path], Iterable[Sample]]]] = {".csv": read_csv}
+
+MIN_STEP_S: Final = 1e-3
+"""Two samples of one pedestrian closer in time than this count as the same moment."""
+
+MAX_SECONDS: Final = 1e10
+
+
+def read_crowd(path: str | Path) -> Crowd:
+    """Everyone in a recording.
+
+    A pedestrian with a single sample is kept, as a track without duration.
+
+    Raises
+    ------
+    RecordingError
+        The file cannot be read, is of no known format, holds no sample, or a sample is not
+        finite, out of range, twice in the file or back in time.
+    """
+    path = Path(path)
+    read = _FORMATS.get(path.suffix.lower())
+    if read is None:
+        known = ", ".join(sorted(_FORMATS))
+        raise RecordingError(path, f"unknown format {path.suffix!r}, expected one of: {known}")
+    samples_by_id: dict[str, list[Sample]] = {}
+    for sample in read(path):
+        samples = samples_by_id.setdefault(sample.id, [])
+        _check(path, sample, samples[-1] if samples else None)
+        samples.append(sample)
+    if not samples_by_id:
+        raise RecordingError(path, "holds no samples, expected at least one")
+    return Crowd(path.stem, tuple(_track(samples) for samples in samples_by_id.values()))
+
+
+def _check(path: Path, sample: Sample, before: Sample | None) -> None:
+    for column, value, limit in (
+        ("t", sample.t, MAX_SECONDS),
+        ("x", sample.x, MAX_METRES),
+        ("y", sample.y, MAX_METRES),
+    ):
+        if not math.isfinite(value):
+            raise RecordingError(
+                path, f"{column} is {value}, expected a finite number", sample.line
+            )
+        if abs(value) > limit:
+            text = f"{column} is {value:g}, expected at most {limit:g} either way"
+            raise RecordingError(path, text, sample.line)
+    if before is None or sample.t - before.t >= MIN_STEP_S:
+        return
+    who = f"pedestrian {sample.id!r}"
+    if abs(sample.t - before.t) < MIN_STEP_S:
+        text = f"{who} is already at t={before.t:g} in line {before.line}, expected one sample"
+    else:
+        text = f"{who} goes back in time from t={before.t:g} to t={sample.t:g}, expected a later t"
+    raise RecordingError(path, text, sample.line)
+
+
+def _track(samples: list[Sample]) -> Track:
+    times = np.array([sample.t for sample in samples], dtype=np.float64)
+    positions = np.array([(sample.x, sample.y) for sample in samples], dtype=np.float64)
+    times.setflags(write=False)
+    positions.setflags(write=False)
+    return Track(samples[0].id, times, positions)
