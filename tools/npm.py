@@ -1,4 +1,4 @@
-"""Run npm, with the Node.js that comes from PyPI, inside client_web: `python tools/npm.py run build`."""
+"""Run npm in client_web, with the Node.js that comes from PyPI: `python tools/npm.py run build`."""
 
 import os
 import sys
