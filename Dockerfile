@@ -1,0 +1,32 @@
+# Built once with everything that takes, run with nothing but what it needs.
+FROM python:3.12-slim AS build
+WORKDIR /source
+RUN python -m venv /opt/esplanade
+COPY pyproject.toml hatch_build.py README.md LICENSE ./
+COPY actors actors
+COPY bots bots
+COPY client_web client_web
+COPY esplanade esplanade
+COPY planning planning
+COPY protocol protocol
+COPY recordings recordings
+COPY scenes scenes
+COPY server server
+COPY tools tools
+RUN /opt/esplanade/bin/pip install --no-cache-dir .
+
+FROM python:3.12-slim
+RUN useradd --create-home --uid 10001 esplanade
+COPY --from=build /opt/esplanade /opt/esplanade
+ENV PATH=/opt/esplanade/bin:$PATH PYTHONUNBUFFERED=1
+USER esplanade
+# Compiled kernels are kept here: on a volume, the second start takes seconds.
+RUN mkdir -p /home/esplanade/.cache
+VOLUME /home/esplanade/.cache
+EXPOSE 8080
+# Health is asked on the private port, from within; the first start compiles for a minute or two.
+HEALTHCHECK --start-period=180s --interval=10s --timeout=3s --retries=3 \
+  CMD ["python", "-c", "import urllib.request as r; r.urlopen('http://127.0.0.1:8081/readyz', timeout=2)"]
+STOPSIGNAL SIGTERM
+ENTRYPOINT ["esplanade"]
+CMD ["serve", "--host=0.0.0.0", "--actors=12"]

@@ -1,0 +1,133 @@
+"""`esplanade demo`: the demo world with actors, and in a second process a few visitors.
+
+The server runs in this process and owns its signals. A thread waits until people may come in,
+says so, and then sends the visitors: real clients over real sockets, ended with the server.
+"""
+
+import argparse
+import contextlib
+import http.client
+import subprocess
+import sys
+import threading
+from collections.abc import Sequence
+from http import HTTPStatus
+from importlib import import_module
+from pathlib import Path
+from typing import Final, cast
+
+from rich.console import Console
+from rich.panel import Panel
+
+SCENE: Final = Path(__file__).resolve().parents[1] / "scenes" / "plaza.json"
+POLL_S: Final = 0.25
+END_LIMIT_S: Final = 5.0
+
+
+def run(argv: Sequence[str]) -> int:
+    """Run the demo until the server ends, and return the server's exit code."""
+    options, passed_on = _parser().parse_known_args(argv)
+    visitors = Visitors(options)
+    visitors.start()
+    try:
+        return cast(int, import_module("server.cli").run(_server_arguments(options, passed_on)))
+    finally:
+        visitors.end()
+
+
+class Visitors:
+    """A few wandering bots that come when the world is ready and go when it ends."""
+
+    def __init__(self, options: argparse.Namespace) -> None:
+        self._options = options
+        self._ending = threading.Event()
+        self._thread = threading.Thread(target=self._come, name="visitors", daemon=True)
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def start(self) -> None:
+        """Begin to wait for the server, in the background."""
+        self._thread.start()
+
+    def end(self) -> None:
+        """Send the visitors home, and wait for it."""
+        self._ending.set()
+        self._thread.join()
+        if self._process is None:
+            return
+        self._process.terminate()
+        try:
+            self._process.wait(END_LIMIT_S)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+
+    def _come(self) -> None:
+        while not _is_ready(self._options.private_port):
+            if self._ending.wait(POLL_S):
+                return
+        _announce(self._options.port)
+        if self._options.visitors and not self._ending.is_set():
+            self._process = subprocess.Popen(
+                [sys.executable, "-m", "esplanade", "bots", *_bots_arguments(self._options)],
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+            )
+
+
+def _server_arguments(options: argparse.Namespace, passed_on: Sequence[str]) -> list[str]:
+    return [
+        f"--scene={options.scene}",
+        f"--port={options.port}",
+        f"--private-port={options.private_port}",
+        f"--actors={options.actors}",
+        f"--seed={options.seed}",
+        *passed_on,
+    ]
+
+
+def _bots_arguments(options: argparse.Namespace) -> list[str]:
+    return [
+        f"--url=ws://localhost:{options.port}",
+        f"--count={options.visitors}",
+        f"--seed={options.seed}",
+        "--duration=0",
+    ]
+
+
+def _is_ready(private_port: int) -> bool:
+    """Whether the server says that people may come in."""
+    connection = http.client.HTTPConnection("127.0.0.1", private_port, timeout=1.0)
+    with contextlib.closing(connection), contextlib.suppress(OSError, http.client.HTTPException):
+        connection.request("GET", "/readyz")
+        return connection.getresponse().status == HTTPStatus.OK
+    return False
+
+
+def _announce(port: int) -> None:
+    Console().print(
+        Panel.fit(
+            f"Esplanade is open:  [bold]http://localhost:{port}[/bold]\n\n"
+            "Open this address in a browser, as often as you like. Ctrl-C ends it.",
+            padding=(1, 4),
+            border_style="green",
+        )
+    )
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="esplanade demo",
+        description="Run the demo world with actors, and with a few visitors made of code.",
+        epilog="All other options go to the server: see `esplanade serve --help`.",
+        formatter_class=argparse.ArgumentDefaultsHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument("--port", type=int, default=8080, help="port for people")
+    parser.add_argument(
+        "--private-port", type=int, default=8081, help="port for health and metrics"
+    )
+    parser.add_argument("--scene", type=Path, default=SCENE, help="scene to walk in")
+    parser.add_argument("--actors", type=int, default=12, help="number of actors")
+    parser.add_argument("--visitors", type=int, default=6, help="number of wandering bots")
+    parser.add_argument("--seed", type=int, default=1, help="seed of everything drawn by chance")
+    return parser

@@ -1,0 +1,35 @@
+"""Rules of every run: a browser test that skips is loud, and fails where browsers are required."""
+
+import os
+from collections.abc import Generator
+
+import pytest
+from _pytest.terminal import TerminalReporter
+
+REQUIRE_VARIABLE = "ESPLANADE_REQUIRE_BROWSER"
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(
+    item: pytest.Item,
+) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Turn the skip of a browser test into a failure where the variable asks for it."""
+    report = yield
+    if report.skipped and "browser" in report.keywords and os.environ.get(REQUIRE_VARIABLE) == "1":
+        report.outcome = "failed"
+        report.longrepr = f"{item.nodeid} skipped, but {REQUIRE_VARIABLE}=1: {report.longrepr}"
+    return report
+
+
+def pytest_terminal_summary(terminalreporter: TerminalReporter) -> None:
+    """Say loudly how many browser tests did not run."""
+    skipped = [
+        report
+        for report in terminalreporter.getreports("skipped")
+        if "browser" in getattr(report, "keywords", ())
+    ]
+    if skipped:
+        terminalreporter.section("THE BROWSER TESTS DID NOT RUN", sep="!", red=True, bold=True)
+        terminalreporter.line(
+            f"{len(skipped)} skipped: no chromium. Install one, or name one in ESPLANADE_CHROMIUM."
+        )
