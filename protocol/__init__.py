@@ -1,6 +1,12 @@
 """The wire between browsers, bots and the server: codes, messages, codec, snapshot layout."""
 
-from protocol.codec import decode_client, decode_server, encode, encode_snapshot
+from protocol.codec import (
+    decode_client,
+    decode_server,
+    encode,
+    encode_snapshot,
+    peek_snapshot,
+)
 from protocol.codes import (
     VERSION,
     ByeCode,
@@ -27,4 +33,5 @@ __all__ = [
     "decode_server",
     "encode",
     "encode_snapshot",
+    "peek_snapshot",
 ]

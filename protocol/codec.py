@@ -6,7 +6,7 @@ the server can lay out thousands a second without an encoder.
 """
 
 import struct
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import msgpack
 from pydantic import ValidationError
@@ -53,6 +53,17 @@ SERVER_MESSAGES: Final[dict[int, type[FromServer]]] = {
 
 _SNAPSHOT_HEAD = struct.Struct(">BBBIBIBH")
 SNAPSHOT_HEAD_BYTES: Final = _SNAPSHOT_HEAD.size
+MAX_BLOCK_BYTES: Final = 0xFFFF
+
+_MAX_QUOTED_CHARS: Final = 60
+"""What a fault's text repeats of a frame is cut to this many characters."""
+
+
+class SnapshotHead(NamedTuple):
+    """What a snapshot says before its block."""
+
+    tick: int
+    ack: int
 
 
 def encode(message: FromClient | FromServer) -> bytes:
@@ -64,11 +75,27 @@ def encode(message: FromClient | FromServer) -> bytes:
 
 
 def encode_snapshot(tick: int, ack: int, block: bytes | memoryview) -> bytes:
-    """A snapshot's frame; the block is at most 65 535 bytes (5461 records)."""
+    """A snapshot's frame.
+
+    Raises
+    ------
+    ValueError
+        The block is longer than 65 535 bytes (5461 records).
+    """
+    if len(block) > MAX_BLOCK_BYTES:
+        raise ValueError(f"a block holds at most {MAX_BLOCK_BYTES} bytes, not {len(block)}")
     head = _SNAPSHOT_HEAD.pack(
         0x94, ServerCode.SNAPSHOT, 0xCE, tick & 0xFFFF_FFFF, 0xCE, ack, 0xC5, len(block)
     )
     return head + block
+
+
+def peek_snapshot(frame: bytes) -> SnapshotHead | None:
+    """Head of a snapshot, read without decoding the frame; None for every other message."""
+    if len(frame) < SNAPSHOT_HEAD_BYTES or frame[1] != ServerCode.SNAPSHOT or frame[0] != 0x94:
+        return None
+    _, _, _, tick, _, ack, _, _ = _SNAPSHOT_HEAD.unpack_from(frame)
+    return SnapshotHead(tick, ack)
 
 
 def decode_client(frame: bytes) -> ClientMessage:
@@ -89,12 +116,13 @@ def decode_client(frame: bytes) -> ClientMessage:
     if len(parts) != 2 or not isinstance(parts[1], dict):
         raise _malformed("a frame is the array [code, map of fields]")
     code, fields = parts
-    model = CLIENT_MESSAGES.get(code) if type(code) is int else None
+    if type(code) is not int:
+        raise _malformed("a message code is an integer")
+    model = CLIENT_MESSAGES.get(code)
     if model is None:
         known = ", ".join(f"{c.value} {c.name.lower()}" for c in ClientCode)
-        raise ProtocolError(
-            ErrorCode.INVALID, f"unknown message code {code!r:.40}; known: {known}", CloseCode.INVALID
-        )
+        text = f"unknown message code {code}; known: {known}"
+        raise ProtocolError(ErrorCode.INVALID, text, CloseCode.INVALID)
     try:
         return model.model_validate(fields)  # type: ignore[return-value]
     except ValidationError as error:
@@ -111,13 +139,15 @@ def decode_server(frame: bytes) -> ServerMessage:
     ProtocolError
         No msgpack, unknown code, or fields that break their model.
     """
-    parts = _unpack(frame)
-    if len(parts) == 4 and parts[0] == ServerCode.SNAPSHOT:
-        return Snapshot(tick=parts[1], ack=parts[2], block=parts[3])
-    if len(parts) != 2 or parts[0] not in SERVER_MESSAGES:
-        raise _malformed("unknown server message")
+    code, *rest = _unpack(frame)
+    if type(code) is not int:
+        raise _malformed("a message code is an integer")
     try:
-        return SERVER_MESSAGES[parts[0]].model_validate(parts[1])  # type: ignore[return-value]
+        if code == ServerCode.SNAPSHOT and len(rest) == 3:
+            return Snapshot(tick=rest[0], ack=rest[1], block=rest[2])
+        if code not in SERVER_MESSAGES or len(rest) != 1 or not isinstance(rest[0], dict):
+            raise _malformed(f"no server message: code {code} with {len(rest)} parts")
+        return SERVER_MESSAGES[code].model_validate(rest[0])  # type: ignore[return-value]
     except ValidationError as error:
         raise _malformed(_first_fault(error)) from None
 
@@ -125,7 +155,7 @@ def decode_server(frame: bytes) -> ServerMessage:
 def _unpack(frame: bytes) -> list[Any]:
     try:
         parts = msgpack.unpackb(frame, strict_map_key=True)
-    except Exception as error:  # msgpack raises ValueError, its own errors, UnicodeDecodeError …
+    except (ValueError, TypeError, OverflowError) as error:  # among them msgpack's own, all bounded
         raise _malformed(f"not msgpack: {type(error).__name__}") from None
     if not isinstance(parts, list) or not parts:
         raise _malformed("a frame is a msgpack array that begins with a message code")
@@ -139,4 +169,4 @@ def _malformed(text: str) -> ProtocolError:
 def _first_fault(error: ValidationError) -> str:
     fault = error.errors(include_url=False, include_input=False)[0]
     where = ".".join(str(part) for part in fault["loc"]) or "message"
-    return f"{where}: {fault['msg']}"
+    return f"{where[:_MAX_QUOTED_CHARS]}: {fault['msg']}"

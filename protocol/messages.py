@@ -5,9 +5,10 @@ over-long texts are refused. Positions are metres on the ground plane with the l
 on; directions are radians, counter-clockwise from +x; speeds are metres a second.
 """
 
-from typing import Annotated, Any, ClassVar, Literal
+import unicodedata
+from typing import Annotated, Any, ClassVar, Final, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints
 
 from protocol.codes import (
     MAX_CHAT_CHARS,
@@ -21,12 +22,32 @@ from protocol.codes import (
     ServerCode,
 )
 
+_DIRECTION_MARKS: Final = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
+
+
+def _one_visible_line(text: str) -> str:
+    """Text that others will read beside their own: it may not break lines or turn them around."""
+    for char in text:
+        if unicodedata.category(char) in {"Cc", "Zl", "Zp"} or char in _DIRECTION_MARKS:
+            raise ValueError(f"character U+{ord(char):04X} is not allowed, expected one plain line")
+    if not any(char.isprintable() and not char.isspace() for char in text):
+        raise ValueError("expected at least one visible character")
+    return text
+
+
 Metres = Annotated[float, Field(ge=-100_000.0, le=100_000.0, allow_inf_nan=False)]
 Layer = Annotated[int, Field(ge=0, le=255)]
 EntityId = Annotated[int, Field(ge=0, le=0xFFFF_FFFF)]
 Sequence = Annotated[int, Field(ge=0, le=0xFFFF_FFFF)]
 Name = Annotated[
-    str, StringConstraints(strip_whitespace=True, min_length=1, max_length=MAX_NAME_CHARS)
+    str,
+    StringConstraints(strip_whitespace=True, min_length=1, max_length=MAX_NAME_CHARS),
+    AfterValidator(_one_visible_line),
+]
+Line = Annotated[
+    str,
+    StringConstraints(strip_whitespace=True, min_length=1, max_length=MAX_CHAT_CHARS),
+    AfterValidator(_one_visible_line),
 ]
 
 
@@ -38,7 +59,7 @@ class FromClient(BaseModel):
 
 
 class FromServer(BaseModel):
-    """Base of what the server sends. Unknown fields are ignored, so that clients outlive additions."""
+    """Base of what the server sends. Unknown fields are ignored: clients outlive additions."""
 
     model_config = ConfigDict(frozen=True, extra="ignore")
     code: ClassVar[ServerCode]
@@ -81,9 +102,7 @@ class ChatLine(FromClient):
     """Say something to everyone who has the speaker in view."""
 
     code = ClientCode.CHAT
-    text: Annotated[
-        str, StringConstraints(strip_whitespace=True, min_length=1, max_length=MAX_CHAT_CHARS)
-    ]
+    text: Line
 
 
 class Ping(FromClient):

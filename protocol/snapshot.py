@@ -26,6 +26,7 @@ SPEED_MPS = 0.02
 MAX_EXTENT_M = 0xFFFF * POSITION_M
 
 Records = npt.NDArray[np.void]
+Floats = npt.NDArray[np.float64]
 
 
 def pack_records(
@@ -42,9 +43,9 @@ def pack_records(
     Parameters
     ----------
     ids, layers, reasons : integer (N,)
-    positions_m : float (N, 2), metres, world frame
-    headings_rad : float (N,), radians from +x, any turn
-    speeds_mps : float (N,), metres a second
+    positions_m : float (N, 2), metres, world frame, finite
+    headings_rad : float (N,), radians from +x, any turn, finite
+    speeds_mps : float (N,), metres a second, finite
     origin_m : the zone's lower corner
 
     Returns
@@ -78,6 +79,20 @@ def unpack_block(block: bytes) -> Records:
     return np.frombuffer(block, dtype=RECORD)
 
 
-def positions_m(records: Records, origin_m: tuple[float, float]) -> npt.NDArray[np.float64]:
+def positions_m(records: Records, origin_m: tuple[float, float]) -> Floats:
     """World positions of records, float64 (N, 2), metres."""
-    return np.stack([records["x"], records["y"]], axis=1) * POSITION_M + np.asarray(origin_m)
+    positions: Floats = np.stack([records["x"], records["y"]], axis=1) * POSITION_M
+    positions += origin_m
+    return positions
+
+
+def headings_rad(records: Records) -> Floats:
+    """Headings of records, float64 (N,), radians from +x in [0, 2 pi)."""
+    headings: Floats = records["heading"] * HEADING_RAD
+    return headings
+
+
+def speeds_mps(records: Records) -> Floats:
+    """Speeds of records, float64 (N,), metres a second."""
+    speeds: Floats = records["speed"] * SPEED_MPS
+    return speeds

@@ -1,0 +1,114 @@
+"""Hypothesis strategies for every message of both directions."""
+
+from typing import Any
+
+from hypothesis import strategies as st
+
+from protocol import ByeCode, ErrorCode, Kind, Reason
+from protocol.codes import MAX_CHAT_CHARS, MAX_NAME_CHARS, MAX_TOKEN_CHARS
+from protocol.messages import (
+    Bye,
+    Census,
+    Chat,
+    ChatLine,
+    Circle,
+    Enter,
+    Entity,
+    Error,
+    FromClient,
+    FromServer,
+    Hello,
+    Leave,
+    Move,
+    Notice,
+    Ping,
+    Plan,
+    Pong,
+    Snapshot,
+    WalkTo,
+    Watch,
+    Welcome,
+)
+
+u32 = st.integers(0, 0xFFFF_FFFF)
+layers = st.integers(0, 255)
+metres = st.floats(-100_000, 100_000, allow_nan=False)
+floats = st.floats(allow_nan=False, allow_infinity=False)
+texts = st.text(st.characters(codec="utf-8"), max_size=80)
+bounds = st.tuples(floats, floats)
+
+
+def lines(max_chars: int) -> st.SearchStrategy[str]:
+    """Texts as people type them, with something to see and nothing around it."""
+    inner = st.text(st.characters(categories=["L", "M", "N", "P", "S"]), max_size=max_chars - 1)
+    return st.tuples(st.sampled_from("Aä漢🙂"), inner).map("".join)
+
+
+scenes: st.SearchStrategy[dict[str, Any]] = st.dictionaries(
+    texts, st.recursive(st.none() | floats | texts, st.lists, max_leaves=8)
+)
+
+client_messages: st.SearchStrategy[FromClient] = st.one_of(
+    st.builds(
+        Hello,
+        name=lines(MAX_NAME_CHARS),
+        version=st.integers(0, 0xFFFF),
+        resume=st.none() | st.text(st.characters(codec="utf-8"), max_size=MAX_TOKEN_CHARS),
+        at=st.none() | st.tuples(metres, metres, layers),
+    ),
+    st.builds(Move, seq=u32, direction=st.floats(-1000, 1000), speed=st.floats(0, 100)),
+    st.builds(WalkTo, seq=u32, x=metres, y=metres, layer=layers),
+    st.builds(ChatLine, text=lines(MAX_CHAT_CHARS)),
+    st.builds(Ping, nonce=u32),
+    st.builds(Watch, id=st.none() | u32),
+)
+
+entities = st.builds(
+    Entity,
+    id=u32,
+    kind=st.sampled_from(Kind),
+    name=texts,
+    layer=layers,
+    x=floats,
+    y=floats,
+    heading=floats,
+    radius=floats,
+)
+circles = st.builds(Circle, x=floats, y=floats, layer=layers, radius=floats)
+
+server_messages: st.SearchStrategy[FromServer] = st.one_of(
+    st.builds(
+        Welcome,
+        version=st.integers(0, 0xFFFF),
+        id=u32,
+        name=texts,
+        resume=texts,
+        resumed=st.booleans(),
+        scene=scenes,
+        tick=u32,
+        tick_rate=st.integers(1, 1000),
+        server_time=floats,
+        radius=floats,
+        max_speed=floats,
+        origin=bounds,
+    ),
+    st.builds(Enter, tick=u32, entities=st.lists(entities, max_size=4)),
+    st.builds(Leave, tick=u32, ids=st.lists(u32)),
+    st.builds(Snapshot, tick=u32, ack=u32, block=st.binary(max_size=400)),
+    st.builds(Chat, id=u32, name=texts, text=texts),
+    st.builds(Notice, text=texts),
+    st.builds(Error, error=st.sampled_from(ErrorCode), text=texts),
+    st.builds(Bye, reason=st.sampled_from(ByeCode), text=texts),
+    st.builds(Pong, nonce=u32, server_time=floats),
+    st.builds(
+        Plan,
+        tick=u32,
+        id=u32,
+        reason=st.sampled_from(Reason),
+        behaviour=st.sampled_from(["go_to", "wander", "patrol", "guide", "idle"]),
+        goal=st.none() | st.tuples(floats, floats, layers),
+        path=st.lists(st.tuples(floats, floats, layers, floats), max_size=4),
+        people=st.lists(st.lists(circles, max_size=3), max_size=3),
+    ),
+    st.builds(Census, people=u32, actors=u32),
+)

@@ -1,0 +1,181 @@
+"""Messages to frames and back; whatever comes in, only a `ProtocolError` comes out."""
+
+import struct
+from typing import Any
+
+import msgpack
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from protocol import (
+    CloseCode,
+    ErrorCode,
+    ProtocolError,
+    ServerCode,
+    decode_client,
+    decode_server,
+    encode,
+    encode_snapshot,
+    peek_snapshot,
+)
+from protocol.codec import CLIENT_MESSAGES, MAX_BLOCK_BYTES, SERVER_MESSAGES, SNAPSHOT_HEAD_BYTES
+from protocol.codes import MAX_CLIENT_FRAME_BYTES, ClientCode
+from protocol.messages import FromClient, FromServer, Hello, Snapshot
+from tests.protocol.messages import client_messages, server_messages
+
+
+@given(client_messages)
+def test_a_client_message_comes_back_as_it_was(message: FromClient) -> None:
+    assert decode_client(encode(message)) == message
+
+
+@given(server_messages)
+def test_a_server_message_comes_back_as_it_was(message: FromServer) -> None:
+    assert decode_server(encode(message)) == message
+
+
+def test_every_code_has_a_model() -> None:
+    assert {int(code) for code in ClientCode} == set(CLIENT_MESSAGES)
+    assert {int(code) for code in ServerCode} == set(SERVER_MESSAGES) | {int(ServerCode.SNAPSHOT)}
+
+
+# --- hostile frames -----------------------------------------------------------------------------
+
+
+def decode_or_refuse(frame: bytes) -> None:
+    """Decode both ways; a text that goes back to a client stays short."""
+    for decode in (decode_client, decode_server):
+        try:
+            decode(frame)
+        except ProtocolError as error:
+            assert len(error.text) < 500  # noqa: PT017 (any outcome but another error is right)
+
+
+@given(st.binary(max_size=MAX_CLIENT_FRAME_BYTES + 1))
+def test_random_bytes(frame: bytes) -> None:
+    decode_or_refuse(frame)
+
+
+scalars = (
+    st.none()
+    | st.booleans()
+    | st.integers(-(2**63), 2**64 - 1)
+    | st.floats()
+    | st.text(st.characters(codec="utf-8"), max_size=40)
+    | st.binary(max_size=40)
+    | st.builds(msgpack.ExtType, st.integers(0, 127), st.binary(max_size=12))
+)
+keys = st.sampled_from(["name", "version", "seq", "x", "at", "direction"]) | st.binary(max_size=4)
+trees: st.SearchStrategy[Any] = st.recursive(
+    scalars,
+    lambda inner: st.lists(inner, max_size=5) | st.dictionaries(keys, inner, max_size=5),
+    max_leaves=12,
+)
+codes = st.sampled_from([*CLIENT_MESSAGES, *SERVER_MESSAGES, int(ServerCode.SNAPSHOT)])
+
+
+@given(trees)
+def test_random_msgpack(tree: Any) -> None:
+    decode_or_refuse(msgpack.packb(tree))
+
+
+@given(codes, st.lists(trees, max_size=4))
+def test_a_known_code_with_random_fields(code: int, rest: list[Any]) -> None:
+    decode_or_refuse(msgpack.packb([code, *rest]))
+
+
+@given(client_messages | server_messages, st.data())
+def test_a_good_frame_with_a_changed_byte(message: FromClient, data: st.DataObject) -> None:
+    frame = bytearray(encode(message))
+    place = data.draw(st.integers(0, len(frame) - 1))
+    frame[place] = data.draw(st.integers(0, 255))
+    decode_or_refuse(bytes(frame))
+    decode_or_refuse(bytes(frame[:place]))
+
+
+@pytest.mark.parametrize(
+    "frame",
+    [
+        b"\x91" * 600 + b"\x01",  # nested 600 deep, its code a list
+        b"\x92\x02" + b"\x91" * 1000 + b"\x01",  # the fields nested
+        b"\x92\x02\x81\xa3seq" + b"\x91" * 1000 + b"\x01",  # one field nested
+        b"\x91" * 2000,  # deeper than the reader goes
+        b"\xdd\xff\xff\xff\xff",  # an array of four thousand million
+        b"\xdf\xff\xff\xff\xff",  # a map of as many
+        b"\xc6\xff\xff\xff\xff",  # a binary of 4 GiB
+        b"\xdb\xff\xff\xff\xff",  # a text of 4 GiB
+        b"\xc9\xff\xff\xff\xff\x01",  # an extension of 4 GiB
+        b"\x92\x01\xdf\xff\xff\xff\xff",
+        b"\xc7\x0c\xff" + b"\xff" * 12,  # a time that is none
+        b"\x92\x01\x81\xc0\x01",  # a key that is no text
+        b"",
+    ],
+)
+def test_bombs(frame: bytes) -> None:
+    with pytest.raises(ProtocolError) as caught:
+        decode_client(frame)
+    assert caught.value.close in {CloseCode.MALFORMED, CloseCode.INVALID}
+    with pytest.raises(ProtocolError):
+        decode_server(frame)
+
+
+@pytest.mark.parametrize(
+    ("frame", "code", "close", "text"),
+    [
+        (b"\xc1", ErrorCode.MALFORMED, CloseCode.MALFORMED, "not msgpack"),
+        (b"\x01", ErrorCode.MALFORMED, CloseCode.MALFORMED, "begins with a message code"),
+        (b"\x90", ErrorCode.MALFORMED, CloseCode.MALFORMED, "begins with a message code"),
+        (b"\x91\x05", ErrorCode.MALFORMED, CloseCode.MALFORMED, "[code, map of fields]"),
+        (b"\x92\x05\x01", ErrorCode.MALFORMED, CloseCode.MALFORMED, "[code, map of fields]"),
+        (b"\x92\xc3\x80", ErrorCode.MALFORMED, CloseCode.MALFORMED, "code is an integer"),
+        (b"\x92\x63\x80", ErrorCode.INVALID, CloseCode.INVALID, "unknown message code 99; known"),
+        (b"\x92\x05\x80", ErrorCode.INVALID, CloseCode.INVALID, "Ping: nonce: Field required"),
+    ],
+)
+def test_faults_are_named(frame: bytes, code: ErrorCode, close: CloseCode, text: str) -> None:
+    with pytest.raises(ProtocolError) as caught:
+        decode_client(frame)
+    assert (caught.value.code, caught.value.close) == (code, close)
+    assert text in caught.value.text
+
+
+def test_an_oversize_frame_is_refused_before_it_is_read() -> None:
+    with pytest.raises(ProtocolError, match="may hold 2048 bytes, this one has 2049") as caught:
+        decode_client(b"\xc1" * (MAX_CLIENT_FRAME_BYTES + 1))
+    assert (caught.value.code, caught.value.close) == (ErrorCode.TOO_LARGE, CloseCode.TOO_LARGE)
+
+
+def test_the_longest_messages_fit_a_frame() -> None:
+    longest = Hello(name="🙂" * 32, version=1, resume="🙂" * 64, at=(-1e5 / 3, 1e5 / 3, 255))
+    assert len(encode(longest)) < MAX_CLIENT_FRAME_BYTES
+    frame = msgpack.packb([int(ClientCode.CHAT), {"text": "🙂" * 300}])
+    assert decode_client(frame) is not None
+
+
+# --- snapshots ----------------------------------------------------------------------------------
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(0, 2**32 - 1), st.binary(max_size=400))
+def test_a_snapshot_is_plain_msgpack_with_a_fixed_head(tick: int, ack: int, block: bytes) -> None:
+    frame = encode_snapshot(tick, ack, block)
+    assert len(frame) == SNAPSHOT_HEAD_BYTES + len(block)
+    assert msgpack.unpackb(frame) == [67, tick, ack, block]
+    assert peek_snapshot(frame) == (tick, ack)
+    assert struct.unpack_from(">H", frame, 13) == (len(block),)
+
+
+@given(server_messages.filter(lambda message: not isinstance(message, Snapshot)))
+def test_other_messages_have_no_snapshot_head(message: FromServer) -> None:
+    assert peek_snapshot(encode(message)) is None
+
+
+def test_short_frames_have_no_snapshot_head() -> None:
+    assert peek_snapshot(encode_snapshot(1, 2, b"")[:-1]) is None
+    assert peek_snapshot(b"") is None
+
+
+def test_a_block_has_a_limit() -> None:
+    assert len(encode_snapshot(1, 1, bytes(MAX_BLOCK_BYTES))) == MAX_BLOCK_BYTES + 15
+    with pytest.raises(ValueError, match="at most 65535 bytes"):
+        encode_snapshot(1, 1, bytes(MAX_BLOCK_BYTES + 1))
