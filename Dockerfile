@@ -2,17 +2,7 @@
 FROM python:3.12-slim AS build
 WORKDIR /source
 RUN python -m venv /opt/esplanade
-COPY pyproject.toml hatch_build.py README.md LICENSE ./
-COPY actors actors
-COPY bots bots
-COPY client_web client_web
-COPY esplanade esplanade
-COPY planning planning
-COPY protocol protocol
-COPY recordings recordings
-COPY scenes scenes
-COPY server server
-COPY tools tools
+COPY . .
 RUN /opt/esplanade/bin/pip install --no-cache-dir .
 
 FROM python:3.12-slim
@@ -29,4 +19,4 @@ HEALTHCHECK --start-period=180s --interval=10s --timeout=3s --retries=3 \
   CMD ["python", "-c", "import urllib.request as r; r.urlopen('http://127.0.0.1:8081/readyz', timeout=2)"]
 STOPSIGNAL SIGTERM
 ENTRYPOINT ["esplanade"]
-CMD ["serve", "--host=0.0.0.0", "--actors=12"]
+CMD ["serve"]

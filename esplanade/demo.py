@@ -13,13 +13,11 @@ import threading
 from collections.abc import Sequence
 from http import HTTPStatus
 from importlib import import_module
-from pathlib import Path
 from typing import Final, cast
 
 from rich.console import Console
 from rich.panel import Panel
 
-SCENE: Final = Path(__file__).resolve().parents[1] / "scenes" / "plaza.json"
 POLL_S: Final = 0.25
 END_LIMIT_S: Final = 5.0
 
@@ -76,7 +74,6 @@ class Visitors:
 
 def _server_arguments(options: argparse.Namespace, passed_on: Sequence[str]) -> list[str]:
     return [
-        f"--scene={options.scene}",
         f"--port={options.port}",
         f"--private-port={options.private_port}",
         f"--actors={options.actors}",
@@ -126,7 +123,6 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--private-port", type=int, default=8081, help="port for health and metrics"
     )
-    parser.add_argument("--scene", type=Path, default=SCENE, help="scene to walk in")
     parser.add_argument("--actors", type=int, default=12, help="number of actors")
     parser.add_argument("--visitors", type=int, default=6, help="number of wandering bots")
     parser.add_argument("--seed", type=int, default=1, help="seed of everything drawn by chance")
