@@ -27,7 +27,7 @@ class ClientBuildHook(BuildHookInterface):  # type: ignore[type-arg]  # its conf
         if os.environ.get(SKIP_VARIABLE) == "1":
             self.app.display_warning(f"{SKIP_VARIABLE}=1: the web client is not built")
             return
-        self._npm("ci", "--no-audit", "--no-fund")
+        self._npm("ci", "--include=dev", "--no-audit", "--no-fund")
         self._npm("run", "build")
         page = Path(self.root, "server", "client_assets", "index.html")
         if not page.is_file():

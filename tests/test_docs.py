@@ -1,0 +1,105 @@
+"""What the documents name exists: make targets, files, options, and examples that hold."""
+
+import ast
+import json
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+from planning import Scene
+
+ROOT = Path(__file__).resolve().parents[1]
+DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md"))]
+NOT_OURS = {"crowdbotp/OpenTraj", "server/client_assets/"}
+
+FENCE = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+SPAN = re.compile(r"`([^`\n]+)`")
+LINK = re.compile(r"\]\(([^)#]+)")
+PATH = re.compile(r"\.?\w[\w.-]*/[\w./-]*|[\w-]+\.(md|toml|yml)")
+
+documents = pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+
+
+def blocks(text: str, language: str) -> list[str]:
+    return [body for found, body in FENCE.findall(text) if found == language]
+
+
+def commands(text: str) -> Iterator[str]:
+    """Every line of a shell block, and every code span in the running text."""
+    for block in blocks(text, "sh"):
+        yield from (line.split("  #")[0].strip() for line in block.splitlines())
+    yield from SPAN.findall(FENCE.sub("", text))
+
+
+@cache
+def help_of(command: str) -> str:
+    arguments = [sys.executable, "-m", "esplanade", command, "--help"]
+    return subprocess.run(arguments, check=True, capture_output=True, text=True).stdout
+
+
+@documents
+def test_make_targets_exist(document: Path) -> None:
+    targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
+    named = set(re.findall(r"\bmake ([a-z-]+)", "\n".join(commands(document.read_text()))))
+    assert named <= targets
+
+
+@documents
+def test_paths_exist(document: Path) -> None:
+    text = document.read_text()
+    links = {link for link in LINK.findall(text) if "://" not in link}
+    missing = [link for link in links if not (document.parent / link).exists()]
+    spans = {span for span in SPAN.findall(FENCE.sub("", text)) if PATH.fullmatch(span)}
+    missing += [span for span in spans - NOT_OURS if not (ROOT / span).exists()]
+    assert missing == []
+
+
+@documents
+def test_options_exist(document: Path) -> None:
+    unknown = [
+        line
+        for line in commands(document.read_text())
+        if (call := re.match(r"esplanade (serve|bots|demo)\b(.*)", line))
+        and not all(
+            re.search(rf"(?<![\w-]){option}(?![\w-])", help_of(call[1]))
+            for option in re.findall(r"--[a-z][a-z-]*", call[2])
+        )
+    ]
+    assert unknown == []
+
+
+@documents
+def test_client_scripts_exist(document: Path) -> None:
+    scripts = json.loads((ROOT / "client_web" / "package.json").read_text())["scripts"]
+    named = re.findall(r"tools/npm\.py run ([\w:]+)", "\n".join(commands(document.read_text())))
+    assert set(named) <= set(scripts)
+
+
+@documents
+def test_json_blocks_of_scenes_are_scenes(document: Path) -> None:
+    examples = [block for block in blocks(document.read_text(), "json") if '"bounds"' in block]
+    for example in examples:
+        assert Scene.model_validate_json(example).places
+
+
+@documents
+def test_python_blocks_import_what_exists(document: Path) -> None:
+    for block in blocks(document.read_text(), "python"):
+        for node in ast.walk(ast.parse(block)):
+            if isinstance(node, ast.Import):
+                assert all(import_module(name.name) for name in node.names)
+            if isinstance(node, ast.ImportFrom) and node.module:
+                module = import_module(node.module)
+                assert [n.name for n in node.names if not hasattr(module, n.name)] == []
+
+
+def test_readme_shows_how_to_make_a_scene_and_a_bot() -> None:
+    text = (ROOT / "README.md").read_text()
+    assert len(blocks(text, "json")) == 1
+    assert len(blocks(text, "python")) == 1
