@@ -10,7 +10,7 @@ import http.client
 import subprocess
 import sys
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from http import HTTPStatus
 from importlib import import_module
 from typing import Final, cast
@@ -24,11 +24,11 @@ END_LIMIT_S: Final = 5.0
 
 def run(argv: Sequence[str]) -> int:
     """Run the demo until the server ends, and return the server's exit code."""
-    options, passed_on = _parser().parse_known_args(argv)
+    options, passed_on = parser().parse_known_args(argv)
     visitors = Visitors(options)
     visitors.start()
     try:
-        return cast(int, import_module("server.cli").run(_server_arguments(options, passed_on)))
+        return cast(int, import_module("server.cli").run(server_arguments(options, passed_on)))
     finally:
         visitors.end()
 
@@ -60,19 +60,19 @@ class Visitors:
             self._process.wait()
 
     def _come(self) -> None:
-        while not _is_ready(self._options.private_port):
+        while not is_ready(self._options.private_port):
             if self._ending.wait(POLL_S):
                 return
         _announce(self._options.port)
         if self._options.visitors and not self._ending.is_set():
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "esplanade", "bots", *_bots_arguments(self._options)],
+                [sys.executable, "-m", "esplanade", "bots", *bots_arguments(self._options)],
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
             )
 
 
-def _server_arguments(options: argparse.Namespace, passed_on: Sequence[str]) -> list[str]:
+def server_arguments(options: argparse.Namespace, passed_on: Sequence[str]) -> list[str]:
     return [
         f"--port={options.port}",
         f"--private-port={options.private_port}",
@@ -82,7 +82,7 @@ def _server_arguments(options: argparse.Namespace, passed_on: Sequence[str]) -> 
     ]
 
 
-def _bots_arguments(options: argparse.Namespace) -> list[str]:
+def bots_arguments(options: argparse.Namespace) -> list[str]:
     return [
         f"--url=ws://localhost:{options.port}",
         f"--count={options.visitors}",
@@ -91,7 +91,7 @@ def _bots_arguments(options: argparse.Namespace) -> list[str]:
     ]
 
 
-def _is_ready(private_port: int) -> bool:
+def is_ready(private_port: int) -> bool:
     """Whether the server says that people may come in."""
     connection = http.client.HTTPConnection("127.0.0.1", private_port, timeout=1.0)
     with contextlib.closing(connection), contextlib.suppress(OSError, http.client.HTTPException):
@@ -111,19 +111,32 @@ def _announce(port: int) -> None:
     )
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+def parser() -> argparse.ArgumentParser:
+    """Options of the demo itself; what it does not know is the server's."""
+    options = argparse.ArgumentParser(
         prog="esplanade demo",
         description="Run the demo world with actors, and with a few visitors made of code.",
         epilog="All other options go to the server: see `esplanade serve --help`.",
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
         allow_abbrev=False,
     )
-    parser.add_argument("--port", type=int, default=8080, help="port for people")
-    parser.add_argument(
-        "--private-port", type=int, default=8081, help="port for health and metrics"
+    port, amount = _number(1, 65535), _number(0, 500)
+    options.add_argument("--port", type=port, default=8080, help="port for people")
+    options.add_argument(
+        "--private-port", type=port, default=8081, help="port for health and metrics"
     )
-    parser.add_argument("--actors", type=int, default=12, help="number of actors")
-    parser.add_argument("--visitors", type=int, default=6, help="number of wandering bots")
-    parser.add_argument("--seed", type=int, default=1, help="seed of everything drawn by chance")
-    return parser
+    options.add_argument("--actors", type=amount, default=12, help="number of actors")
+    options.add_argument("--visitors", type=amount, default=6, help="number of wandering bots")
+    options.add_argument("--seed", type=int, default=1, help="seed of everything drawn by chance")
+    return options
+
+
+def _number(least: int, most: int) -> Callable[[str], int]:
+    """Reads a whole number within these limits."""
+
+    def read(text: str) -> int:
+        if not (text.isdecimal() and least <= int(text) <= most):
+            raise argparse.ArgumentTypeError(f"{text!r} is no number from {least} to {most}")
+        return int(text)
+
+    return read

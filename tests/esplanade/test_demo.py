@@ -1,0 +1,116 @@
+"""The demo: a world with actors and visitors, that one Ctrl-C ends without a trace."""
+
+import http.client
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from esplanade import demo
+
+START_LIMIT_S = 180.0
+END_LIMIT_S = 20.0
+
+
+def wait_for(condition: Callable[[], bool], limit_s: float, what: str) -> None:
+    deadline = time.monotonic() + limit_s
+    while not condition():
+        assert time.monotonic() < deadline, f"waited {limit_s:g} s for {what}"
+        time.sleep(0.1)
+
+
+def free_ports(count: int) -> list[int]:
+    sockets = [socket.create_server(("127.0.0.1", 0)) for _ in range(count)]
+    ports = [one.getsockname()[1] for one in sockets]
+    for one in sockets:
+        one.close()
+    return ports
+
+
+def metrics(private_port: int) -> str:
+    connection = http.client.HTTPConnection("127.0.0.1", private_port, timeout=5)
+    try:
+        connection.request("GET", "/metrics")
+        return connection.getresponse().read().decode()
+    finally:
+        connection.close()
+
+
+def children(pid: int) -> list[int]:
+    """Processes that this one has started, as Linux tells."""
+    return [
+        int(child)
+        for file in Path(f"/proc/{pid}/task").glob("*/children")
+        for child in file.read_text().split()
+    ]
+
+
+@pytest.fixture
+def running_demo() -> Iterator[tuple[subprocess.Popen[str], int, int]]:
+    port, private_port = free_ports(2)
+    process = subprocess.Popen(
+        [
+            *(sys.executable, "-m", "esplanade", "demo"),
+            *(f"--port={port}", f"--private-port={private_port}"),
+            *("--actors=2", "--visitors=3", "--seed=5"),
+        ],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    yield process, port, private_port
+    process.kill()
+    process.communicate()
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="asks Linux for child processes")
+@pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM])
+def test_visitors_come_and_one_signal_ends_everything(
+    running_demo: tuple[subprocess.Popen[str], int, int], end: signal.Signals
+) -> None:
+    process, port, private_port = running_demo
+    wait_for(lambda: demo.is_ready(private_port), START_LIMIT_S, "the world to be ready")
+    wait_for(lambda: "people 3" in metrics(private_port), START_LIMIT_S, "three visitors")
+    (visitors,) = children(process.pid)
+
+    process.send_signal(end)
+    said, _ = process.communicate(timeout=END_LIMIT_S)
+
+    assert process.returncode == 0, said
+    assert f"http://localhost:{port}" in said
+    assert "Traceback" not in said
+    with pytest.raises(ProcessLookupError):
+        os.kill(visitors, 0)
+
+
+def test_other_options_go_to_the_server() -> None:
+    options, passed_on = demo.parser().parse_known_args(["--actors=3", "--tick-rate", "10"])
+    arguments = demo.server_arguments(options, passed_on)
+    assert "--actors=3" in arguments
+    assert arguments[-2:] == ["--tick-rate", "10"]
+
+
+def test_no_visitors_before_the_world_is_ready() -> None:
+    """A server that never gets ready leaves nothing behind."""
+    (port,) = free_ports(1)
+    options = demo.parser().parse_args([f"--private-port={port}"])
+    visitors = demo.Visitors(options)
+    visitors.start()
+    visitors.end()
+    assert visitors._process is None
+
+
+@pytest.mark.parametrize("argument", ["--port=0", "--port=http", "--visitors=-1", "--actors=1000"])
+def test_numbers_out_of_range_are_refused(
+    argument: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        demo.run([argument])
+    option, _, value = argument.partition("=")
+    assert f"argument {option}: '{value}' is no number from" in capsys.readouterr().err
