@@ -24,6 +24,7 @@ class SegmentIndex(NamedTuple):
     x0: float
     y0: float
     bucket_m: float
+    reach_m: float
     nx: int
     ny: int
 
@@ -154,20 +155,19 @@ def slide(
 ) -> tuple[float, float]:
     """Move a disc by (dx, dy), sliding along segments and kept inside the bounds.
 
-    The way is cut into pieces shorter than half the clearance, so that no wall is jumped over.
+    Near walls the way is cut into pieces of half the clearance, so that none is jumped over.
     """
     length = np.hypot(dx, dy)
     if length == 0.0:
         return x, y
-    room = nearest_segment(index, x, y)[0]
-    if room > clearance + length:
-        pieces = 1
-    else:
-        pieces = int(np.ceil(length / max(0.5 * clearance, 0.02)))
-    for _ in range(pieces):
-        x, y = slide_step(index, x, y, dx / pieces, dy / pieces, clearance)
+    done = 0.0
+    while done < length:
+        room = min(nearest_segment(index, x, y)[0], index.reach_m) - clearance
+        piece = min(length - done, max(room, 0.5 * clearance, 0.02))
+        x, y = slide_step(index, x, y, dx * piece / length, dy * piece / length, clearance)
         x = min(bounds[2], max(bounds[0], x))
         y = min(bounds[3], max(bounds[1], y))
+        done += piece
     return x, y
 
 

@@ -91,9 +91,13 @@ def sight_wave(
                     nj = j + dj
                     ni = i + di
                     if 0 <= nj < ny and 0 <= ni < nx and settled[layer, nj, ni]:
-                        if dj != 0 and di != 0 and (
-                            grid.clearance[layer, j, ni] < radius
-                            or grid.clearance[layer, nj, i] < radius
+                        if (
+                            dj != 0
+                            and di != 0
+                            and (
+                                grid.clearance[layer, j, ni] < radius
+                                or grid.clearance[layer, nj, i] < radius
+                            )
                         ):
                             continue
                         cx = grid.x0 + (ni + 0.5) * grid.cell_m
@@ -117,8 +121,13 @@ def sight_wave(
                     continue
                 if grid.clearance[layer, nj, ni] < radius:
                     continue
-                if dj != 0 and di != 0 and (
-                    grid.clearance[layer, j, ni] < radius or grid.clearance[layer, nj, i] < radius
+                if (
+                    dj != 0
+                    and di != 0
+                    and (
+                        grid.clearance[layer, j, ni] < radius
+                        or grid.clearance[layer, nj, i] < radius
+                    )
                 ):
                     continue
                 cx = grid.x0 + (ni + 0.5) * grid.cell_m
@@ -220,8 +229,13 @@ def nf1_wave(
                     continue
                 if grid.clearance[layer, nj, ni] < radius:
                     continue
-                if dj != 0 and di != 0 and (
-                    grid.clearance[layer, j, ni] < radius or grid.clearance[layer, nj, i] < radius
+                if (
+                    dj != 0
+                    and di != 0
+                    and (
+                        grid.clearance[layer, j, ni] < radius
+                        or grid.clearance[layer, nj, i] < radius
+                    )
                 ):
                     continue
                 cost = value + grid.cell_m * np.sqrt(float(dj * dj + di * di))

@@ -52,7 +52,7 @@ def _index(segments: Segments, bounds: tuple[float, float, float, float]) -> Seg
     starts = np.zeros(nx * ny + 1, dtype=np.int64)
     starts[1:] = np.cumsum([len(members) for members in lists])
     members = np.array([s for bucket in lists for s in bucket], dtype=np.int64)
-    return SegmentIndex(segments, starts, members, x0, y0, _BUCKET_M, nx, ny)
+    return SegmentIndex(segments, starts, members, x0, y0, _BUCKET_M, _BUCKET_REACH_M, nx, ny)
 
 
 class LayeredGrid:

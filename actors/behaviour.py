@@ -1,0 +1,236 @@
+"""What actors want: each behaviour turns what an actor sees into the goal of the moment."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from planning import LayeredGrid, Scene
+
+Goal = tuple[float, float, int]
+"""x, y in metres and the layer."""
+Target = str | Goal
+"""A place's name or a point."""
+BehaviourName = Literal["go_to", "wander", "patrol", "guide", "idle"]
+
+
+@dataclass(frozen=True)
+class View:
+    """What a behaviour knows at a tick."""
+
+    time_s: float
+    position: tuple[float, float]
+    layer: int
+    arrived: bool
+    """The goal given last has been reached."""
+    stuck: bool
+    """No way leads to the goal given last."""
+    people: Mapping[Hashable, Goal]
+    scene: Scene
+    grid: LayeredGrid
+    radius_m: float
+    rng: np.random.Generator
+
+    def resolve(self, target: Target) -> Goal:
+        """The point that a target means; KeyError for a place that the scene does not have."""
+        if isinstance(target, str):
+            place = self.scene.place(target)
+            return place.position[0], place.position[1], place.layer
+        return target
+
+
+class Behaviour(ABC):
+    """Decides where an actor wants to be; asked once a tick."""
+
+    name: ClassVar[BehaviourName]
+
+    @abstractmethod
+    def update(self, view: View) -> Goal | None:
+        """The goal of this tick, None to stand still."""
+
+    def targets(self) -> Sequence[Target]:
+        """Targets that must exist in the scene."""
+        return ()
+
+
+class Idle(Behaviour):
+    """Stand, and make way when somebody comes too close."""
+
+    name = "idle"
+
+    def update(self, view: View) -> Goal | None:
+        """Never a goal."""
+        return None
+
+
+class GoTo(Behaviour):
+    """Go to one place or point and stay there."""
+
+    name = "go_to"
+
+    def __init__(self, target: Target) -> None:
+        self._target = target
+
+    def targets(self) -> Sequence[Target]:
+        """The one target."""
+        return (self._target,)
+
+    def update(self, view: View) -> Goal | None:
+        """Always the same goal."""
+        return view.resolve(self._target)
+
+
+class Wander(Behaviour):
+    """Walk from place to place at random, resting at each; anywhere free if there are no places."""
+
+    name = "wander"
+
+    def __init__(self, pause_s: tuple[float, float] = (1.0, 4.0)) -> None:
+        self._pause_s = pause_s
+        self._goal: Goal | None = None
+        self._rest_until: float | None = None
+
+    def update(self, view: View) -> Goal | None:
+        """The place being walked to, or rested at."""
+        if self._goal is None or view.stuck:
+            self._goal = self._choose(view)
+        elif view.arrived:
+            if self._rest_until is None:
+                self._rest_until = view.time_s + view.rng.uniform(*self._pause_s)
+            elif view.time_s >= self._rest_until:
+                self._rest_until = None
+                self._goal = self._choose(view)
+        return self._goal
+
+    def _choose(self, view: View) -> Goal | None:
+        here = np.array(view.position)
+        places = [
+            (*place.position, place.layer)
+            for place in view.scene.places
+            if math.dist(place.position, view.position) > 1.0
+        ]
+        if places:
+            return places[int(view.rng.integers(len(places)))]
+        x0, y0, x1, y1 = view.scene.bounds
+        for _ in range(32):
+            point = view.rng.uniform((x0, y0), (x1, y1))
+            far = float(np.hypot(*(point - here))) > 1.0
+            if far and view.grid.is_free([point], [view.layer], view.radius_m)[0]:
+                return float(point[0]), float(point[1]), view.layer
+        return None
+
+
+class Patrol(Behaviour):
+    """Walk a list of places round and round, resting at each."""
+
+    name = "patrol"
+
+    def __init__(self, stops: Sequence[Target], pause_s: float = 2.0) -> None:
+        if not stops:
+            raise ValueError("a patrol needs at least one stop")
+        self._stops = tuple(stops)
+        self._pause_s = pause_s
+        self._next = 0
+        self._rest_until: float | None = None
+
+    def targets(self) -> Sequence[Target]:
+        """The stops."""
+        return self._stops
+
+    def update(self, view: View) -> Goal | None:
+        """The stop being walked to, or rested at."""
+        if view.stuck:
+            self._advance()
+        elif view.arrived:
+            if self._rest_until is None:
+                self._rest_until = view.time_s + self._pause_s
+            elif view.time_s >= self._rest_until:
+                self._advance()
+        return view.resolve(self._stops[self._next])
+
+    def _advance(self) -> None:
+        self._rest_until = None
+        self._next = (self._next + 1) % len(self._stops)
+
+
+class Guide(Behaviour):
+    """Lead people along a tour; wait for followers who fall behind, then go on.
+
+    Whoever stays within `join_m` for `join_after_s` seconds follows. When a follower is further
+    than `lag_m` away the guide stands until it has come within `join_m` again, but no longer
+    than `patience_s`: then it is no follower any more.
+    """
+
+    name = "guide"
+
+    def __init__(
+        self,
+        tour: Sequence[Target],
+        pause_s: float = 5.0,
+        join_m: float = 3.0,
+        lag_m: float = 6.0,
+        join_after_s: float = 2.0,
+        patience_s: float = 15.0,
+    ) -> None:
+        if not tour:
+            raise ValueError("a tour needs at least one stop")
+        if not 0.0 < join_m < lag_m:
+            raise ValueError(f"join_m must lie below lag_m, got {join_m} and {lag_m}")
+        self._tour = Patrol(tour, pause_s)
+        self._join_m = join_m
+        self._lag_m = lag_m
+        self._join_after_s = join_after_s
+        self._patience_s = patience_s
+        self._near_since: dict[Hashable, float] = {}
+        self._followers: set[Hashable] = set()
+        self._waiting_since: float | None = None
+
+    @property
+    def followers(self) -> frozenset[Hashable]:
+        """Who is being led."""
+        return frozenset(self._followers)
+
+    @property
+    def waiting(self) -> bool:
+        """Standing for a follower who fell behind."""
+        return self._waiting_since is not None
+
+    def targets(self) -> Sequence[Target]:
+        """The stops of the tour."""
+        return self._tour.targets()
+
+    def update(self, view: View) -> Goal | None:
+        """The next stop; None while waiting for followers."""
+        away = {
+            who: math.dist(where[:2], view.position) if where[2] == view.layer else math.inf
+            for who, where in view.people.items()
+        }
+        self._followers &= away.keys()
+        self._near_since = {
+            who: self._near_since.get(who, view.time_s)
+            for who, distance in away.items()
+            if distance <= self._join_m
+        }
+        self._followers |= {
+            who
+            for who, since in self._near_since.items()
+            if view.time_s - since >= self._join_after_s
+        }
+        if self._waiting_since is None:
+            if any(away[who] > self._lag_m for who in self._followers):
+                self._waiting_since = view.time_s
+        else:
+            behind = {who for who in self._followers if away[who] > self._join_m}
+            if behind and view.time_s - self._waiting_since >= self._patience_s:
+                self._followers -= behind
+                behind = set()
+            if not behind:
+                self._waiting_since = None
+        if self._waiting_since is not None:
+            return None
+        return self._tour.update(view)

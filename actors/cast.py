@@ -1,0 +1,197 @@
+"""The cast of a zone: every actor with its behaviour, and the one navigator that moves them."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actors.behaviour import Behaviour, BehaviourName, Goal, View
+from actors.navigator import Navigator
+from actors.parameters import ActorParameters
+from actors.state import ActorState, Reason
+from planning import LayeredGrid, Scene
+
+_EXPLAINED_WITHIN_M = 8.0
+_STUCK_AFTER_S = 3.0
+_PLACING_TRIES = 64
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """Why an actor does what it does, for the overlay and the operator."""
+
+    behaviour: BehaviourName
+    reason: Reason
+    goal: Goal | None
+    path: NDArray[np.float64]
+    """float64 (K, 4): x, y, layer, seconds from now."""
+    people: list[NDArray[np.float64]]
+    """For each person near: float64 (K, 4) x, y, layer, radius of the two-sigma circle, m."""
+
+
+@dataclass
+class _Actor:
+    behaviour: Behaviour
+    parameters: ActorParameters
+    rng: np.random.Generator
+    state: ActorState
+    goal: Goal | None = None
+    arrived: bool = False
+    no_path_s: float = 0.0
+
+
+class Cast:
+    """All actors of a zone. One call of `tick` a tick; same seed and same people, same walks."""
+
+    def __init__(
+        self, grid: LayeredGrid, scene: Scene, tick_s: float = 0.05, seed: int = 0
+    ) -> None:
+        self.grid = grid
+        self.scene = scene
+        self.navigator = Navigator(grid, tick_s, seed)
+        self.trips = 0
+        """Goals reached by all actors so far."""
+        self._tick = 0
+        self._seed = seed
+        self._actors: dict[Hashable, _Actor] = {}
+
+    def __len__(self) -> int:
+        return len(self._actors)
+
+    def add(
+        self,
+        actor_id: Hashable,
+        behaviour: Behaviour,
+        parameters: ActorParameters | None = None,
+        position: tuple[float, float] | None = None,
+        layer: int = 0,
+    ) -> ActorState:
+        """Put an actor in; without a position it gets a free place, chosen with the seed.
+
+        Raises
+        ------
+        ValueError
+            The id is taken, the position is outside, or no free place was found.
+        KeyError
+            The behaviour names a place that the scene does not have.
+        """
+        parameters = parameters or ActorParameters()
+        self._check_targets(behaviour)
+        rng = np.random.default_rng([self._seed, *str(actor_id).encode()])
+        if position is None:
+            position = self._free_place(parameters.radius_m, layer, rng)
+        self.navigator.add_actor(actor_id, position, None, parameters, layer=layer)
+        start = (float(position[0]), float(position[1]))
+        state = ActorState(
+            start, layer, (0.0, 0.0), 0.0, Reason.WAITING, None, 0.0, np.array([start])
+        )
+        self._actors[actor_id] = _Actor(behaviour, parameters, rng, state)
+        return state
+
+    def remove(self, actor_id: Hashable) -> None:
+        """Take an actor out; KeyError when there is none of that id."""
+        self.navigator.remove_actor(actor_id)
+        del self._actors[actor_id]
+
+    def set_behaviour(self, actor_id: Hashable, behaviour: Behaviour) -> None:
+        """Give an actor another behaviour; KeyError for an unknown actor or place."""
+        actor = self._actors[actor_id]
+        self._check_targets(behaviour)
+        actor.behaviour = behaviour
+        actor.arrived = False
+
+    def set_parameters(self, actor_id: Hashable, parameters: ActorParameters) -> None:
+        """Change an actor's parameters from the next tick on."""
+        self.navigator.set_parameters(actor_id, parameters)
+        self._actors[actor_id].parameters = parameters
+
+    def tick(self, people: Mapping[Hashable, Goal]) -> dict[Hashable, ActorState]:
+        """One tick: behaviours choose goals, then everyone plans and steps. id -> state."""
+        time_s = self._tick * self.navigator.tick_s
+        for actor_id, actor in self._actors.items():
+            goal = actor.behaviour.update(self._view(actor, people, time_s))
+            if goal != actor.goal:
+                self.navigator.set_goal(
+                    actor_id,
+                    None if goal is None else goal[:2],
+                    layer=0 if goal is None else goal[2],
+                )
+                actor.goal = goal
+                actor.arrived = False
+                actor.no_path_s = 0.0
+        self.navigator.observe(people)
+        states = self.navigator.tick()
+        for actor_id, state in states.items():
+            actor = self._actors[actor_id]
+            actor.state = state
+            if state.reason is Reason.NO_PATH:
+                actor.no_path_s += self.navigator.tick_s
+            else:
+                actor.no_path_s = 0.0
+            if actor.goal is not None and state.reason is Reason.ARRIVED and not actor.arrived:
+                actor.arrived = True
+                self.trips += 1
+        self._tick += 1
+        return states
+
+    def explain(self, actor_id: Hashable) -> Explanation:
+        """Why an actor does what it does; KeyError when there is none of that id."""
+        actor = self._actors[actor_id]
+        state = actor.state
+        near = self.navigator.predicted_near(state.position, state.layer, _EXPLAINED_WITHIN_M)
+        for circles in near:
+            circles[:, 3] *= 2.0
+        return Explanation(actor.behaviour.name, state.reason, actor.goal, state.path, near)
+
+    def warm_up(self) -> None:
+        """Compile every kernel by running a small zone of its own, so that no tick has to wait."""
+        scene = Scene.open_space((0.0, 0.0, 6.0, 6.0), walls=[((3.0, 0.0), (3.0, 2.0))])
+        navigator = Navigator(scene, self.navigator.tick_s)
+        navigator.add_actor("a", (1.0, 1.0), (5.0, 1.0))
+        navigator.add_actor("b", (5.0, 1.0), (1.0, 1.0))
+        for k in range(40):
+            navigator.observe({"p": (3.0, 5.0 - 0.05 * k)})
+            navigator.tick()
+        navigator.grid.walk([(1.0, 1.0)], [0], [(0.1, 0.0)], 0.2)
+        potential = navigator.grid.potential((5.0, 1.0), 0, 0.25)
+        potential.direction([(1.0, 1.0)], [0])
+        potential.distance([(1.0, 1.0)], [0])
+        navigator.close()
+
+    def close(self) -> None:
+        """End the planning threads."""
+        self.navigator.close()
+
+    def _view(self, actor: _Actor, people: Mapping[Hashable, Goal], time_s: float) -> View:
+        return View(
+            time_s,
+            actor.state.position,
+            actor.state.layer,
+            actor.arrived,
+            actor.no_path_s >= _STUCK_AFTER_S,
+            people,
+            self.scene,
+            self.grid,
+            actor.parameters.radius_m,
+            actor.rng,
+        )
+
+    def _check_targets(self, behaviour: Behaviour) -> None:
+        for target in behaviour.targets():
+            if isinstance(target, str):
+                self.scene.place(target)
+
+    def _free_place(
+        self, radius_m: float, layer: int, rng: np.random.Generator
+    ) -> tuple[float, float]:
+        x0, y0, x1, y1 = self.scene.bounds
+        taken = np.array([a.state.position for a in self._actors.values()]).reshape(-1, 2)
+        for _ in range(_PLACING_TRIES):
+            point = rng.uniform((x0, y0), (x1, y1))
+            crowded = len(taken) and np.hypot(*(taken - point).T).min() < 2.5 * radius_m
+            if not crowded and self.grid.is_free([point], [layer], radius_m + 0.1)[0]:
+                return float(point[0]), float(point[1])
+        raise ValueError(f"no free place for another actor after {_PLACING_TRIES} tries")

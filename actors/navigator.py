@@ -1,0 +1,283 @@
+"""All actors of a zone, planned and moved together: perceive, plan, step."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actors.guides import GuidePool
+from actors.parameters import ActorParameters
+from actors.state import ActorState, Reason
+from planning import (
+    PARAMETERS,
+    Batch,
+    Crowd,
+    LayeredGrid,
+    PlanModel,
+    Prediction,
+    PredictionModel,
+    RiskModel,
+    Scene,
+    TrackHistory,
+)
+
+Point = tuple[float, float]
+
+
+class Navigator:
+    """Takes every actor to its goal among people whose future is not known.
+
+    A tick is `observe` (where everyone is now) and `tick` (one step of every actor). Time is
+    tick × `tick_s`; the seed decides nothing but the order of priority among actors; the order
+    in which actors were added or people are listed never matters.
+    """
+
+    def __init__(
+        self,
+        scene: Scene | LayeredGrid,
+        tick_s: float = 0.1,
+        seed: int = 0,
+        *,
+        cell_m: float = 0.25,
+        plan: PlanModel | None = None,
+        risk: RiskModel | None = None,
+        prediction: PredictionModel | None = None,
+    ) -> None:
+        if not 0.0 < tick_s <= 0.5:
+            raise ValueError(f"tick_s must lie in (0, 0.5], got {tick_s}")
+        grid = scene if isinstance(scene, LayeredGrid) else LayeredGrid.from_scene(scene, cell_m)
+        self.grid = grid
+        self.tick_s = tick_s
+        self.plan = plan or PlanModel()
+        self._seed = seed
+        self._batch = Batch(grid, self.plan, risk or RiskModel())
+        self._history = TrackHistory(prediction or PredictionModel(), tick_s)
+        self._prediction = self._history.predict(grid, self.plan.slices, self.plan.slice_s)
+        self._guides = GuidePool(grid)
+        self._ids: list[Hashable] = []
+        self._rows: dict[Hashable, int] = {}
+        self._headings = np.zeros(0)
+        self._crowd = _empty_crowd(self.plan.slices + 1)
+        self._parameters: dict[Hashable, ActorParameters] = {}
+        self._goals: dict[Hashable, tuple[float, float, int] | None] = {}
+
+    # --- actors --------------------------------------------------------------------------
+
+    def add_actor(
+        self,
+        actor_id: Hashable,
+        position: Point,
+        goal: Point | None = None,
+        parameters: ActorParameters | None = None,
+        *,
+        layer: int = 0,
+        goal_layer: int | None = None,
+        heading: float = 0.0,
+    ) -> None:
+        """Put an actor into the zone; without a goal it stands and makes way.
+
+        Raises
+        ------
+        ValueError
+            The id is taken, a position is not finite or outside the bounds, or the layer does
+            not exist. Nothing is changed then.
+        """
+        if actor_id in self._rows:
+            raise ValueError(f"there already is an actor {actor_id!r}")
+        self._check_place(position, layer)
+        if goal is not None:
+            self._check_place(goal, layer if goal_layer is None else goal_layer)
+        c = self._crowd
+        parameters = parameters or ActorParameters()
+        rows = len(self._ids)
+        slices = self.plan.slices + 1
+        self._crowd = Crowd(
+            np.concatenate([c.positions, np.array([position], dtype=np.float64)]),
+            np.concatenate([c.velocities, np.zeros((1, 2))]),
+            np.append(c.layers, np.int64(layer)),
+            np.concatenate([c.goals, np.array([position], dtype=np.float64)]),
+            np.append(c.guide_slots, np.int64(-1)),
+            np.append(c.parameters, parameters.row()),
+            c.ranks,
+            np.append(c.known, False),
+            np.append(c.ages, np.int64(0)),
+            np.concatenate([c.followed, np.zeros((1, slices, 2))]),
+        )
+        self._ids.append(actor_id)
+        self._rows[actor_id] = rows
+        self._headings = np.append(self._headings, heading)
+        self._parameters[actor_id] = parameters
+        self._goals[actor_id] = None
+        self._rank()
+        if goal is not None:
+            self.set_goal(actor_id, goal, layer=layer if goal_layer is None else goal_layer)
+
+    def remove_actor(self, actor_id: Hashable) -> None:
+        """Take an actor out; KeyError when there is none of that id."""
+        row = self._row(actor_id)
+        self._guides.release(int(self._crowd.guide_slots[row]))
+        self._crowd = Crowd(*(np.delete(array, row, axis=0) for array in self._crowd))
+        self._headings = np.delete(self._headings, row)
+        del self._ids[row], self._parameters[actor_id], self._goals[actor_id]
+        self._rows = {who: k for k, who in enumerate(self._ids)}
+        self._rank()
+
+    def set_goal(self, actor_id: Hashable, goal: Point | None, *, layer: int = 0) -> None:
+        """Send an actor somewhere, or let it stand (None). A goal inside a wall is moved out."""
+        row = self._row(actor_id)
+        if goal is not None:
+            self._check_place(goal, layer)
+        c = self._crowd
+        old = int(c.guide_slots[row])
+        slot = -1
+        target = None if goal is None else (float(goal[0]), float(goal[1]), layer)
+        if target is not None:
+            radius = self._parameters[actor_id].radius_m
+            free = self.grid.nearest_free(target[:2], layer, radius - 0.02)
+            if free is not None:
+                slot = self._guides.take(free, layer, radius)
+                c.goals[row] = free
+        c.guide_slots[row] = slot
+        c.known[row] = c.known[row] and slot == old
+        self._guides.release(old)
+        self._goals[actor_id] = target
+
+    def set_parameters(self, actor_id: Hashable, parameters: ActorParameters) -> None:
+        """Change an actor's parameters from the next tick on."""
+        row = self._row(actor_id)
+        before = self._parameters[actor_id]
+        self._parameters[actor_id] = parameters
+        self._crowd.parameters[row] = parameters.row()
+        goal = self._goals[actor_id]
+        if before.radius_m != parameters.radius_m and goal is not None:
+            self.set_goal(actor_id, goal[:2], layer=goal[2])
+
+    def place_actor(
+        self, actor_id: Hashable, position: Point, velocity: tuple[float, float] = (0.0, 0.0)
+    ) -> None:
+        """Put an actor where another simulation has it; the path it follows stays."""
+        row = self._row(actor_id)
+        self._check_place(position, int(self._crowd.layers[row]))
+        self._crowd.positions[row] = position
+        self._crowd.velocities[row] = velocity
+
+    def parameters(self, actor_id: Hashable) -> ActorParameters:
+        """An actor's parameters."""
+        return self._parameters[self._ids[self._row(actor_id)]]
+
+    # --- ticks ---------------------------------------------------------------------------
+
+    def observe(self, people: Mapping[Hashable, tuple[float, ...]]) -> None:
+        """Tell where everyone is at this tick: id -> (x, y) or (x, y, layer).
+
+        Who is absent has left. Call it once before every `tick`.
+
+        Raises
+        ------
+        ValueError
+            A position is not finite; nothing is changed then.
+        """
+        self._history.observe(people)
+
+    def tick(self) -> dict[Hashable, ActorState]:
+        """Plan and take one step for every actor; id -> state."""
+        c = self._crowd
+        self._prediction = self._history.predict(self.grid, self.plan.slices, self.plan.slice_s)
+        decisions, positions = self._batch.tick(
+            c, self._guides.arrays, self._prediction, self.tick_s
+        )
+        c.velocities[:] = (positions - c.positions) / self.tick_s
+        c.positions[:] = positions
+        c.followed[decisions.renewed] = decisions.paths[decisions.renewed]
+        c.ages[decisions.renewed] = 0
+        c.ages[:] += 1
+        c.known[:] = True
+        speeds = np.hypot(c.velocities[:, 0], c.velocities[:, 1])
+        walking = speeds > 0.1
+        self._headings[walking] = np.arctan2(c.velocities[walking, 1], c.velocities[walking, 0])
+        rows = zip(
+            self._ids,
+            positions.tolist(),
+            c.layers.tolist(),
+            c.velocities.tolist(),
+            self._headings.tolist(),
+            decisions.reasons.tolist(),
+            decisions.paths,
+            strict=True,
+        )
+        return {
+            who: ActorState(
+                (x, y),
+                layer,
+                (vx, vy),
+                heading,
+                Reason(reason),
+                self._goals[who],
+                self.plan.slice_s,
+                way,
+            )
+            for who, (x, y), layer, (vx, vy), heading, reason, way in rows
+        }
+
+    def predicted_near(
+        self, position: Point, layer: int, within_m: float
+    ) -> list[NDArray[np.float64]]:
+        """For each person now within that distance: float64 (K, 4) x, y, layer, deviation m."""
+        p: Prediction = self._prediction
+        out = []
+        for k, floor in enumerate(p.layers):
+            away = np.hypot(*(p.means[k, 0] - np.asarray(position)))
+            if floor == layer and away <= within_m:
+                floors = np.full(len(p.sigmas[k]), floor, dtype=np.float64)
+                out.append(np.column_stack([p.means[k], floors, p.sigmas[k]]))
+        return out
+
+    def close(self) -> None:
+        """End the planning threads."""
+        self._batch.close()
+
+    def _row(self, actor_id: Hashable) -> int:
+        try:
+            return self._rows[actor_id]
+        except KeyError:
+            raise KeyError(f"there is no actor {actor_id!r}") from None
+
+    def _check_place(self, position: Point, layer: int) -> None:
+        self.grid.as_points([position], [layer])
+        x0, y0, x1, y1 = self.grid.bounds
+        x, y = position
+        if not (x0 <= x <= x1 and y0 <= y <= y1):
+            raise ValueError(f"({x:g}, {y:g}) lies outside the bounds {self.grid.bounds}")
+
+    def _rank(self) -> None:
+        """Order of priority: fixed for each id, fair (a hash of id and seed), free of ties."""
+        keys = [(_priority(self._seed, who), str(who)) for who in self._ids]
+        order = sorted(range(len(keys)), key=keys.__getitem__)
+        ranks = np.empty(len(keys), dtype=np.int64)
+        ranks[order] = np.arange(len(keys))
+        self._crowd = self._crowd._replace(ranks=ranks)
+
+
+def _priority(seed: int, who: Hashable) -> int:
+    """A number that is the same in every run for the same seed and id."""
+    state = 0xCBF29CE484222325 ^ (seed & 0xFFFFFFFFFFFFFFFF)
+    for byte in str(who).encode():
+        state = ((state ^ byte) * 0x100000001B3) & 0xFFFFFFFFFFFFFFFF
+    return state ^ (state >> 29)
+
+
+def _empty_crowd(slices: int) -> Crowd:
+    return Crowd(
+        np.zeros((0, 2)),
+        np.zeros((0, 2)),
+        np.zeros(0, dtype=np.int64),
+        np.zeros((0, 2)),
+        np.zeros(0, dtype=np.int64),
+        np.zeros(0, dtype=PARAMETERS),
+        np.zeros(0, dtype=np.int64),
+        np.zeros(0, dtype=np.bool_),
+        np.zeros(0, dtype=np.int64),
+        np.zeros((0, slices, 2)),
+    )

@@ -1,0 +1,110 @@
+"""What an operator can tune on an actor, with units, ranges and effects."""
+
+from __future__ import annotations
+
+from typing import Annotated, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from planning import PARAMETERS
+
+
+def _field(unit: str, least: float, most: float, description: str) -> object:
+    return Field(
+        ge=least,
+        le=most,
+        allow_inf_nan=False,
+        description=description,
+        json_schema_extra={"unit": unit},
+    )
+
+
+class ActorParameters(BaseModel):
+    """Body and temper of one actor. Every field may be changed while the world runs."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    radius_m: Annotated[
+        float, _field("m", 0.15, 0.5, "Radius of the disc that stands for the body.")
+    ] = 0.25
+    speed_mps: Annotated[
+        float, _field("m/s", 0.1, 3.0, "Preferred walking speed; kept wherever nothing hinders.")
+    ] = 1.3
+    max_speed_mps: Annotated[
+        float,
+        _field("m/s", 0.1, 4.0, "Greatest speed, used to get out of somebody's way."),
+    ] = 1.7
+    max_acceleration_mps2: Annotated[
+        float,
+        _field("m/s²", 0.2, 20.0, "Greatest change of velocity; lower is calmer but later."),
+    ] = 2.0
+    goal_tolerance_m: Annotated[
+        float, _field("m", 0.05, 2.0, "So close to the goal counts as arrived.")
+    ] = 0.2
+    person_clearance_m: Annotated[
+        float,
+        _field(
+            "m",
+            0.1,
+            1.0,
+            "Radius of a person plus the room kept at the last check before a step.",
+        ),
+    ] = 0.3
+    risk_weight: Annotated[
+        float,
+        _field(
+            "s/s",
+            0.0,
+            200.0,
+            "Seconds of detour that a second of certain contact is worth; higher keeps wider.",
+        ),
+    ] = 25.0
+    closing_weight: Annotated[
+        float,
+        _field(
+            "s/m",
+            0.0,
+            5.0,
+            "Extra risk per metre a second of closing speed; higher avoids who comes nearer.",
+        ),
+    ] = 0.1
+    turn_weight: Annotated[
+        float,
+        _field(
+            "s²/m", 0.0, 2.0, "Cost of a change of velocity; higher walks straighter and steadier."
+        ),
+    ] = 0.1
+    wall_weight: Annotated[
+        float,
+        _field("s/s", 0.0, 10.0, "Cost of brushing along walls within 0.15 m of the body."),
+    ] = 0.3
+    hysteresis_s: Annotated[
+        float,
+        _field(
+            "s",
+            0.0,
+            5.0,
+            "How much better a new path must be before it replaces the one followed; "
+            "higher flickers less but reacts later.",
+        ),
+    ] = 0.15
+    max_expansions: Annotated[
+        int,
+        _field("nodes", 10, 20000, "Budget of one search; a smaller one may end before the goal."),
+    ] = 400
+
+    @model_validator(mode="after")
+    def _speeds_in_order(self) -> Self:
+        if self.max_speed_mps < self.speed_mps:
+            raise ValueError(
+                f"max_speed_mps ({self.max_speed_mps}) must not be below speed_mps "
+                f"({self.speed_mps})"
+            )
+        return self
+
+    def row(self) -> NDArray[np.void]:
+        """As kernels take it: one record of `planning.PARAMETERS`."""
+        values = tuple(getattr(self, name) for name in PARAMETERS.names or ())
+        return np.array(values, dtype=PARAMETERS)

@@ -1,0 +1,45 @@
+"""What an actor shows of itself after a tick."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Reason(IntEnum):
+    """Why an actor does what it does."""
+
+    NONE = 0
+    MOVING = 1
+    GIVING_WAY = 2
+    WAITING = 3
+    REPLANNING = 4
+    NO_PATH = 5
+    ARRIVED = 6
+
+
+@dataclass(frozen=True, slots=True)
+class ActorState:
+    """One actor after a tick: metres, metres a second, radians from +x."""
+
+    position: tuple[float, float]
+    layer: int
+    velocity: tuple[float, float]
+    heading: float
+    reason: Reason
+    goal: tuple[float, float, int] | None
+    slice_s: float
+    way: NDArray[np.float64]
+    """(K, 2): planned positions, `slice_s` apart, the first at the beginning of the tick."""
+
+    @property
+    def path(self) -> NDArray[np.float64]:
+        """The plan as float64 (K, 4): x, y, layer, seconds from the beginning of the tick."""
+        out = np.empty((len(self.way), 4))
+        out[:, :2] = self.way
+        out[:, 2] = self.layer
+        out[:, 3] = np.arange(len(self.way)) * self.slice_s
+        return out

@@ -1,0 +1,113 @@
+"""Prediction of people on bare arrays, Lei & Li, eqs. (1)-(3)."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning._geometry_kernels import SegmentIndex, slide
+from planning._jit import kernel
+
+
+class Prediction(NamedTuple):
+    """Where people may be, slice by slice; slice 0 is now.
+
+    `means` (P, K, 2) m; `velocities` (P, K, 2) m/s; `sigmas` (P, K) m per axis; `layers` (P,).
+    """
+
+    means: NDArray[np.float64]
+    velocities: NDArray[np.float64]
+    sigmas: NDArray[np.float64]
+    layers: NDArray[np.int64]
+
+
+@kernel
+def mean_velocity(track: NDArray[np.float64], known: int, sample_s: float) -> tuple[float, float]:
+    """Eq. (1) in the reading that holds on real people: an exponential mean of past velocities.
+
+    `track` (n + 1, 2) holds positions `sample_s` apart, newest first, `known` of them valid.
+    Weights are 1/2, 1/4, ... with the oldest velocity taking what is left.
+    """
+    vx = 0.0
+    vy = 0.0
+    weight = 1.0
+    last = known - 2
+    for k in range(known - 1):
+        w = weight if k == last else 0.5 * weight
+        vx += w * (track[k, 0] - track[k + 1, 0]) / sample_s
+        vy += w * (track[k, 1] - track[k + 1, 1]) / sample_s
+        weight -= w
+    return vx, vy
+
+
+@kernel
+def printed_velocity(
+    track: NDArray[np.float64], known: int, sample_s: float
+) -> tuple[float, float]:
+    """Eq. (1) as printed: v + sum of dv_i / 2**i, dv_i newer minus older."""
+    if known < 2:
+        return 0.0, 0.0
+    vx = (track[0, 0] - track[1, 0]) / sample_s
+    vy = (track[0, 1] - track[1, 1]) / sample_s
+    scale = 1.0
+    for k in range(known - 2):
+        vx += scale * (track[k, 0] - 2.0 * track[k + 1, 0] + track[k + 2, 0]) / sample_s
+        vy += scale * (track[k, 1] - 2.0 * track[k + 1, 1] + track[k + 2, 1]) / sample_s
+        scale *= 0.5
+    return vx, vy
+
+
+@kernel
+def velocities(
+    tracks: NDArray[np.float64],
+    known: NDArray[np.int64],
+    sample_s: float,
+    printed: bool,
+    out: NDArray[np.float64],
+) -> None:
+    """Eq. (1) for P people: tracks (P, n + 1, 2), known (P,) -> out (P, 2)."""
+    for p in range(len(tracks)):
+        if printed:
+            vx, vy = printed_velocity(tracks[p], known[p], sample_s)
+        else:
+            vx, vy = mean_velocity(tracks[p], known[p], sample_s)
+        out[p, 0] = vx
+        out[p, 1] = vy
+
+
+@kernel
+def extrapolate(
+    index: SegmentIndex,
+    bounds: tuple[float, float, float, float],
+    positions: NDArray[np.float64],
+    velocity: NDArray[np.float64],
+    slice_s: float,
+    sigma_0: float,
+    sigma_growth: float,
+    wall_clearance: float,
+    prediction: Prediction,
+) -> None:
+    """Eqs. (2) and (3): means and deviations of every slice, bent along walls.
+
+    People do not walk through walls: a mean that runs into one slides along it, and its velocity
+    becomes that of the slide.
+    """
+    people, slices = prediction.sigmas.shape
+    for p in range(people):
+        x = positions[p, 0]
+        y = positions[p, 1]
+        vx = velocity[p, 0]
+        vy = velocity[p, 1]
+        for k in range(slices):
+            if k > 0:
+                nx, ny = slide(index, bounds, x, y, vx * slice_s, vy * slice_s, wall_clearance)
+                prediction.velocities[p, k, 0] = (nx - x) / slice_s
+                prediction.velocities[p, k, 1] = (ny - y) / slice_s
+                x = nx
+                y = ny
+            else:
+                prediction.velocities[p, k, 0] = vx
+                prediction.velocities[p, k, 1] = vy
+            prediction.means[p, k, 0] = x
+            prediction.means[p, k, 1] = y
+            prediction.sigmas[p, k] = sigma_0 + sigma_growth * k * slice_s

@@ -1,0 +1,216 @@
+"""Risk fields on bare arrays, Lei & Li, eq. (5)."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning._geometry_kernels import closest_approach
+from planning._grid_kernels import GridArrays
+from planning._jit import kernel
+from planning._prediction_kernels import Prediction
+
+
+class RadialTables(NamedTuple):
+    """What one predicted person adds at a distance, by deviation (rows) and distance (columns).
+
+    `near` is the proximity term, `toward` the factor of the closing speed; both are means over
+    the person's likely range.
+    """
+
+    near: NDArray[np.float32]
+    toward: NDArray[np.float32]
+    sigma_step_m: float
+    distance_step_m: float
+
+
+RiskFields = NDArray[np.float32]
+"""(K, L, ny, nx, 4): proximity, closing factor times n (x, y), closing factor times v_o·n, at the
+centres of cells; slice by slice."""
+
+
+@kernel
+def _blend_rows(
+    tables: RadialTables,
+    sigma: float,
+    near: NDArray[np.float32],
+    toward: NDArray[np.float32],
+) -> float:
+    """Tables for one deviation into two rows; returns the reach in metres."""
+    rows, columns = tables.near.shape
+    u = min(rows - 1.000001, max(0.0, sigma / tables.sigma_step_m))
+    r = int(u)
+    w = u - r
+    last = 0
+    for c in range(columns):
+        near[c] = (1.0 - w) * tables.near[r, c] + w * tables.near[r + 1, c]
+        toward[c] = (1.0 - w) * tables.toward[r, c] + w * tables.toward[r + 1, c]
+        if near[c] > 1e-4 or toward[c] > 1e-4:
+            last = c
+    return min(last + 1, columns - 2) * tables.distance_step_m
+
+
+@kernel
+def fill_slices(
+    grid: GridArrays,
+    tables: RadialTables,
+    prediction: Prediction,
+    first: int,
+    step: int,
+    windows: NDArray[np.int64],
+    fields: RiskFields,
+) -> None:
+    """Fill slices first, first + step, ... Only cells near people are touched.
+
+    `windows` (K, P', 5) remembers what was written (layer, j0, j1, i0, i1) so that the next call
+    clears no more than that; rows with layer -1 are empty.
+    """
+    _, slices = prediction.sigmas.shape
+    people = len(prediction.layers)
+    columns = tables.near.shape[1]
+    near = np.empty(columns, dtype=np.float32)
+    toward = np.empty(columns, dtype=np.float32)
+    _, ny, nx = grid.clearance.shape
+    for k in range(first, len(fields), step):
+        for w in range(windows.shape[1]):
+            layer, j0, j1, i0, i1 = windows[k, w]
+            if layer < 0:
+                break
+            fields[k, layer, j0:j1, i0:i1] = 0.0
+            windows[k, w, 0] = -1
+        for p in range(people):
+            layer = prediction.layers[p]
+            mx = prediction.means[p, k, 0]
+            my = prediction.means[p, k, 1]
+            vx = prediction.velocities[p, k, 0]
+            vy = prediction.velocities[p, k, 1]
+            reach = _blend_rows(tables, prediction.sigmas[p, k], near, toward)
+            i0 = max(0, int(np.floor((mx - reach - grid.x0) / grid.cell_m)))
+            i1 = min(nx, int(np.floor((mx + reach - grid.x0) / grid.cell_m)) + 1)
+            j0 = max(0, int(np.floor((my - reach - grid.y0) / grid.cell_m)))
+            j1 = min(ny, int(np.floor((my + reach - grid.y0) / grid.cell_m)) + 1)
+            if i0 >= i1 or j0 >= j1:
+                i0 = i1 = j0 = j1 = 0
+            windows[k, p, 0] = layer
+            windows[k, p, 1] = j0
+            windows[k, p, 2] = j1
+            windows[k, p, 3] = i0
+            windows[k, p, 4] = i1
+            for j in range(j0, j1):
+                ry = grid.y0 + (j + 0.5) * grid.cell_m - my
+                for i in range(i0, i1):
+                    rx = grid.x0 + (i + 0.5) * grid.cell_m - mx
+                    d = np.sqrt(rx * rx + ry * ry)
+                    if d >= reach:
+                        continue
+                    u = d / tables.distance_step_m
+                    c = int(u)
+                    w1 = np.float32(u - c)
+                    w0 = np.float32(1.0) - w1
+                    t = w0 * toward[c] + w1 * toward[c + 1]
+                    f = fields[k, layer, j, i]
+                    f[0] += w0 * near[c] + w1 * near[c + 1]
+                    if d > 1e-6:
+                        ux = t * np.float32(rx / d)
+                        uy = t * np.float32(ry / d)
+                        f[1] += ux
+                        f[2] += uy
+                        f[3] += ux * np.float32(vx) + uy * np.float32(vy)
+
+
+@kernel
+def risk_at(
+    grid: GridArrays,
+    fields: RiskFields,
+    k: int,
+    layer: int,
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    closing_weight: float,
+) -> float:
+    """Risk of being at (x, y) with velocity (vx, vy) at slice k, in closed form O(1).
+
+    proximity + closing_weight * max(0, sum of p (v_o - v_r)·n), n from the person to here.
+    """
+    _, ny, nx = grid.clearance.shape
+    u = (x - grid.x0) / grid.cell_m - 0.5
+    v = (y - grid.y0) / grid.cell_m - 0.5
+    i = min(max(nx - 2, 0), max(0, int(u)))
+    j = min(max(ny - 2, 0), max(0, int(v)))
+    i1 = min(nx - 1, i + 1)
+    j1 = min(ny - 1, j + 1)
+    u = min(1.0, max(0.0, u - i))
+    v = min(1.0, max(0.0, v - j))
+    a = fields[k, layer, j, i]
+    b = fields[k, layer, j, i1]
+    c = fields[k, layer, j1, i]
+    d = fields[k, layer, j1, i1]
+    wa = (1.0 - u) * (1.0 - v)
+    wb = u * (1.0 - v)
+    wc = (1.0 - u) * v
+    wd = u * v
+    near = wa * a[0] + wb * b[0] + wc * c[0] + wd * d[0]
+    if near == 0.0:
+        return 0.0
+    nx_ = wa * a[1] + wb * b[1] + wc * c[1] + wd * d[1]
+    ny_ = wa * a[2] + wb * b[2] + wc * c[2] + wd * d[2]
+    vo = wa * a[3] + wb * b[3] + wc * c[3] + wd * d[3]
+    closing = vo - vx * nx_ - vy * ny_
+    return near + closing_weight * max(0.0, closing)
+
+
+@kernel
+def risk_many(
+    grid: GridArrays,
+    fields: RiskFields,
+    k: int,
+    layers: NDArray[np.int64],
+    positions: NDArray[np.float64],
+    velocities: NDArray[np.float64],
+    closing_weight: float,
+    out: NDArray[np.float64],
+) -> None:
+    """`risk_at` for (N,), (N, 2), (N, 2) -> out (N,)."""
+    for n in range(len(positions)):
+        out[n] = risk_at(
+            grid,
+            fields,
+            k,
+            layers[n],
+            positions[n, 0],
+            positions[n, 1],
+            velocities[n, 0],
+            velocities[n, 1],
+            closing_weight,
+        )
+
+
+@kernel
+def separation_from_people(
+    prediction: Prediction,
+    layer: int,
+    x: float,
+    y: float,
+    dx: float,
+    dy: float,
+    seconds: float,
+) -> float:
+    """Smallest distance to anyone while moving evenly by (dx, dy) and they as predicted now."""
+    best = np.inf
+    for p in range(len(prediction.layers)):
+        if prediction.layers[p] != layer:
+            continue
+        rx = x - prediction.means[p, 0, 0]
+        ry = y - prediction.means[p, 0, 1]
+        if abs(rx) > 4.0 or abs(ry) > 4.0:
+            continue
+        d = closest_approach(
+            rx,
+            ry,
+            dx - prediction.velocities[p, 0, 0] * seconds,
+            dy - prediction.velocities[p, 0, 1] * seconds,
+        )
+        best = min(best, d)
+    return best

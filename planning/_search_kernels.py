@@ -1,0 +1,336 @@
+"""Best-first search in CT-space on bare arrays, Lei & Li, fig. 5."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning._grid_kernels import GridArrays, cell_at, clearance_at
+from planning._heap_kernels import heap_pop, heap_push
+from planning._jit import kernel
+from planning._potential_kernels import Guide, direction_at, potential_at
+from planning._reservation_kernels import Reservations, conflict
+from planning._risk_kernels import RiskFields, risk_at
+
+SUB = 2
+"""Slices of the risk field in one step of the search: a move is looked at half-way and at its end."""
+
+FOUND = 0
+PARTIAL = 1
+NO_PATH = 2
+
+
+class Moves(NamedTuple):
+    """The moves that a node branches into, besides staying put.
+
+    `headings` (M,) rad, counted from the way down the potential when `relative`, else from +x;
+    `speeds` (M,) m/s.
+    """
+
+    headings: NDArray[np.float64]
+    speeds: NDArray[np.float64]
+    relative: bool
+
+
+class Task(NamedTuple):
+    """One actor's question: from where, how it moves, what it minds."""
+
+    me: int
+    layer: int
+    x: float
+    y: float
+    vx: float
+    vy: float
+    goal_x: float
+    goal_y: float
+    radius_m: float
+    speed_mps: float
+    max_speed_mps: float
+    max_acceleration_mps2: float
+    goal_tolerance_m: float
+    risk_weight: float
+    closing_weight: float
+    turn_weight: float
+    wall_weight: float
+    max_expansions: int
+    hold: bool
+    """Stay where the start is rather than go anywhere: at the goal, or with no way to it."""
+
+
+class World(NamedTuple):
+    """What all actors of a zone look up."""
+
+    grid: GridArrays
+    fields: RiskFields
+    reservations: Reservations
+    step_s: float
+
+
+class Workspace(NamedTuple):
+    """Memory of one search at a time; `node_*` rows are nodes in the order they were made."""
+
+    node_state: NDArray[np.float64]
+    """(N, 7): x, y, vx, vy at the node, cost so far, x, y half a step before."""
+    node_layer: NDArray[np.int64]
+    node_parent: NDArray[np.int64]
+    node_step: NDArray[np.int64]
+    heap_keys: NDArray[np.float64]
+    heap_items: NDArray[np.int64]
+    table_key: NDArray[np.int64]
+    table_cost: NDArray[np.float64]
+    table_stamp: NDArray[np.int64]
+    stamp: NDArray[np.int64]
+
+
+class Outcome(NamedTuple):
+    """What a search came to."""
+
+    status: int
+    expansions: int
+    cost: float
+
+
+@kernel
+def advance(
+    x: float, y: float, vx: float, vy: float, ux: float, uy: float, a_max: float, seconds: float
+) -> tuple[float, float, float, float]:
+    """Position and velocity after turning the velocity v evenly into u at no more than a_max."""
+    dvx = ux - vx
+    dvy = uy - vy
+    change = np.hypot(dvx, dvy)
+    if change <= 1e-12:
+        return x + ux * seconds, y + uy * seconds, ux, uy
+    ramp = change / a_max
+    if ramp <= seconds:
+        lag = 0.5 * ramp
+        return x + ux * seconds - dvx * lag, y + uy * seconds - dvy * lag, ux, uy
+    f = seconds / ramp
+    return (
+        x + vx * seconds + 0.5 * dvx * f * seconds,
+        y + vy * seconds + 0.5 * dvy * f * seconds,
+        vx + dvx * f,
+        vy + dvy * f,
+    )
+
+
+@kernel
+def time_cost(task: Task, x: float, y: float, speed: float, seconds: float) -> float:
+    """Seconds that a stretch is worth: its time, more when faster than preferred, none while
+    standing at the goal."""
+    if task.hold:
+        away = np.hypot(x - task.goal_x, y - task.goal_y)
+        return seconds * (speed / task.speed_mps + 0.5 * min(1.0, away))
+    if speed < 0.2 and np.hypot(x - task.goal_x, y - task.goal_y) <= task.goal_tolerance_m:
+        return seconds * speed
+    over = max(0.0, speed / task.speed_mps - 1.0)
+    return seconds * (1.0 + over + 2.0 * over * over)
+
+
+@kernel
+def way_left(world: World, guide: Guide, task: Task, layer: int, x: float, y: float) -> float:
+    """Seconds to the goal at the preferred speed."""
+    if task.hold:
+        return 0.0
+    return potential_at(world.grid, guide, layer, x, y) / task.speed_mps
+
+
+@kernel
+def wall_cost(task: Task, clearance: float, seconds: float) -> float:
+    """Cost of brushing along a wall within 0.15 m."""
+    return task.wall_weight * seconds * max(0.0, task.radius_m + 0.15 - clearance) / 0.15
+
+
+@kernel
+def needed_clearance(world: World, task: Task) -> float:
+    """The radius; less for who starts closer to a wall than that, so that it can come out."""
+    here = clearance_at(world.grid, task.layer, task.x, task.y)
+    return min(task.radius_m, max(0.0, here)) - 1e-6
+
+
+@kernel
+def _slot(workspace: Workspace, key: int) -> int:
+    """Row of the table for a key, found or fresh; -1 when the table is full."""
+    size = len(workspace.table_key)
+    stamp = workspace.stamp[0]
+    h = (key * 0x9E3779B1) & (size - 1)
+    for _ in range(size):
+        if workspace.table_stamp[h] != stamp:
+            workspace.table_stamp[h] = stamp
+            workspace.table_key[h] = key
+            workspace.table_cost[h] = np.inf
+            return h
+        if workspace.table_key[h] == key:
+            return h
+        h = (h + 1) & (size - 1)
+    return -1
+
+
+@kernel
+def search(
+    world: World,
+    guide: Guide,
+    moves: Moves,
+    task: Task,
+    accumulate: bool,
+    workspace: Workspace,
+    path: NDArray[np.float64],
+) -> Outcome:
+    """Fill `path` (K, 2) with positions slice by slice, the start first.
+
+    With `accumulate` the key of a node is f = cost so far + way left, cost being time, risk and
+    what else is minded; without, it is the printed U(q') = potential(q') + Risk(q').
+    """
+    steps = (len(path) - 1) // SUB
+    ds = world.step_s / SUB
+    need = needed_clearance(world, task)
+    node = workspace.node_state
+    capacity = len(node)
+    layers, ny, nx = world.grid.clearance.shape
+    workspace.stamp[0] += 1
+    path[:, 0] = task.x
+    path[:, 1] = task.y
+    node[0, 0] = task.x
+    node[0, 1] = task.y
+    node[0, 2] = task.vx
+    node[0, 3] = task.vy
+    node[0, 4] = 0.0
+    workspace.node_layer[0] = task.layer
+    workspace.node_parent[0] = -1
+    workspace.node_step[0] = 0
+    start = way_left(world, guide, task, task.layer, task.x, task.y)
+    if not np.isfinite(start):
+        return Outcome(NO_PATH, 0, np.inf)
+    count = 1
+    size = heap_push(workspace.heap_keys, workspace.heap_items, 0, start, 0)
+    expansions = 0
+    best = 0
+    best_step = 0
+    best_key = np.inf
+    status = NO_PATH
+    while size > 0:
+        key = workspace.heap_keys[0]
+        n = workspace.heap_items[0]
+        size = heap_pop(workspace.heap_keys, workspace.heap_items, size)
+        step = workspace.node_step[n]
+        layer = workspace.node_layer[n]
+        x = node[n, 0]
+        y = node[n, 1]
+        vx = node[n, 2]
+        vy = node[n, 3]
+        if n > 0 and accumulate:
+            j, i = cell_at(world.grid, x, y)
+            slot = _slot(workspace, ((step * layers + layer) * ny + j) * nx + i)
+            if slot < 0 or workspace.table_cost[slot] < node[n, 4] - 1e-12:
+                continue
+        if step > best_step or (step == best_step and key < best_key):
+            best = n
+            best_step = step
+            best_key = key
+        at_goal = np.hypot(x - task.goal_x, y - task.goal_y) <= task.goal_tolerance_m
+        if step == steps or (at_goal and not accumulate and not task.hold):
+            best = n
+            best_step = step
+            best_key = key
+            status = FOUND
+            break
+        if expansions == task.max_expansions:
+            status = PARTIAL
+            break
+        expansions += 1
+        gx, gy, leg = direction_at(world.grid, guide, layer, x, y)
+        if task.hold:
+            gx = task.goal_x - x
+            gy = task.goal_y - y
+            leg = np.hypot(gx, gy)
+            if leg > 1e-9:
+                gx /= leg
+                gy /= leg
+        away = np.hypot(task.goal_x - x, task.goal_y - y)
+        heading = 0.0
+        if moves.relative and leg > 1e-9:
+            heading = np.arctan2(gy, gx)
+        for m in range(len(moves.headings) + 1):
+            ux = 0.0
+            uy = 0.0
+            if m < len(moves.headings):
+                speed = moves.speeds[m]
+                if moves.relative and moves.headings[m] == 0.0 and away < speed * world.step_s:
+                    speed = away / world.step_s
+                ux = speed * np.cos(heading + moves.headings[m])
+                uy = speed * np.sin(heading + moves.headings[m])
+            hx, hy, hvx, hvy = advance(x, y, vx, vy, ux, uy, task.max_acceleration_mps2, ds)
+            ex, ey, evx, evy = advance(hx, hy, hvx, hvy, ux, uy, task.max_acceleration_mps2, ds)
+            half_room = clearance_at(world.grid, layer, hx, hy)
+            room = clearance_at(world.grid, layer, ex, ey)
+            if half_room < need or room < need:
+                continue
+            ej, ei = cell_at(world.grid, ex, ey)
+            slot = _slot(workspace, (((step + 1) * layers + layer) * ny + ej) * nx + ei)
+            if slot < 0 or (not accumulate and np.isfinite(workspace.table_cost[slot])):
+                continue
+            left = way_left(world, guide, task, layer, ex, ey)
+            if not np.isfinite(left):
+                continue
+            k = step * SUB
+            blocked, soft = conflict(world.reservations, task.me, layer, k, x, y, hx, hy)
+            if blocked:
+                continue
+            blocked, soft_end = conflict(world.reservations, task.me, layer, k + 1, hx, hy, ex, ey)
+            if blocked:
+                continue
+            risk = risk_at(
+                world.grid, world.fields, k + 1, layer, hx, hy, hvx, hvy, task.closing_weight
+            ) + risk_at(
+                world.grid, world.fields, k + 2, layer, ex, ey, evx, evy, task.closing_weight
+            )
+            if accumulate:
+                moved = np.hypot(ex - x, ey - y)
+                cost = (
+                    node[n, 4]
+                    + time_cost(task, ex, ey, moved / world.step_s, world.step_s)
+                    + task.risk_weight * ds * (risk + soft + soft_end)
+                    + task.turn_weight * np.hypot(evx - vx, evy - vy)
+                    + wall_cost(task, min(half_room, room), world.step_s)
+                )
+                if cost >= workspace.table_cost[slot] - 1e-12:
+                    continue
+                key = cost + left
+            else:
+                cost = 0.0
+                key = left + task.risk_weight * ds * (risk + soft + soft_end)
+            if count == capacity:
+                continue
+            workspace.table_cost[slot] = cost
+            node[count, 0] = ex
+            node[count, 1] = ey
+            node[count, 2] = evx
+            node[count, 3] = evy
+            node[count, 4] = cost
+            node[count, 5] = hx
+            node[count, 6] = hy
+            workspace.node_layer[count] = layer
+            workspace.node_parent[count] = n
+            workspace.node_step[count] = step + 1
+            size = heap_push(workspace.heap_keys, workspace.heap_items, size, key, count)
+            count += 1
+    if status == NO_PATH and best_step > 0:
+        status = PARTIAL
+    _trace(workspace, best, path)
+    return Outcome(status, expansions, best_key)
+
+
+@kernel
+def _trace(workspace: Workspace, last: int, path: NDArray[np.float64]) -> None:
+    """Write the way to a node; after its end the path stays where it is."""
+    k = workspace.node_step[last] * SUB
+    node = workspace.node_state
+    path[k:, 0] = node[last, 0]
+    path[k:, 1] = node[last, 1]
+    n = last
+    while workspace.node_parent[n] >= 0:
+        k = workspace.node_step[n] * SUB
+        path[k, 0] = node[n, 0]
+        path[k, 1] = node[n, 1]
+        path[k - 1, 0] = node[n, 5]
+        path[k - 1, 1] = node[n, 6]
+        n = workspace.node_parent[n]

@@ -1,0 +1,147 @@
+"""One tick of planning for all actors of a zone, in compiled batches on several threads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning import _decide_kernels as kernels
+from planning._decide_kernels import Crowd, Decisions
+from planning._prediction_kernels import Prediction
+from planning._reservation_kernels import index_paths
+from planning._search_kernels import SUB, Workspace, World
+from planning.grid import LayeredGrid
+from planning.risk import RiskField, RiskModel
+from planning.search import compass_moves, make_reservations, make_workspace
+
+
+@dataclass(frozen=True)
+class PlanModel:
+    """How far and how finely the actors of a zone plan."""
+
+    step_s: float = 0.4
+    """Time step of the search (delta), seconds; the risk field has two slices in each."""
+    steps: int = 12
+    """Steps to the horizon."""
+    threads: int = 2
+    """Threads that share the work; the result does not depend on their number."""
+
+    @property
+    def slices(self) -> int:
+        """Slices of the risk field after now."""
+        return self.steps * SUB
+
+    @property
+    def slice_s(self) -> float:
+        """Time between slices, seconds."""
+        return self.step_s / SUB
+
+
+class Batch:
+    """Plans and steps for all actors of a zone at once.
+
+    Cost of a tick: O(people × slices × cells near one person) for the field, O(actors ×
+    expansions × moves) for the searches; both are spread over the threads.
+    """
+
+    def __init__(self, grid: LayeredGrid, plan: PlanModel, risk: RiskModel) -> None:
+        self.grid = grid
+        self.plan = plan
+        self.field = RiskField(grid, risk, plan.slices)
+        self._moves = compass_moves()
+        self._no_guide = np.full((*grid.arrays.clearance.shape, 3), np.inf, dtype=np.float32)
+        self._pool = ThreadPoolExecutor(plan.threads, thread_name_prefix="planning")
+        self._budget = 0
+        self._workspaces: list[Workspace] = []
+
+    def close(self) -> None:
+        """End the threads."""
+        self._pool.shutdown()
+
+    def _on_threads(self, work: Callable[[int, int], None]) -> None:
+        """Call work(k, threads) for every k at once and wait for all; their errors come up here."""
+        threads = self.plan.threads
+        for done in [self._pool.submit(work, k, threads) for k in range(threads)]:
+            done.result()
+
+    def _workspaces_for(self, budget: int) -> list[Workspace]:
+        if budget > self._budget:
+            branching = len(self._moves) + 1
+            self._budget = budget
+            self._workspaces = [make_workspace(budget, branching) for _ in range(self.plan.threads)]
+        return self._workspaces
+
+    def tick(
+        self,
+        crowd: Crowd,
+        guides: NDArray[np.float32],
+        prediction: Prediction,
+        tick_s: float,
+    ) -> tuple[Decisions, NDArray[np.float64]]:
+        """Decide for everyone and take the step.
+
+        Parameters
+        ----------
+        crowd : state of A actors after the finished tick
+        guides : float32 (G, L, ny, nx, 3), the potentials that `crowd.guide_slots` points into
+        prediction : people's future, as many slices as the plan has
+        tick_s : length of the tick, seconds
+
+        Returns
+        -------
+        The decisions, and float64 (A, 2) positions after the tick.
+        """
+        actors = len(crowd.positions)
+        slices = self.plan.slices + 1
+        self.field.fill(prediction, self._on_threads)
+        paths = np.empty((actors, slices, 2))
+        reservations = make_reservations(
+            self.grid, paths, crowd.layers, crowd.parameters["radius_m"].copy(), crowd.ranks
+        )
+        world = World(self.grid.arrays, self.field.fields, reservations, self.plan.step_s)
+        decisions = Decisions(
+            np.empty((actors, slices, 2)),
+            np.zeros((actors, 2)),
+            np.zeros(actors, dtype=np.int64),
+            np.zeros(actors, dtype=np.int64),
+            np.zeros(actors, dtype=np.int64),
+            np.zeros(actors, dtype=np.bool_),
+        )
+        new_positions = np.empty((actors, 2))
+        if not actors:
+            return decisions, new_positions
+        workspaces = self._workspaces_for(int(crowd.parameters["max_expansions"].max()))
+        kernels.continue_paths(world, guides, crowd, tick_s, 0, actors, paths)
+        index_paths(reservations)
+
+        def decide(k: int, threads: int) -> None:
+            kernels.decide(
+                world,
+                guides,
+                self._no_guide,
+                self._moves,
+                prediction,
+                crowd,
+                tick_s,
+                k * actors // threads,
+                (k + 1) * actors // threads,
+                workspaces[k],
+                decisions,
+            )
+
+        self._on_threads(decide)
+        kernels.resolve(
+            world,
+            self.grid.index,
+            self.grid.bounds,
+            crowd,
+            np.argsort(crowd.ranks, kind="stable"),
+            tick_s,
+            decisions,
+            new_positions,
+        )
+        return decisions, new_positions

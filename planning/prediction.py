@@ -1,0 +1,177 @@
+"""Where people may go next: Lei & Li, sec. 3.2, eqs. (1)-(4)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning import _prediction_kernels as kernels
+from planning._prediction_kernels import Prediction
+from planning.grid import LayeredGrid
+
+
+@dataclass(frozen=True)
+class PredictionModel:
+    """Constants of the prediction.
+
+    The defaults are those that hold on recorded pedestrians: velocities 0.4 s apart, weighted
+    1/2, 1/4, 1/8, ...; a deviation per axis that grows by 0.17 m a second.
+    """
+
+    samples: int = 4
+    """How many past velocities count."""
+    sample_s: float = 0.4
+    """Time between the positions that velocities are taken from, seconds."""
+    sigma_0_m: float = 0.05
+    """sigma_0 of eq. (3): how far a person's centre may lie from where it is reported, metres."""
+    sigma_growth_mps: float = 0.17
+    """Growth of the deviation: alpha(i) = 1 + (growth / sigma_0) * i * slice of eq. (3)."""
+    wall_clearance_m: float = 0.15
+    """How close to walls people are expected to pass, metres."""
+    printed: bool = False
+    """Eq. (1) with the signs as printed. It extrapolates noise on real tracks: reference only."""
+
+
+def gaussian_density(offset_m: NDArray[np.float64], sigma_m: float) -> NDArray[np.float64]:
+    """Density of a predicted position at an offset from its mean, eq. (4).
+
+    Parameters
+    ----------
+    offset_m : float64 (..., 2), metres
+    sigma_m : float > 0, metres per axis
+
+    Returns
+    -------
+    float64 (...), 1/m².
+
+    Notes
+    -----
+    The paper prints the normaliser of one dimension, 1/(sigma sqrt(2 pi)). The field has two, so
+    that the density integrates to one with 1/(2 pi sigma²), which is used here.
+    """
+    if not sigma_m > 0.0:
+        raise ValueError(f"sigma_m must be positive, got {sigma_m}")
+    squared = (np.asarray(offset_m, dtype=np.float64) ** 2).sum(axis=-1)
+    return np.asarray(np.exp(-squared / (2.0 * sigma_m**2)) / (2.0 * np.pi * sigma_m**2))
+
+
+class TrackHistory:
+    """The recorded past of everyone who can be seen, one position a tick.
+
+    Memory: `samples` x `sample_s` / `tick_s` positions a person. `observe` costs O(people).
+    """
+
+    def __init__(self, model: PredictionModel, tick_s: float) -> None:
+        self.model = model
+        self.stride = max(1, round(model.sample_s / tick_s))
+        self.sample_s = self.stride * tick_s
+        self._depth = self.stride * model.samples + 1
+        self._rows: dict[object, int] = {}
+        self._free: list[int] = []
+        self._ring = np.zeros((0, self._depth, 2))
+        self._count = np.zeros(0, dtype=np.int64)
+        self._layer = np.zeros(0, dtype=np.int64)
+        self._newest = -1
+        self._order = np.zeros(0, dtype=np.int64)
+
+    @property
+    def ids(self) -> list[object]:
+        """Who is present, in the order of `positions` and of every array made from them."""
+        return list(self._rows)
+
+    @property
+    def positions(self) -> NDArray[np.float64]:
+        """Newest positions, float64 (P, 2), metres."""
+        if not len(self._order):
+            return np.zeros((0, 2))
+        return np.ascontiguousarray(self._ring[self._order, self._newest])
+
+    @property
+    def layers(self) -> NDArray[np.int64]:
+        """Layers of everyone present, int64 (P,)."""
+        return self._layer[self._order]
+
+    def observe(self, people: Mapping[object, tuple[float, ...]]) -> None:
+        """Add this tick's positions: id -> (x, y) or (x, y, layer). Who is absent has left.
+
+        Raises
+        ------
+        ValueError
+            A position is not finite or not of length 2 or 3; nothing is changed then.
+        """
+        rows = np.zeros((len(people), 3))
+        for k, (who, where) in enumerate(people.items()):
+            if len(where) not in (2, 3) or not np.isfinite(where).all():
+                raise ValueError(f"position of {who!r} must be finite (x, y[, layer]), got {where}")
+            rows[k, : len(where)] = where
+        for who in [who for who in self._rows if who not in people]:
+            self._free.append(self._rows.pop(who))
+        for who in people:
+            if who not in self._rows:
+                self._rows[who] = self._take_row()
+        self._rows = {who: self._rows[who] for who in people}
+        self._order = np.fromiter(self._rows.values(), dtype=np.int64, count=len(self._rows))
+        self._newest = (self._newest + 1) % self._depth
+        moved = self._layer[self._order] != rows[:, 2]
+        self._count[self._order[moved]] = 0
+        self._layer[self._order] = rows[:, 2].astype(np.int64)
+        self._ring[self._order, self._newest] = rows[:, :2]
+        self._count[self._order] = np.minimum(self._count[self._order] + 1, self._depth)
+
+    def _take_row(self) -> int:
+        if not self._free:
+            size = len(self._ring)
+            grown = max(16, 2 * size)
+            self._ring = np.concatenate([self._ring, np.zeros((grown - size, self._depth, 2))])
+            self._count = np.concatenate([self._count, np.zeros(grown - size, dtype=np.int64)])
+            self._layer = np.concatenate([self._layer, np.zeros(grown - size, dtype=np.int64)])
+            self._free = list(range(grown - 1, size - 1, -1))
+        row = self._free.pop()
+        self._count[row] = 0
+        return row
+
+    def velocities(self) -> NDArray[np.float64]:
+        """Predicted velocities, eq. (1), float64 (P, 2), m/s.
+
+        Who has been seen for less than one sample gets the mean velocity so far, zero at first.
+        """
+        people = len(self._order)
+        out = np.zeros((people, 2))
+        if not people:
+            return out
+        back = (self._newest - self.stride * np.arange(self.model.samples + 1)) % self._depth
+        tracks = self._ring[self._order][:, back]
+        count = self._count[self._order]
+        known = (count - 1) // self.stride + 1
+        kernels.velocities(tracks, known, self.sample_s, self.model.printed, out)
+        short = (known < 2) & (count > 1)
+        if short.any():
+            rows = self._order[short]
+            age = count[short] - 1
+            oldest = self._ring[rows, (self._newest - age) % self._depth]
+            seconds = age * self.sample_s / self.stride
+            out[short] = (self._ring[rows, self._newest] - oldest) / seconds[:, None]
+        return out
+
+    def predict(self, grid: LayeredGrid, slices: int, slice_s: float) -> Prediction:
+        """Everyone's future: `slices` + 1 instants `slice_s` apart, beginning now. Cost O(P K)."""
+        people = len(self._order)
+        shape = (people, slices + 1)
+        prediction = Prediction(
+            np.zeros((*shape, 2)), np.zeros((*shape, 2)), np.zeros(shape), self.layers
+        )
+        kernels.extrapolate(
+            grid.index,
+            grid.bounds,
+            self.positions,
+            self.velocities(),
+            slice_s,
+            self.model.sigma_0_m,
+            self.model.sigma_growth_mps,
+            self.model.wall_clearance_m,
+            prediction,
+        )
+        return prediction

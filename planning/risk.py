@@ -1,0 +1,147 @@
+"""How risky it is to be somewhere at some time: Lei & Li, sec. 3.3, eq. (5)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from planning import _risk_kernels as kernels
+from planning._prediction_kernels import Prediction
+from planning._risk_kernels import RadialTables
+from planning.grid import LayeredGrid
+
+_SIGMA_STEP_M = 0.05
+_SIGMA_MAX_M = 1.5
+_DISTANCE_STEP_M = 0.05
+_SIGMA_POINTS = 9
+_SIGMA_SPAN = 2.5
+
+
+@dataclass(frozen=True)
+class RiskModel:
+    """Shape of the risk around one person."""
+
+    contact_m: float = 0.55
+    """Distance of centres that counts as contact: sum of the radii and a margin, metres."""
+    influence_m: float = 0.6
+    """Beyond contact the proximity term falls to zero over this distance, metres."""
+    comfort: float = 0.15
+    """Proximity term just outside contact, where contact itself counts 1."""
+
+    def near(self, distance_m: ArrayLike) -> NDArray[np.float64]:
+        """Proximity term w1·d of eq. (5) for a person known to be at a distance; in [0, 1].
+
+        As printed the weight of the distance would have to be negative for "nearer is riskier" to
+        hold. This term is positive, falls with distance and ends at contact + influence.
+        """
+        d = np.asarray(distance_m, dtype=np.float64)
+        return np.where(d <= self.contact_m, 1.0, self.comfort * self.toward(d))
+
+    def toward(self, distance_m: ArrayLike) -> NDArray[np.float64]:
+        """Factor of the closing speed for a person known to be at a distance; in [0, 1]."""
+        beyond = (np.asarray(distance_m, dtype=np.float64) - self.contact_m) / self.influence_m
+        return np.asarray(np.clip(1.0 - beyond, 0.0, 1.0) ** 2)
+
+
+def sigma_points() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """A fixed even grid over the likely range of a unit Gaussian: offsets (S, 2), weights (S,).
+
+    The weights are the density of eq. (4) at the offsets, normalised to sum one: the mean over
+    the range of density times risk, times the range's area, so that the range's size drops out.
+    """
+    axis = np.linspace(-_SIGMA_SPAN, _SIGMA_SPAN, _SIGMA_POINTS)
+    gx, gy = np.meshgrid(axis, axis)
+    offsets = np.stack([gx.ravel(), gy.ravel()], axis=1)
+    offsets = offsets[(offsets**2).sum(axis=1) <= _SIGMA_SPAN**2 + 1e-9]
+    weights = np.exp(-0.5 * (offsets**2).sum(axis=1))
+    return offsets, weights / weights.sum()
+
+
+def radial_tables(model: RiskModel) -> RadialTables:
+    """Influence of one person by deviation and distance; it is the same in every direction.
+
+    Each entry is the mean over the sigma points of density × term of eq. (5). For the closing
+    term the points' directions n are projected on the direction from the mean.
+    """
+    offsets, weights = sigma_points()
+    sigmas = np.arange(0.0, _SIGMA_MAX_M + _SIGMA_STEP_M / 2, _SIGMA_STEP_M)
+    reach = model.contact_m + model.influence_m + _SIGMA_SPAN * _SIGMA_MAX_M
+    distances = np.arange(0.0, reach + 3 * _DISTANCE_STEP_M, _DISTANCE_STEP_M)
+    here = np.stack([distances, np.zeros_like(distances)], axis=1)
+    relative = here[None, :, None, :] - sigmas[:, None, None, None] * offsets[None, None]
+    length = np.linalg.norm(relative, axis=-1)
+    along = np.divide(relative[..., 0], length, out=np.zeros_like(length), where=length > 1e-9)
+    near = (model.near(length) * weights).sum(axis=-1)
+    toward = (model.toward(length) * along * weights).sum(axis=-1)
+    return RadialTables(
+        near.astype(np.float32),
+        np.maximum(toward, 0.0).astype(np.float32),
+        _SIGMA_STEP_M,
+        _DISTANCE_STEP_M,
+    )
+
+
+class RiskField:
+    """Risk over a zone for every slice of the future, shared by all actors.
+
+    Per slice and cell it keeps sums over people of p, p·n and p·(v_o·n), n pointing from the
+    person; the closing term of eq. (5) for any actor's velocity v_r then is
+    max(0, sum p·(v_o·n) - v_r·(sum p·n)): a look-up costs O(1) however many people there are.
+    The bound at zero is taken of the sum, not of each person's term.
+
+    Filling costs O(people × slices × cells within reach of one person). Memory is 16 bytes a
+    slice, layer and cell.
+    """
+
+    def __init__(self, grid: LayeredGrid, model: RiskModel, slices: int) -> None:
+        self.grid = grid
+        self.model = model
+        self.tables = radial_tables(model)
+        shape = grid.arrays.clearance.shape
+        self.fields: NDArray[np.float32] = np.zeros((slices + 1, *shape, 4), dtype=np.float32)
+        self._windows = np.full((slices + 1, 16, 5), -1, dtype=np.int64)
+
+    def fill(
+        self,
+        prediction: Prediction,
+        run: Callable[[Callable[[int, int], None]], None] | None = None,
+    ) -> None:
+        """Replace the field by that of a prediction with as many slices.
+
+        `run(work)` may call `work(first, step)` for first in range(step) on threads of its own.
+        """
+        people = len(prediction.layers)
+        if people > self._windows.shape[1]:
+            grown = np.full((len(self.fields), 2 * people, 5), -1, dtype=np.int64)
+            grown[:, : self._windows.shape[1]] = self._windows
+            self._windows = grown
+
+        def work(first: int, step: int) -> None:
+            kernels.fill_slices(
+                self.grid.arrays, self.tables, prediction, first, step, self._windows, self.fields
+            )
+
+        if run is None:
+            work(0, 1)
+        else:
+            run(work)
+
+    def at(
+        self,
+        slice_index: int,
+        positions: ArrayLike,
+        layers: ArrayLike,
+        velocities: ArrayLike,
+        closing_weight: float,
+    ) -> NDArray[np.float64]:
+        """Risk of N configurations, float64 (N,); positions and velocities (N, 2), layers (N,)."""
+        points, floors = self.grid.as_points(positions, layers)
+        v = np.ascontiguousarray(velocities, dtype=np.float64).reshape(-1, 2)
+        out = np.empty(len(points))
+        kernels.risk_many(
+            self.grid.arrays, self.fields, slice_index, floors, points, v, closing_weight, out
+        )
+        return out

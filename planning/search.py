@@ -1,0 +1,165 @@
+"""Best-first search in CT-space: Lei & Li, sec. 4.1, fig. 5."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum, IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning import _search_kernels as kernels
+from planning._reservation_kernels import Reservations
+from planning._search_kernels import SUB, Moves, Task, Workspace, World
+from planning.grid import LayeredGrid
+from planning.potential import Potential
+from planning.risk import RiskField
+
+RESERVATION_BUCKET_M = 1.25
+
+
+class SearchStatus(IntEnum):
+    """How a search ended."""
+
+    FOUND = kernels.FOUND
+    """The goal or the horizon was reached."""
+    PARTIAL = kernels.PARTIAL
+    """The budget of expansions ran out, or every way ends before the horizon: the best so far."""
+    NO_PATH = kernels.NO_PATH
+    """Not even the first move is possible, or no way leads to the goal."""
+
+
+class SearchForm(Enum):
+    """By what nodes are taken from the queue."""
+
+    PRINTED = "printed"
+    """U(q') = potential(q') + Risk(q'), as in fig. 5: greedy, forgets the risk already taken."""
+    ACCUMULATED = "accumulated"
+    """f = time and risk so far + way left: what actors use."""
+
+
+def compass_moves() -> NDArray[np.float64]:
+    """Moves of the accumulated form, float64 (M, 2): heading from the way down, part of the speed.
+
+    A part above one stands for the greatest speed. Straight on comes at three speeds, so that an
+    actor may hurry or slow down; staying put is always possible and not listed.
+    """
+    rows = [(0.0, 1.0), (0.0, 0.5), (0.0, 2.0)]
+    for degrees in (15, 30, 50, 75, 110, 180):
+        for sign in (1, -1) if degrees < 180 else (1,):
+            rows.append((math.radians(sign * degrees), 1.0))
+    for degrees in (50, 110):
+        rows.extend((math.radians(sign * degrees), 0.5) for sign in (1, -1))
+    for degrees in (30, 75):
+        rows.extend((math.radians(sign * degrees), 2.0) for sign in (1, -1))
+    return np.array(rows)
+
+
+def lattice_moves(cell_m: float, step_s: float, max_speed_mps: float) -> Moves:
+    """The eight neighbours of a cell, one step later each; a diagonal costs sqrt(2) the speed.
+
+    Neighbours that would need more than the greatest speed are left out.
+    """
+    headings, speeds = [], []
+    for eighth in range(8):
+        speed = cell_m * (math.sqrt(2.0) if eighth % 2 else 1.0) / step_s
+        if speed <= max_speed_mps + 1e-9:
+            headings.append(eighth * math.pi / 4.0)
+            speeds.append(speed)
+    return Moves(np.array(headings), np.array(speeds), False)
+
+
+def make_workspace(max_expansions: int, branching: int) -> Workspace:
+    """Memory for one search at a time, some 100 bytes a node."""
+    nodes = max_expansions * branching + 2
+    table = 1 << max(10, (2 * nodes - 1).bit_length())
+    return Workspace(
+        np.zeros((nodes, 7)),
+        np.zeros(nodes, dtype=np.int64),
+        np.zeros(nodes, dtype=np.int64),
+        np.zeros(nodes, dtype=np.int64),
+        np.zeros(nodes + 1),
+        np.zeros(nodes + 1, dtype=np.int64),
+        np.zeros(table, dtype=np.int64),
+        np.zeros(table),
+        np.zeros(table, dtype=np.int64),
+        np.zeros(1, dtype=np.int64),
+    )
+
+
+def make_reservations(
+    grid: LayeredGrid,
+    paths: NDArray[np.float64],
+    layers: NDArray[np.int64],
+    radii_m: NDArray[np.float64],
+    ranks: NDArray[np.int64],
+) -> Reservations:
+    """Room for the planned ways of A actors, (A, K, 2); `index_paths` fills its index."""
+    x0, y0, x1, y1 = grid.bounds
+    nx = max(1, math.ceil((x1 - x0) / RESERVATION_BUCKET_M))
+    ny = max(1, math.ceil((y1 - y0) / RESERVATION_BUCKET_M))
+    actors, slices = paths.shape[:2]
+    return Reservations(
+        paths,
+        layers,
+        radii_m,
+        ranks,
+        np.zeros((slices, nx * ny + 1), dtype=np.int64),
+        np.zeros((slices, actors), dtype=np.int64),
+        x0,
+        y0,
+        RESERVATION_BUCKET_M,
+        nx,
+        ny,
+    )
+
+
+@dataclass(frozen=True)
+class SearchResult:
+    """A path through CT-space and how it was found."""
+
+    status: SearchStatus
+    path: NDArray[np.float64]
+    """(K, 2) positions, `step_s` / 2 apart, beginning with the start; metres."""
+    expansions: int
+
+
+def uncertain_bfp(
+    field: RiskField,
+    potential: Potential,
+    task: Task,
+    moves: Moves,
+    reservations: Reservations,
+    step_s: float,
+    form: SearchForm = SearchForm.ACCUMULATED,
+) -> SearchResult:
+    """Search one path from `task`'s start: Uncertain_BFP of fig. 5.
+
+    The horizon is the risk field's last slice. Nodes are configurations (layer, cell, step) that
+    keep their exact position; with `lattice_moves`, a start at a cell's centre and unbounded
+    acceleration they are cells, as printed.
+
+    Raises
+    ------
+    ValueError
+        The field's number of slices is odd, or the step is not positive.
+    """
+    slices = len(field.fields) - 1
+    if slices % SUB or slices < SUB:
+        raise ValueError(f"the risk field must hold a multiple of {SUB} slices, it holds {slices}")
+    if not step_s > 0.0:
+        raise ValueError(f"step_s must be positive, got {step_s}")
+    world = World(field.grid.arrays, field.fields, reservations, step_s)
+    path = np.zeros((slices + 1, 2))
+    workspace = make_workspace(task.max_expansions, len(moves.headings) + 1)
+    outcome = kernels.search(
+        world,
+        potential.guide,
+        moves,
+        task,
+        form is SearchForm.ACCUMULATED,
+        workspace,
+        path,
+    )
+    return SearchResult(SearchStatus(outcome.status), path, outcome.expansions)
