@@ -1,0 +1,18 @@
+"""People made of code: a client library for scripts, load tests, replay of recorded crowds."""
+
+from bots.bot import Bot, connect
+from bots.errors import BotError, Disconnected, Refused, Unreachable
+from bots.events import Event, SnapshotEvent
+from bots.view import Avatar
+
+__all__ = [
+    "Avatar",
+    "Bot",
+    "BotError",
+    "Disconnected",
+    "Event",
+    "Refused",
+    "SnapshotEvent",
+    "Unreachable",
+    "connect",
+]

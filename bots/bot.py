@@ -1,0 +1,272 @@
+"""A person made of code: join, look, walk, talk."""
+
+import asyncio
+import time
+from collections.abc import AsyncIterator, Mapping
+from contextlib import asynccontextmanager
+from types import MappingProxyType
+from typing import Self
+
+from bots.clock import ServerClock
+from bots.connection import NO_CLOSE_CODE, OPEN_TIMEOUT_S, Connection
+from bots.errors import Disconnected, Unreachable
+from bots.events import Event, SnapshotEvent
+from bots.mailbox import Mailbox
+from bots.view import Avatar, View
+from protocol import VERSION, ProtocolError, decode_server
+from protocol.messages import (
+    Bye,
+    ChatLine,
+    Enter,
+    FromClient,
+    Hello,
+    Leave,
+    Move,
+    Ping,
+    Pong,
+    ServerMessage,
+    Snapshot,
+    WalkTo,
+    Watch,
+    Welcome,
+)
+from protocol.snapshot import unpack_block
+
+
+class Bot:
+    """A person in the world, moved by a script. Made by `connect`, which also closes it."""
+
+    def __init__(self, connection: Connection) -> None:
+        welcome = connection.welcome
+        self.welcome: Welcome = welcome
+        self._connection = connection
+        self._clock = ServerClock()
+        self._clock.seed(welcome.server_time, time.monotonic())
+        self._view = View(welcome.id, welcome.name, welcome.radius)
+        self._mailbox = Mailbox()
+        self._placed = asyncio.Event()
+        self._sequence = 0
+        self._nonce = 0
+        self._pings: dict[int, tuple[float, asyncio.Future[float]]] = {}
+        self._ended: Disconnected | None = None
+        self._said_bye = False
+        self._reader = asyncio.create_task(self._read())
+
+    @classmethod
+    async def join(cls, url: str, hello: Hello) -> Self:
+        """Connect and wait until the own place is known; raises as `connect` does."""
+        bot = cls(await Connection.open(url, hello))
+        try:
+            await bot._until_placed()
+        except BaseException:
+            await bot.close()
+            raise
+        return bot
+
+    async def close(self) -> None:
+        """Leave the world."""
+        self._reader.cancel()
+        await asyncio.gather(self._reader, return_exceptions=True)
+        await self._connection.close()
+
+    # --- what it knows --------------------------------------------------------------------------
+
+    @property
+    def id(self) -> int:
+        return self.welcome.id
+
+    @property
+    def name(self) -> str:
+        return self.welcome.name
+
+    @property
+    def resume_token(self) -> str:
+        """Hand it to `connect(resume=...)` to take this avatar up again after a lost connection."""
+        return self.welcome.resume
+
+    @property
+    def position(self) -> tuple[float, float, int]:
+        """Own place (x, y, layer) of the newest snapshot, metres."""
+        own = self._view.own
+        return own.x, own.y, own.layer
+
+    @property
+    def avatar(self) -> Avatar:
+        """The own avatar: place, heading and speed of the newest snapshot."""
+        return self._view.own
+
+    @property
+    def others(self) -> Mapping[int, Avatar]:
+        """Everyone else in view, by id; changes as snapshots come in."""
+        return MappingProxyType(self._view.others)
+
+    @property
+    def tick(self) -> int:
+        """Tick of the newest snapshot."""
+        return self._view.tick
+
+    @property
+    def acknowledged(self) -> int:
+        """The newest of our sequence numbers that counted in the newest snapshot."""
+        return self._view.ack
+
+    @property
+    def server_time(self) -> float:
+        """The server's time now, seconds; the more exact, the more `ping` was called."""
+        return self._clock.at(time.monotonic())
+
+    @property
+    def dropped_events(self) -> int:
+        """Events that went because nobody read them, see `Mailbox`."""
+        return self._mailbox.dropped
+
+    # --- what it does ---------------------------------------------------------------------------
+
+    async def move(self, direction: float, speed: float) -> int:
+        """Walk in `direction` (radians from +x) at `speed` (m/s) until told otherwise.
+
+        Returns the sequence number, which `acknowledged` reaches once the server has heeded it.
+        """
+        self._sequence += 1
+        await self._send(Move(seq=self._sequence, direction=direction, speed=speed))
+        return self._sequence
+
+    async def stop(self) -> int:
+        """Stand still."""
+        return await self.move(self._view.own.heading, 0.0)
+
+    async def walk_to(self, x: float, y: float, layer: int = 0) -> int:
+        """Walk to a point (metres) around what stands in the way; returns as `move` does."""
+        self._sequence += 1
+        await self._send(WalkTo(seq=self._sequence, x=x, y=y, layer=layer))
+        return self._sequence
+
+    async def chat(self, text: str) -> None:
+        """Say a line to everyone who has this avatar in view."""
+        await self._send(ChatLine(text=text))
+
+    async def watch(self, actor_id: int | None) -> None:
+        """Ask for the plans of an actor in view, or for none any more."""
+        await self._send(Watch(id=actor_id))
+
+    async def ping(self) -> float:
+        """Round trip to the server and back, seconds; sharpens `server_time`."""
+        self._nonce += 1
+        nonce = self._nonce
+        answer: asyncio.Future[float] = asyncio.get_running_loop().create_future()
+        self._pings[nonce] = (time.monotonic(), answer)
+        try:
+            await self._send(Ping(nonce=nonce))
+            return await answer
+        finally:
+            self._pings.pop(nonce, None)
+
+    async def events(self) -> AsyncIterator[Event]:
+        """What happens, in order; ends when the bot closes or the server said bye.
+
+        Raises
+        ------
+        Disconnected
+            The connection was lost otherwise; everything that came before was handed out.
+        """
+        while (event := await self._mailbox.get()) is not None:
+            yield event
+        if self._ended is not None and not self._said_bye:
+            raise self._ended
+
+    # --- inside ---------------------------------------------------------------------------------
+
+    async def _until_placed(self) -> None:
+        try:
+            async with asyncio.timeout(OPEN_TIMEOUT_S):
+                await self._placed.wait()
+        except TimeoutError:
+            raise Unreachable(f"no snapshot within {OPEN_TIMEOUT_S:g} s of welcome") from None
+        if not self._view.placed and self._ended is not None:
+            raise self._ended
+
+    async def _send(self, message: FromClient) -> None:
+        if self._ended is not None:
+            raise self._ended
+        await self._connection.send(message)
+
+    async def _read(self) -> None:
+        """Take frames until the connection ends; nothing here waits for the script."""
+        try:
+            while True:
+                frame = await self._connection.receive()
+                self._take(decode_server(frame))
+        except Disconnected as ended:
+            self._ended = ended
+        except (ProtocolError, ValueError) as fault:
+            self._ended = Disconnected(NO_CLOSE_CODE, f"the server sent nonsense: {fault}")
+        finally:
+            self._mailbox.close()
+            self._placed.set()
+            for _, answer in self._pings.values():
+                if not answer.done():
+                    answer.set_exception(Disconnected(NO_CLOSE_CODE, "closed before the pong"))
+
+    def _take(self, message: ServerMessage) -> None:
+        match message:
+            case Snapshot():
+                event = SnapshotEvent(
+                    message.tick, message.ack, unpack_block(message.block), self.welcome.origin
+                )
+                self._view.snapshot(event)
+                if self._view.placed:
+                    self._placed.set()
+                self._mailbox.put(event)
+                return
+            case Enter():
+                self._view.enter(message)
+            case Leave():
+                self._view.leave(message)
+            case Pong():
+                self._take_pong(message)
+            case Bye():
+                self._said_bye = True
+            case Welcome():
+                return
+            case _:
+                pass
+        self._mailbox.put(message)
+
+    def _take_pong(self, pong: Pong) -> None:
+        sent_s, answer = self._pings.get(pong.nonce, (None, None))
+        if sent_s is None or answer is None or answer.done():
+            return
+        answer.set_result(self._clock.add(sent_s, time.monotonic(), pong.server_time))
+
+
+@asynccontextmanager
+async def connect(
+    url: str,
+    name: str = "Bot",
+    at: tuple[float, float, int] | None = None,
+    resume: str | None = None,
+) -> AsyncIterator[Bot]:
+    """Join the world at `url` and leave it at the end of the block.
+
+    Parameters
+    ----------
+    url : like ws://localhost:8080; the path /ws is added when there is none
+    name : what others read above the avatar, up to 32 characters
+    at : wished place (x, y, layer) of a new avatar, metres
+    resume : token of an earlier connection whose avatar is to be taken up again
+
+    Raises
+    ------
+    ValueError
+        One of the arguments is not what it should be.
+    Unreachable, Refused
+        Nobody is there, or the server does not let the bot in.
+    Disconnected
+        The connection ended before the avatar stood in the world.
+    """
+    hello = Hello(name=name, version=VERSION, resume=resume, at=at)
+    bot = await Bot.join(url, hello)
+    try:
+        yield bot
+    finally:
+        await bot.close()

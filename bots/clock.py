@@ -1,0 +1,40 @@
+"""The server's time on this machine."""
+
+from collections import deque
+from typing import Final
+
+KEPT: Final = 32
+"""So many recent round trips are compared; older ones would hide a drift of the clocks."""
+
+
+class ServerClock:
+    """Offset to the server's clock, from the quickest of the recent round trips.
+
+    The quicker a round trip, the less can be wrong with halving it. All times in seconds; local
+    ones come from whatever monotonic clock the caller reads.
+    """
+
+    def __init__(self) -> None:
+        self._samples: deque[tuple[float, float]] = deque(maxlen=KEPT)
+        self._offset_s = 0.0
+
+    def seed(self, server_time_s: float, now_s: float) -> None:
+        """A reading without a round trip; only counts until the first pong."""
+        if not self._samples:
+            self._offset_s = server_time_s - now_s
+
+    def add(self, sent_s: float, received_s: float, server_time_s: float) -> float:
+        """A pong that came `received_s` for the ping of `sent_s`; returns the round trip."""
+        round_trip_s = max(0.0, received_s - sent_s)
+        self._samples.append((round_trip_s, server_time_s + round_trip_s / 2.0 - received_s))
+        self._offset_s = min(self._samples)[1]
+        return round_trip_s
+
+    @property
+    def is_set(self) -> bool:
+        """Whether a round trip was measured."""
+        return bool(self._samples)
+
+    def at(self, now_s: float) -> float:
+        """The server's time at the local time `now_s`."""
+        return now_s + self._offset_s

@@ -1,0 +1,124 @@
+"""One WebSocket to the server, from hello to goodbye: frames in, messages out."""
+
+import asyncio
+from typing import Final, Self
+
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidURI
+
+from bots.address import websocket_url
+from bots.errors import Disconnected, Refused, Unreachable
+from protocol import ProtocolError, decode_server, encode
+from protocol.messages import Error, FromClient, Hello, Welcome
+
+OPEN_TIMEOUT_S: Final = 10.0
+CLOSE_TIMEOUT_S: Final = 2.0
+
+MAX_FRAME_BYTES: Final = 16 * 1024 * 1024
+"""The largest frame is welcome, which carries the scene."""
+
+QUEUED_FRAMES: Final = 64
+"""When a bot falls this far behind, it stops reading and TCP holds the server's frames back."""
+
+NO_CLOSE_CODE: Final = 1006
+
+
+class Connection:
+    """A connection that the server has welcomed."""
+
+    def __init__(self, socket: ClientConnection, welcome: Welcome) -> None:
+        self._socket = socket
+        self.welcome = welcome
+
+    @classmethod
+    async def open(cls, url: str, hello: Hello) -> Self:
+        """Connect, say hello and wait for welcome.
+
+        Raises
+        ------
+        ValueError
+            `url` is no address.
+        Unreachable
+            Nobody is there, or no server of ours.
+        Refused
+            The server does not let this client in.
+        """
+        address = websocket_url(url)
+        try:
+            socket = await connect(
+                address,
+                compression=None,
+                max_size=MAX_FRAME_BYTES,
+                max_queue=QUEUED_FRAMES,
+                open_timeout=OPEN_TIMEOUT_S,
+                close_timeout=CLOSE_TIMEOUT_S,
+                proxy=None,
+            )
+        except (OSError, InvalidHandshake, InvalidURI) as error:
+            raise Unreachable(f"{address}: {str(error) or type(error).__name__}") from error
+        try:
+            async with asyncio.timeout(OPEN_TIMEOUT_S):
+                await socket.send(encode(hello))
+                return cls(socket, await _welcome(socket))
+        except TimeoutError:
+            socket.transport.abort()
+            raise Unreachable(f"{address}: no welcome within {OPEN_TIMEOUT_S:g} s") from None
+        except BaseException:
+            socket.transport.abort()
+            raise
+
+    async def send(self, message: FromClient) -> int:
+        """Send one message and return the bytes of its frame.
+
+        Raises
+        ------
+        Disconnected
+            The connection has ended.
+        """
+        frame = encode(message)
+        try:
+            await self._socket.send(frame)
+        except ConnectionClosed as error:
+            raise _disconnected(error) from None
+        return len(frame)
+
+    async def receive(self) -> bytes:
+        """The next frame.
+
+        Raises
+        ------
+        Disconnected
+            The connection has ended.
+        """
+        try:
+            frame = await self._socket.recv(decode=False)
+        except ConnectionClosed as error:
+            raise _disconnected(error) from None
+        return frame
+
+    async def close(self) -> None:
+        """Say goodbye; a server that does not answer is left after two seconds."""
+        await self._socket.close()
+
+
+async def _welcome(socket: ClientConnection) -> Welcome:
+    """The answer to hello."""
+    try:
+        message = decode_server(await socket.recv(decode=False))
+    except ProtocolError as error:
+        raise Unreachable(f"what answers speaks another protocol: {error.text}") from None
+    except ConnectionClosed as error:
+        ended = _disconnected(error)
+        raise Refused(str(ended.code), ended.reason or "closed without a word") from None
+    if isinstance(message, Error):
+        raise Refused(message.error.value, message.text)
+    if not isinstance(message, Welcome):
+        raise Unreachable(f"expected welcome, not {type(message).__name__.lower()}")
+    return message
+
+
+def _disconnected(error: ConnectionClosed) -> Disconnected:
+    """What the server's side said when it ended the connection, if it said anything."""
+    if error.rcvd is None:
+        return Disconnected(NO_CLOSE_CODE, "lost")
+    return Disconnected(error.rcvd.code, error.rcvd.reason)

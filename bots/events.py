@@ -1,0 +1,38 @@
+"""What happens to a bot: the server's messages, snapshots already unpacked."""
+
+from dataclasses import dataclass
+
+from protocol.messages import Bye, Census, Chat, Enter, Error, Leave, Notice, Plan, Pong
+from protocol.snapshot import Floats, Records, headings_rad, positions_m, speeds_mps
+
+
+@dataclass(frozen=True, eq=False)
+class SnapshotEvent:
+    """Who moved by tick `tick`; `ack` is the newest of our sequence numbers that counted in it.
+
+    `records` is an array of `protocol.snapshot.RECORD`, one row an avatar; who is absent is as
+    before.
+    """
+
+    tick: int
+    ack: int
+    records: Records
+    origin: tuple[float, float]
+
+    @property
+    def positions(self) -> Floats:
+        """World positions, float64 (N, 2), metres."""
+        return positions_m(self.records, self.origin)
+
+    @property
+    def headings(self) -> Floats:
+        """Headings, float64 (N,), radians from +x."""
+        return headings_rad(self.records)
+
+    @property
+    def speeds(self) -> Floats:
+        """Speeds, float64 (N,), metres a second."""
+        return speeds_mps(self.records)
+
+
+Event = SnapshotEvent | Enter | Leave | Chat | Notice | Error | Bye | Pong | Plan | Census
