@@ -1,0 +1,126 @@
+"""The built web client, read once at start and served from memory."""
+
+import gzip
+import hashlib
+import mimetypes
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from http import HTTPStatus
+from pathlib import Path, PurePosixPath
+from typing import Final
+from urllib.parse import unquote, urlsplit
+
+from websockets.datastructures import Headers
+from websockets.http11 import Request, Response
+
+CLIENT_ASSETS: Final = Path(__file__).parent / "client_assets"
+
+SECURITY_HEADERS: Final = {
+    "Content-Security-Policy": (
+        "default-src 'none'; script-src 'self'; style-src 'self'; "
+        "img-src 'self' data: blob:; font-src 'self'; connect-src 'self'; worker-src 'self' blob:; "
+        "manifest-src 'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
+    ),
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "DENY",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Permissions-Policy": "camera=(), geolocation=(), microphone=()",
+}
+
+_TYPES: Final = {
+    ".css": "text/css; charset=utf-8",
+    ".html": "text/html; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".json": "application/json",
+    ".map": "application/json",
+    ".svg": "image/svg+xml",
+    ".webmanifest": "application/manifest+json",
+    ".woff2": "font/woff2",
+}
+_COMPRESSED: Final = {".css", ".html", ".js", ".json", ".map", ".svg", ".webmanifest"}
+_HASHED_PATH: Final = re.compile(r"/assets/[^/]+-[A-Za-z0-9_-]{8}\.\w+")
+"""Vite puts the content's hash into the names of these files; a changed file is another file."""
+
+_MISSING_PAGE: Final = """<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><title>Esplanade</title>
+<meta name="viewport" content="width=device-width">
+</head><body><h1>The world is running, its web client is not built</h1>
+<p>This server was started from sources without a built client. Build it with</p>
+<pre>make client</pre>
+<p>or install the package (<code>pip install .</code>), then start the server again.
+Bots can come in already, at <code>/ws</code>.</p></body></html>
+"""
+
+
+@dataclass(frozen=True)
+class Asset:
+    """One file: its bytes, plain and, where it pays, compressed."""
+
+    body: bytes
+    compressed: bytes | None
+    headers: Mapping[str, str]
+
+
+class Assets:
+    """A table from URL path to asset. Nothing outside the table can be reached."""
+
+    def __init__(self, table: Mapping[str, Asset]) -> None:
+        self._table = table
+
+    @classmethod
+    def load(cls, folder: Path = CLIENT_ASSETS) -> "Assets":
+        """Read a built client; without one, a page that says how to build it."""
+        if not (folder / "index.html").is_file():
+            page = _asset("/index.html", _MISSING_PAGE.encode())
+            return cls({"/": page, "/index.html": page})
+        table: dict[str, Asset] = {}
+        for file in sorted(file for file in folder.rglob("*") if file.is_file()):
+            path = "/" + file.relative_to(folder).as_posix()
+            table[path] = _asset(path, file.read_bytes())
+        table["/"] = table["/index.html"]
+        return cls(table)
+
+    def answer(self, request: Request) -> Response:
+        """The response to a GET."""
+        asset = self._table.get(unquote(urlsplit(request.path).path))
+        if asset is None:
+            return respond(HTTPStatus.NOT_FOUND, b"there is nothing here\n")
+        if asset.headers["ETag"] in " ".join(request.headers.get_all("If-None-Match")):
+            return respond(HTTPStatus.NOT_MODIFIED, b"", asset.headers)
+        accepted = ",".join(request.headers.get_all("Accept-Encoding"))
+        if asset.compressed is not None and "gzip" in accepted:
+            headers = {**asset.headers, "Content-Encoding": "gzip"}
+            return respond(HTTPStatus.OK, asset.compressed, headers)
+        return respond(HTTPStatus.OK, asset.body, asset.headers)
+
+
+def respond(status: HTTPStatus, body: bytes, headers: Mapping[str, str] | None = None) -> Response:
+    """A complete HTTP response that ends its connection."""
+    fields = {
+        "Content-Type": "text/plain; charset=utf-8",
+        "Cache-Control": "no-cache",
+        **SECURITY_HEADERS,
+        **(headers or {}),
+        "Content-Length": str(len(body)),
+        "Connection": "close",
+    }
+    return Response(status.value, status.phrase, Headers(fields), body)
+
+
+def _asset(path: str, body: bytes) -> Asset:
+    suffix = PurePosixPath(path).suffix
+    compressed = gzip.compress(body, mtime=0) if suffix in _COMPRESSED else None
+    if compressed is not None and len(compressed) >= len(body):
+        compressed = None
+    guessed = mimetypes.guess_type(path)[0] or "application/octet-stream"
+    immutable = _HASHED_PATH.fullmatch(path)
+    headers = {
+        "Content-Type": _TYPES.get(suffix, guessed),
+        "Cache-Control": "public, max-age=31536000, immutable" if immutable else "no-cache",
+        "ETag": f'"{hashlib.sha256(body).hexdigest()[:20]}"',
+        "Vary": "Accept-Encoding",
+    }
+    return Asset(body, compressed, headers)

@@ -1,0 +1,64 @@
+"""The server as a process: event loop, signals, and the summary at the end."""
+
+import asyncio
+import signal
+
+import structlog
+
+from server import logs
+from server.app import Running, running
+from server.settings import ServerSettings
+
+log = structlog.get_logger(__name__)
+
+
+def serve(settings: ServerSettings) -> None:
+    """Run a server until SIGINT or SIGTERM.
+
+    Raises
+    ------
+    StageError
+        The scene or crowd cannot be run.
+    OSError
+        A port cannot be had.
+    """
+    logs.configure(settings)
+    try:
+        import uvloop  # noqa: PLC0415
+    except ImportError:  # there is none for Windows
+        asyncio.run(_serve(settings))
+    else:
+        uvloop.run(_serve(settings))
+
+
+async def _serve(settings: ServerSettings) -> None:
+    loop = asyncio.get_running_loop()
+    stop = asyncio.Event()
+
+    def on_signal(number: int) -> None:
+        log.info("stopping", signal=signal.Signals(number).name)
+        stop.set()
+        # Whoever asks a second time does not want to wait.
+        for each in (signal.SIGINT, signal.SIGTERM):
+            loop.remove_signal_handler(each)
+
+    async with running(settings) as server:
+        for number in (signal.SIGINT, signal.SIGTERM):
+            loop.add_signal_handler(number, on_signal, number)
+        _announce(settings, server)
+        waiting = asyncio.create_task(stop.wait())
+        await asyncio.wait([waiting, server.ticking], return_when=asyncio.FIRST_COMPLETED)
+        waiting.cancel()
+    log.info("summary", **server.summary())
+
+
+def _announce(settings: ServerSettings, server: Running) -> None:
+    host = "localhost" if settings.host in {"0.0.0.0", "::", ""} else settings.host  # noqa: S104
+    log.info(
+        "open",
+        url=f"http://{host}:{server.port}",
+        private=f"http://{settings.private_host}:{server.private_port}",
+        scene=server.world.scene.name,
+        actors=settings.actors,
+        seed=settings.seed,
+    )

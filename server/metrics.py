@@ -1,0 +1,134 @@
+"""Everything that is counted, in one registry of its own.
+
+What counts thousands of times a second is a plain integer in `Traffic`, read when scraped.
+"""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import partial
+from typing import Final
+
+import numpy as np
+from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
+from prometheus_client.core import CounterMetricFamily, Metric
+from prometheus_client.registry import Collector
+
+_NAMESPACE: Final = "esplanade"
+_TICK_BUCKETS_S: Final = (0.002, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.075, 0.1, 0.25, 1.0)
+_KEPT_TICKS: Final = 24_000
+_WINDOW_TICKS: Final = 1_200
+
+
+class Durations:
+    """The latest durations, at most 24 000 (20 minutes of 20 ticks a second)."""
+
+    def __init__(self) -> None:
+        self._ring = np.zeros(_KEPT_TICKS, dtype=np.float32)
+        self._count = 0
+
+    def add(self, seconds: float) -> None:
+        self._ring[self._count % _KEPT_TICKS] = seconds
+        self._count += 1
+
+    def percentile(self, percent: float, latest: int = _KEPT_TICKS) -> float:
+        """Of the latest so many, seconds; 0 if there are none."""
+        count = min(self._count, latest, _KEPT_TICKS)
+        if not count:
+            return 0.0
+        places = (self._count - 1 - np.arange(count)) % _KEPT_TICKS
+        return float(np.percentile(self._ring[places], percent))
+
+
+@dataclass
+class Traffic:
+    """Totals of what goes over people's connections."""
+
+    messages_in: int = 0
+    bytes_in: int = 0
+    messages_out: int = 0
+    bytes_out: int = 0
+    snapshots_skipped: int = 0
+    movements_superseded: int = 0
+
+
+_TRAFFIC_HELP: Final = {
+    "messages_in": "Messages from clients",
+    "bytes_in": "Bytes of messages from clients",
+    "messages_out": "Messages to clients",
+    "bytes_out": "Bytes of frames to clients",
+    "snapshots_skipped": "Snapshots left out because a client was slow",
+    "movements_superseded": "Movements that a later one replaced before a tick took them",
+}
+
+
+class _Total(Collector):
+    """A total that is kept elsewhere and asked for when scraped."""
+
+    def __init__(self, name: str, text: str, read: Callable[[], float]) -> None:
+        self._name = name
+        self._text = text
+        self._read = read
+
+    def collect(self) -> Iterable[Metric]:
+        family = CounterMetricFamily(self._name, self._text)
+        family.add_metric([], self._read())
+        yield family
+
+
+class Metrics:
+    """The server's metrics; names begin with `esplanade_`."""
+
+    def __init__(self) -> None:
+        self.registry = CollectorRegistry()
+        self.traffic = Traffic()
+        self.ticks = Durations()
+        for name, text in _TRAFFIC_HELP.items():
+            self.total(name, text, partial(getattr, self.traffic, name))
+        self._tick_seconds = Histogram(
+            "tick_duration_seconds",
+            "Time from the begin of a tick until its last frame is written",
+            namespace=_NAMESPACE,
+            buckets=_TICK_BUCKETS_S,
+            registry=self.registry,
+        )
+        self._stage_seconds = self._counter(
+            "tick_stage_seconds", "Time spent in each stage of the tick", ["stage"]
+        )
+        self.errors = self._counter("errors", "Errors told to clients, by code", ["code"])
+        self.closes = self._counter("closes", "Connections ended by the server", ["reason"])
+        self.dropped_slow = self._counter(
+            "clients_dropped_slow", "Clients dropped because they did not read", ["limit"]
+        )
+        self.joins = self._counter("joins", "People who came in", ["way"])
+        self.chat_lines = self._counter("chat_lines", "Lines that people said")
+        self.planning_failures = self._counter(
+            "planning_failures", "Ticks in which the actors' planning failed and they stood still"
+        )
+        for percent in (50, 99):
+            self.gauge(
+                f"tick_p{percent}_seconds",
+                f"Percentile {percent} of the last {_WINDOW_TICKS} ticks' durations",
+                partial(self.ticks.percentile, percent, _WINDOW_TICKS),
+            )
+
+    def gauge(self, name: str, text: str, read: Callable[[], float]) -> None:
+        """A value that is asked for when scraped."""
+        gauge = Gauge(name, text, namespace=_NAMESPACE, registry=self.registry)
+        gauge.set_function(read)
+
+    def total(self, name: str, text: str, read: Callable[[], float]) -> None:
+        """A total that is kept elsewhere and never falls."""
+        self.registry.register(_Total(f"{_NAMESPACE}_{name}", text, read))
+
+    def tick_took(self, seconds: float, stages: dict[str, float]) -> None:
+        self.ticks.add(seconds)
+        self._tick_seconds.observe(seconds)
+        for stage, stage_seconds in stages.items():
+            self._stage_seconds.labels(stage).inc(stage_seconds)
+
+    def exposition(self) -> bytes:
+        """All metrics in Prometheus' text format."""
+        return generate_latest(self.registry)
+
+    def _counter(self, name: str, text: str, labels: Iterable[str] = ()) -> Counter:
+        return Counter(name, text, labels, namespace=_NAMESPACE, registry=self.registry)

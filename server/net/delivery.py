@@ -1,0 +1,103 @@
+"""After a tick: everyone is told what they are to know, in one pass that never waits."""
+
+from collections.abc import Mapping
+from typing import Final
+
+import numpy as np
+
+from actors import Explanation
+from protocol import Reason
+from protocol.messages import Census, Circle, Plan
+from server.net import frames
+from server.net.outbox import Outbox
+from server.net.session import Session
+from server.world.world import Sight, World
+
+PLANS_PER_SECOND: Final = 5
+
+
+class Delivery:
+    """Writes one tick's news into the outboxes of the sessions that are there."""
+
+    def __init__(self, world: World, sessions: Mapping[int, Session], tick_rate: int) -> None:
+        self._world = world
+        self._sessions = sessions
+        self._plan_period = max(1, tick_rate // PLANS_PER_SECOND)
+        self._census_period = tick_rate
+
+    def deliver(self, sight: Sight, now: float) -> None:
+        """Changes of view first, then snapshots, then what is only for some."""
+        self._changes(sight)
+        self._snapshots(sight, now)
+        self._plans()
+        if self._world.tick % self._census_period == 0:
+            people, actors = self._world.count()
+            census = frames.message(Census(people=people, actors=actors))
+            for session in self._sessions.values():
+                session.outbox.offer(census)
+
+    def _changes(self, sight: Sight) -> None:
+        tick = self._world.tick
+        for viewer, ids in sight.changes.left.items():
+            if (outbox := self._outbox(viewer)) is not None:
+                outbox.post(frames.leave(tick, ids))
+        packed: dict[int, bytes] = {}
+        for viewer, slots in sight.changes.entered.items():
+            if (outbox := self._outbox(viewer)) is None:
+                continue
+            for slot in slots:
+                if slot not in packed:
+                    packed[slot] = frames.entity(self._world.describe(slot))
+            outbox.post(frames.enter(tick, [packed[slot] for slot in slots]))
+
+    def _snapshots(self, sight: Sight, now: float) -> None:
+        snapshots = sight.snapshots
+        sessions, tick, data = self._sessions, snapshots.tick, snapshots.data
+        written: list[int] = []
+        begin = 0
+        places = zip(snapshots.viewers, snapshots.ends, snapshots.acks, strict=True)
+        for place, (viewer, end, ack) in enumerate(places):
+            session = sessions.get(viewer)
+            if session is not None and session.outbox.snapshot(tick, ack, data[begin:end], now):
+                written.append(place)
+            begin = end
+        self._world.wrote(snapshots, written)
+
+    def _plans(self) -> None:
+        """Plans of the actors whose turn it is, each packed once, to whoever watches them."""
+        tick = self._world.tick
+        packed: dict[int, bytes] = {}
+        for viewer, session in self._sessions.items():
+            actor = session.watching
+            if actor is None or (tick + actor) % self._plan_period:
+                continue
+            if not self._world.sees(viewer, actor):
+                session.watching = None
+                continue
+            if actor not in packed:
+                packed[actor] = frames.message(plan(tick, actor, self._world.explain(actor)))
+            session.outbox.offer(packed[actor])
+
+    def _outbox(self, viewer: int) -> Outbox | None:
+        session = self._sessions.get(viewer)
+        return session.outbox if session else None
+
+
+def plan(tick: int, actor: int, explanation: Explanation) -> Plan:
+    """An actor's explanation as it goes over the wire, to the millimetre."""
+    path = np.round(explanation.path, 3).tolist()
+    return Plan(
+        tick=tick,
+        id=actor,
+        reason=Reason(explanation.reason),
+        behaviour=explanation.behaviour,
+        goal=explanation.goal,
+        path=[(x, y, int(layer), seconds) for x, y, layer, seconds in path],
+        people=[
+            [
+                Circle(x=x, y=y, layer=int(layer), radius=radius)
+                for x, y, layer, radius in np.round(circles, 3).tolist()
+            ]
+            for circles in explanation.people
+        ],
+    )

@@ -1,0 +1,82 @@
+"""Server messages as WebSocket frames, header included, ready for a transport.
+
+A frame is built once, whoever it goes to. What goes out in numbers is packed here without its
+pydantic model; the tests hold both ways of encoding together.
+"""
+
+import struct
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+import msgpack
+
+from protocol import ServerCode, encode, encode_snapshot
+from protocol.messages import FromServer, Welcome
+
+_FINAL_BINARY: Final = 0x82
+_SHORT = struct.Struct(">BB")
+_MEDIUM = struct.Struct(">BBH")
+_LONG = struct.Struct(">BBQ")
+
+
+def frame(payload: bytes) -> bytes:
+    """One unmasked binary WebSocket frame (RFC 6455, section 5.2)."""
+    size = len(payload)
+    if size < 126:
+        return _SHORT.pack(_FINAL_BINARY, size) + payload
+    if size < 65536:
+        return _MEDIUM.pack(_FINAL_BINARY, 126, size) + payload
+    return _LONG.pack(_FINAL_BINARY, 127, size) + payload
+
+
+def message(content: FromServer) -> bytes:
+    """Any message but the welcome and the snapshot."""
+    return frame(encode(content))
+
+
+def snapshot(tick: int, ack: int, block: memoryview) -> bytes:
+    return frame(encode_snapshot(tick, ack, block))
+
+
+def leave(tick: int, ids: Sequence[int]) -> bytes:
+    packed: bytes = msgpack.packb([int(ServerCode.LEAVE), {"tick": tick, "ids": ids}])
+    return frame(packed)
+
+
+def entity(fields: Mapping[str, object]) -> bytes:
+    """One avatar of an enter message, to be joined by `enter`."""
+    packed: bytes = msgpack.packb(fields)
+    return packed
+
+
+def enter(tick: int, entities: Sequence[bytes]) -> bytes:
+    """An enter message from avatars that `entity` has packed."""
+    packer = msgpack.Packer(autoreset=False)
+    packer.pack_array_header(2)
+    packer.pack(int(ServerCode.ENTER))
+    packer.pack_map_header(2)
+    packer.pack("tick")
+    packer.pack(tick)
+    packer.pack("entities")
+    packer.pack_array_header(len(entities))
+    return frame(packer.bytes() + b"".join(entities))
+
+
+class Welcomes:
+    """Welcome messages; the scene, the same in all of them, is packed once."""
+
+    def __init__(self, scene: Mapping[str, object]) -> None:
+        self._scene: bytes = msgpack.packb(scene)
+
+    def frame(self, welcome: Welcome) -> bytes:
+        """The frame of a welcome, whatever scene it holds replaced by the packed one."""
+        fields = welcome.model_dump(mode="json", exclude={"scene"})
+        packer = msgpack.Packer(autoreset=False)
+        packer.pack_array_header(2)
+        packer.pack(int(ServerCode.WELCOME))
+        packer.pack_map_header(len(fields) + 1)
+        for name, value in fields.items():
+            packer.pack(name)
+            packer.pack(value)
+        packer.pack("scene")
+        return frame(packer.bytes() + self._scene)

@@ -1,0 +1,221 @@
+"""Where sessions and the world meet: who sits where, what they want, what they say."""
+
+import asyncio
+from collections.abc import Callable, Iterable
+from typing import Final
+
+import structlog
+
+from protocol import VERSION, ByeCode, CloseCode, ErrorCode, ProtocolError
+from protocol.messages import Bye, Chat, Hello, Move, WalkTo, Welcome
+from server.metrics import Metrics
+from server.net import frames
+from server.net.seats import Seat, Seats
+from server.net.session import Session
+from server.settings import ServerSettings
+from server.world.inputs import Attach, Detach, Input, Join, Leave, Movement, Seek, Steer
+from server.world.world import Begun, World
+
+MAX_JOINS_PER_TICK: Final = 16
+"""Each join costs every neighbour an enter message; a crowd comes in over some ticks."""
+
+log = structlog.get_logger(__name__)
+
+
+class Hub:
+    """All sessions of a zone.
+
+    Between two ticks it keeps, for each person, at most one movement (the latest) and what came
+    and went; the number of people bounds both. `drain` hands them to the tick.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        settings: ServerSettings,
+        metrics: Metrics,
+        server_time: Callable[[], float],
+    ) -> None:
+        self.server_time = server_time
+        self.sessions: dict[int, Session] = {}
+        """Sessions that have been welcomed, by their avatar's id."""
+        self._world = world
+        self._settings = settings
+        self._metrics = metrics
+        self._welcomes = frames.Welcomes(world.scene.model_dump(mode="json"))
+        self._seats: Seats[Session] = Seats()
+        self._next_ticket = 1
+        self._joining: dict[int, tuple[Session, Hello]] = {}
+        self._comings: list[Attach | Detach | Leave] = []
+        self._movements: dict[int, Movement] = {}
+        metrics.gauge("clients", "People connected", lambda: len(self.sessions))
+        metrics.gauge("clients_away", "Avatars that wait for a lost person", self._vacant)
+        metrics.gauge("joining", "People at the door", lambda: len(self._joining))
+        metrics.gauge("movements_waiting", "Movements for next tick", lambda: len(self._movements))
+
+    # --- what sessions ask for ----------------------------------------------------------------
+
+    def admit(self, session: Session, hello: Hello) -> None:
+        """Give a newcomer a place at the door, or someone who comes back their own avatar.
+
+        Raises
+        ------
+        ProtocolError
+            The world is full.
+        """
+        seat = self._seats.find(hello.resume) if hello.resume else None
+        if seat is not None:
+            self._resume(seat, session, hello)
+            return
+        if len(self._seats) + len(self._joining) >= self._settings.max_clients:
+            raise ProtocolError(
+                ErrorCode.SERVER_FULL,
+                f"there is room for {self._settings.max_clients} people, all taken",
+                CloseCode.SERVER_FULL,
+            )
+        session.ticket = self._next_ticket
+        self._joining[session.ticket] = session, hello
+        self._next_ticket += 1
+
+    def move(self, session: Session, wish: Move | WalkTo) -> None:
+        """Keep the wish for the next tick; it takes the place of an earlier one."""
+        avatar_id = session.avatar_id
+        if avatar_id is None:
+            return
+        if avatar_id in self._movements:
+            self._metrics.traffic.movements_superseded += 1
+        if isinstance(wish, Move):
+            self._movements[avatar_id] = Steer(avatar_id, wish.seq, wish.direction, wish.speed)
+        else:
+            goal = (wish.x, wish.y)
+            self._movements[avatar_id] = Seek(avatar_id, wish.seq, goal, wish.layer)
+
+    def say(self, session: Session, text: str) -> None:
+        """Pass a line on to everyone who has the speaker in view, the speaker included."""
+        if session.avatar_id is None:
+            return
+        self._metrics.chat_lines.inc()
+        frame = frames.message(Chat(id=session.avatar_id, name=session.name, text=text))
+        for viewer in self._world.seen_by(session.avatar_id):
+            listener = self.sessions.get(viewer)
+            if listener is not None:
+                listener.outbox.post(frame)
+
+    def watch(self, session: Session, actor_id: int | None) -> None:
+        """Send the plans of an actor from now on, or of none."""
+        if actor_id is not None and not (
+            session.avatar_id is not None
+            and self._world.is_actor(actor_id)
+            and self._world.sees(session.avatar_id, actor_id)
+        ):
+            session.tell(
+                ProtocolError(ErrorCode.INVALID, f"watch: {actor_id} is no actor in view", None)
+            )
+            actor_id = None
+        session.watching = actor_id
+
+    def depart(self, session: Session, comes_back: bool) -> None:
+        """The session has ended; its avatar waits a while if the person may come back."""
+        self._joining.pop(session.ticket, None)
+        if session.avatar_id is None:
+            return
+        seat = self._seats.of(session.avatar_id)
+        if seat is None or seat.occupant is not session:
+            return
+        self._unbind(seat)
+        if comes_back and self._settings.resume_seconds > 0.0:
+            self._seats.vacate(seat, asyncio.get_running_loop().time())
+            self._comings.append(Detach(seat.avatar_id))
+        else:
+            self._remove(seat)
+        log.info("person gone", id=seat.avatar_id, name=seat.name, may_come_back=comes_back)
+
+    # --- what the tick asks for ---------------------------------------------------------------
+
+    def drain(self, now: float) -> list[Input]:
+        """Everything for the next tick: at most one movement a person, and a few joins."""
+        for seat in self._seats.vacant_since(now - self._settings.resume_seconds):
+            self._remove(seat)
+        inputs: list[Input] = [*self._comings]
+        for ticket in list(self._joining)[:MAX_JOINS_PER_TICK]:
+            hello = self._joining[ticket][1]
+            inputs.append(Join(ticket, hello.name, hello.at))
+        inputs.extend(self._movements.values())
+        self._comings, self._movements = [], {}
+        return inputs
+
+    def welcome(self, inputs: Iterable[Input], begun: Begun) -> None:
+        """Welcome those whom the tick has let in, before anything else is sent to them."""
+        for ticket, avatar_id in begun.joined:
+            session, hello = self._joining.pop(ticket)
+            token = self._seats.issue(avatar_id, hello.name, session)
+            session.avatar_id, session.token = avatar_id, token
+            self._bind(session, avatar_id, resumed=False)
+        for item in inputs:
+            if isinstance(item, Attach):
+                seat = self._seats.of(item.id)
+                if seat is not None and seat.occupant is not None:
+                    self._bind(seat.occupant, item.id, resumed=True)
+
+    def refuse_routes(self, unreachable: Iterable[Seek]) -> None:
+        """Tell people that no way leads to where they want to go."""
+        for wish in unreachable:
+            session = self.sessions.get(wish.id)
+            if session is not None:
+                x, y = wish.goal
+                text = f"no way leads to ({x:.2f}, {y:.2f}) on layer {wish.layer}"
+                session.tell(ProtocolError(ErrorCode.NO_PATH, text, None))
+
+    async def close(self) -> None:
+        """Say goodbye to everyone and wait until they are gone, or cut off."""
+        text = "the server is shutting down"
+        farewell = frames.message(Bye(reason=ByeCode.SHUTDOWN, text=text))
+        everyone = [*self.sessions.values(), *(session for session, _ in self._joining.values())]
+        tasks = [session.dismiss(farewell, CloseCode.GOING_AWAY, text) for session in everyone]
+        if tasks:
+            await asyncio.wait(tasks)
+
+    # --- seats --------------------------------------------------------------------------------
+
+    def _resume(self, seat: Seat[Session], session: Session, hello: Hello) -> None:
+        before = self._seats.occupy(seat, session)
+        if before is not None:
+            self._unbind(seat)
+            text = "somebody came in with your resume token"
+            farewell = frames.message(Bye(reason=ByeCode.REPLACED, text=text))
+            before.dismiss(farewell, CloseCode.REPLACED, ByeCode.REPLACED.value)
+        session.avatar_id, session.name = seat.avatar_id, seat.name
+        session.token = hello.resume or ""
+        self._comings += [Detach(seat.avatar_id), Attach(seat.avatar_id)]
+
+    def _bind(self, session: Session, avatar_id: int, resumed: bool) -> None:
+        world = self._world
+        self.sessions[avatar_id] = session
+        welcome = Welcome(
+            version=VERSION,
+            id=avatar_id,
+            name=session.name,
+            resume=session.token,
+            resumed=resumed,
+            scene={},
+            tick=world.tick,
+            tick_rate=self._settings.tick_rate,
+            server_time=self.server_time(),
+            radius=world.rules.person_radius_m,
+            max_speed=world.rules.person_max_speed_mps,
+            origin=world.origin_m,
+        )
+        session.outbox.welcome(self._welcomes.frame(welcome))
+        self._metrics.joins.labels("resumed" if resumed else "new").inc()
+        log.info("person here", id=avatar_id, name=session.name, resumed=resumed)
+
+    def _unbind(self, seat: Seat[Session]) -> None:
+        self.sessions.pop(seat.avatar_id, None)
+        self._movements.pop(seat.avatar_id, None)
+
+    def _remove(self, seat: Seat[Session]) -> None:
+        self._seats.remove(seat)
+        self._comings.append(Leave(seat.avatar_id))
+
+    def _vacant(self) -> int:
+        return self._seats.vacant

@@ -1,0 +1,83 @@
+"""The one port for people: the web client by GET, the world by WebSocket at /ws."""
+
+import logging
+from collections.abc import Sequence
+from http import HTTPStatus
+from typing import Final, cast
+from urllib.parse import urlsplit
+
+from websockets.asyncio.server import Server, ServerConnection, serve
+from websockets.http11 import Request, Response
+from websockets.typing import Origin
+
+from protocol.codes import MAX_CLIENT_FRAME_BYTES
+from server.assets import Assets, respond
+from server.metrics import Metrics
+from server.net.hub import Hub
+from server.net.session import CLOSE_S, Session
+from server.settings import ServerSettings
+
+SOCKET_PATH: Final = "/ws"
+ANSWER_TIMEOUT_S: Final = 30.0
+"""For the opening handshake, and for an asset to go out whole over a thin line."""
+
+MAX_FRAME_BYTES: Final = 8 * MAX_CLIENT_FRAME_BYTES
+"""Frames above the protocol's limit get a named error; above this the library refuses to read."""
+
+MAX_AT_DOOR: Final = 256
+"""Connections that have not said hello yet; beyond, new ones are turned away."""
+
+
+class Listener:
+    """Accepts connections and runs a session for each."""
+
+    def __init__(
+        self, hub: Hub, assets: Assets, settings: ServerSettings, metrics: Metrics
+    ) -> None:
+        self._hub = hub
+        self._assets = assets
+        self._settings = settings
+        self._metrics = metrics
+        self._sessions = 0
+        metrics.gauge("connections", "Open WebSocket connections", lambda: self._sessions)
+
+    async def start(self) -> Server:
+        """Listen on the settings' host and port.
+
+        Raises
+        ------
+        OSError
+            The address cannot be had.
+        """
+        origins = cast(Sequence[Origin] | None, self._settings.origins)
+        return await serve(
+            self._serve,
+            self._settings.host,
+            self._settings.port,
+            origins=None if origins is None else [*origins, None],
+            compression=None,
+            process_request=self._answer,
+            server_header=None,
+            open_timeout=ANSWER_TIMEOUT_S,
+            close_timeout=CLOSE_S,
+            max_size=MAX_FRAME_BYTES,
+            logger=logging.getLogger("server.websockets"),
+        )
+
+    async def _serve(self, connection: ServerConnection) -> None:
+        self._sessions += 1
+        try:
+            await Session(connection, self._hub, self._settings, self._metrics).run()
+        finally:
+            self._sessions -= 1
+
+    def _answer(self, _: ServerConnection, request: Request) -> Response | None:
+        if request.method != "GET":
+            return respond(
+                HTTPStatus.METHOD_NOT_ALLOWED, b"only GET is answered here\n", {"Allow": "GET"}
+            )
+        if urlsplit(request.path).path != SOCKET_PATH:
+            return self._assets.answer(request)
+        if self._sessions >= self._settings.max_clients + MAX_AT_DOOR:
+            return respond(HTTPStatus.SERVICE_UNAVAILABLE, b"too many connections\n")
+        return None

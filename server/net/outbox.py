@@ -1,0 +1,141 @@
+"""What goes out to one client, and what happens when it does not read.
+
+Frames are written straight to the transport, past the library's own queue and its awaiting; so
+the state of the connection is checked here, and nothing is ever sent in fragments.
+
+Policy. A client with more than `slow_bytes` unsent is slow: it gets no snapshots (the next one
+supersedes them) and important frames wait in a bounded list. It is dropped when it stays slow for
+`drop_seconds`, when `drop_bytes` lie unsent, or when the list overflows.
+"""
+
+import socket
+from collections import deque
+from dataclasses import dataclass
+from typing import Final
+
+from websockets.asyncio.server import ServerConnection
+from websockets.protocol import State
+
+from server.metrics import Traffic
+from server.net import frames
+from server.settings import ServerSettings
+
+MAX_WAITING_FRAMES: Final = 256
+JOINING_PATIENCE_S: Final = 30.0
+"""A client on a thin line may take this long to read its welcome, which holds the scene."""
+
+SEND_BUFFER_BYTES: Final = 32 * 1024
+UNSENT_LOW_WATER_BYTES: Final = 16 * 1024
+
+
+@dataclass(frozen=True)
+class SlowPolicy:
+    """When a client is slow, and when it is dropped."""
+
+    slow_bytes: int
+    drop_bytes: int
+    drop_seconds: float
+
+    @classmethod
+    def of(cls, settings: ServerSettings) -> "SlowPolicy":
+        return cls(settings.slow_bytes, settings.drop_bytes, settings.drop_seconds)
+
+
+class Outbox:
+    """Writes frames to one connection, in order, never waiting."""
+
+    def __init__(self, connection: ServerConnection, policy: SlowPolicy, traffic: Traffic) -> None:
+        self._connection = connection
+        self._policy = policy
+        self._traffic = traffic
+        self._waiting: deque[bytes] = deque()
+        self._slow_since: float | None = None
+        self._patience_s = policy.drop_seconds
+        self._allowance_bytes = 0
+        self.dropped: str | None = None
+        """Why the client was dropped as too slow."""
+        _bound_kernel_buffers(connection)
+
+    @property
+    def open(self) -> bool:
+        return self._connection.state is State.OPEN and self.dropped is None
+
+    def welcome(self, frame: bytes) -> None:
+        """The first frame, however large: its size and the time to read it are granted."""
+        self._allowance_bytes = len(frame)
+        self._patience_s = max(self._policy.drop_seconds, JOINING_PATIENCE_S)
+        self._write(frame)
+
+    def post(self, frame: bytes) -> None:
+        """Send what must not be lost; it waits while the client is slow."""
+        if not self.open:
+            return
+        if not self._waiting and self._unsent() <= self._policy.slow_bytes:
+            self._write(frame)
+        elif len(self._waiting) < MAX_WAITING_FRAMES:
+            self._waiting.append(frame)
+        else:
+            self._drop("waiting")
+
+    def offer(self, frame: bytes) -> bool:
+        """Send what a later one replaces; False if it was left out, the client being slow."""
+        if not self.open or self._waiting or self._unsent() > self._policy.slow_bytes:
+            return False
+        self._write(frame)
+        return True
+
+    def snapshot(self, tick: int, ack: int, block: memoryview, now: float) -> bool:
+        """Once a tick: send what waits, then a snapshot. False if it was left out."""
+        if not self.open:
+            return False
+        unsent = self._unsent()
+        if unsent > self._policy.slow_bytes:
+            self._traffic.snapshots_skipped += 1
+            self._judge(unsent, now)
+            return False
+        if self._slow_since is not None or self._allowance_bytes:
+            self._slow_since = None
+            self._patience_s, self._allowance_bytes = self._policy.drop_seconds, 0
+        while self._waiting and self._unsent() <= self._policy.slow_bytes:
+            self._write(self._waiting.popleft())
+        if self._waiting:
+            self._traffic.snapshots_skipped += 1
+            return False
+        self._write(frames.snapshot(tick, ack, block))
+        return True
+
+    def flush(self) -> None:
+        """Send all that waits, before the end."""
+        while self._waiting and self.open:
+            self._write(self._waiting.popleft())
+
+    def _judge(self, unsent: int, now: float) -> None:
+        if self._slow_since is None:
+            self._slow_since = now
+        if unsent > self._policy.drop_bytes + self._allowance_bytes:
+            self._drop("bytes")
+        elif now - self._slow_since > self._patience_s:
+            self._drop("seconds")
+
+    def _drop(self, why: str) -> None:
+        # Closing would wait for a client that does not read; only abort ends it.
+        self.dropped = why
+        self._waiting.clear()
+        self._connection.transport.abort()
+
+    def _unsent(self) -> int:
+        return self._connection.transport.get_write_buffer_size()
+
+    def _write(self, frame: bytes) -> None:
+        self._connection.transport.write(frame)
+        self._traffic.messages_out += 1
+        self._traffic.bytes_out += len(frame)
+
+
+def _bound_kernel_buffers(connection: ServerConnection) -> None:
+    """Keep the kernel from hiding megabytes that a client has not read."""
+    sock = connection.transport.get_extra_info("socket")
+    sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER_BYTES)
+    if hasattr(socket, "TCP_NOTSENT_LOWAT"):
+        sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, UNSENT_LOW_WATER_BYTES)

@@ -1,0 +1,55 @@
+"""The private port: is the server alive, is it ready, what does it count."""
+
+import logging
+from collections.abc import Callable
+from http import HTTPStatus
+from typing import Final
+
+from websockets.asyncio.server import Server, ServerConnection, serve
+from websockets.http11 import Request, Response
+
+from server.assets import respond
+from server.metrics import Metrics
+from server.settings import ServerSettings
+
+METRICS_TYPE: Final = "text/plain; version=0.0.4; charset=utf-8"
+
+
+async def start_private(
+    settings: ServerSettings, metrics: Metrics, ready: Callable[[], bool]
+) -> Server:
+    """Listen for operators. Answers GET /healthz, /readyz and /metrics; upgrades nothing.
+
+    Raises
+    ------
+    OSError
+        The address cannot be had.
+    """
+
+    def answer(_: ServerConnection, request: Request) -> Response:
+        if request.method != "GET":
+            return respond(HTTPStatus.METHOD_NOT_ALLOWED, b"only GET\n", {"Allow": "GET"})
+        match request.path.partition("?")[0]:
+            case "/healthz":
+                return respond(HTTPStatus.OK, b"alive\n")
+            case "/readyz" if ready():
+                return respond(HTTPStatus.OK, b"ready\n")
+            case "/readyz":
+                return respond(HTTPStatus.SERVICE_UNAVAILABLE, b"starting or stopping\n")
+            case "/metrics":
+                return respond(HTTPStatus.OK, metrics.exposition(), {"Content-Type": METRICS_TYPE})
+        return respond(HTTPStatus.NOT_FOUND, b"/healthz, /readyz, /metrics\n")
+
+    return await serve(
+        _never,
+        settings.private_host,
+        settings.private_port,
+        process_request=answer,
+        server_header=None,
+        logger=logging.getLogger("server.websockets"),
+    )
+
+
+async def _never(connection: ServerConnection) -> None:
+    """No request gets this far: every one is answered above."""
+    await connection.close()

@@ -1,0 +1,163 @@
+"""One connection of one person: hello, then what they send, until it ends."""
+
+import asyncio
+from typing import TYPE_CHECKING, Final
+
+import structlog
+from websockets.asyncio.server import ServerConnection
+from websockets.exceptions import ConnectionClosed
+
+from protocol import VERSION, CloseCode, ErrorCode, ProtocolError, decode_client
+from protocol.messages import (
+    ChatLine,
+    ClientMessage,
+    Error,
+    Hello,
+    Move,
+    Ping,
+    Pong,
+    WalkTo,
+    Watch,
+)
+from server.metrics import Metrics
+from server.net import frames
+from server.net.limits import TokenBucket
+from server.net.outbox import Outbox, SlowPolicy
+from server.settings import ServerSettings
+
+if TYPE_CHECKING:
+    from server.net.hub import Hub
+
+CLOSE_S: Final = 2.0
+"""A client that has not answered the closing handshake by then is cut off."""
+CHAT_BURST: Final = 5
+
+log = structlog.get_logger(__name__)
+
+
+class Session:
+    """Reads one connection; every fault of the client ends here, with its name."""
+
+    def __init__(
+        self, connection: ServerConnection, hub: "Hub", settings: ServerSettings, metrics: Metrics
+    ) -> None:
+        now = asyncio.get_running_loop().time()
+        self.outbox = Outbox(connection, SlowPolicy.of(settings), metrics.traffic)
+        self.avatar_id: int | None = None
+        """Set once the hub has a seat for this session."""
+        self.ticket = 0
+        """Number of the place at the door; 0 for none."""
+        self.token = ""
+        """The seat's resume token. Never logged."""
+        self.name = ""
+        self.watching: int | None = None
+        self._connection = connection
+        self._hub = hub
+        self._metrics = metrics
+        self._hello_timeout_s = settings.hello_timeout_s
+        self._messages = TokenBucket(settings.message_rate, 2.0 * settings.message_rate, now)
+        self._lines = TokenBucket(settings.chat_rate, CHAT_BURST, now)
+        self._dismissal: asyncio.Task[None] | None = None
+
+    async def run(self) -> None:
+        """From hello to the end of the connection."""
+        faulty = False
+        try:
+            hello = await self._hello()
+            self.name = hello.name
+            self._hub.admit(self, hello)
+            async for frame in self._connection:
+                self._take(self._decode(frame))
+        except ProtocolError as fault:
+            faulty = True
+            self.tell(fault)
+            await self._close(fault.close or CloseCode.NORMAL, fault.code.value)
+        except ConnectionClosed:
+            pass
+        finally:
+            self._end(faulty)
+        if self._dismissal:
+            await self._dismissal
+
+    def tell(self, fault: ProtocolError) -> None:
+        """Tell the client what was wrong with something it sent."""
+        self._metrics.errors.labels(fault.code.value).inc()
+        self.outbox.post(frames.message(Error(error=fault.code, text=fault.text)))
+
+    def dismiss(self, farewell: bytes, code: CloseCode, reason: str) -> asyncio.Task[None]:
+        """End the connection in good order, with a last frame."""
+        if self._dismissal is None:
+            self.outbox.post(farewell)
+            self._dismissal = asyncio.create_task(self._close(code, reason))
+        return self._dismissal
+
+    async def _hello(self) -> Hello:
+        try:
+            async with asyncio.timeout(self._hello_timeout_s):
+                frame = await self._connection.recv()
+        except TimeoutError:
+            raise ProtocolError(
+                ErrorCode.HELLO_TIMEOUT,
+                f"no hello within {self._hello_timeout_s:g} s",
+                CloseCode.HELLO_TIMEOUT,
+            ) from None
+        message = self._decode(frame)
+        if not isinstance(message, Hello):
+            raise ProtocolError(
+                ErrorCode.HELLO_EXPECTED,
+                f"the first message must be hello, not {message.code.name.lower()}",
+                CloseCode.HELLO_EXPECTED,
+            )
+        if message.version != VERSION:
+            raise ProtocolError(
+                ErrorCode.UNSUPPORTED_VERSION,
+                f"this server speaks version {VERSION}, the client {message.version}",
+                CloseCode.UNSUPPORTED_VERSION,
+            )
+        return message
+
+    def _decode(self, frame: bytes | str) -> ClientMessage:
+        self._metrics.traffic.messages_in += 1
+        self._metrics.traffic.bytes_in += len(frame)
+        if not self._messages.take(asyncio.get_running_loop().time()):
+            raise ProtocolError(ErrorCode.FLOODING, "too many messages", CloseCode.FLOODING)
+        if isinstance(frame, str):
+            raise ProtocolError(
+                ErrorCode.MALFORMED, "a text frame; messages are binary", CloseCode.MALFORMED
+            )
+        return decode_client(frame)
+
+    def _take(self, message: ClientMessage) -> None:
+        match message:
+            case Move() | WalkTo():
+                self._hub.move(self, message)
+            case Ping():
+                time = self._hub.server_time()
+                self.outbox.post(frames.message(Pong(nonce=message.nonce, server_time=time)))
+            case ChatLine():
+                if self._lines.take(asyncio.get_running_loop().time()):
+                    self._hub.say(self, message.text)
+                else:
+                    self.tell(ProtocolError(ErrorCode.FLOODING, "you talk too fast", None))
+            case Watch():
+                self._hub.watch(self, message.id)
+            case Hello():
+                raise ProtocolError(ErrorCode.INVALID, "hello comes only once", CloseCode.INVALID)
+
+    def _end(self, faulty: bool) -> None:
+        if self.outbox.dropped:
+            self._metrics.dropped_slow.labels(self.outbox.dropped).inc()
+            self._metrics.closes.labels(CloseCode.TOO_SLOW.name.lower()).inc()
+            log.warning("client dropped, too slow", id=self.avatar_id, limit=self.outbox.dropped)
+        left = self._connection.close_code == CloseCode.NORMAL
+        self._hub.depart(self, comes_back=not (faulty or left))
+
+    async def _close(self, code: CloseCode, reason: str) -> None:
+        self.outbox.flush()
+        self._metrics.closes.labels(code.name.lower()).inc()
+        try:
+            async with asyncio.timeout(CLOSE_S):
+                await self._connection.close(code, reason)
+        except TimeoutError:
+            # The library waits for a buffer to drain that the client never reads.
+            self._connection.transport.abort()

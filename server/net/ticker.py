@@ -1,0 +1,80 @@
+"""The heart: runs the world's ticks at their times, the actors' planning in a thread of its own."""
+
+import asyncio
+from concurrent.futures import Executor
+
+import structlog
+
+from server.metrics import Metrics
+from server.net.delivery import Delivery
+from server.net.hub import Hub
+from server.net.schedule import Schedule
+from server.world.troupe import ActorStates
+from server.world.world import World
+
+log = structlog.get_logger(__name__)
+
+
+class Ticker:
+    """Runs until told to stop. While actors are planned, the event loop serves the sessions."""
+
+    def __init__(
+        self,
+        world: World,
+        hub: Hub,
+        delivery: Delivery,
+        schedule: Schedule,
+        metrics: Metrics,
+        thread: Executor,
+    ) -> None:
+        self._world = world
+        self._hub = hub
+        self._delivery = delivery
+        self._schedule = schedule
+        self._metrics = metrics
+        self._thread = thread
+        self._stopping = asyncio.Event()
+        metrics.total("ticks", "Ticks of the world", lambda: world.tick)
+        metrics.total("ticks_late", "Ticks that began late", lambda: schedule.late_ticks)
+        metrics.total(
+            "ticks_given_up", "Ticks' worth of time lost", lambda: schedule.given_up_ticks
+        )
+
+    def stop(self) -> None:
+        """Finish the tick that runs, begin no other."""
+        self._stopping.set()
+
+    async def run(self) -> None:
+        while not await self._stopped_by(self._schedule.next_deadline):
+            await self._tick()
+
+    async def _stopped_by(self, deadline: float) -> bool:
+        try:
+            async with asyncio.timeout_at(deadline):
+                await self._stopping.wait()
+        except TimeoutError:
+            pass
+        return self._stopping.is_set()
+
+    async def _tick(self) -> None:
+        loop = asyncio.get_running_loop()
+        start = loop.time()
+        self._schedule.begin(start)
+        inputs = self._hub.drain(start)
+        begun = self._world.begin(inputs)
+        self._hub.welcome(inputs, begun)
+        self._hub.refuse_routes(begun.unreachable)
+        actors = await loop.run_in_executor(self._thread, self._think)
+        sight = self._world.finish(actors)
+        with self._world.times.stage("write"):
+            self._delivery.deliver(sight, loop.time())
+        self._metrics.tick_took(loop.time() - start, self._world.times.seconds)
+
+    def _think(self) -> ActorStates:
+        try:
+            return self._world.think()
+        except Exception:
+            # The people's world goes on; the actors stand until planning works again.
+            log.exception("planning failed", tick=self._world.tick)
+            self._metrics.planning_failures.inc()
+            return {}

@@ -1,0 +1,112 @@
+"""Who sees whom, with hysteresis, so that nobody flickers at the edge of sight."""
+
+from collections import defaultdict
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+
+from server.world.neighbours import Neighbours
+from server.world.rules import Rules
+from server.world.state import Slots, State
+
+LEAVE_RATIO: Final = 1.15
+"""Out of view at this multiple of the distance at which one comes into view."""
+
+PERIOD_TICKS: Final = 4
+"""A viewer's interest is looked at every so many ticks, in turn. Who leaves goes at once."""
+
+
+@dataclass(frozen=True)
+class Changes:
+    """What came into view and went out of it, by the viewer's id."""
+
+    entered: dict[int, list[int]] = field(default_factory=lambda: defaultdict(list))
+    """Slots that came into view."""
+    left: dict[int, list[int]] = field(default_factory=lambda: defaultdict(list))
+    """Ids that went out of view or out of the world."""
+
+
+class Interest:
+    """What each viewer has in view: always itself, and at most `view_limit` others.
+
+    `rows[viewer]` lists the slots in view; unused places hold the capacity, a slot that no
+    avatar ever has. `since[viewer, slot]` is the tick at which it came into view, 0 if it is not.
+    """
+
+    def __init__(self, state: State, rules: Rules) -> None:
+        self._state = state
+        self._nobody = state.capacity
+        limit = min(rules.view_limit, state.capacity)
+        self._columns = limit + 1
+        self._enter_columns = self._columns - limit // 8
+        self._enter_m = rules.view_radius_m
+        self._leave_m = rules.view_radius_m * LEAVE_RATIO
+        self.viewing = np.zeros(state.capacity, dtype=np.bool_)
+        self.rows = np.full((state.capacity, self._columns), self._nobody, dtype=np.int64)
+        self.since = np.zeros((state.capacity, state.capacity + 1), dtype=np.int32)
+        self._unseeing = np.zeros(state.capacity, dtype=np.bool_)
+        self._changes = Changes()
+
+    def attach(self, slot: int) -> None:
+        """This avatar looks, with nothing in view so far."""
+        self.detach(slot)
+        self.viewing[slot] = self._unseeing[slot] = True
+
+    def detach(self, slot: int) -> None:
+        """This avatar looks no more."""
+        self.viewing[slot] = self._unseeing[slot] = False
+        self.rows[slot] = self._nobody
+        self.since[slot] = 0
+        self._changes.left.pop(int(self._state.ids[slot]), None)
+
+    def remove(self, slot: int, avatar_id: int) -> None:
+        """This avatar is out of the world: out of every view, at once."""
+        self.detach(slot)
+        for viewer in self.seen_by(slot).tolist():
+            row = self.rows[viewer]
+            row[row == slot] = self._nobody
+            self._changes.left[int(self._state.ids[viewer])].append(avatar_id)
+        self.since[:, slot] = 0
+
+    def seen_by(self, slot: int) -> Slots:
+        """Slots of those who have this avatar in view."""
+        return np.flatnonzero(self.since[:, slot])
+
+    def viewers(self) -> Slots:
+        return np.flatnonzero(self.viewing)
+
+    def update(self, neighbours: Neighbours, tick: int) -> Changes:
+        """Look again for those whose turn it is; returns all changes since the last call."""
+        viewers = self.viewers()
+        in_turn = (viewers + tick) % PERIOD_TICKS == 0
+        due = viewers[in_turn | self._unseeing[viewers]]
+        if len(due):
+            self._look(due, neighbours, tick)
+            self._unseeing[due] = False
+        changes, self._changes = self._changes, Changes()
+        return changes
+
+    def _look(self, due: Slots, neighbours: Neighbours, tick: int) -> None:
+        viewer = due[:, None]
+        distances, found = neighbours.nearest(due, self._columns, self._leave_m)
+        # Where many stand on one spot, oneself may not be among the nearest.
+        hidden = ~(found == viewer).any(axis=1)
+        found[hidden, -1] = due[hidden]
+
+        since = self.since[viewer, found]
+        near = (distances <= self._enter_m) & (np.arange(self._columns) < self._enter_columns)
+        keep = (found != self._nobody) & ((since > 0) | near | (found == viewer))
+        row, column = np.nonzero(keep)
+
+        old = self.rows[due]
+        self.since[viewer, old] = 0
+        self.since[due[row], found[row, column]] = np.where(since > 0, since, tick)[row, column]
+        self.rows[due] = np.where(keep, found, self._nobody)
+
+        gone = (old != self._nobody) & (self.since[viewer, old] == 0)
+        ids = self._state.ids
+        for r, c in np.argwhere(gone).tolist():
+            self._changes.left[int(ids[due[r]])].append(int(ids[old[r, c]]))
+        for r, c in np.argwhere(keep & (since == 0)).tolist():
+            self._changes.entered[int(ids[due[r]])].append(int(found[r, c]))

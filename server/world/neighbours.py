@@ -1,0 +1,45 @@
+"""Who is near whom: one search tree over everyone, made anew each tick."""
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial import cKDTree
+
+from server.world.state import Floats, Slots, State
+
+LAYER_GAP_M = 10_000.0
+"""Layers lie this far apart in the tree, so that nobody is near through a floor."""
+
+
+class Neighbours:
+    """Everyone's place in this tick. Valid until somebody moves."""
+
+    def __init__(self, state: State) -> None:
+        self._capacity = state.capacity
+        self._slots = state.live()
+        self._points = np.empty((state.capacity, 3))
+        self._points[:, :2] = state.positions
+        self._points[:, 2] = state.layers * LAYER_GAP_M
+        self._tree = cKDTree(self._points[self._slots], balanced_tree=False, compact_nodes=False)
+
+    def nearest(self, slots: Slots, count: int, within_m: float) -> tuple[Floats, Slots]:
+        """The nearest of everyone to each of N avatars, themselves among them.
+
+        Returns
+        -------
+        float (N, count) metres, ascending, inf where there are fewer;
+        int (N, count) slots, the state's capacity where there are fewer.
+        """
+        distances, found = self._tree.query(
+            self._points[slots], k=range(1, count + 1), distance_upper_bound=within_m
+        )
+        return distances, np.append(self._slots, self._capacity)[found]
+
+    def within(self, slots: Slots, reach_m: float) -> tuple[Slots, Slots]:
+        """All pairs (avatar of N, other) not further apart than `reach_m`: int (M,), int (M,)."""
+        found = self._tree.query_ball_point(self._points[slots], reach_m, return_sorted=True)
+        counts = [len(row) for row in found]
+        others = np.fromiter((i for row in found for i in row), dtype=np.int64, count=sum(counts))
+        first: npt.NDArray[np.int64] = np.repeat(slots, counts)
+        second = self._slots[others]
+        apart = first != second
+        return first[apart], second[apart]

@@ -1,0 +1,16 @@
+"""What holds for every person of a zone."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Rules:
+    """Sizes, speeds and sight. The server decides by them; clients are told."""
+
+    person_radius_m: float
+    person_clearance_m: float
+    """Distance that a person's centre keeps from walls."""
+    person_max_speed_mps: float
+    person_walk_speed_mps: float
+    view_radius_m: float
+    view_limit: int

@@ -1,0 +1,92 @@
+"""Who is where: one dense table of avatars, a slot each."""
+
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from protocol import Kind
+
+Floats = npt.NDArray[np.float64]
+Slots = npt.NDArray[np.int64]
+
+PERSON: Final = 0
+ACTOR: Final = 1
+KINDS: Final = (Kind.PERSON, Kind.ACTOR)
+
+
+class WorldFullError(RuntimeError):
+    """Every slot is taken."""
+
+
+class State:
+    """Every avatar of the zone.
+
+    Arrays are indexed by slot and have a fixed capacity. A slot is used again once its avatar
+    is gone; an id never is. `before` holds the positions of the tick before.
+    """
+
+    def __init__(self, capacity: int) -> None:
+        self.capacity = capacity
+        self.alive = np.zeros(capacity, dtype=np.bool_)
+        self.ids = np.zeros(capacity, dtype=np.int64)
+        self.kinds = np.zeros(capacity, dtype=np.uint8)
+        self.layers = np.zeros(capacity, dtype=np.int64)
+        self.positions = np.zeros((capacity, 2))
+        self.before = np.zeros((capacity, 2))
+        self.headings = np.zeros(capacity)
+        self.speeds = np.zeros(capacity)
+        self.reasons = np.zeros(capacity, dtype=np.uint8)
+        self.radii = np.zeros(capacity)
+        self.names = [""] * capacity
+        self._slots: dict[int, int] = {}
+        self._free = list(range(capacity - 1, -1, -1))
+        self._next_id = 1
+
+    def __contains__(self, avatar_id: int) -> bool:
+        return avatar_id in self._slots
+
+    def slot(self, avatar_id: int) -> int:
+        return self._slots[avatar_id]
+
+    def live(self) -> Slots:
+        """Slots of everyone, ascending, int (N,)."""
+        return np.flatnonzero(self.alive)
+
+    def of_kind(self, kind: int) -> Slots:
+        """Slots of all people or of all actors, ascending, int (N,)."""
+        return np.flatnonzero(self.alive & (self.kinds == kind))
+
+    def add(
+        self, kind: int, name: str, position: tuple[float, float], layer: int, radius_m: float
+    ) -> int:
+        """The slot of a new avatar.
+
+        Raises
+        ------
+        WorldFullError
+            Every slot is taken.
+        """
+        if not self._free:
+            raise WorldFullError(f"the world holds {self.capacity} avatars, all slots are taken")
+        slot = self._free.pop()
+        self.alive[slot] = True
+        self.ids[slot] = self._next_id
+        self.kinds[slot] = kind
+        self.layers[slot] = layer
+        self.positions[slot] = self.before[slot] = position
+        self.headings[slot] = self.speeds[slot] = 0.0
+        self.reasons[slot] = 0
+        self.radii[slot] = radius_m
+        self.names[slot] = name
+        self._slots[self._next_id] = slot
+        self._next_id += 1
+        return slot
+
+    def remove(self, avatar_id: int) -> int:
+        """Take an avatar out; returns the slot that is free now."""
+        slot = self._slots.pop(avatar_id)
+        self.alive[slot] = False
+        self.names[slot] = ""
+        self._free.append(slot)
+        return slot

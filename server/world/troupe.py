@@ -1,0 +1,68 @@
+"""The actors' avatars: moved as their cast decides."""
+
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from actors import ActorState, Cast, Explanation
+from server.world.state import ACTOR, State
+
+Place = tuple[float, float, int]
+"""x, y in metres and the layer."""
+ActorStates = Mapping[Hashable, ActorState]
+
+
+@dataclass(frozen=True)
+class Body:
+    """What others see of an actor."""
+
+    name: str
+    radius_m: float
+
+
+class Troupe:
+    """Joins the actors of a cast, named by its ids, to avatars in the state."""
+
+    def __init__(self, state: State, cast: Cast, bodies: Mapping[Hashable, Body]) -> None:
+        self._state = state
+        self._cast = cast
+        self._bodies = bodies
+        self._avatars: dict[Hashable, int] = {}
+        self._cast_ids: dict[int, Hashable] = {}
+
+    @property
+    def trips(self) -> int:
+        return self._cast.trips
+
+    def plan(self, people: Mapping[Hashable, Place]) -> ActorStates:
+        """The next tick of all actors. Heavy: touches nothing but the cast."""
+        return self._cast.tick(people)
+
+    def place(self, states: ActorStates) -> None:
+        """Move the avatars; whoever is new comes into the world. Without states all stand."""
+        if not states:
+            self._state.speeds[self._state.of_kind(ACTOR)] = 0.0
+            return
+        for cast_id in [c for c in states if c not in self._avatars]:
+            self._add(cast_id, states[cast_id])
+        actors = states.values()
+        state = self._state
+        slots = np.array([state.slot(self._avatars[cast_id]) for cast_id in states])
+        velocities = np.array([actor.velocity for actor in actors])
+        state.positions[slots] = [actor.position for actor in actors]
+        state.layers[slots] = [actor.layer for actor in actors]
+        state.headings[slots] = [actor.heading for actor in actors]
+        state.speeds[slots] = np.hypot(velocities[:, 0], velocities[:, 1])
+        state.reasons[slots] = [actor.reason for actor in actors]
+
+    def explain(self, avatar_id: int) -> Explanation:
+        """Why this actor does what it does. Not while `plan` runs."""
+        return self._cast.explain(self._cast_ids[avatar_id])
+
+    def _add(self, cast_id: Hashable, actor: ActorState) -> None:
+        body = self._bodies[cast_id]
+        slot = self._state.add(ACTOR, body.name, actor.position, actor.layer, body.radius_m)
+        avatar_id = int(self._state.ids[slot])
+        self._avatars[cast_id] = avatar_id
+        self._cast_ids[avatar_id] = cast_id

@@ -1,0 +1,217 @@
+"""A zone, tick by tick: begin (people), think (actors, elsewhere), finish (what everyone sees)."""
+
+from collections.abc import Callable, Hashable, Iterable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from actors import Cast, Explanation
+from planning import LayeredGrid, Scene
+from server.world.contacts import Contacts
+from server.world.inputs import Attach, Detach, Input, Join, Leave, Seek, Steer
+from server.world.interest import Changes, Interest
+from server.world.neighbours import Neighbours
+from server.world.people import People
+from server.world.rules import Rules
+from server.world.spawning import Spawning
+from server.world.state import ACTOR, KINDS, PERSON, State
+from server.world.tick import StageTimes
+from server.world.troupe import ActorStates, Body, Place, Troupe
+from server.world.views import Snapshots, Views
+
+
+@dataclass(frozen=True)
+class Begun:
+    """What the inputs of a tick led to."""
+
+    joined: list[tuple[int, int]] = field(default_factory=list)
+    """(ticket, avatar's id) of everyone new."""
+    unreachable: list[Seek] = field(default_factory=list)
+    """Wishes that no way leads to."""
+
+
+@dataclass(frozen=True)
+class Sight:
+    """What the viewers of a tick are to be told, in this order."""
+
+    changes: Changes
+    snapshots: Snapshots
+
+
+class World:
+    """State of one zone and the order in which it changes. Time is `tick * tick_s`.
+
+    A tick is `begin`, `think`, `finish`. `think` is the heavy part and may run in another
+    thread, provided that nothing else of the world is called meanwhile but `name`, `sees` and
+    `seen_by`. Same scene, seed and inputs give the same world, bit for bit.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        grid: LayeredGrid,
+        cast: Cast,
+        bodies: Mapping[Hashable, Body],
+        rules: Rules,
+        *,
+        tick_s: float,
+        max_people: int,
+        seed: int,
+        clock: Callable[[], float],
+    ) -> None:
+        self.scene = scene
+        self.rules = rules
+        self.tick_s = tick_s
+        self.tick = 0
+        self.people_seen = 0
+        self.origin_m = (scene.bounds[0], scene.bounds[1])
+        self.state = State(max_people + len(bodies))
+        self.contacts = Contacts()
+        self.times = StageTimes(clock)
+        self._people = People(self.state, grid, rules, tick_s)
+        self._troupe = Troupe(self.state, cast, bodies)
+        self._interest = Interest(self.state, rules)
+        self._views = Views(self.state, self.origin_m)
+        self._spawning = Spawning(
+            scene, grid, rules.person_clearance_m, np.random.SeedSequence(seed)
+        )
+        self._observed: dict[Hashable, Place] = {}
+
+    # --- one tick -----------------------------------------------------------------------------
+
+    def begin(self, inputs: Iterable[Input]) -> Begun:
+        """Take in what happened outside and move the people. Inputs of who is gone are void."""
+        self.tick += 1
+        self.state.before[:] = self.state.positions
+        begun = Begun()
+        with self.times.stage("drain"):
+            for item in inputs:
+                if isinstance(item, Join):
+                    begun.joined.append((item.ticket, self._join(item)))
+                elif item.id in self.state:
+                    self._apply(item, self.state.slot(item.id))
+        with self.times.stage("people"):
+            begun.unreachable.extend(self._people.take_routes())
+            self._people.move()
+            self._observed = self._observe()
+        return begun
+
+    def think(self) -> ActorStates:
+        """Find ways for people and the next step of every actor."""
+        with self.times.stage("actors"):
+            self._people.routes.work()
+            return self._troupe.plan(self._observed)
+
+    def finish(self, actors: ActorStates) -> Sight:
+        """Move the actors and work out what each viewer is to be told."""
+        with self.times.stage("contacts"):
+            self._troupe.place(actors)
+            neighbours = Neighbours(self.state)
+            self.contacts.update(self.state, neighbours)
+        with self.times.stage("interest"):
+            changes = self._interest.update(neighbours, self.tick)
+        with self.times.stage("encode"):
+            snapshots = self._views.encode(self._interest, self.tick)
+        return Sight(changes, snapshots)
+
+    def wrote(self, snapshots: Snapshots, places: list[int]) -> None:
+        """The snapshots at these places were sent; the next ones build on them."""
+        self._views.wrote(snapshots, places)
+
+    # --- questions ----------------------------------------------------------------------------
+
+    @property
+    def trips(self) -> int:
+        """Trips that the actors have completed."""
+        return self._troupe.trips
+
+    @property
+    def routes_waiting(self) -> int:
+        return self._people.routes.waiting
+
+    def count(self) -> tuple[int, int]:
+        """People and actors in the world."""
+        return len(self.state.of_kind(PERSON)), len(self.state.of_kind(ACTOR))
+
+    def describe(self, slot: int) -> dict[str, object]:
+        """An avatar as the fields of `protocol.messages.Entity`."""
+        state = self.state
+        x, y = state.positions[slot].tolist()
+        return {
+            "id": int(state.ids[slot]),
+            "kind": KINDS[state.kinds[slot]].value,
+            "name": state.names[slot],
+            "layer": int(state.layers[slot]),
+            "x": x,
+            "y": y,
+            "heading": float(state.headings[slot]),
+            "radius": float(state.radii[slot]),
+        }
+
+    def sees(self, viewer_id: int, avatar_id: int) -> bool:
+        """Whether that viewer has that avatar in view."""
+        if viewer_id not in self.state or avatar_id not in self.state:
+            return False
+        viewer, slot = self.state.slot(viewer_id), self.state.slot(avatar_id)
+        return bool(self._interest.since[viewer, slot])
+
+    def seen_by(self, avatar_id: int) -> list[int]:
+        """Ids of the viewers who have that avatar in view."""
+        if avatar_id not in self.state:
+            return []
+        viewers = self._interest.seen_by(self.state.slot(avatar_id))
+        ids: list[int] = self.state.ids[viewers].tolist()
+        return ids
+
+    def is_actor(self, avatar_id: int) -> bool:
+        return avatar_id in self.state and (
+            int(self.state.kinds[self.state.slot(avatar_id)]) == ACTOR
+        )
+
+    def explain(self, actor_id: int) -> Explanation:
+        """Why an actor, named by its avatar's id, does what it does."""
+        return self._troupe.explain(actor_id)
+
+    # --- inputs -------------------------------------------------------------------------------
+
+    def _join(self, join: Join) -> int:
+        position, layer = self._spawning.place(join.at)
+        radius_m = self.rules.person_radius_m
+        slot = self.state.add(PERSON, join.name, position, layer, radius_m)
+        self._people.stop(slot)
+        self._attach(slot)
+        self.people_seen += 1
+        return int(self.state.ids[slot])
+
+    def _attach(self, slot: int) -> None:
+        self._interest.attach(slot)
+        self._views.attach(slot)
+
+    def _apply(self, item: Attach | Detach | Leave | Steer | Seek, slot: int) -> None:
+        match item:
+            case Steer():
+                self._people.steer(slot, item)
+                self._views.acks[slot] = item.seq
+            case Seek():
+                self._people.seek(item)
+                self._views.acks[slot] = item.seq
+            case Attach():
+                self._attach(slot)
+            case Detach():
+                self._people.stop(slot)
+                self._interest.detach(slot)
+            case Leave():
+                self._people.stop(slot)
+                self._interest.remove(slot, item.id)
+                self.state.remove(item.id)
+
+    def _observe(self) -> dict[Hashable, Place]:
+        state = self.state
+        people = state.of_kind(PERSON)
+        places = zip(
+            state.positions[people, 0].tolist(),
+            state.positions[people, 1].tolist(),
+            state.layers[people].tolist(),
+            strict=True,
+        )
+        return dict(zip(state.ids[people].tolist(), places, strict=True))
