@@ -63,7 +63,7 @@ class Idle(Behaviour):
 
     name = "idle"
 
-    def update(self, view: View) -> Goal | None:
+    def update(self, view: View) -> Goal | None:  # noqa: ARG002 - nothing to look at
         """Never a goal."""
         return None
 

@@ -118,7 +118,10 @@ class Navigator:
         """Take an actor out; KeyError when there is none of that id."""
         row = self._row(actor_id)
         self._guides.release(int(self._crowd.guide_slots[row]))
-        self._crowd = Crowd(*(np.delete(array, row, axis=0) for array in self._crowd))
+        fields = {
+            name: np.delete(array, row, axis=0) for name, array in self._crowd._asdict().items()
+        }
+        self._crowd = Crowd(**fields)
         self._headings = np.delete(self._headings, row)
         del self._ids[row], self._parameters[actor_id], self._goals[actor_id]
         self._rows = {who: k for k, who in enumerate(self._ids)}

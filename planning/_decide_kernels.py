@@ -247,7 +247,7 @@ def _gap(
     uy: float,
     seconds: float,
 ) -> float:
-    """Smallest distance to people while turning to velocity u; negative when a wall is in the way."""
+    """Smallest distance to people while turning to velocity u; negative where a wall is."""
     half = 0.5 * seconds
     a = task.max_acceleration_mps2
     hx, hy, hvx, hvy = advance(task.x, task.y, task.vx, task.vy, ux, uy, a, half)
@@ -362,11 +362,11 @@ def decide(
             kept[:] = world.reservations.paths[a]
             need = needed_clearance(world, task)
             if stretch_is_legal(world, guide, task, need, kept, 0, slices - 1):
-                cost, risk, length = path_cost(world, guide, task, kept)
+                cost, risk = path_cost(world, guide, task, kept)
                 bent[:] = kept
                 changed = False
                 if update_path(world, guide, task, bent, trial) > 0:
-                    bent_cost, bent_risk, bent_length = path_cost(world, guide, task, bent)
+                    bent_cost, bent_risk = path_cost(world, guide, task, bent)
                     if bent_risk < risk and bent_cost < cost:
                         cost = bent_cost
                         kept[:] = bent

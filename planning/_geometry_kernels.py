@@ -78,7 +78,7 @@ def closest_approach(rx: float, ry: float, dx: float, dy: float) -> float:
     u = 0.0
     if length2 > 1e-12:
         u = min(1.0, max(0.0, -(rx * dx + ry * dy) / length2))
-    return np.hypot(rx + u * dx, ry + u * dy)
+    return float(np.hypot(rx + u * dx, ry + u * dy))
 
 
 @kernel
@@ -215,8 +215,7 @@ def lower_to_segments(
                 d = point_segment_distance(
                     x0 + (i + 0.5) * cell, y0 + (j + 0.5) * cell, ax, ay, bx, by
                 )[0]
-                if d < field[j, i]:
-                    field[j, i] = d
+                field[j, i] = min(field[j, i], d)
 
 
 @kernel

@@ -45,9 +45,9 @@ def clearance_at(grid: GridArrays, layer: int, x: float, y: float) -> float:
     u = min(1.0, max(0.0, u - i))
     v = min(1.0, max(0.0, v - j))
     c = grid.clearance
-    return (1.0 - v) * ((1.0 - u) * c[layer, j, i] + u * c[layer, j, i1]) + v * (
-        (1.0 - u) * c[layer, j1, i] + u * c[layer, j1, i1]
-    )
+    lower = (1.0 - u) * c[layer, j, i] + u * c[layer, j, i1]
+    upper = (1.0 - u) * c[layer, j1, i] + u * c[layer, j1, i1]
+    return float((1.0 - v) * lower + v * upper)
 
 
 @kernel

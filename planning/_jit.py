@@ -18,7 +18,8 @@ def _source_digest() -> str:
     numba's own cache looks at the file of the outermost function alone, so an edit of a helper
     in another file would go unnoticed. One digest for all of them makes that impossible.
     """
-    digest = hashlib.sha256(numba.__version__.encode())
+    bounds_checked = bool(numba.config.BOUNDSCHECK)  # type: ignore[attr-defined]
+    digest = hashlib.sha256(f"{numba.__version__} {bounds_checked}".encode())
     for path in sorted(Path(__file__).parent.glob("_*.py")):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
@@ -33,7 +34,7 @@ def _open_cache() -> bool:
             (folder / ".writable").touch()
         except OSError:
             continue
-        numba.config.CACHE_DIR = str(folder)
+        numba.config.CACHE_DIR = str(folder)  # type: ignore[attr-defined]
         return True
     logging.getLogger(__name__).warning(
         "no folder to keep compiled kernels in; they are compiled anew at each start"

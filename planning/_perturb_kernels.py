@@ -87,15 +87,14 @@ def stretch_is_legal(
 @kernel
 def path_cost(
     world: World, guide: Guide, task: Task, path: NDArray[np.float64]
-) -> tuple[float, float, float]:
-    """Cost of a whole path as the search counts it, its mean risk and its length in metres."""
+) -> tuple[float, float]:
+    """Cost of a whole path as the search counts it (its length and time among it), mean risk."""
     ds = world.step_s / SUB
     slices = len(path) - 1
     vx = task.vx
     vy = task.vy
     cost = 0.0
     risk = 0.0
-    length = 0.0
     for k in range(slices):
         ax = path[k, 0]
         ay = path[k, 1]
@@ -107,7 +106,6 @@ def path_cost(
         r = slice_risk(world, task, k + 1, ax, ay, bx, by)
         soft = conflict(world.reservations, task.me, task.layer, k, ax, ay, bx, by)[1]
         risk += r
-        length += moved
         cost += (
             time_cost(task, bx, by, moved / ds, ds)
             + task.risk_weight * ds * (r + soft)
@@ -117,7 +115,7 @@ def path_cost(
         vx = ux
         vy = uy
     cost += way_left(world, guide, task, task.layer, path[slices, 0], path[slices, 1])
-    return cost, risk / slices, length
+    return cost, risk / slices
 
 
 @kernel

@@ -21,7 +21,7 @@ def potential_at(grid: GridArrays, guide: Guide, layer: int, x: float, y: float)
     """Metres from a point to the goal; inf where no way leads."""
     j, i = cell_at(grid, x, y)
     g = guide[layer, j, i]
-    return g[0] + np.hypot(g[1] - x, g[2] - y)
+    return float(g[0] + np.hypot(g[1] - x, g[2] - y))
 
 
 @kernel

@@ -47,7 +47,7 @@ def _blend_rows(
         toward[c] = (1.0 - w) * tables.toward[r, c] + w * tables.toward[r + 1, c]
         if near[c] > 1e-4 or toward[c] > 1e-4:
             last = c
-    return min(last + 1, columns - 2) * tables.distance_step_m
+    return min(last + 1, columns - 2) * float(tables.distance_step_m)
 
 
 @kernel
@@ -65,7 +65,6 @@ def fill_slices(
     `windows` (K, P', 5) remembers what was written (layer, j0, j1, i0, i1) so that the next call
     clears no more than that; rows with layer -1 are empty.
     """
-    _, slices = prediction.sigmas.shape
     people = len(prediction.layers)
     columns = tables.near.shape[1]
     near = np.empty(columns, dtype=np.float32)
@@ -158,7 +157,7 @@ def risk_at(
     ny_ = wa * a[2] + wb * b[2] + wc * c[2] + wd * d[2]
     vo = wa * a[3] + wb * b[3] + wc * c[3] + wd * d[3]
     closing = vo - vx * nx_ - vy * ny_
-    return near + closing_weight * max(0.0, closing)
+    return float(near + closing_weight * max(0.0, closing))
 
 
 @kernel

@@ -13,7 +13,7 @@ from planning._reservation_kernels import Reservations, conflict
 from planning._risk_kernels import RiskFields, risk_at
 
 SUB = 2
-"""Slices of the risk field in one step of the search: a move is looked at half-way and at its end."""
+"""Slices of the risk field in one step: a move is looked at half-way and at its end."""
 
 FOUND = 0
 PARTIAL = 1
@@ -118,7 +118,7 @@ def time_cost(task: Task, x: float, y: float, speed: float, seconds: float) -> f
     """Seconds that a stretch is worth: its time, more when faster than preferred, none while
     standing at the goal."""
     if task.hold:
-        away = np.hypot(x - task.goal_x, y - task.goal_y)
+        away = float(np.hypot(x - task.goal_x, y - task.goal_y))
         return seconds * (speed / task.speed_mps + 0.5 * min(1.0, away))
     if speed < 0.2 and np.hypot(x - task.goal_x, y - task.goal_y) <= task.goal_tolerance_m:
         return seconds * speed

@@ -123,7 +123,7 @@ class LayeredGrid:
             raise ValueError(f"{len(points)} positions but {len(floors)} layers")
         if not np.isfinite(points).all():
             raise ValueError("positions must be finite")
-        if len(floors) and not (0 <= floors.min() and floors.max() < self.layers):
+        if len(floors) and not (floors.min() >= 0 and floors.max() < self.layers):
             raise ValueError(f"layers must lie in 0..{self.layers - 1}")
         return points, floors
 
@@ -143,7 +143,7 @@ class LayeredGrid:
     def nearest_free(
         self, position: tuple[float, float], layer: int, clearance_m: float
     ) -> tuple[float, float] | None:
-        """The position itself when free, else the nearest free cell's centre; None if all is full."""
+        """The position itself when free, else the centre of the nearest free cell, if any."""
         if self.is_free([position], [layer], clearance_m)[0]:
             return float(position[0]), float(position[1])
         a = self.arrays

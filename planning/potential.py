@@ -62,14 +62,14 @@ class Potential:
         )
 
     def distance(self, positions: ArrayLike, layers: ArrayLike) -> NDArray[np.float64]:
-        """Metres to the goal, float64 (N,), inf where no way leads; positions (N, 2), layers (N,)."""
+        """Metres to the goal, float64 (N,), inf where no way leads, for (N, 2) and (N,)."""
         points, floors = self.grid.as_points(positions, layers)
         out = np.empty(len(points))
         kernels.distances(self.grid.arrays, self.guide, floors, points, out)
         return out
 
     def direction(self, positions: ArrayLike, layers: ArrayLike) -> NDArray[np.float64]:
-        """Unit vectors down the potential, float64 (N, 2); zero at the goal or where no way leads."""
+        """Unit vectors down the potential, float64 (N, 2); zero at the goal or without a way."""
         points, floors = self.grid.as_points(positions, layers)
         out = np.empty((len(points), 2))
         kernels.directions(self.grid.arrays, self.guide, floors, points, out)

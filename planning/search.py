@@ -47,8 +47,8 @@ def compass_moves() -> NDArray[np.float64]:
     """
     rows = [(0.0, 1.0), (0.0, 0.5), (0.0, 2.0)]
     for degrees in (15, 30, 50, 75, 110, 180):
-        for sign in (1, -1) if degrees < 180 else (1,):
-            rows.append((math.radians(sign * degrees), 1.0))
+        signs = (1, -1) if degrees < 180 else (1,)
+        rows.extend((math.radians(sign * degrees), 1.0) for sign in signs)
     for degrees in (50, 110):
         rows.extend((math.radians(sign * degrees), 0.5) for sign in (1, -1))
     for degrees in (30, 75):
