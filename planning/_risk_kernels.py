@@ -47,7 +47,7 @@ def _blend_rows(
         toward[c] = (1.0 - w) * tables.toward[r, c] + w * tables.toward[r + 1, c]
         if near[c] > 1e-4 or toward[c] > 1e-4:
             last = c
-    return min(last + 1, columns - 2) * float(tables.distance_step_m)
+    return float(min(last + 1, columns - 2) * tables.distance_step_m)
 
 
 @kernel
