@@ -1,0 +1,45 @@
+import js from "@eslint/js";
+import { defineConfig } from "eslint/config";
+import tseslint from "typescript-eslint";
+
+/** Folders that a folder may not import from; everyone may know the shape of the messages. */
+const walls = {
+  net: ["world", "render", "input", "ui", "app"],
+  world: ["net", "render", "input", "ui", "app"],
+  render: ["net", "input", "ui", "app"],
+  input: ["net", "render", "ui", "app"],
+  ui: ["render", "input", "app"],
+};
+
+export default defineConfig(
+  { ignores: ["node_modules/", "dist/"] },
+  js.configs.recommended,
+  ...tseslint.configs.strictTypeChecked,
+  {
+    languageOptions: {
+      parserOptions: { projectService: true },
+    },
+    rules: {
+      "@typescript-eslint/restrict-template-expressions": ["error", { allowNumber: true }],
+    },
+  },
+  ...Object.entries(walls).map(([folder, forbidden]) => ({
+    files: [`src/${folder}/**/*.ts`],
+    rules: {
+      "no-restricted-imports": [
+        "error",
+        {
+          patterns: [
+            {
+              group: [...forbidden.map((name) => `**/${name}/**`), "!**/net/messages"],
+              message: `${folder}/ stands apart.`,
+            },
+            ...(folder === "render"
+              ? []
+              : [{ group: ["three", "three/**"], message: "Only render/ draws." }]),
+          ],
+        },
+      ],
+    },
+  })),
+);

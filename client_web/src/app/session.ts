@@ -1,0 +1,211 @@
+/** One visit: joins, passes what the server says to the world and the page, and draws the frames. */
+
+import { unpackBlock } from "../net/codec";
+import { Connection, type ConnectionState } from "../net/connection";
+import type { Seats } from "../net/seats";
+import type { ServerMessage, Welcome } from "../net/messages";
+import { ChatPanel } from "../ui/chat";
+import { byId } from "../ui/dom";
+import { JoinDialog } from "../ui/join";
+import { Minimap } from "../ui/minimap";
+import { Panel } from "../ui/panels";
+import { PeopleList } from "../ui/people";
+import { PlanPanel } from "../ui/plan";
+import { StatusChip } from "../ui/status";
+import { World } from "../world/world";
+import type { View } from "./view";
+import { Walking } from "./walking";
+
+const PANELS_MS = 200;
+const TOUCH_MS = 5000;
+const LONGEST_FRAME_S = 0.25;
+
+export class Session {
+  world: World | null = null;
+  chosenId: number | null = null;
+  frames = 0;
+  readonly connection: Connection;
+  private welcome: Welcome | null = null;
+  private readonly walking: Walking;
+  private readonly join: JoinDialog;
+  private readonly chat: ChatPanel;
+  private readonly status = new StatusChip();
+  private readonly minimap = new Minimap();
+  private readonly people: PeopleList;
+  private readonly planPanel = new PlanPanel();
+  private readonly planSwitch: Panel;
+  private frameMs = performance.now();
+  private panelsMs = 0;
+
+  constructor(
+    private readonly view: View,
+    private readonly seats: Seats,
+    socketUrl: string,
+  ) {
+    this.connection = new Connection(() => new WebSocket(socketUrl), {
+      state: (state) => {
+        this.stateChanged(state);
+      },
+      message: (message) => {
+        this.receive(message);
+      },
+    });
+    this.join = new JoinDialog((name) => void this.comeIn(name));
+    this.chat = new ChatPanel((text) => this.connection.send({ type: "chat", text }));
+    this.walking = new Walking(
+      (message) => this.connection.send(message),
+      (at) => {
+        view.marks.walkTarget(at);
+      },
+    );
+    this.planSwitch = new Panel(
+      byId("plan-open", HTMLButtonElement),
+      byId("plan", HTMLElement),
+      (open) => {
+        this.watch(open ? this.chosenId : null);
+      },
+    );
+    new Panel(byId("people-open", HTMLButtonElement), byId("people", HTMLElement));
+    this.people = new PeopleList((id) => {
+      this.choose(id);
+    });
+  }
+
+  /** Straight back in after a reload, else to the door. */
+  async start(): Promise<void> {
+    window.setInterval(() => {
+      if (this.connection.state.phase === "live") this.seats.touch();
+    }, TOUCH_MS);
+    requestAnimationFrame((ms) => {
+      this.frame(ms);
+    });
+    const seat = await this.seats.ofThisTab();
+    if (seat) this.connection.join({ name: seat.name, resume: seat.token });
+    else this.join.open();
+  }
+
+  /** A click on the picture: an actor to look into, or a point to walk to. */
+  tap(at: { x: number; y: number }): void {
+    if (!this.world) return;
+    const hit = this.view.pick(at, this.world);
+    if (!hit) return;
+    if ("ground" in hit) this.walking.walkTo(hit.ground);
+    else if (hit.avatar.kind === "actor") this.choose(hit.avatar.id);
+  }
+
+  private async comeIn(name: string): Promise<void> {
+    this.join.busy(true);
+    const seat = await this.seats.abandoned(name);
+    this.connection.join({ name, resume: seat?.token ?? null });
+  }
+
+  private stateChanged(state: ConnectionState): void {
+    this.status.show(state);
+    if (state.phase === "live" && this.welcome) {
+      const { name, resume, resumed } = this.welcome;
+      void this.seats.keep(name, resume);
+      this.join.close();
+      this.chat.note(
+        resumed ? `Welcome back, ${name}.` : `Welcome, ${name}. Enter opens the chat.`,
+      );
+    }
+    if (state.phase === "refused") this.join.open(state.text);
+  }
+
+  private receive(message: ServerMessage): void {
+    const { world } = this;
+    switch (message.type) {
+      case "welcome":
+        this.enter(message);
+        break;
+      case "enter":
+        world?.enter(message.tick, message.entities);
+        break;
+      case "leave":
+        world?.leave(message.ids);
+        if (this.chosenId !== null && message.ids.includes(this.chosenId)) this.choose(null);
+        break;
+      case "snapshot": {
+        if (!this.welcome || !world) return;
+        this.walking.acknowledged(message.ack);
+        const records = unpackBlock(message.block, this.welcome.origin);
+        world.snapshot(message.tick, message.ack, records, this.serverNowS());
+        break;
+      }
+      case "plan":
+        if (world && message.id === this.chosenId && this.planSwitch.open) world.plan = message;
+        break;
+      case "chat": {
+        const speaker = world?.avatars.get(message.id);
+        this.chat.said(message.name, message.text, speaker?.own ?? false);
+        if (speaker) this.view.say(speaker, message.text);
+        break;
+      }
+      case "census":
+        this.people.census(message.people, message.actors);
+        break;
+      case "error":
+        if (message.error === "no_path") this.walking.callOff();
+        this.chat.note(`The server says: ${message.text}.`);
+        break;
+      case "notice":
+        this.chat.note(message.text);
+        break;
+      case "bye":
+      case "pong":
+        break;
+    }
+  }
+
+  private enter(welcome: Welcome): void {
+    this.welcome = welcome;
+    this.world = new World(welcome);
+    this.view.enter(this.world);
+    this.walking.enter(this.world);
+    this.minimap.show(welcome.scene);
+    this.chosenId = null;
+  }
+
+  private choose(id: number | null): void {
+    this.chosenId = id;
+    if (this.world) this.world.plan = null;
+    if (id !== null && !this.planSwitch.open) this.planSwitch.open = true;
+    else this.watch(id);
+  }
+
+  private watch(id: number | null): void {
+    if (id === null && this.world) this.world.plan = null;
+    this.connection.send({ type: "watch", id });
+  }
+
+  private serverNowS(): number {
+    return this.connection.clock.at(performance.now() / 1000);
+  }
+
+  private frame(ms: number): void {
+    requestAnimationFrame((next) => {
+      this.frame(next);
+    });
+    const frameS = Math.max(0, ms - this.frameMs) / 1000;
+    this.frameMs = ms;
+    this.frames++;
+    const { world } = this;
+    if (!world) return;
+    const steppedS = Math.min(frameS, LONGEST_FRAME_S);
+    this.walking.frame(this.view.camera.yaw);
+    world.advance(this.serverNowS(), steppedS);
+    this.view.frame(world, this.planSwitch.open ? this.chosenId : null, frameS);
+    if (ms - this.panelsMs > PANELS_MS) {
+      this.panelsMs = ms;
+      this.updatePanels(world);
+    }
+  }
+
+  private updatePanels(world: World): void {
+    const name = this.chosenId === null ? null : (world.avatars.get(this.chosenId)?.name ?? null);
+    this.status.roundTrip(this.connection.clock.roundTripS);
+    this.people.update(world.avatars, this.chosenId);
+    this.planPanel.update(name, world.plan);
+    this.minimap.update(world.avatars.values(), this.view.camera.yaw, world.plan);
+  }
+}

@@ -1,0 +1,97 @@
+/** Messages to frames and back: `[code, fields]`, and the flat snapshot `[67, tick, ack, block]`. */
+
+import { decode, encode as pack } from "@msgpack/msgpack";
+import { ClientCode, ServerCode, VERSION } from "./codes";
+import type { ClientMessage, EntityRecord, Point, ServerMessage } from "./messages";
+
+const CLIENT_CODES: Record<ClientMessage["type"], number> = {
+  hello: ClientCode.HELLO,
+  move: ClientCode.MOVE,
+  walk_to: ClientCode.WALK_TO,
+  chat: ClientCode.CHAT,
+  ping: ClientCode.PING,
+  watch: ClientCode.WATCH,
+};
+
+const SERVER_TYPES = new Map<unknown, ServerMessage["type"]>([
+  [ServerCode.WELCOME, "welcome"],
+  [ServerCode.ENTER, "enter"],
+  [ServerCode.LEAVE, "leave"],
+  [ServerCode.CHAT, "chat"],
+  [ServerCode.NOTICE, "notice"],
+  [ServerCode.ERROR, "error"],
+  [ServerCode.BYE, "bye"],
+  [ServerCode.PONG, "pong"],
+  [ServerCode.PLAN, "plan"],
+  [ServerCode.CENSUS, "census"],
+]);
+
+const RECORD_BYTES = 12;
+const POSITION_M = 0.01;
+const HEADING_RAD = (2 * Math.PI) / 256;
+const SPEED_MPS = 0.02;
+
+export class WireError extends Error {}
+
+export function encodeClient(message: ClientMessage): Uint8Array<ArrayBuffer> {
+  const { type, ...fields } = message;
+  const body = type === "hello" ? { ...fields, version: VERSION, at: null } : fields;
+  return pack([CLIENT_CODES[type], body]);
+}
+
+/**
+ * What the server sent; null for a message code that this client does not know, so that the
+ * server may learn new ones.
+ *
+ * The fields are those of our own server, whose models check them; they are not checked again.
+ */
+export function decodeServer(frame: ArrayBuffer | Uint8Array): ServerMessage | null {
+  const parts = unpack(frame);
+  const [code, ...rest] = parts;
+  if (code === ServerCode.SNAPSHOT) {
+    const [tick, ack, block] = rest;
+    if (typeof tick !== "number" || typeof ack !== "number" || !(block instanceof Uint8Array)) {
+      throw new WireError("a snapshot is [67, tick, ack, block]");
+    }
+    return { type: "snapshot", tick, ack, block };
+  }
+  const type = SERVER_TYPES.get(code);
+  if (type === undefined) return null;
+  const fields: unknown = rest[0];
+  if (typeof fields !== "object" || fields === null) {
+    throw new WireError(`${type}: the fields are no map`);
+  }
+  return { ...fields, type } as ServerMessage;
+}
+
+/** The records of a snapshot's block (see `protocol/snapshot.py`), in world coordinates. */
+export function unpackBlock(block: Uint8Array, origin: Point): EntityRecord[] {
+  if (block.byteLength % RECORD_BYTES !== 0) {
+    throw new WireError(`a block of ${block.byteLength} bytes is no multiple of ${RECORD_BYTES}`);
+  }
+  const view = new DataView(block.buffer, block.byteOffset, block.byteLength);
+  const records: EntityRecord[] = [];
+  for (let at = 0; at < block.byteLength; at += RECORD_BYTES) {
+    records.push({
+      id: view.getUint32(at, true),
+      layer: view.getUint8(at + 4),
+      reason: view.getUint8(at + 5),
+      x: view.getUint16(at + 6, true) * POSITION_M + origin[0],
+      y: view.getUint16(at + 8, true) * POSITION_M + origin[1],
+      heading: view.getUint8(at + 10) * HEADING_RAD,
+      speed: view.getUint8(at + 11) * SPEED_MPS,
+    });
+  }
+  return records;
+}
+
+function unpack(frame: ArrayBuffer | Uint8Array): unknown[] {
+  let parts: unknown;
+  try {
+    parts = decode(frame);
+  } catch (error) {
+    throw new WireError(`not msgpack: ${String(error)}`);
+  }
+  if (!Array.isArray(parts)) throw new WireError("a frame is a msgpack array");
+  return parts;
+}

@@ -1,0 +1,56 @@
+/** The numbers and names on the wire; the same table as `protocol/codes.py`. */
+
+export const VERSION = 1;
+
+export const MAX_NAME_CHARS = 32;
+export const MAX_CHAT_CHARS = 300;
+
+export const ClientCode = {
+  HELLO: 1,
+  MOVE: 2,
+  WALK_TO: 3,
+  CHAT: 4,
+  PING: 5,
+  WATCH: 6,
+} as const;
+
+export const ServerCode = {
+  WELCOME: 64,
+  ENTER: 65,
+  LEAVE: 66,
+  SNAPSHOT: 67,
+  CHAT: 68,
+  NOTICE: 69,
+  ERROR: 70,
+  BYE: 71,
+  PONG: 72,
+  PLAN: 73,
+  CENSUS: 74,
+} as const;
+
+export const Reason = {
+  NONE: 0,
+  MOVING: 1,
+  GIVING_WAY: 2,
+  WAITING: 3,
+  REPLANNING: 4,
+  NO_PATH: 5,
+  ARRIVED: 6,
+} as const;
+
+export const CloseCode = {
+  NORMAL: 1000,
+  GOING_AWAY: 1001,
+  TOO_LARGE: 1009,
+  UNSUPPORTED_VERSION: 4001,
+  MALFORMED: 4002,
+  INVALID: 4003,
+  FLOODING: 4004,
+  HELLO_EXPECTED: 4005,
+  HELLO_TIMEOUT: 4006,
+  SERVER_FULL: 4007,
+  TOO_SLOW: 4008,
+  REPLACED: 4009,
+} as const;
+
+export type Kind = "person" | "actor";

@@ -1,0 +1,199 @@
+/** The connection to the server: greets, pings, notices silence, and comes back by itself. */
+
+import { backoffMs } from "./backoff";
+import { ServerClock } from "./clock";
+import { closing, type Closing } from "./closing";
+import { CloseCode } from "./codes";
+import { decodeServer, encodeClient, WireError } from "./codec";
+import type { ClientMessage, ServerMessage, Welcome } from "./messages";
+
+export type ConnectionState =
+  | { phase: "idle" }
+  | { phase: "connecting" }
+  | { phase: "live" }
+  | { phase: "reconnecting"; text: string; attempt: number }
+  | { phase: "refused"; text: string };
+
+/** The part of a WebSocket that is used here. */
+export type Socket = Pick<
+  WebSocket,
+  "binaryType" | "readyState" | "onopen" | "onclose" | "onmessage" | "send" | "close"
+>;
+
+export interface ConnectionEvents {
+  state(state: ConnectionState): void;
+  /** Everything but pongs. The welcome comes before `live`. */
+  message(message: ServerMessage): void;
+}
+
+/** Who comes in: the name, and the token of an avatar that is to be taken up again. */
+export interface Greeting {
+  name: string;
+  resume: string | null;
+}
+
+const OPEN = 1;
+const PULSE_MS = 1000;
+/** Without any frame for so long the connection is taken for dead. */
+const SILENCE_MS = 8000;
+const GREETING_MS = 10000;
+
+const nowS = (): number => performance.now() / 1000;
+
+export class Connection {
+  readonly clock = new ServerClock();
+  private state_: ConnectionState = { phase: "idle" };
+  private socket: Socket | null = null;
+  private greeting: Greeting | null = null;
+  private attempt = 0;
+  private stated: string | null = null;
+  private heardMs = 0;
+  private pingNonce = 0;
+  private readonly pings = new Map<number, number>();
+  private retryTimer: ReturnType<typeof setTimeout> | undefined;
+  private pulseTimer: ReturnType<typeof setInterval> | undefined;
+
+  constructor(
+    private readonly open: () => Socket,
+    private readonly events: ConnectionEvents,
+    private readonly random: () => number = Math.random,
+  ) {}
+
+  get state(): ConnectionState {
+    return this.state_;
+  }
+
+  /** Come in. Later attempts use the token that the last welcome gave. */
+  join(greeting: Greeting): void {
+    this.leave();
+    this.greeting = greeting;
+    this.attempt = 0;
+    this.change({ phase: "connecting" });
+    this.connect();
+  }
+
+  /** End the connection for good; the avatar goes with it. */
+  leave(): void {
+    clearTimeout(this.retryTimer);
+    this.drop(CloseCode.NORMAL);
+    this.greeting = null;
+    if (this.state_.phase !== "idle") this.change({ phase: "idle" });
+  }
+
+  /** Try at once instead of waiting, e.g. because the network came back. */
+  hurry(): void {
+    if (this.state_.phase !== "reconnecting" || this.socket) return;
+    clearTimeout(this.retryTimer);
+    this.connect();
+  }
+
+  /** False if the message could not be sent because the connection is not live. */
+  send(message: ClientMessage): boolean {
+    if (this.state_.phase !== "live" || this.socket?.readyState !== OPEN) return false;
+    this.socket.send(encodeClient(message));
+    return true;
+  }
+
+  private connect(): void {
+    const socket = this.open();
+    this.socket = socket;
+    this.stated = null;
+    this.heardMs = performance.now();
+    socket.binaryType = "arraybuffer";
+    socket.onopen = () => {
+      if (this.greeting) socket.send(encodeClient({ type: "hello", ...this.greeting }));
+    };
+    socket.onmessage = (event) => {
+      this.receive(event.data);
+    };
+    socket.onclose = (event) => {
+      this.lost(closing(event.code, this.stated));
+    };
+    this.pulseTimer = setInterval(() => {
+      this.pulse();
+    }, PULSE_MS);
+  }
+
+  private receive(data: unknown): void {
+    this.heardMs = performance.now();
+    let message: ServerMessage | null;
+    try {
+      if (!(data instanceof ArrayBuffer)) throw new WireError("a frame is binary");
+      message = decodeServer(data);
+    } catch (error) {
+      if (!(error instanceof WireError)) throw error;
+      this.lost({ text: `The server sent something unreadable: ${error.message}.`, retry: true });
+      return;
+    }
+    if (message === null) return;
+    if (message.type === "pong") {
+      this.pong(message.nonce, message.server_time);
+      return;
+    }
+    if (message.type === "error" || message.type === "bye") this.stated = message.text;
+    this.events.message(message);
+    if (message.type === "welcome") this.welcome(message);
+  }
+
+  private welcome(message: Welcome): void {
+    this.attempt = 0;
+    this.greeting = { name: message.name, resume: message.resume };
+    this.clock.seed(message.server_time, nowS());
+    this.change({ phase: "live" });
+    this.ping();
+  }
+
+  private pulse(): void {
+    const silentMs = performance.now() - this.heardMs;
+    if (this.state_.phase === "live") {
+      if (silentMs > SILENCE_MS) this.lost({ text: "The server fell silent.", retry: true });
+      else this.ping();
+    } else if (silentMs > GREETING_MS) {
+      this.lost({ text: "The server does not answer.", retry: true });
+    }
+  }
+
+  private ping(): void {
+    const nonce = this.pingNonce++ % 0x1_0000_0000;
+    if (this.send({ type: "ping", nonce })) this.pings.set(nonce, nowS());
+  }
+
+  private pong(nonce: number, serverTimeS: number): void {
+    const sentS = this.pings.get(nonce);
+    if (sentS === undefined) return;
+    this.pings.delete(nonce);
+    this.clock.add(sentS, nowS(), serverTimeS);
+  }
+
+  private lost({ text, retry }: Closing): void {
+    this.drop();
+    if (!retry) {
+      this.change({ phase: "refused", text });
+      return;
+    }
+    const attempt = this.attempt++;
+    this.retryTimer = setTimeout(
+      () => {
+        this.connect();
+      },
+      backoffMs(attempt, this.random),
+    );
+    this.change({ phase: "reconnecting", text, attempt });
+  }
+
+  /** Without a code the server keeps the avatar for a while. */
+  private drop(code?: number): void {
+    clearInterval(this.pulseTimer);
+    this.pings.clear();
+    const socket = this.socket;
+    this.socket = null;
+    if (!socket) return;
+    socket.onopen = socket.onclose = socket.onmessage = null;
+    socket.close(code);
+  }
+
+  private change(state: ConnectionState): void {
+    this.state_ = state;
+    this.events.state(state);
+  }
+}

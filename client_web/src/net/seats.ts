@@ -1,0 +1,137 @@
+/**
+ * Which avatar belongs to which tab.
+ *
+ * A seat is a name and a resume token. The tab remembers the id of its seat (`sessionStorage`
+ * survives a reload and a restored tab); the browser profile remembers the seats themselves
+ * (`localStorage`), so that a new page with the same name can take up the avatar of one that was
+ * closed or killed. A lock that a page holds as long as it lives keeps two open tabs two people,
+ * also when a tab was duplicated together with its `sessionStorage`.
+ */
+
+export interface Seat {
+  id: string;
+  name: string;
+  token: string;
+  /** When its page was last alive, milliseconds since 1970. */
+  seenMs: number;
+}
+
+/** How long the server keeps an avatar whose connection is gone. */
+export const KEPT_MS = 30_000;
+
+const SEATS_KEY = "esplanade.seats";
+const MINE_KEY = "esplanade.seat";
+
+/** Takes the lock of that name for the page's life; false if another living page holds it. */
+export type TryLock = (name: string) => Promise<boolean>;
+
+export class Seats {
+  private mine: Seat | null = null;
+
+  constructor(
+    private readonly tab: Storage,
+    private readonly profile: Storage,
+    private readonly tryLock: TryLock | null,
+    private readonly nowMs: () => number,
+  ) {}
+
+  /** The seat that this very tab had before a reload, if its avatar may still be there. */
+  async ofThisTab(): Promise<Seat | null> {
+    if (this.mine) return this.mine;
+    const id = this.tab.getItem(MINE_KEY);
+    const seat = this.fresh().find((each) => each.id === id);
+    return seat && (await this.claim(seat)) ? seat : null;
+  }
+
+  /** A seat of that name whose page is gone, if its avatar may still be there. */
+  async abandoned(name: string): Promise<Seat | null> {
+    if (this.mine) return this.mine.name === name ? this.mine : null;
+    // Without locks a living page cannot be told from a dead one.
+    if (!this.tryLock) return null;
+    for (const seat of this.fresh()) {
+      if (seat.name === name && (await this.claim(seat))) return seat;
+    }
+    return null;
+  }
+
+  /** Remember what a welcome gave. */
+  async keep(name: string, token: string): Promise<void> {
+    if (!this.mine) {
+      const seat = {
+        id: crypto.getRandomValues(new Uint32Array(3)).join("-"),
+        name,
+        token,
+        seenMs: 0,
+      };
+      await this.claim(seat);
+      this.mine = seat;
+    }
+    this.mine.name = name;
+    this.mine.token = token;
+    this.touch();
+  }
+
+  /** Say that this page is alive. */
+  touch(): void {
+    if (!this.mine) return;
+    this.mine.seenMs = this.nowMs();
+    this.write([...this.fresh().filter((each) => each.id !== this.mine?.id), this.mine]);
+    this.tab.setItem(MINE_KEY, this.mine.id);
+  }
+
+  /** Give the seat up: whoever comes next is somebody new. */
+  forget(): void {
+    if (!this.mine) return;
+    const { id } = this.mine;
+    this.write(this.fresh().filter((each) => each.id !== id));
+    this.tab.removeItem(MINE_KEY);
+    this.mine = null;
+  }
+
+  private async claim(seat: Seat): Promise<boolean> {
+    if (this.tryLock && !(await this.tryLock(`esplanade.seat.${seat.id}`))) return false;
+    this.mine = seat;
+    return true;
+  }
+
+  private fresh(): Seat[] {
+    let stored: unknown;
+    try {
+      stored = JSON.parse(this.profile.getItem(SEATS_KEY) ?? "[]");
+    } catch {
+      stored = [];
+    }
+    const oldestMs = this.nowMs() - KEPT_MS;
+    return Array.isArray(stored)
+      ? stored.filter((each): each is Seat => isSeat(each) && each.seenMs > oldestMs)
+      : [];
+  }
+
+  private write(seats: Seat[]): void {
+    this.profile.setItem(SEATS_KEY, JSON.stringify(seats));
+  }
+}
+
+/** The browser's own locks; null where it has none (pages that came over plain HTTP). */
+export function browserLocks(locks: LockManager | undefined): TryLock | null {
+  if (!locks) return null;
+  return (name) =>
+    new Promise((answer) => {
+      void locks.request(name, { ifAvailable: true }, (lock) => {
+        answer(lock !== null);
+        // Held until the page ends.
+        return lock ? new Promise<never>(() => undefined) : undefined;
+      });
+    });
+}
+
+function isSeat(value: unknown): value is Seat {
+  if (typeof value !== "object" || value === null) return false;
+  const seat = value as Partial<Record<keyof Seat, unknown>>;
+  return (
+    typeof seat.id === "string" &&
+    typeof seat.name === "string" &&
+    typeof seat.token === "string" &&
+    typeof seat.seenMs === "number"
+  );
+}

@@ -1,0 +1,64 @@
+/** The camera that follows the own avatar: turned by dragging, kept out of buildings. */
+
+import { type Mesh, type PerspectiveCamera, Raycaster, Vector3 } from "three";
+
+const NEAREST_M = 2;
+const FARTHEST_M = 30;
+const LOWEST = 0.08;
+const HIGHEST = 1.35;
+const LOOK_AT_M = 1.9;
+const FOLLOW_PER_S = 10;
+const OUT_PER_S = 3;
+/** Kept between the camera and the wall behind it. */
+const GAP_M = 0.3;
+
+export class FollowCamera {
+  /** Direction in which the camera looks on the ground, radians from +x. */
+  yaw = Math.PI / 2;
+  private pitch = 0.36;
+  private distanceM = 9;
+  private freeM = FARTHEST_M;
+  private readonly aim = new Vector3();
+  private readonly back = new Vector3();
+  private readonly ray = new Raycaster();
+  private placed = false;
+
+  constructor(private readonly camera: PerspectiveCamera) {}
+
+  /** Turn by angles in radians. */
+  orbit(yaw: number, pitch: number): void {
+    this.yaw += yaw;
+    this.pitch = Math.max(LOWEST, Math.min(HIGHEST, this.pitch + pitch));
+  }
+
+  /** Come nearer (`factor` < 1) or go back. */
+  zoom(factor: number): void {
+    this.distanceM = Math.max(NEAREST_M, Math.min(FARTHEST_M, this.distanceM * factor));
+  }
+
+  /** How far the camera is from what it looks at, metres. */
+  get reachM(): number {
+    return Math.min(this.distanceM, this.freeM);
+  }
+
+  update(x: number, y: number, occluders: readonly Mesh[], frameS: number): void {
+    const part = this.placed ? Math.min(1, FOLLOW_PER_S * frameS) : 1;
+    this.aim.x += (x - this.aim.x) * part;
+    this.aim.y += (y - this.aim.y) * part;
+    this.aim.z = LOOK_AT_M;
+    this.placed = true;
+    const flat = Math.cos(this.pitch);
+    this.back.set(-Math.cos(this.yaw) * flat, -Math.sin(this.yaw) * flat, Math.sin(this.pitch));
+    this.ray.set(this.aim, this.back);
+    this.ray.far = this.distanceM + GAP_M;
+    const hit = this.ray.intersectObjects([...occluders], false)[0];
+    const freeM = hit ? Math.max(0.6, hit.distance - GAP_M) : this.distanceM;
+    // In at once, out slowly, so that a pillar passing by does not make it jerk.
+    this.freeM =
+      freeM < this.freeM
+        ? freeM
+        : this.freeM + (freeM - this.freeM) * Math.min(1, OUT_PER_S * frameS);
+    this.camera.position.copy(this.aim).addScaledVector(this.back, this.reachM);
+    this.camera.lookAt(this.aim);
+  }
+}

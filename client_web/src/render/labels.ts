@@ -1,0 +1,81 @@
+/** Names and spoken lines above heads, as HTML, for the nearest avatars only. */
+
+import { type PerspectiveCamera, Vector3 } from "three";
+import type { Avatar } from "../world/world";
+import { statureM } from "./figures";
+
+const MOST = 24;
+const FAR_M = 26;
+const FADE_M = 8;
+const ABOVE_M = 0.22;
+const SPOKEN_MS = 7000;
+
+interface Label {
+  element: HTMLElement;
+  spoken: HTMLElement;
+  spokenUntilMs: number;
+}
+
+export class Labels {
+  private readonly labels = new Map<number, Label>();
+  private readonly at = new Vector3();
+
+  constructor(private readonly layer: HTMLElement) {}
+
+  /** Show what somebody said above the head for a while. */
+  say(avatar: Avatar, text: string): void {
+    const label = this.labelOf(avatar);
+    label.spoken.textContent = text.length > 90 ? `${text.slice(0, 88)}…` : text;
+    label.spokenUntilMs = performance.now() + SPOKEN_MS;
+  }
+
+  update(avatars: ReadonlyMap<number, Avatar>, camera: PerspectiveCamera): void {
+    const { clientWidth: width, clientHeight: height } = this.layer;
+    const nearest = [...avatars.values()]
+      .map((avatar) => ({
+        avatar,
+        distanceM: camera.position.distanceTo(this.at.set(avatar.pose.x, avatar.pose.y, 1.7)),
+      }))
+      .filter(({ distanceM }) => distanceM < FAR_M)
+      .sort((a, b) => a.distanceM - b.distanceM)
+      .slice(0, MOST);
+    const seen = new Set<number>();
+    for (const { avatar, distanceM } of nearest) {
+      this.at.set(avatar.pose.x, avatar.pose.y, statureM(avatar.id) + ABOVE_M).project(camera);
+      if (this.at.z > 1 || Math.abs(this.at.x) > 1.1 || Math.abs(this.at.y) > 1.1) continue;
+      seen.add(avatar.id);
+      const { element, spoken, spokenUntilMs } = this.labelOf(avatar);
+      const x = ((this.at.x + 1) / 2) * width;
+      const y = ((1 - this.at.y) / 2) * height;
+      element.hidden = false;
+      element.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+      element.style.opacity = Math.min(1, (FAR_M - distanceM) / FADE_M).toFixed(2);
+      element.style.zIndex = String(1000 - Math.round(distanceM * 10));
+      spoken.hidden = performance.now() > spokenUntilMs;
+    }
+    for (const [id, { element }] of this.labels) {
+      if (!avatars.has(id)) {
+        element.remove();
+        this.labels.delete(id);
+      } else if (!seen.has(id)) element.hidden = true;
+    }
+  }
+
+  private labelOf(avatar: Avatar): Label {
+    const known = this.labels.get(avatar.id);
+    if (known) return known;
+    const element = document.createElement("div");
+    element.className = `label ${avatar.kind}${avatar.own ? " own" : ""}`;
+    const spoken = document.createElement("span");
+    spoken.className = "spoken";
+    spoken.hidden = true;
+    const name = document.createElement("span");
+    name.className = "name";
+    name.textContent = avatar.name;
+    element.append(spoken, name);
+    this.layer.append(element);
+    const label = { element, spoken, spokenUntilMs: 0 };
+    this.labels.set(avatar.id, label);
+    return label;
+  }
+}

@@ -1,0 +1,153 @@
+/** The overlay of an actor's plan: its path with a dot each second, its goal, and where people may be. */
+
+import {
+  BufferGeometry,
+  CircleGeometry,
+  Color,
+  ConeGeometry,
+  CylinderGeometry,
+  Float32BufferAttribute,
+  Group,
+  InstancedMesh,
+  Matrix4,
+  Mesh,
+  MeshBasicMaterial,
+  RingGeometry,
+} from "three";
+import type { Plan } from "../net/messages";
+import { ACTOR } from "./palette";
+import { painted } from "./shapes";
+
+const PATH_HALF_M = 0.06;
+const MOST_DOTS = 128;
+const MOST_CIRCLES = 512;
+const SOON = new Color("#e2483d");
+const LATE = new Color("#f4b942");
+/** Predictions this far ahead have the colour of the latest. */
+const LATEST_STEP = 8;
+
+export class Plans {
+  readonly group = new Group();
+  private readonly path = new Mesh(new BufferGeometry(), overlay({ color: ACTOR, opacity: 0.9 }));
+  private readonly dots = instances(new CircleGeometry(0.14, 16), MOST_DOTS, 0.95, ACTOR);
+  private readonly rims = instances(new RingGeometry(0.94, 1, 40), MOST_CIRCLES, 0.85);
+  private readonly discs = instances(new CircleGeometry(1, 40), MOST_CIRCLES, 0.1);
+  private readonly flag = goalFlag();
+  private shown: Plan | null = null;
+  private readonly matrix = new Matrix4();
+
+  constructor() {
+    this.group.add(this.path, this.dots, this.rims, this.discs, this.flag);
+    this.group.visible = false;
+  }
+
+  show(plan: Plan | null): void {
+    if (plan === this.shown) return;
+    this.shown = plan;
+    this.group.visible = plan !== null;
+    if (!plan) return;
+    this.path.geometry.dispose();
+    this.path.geometry = ribbon(plan.path);
+    this.placeDots(plan.path);
+    this.placeCircles(plan.people);
+    this.flag.visible = plan.goal !== null;
+    if (plan.goal) this.flag.position.set(plan.goal[0], plan.goal[1], 0);
+  }
+
+  /** One dot for each whole second of the path, and one at its end. */
+  private placeDots(path: Plan["path"]): void {
+    let count = 0;
+    let nextS = 1;
+    path.forEach(([x, y, , seconds], i) => {
+      const isLast = i === path.length - 1;
+      if ((seconds < nextS && !isLast) || count === MOST_DOTS) return;
+      nextS = Math.floor(seconds) + 1;
+      this.dots.setMatrixAt(count++, this.matrix.makeTranslation(x, y, 0.05));
+    });
+    this.dots.count = count;
+    this.dots.instanceMatrix.needsUpdate = true;
+  }
+
+  private placeCircles(people: Plan["people"]): void {
+    const color = new Color();
+    let count = 0;
+    for (const circles of people) {
+      circles.forEach(({ x, y, radius }, step) => {
+        if (count === MOST_CIRCLES) return;
+        this.matrix.makeScale(radius, radius, 1).setPosition(x, y, 0.035);
+        color.lerpColors(SOON, LATE, Math.min(1, step / LATEST_STEP));
+        for (const mesh of [this.rims, this.discs]) {
+          mesh.setMatrixAt(count, this.matrix);
+          mesh.setColorAt(count, color);
+        }
+        count++;
+      });
+    }
+    for (const mesh of [this.rims, this.discs]) {
+      mesh.count = count;
+      mesh.instanceMatrix.needsUpdate = true;
+      if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
+    }
+  }
+}
+
+/** A flat band along the path. */
+function ribbon(path: Plan["path"]): BufferGeometry {
+  const position: number[] = [];
+  const index: number[] = [];
+  path.forEach(([x, y], i) => {
+    const before = path[Math.max(0, i - 1)] ?? [x, y];
+    const after = path[Math.min(path.length - 1, i + 1)] ?? [x, y];
+    const [dx, dy] = [after[0] - before[0], after[1] - before[1]];
+    const length = Math.hypot(dx, dy) || 1;
+    const [sx, sy] = [(-dy / length) * PATH_HALF_M, (dx / length) * PATH_HALF_M];
+    position.push(x + sx, y + sy, 0.045, x - sx, y - sy, 0.045);
+    if (i > 0) {
+      const k = 2 * i;
+      index.push(k - 2, k - 1, k, k, k - 1, k + 1);
+    }
+  });
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new Float32BufferAttribute(position, 3));
+  geometry.setIndex(index);
+  return geometry;
+}
+
+function goalFlag(): Group {
+  const pole = new CylinderGeometry(0.03, 0.03, 2.2, 8).rotateX(Math.PI / 2).translate(0, 0, 1.1);
+  const cloth = new ConeGeometry(0.26, 0.7, 3).scale(1, 1, 0.08);
+  cloth
+    .rotateZ(-Math.PI / 2)
+    .rotateX(Math.PI / 2)
+    .translate(0.36, 0, 1.95);
+  const group = new Group();
+  group.add(
+    new Mesh(pole, new MeshBasicMaterial({ color: "#f4f1ea" })),
+    new Mesh(cloth, new MeshBasicMaterial({ color: ACTOR })),
+    new Mesh(
+      new RingGeometry(0.3, 0.4, 32).translate(0, 0, 0.05),
+      overlay({ color: ACTOR, opacity: 0.9 }),
+    ),
+  );
+  return group;
+}
+
+function instances(
+  geometry: BufferGeometry,
+  most: number,
+  opacity: number,
+  color = new Color("#ffffff"),
+): InstancedMesh {
+  const mesh = new InstancedMesh(
+    painted(geometry, color),
+    overlay({ vertexColors: true, opacity }),
+    most,
+  );
+  mesh.frustumCulled = false;
+  mesh.count = 0;
+  return mesh;
+}
+
+function overlay(look: ConstructorParameters<typeof MeshBasicMaterial>[0]): MeshBasicMaterial {
+  return new MeshBasicMaterial({ ...look, transparent: true, depthWrite: false });
+}

@@ -1,0 +1,69 @@
+/** How finely the world is drawn: chosen by how long frames take, or by the person. */
+
+export interface Quality {
+  /** Pixels drawn for one CSS pixel, at most. */
+  pixelRatio: number;
+  /** Shadows of figures, drawn anew every frame. */
+  livingShadows: boolean;
+  /** Shadows of what stands still, drawn once. */
+  shadows: boolean;
+}
+
+/** From fine to fast. */
+export const LEVELS: readonly Quality[] = [
+  { pixelRatio: 2, livingShadows: true, shadows: true },
+  { pixelRatio: 1.25, livingShadows: false, shadows: true },
+  { pixelRatio: 1, livingShadows: false, shadows: true },
+  { pixelRatio: 0.75, livingShadows: false, shadows: false },
+  { pixelRatio: 0.5, livingShadows: false, shadows: false },
+];
+
+export type Choice = "automatic" | "fine" | "fast";
+
+const WINDOW = 30;
+const SLOW_S = 1 / 28;
+const QUICK_S = 1 / 55;
+/** Quick windows in a row before something finer is tried. */
+const PATIENCE = 12;
+
+/** Goes to a faster level after one slow window of frames, and back with patience. */
+export class QualityControl {
+  level: number;
+  private sumS = 0;
+  private frames = 0;
+  private quickWindows = 0;
+  private patience = PATIENCE;
+
+  constructor(private readonly choice: Choice) {
+    this.level = choice === "fast" ? LEVELS.length - 1 : 0;
+  }
+
+  /** One frame took this long; true if the level changed. */
+  frame(frameS: number): boolean {
+    if (this.choice !== "automatic") return false;
+    // A pause says nothing of the drawing: the page was hidden.
+    if (frameS > 1) return false;
+    this.sumS += frameS;
+    if (++this.frames < WINDOW) return false;
+    const mean = this.sumS / this.frames;
+    this.sumS = this.frames = 0;
+    this.quickWindows = mean < QUICK_S ? this.quickWindows + 1 : 0;
+    if (mean > SLOW_S && this.level < LEVELS.length - 1) {
+      this.level++;
+      this.patience *= 2;
+      return true;
+    }
+    if (this.quickWindows >= this.patience && this.level > 0) {
+      this.level--;
+      this.quickWindows = 0;
+      return true;
+    }
+    return false;
+  }
+
+  get quality(): Quality {
+    const quality = LEVELS[this.level];
+    if (!quality) throw new RangeError(`there is no level ${this.level}`);
+    return quality;
+  }
+}

@@ -1,0 +1,48 @@
+/** The dialog at the door: a name, and why one is outside. */
+
+import { MAX_NAME_CHARS } from "../net/codes";
+import { byId } from "./dom";
+
+const NAME_KEY = "esplanade.name";
+
+export class JoinDialog {
+  private readonly dialog = byId("join", HTMLDialogElement);
+  private readonly form = byId("join-form", HTMLFormElement);
+  private readonly name = byId("join-name", HTMLInputElement);
+  private readonly reason = byId("join-reason", HTMLElement);
+  private readonly button = byId("join-button", HTMLButtonElement);
+
+  constructor(join: (name: string) => void) {
+    this.name.maxLength = MAX_NAME_CHARS;
+    this.name.value = localStorage.getItem(NAME_KEY) ?? "";
+    this.form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      const name = this.name.value.trim();
+      if (name === "") return;
+      localStorage.setItem(NAME_KEY, name);
+      join(name);
+    });
+    // Nobody is in the world without a name.
+    this.dialog.addEventListener("cancel", (event) => {
+      event.preventDefault();
+    });
+  }
+
+  open(reason = ""): void {
+    this.busy(false);
+    this.reason.textContent = reason;
+    if (!this.dialog.open) this.dialog.showModal();
+    this.name.select();
+  }
+
+  close(): void {
+    this.busy(false);
+    this.dialog.close();
+  }
+
+  /** While the server is being asked. */
+  busy(busy: boolean): void {
+    this.button.disabled = busy;
+    this.button.textContent = busy ? "Coming in…" : "Come in";
+  }
+}

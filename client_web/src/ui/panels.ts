@@ -1,0 +1,36 @@
+/** Buttons that open and close a panel; small screens have room for one at a time. */
+
+export class Panel {
+  private static readonly all: Panel[] = [];
+  private readonly narrow = window.matchMedia("(max-width: 640px)");
+
+  constructor(
+    private readonly button: HTMLButtonElement,
+    private readonly panel: HTMLElement,
+    private readonly changed: (open: boolean) => void = () => undefined,
+  ) {
+    Panel.all.push(this);
+    button.addEventListener("click", () => {
+      this.open = !this.open;
+    });
+    panel.addEventListener("keydown", (event) => {
+      if (event.key !== "Escape") return;
+      this.open = false;
+      button.focus();
+    });
+  }
+
+  get open(): boolean {
+    return !this.panel.hidden;
+  }
+
+  set open(open: boolean) {
+    if (open === this.open) return;
+    if (open && this.narrow.matches) {
+      for (const other of Panel.all) if (other !== this) other.open = false;
+    }
+    this.panel.hidden = !open;
+    this.button.setAttribute("aria-expanded", String(open));
+    this.changed(open);
+  }
+}

@@ -1,0 +1,55 @@
+/** The panel of the chosen actor: what it is about, and why it does what it does. */
+
+import { Reason } from "../net/codes";
+import type { Plan } from "../net/messages";
+import { byId } from "./dom";
+
+const REASONS: Record<number, string> = {
+  [Reason.NONE]: "no reason given",
+  [Reason.MOVING]: "moving along its path",
+  [Reason.GIVING_WAY]: "giving way to somebody",
+  [Reason.WAITING]: "waiting until there is room",
+  [Reason.REPLANNING]: "looking for another way",
+  [Reason.NO_PATH]: "finds no way to its goal",
+  [Reason.ARRIVED]: "has arrived",
+};
+
+const BEHAVIOURS: Record<string, string> = {
+  go_to: "goes to a place",
+  wander: "wanders between places",
+  patrol: "patrols its round",
+  guide: "guides a tour",
+  idle: "has nothing to do",
+};
+
+export function reasonText(reason: number): string {
+  return REASONS[reason] ?? "no reason given";
+}
+
+export class PlanPanel {
+  private readonly title = byId("plan-title", HTMLElement);
+  private readonly behaviour = byId("plan-behaviour", HTMLElement);
+  private readonly reason = byId("plan-reason", HTMLElement);
+  private readonly outlook = byId("plan-outlook", HTMLElement);
+
+  update(name: string | null, plan: Plan | null): void {
+    set(this.title, name ?? "No actor chosen");
+    if (!plan || name === null) {
+      set(this.behaviour, name === null ? "Click an actor, or choose one under People." : "…");
+      set(this.reason, "");
+      set(this.outlook, "");
+      return;
+    }
+    set(this.behaviour, BEHAVIOURS[plan.behaviour] ?? plan.behaviour);
+    set(this.reason, reasonText(plan.reason));
+    const seconds = plan.path.at(-1)?.[3] ?? 0;
+    const path = plan.path.length > 1 ? `Path for ${seconds.toFixed(0)} s` : "No path";
+    const people = plan.people.length === 1 ? "1 person" : `${plan.people.length} people`;
+    set(this.outlook, `${path}, ${people} near by`);
+  }
+}
+
+/** Only on change, so that screen readers are not told the same again. */
+function set(target: HTMLElement, text: string): void {
+  if (target.textContent !== text) target.textContent = text;
+}

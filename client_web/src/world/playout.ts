@@ -1,0 +1,49 @@
+/** How far behind the server's time the others are drawn, so that there is a snapshot to both sides. */
+
+/** The least time behind the usual arrival of a snapshot. */
+const LEAST_S = 0.1;
+const MOST_S = 0.6;
+const DEVIATIONS = 3;
+/** Weight of a new arrival in the running mean and deviation. */
+const WEIGHT = 0.05;
+/** Time is stretched by at most this part to reach its aim, so that nobody seems to jump. */
+const STRETCH = 0.1;
+const JUMP_S = 0.75;
+
+export class Playout {
+  private lateness: number | null = null;
+  private deviation = 0.005;
+  private timeS_: number | null = null;
+
+  constructor(private readonly tickS: number) {}
+
+  /** A snapshot of the tick at `tickTimeS` came in when the server's time was `serverNowS`. */
+  arrived(tickTimeS: number, serverNowS: number): void {
+    const latenessS = serverNowS - tickTimeS;
+    if (this.lateness === null) {
+      this.lateness = latenessS;
+      return;
+    }
+    const off = latenessS - this.lateness;
+    this.lateness += WEIGHT * off;
+    this.deviation += WEIGHT * (Math.abs(off) - this.deviation);
+  }
+
+  /** How far the drawn time is to be behind the server's. */
+  get delayS(): number {
+    const cushionS = Math.min(MOST_S, this.tickS + DEVIATIONS * this.deviation);
+    return (this.lateness ?? 0) + Math.max(LEAST_S, cushionS);
+  }
+
+  /** The drawn time, one frame of `frameS` later. Never runs backwards but for a jump. */
+  advance(serverNowS: number, frameS: number): number {
+    const aimS = serverNowS - this.delayS;
+    const next = (this.timeS_ ?? aimS) + frameS;
+    const off = aimS - next;
+    this.timeS_ =
+      Math.abs(off) > JUMP_S
+        ? aimS
+        : next + Math.max(-STRETCH * frameS, Math.min(STRETCH * frameS, off));
+    return this.timeS_;
+  }
+}

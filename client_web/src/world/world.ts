@@ -1,0 +1,126 @@
+/** Everything in view as this client knows it: who is here, where they are drawn, and the plans. */
+
+import type { EntityInfo, EntityRecord, Plan, SceneData, Welcome } from "../net/messages";
+import { Motion, type Pose } from "./motion";
+import { Obstacles } from "./obstacles";
+import { Playout } from "./playout";
+import { Prediction, type Command } from "./prediction";
+
+/** An avatar in view. `pose` is where it is drawn in this frame. */
+export interface Avatar {
+  readonly id: number;
+  readonly kind: EntityInfo["kind"];
+  readonly name: string;
+  readonly radius: number;
+  readonly own: boolean;
+  pose: Pose;
+}
+
+interface Followed extends Avatar {
+  readonly motion: Motion;
+}
+
+export class World {
+  readonly scene: SceneData;
+  readonly ownId: number;
+  readonly maxSpeedMps: number;
+  /** The newest plan of the watched actor. */
+  plan: Plan | null = null;
+  private readonly avatars_ = new Map<number, Followed>();
+  private readonly playout: Playout;
+  private readonly obstacles: Obstacles;
+  private readonly tickS: number;
+  private prediction: Prediction | null = null;
+  private heardS: number;
+
+  constructor(private readonly welcome: Welcome) {
+    this.scene = welcome.scene;
+    this.ownId = welcome.id;
+    this.maxSpeedMps = welcome.max_speed;
+    this.tickS = 1 / welcome.tick_rate;
+    this.playout = new Playout(this.tickS);
+    this.obstacles = new Obstacles(welcome.scene);
+    this.heardS = welcome.server_time;
+  }
+
+  get avatars(): ReadonlyMap<number, Avatar> {
+    return this.avatars_;
+  }
+
+  /** The own avatar; null until the server has said where it is. */
+  get own(): Avatar | null {
+    return this.avatars_.get(this.ownId) ?? null;
+  }
+
+  /** How far the own avatar is from where the server will have it, metres. */
+  get correctionM(): number {
+    return this.prediction?.correctionM ?? 0;
+  }
+
+  /** How far behind the server's time the others are drawn, seconds. */
+  get delayS(): number {
+    return this.playout.delayS;
+  }
+
+  enter(tick: number, entities: readonly EntityInfo[]): void {
+    for (const info of entities) {
+      const own = info.id === this.ownId;
+      const { x, y, layer, heading } = info;
+      const pose = { x, y, layer, heading, speed: 0, reason: 0 };
+      const motion = new Motion(this.timeOf(tick), pose);
+      this.avatars_.set(info.id, {
+        id: info.id,
+        kind: info.kind,
+        name: info.name,
+        radius: info.radius,
+        own,
+        pose,
+        motion,
+      });
+      if (own) this.prediction ??= this.predict(pose, info.radius);
+    }
+  }
+
+  leave(ids: readonly number[]): void {
+    for (const id of ids) {
+      this.avatars_.delete(id);
+      if (this.plan?.id === id) this.plan = null;
+    }
+  }
+
+  /** A snapshot holds those who changed since the one before; the others stood still. */
+  snapshot(tick: number, ack: number, records: readonly EntityRecord[], serverNowS: number): void {
+    const timeS = this.timeOf(tick);
+    for (const record of records) {
+      this.avatars_.get(record.id)?.motion.hold(this.heardS);
+      this.avatars_.get(record.id)?.motion.add(timeS, record);
+      if (record.id === this.ownId) this.prediction?.reconcile(tick, ack, record);
+    }
+    this.playout.arrived(timeS, serverNowS);
+    this.heardS = timeS;
+  }
+
+  command(command: Command): void {
+    this.prediction?.command(command);
+  }
+
+  /** Move everybody to where they are drawn `frameS` later. */
+  advance(serverNowS: number, frameS: number): void {
+    const timeS = this.playout.advance(serverNowS, frameS);
+    this.prediction?.advance(frameS);
+    for (const avatar of this.avatars_.values()) {
+      avatar.pose =
+        avatar.own && this.prediction
+          ? this.prediction.shown
+          : avatar.motion.at(timeS, this.heardS);
+    }
+  }
+
+  private predict(pose: Pose, radius: number): Prediction {
+    return new Prediction(pose, this.obstacles, radius, this.maxSpeedMps, this.tickS);
+  }
+
+  private timeOf(tick: number): number {
+    return this.welcome.server_time + (tick - this.welcome.tick) * this.tickS;
+  }
+}
