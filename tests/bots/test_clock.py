@@ -19,18 +19,25 @@ def test_welcome_counts_until_the_first_pong() -> None:
 
 def test_the_quickest_round_trip_wins() -> None:
     clock = ServerClock()
-    clock.add(0.0, 1.0, 10.0)
+    clock.add(0.0, 1.0, 10.6)
     clock.add(2.0, 2.01, 12.0)
-    clock.add(3.0, 3.5, 13.4)
+    clock.add(3.0, 3.5, 13.2)
     assert abs(clock.at(4.0) - 13.995) < 1e-9
 
 
 def test_old_round_trips_are_forgotten() -> None:
     clock = ServerClock()
-    clock.add(0.0, 0.0, 100.0)
+    clock.add(0.0, 0.01, 100.0)
     for second in range(1, KEPT + 1):
-        clock.add(float(second), second + 0.1, second + 200.05)
-    assert abs(clock.at(50.0) - 250.0) < 1e-9
+        clock.add(float(second), second + 0.1, second + 100.05)
+    assert abs(clock.at(50.0) - 150.0) < 1e-9
+
+
+def test_a_step_of_the_servers_clock_counts_at_once() -> None:
+    clock = ServerClock()
+    clock.add(0.0, 0.01, 100.0)
+    clock.add(1.0, 1.2, 100.6)
+    assert abs(clock.at(2.0) - 101.5) < 1e-9
 
 
 @given(

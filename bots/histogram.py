@@ -1,0 +1,63 @@
+"""Percentiles of millions of measurements in a few kilobytes."""
+
+import math
+from collections.abc import Iterable
+from typing import Final
+
+LEAST: Final = 1e-5
+"""Everything below falls into the first bin: 10 microseconds, a hundredth of a millimetre."""
+
+GREATEST: Final = 1e3
+STEP: Final = 1.01
+"""Each bin is one per cent wider than the last, and so exact are the percentiles."""
+
+_SCALE: Final = 1.0 / math.log(STEP)
+_BINS: Final = math.ceil(math.log(GREATEST / LEAST) * _SCALE) + 1
+
+
+class Histogram:
+    """Counts of non-negative values in logarithmic bins; greatest value and mean are exact."""
+
+    def __init__(self, values: Iterable[float] = ()) -> None:
+        self.counts = [0] * _BINS
+        self.count = 0
+        self.total = 0.0
+        self.greatest = 0.0
+        for value in values:
+            self.add(value)
+
+    def add(self, value: float) -> None:
+        """Count one finite value; negative ones count as 0."""
+        value = max(0.0, value)
+        place = int(math.log(value / LEAST) * _SCALE) + 1 if value > LEAST else 0
+        self.counts[min(place, _BINS - 1)] += 1
+        self.count += 1
+        self.total += value
+        self.greatest = max(self.greatest, value)
+
+    def merge(self, other: "Histogram") -> None:
+        """Take in everything that the other has counted."""
+        self.counts = [a + b for a, b in zip(self.counts, other.counts, strict=True)]
+        self.count += other.count
+        self.total += other.total
+        self.greatest = max(self.greatest, other.greatest)
+
+    @property
+    def mean(self) -> float | None:
+        """None while nothing was counted."""
+        return self.total / self.count if self.count else None
+
+    def percentile(self, percent: float) -> float | None:
+        """The value that so many per cent do not exceed, at most 1 % too great.
+
+        None while nothing was counted.
+        """
+        if not self.count:
+            return None
+        wanted = max(1, math.ceil(self.count * percent / 100.0))
+        reached = 0
+        for place, count in enumerate(self.counts):
+            reached += count
+            if reached >= wanted:
+                return min(LEAST * STEP**place, self.greatest)
+        return self.greatest

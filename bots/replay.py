@@ -1,0 +1,107 @@
+"""Replay of a recorded crowd: each pedestrian is a client that joins, follows its way, leaves."""
+
+import asyncio
+from dataclasses import dataclass
+from typing import Final
+
+from bots.client import Client, until_first, visit
+from bots.clock import ServerClock
+from bots.follower import Follower
+from bots.pace import Pace
+from bots.tally import Tally
+from protocol import VERSION
+from protocol.codec import SNAPSHOT_HEAD_BYTES
+from protocol.codes import MAX_NAME_CHARS
+from protocol.messages import Hello, Move
+from protocol.snapshot import find_position_m
+from recordings import Track
+
+LEAD_S: Final = 0.3
+"""A pedestrian joins this long (real time) before its recorded start, so that it stands at its
+first place when its way begins."""
+
+NEAR_M: Final = 0.1
+"""The promise: this near to the recorded way at every tick."""
+
+
+@dataclass(frozen=True)
+class ReplayJob:
+    """Tracks to be walked, at least one, each with a way; in any order."""
+
+    url: str
+    tracks: tuple[Track, ...]
+    speedup: float
+    linger_s: float
+    """How long a pedestrian stands at its last place before it leaves (real time)."""
+
+    async def run(self, tally: Tally, stop: asyncio.Event) -> None:
+        """Send everyone in at their time, until all have left or `stop` is set."""
+        tally.expected = len(self.tracks)
+        tracks = sorted(self.tracks, key=lambda track: track.start_s)
+        lead_s = LEAD_S * self.speedup
+        pace = Pace(tracks[0].start_s - lead_s, self.speedup)
+        clock = ServerClock()
+        async with asyncio.TaskGroup() as group:
+            for track in tracks:
+                await pace.until(track.start_s - lead_s, stop)
+                if stop.is_set():
+                    break
+                group.create_task(self._visit(track, pace, clock, tally, stop))
+
+    async def _visit(
+        self, track: Track, pace: Pace, clock: ServerClock, tally: Tally, stop: asyncio.Event
+    ) -> None:
+        name = f"Pedestrian {track.id}"[:MAX_NAME_CHARS].strip()
+        hello = Hello(name=name, version=VERSION, at=(*track.at(track.start_s), 0))
+
+        async def stay(client: Client) -> None:
+            done = asyncio.Event()
+            walk = _Walk(client, track, pace, tally, done, self.linger_s * self.speedup)
+            await until_first(
+                client.read(walk.on_snapshot), client.keep_pinging(), done.wait(), stop.wait()
+            )
+
+        await visit(self.url, hello, clock, tally, stay)
+
+
+class _Walk:
+    """One pedestrian on its way: measures each snapshot and answers it with a command."""
+
+    def __init__(
+        self,
+        client: Client,
+        track: Track,
+        pace: Pace,
+        tally: Tally,
+        done: asyncio.Event,
+        linger_s: float,
+    ) -> None:
+        welcome = client.welcome
+        self._client = client
+        self._id = welcome.id
+        self._origin = welcome.origin
+        self._pace = pace
+        self._timeline = pace.timeline(welcome.tick, 1.0 / welcome.tick_rate)
+        self._follower = Follower(track, self._timeline, welcome.max_speed)
+        self._tally = tally
+        self._done = done
+        self._leave_s = track.end_s + linger_s
+
+    async def on_snapshot(self, tick: int, ack: int, frame: bytes) -> None:
+        self._pace.saw(tick)
+        if self._timeline.recorded_s(tick) > self._leave_s:
+            self._done.set()
+            return
+        position = find_position_m(frame[SNAPSHOT_HEAD_BYTES:], self._id, self._origin)
+        if position is None:
+            return
+        deviation_m = self._follower.deviation_m(tick, position)
+        if deviation_m is not None:
+            self._tally.deviation_m.add(deviation_m)
+            self._tally.near += deviation_m <= NEAR_M
+        command = self._follower.steer(tick, ack, position)
+        if command is not None:
+            self._tally.capped += command.capped
+            await self._client.send(
+                Move(seq=command.seq, direction=command.direction, speed=command.speed)
+            )

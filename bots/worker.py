@@ -1,0 +1,64 @@
+"""A process that runs one share of the clients and reports to the one that started it."""
+
+import asyncio
+import os
+import signal
+import sys
+import time
+import traceback
+from multiprocessing.connection import Connection as Pipe
+from typing import Final, NamedTuple, Protocol
+
+from bots.tally import Tally
+
+REPORT_EVERY_S: Final = 0.25
+
+
+class Job(Protocol):
+    """Something to do with clients until it is done, or until told to stop."""
+
+    async def run(self, tally: Tally, stop: asyncio.Event) -> None: ...
+
+
+class Report(NamedTuple):
+    """What a worker sends up the pipe, again and again; `fault` is a traceback."""
+
+    tally: Tally
+    final: bool
+    fault: str | None = None
+
+
+def work(job: Job, pipe: Pipe) -> None:
+    """Run the job; anything on the pipe, or its end, means stop. The target of the process."""
+    # Ctrl-C reaches every process of the terminal; only the first one decides what it means.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if sys.platform == "win32":
+        asyncio.run(_run(job, pipe))
+    else:
+        import uvloop  # noqa: PLC0415 (not to be had elsewhere)
+
+        uvloop.run(_run(job, pipe))
+
+
+async def _run(job: Job, pipe: Pipe) -> None:
+    tally = Tally()
+    idle_s = time.process_time()  # what starting the process took is not the clients' doing
+    stop = asyncio.Event()
+    task = asyncio.create_task(job.run(tally, stop))
+    while not task.done():
+        await asyncio.wait({task}, timeout=REPORT_EVERY_S)
+        if pipe.poll():
+            stop.set()
+        tally.cpu_seconds = time.process_time() - idle_s
+        if not task.done():
+            _report(pipe, Report(tally, final=False))
+    error = task.exception()
+    fault = None if error is None else "".join(traceback.format_exception(error))
+    _report(pipe, Report(tally, final=True, fault=fault))
+
+
+def _report(pipe: Pipe, report: Report) -> None:
+    try:
+        pipe.send(report)
+    except OSError:  # nobody listens any more: the run is over
+        os._exit(1)
