@@ -121,12 +121,26 @@ def crosses_any(index: SegmentIndex, ax: float, ay: float, bx: float, by: float)
 
 
 @kernel
+def _within(low: float, value: float, high: float) -> float:
+    return min(high, max(low, value))
+
+
+@kernel
 def slide_step(
-    index: SegmentIndex, x: float, y: float, dx: float, dy: float, clearance: float
+    index: SegmentIndex,
+    bounds: tuple[float, float, float, float],
+    x: float,
+    y: float,
+    dx: float,
+    dy: float,
+    clearance: float,
 ) -> tuple[float, float]:
-    """Move a disc by a short step, pushed out of segments; stays where it is when that fails."""
-    nx = x + dx
-    ny = y + dy
+    """Move a disc by a short step, pushed out of segments; stays where it is when that fails.
+
+    The bounds count before segments do: a wall that ends at them must not be rounded outside.
+    """
+    nx = _within(bounds[0], x + dx, bounds[2])
+    ny = _within(bounds[1], y + dy, bounds[3])
     before = nearest_segment(index, x, y)[0]
     allowed = min(clearance, before) - 1e-9
     for _ in range(4):
@@ -136,8 +150,8 @@ def slide_step(
         if d < 1e-9:
             return x, y
         push = (min(clearance, before) - d) / d
-        nx += (nx - cx) * push
-        ny += (ny - cy) * push
+        nx = _within(bounds[0], nx + (nx - cx) * push, bounds[2])
+        ny = _within(bounds[1], ny + (ny - cy) * push, bounds[3])
     if nearest_segment(index, nx, ny)[0] < allowed or crosses_any(index, x, y, nx, ny):
         return x, y
     return nx, ny
@@ -164,9 +178,8 @@ def slide(
     while done < length:
         room = min(nearest_segment(index, x, y)[0], index.reach_m) - clearance
         piece = min(length - done, max(room, 0.5 * clearance, 0.02))
-        x, y = slide_step(index, x, y, dx * piece / length, dy * piece / length, clearance)
-        x = min(bounds[2], max(bounds[0], x))
-        y = min(bounds[3], max(bounds[1], y))
+        u = piece / length
+        x, y = slide_step(index, bounds, x, y, dx * u, dy * u, clearance)
         done += piece
     return x, y
 

@@ -100,7 +100,13 @@ class Batch:
         self.field.fill(prediction, self._on_threads)
         paths = np.empty((actors, slices, 2))
         reservations = make_reservations(
-            self.grid, paths, crowd.layers, crowd.parameters["radius_m"].copy(), crowd.ranks
+            self.grid,
+            paths,
+            crowd.layers,
+            crowd.parameters["radius_m"].copy(),
+            crowd.ranks,
+            float(crowd.parameters["max_speed_mps"].max(initial=0.0))
+            * max(tick_s, self.plan.slice_s),
         )
         world = World(self.grid.arrays, self.field.fields, reservations, self.plan.step_s)
         decisions = Decisions(

@@ -185,6 +185,8 @@ class LayeredGrid:
         ways = np.ascontiguousarray(displacements, dtype=np.float64).reshape(-1, 2)
         if ways.shape != points.shape:
             raise ValueError(f"{len(points)} positions but {len(ways)} displacements")
+        if not np.isfinite(ways).all():
+            raise ValueError("displacements must be finite")
         out = np.empty_like(points)
         geometry.slide_many(self.index, self.bounds, points, ways, clearance_m, out)
         return out, floors.copy()

@@ -58,10 +58,16 @@ def gaussian_density(offset_m: NDArray[np.float64], sigma_m: float) -> NDArray[n
     return np.asarray(np.exp(-squared / (2.0 * sigma_m**2)) / (2.0 * np.pi * sigma_m**2))
 
 
+def _by_name(who: object) -> tuple[str, str]:
+    return type(who).__name__, str(who)
+
+
 class TrackHistory:
     """The recorded past of everyone who can be seen, one position a tick.
 
-    Memory: `samples` x `sample_s` / `tick_s` positions a person. `observe` costs O(people).
+    People are kept in the order of their ids, so that sums over them do not depend on how they
+    were listed. Memory: `samples` x `sample_s` / `tick_s` positions a person. `observe` costs
+    O(people log people).
     """
 
     def __init__(self, model: PredictionModel, tick_s: float) -> None:
@@ -102,17 +108,19 @@ class TrackHistory:
         ValueError
             A position is not finite or not of length 2 or 3; nothing is changed then.
         """
+        listed = sorted(people, key=_by_name)
         rows = np.zeros((len(people), 3))
-        for k, (who, where) in enumerate(people.items()):
+        for k, who in enumerate(listed):
+            where = people[who]
             if len(where) not in (2, 3) or not np.isfinite(where).all():
                 raise ValueError(f"position of {who!r} must be finite (x, y[, layer]), got {where}")
             rows[k, : len(where)] = where
         for who in [who for who in self._rows if who not in people]:
             self._free.append(self._rows.pop(who))
-        for who in people:
+        for who in listed:
             if who not in self._rows:
                 self._rows[who] = self._take_row()
-        self._rows = {who: self._rows[who] for who in people}
+        self._rows = {who: self._rows[who] for who in listed}
         self._order = np.fromiter(self._rows.values(), dtype=np.int64, count=len(self._rows))
         self._newest = (self._newest + 1) % self._depth
         moved = self._layer[self._order] != rows[:, 2]

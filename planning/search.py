@@ -10,13 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning import _search_kernels as kernels
-from planning._reservation_kernels import Reservations
+from planning._reservation_kernels import MARGIN_M, Reservations
 from planning._search_kernels import SUB, Moves, Task, Workspace, World
 from planning.grid import LayeredGrid
 from planning.potential import Potential
 from planning.risk import RiskField
-
-RESERVATION_BUCKET_M = 1.25
 
 
 class SearchStatus(IntEnum):
@@ -94,11 +92,18 @@ def make_reservations(
     layers: NDArray[np.int64],
     radii_m: NDArray[np.float64],
     ranks: NDArray[np.int64],
+    fastest_m: float,
 ) -> Reservations:
-    """Room for the planned ways of A actors, (A, K, 2); `index_paths` fills its index."""
+    """Room for the planned ways of A actors, (A, K, 2); `index_paths` fills its index.
+
+    `fastest_m` is how far anyone can get from one slice, or tick, to the next: buckets are so
+    wide that whoever can be met in that time is in one of the nine around.
+    """
     x0, y0, x1, y1 = grid.bounds
-    nx = max(1, math.ceil((x1 - x0) / RESERVATION_BUCKET_M))
-    ny = max(1, math.ceil((y1 - y0) / RESERVATION_BUCKET_M))
+    widest = float(radii_m.max()) if len(radii_m) else 0.0
+    bucket = 2.0 * (widest + fastest_m) + MARGIN_M
+    nx = max(1, math.ceil((x1 - x0) / bucket))
+    ny = max(1, math.ceil((y1 - y0) / bucket))
     actors, slices = paths.shape[:2]
     return Reservations(
         paths,
@@ -109,7 +114,7 @@ def make_reservations(
         np.zeros((slices, actors), dtype=np.int64),
         x0,
         y0,
-        RESERVATION_BUCKET_M,
+        bucket,
         nx,
         ny,
     )
