@@ -1,6 +1,7 @@
 """What the documents name exists: make targets, files, options, and examples that hold."""
 
 import ast
+import asyncio
 import json
 import re
 import subprocess
@@ -9,13 +10,19 @@ from collections.abc import Iterator
 from functools import cache
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+import bots
 from planning import Scene
+from protocol.messages import Chat, Enter
+from server.app import running
+from server.settings import ServerSettings
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md"))]
+ANSWER_LIMIT_S = 30.0
 NOT_OURS = {"crowdbotp/OpenTraj", "server/client_assets/"}
 
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
@@ -99,7 +106,33 @@ def test_python_blocks_import_what_exists(document: Path) -> None:
                 assert [n.name for n in node.names if not hasattr(module, n.name)] == []
 
 
-def test_readme_shows_how_to_make_a_scene_and_a_bot() -> None:
-    text = (ROOT / "README.md").read_text()
-    assert len(blocks(text, "json")) == 1
-    assert len(blocks(text, "python")) == 1
+def test_readme_shows_how_to_make_a_scene() -> None:
+    (example,) = blocks((ROOT / "README.md").read_text(), "json")
+    assert '"bounds"' in example
+
+
+async def test_bot_of_the_readme_answers() -> None:
+    (example,) = blocks((ROOT / "README.md").read_text(), "python")
+    program, _, last_line = example.strip().rpartition("\n")
+    assert last_line == "asyncio.run(main())"
+    async with running(ServerSettings(actors=0, port=0, private_port=0)) as server:
+        url = f"ws://localhost:{server.port}"
+        names: dict[str, Any] = {}
+        exec(program.replace("ws://localhost:8080", url), names)
+        async with asyncio.timeout(ANSWER_LIMIT_S), bots.connect(url, name="Narcissus") as bot:
+            echo = asyncio.create_task(names["main"]())
+            try:
+                assert await conversation(bot) == "I heard: Who is there?"
+            finally:
+                echo.cancel()
+                await asyncio.wait([echo])
+
+
+async def conversation(bot: bots.Bot) -> str:
+    """What somebody else says, after we have asked whoever comes into view."""
+    async for event in bot.events():
+        if isinstance(event, Enter) and any(entity.name == "Echo" for entity in event.entities):
+            await bot.chat("Who is there?")
+        if isinstance(event, Chat) and event.id != bot.id:
+            return event.text
+    raise AssertionError("the connection ended without an answer")
