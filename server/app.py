@@ -16,6 +16,7 @@ from server.assets import Assets
 from server.casting import assemble
 from server.metrics import Metrics
 from server.net.delivery import Delivery
+from server.net.guidance import Guidance
 from server.net.hub import Hub
 from server.net.listener import Listener
 from server.net.private import start_private
@@ -80,16 +81,27 @@ async def running(settings: ServerSettings) -> AsyncIterator[Running]:
         _watch(world, metrics)
 
         schedule = Schedule(world.tick_s, loop.time())
-        hub = Hub(world, settings, metrics, lambda: schedule.world_time(world.tick, loop.time()))
+        ways = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ways"))
+        guidance = Guidance(world, ways)
+        metrics.gauge("ways_waiting", "People who wait for a way", lambda: guidance.waiting)
+        hub = Hub(
+            world,
+            guidance,
+            settings,
+            metrics,
+            lambda: schedule.world_time(world.tick, loop.time()),
+        )
         delivery = Delivery(world, hub.sessions, settings.tick_rate)
         ticker = Ticker(world, hub, delivery, schedule, metrics, thread)
         listener = await Listener(hub, Assets.load(), settings, metrics).start()
         ticking = asyncio.create_task(ticker.run())
+        guiding = asyncio.create_task(guidance.run(hub.way_found))
         ready = True
         try:
             yield Running(_port(listener), _port(private), world, metrics, ticking)
         finally:
             ready = False
+            guiding.cancel()
             await _stop(ticker, ticking, hub, listener)
 
 
@@ -129,7 +141,6 @@ async def _stop(ticker: Ticker, ticking: "asyncio.Task[None]", hub: Hub, listene
 def _watch(world: World, metrics: Metrics) -> None:
     metrics.gauge("people", "People in the world", lambda: world.count()[0])
     metrics.gauge("actors", "Actors in the world", lambda: world.count()[1])
-    metrics.gauge("routes_waiting", "People who wait for a way", lambda: world.routes_waiting)
     metrics.total("people_seen", "People who came in", lambda: world.people_seen)
     metrics.total("actor_trips", "Trips that actors completed", lambda: world.trips)
     contacts = world.contacts

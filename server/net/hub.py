@@ -10,11 +10,13 @@ from protocol import VERSION, ByeCode, CloseCode, ErrorCode, ProtocolError
 from protocol.messages import Bye, Chat, Hello, Move, WalkTo, Welcome
 from server.metrics import Metrics
 from server.net import frames
+from server.net.guidance import Guidance
 from server.net.seats import Seat, Seats
 from server.net.session import Session
 from server.settings import ServerSettings
-from server.world.inputs import Attach, Detach, Input, Join, Leave, Movement, Seek, Steer
-from server.world.world import Begun, World
+from server.world.inputs import Attach, Detach, Follow, Input, Join, Leave, Movement, Steer
+from server.world.ways import Way
+from server.world.world import Joined, World
 
 MAX_JOINS_PER_TICK: Final = 16
 """Each join costs every neighbour an enter message; a crowd comes in over some ticks."""
@@ -32,6 +34,7 @@ class Hub:
     def __init__(
         self,
         world: World,
+        guidance: Guidance,
         settings: ServerSettings,
         metrics: Metrics,
         server_time: Callable[[], float],
@@ -40,6 +43,7 @@ class Hub:
         self.sessions: dict[int, Session] = {}
         """Sessions that have been welcomed, by their avatar's id."""
         self._world = world
+        self._guidance = guidance
         self._settings = settings
         self._metrics = metrics
         self._welcomes = frames.Welcomes(world.scene.model_dump(mode="json"))
@@ -82,13 +86,25 @@ class Hub:
         avatar_id = session.avatar_id
         if avatar_id is None:
             return
-        if avatar_id in self._movements:
-            self._metrics.traffic.movements_superseded += 1
         if isinstance(wish, Move):
-            self._movements[avatar_id] = Steer(avatar_id, wish.seq, wish.direction, wish.speed)
+            self._want(Steer(avatar_id, wish.seq, wish.direction, wish.speed))
+            return
+        straight = self._world.straight_way(avatar_id, (wish.x, wish.y, wish.layer))
+        if straight is not None:
+            self._want(Follow(avatar_id, wish.seq, straight))
         else:
-            goal = (wish.x, wish.y)
-            self._movements[avatar_id] = Seek(avatar_id, wish.seq, goal, wish.layer)
+            self._guidance.ask(avatar_id, wish)
+
+    def way_found(self, avatar_id: int, wish: WalkTo, way: Way | None) -> None:
+        """Send a person on the way that was found, or tell them that there is none."""
+        session = self.sessions.get(avatar_id)
+        if session is None:
+            return
+        if way is not None:
+            self._want(Follow(avatar_id, wish.seq, way))
+        else:
+            text = f"no way leads to ({wish.x:.2f}, {wish.y:.2f}) on layer {wish.layer}"
+            session.tell(ProtocolError(ErrorCode.NO_PATH, text, None))
 
     def say(self, session: Session, text: str) -> None:
         """Pass a line on to everyone who has the speaker in view, the speaker included."""
@@ -144,9 +160,9 @@ class Hub:
         self._comings, self._movements = [], {}
         return inputs
 
-    def welcome(self, inputs: Iterable[Input], begun: Begun) -> None:
+    def welcome(self, inputs: Iterable[Input], joined: Joined) -> None:
         """Welcome those whom the tick has let in, before anything else is sent to them."""
-        for ticket, avatar_id in begun.joined:
+        for ticket, avatar_id in joined:
             session, hello = self._joining.pop(ticket)
             token = self._seats.issue(avatar_id, hello.name, session)
             session.avatar_id, session.token = avatar_id, token
@@ -156,15 +172,6 @@ class Hub:
                 seat = self._seats.of(item.id)
                 if seat is not None and seat.occupant is not None:
                     self._bind(seat.occupant, item.id, resumed=True)
-
-    def refuse_routes(self, unreachable: Iterable[Seek]) -> None:
-        """Tell people that no way leads to where they want to go."""
-        for wish in unreachable:
-            session = self.sessions.get(wish.id)
-            if session is not None:
-                x, y = wish.goal
-                text = f"no way leads to ({x:.2f}, {y:.2f}) on layer {wish.layer}"
-                session.tell(ProtocolError(ErrorCode.NO_PATH, text, None))
 
     async def close(self) -> None:
         """Say goodbye to everyone and wait until they are gone, or cut off."""
@@ -212,6 +219,13 @@ class Hub:
     def _unbind(self, seat: Seat[Session]) -> None:
         self.sessions.pop(seat.avatar_id, None)
         self._movements.pop(seat.avatar_id, None)
+        self._guidance.forget(seat.avatar_id)
+
+    def _want(self, movement: Movement) -> None:
+        if movement.id in self._movements:
+            self._metrics.traffic.movements_superseded += 1
+        self._movements[movement.id] = movement
+        self._guidance.forget(movement.id)
 
     def _remove(self, seat: Seat[Session]) -> None:
         self._seats.remove(seat)

@@ -2,6 +2,7 @@
 
 import asyncio
 from concurrent.futures import Executor
+from time import perf_counter
 
 import structlog
 
@@ -58,17 +59,16 @@ class Ticker:
 
     async def _tick(self) -> None:
         loop = asyncio.get_running_loop()
-        start = loop.time()
-        self._schedule.begin(start)
-        inputs = self._hub.drain(start)
-        begun = self._world.begin(inputs)
-        self._hub.welcome(inputs, begun)
-        self._hub.refuse_routes(begun.unreachable)
+        start = perf_counter()
+        self._schedule.begin(loop.time())
+        inputs = self._hub.drain(loop.time())
+        joined = self._world.begin(inputs)
+        self._hub.welcome(inputs, joined)
         actors = await loop.run_in_executor(self._thread, self._think)
         sight = self._world.finish(actors)
         with self._world.times.stage("write"):
             self._delivery.deliver(sight, loop.time())
-        self._metrics.tick_took(loop.time() - start, self._world.times.seconds)
+        self._metrics.tick_took(perf_counter() - start, self._world.times.seconds)
 
     def _think(self) -> ActorStates:
         try:

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from server.world.ways import Point, Way
+
 
 @dataclass(frozen=True, slots=True)
 class Join:
@@ -9,7 +11,7 @@ class Join:
 
     ticket: int
     name: str
-    at: tuple[float, float, int] | None
+    at: Point | None
     """Wished place x, y (metres) and layer; None for a spawn point."""
 
 
@@ -45,14 +47,13 @@ class Steer:
 
 
 @dataclass(frozen=True, slots=True)
-class Seek:
-    """Walk to a point around what stands in the way."""
+class Follow:
+    """Walk along a way that was found, to its end."""
 
     id: int
     seq: int
-    goal: tuple[float, float]
-    layer: int
+    way: Way
 
 
-Movement = Steer | Seek
-Input = Join | Attach | Detach | Leave | Steer | Seek
+Movement = Steer | Follow
+Input = Join | Attach | Detach | Leave | Steer | Follow

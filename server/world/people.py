@@ -1,34 +1,41 @@
 """How people move: the server decides, within speed and walls."""
 
+from collections import deque
+from typing import Final
+
 import numpy as np
 
 from planning import LayeredGrid
-from server.world.inputs import Seek, Steer
-from server.world.routes import Route, Routes
+from server.world.inputs import Follow, Steer
 from server.world.rules import Rules
 from server.world.state import PERSON, State
+from server.world.ways import Point
+
+BLOCKED_TICKS: Final = 20
+"""Whoever follows a way and gets nowhere for so long gives it up."""
 
 
 class People:
-    """Moves every person by one tick at a time.
-
-    `velocities` is what a person is trying to do, float (capacity, 2), metres a second.
-    """
+    """Moves every person by one tick at a time."""
 
     def __init__(self, state: State, grid: LayeredGrid, rules: Rules, tick_s: float) -> None:
         self._state = state
         self._grid = grid
         self._rules = rules
         self._tick_s = tick_s
+        self._walk_speed_mps = min(rules.person_walk_speed_mps, rules.person_max_speed_mps)
+        # What each person is trying to do, by slot: a velocity, or the next point of a way.
         self._velocities = np.zeros((state.capacity, 2))
-        self._following: dict[int, Route] = {}
-        self.routes = Routes(state, grid, rules.person_clearance_m)
+        self._following = np.zeros(state.capacity, dtype=np.bool_)
+        self._targets = np.zeros((state.capacity, 2))
+        self._blocked = np.zeros(state.capacity, dtype=np.int64)
+        self._ways: dict[int, deque[Point]] = {}
 
     def stop(self, slot: int) -> None:
         """Stand still, want nothing."""
         self._velocities[slot] = 0.0
-        self._following.pop(slot, None)
-        self.routes.forget(int(self._state.ids[slot]))
+        self._following[slot] = False
+        self._ways.pop(slot, None)
 
     def steer(self, slot: int, wish: Steer) -> None:
         """Walk in a direction, no faster than the rules allow."""
@@ -37,29 +44,19 @@ class People:
         angle = wish.direction_rad
         self._velocities[slot] = speed * np.cos(angle), speed * np.sin(angle)
 
-    def seek(self, wish: Seek) -> None:
-        """Ask for a way to a point; goes on as before until it is found."""
-        self.routes.ask(wish)
-
-    def take_routes(self) -> list[Seek]:
-        """Set out on the ways that were found; returns the wishes that no way leads to."""
-        refused = []
-        for wish, route in self.routes.answers():
-            if wish.id not in self._state:
-                continue
-            slot = self._state.slot(wish.id)
-            self._velocities[slot] = 0.0
-            if route is None:
-                self._following.pop(slot, None)
-                refused.append(wish)
-            else:
-                self._following[slot] = route
-        return refused
+    def follow(self, slot: int, wish: Follow) -> None:
+        """Walk along a way to its end."""
+        self.stop(slot)
+        if wish.way:
+            self._ways[slot] = deque(wish.way)
+            self._following[slot] = True
+            self._blocked[slot] = 0
+            self._targets[slot] = wish.way[0][:2]
 
     def move(self) -> None:
         """Everyone's motion of one tick."""
         state = self._state
-        self._head_for_goals()
+        self._head_for_targets()
         people = state.of_kind(PERSON)
         state.speeds[people] = 0.0
         moving = people[self._velocities[people].any(axis=1)]
@@ -72,20 +69,32 @@ class People:
         state.headings[moving] = np.arctan2(wanted[:, 1], wanted[:, 0])
         moved_m = state.positions[moving] - before
         state.speeds[moving] = np.hypot(moved_m[:, 0], moved_m[:, 1]) / self._tick_s
+        self._pass_targets()
 
-    def _head_for_goals(self) -> None:
-        """Velocities of those who follow a route: downhill, and straight within the last cell."""
-        speed = min(self._rules.person_walk_speed_mps, self._rules.person_max_speed_mps)
-        for slot, route in list(self._following.items()):
-            here = self._state.positions[slot]
-            way = np.asarray(route.goal) - here
-            remaining_m = float(np.hypot(*way))
-            layer = self._state.layers[slot : slot + 1]
-            if remaining_m > self._grid.cell_m or layer[0] != route.layer:
-                velocity = route.potential.direction(here[None], layer)[0] * speed
-            else:
-                velocity = way / max(remaining_m / speed, self._tick_s)
-            if velocity.any():
-                self._velocities[slot] = velocity
+    def _head_for_targets(self) -> None:
+        """Velocities of those who follow a way; the last step to a point ends on it."""
+        slots = np.flatnonzero(self._following)
+        ways = self._targets[slots] - self._state.positions[slots]
+        remaining_m = np.hypot(ways[:, 0], ways[:, 1])
+        seconds = np.maximum(remaining_m / self._walk_speed_mps, self._tick_s)
+        self._velocities[slots] = ways / seconds[:, None]
+
+    def _pass_targets(self) -> None:
+        """Those at a point of their way turn to the next; those at its end or stuck stop."""
+        slots = np.flatnonzero(self._following)
+        state = self._state
+        wanted = np.hypot(self._velocities[slots, 0], self._velocities[slots, 1])
+        stuck = state.speeds[slots] < 0.1 * wanted
+        self._blocked[slots] = np.where(stuck, self._blocked[slots] + 1, 0)
+        for slot in slots[self._blocked[slots] >= BLOCKED_TICKS].tolist():
+            self.stop(slot)
+        ways = self._targets[slots] - state.positions[slots]
+        for slot in slots[np.hypot(ways[:, 0], ways[:, 1]) < 1e-6].tolist():
+            way = self._ways.get(slot)
+            if way is None:
+                continue
+            way.popleft()
+            if way:
+                self._targets[slot] = way[0][:2]
             else:
                 self.stop(slot)

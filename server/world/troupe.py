@@ -7,9 +7,8 @@ import numpy as np
 
 from actors import ActorState, Cast, Explanation
 from server.world.state import ACTOR, State
+from server.world.ways import Point
 
-Place = tuple[float, float, int]
-"""x, y in metres and the layer."""
 ActorStates = Mapping[Hashable, ActorState]
 
 
@@ -35,7 +34,7 @@ class Troupe:
     def trips(self) -> int:
         return self._cast.trips
 
-    def plan(self, people: Mapping[Hashable, Place]) -> ActorStates:
+    def plan(self, people: Mapping[Hashable, Point]) -> ActorStates:
         """The next tick of all actors. Heavy: touches nothing but the cast."""
         return self._cast.tick(people)
 

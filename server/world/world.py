@@ -1,14 +1,15 @@
 """A zone, tick by tick: begin (people), think (actors, elsewhere), finish (what everyone sees)."""
 
 from collections.abc import Callable, Hashable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from actors import Cast, Explanation
 from planning import LayeredGrid, Scene
 from server.world.contacts import Contacts
-from server.world.inputs import Attach, Detach, Input, Join, Leave, Seek, Steer
+from server.world.inputs import Attach, Detach, Follow, Input, Join, Leave, Steer
 from server.world.interest import Changes, Interest
 from server.world.neighbours import Neighbours
 from server.world.people import People
@@ -16,18 +17,12 @@ from server.world.rules import Rules
 from server.world.spawning import Spawning
 from server.world.state import ACTOR, KINDS, PERSON, State
 from server.world.tick import StageTimes
-from server.world.troupe import ActorStates, Body, Place, Troupe
+from server.world.troupe import ActorStates, Body, Troupe
 from server.world.views import Snapshots, Views
+from server.world.ways import Point, Way, find_way, straight_way
 
-
-@dataclass(frozen=True)
-class Begun:
-    """What the inputs of a tick led to."""
-
-    joined: list[tuple[int, int]] = field(default_factory=list)
-    """(ticket, avatar's id) of everyone new."""
-    unreachable: list[Seek] = field(default_factory=list)
-    """Wishes that no way leads to."""
+Joined = list[tuple[int, int]]
+"""(ticket, avatar's id) of everyone new."""
 
 
 @dataclass(frozen=True)
@@ -42,8 +37,8 @@ class World:
     """State of one zone and the order in which it changes. Time is `tick * tick_s`.
 
     A tick is `begin`, `think`, `finish`. `think` is the heavy part and may run in another
-    thread, provided that nothing else of the world is called meanwhile but `name`, `sees` and
-    `seen_by`. Same scene, seed and inputs give the same world, bit for bit.
+    thread, provided that the world is only asked questions meanwhile, and not
+    to explain an actor. Same scene, seed and inputs give the same world, bit for bit.
     """
 
     def __init__(
@@ -68,6 +63,7 @@ class World:
         self.state = State(max_people + len(bodies))
         self.contacts = Contacts()
         self.times = StageTimes(clock)
+        self._grid = grid
         self._people = People(self.state, grid, rules, tick_s)
         self._troupe = Troupe(self.state, cast, bodies)
         self._interest = Interest(self.state, rules)
@@ -75,31 +71,29 @@ class World:
         self._spawning = Spawning(
             scene, grid, rules.person_clearance_m, np.random.SeedSequence(seed)
         )
-        self._observed: dict[Hashable, Place] = {}
+        self._observed: dict[Hashable, Point] = {}
 
     # --- one tick -----------------------------------------------------------------------------
 
-    def begin(self, inputs: Iterable[Input]) -> Begun:
+    def begin(self, inputs: Iterable[Input]) -> Joined:
         """Take in what happened outside and move the people. Inputs of who is gone are void."""
         self.tick += 1
         self.state.before[:] = self.state.positions
-        begun = Begun()
+        joined: Joined = []
         with self.times.stage("drain"):
             for item in inputs:
                 if isinstance(item, Join):
-                    begun.joined.append((item.ticket, self._join(item)))
+                    joined.append((item.ticket, self._join(item)))
                 elif item.id in self.state:
                     self._apply(item, self.state.slot(item.id))
         with self.times.stage("people"):
-            begun.unreachable.extend(self._people.take_routes())
             self._people.move()
             self._observed = self._observe()
-        return begun
+        return joined
 
     def think(self) -> ActorStates:
-        """Find ways for people and the next step of every actor."""
+        """Find the next step of every actor."""
         with self.times.stage("actors"):
-            self._people.routes.work()
             return self._troupe.plan(self._observed)
 
     def finish(self, actors: ActorStates) -> Sight:
@@ -125,10 +119,6 @@ class World:
         """Trips that the actors have completed."""
         return self._troupe.trips
 
-    @property
-    def routes_waiting(self) -> int:
-        return self._people.routes.waiting
-
     def count(self) -> tuple[int, int]:
         """People and actors in the world."""
         return len(self.state.of_kind(PERSON)), len(self.state.of_kind(ACTOR))
@@ -147,6 +137,18 @@ class World:
             "heading": float(state.headings[slot]),
             "radius": float(state.radii[slot]),
         }
+
+    def straight_way(self, avatar_id: int, goal: Point) -> Way | None:
+        """The straight way from where that avatar is, if nothing stands between; quick."""
+        if goal[2] >= self._grid.layers:
+            return None
+        here = self._where(avatar_id)
+        return straight_way(self._grid, here, goal, self.rules.person_clearance_m)
+
+    def way_finder(self, avatar_id: int, goal: Point) -> Callable[[], Way | None]:
+        """A search for a way from where that avatar is now; heavy, and safe in any thread."""
+        clearance_m = self.rules.person_clearance_m
+        return partial(find_way, self._grid, self._where(avatar_id), goal, clearance_m)
 
     def sees(self, viewer_id: int, avatar_id: int) -> bool:
         """Whether that viewer has that avatar in view."""
@@ -172,6 +174,11 @@ class World:
         """Why an actor, named by its avatar's id, does what it does."""
         return self._troupe.explain(actor_id)
 
+    def _where(self, avatar_id: int) -> Point:
+        slot = self.state.slot(avatar_id)
+        x, y = self.state.positions[slot].tolist()
+        return x, y, int(self.state.layers[slot])
+
     # --- inputs -------------------------------------------------------------------------------
 
     def _join(self, join: Join) -> int:
@@ -187,13 +194,13 @@ class World:
         self._interest.attach(slot)
         self._views.attach(slot)
 
-    def _apply(self, item: Attach | Detach | Leave | Steer | Seek, slot: int) -> None:
+    def _apply(self, item: Attach | Detach | Leave | Steer | Follow, slot: int) -> None:
         match item:
             case Steer():
                 self._people.steer(slot, item)
                 self._views.acks[slot] = item.seq
-            case Seek():
-                self._people.seek(item)
+            case Follow():
+                self._people.follow(slot, item)
                 self._views.acks[slot] = item.seq
             case Attach():
                 self._attach(slot)
@@ -205,7 +212,7 @@ class World:
                 self._interest.remove(slot, item.id)
                 self.state.remove(item.id)
 
-    def _observe(self) -> dict[Hashable, Place]:
+    def _observe(self) -> dict[Hashable, Point]:
         state = self.state
         people = state.of_kind(PERSON)
         places = zip(

@@ -1,0 +1,61 @@
+"""A cast whose actors do as a test says."""
+
+from collections.abc import Hashable, Mapping
+from typing import cast
+
+import numpy as np
+
+from actors import ActorState, Cast, Explanation, Reason
+
+Place = tuple[float, float, int]
+
+
+class ScriptedCast:
+    """Actors that stand where they were put and move at the velocity they were given."""
+
+    def __init__(self, tick_s: float = 0.05) -> None:
+        self.tick_s = tick_s
+        self.positions: dict[Hashable, tuple[float, float]] = {}
+        self.velocities: dict[Hashable, tuple[float, float]] = {}
+        self.observed: Mapping[Hashable, Place] = {}
+        self.trips = 0
+        self.failing = False
+
+    def put(
+        self,
+        actor_id: Hashable,
+        position: tuple[float, float],
+        velocity: tuple[float, float] = (0.0, 0.0),
+    ) -> None:
+        self.positions[actor_id] = position
+        self.velocities[actor_id] = velocity
+
+    def tick(self, people: Mapping[Hashable, Place]) -> dict[Hashable, ActorState]:
+        if self.failing:
+            raise RuntimeError("told to fail")
+        self.observed = people
+        states = {}
+        for actor_id, (x, y) in self.positions.items():
+            vx, vy = self.velocities[actor_id]
+            here = (x + vx * self.tick_s, y + vy * self.tick_s)
+            self.positions[actor_id] = here
+            states[actor_id] = ActorState(
+                position=here,
+                layer=0,
+                velocity=(vx, vy),
+                heading=float(np.arctan2(vy, vx)),
+                reason=Reason.MOVING,
+                goal=None,
+                slice_s=0.4,
+                way=np.array([here]),
+            )
+        return states
+
+    def explain(self, actor_id: Hashable) -> Explanation:
+        x, y = self.positions[actor_id]
+        path = np.array([[x, y, 0.0, 0.0], [x + 1.0, y, 0.0, 0.4]])
+        people = [np.array([[px, py, layer, 0.5]]) for px, py, layer in self.observed.values()]
+        return Explanation("patrol", Reason.MOVING, (x + 1.0, y, 0), path, people)
+
+    def as_cast(self) -> Cast:
+        return cast(Cast, self)

@@ -1,0 +1,81 @@
+import math
+
+import numpy as np
+import pytest
+
+from server.world.contacts import closest_approach
+from server.world.inputs import Leave, Steer
+from server.world.state import PERSON, State
+from tests.server.doubles import ScriptedCast
+from tests.server.worlds import FIELD, TICK_S, Trial
+
+
+def trial_with(*actors: tuple[tuple[float, float], tuple[float, float]]) -> Trial:
+    cast = ScriptedCast(TICK_S)
+    for number, (position, velocity) in enumerate(actors):
+        cast.put(f"a{number}", position, velocity)
+    return Trial(scene=FIELD, cast=cast)
+
+
+def test_a_contact_counts_once_until_the_pair_has_parted() -> None:
+    trial = trial_with(((50.0, 50.0), (0.0, 0.0)))
+    (ann,) = trial.join((49.0, 50.0))
+    trial.tick(Steer(ann, 1, 0.0, 1.0))
+    trial.ticks(25)
+    assert trial.world.contacts.actor_person == 1
+    trial.ticks(30)
+    assert trial.position(ann)[0] > 51.0
+    trial.tick(Steer(ann, 2, math.pi, 1.0))
+    trial.ticks(30)
+    assert trial.world.contacts.actor_person == 2
+
+
+def test_a_fast_crossing_between_two_ticks_is_seen() -> None:
+    trial = trial_with(((50.0, 50.0), (0.0, 40.0)))
+    trial.join((50.0, 53.0))
+    assert trial.world.contacts.actor_person == 0
+    trial.tick()
+    assert trial.world.contacts.actor_person == 1
+
+
+def test_those_who_pass_at_arms_length_do_not_touch() -> None:
+    trial = trial_with(((50.0, 50.0), (1.0, 0.0)))
+    trial.join((52.0, 50.51))
+    trial.ticks(80)
+    assert trial.world.contacts.actor_person == 0
+
+
+def test_two_actors_count_as_one_contact_of_their_own_kind() -> None:
+    trial = trial_with(((50.0, 50.0), (1.0, 0.0)), ((52.0, 50.0), (-1.0, 0.0)))
+    trial.ticks(60)
+    assert trial.world.contacts.actor_actor == 1
+    assert trial.world.contacts.actor_person == 0
+
+
+def test_people_among_themselves_are_not_counted() -> None:
+    trial = trial_with(((150.0, 150.0), (0.0, 0.0)))
+    trial.join((10.0, 10.0), (10.1, 10.0))
+    assert trial.world.contacts.actor_person == 0
+
+
+def test_a_person_who_takes_the_slot_of_another_is_somebody_else() -> None:
+    trial = trial_with(((50.0, 50.0), (0.0, 0.0)))
+    (ann,) = trial.join((50.0, 50.0))
+    assert trial.world.contacts.actor_person == 1
+    trial.tick(Leave(ann))
+    trial.join((50.0, 50.0))
+    assert trial.world.contacts.actor_person == 2
+
+
+def test_closest_approach_matches_sampling_the_motion() -> None:
+    random = np.random.default_rng(4)
+    state = State(40)
+    for x, y in random.uniform(0.0, 3.0, (40, 2)):
+        state.add(PERSON, "p", (float(x), float(y)), 0, 0.25)
+    state.before[:] = state.positions
+    state.positions += random.normal(0.0, 0.8, (40, 2))
+    first, second = np.arange(0, 40, 2), np.arange(1, 40, 2)
+    part = np.linspace(0.0, 1.0, 2001)[:, None, None]
+    way = state.before + part * (state.positions - state.before)
+    sampled = np.linalg.norm(way[:, first] - way[:, second], axis=2).min(axis=0)
+    assert closest_approach(state, first, second) == pytest.approx(sampled, abs=2e-3)

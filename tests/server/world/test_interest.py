@@ -1,0 +1,117 @@
+import math
+
+import numpy as np
+
+from server.world.inputs import Attach, Detach, Leave, Steer
+from server.world.interest import LEAVE_RATIO, PERIOD_TICKS
+from tests.server.doubles import ScriptedCast
+from tests.server.worlds import FIELD, TICK_S, Trial
+
+
+def ids(trial: Trial, slots: list[int]) -> set[int]:
+    return {int(trial.world.state.ids[slot]) for slot in slots}
+
+
+def test_one_sees_oneself_and_those_within_the_radius() -> None:
+    trial = Trial(scene=FIELD, view_radius_m=20.0)
+    ann, ben, far = trial.join((50.0, 50.0), (65.0, 50.0), (90.0, 50.0))
+    world = trial.world
+    assert world.sees(ann, ann)
+    assert world.sees(ann, ben)
+    assert not world.sees(ann, far)
+    assert set(world.seen_by(ben)) == {ann, ben}
+
+
+def test_coming_and_going_is_told_once_with_hysteresis_between() -> None:
+    cast = ScriptedCast(TICK_S)
+    cast.put("oak", (75.0, 50.0), (-4.0, 0.0))
+    trial = Trial(scene=FIELD, cast=cast, view_radius_m=20.0)
+    (ann,) = trial.join((50.0, 50.0))
+    entered, left = [], []
+    for _ in range(100):
+        changes = trial.tick().changes
+        if changes.entered[ann]:
+            entered.append(cast.positions["oak"][0] - 50.0)
+        if changes.left[ann]:
+            left.append(cast.positions["oak"][0] - 50.0)
+        if entered:
+            cast.velocities["oak"] = (4.0, 0.0)
+    slack_m = 4.0 * TICK_S * PERIOD_TICKS
+    assert len(entered) == len(left) == 1
+    assert 20.0 - slack_m <= entered[0] <= 20.0
+    assert 20.0 * LEAVE_RATIO <= left[0] <= 20.0 * LEAVE_RATIO + slack_m
+
+
+def test_nobody_flickers_at_the_edge_of_sight() -> None:
+    cast = ScriptedCast(TICK_S)
+    cast.put("oak", (69.9, 50.0))
+    trial = Trial(scene=FIELD, cast=cast, view_radius_m=20.0)
+    (ann,) = trial.join((50.0, 50.0))
+    changes = 0
+    for k in range(80):
+        cast.velocities["oak"] = (4.0 if k % 2 else -4.0, 0.0)
+        sight = trial.tick()
+        changes += len(sight.changes.entered[ann]) + len(sight.changes.left[ann])
+    assert changes == 0
+    assert trial.world.sees(ann, trial.world.state.ids[1].item())
+
+
+def test_the_nearest_are_seen_when_there_are_too_many() -> None:
+    trial = Trial(scene=FIELD, view_limit=5)
+    people = trial.join(*((50.0 + k, 50.0) for k in range(12)))
+    seen = {who for who in people if trial.world.sees(people[0], who)}
+    assert seen == set(people[:6])
+
+
+def test_oneself_is_seen_even_in_a_heap_of_people() -> None:
+    trial = Trial(scene=FIELD, view_limit=3)
+    people = trial.join(*[(50.0, 50.0)] * 20)
+    assert all(trial.world.sees(who, who) for who in people)
+    views = [sum(trial.world.sees(who, other) for other in people) for who in people]
+    assert max(views) <= 4
+
+
+def test_who_leaves_the_world_leaves_every_view_at_once() -> None:
+    trial = Trial(scene=FIELD)
+    ann, ben = trial.join((50.0, 50.0), (52.0, 50.0))
+    sight = trial.tick(Leave(ben))
+    assert sight.changes.left[ann] == [ben]
+    assert not trial.world.sees(ann, ben)
+    assert ben not in sight.changes.left
+    (cem,) = trial.join((52.0, 50.0))
+    trial.ticks(PERIOD_TICKS)
+    assert trial.world.sees(ann, cem)
+
+
+def test_who_looks_again_is_told_everything_again() -> None:
+    trial = Trial(scene=FIELD)
+    ann, ben = trial.join((50.0, 50.0), (52.0, 50.0))
+    sight = trial.tick(Detach(ann))
+    assert ann not in sight.snapshots.viewers
+    assert not trial.world.sees(ann, ben)
+    sight = trial.tick(Attach(ann))
+    assert ids(trial, sight.changes.entered[ann]) == {ann, ben}
+    assert ann in sight.snapshots.viewers
+
+
+def test_events_rebuild_exactly_what_the_server_thinks_is_in_view() -> None:
+    random = np.random.default_rng(8)
+    trial = Trial(scene=FIELD, view_radius_m=15.0, view_limit=6)
+    people = trial.join(*((float(x), float(y)) for x, y in random.uniform(80.0, 120.0, (40, 2))))
+    told: dict[int, set[int]] = {who: set() for who in people}
+    first = trial.tick(*(Attach(who) for who in people))
+    for tick in range(200):
+        steering = [
+            Steer(who, tick, float(random.uniform(0.0, 2.0 * math.pi)), 3.0)
+            for who in random.choice(people, 5).tolist()
+        ]
+        changes = (trial.tick(*steering) if tick else first).changes
+        for viewer, gone in changes.left.items():
+            assert told[viewer] >= set(gone)
+            told[viewer] -= set(gone)
+        for viewer, slots in changes.entered.items():
+            assert not told[viewer] & ids(trial, slots)
+            told[viewer] |= ids(trial, slots)
+    for viewer in people:
+        assert told[viewer] == {who for who in people if trial.world.sees(viewer, who)}
+        assert len(told[viewer]) <= 7

@@ -1,0 +1,42 @@
+import numpy as np
+
+from server.world.neighbours import Neighbours
+from server.world.state import PERSON, State
+
+
+def crowd(*places: tuple[float, float, int]) -> State:
+    state = State(len(places) + 2)
+    for x, y, layer in places:
+        state.add(PERSON, "p", (x, y), layer, 0.25)
+    return state
+
+
+def test_nearest_are_in_order_and_padded_with_nobody() -> None:
+    state = crowd((0.0, 0.0, 0), (3.0, 0.0, 0), (1.0, 0.0, 0))
+    distances, found = Neighbours(state).nearest(np.array([0]), 4, 10.0)
+    assert distances[0].tolist() == [0.0, 1.0, 3.0, np.inf]
+    assert found[0].tolist() == [0, 2, 1, state.capacity]
+
+
+def test_nobody_is_near_through_a_floor() -> None:
+    state = crowd((0.0, 0.0, 0), (0.0, 0.0, 1))
+    neighbours = Neighbours(state)
+    first, second = neighbours.within(np.array([0, 1]), 5.0)
+    assert first.tolist() == second.tolist() == []
+    assert neighbours.nearest(np.array([0]), 2, 100.0)[1][0].tolist() == [0, state.capacity]
+
+
+def test_pairs_within_reach_match_the_obvious_search() -> None:
+    random = np.random.default_rng(3)
+    state = crowd(*((float(x), float(y), 0) for x, y in random.uniform(0.0, 10.0, (60, 2))))
+    state.remove(int(state.ids[7]))
+    first, second = Neighbours(state).within(state.live(), 1.5)
+    found = set(zip(first.tolist(), second.tolist(), strict=True))
+    live = state.live().tolist()
+    expected = {
+        (a, b)
+        for a in live
+        for b in live
+        if a != b and np.hypot(*(state.positions[a] - state.positions[b])) <= 1.5
+    }
+    assert found == expected

@@ -1,0 +1,104 @@
+"""Small worlds for tests, without sockets."""
+
+from collections.abc import Iterable
+from functools import cache
+from itertools import count
+
+from planning import LayeredGrid, Place, Scene, Spawn, Wall
+from server.world.inputs import Input, Join
+from server.world.rules import Rules
+from server.world.troupe import Body
+from server.world.world import Joined, Sight, World
+from tests.server.doubles import ScriptedCast
+
+TICK_S = 0.05
+
+ROOM = Scene(
+    name="room",
+    bounds=(0.0, 0.0, 20.0, 20.0),
+    walls=(Wall(start=(10.0, 0.0), end=(10.0, 15.0)),),
+    spawns=(Spawn(position=(3.0, 3.0), radius_m=1.0),),
+    places=(Place(name="west", position=(2.0, 10.0)), Place(name="east", position=(18.0, 10.0))),
+)
+"""Two halves behind a wall at x = 10, with a way round at its upper end."""
+
+FIELD = Scene.open_space((0.0, 0.0, 200.0, 200.0))
+
+grid_of = cache(LayeredGrid.from_scene)
+
+
+def rules(**changes: float) -> Rules:
+    values: dict[str, float] = {
+        "person_radius_m": 0.25,
+        "person_clearance_m": 0.25,
+        "person_max_speed_mps": 3.0,
+        "person_walk_speed_mps": 1.6,
+        "view_radius_m": 20.0,
+        "view_limit": 50,
+    }
+    return Rules(**{**values, **changes})  # type: ignore[arg-type]
+
+
+class Trial:
+    """A world that a test drives tick by tick."""
+
+    def __init__(
+        self,
+        scene: Scene = ROOM,
+        cast: ScriptedCast | None = None,
+        seed: int = 1,
+        max_people: int = 64,
+        **changes: float,
+    ) -> None:
+        self.cast = cast or ScriptedCast(TICK_S)
+        self.grid = grid_of(scene)
+        ticks = count()
+        self.world = World(
+            scene,
+            self.grid,
+            self.cast.as_cast(),
+            {actor_id: Body(str(actor_id), 0.25) for actor_id in self.cast.positions},
+            rules(**changes),
+            tick_s=TICK_S,
+            max_people=max_people,
+            seed=seed,
+            clock=lambda: float(next(ticks)),
+        )
+        self.joined: Joined = []
+
+    def tick(self, *inputs: Input, writing: bool = True) -> Sight:
+        """One whole tick; with `writing`, every viewer is sent its snapshot."""
+        self.joined = self.world.begin(inputs)
+        sight = self.world.finish(self.world.think())
+        if writing:
+            places = list(range(len(sight.snapshots.viewers)))
+            self.world.wrote(sight.snapshots, places)
+        return sight
+
+    def ticks(self, number: int) -> None:
+        for _ in range(number):
+            self.tick()
+
+    def join(self, *places: tuple[float, float]) -> list[int]:
+        """Ids of new people at these places."""
+        self.tick(*(Join(k, f"p{k}", (*place, 0)) for k, place in enumerate(places)))
+        return [avatar_id for _, avatar_id in self.joined]
+
+    def position(self, avatar_id: int) -> tuple[float, float]:
+        x, y = self.world.state.positions[self.world.state.slot(avatar_id)].tolist()
+        return x, y
+
+    def speed(self, avatar_id: int) -> float:
+        return float(self.world.state.speeds[self.world.state.slot(avatar_id)])
+
+
+def block_of(sight: Sight, viewer: int) -> bytes:
+    """The packed records that this viewer is to be sent."""
+    snapshots = sight.snapshots
+    place = snapshots.viewers.index(viewer)
+    begin = snapshots.ends[place - 1] if place else 0
+    return bytes(snapshots.data[begin : snapshots.ends[place]])
+
+
+def ids_in(records: Iterable[tuple[int, ...]]) -> list[int]:
+    return sorted(int(record[0]) for record in records)
