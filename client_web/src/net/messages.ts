@@ -43,6 +43,7 @@ export interface SceneData {
 
 export interface Welcome {
   type: "welcome";
+  version: number;
   id: number;
   name: string;
   resume: string;

@@ -1,0 +1,75 @@
+import { decode } from "@msgpack/msgpack";
+import { describe, expect, it } from "vitest";
+import * as codes from "../../src/net/codes";
+import { decodeServer, encodeClient, unpackBlock, WireError } from "../../src/net/codec";
+import type { ClientMessage, Point } from "../../src/net/messages";
+import wire from "../fixtures/wire.json";
+
+const bytes = (hex: string): Uint8Array =>
+  Uint8Array.from(hex.match(/../g) ?? [], (pair) => parseInt(pair, 16));
+
+/** The fields that the caller gives; version and wished place are the codec's own. */
+const given = (fields: object): object =>
+  Object.fromEntries(Object.entries(fields).filter(([name]) => !["version", "at"].includes(name)));
+
+describe("codes", () => {
+  it("are those of the server", () => {
+    const { ClientCode, ServerCode, Reason, CloseCode } = codes;
+    expect({ ClientCode, ServerCode, Reason, CloseCode }).toEqual(wire.codes);
+    expect(codes.VERSION).toBe(wire.version);
+    const { MAX_NAME_CHARS, MAX_CHAT_CHARS } = codes;
+    expect({ MAX_NAME_CHARS, MAX_CHAT_CHARS }).toEqual(wire.limits);
+  });
+});
+
+describe("encodeClient", () => {
+  it.each(wire.client.map((vector) => [vector.type, vector] as const))(
+    "packs %s as the server does",
+    (type, { fields, frame }) => {
+      const message = { type, ...given(fields) } as ClientMessage;
+      expect(decode(encodeClient(message))).toEqual(decode(bytes(frame)));
+    },
+  );
+});
+
+describe("decodeServer", () => {
+  it.each(wire.server.map((vector) => [vector.type, vector] as const))(
+    "reads %s",
+    (type, { fields, frame }) => {
+      expect(decodeServer(bytes(frame))).toEqual({ type, ...fields });
+    },
+  );
+
+  it("reads a snapshot", () => {
+    const { tick, ack, origin, frame, records } = wire.snapshot;
+    const message = decodeServer(bytes(frame));
+    expect(message).toMatchObject({ type: "snapshot", tick, ack });
+    if (message?.type !== "snapshot") return;
+    const read = unpackBlock(message.block, origin as Point);
+    expect(read).toHaveLength(records.length);
+    records.forEach((record, i) => {
+      for (const [name, value] of Object.entries(record)) {
+        expect(read[i]?.[name as keyof typeof record], name).toBeCloseTo(value, 9);
+      }
+    });
+  });
+
+  it("passes over message codes that it does not know", () => {
+    expect(decodeServer(Uint8Array.of(0x92, 0x7f, 0x80))).toBeNull();
+  });
+
+  it.each([
+    ["no msgpack", Uint8Array.of(0xc1)],
+    ["no array", Uint8Array.of(0x80)],
+    ["no map of fields", Uint8Array.of(0x92, codes.ServerCode.CHAT, 0x01)],
+    ["a snapshot without a block", Uint8Array.of(0x93, codes.ServerCode.SNAPSHOT, 1, 2)],
+  ])("refuses %s", (_what, frame) => {
+    expect(() => decodeServer(frame)).toThrow(WireError);
+  });
+});
+
+describe("unpackBlock", () => {
+  it("refuses a block that is cut off", () => {
+    expect(() => unpackBlock(new Uint8Array(13), [0, 0])).toThrow("no multiple of 12");
+  });
+});

@@ -1,0 +1,46 @@
+import { describe, expect, it } from "vitest";
+import { Playout } from "../../src/world/playout";
+
+const TICK_S = 0.05;
+
+/** Snapshots of n ticks that come in late by `latenessS(i)`. */
+function fed(n: number, latenessS: (i: number) => number): Playout {
+  const playout = new Playout(TICK_S);
+  for (let i = 0; i < n; i++) playout.arrived(i * TICK_S, i * TICK_S + latenessS(i));
+  return playout;
+}
+
+describe("Playout", () => {
+  it("stays about 120 ms behind on a good connection", () => {
+    expect(fed(200, () => 0.02).delayS).toBeCloseTo(0.12, 2);
+  });
+
+  it("stays further behind when snapshots come unevenly", () => {
+    const even = fed(200, () => 0.05).delayS;
+    const uneven = fed(200, (i) => (i % 2) * 0.1).delayS;
+    expect(uneven).toBeGreaterThan(even + 0.04);
+  });
+
+  it("takes a clock that is far off for what it is", () => {
+    expect(fed(400, () => 30).delayS).toBeCloseTo(30.1, 1);
+  });
+
+  it("never runs backwards, and stretches time by a tenth at most", () => {
+    const playout = fed(20, () => 0.02);
+    let before = playout.advance(1, 0.016);
+    for (let frame = 1; frame < 300; frame++) {
+      const serverNowS = 1 + frame * 0.016;
+      if (frame % 3 === 0) playout.arrived(serverNowS - (frame % 7) * 0.02, serverNowS);
+      const now = playout.advance(serverNowS, 0.016);
+      expect(now - before).toBeGreaterThanOrEqual(0.016 * 0.9 - 1e-9);
+      expect(now - before).toBeLessThanOrEqual(0.016 * 1.1 + 1e-9);
+      before = now;
+    }
+  });
+
+  it("jumps after a long pause", () => {
+    const playout = fed(20, () => 0.02);
+    playout.advance(1, 0.016);
+    expect(playout.advance(20, 0.25)).toBeCloseTo(20 - playout.delayS);
+  });
+});

@@ -1,0 +1,78 @@
+import { beforeEach, describe, expect, it } from "vitest";
+import type { EntityInfo, EntityRecord } from "../../src/net/messages";
+import { World } from "../../src/world/world";
+import { WELCOME } from "../net/sockets";
+
+const info = (id: number, kind: EntityInfo["kind"] = "actor"): EntityInfo => ({
+  id,
+  kind,
+  name: `N${id}`,
+  layer: 0,
+  x: 2,
+  y: 2,
+  heading: 0,
+  radius: 0.25,
+});
+const record = (id: number, x: number): EntityRecord => ({
+  id,
+  layer: 0,
+  reason: 1,
+  x,
+  y: 2,
+  heading: 0,
+  speed: 1,
+});
+/** Server time of a tick: tick 100 was at 5 s, 20 ticks a second. */
+const timeOf = (tick: number): number => 5 + (tick - 100) / 20;
+
+let world: World;
+
+beforeEach(() => {
+  world = new World(WELCOME);
+  world.enter(100, [info(7, "person"), info(8)]);
+});
+
+describe("World", () => {
+  it("draws the others a little behind, between two snapshots", () => {
+    for (let tick = 101; tick <= 140; tick++) {
+      world.snapshot(tick, 0, [record(8, 2 + (tick - 100) * 0.05)], timeOf(tick) + 0.02);
+      world.advance(timeOf(tick) + 0.02, 0.05);
+    }
+    const drawn = world.avatars.get(8)?.pose.x ?? 0;
+    expect(drawn).toBeCloseTo(2 + 40 * 0.05 - world.delayS + 0.02, 1);
+  });
+
+  it("lets those stand of whom a snapshot says nothing", () => {
+    world.snapshot(101, 0, [record(8, 2.05)], timeOf(101));
+    for (let tick = 102; tick <= 140; tick++) world.snapshot(tick, 0, [], timeOf(tick));
+    world.advance(timeOf(140), 0.05);
+    expect(world.avatars.get(8)?.pose.x).toBeCloseTo(2.05);
+  });
+
+  it("moves the own avatar ahead of the server", () => {
+    world.command({ kind: "move", seq: 1, direction: 0, speed: 1 });
+    world.advance(5, 0.1);
+    expect(world.own?.pose.x).toBeCloseTo(2.1);
+  });
+
+  it("forgets who has left, and their plan", () => {
+    world.plan = {
+      type: "plan",
+      tick: 100,
+      id: 8,
+      reason: 1,
+      behaviour: "wander",
+      goal: null,
+      path: [],
+      people: [],
+    };
+    world.leave([8]);
+    expect(world.avatars.has(8)).toBe(false);
+    expect(world.plan).toBeNull();
+  });
+
+  it("passes over records of avatars that are not in view", () => {
+    world.snapshot(101, 0, [record(99, 1)], timeOf(101));
+    expect(world.avatars.has(99)).toBe(false);
+  });
+});

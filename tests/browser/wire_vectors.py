@@ -1,0 +1,177 @@
+"""Frames with their meaning, for the web client's tests to read: `python -m tests.browser.wire_vectors`."""
+
+import json
+from enum import Enum
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from protocol import (
+    VERSION,
+    ByeCode,
+    ClientCode,
+    CloseCode,
+    ErrorCode,
+    Kind,
+    Reason,
+    ServerCode,
+    encode,
+    encode_snapshot,
+)
+from protocol.codes import MAX_CHAT_CHARS, MAX_NAME_CHARS
+from protocol.messages import (
+    Bye,
+    Census,
+    Chat,
+    ChatLine,
+    Circle,
+    Enter,
+    Entity,
+    Error,
+    FromClient,
+    FromServer,
+    Hello,
+    Leave,
+    Move,
+    Notice,
+    Ping,
+    Plan,
+    Pong,
+    WalkTo,
+    Watch,
+    Welcome,
+)
+from protocol.snapshot import pack_records
+
+FIXTURE: Final = Path(__file__).parents[2] / "client_web" / "tests" / "fixtures" / "wire.json"
+
+ORIGIN: Final = (-12.5, 3.25)
+
+FROM_CLIENT: Final[tuple[FromClient, ...]] = (
+    Hello(name="Ann", version=VERSION, resume=None, at=None),
+    Hello(name="Zoë ✿", version=VERSION, resume="token", at=None),
+    Move(seq=1, direction=-2.5, speed=1.6),
+    WalkTo(seq=4294967295, x=-3.25, y=40.5, layer=2),
+    ChatLine(text="Good morning!"),
+    Ping(nonce=70000),
+    Watch(id=17),
+    Watch(id=None),
+)
+
+FROM_SERVER: Final[tuple[FromServer, ...]] = (
+    Welcome(
+        version=VERSION,
+        id=7,
+        name="Ann",
+        resume="token",
+        resumed=False,
+        scene={"name": "bare", "bounds": [0, 0, 10, 10], "polygons": [], "walls": [], "places": []},
+        tick=1200,
+        tick_rate=20,
+        server_time=60.0,
+        radius=0.25,
+        max_speed=2.5,
+        origin=ORIGIN,
+    ),
+    Enter(
+        tick=1201,
+        entities=[
+            Entity(
+                id=8, kind=Kind.ACTOR, name="A1", layer=1, x=1.5, y=-2.5, heading=0.5, radius=0.25
+            )
+        ],
+    ),
+    Leave(tick=1202, ids=[8, 9]),
+    Chat(id=7, name="Ann", text="Hé!"),
+    Notice(text="Welcome"),
+    Error(error=ErrorCode.NO_PATH, text="no way leads there"),
+    Bye(reason=ByeCode.SHUTDOWN, text="the server is shutting down"),
+    Pong(nonce=70000, server_time=61.25),
+    Plan(
+        tick=1203,
+        id=8,
+        reason=Reason.GIVING_WAY,
+        behaviour="wander",
+        goal=(4.5, 5.5, 0),
+        path=[(1.5, -2.5, 0, 0.0), (2.5, -1.5, 0, 1.25)],
+        people=[[Circle(x=2.0, y=3.0, layer=0, radius=0.75)]],
+    ),
+    Census(people=3, actors=10),
+)
+
+
+def vectors() -> dict[str, Any]:
+    """Everything that the fixture holds, as plain JSON values."""
+    return {
+        "version": VERSION,
+        "limits": {"MAX_NAME_CHARS": MAX_NAME_CHARS, "MAX_CHAT_CHARS": MAX_CHAT_CHARS},
+        "codes": {
+            table.__name__: {member.name: member.value for member in table}
+            for table in (ClientCode, ServerCode, Reason, CloseCode)
+        },
+        "kinds": _values(Kind),
+        "client": [_vector(message) for message in FROM_CLIENT],
+        "server": [_vector(message) for message in FROM_SERVER],
+        "snapshot": _snapshot(),
+    }
+
+
+def text() -> str:
+    """The fixture as it is stored."""
+    return json.dumps(vectors(), indent=1, ensure_ascii=False) + "\n"
+
+
+def _values(table: type[Enum]) -> list[Any]:
+    return [member.value for member in table]
+
+
+def _vector(message: FromClient | FromServer) -> dict[str, Any]:
+    return {
+        "type": message.code.name.lower(),
+        "fields": message.model_dump(mode="json"),
+        "frame": encode(message).hex(),
+    }
+
+
+def _snapshot() -> dict[str, Any]:
+    records = pack_records(
+        ids=np.array([7, 4294967295]),
+        layers=np.array([0, 3]),
+        reasons=np.array([Reason.NONE, Reason.WAITING]),
+        positions_m=np.array([[-12.5, 3.25], [10.01, 20.5]]),
+        headings_rad=np.array([0.0, -np.pi / 2]),
+        speeds_mps=np.array([0.0, 1.6]),
+        origin_m=ORIGIN,
+    )
+    return {
+        "tick": 4000000000,
+        "ack": 12,
+        "origin": ORIGIN,
+        "frame": encode_snapshot(4000000000, 12, records.tobytes()).hex(),
+        "records": [
+            {
+                "id": 7,
+                "layer": 0,
+                "reason": 0,
+                "x": -12.5,
+                "y": 3.25,
+                "heading": 0.0,
+                "speed": 0.0,
+            },
+            {
+                "id": 4294967295,
+                "layer": 3,
+                "reason": 3,
+                "x": 10.01,
+                "y": 20.5,
+                "heading": 1.5 * np.pi,
+                "speed": 1.6,
+            },
+        ],
+    }
+
+
+if __name__ == "__main__":
+    FIXTURE.parent.mkdir(parents=True, exist_ok=True)
+    FIXTURE.write_text(text(), encoding="utf-8")
