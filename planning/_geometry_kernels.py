@@ -49,7 +49,11 @@ def point_segment_distance(
 def segments_cross(
     ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
 ) -> bool:
-    """Whether segment ab meets segment cd, touching included."""
+    """Whether segment ab meets segment cd, touching included.
+
+    A hair beyond the ends counts too: nothing slips between walls that share a corner.
+    """
+    hair = 1e-9
     rx = bx - ax
     ry = by - ay
     sx = dx - cx
@@ -65,10 +69,10 @@ def segments_cross(
             return point_segment_distance(ax, ay, cx, cy, dx, dy)[0] < 1e-12
         t0 = (qx * rx + qy * ry) / length2
         t1 = t0 + (sx * rx + sy * ry) / length2
-        return max(min(t0, t1), 0.0) <= min(max(t0, t1), 1.0)
+        return max(min(t0, t1), 0.0) <= min(max(t0, t1), 1.0) + hair
     t = (qx * sy - qy * sx) / den
     u = (qx * ry - qy * rx) / den
-    return 0.0 <= t <= 1.0 and 0.0 <= u <= 1.0
+    return -hair <= t <= 1.0 + hair and -hair <= u <= 1.0 + hair
 
 
 @kernel

@@ -1,0 +1,69 @@
+"""Plane geometry the long way: by angles, by exact fractions, by trying many moments."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+import numpy as np
+
+Point = tuple[float, float]
+
+
+def point_segment_distance(p: Point, a: Point, b: Point) -> float:
+    """To the nearer end where the angle there is blunt, else by the height of the triangle."""
+    ab, ap, bp = np.subtract(b, a), np.subtract(p, a), np.subtract(p, b)
+    if not ab.any() or ap @ ab <= 0.0:
+        return float(np.hypot(*ap))
+    if bp @ ab >= 0.0:
+        return float(np.hypot(*bp))
+    twice_area = abs(ab[0] * ap[1] - ab[1] * ap[0])
+    return float(twice_area / np.hypot(*ab))
+
+
+def segments_meet(a: Point, b: Point, c: Point, d: Point) -> bool:
+    """Whether two closed segments share a point, decided without any rounding."""
+    ax, ay, bx, by, cx, cy, dx, dy = (Fraction(v) for p in (a, b, c, d) for v in p)
+
+    def side(px: Fraction, py: Fraction, qx: Fraction, qy: Fraction, rx: Fraction, ry: Fraction):
+        turn = (qx - px) * (ry - py) - (qy - py) * (rx - px)
+        return (turn > 0) - (turn < 0)
+
+    sides = (
+        side(ax, ay, bx, by, cx, cy),
+        side(ax, ay, bx, by, dx, dy),
+        side(cx, cy, dx, dy, ax, ay),
+        side(cx, cy, dx, dy, bx, by),
+    )
+    boxes_overlap = (
+        max(min(ax, bx), min(cx, dx)) <= min(max(ax, bx), max(cx, dx))
+        and max(min(ay, by), min(cy, dy)) <= min(max(ay, by), max(cy, dy))
+    )  # fmt: skip
+    return boxes_overlap and sides[0] * sides[1] <= 0 and sides[2] * sides[3] <= 0
+
+
+def segment_distance(a: Point, b: Point, c: Point, d: Point) -> float:
+    """Smallest distance between two segments."""
+    if segments_meet(a, b, c, d):
+        return 0.0
+    return min(
+        point_segment_distance(a, c, d),
+        point_segment_distance(b, c, d),
+        point_segment_distance(c, a, b),
+        point_segment_distance(d, a, b),
+    )
+
+
+def closest_approach(relative: Point, change: Point, moments: int = 20001) -> float:
+    """Smallest distance of a relative position that changes evenly, over many moments."""
+    u = np.linspace(0.0, 1.0, moments)
+    return float(np.hypot(relative[0] + u * change[0], relative[1] + u * change[1]).min())
+
+
+def inside(p: Point, ring: list[Point]) -> bool:
+    """Whether the corners of a ring, seen from a point, turn once around it."""
+    turned = 0.0
+    for a, b in zip(ring, ring[1:] + ring[:1], strict=True):
+        turn = math.atan2(b[1] - p[1], b[0] - p[0]) - math.atan2(a[1] - p[1], a[0] - p[0])
+        turned += (turn + math.pi) % (2.0 * math.pi) - math.pi
+    return abs(turned) > math.pi

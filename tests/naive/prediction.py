@@ -1,0 +1,48 @@
+"""Lei & Li, eqs. (1)-(4), term by term as they are written."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def past_velocities(track: NDArray[np.float64], sample_s: float) -> list[NDArray[np.float64]]:
+    """Velocities between positions (n + 1, 2) that are listed newest first."""
+    return [(newer - older) / sample_s for newer, older in zip(track, track[1:], strict=False)]
+
+
+def printed_velocity(track: NDArray[np.float64], sample_s: float) -> NDArray[np.float64]:
+    """Eq. (1): v_p = v + sum of dv_i / 2**i, dv_i the newer minus the older velocity."""
+    v = past_velocities(track, sample_s)
+    total = v[0].copy()
+    for i in range(len(v) - 1):
+        total += (v[i] - v[i + 1]) / 2**i
+    return total
+
+
+def default_velocity(track: NDArray[np.float64], sample_s: float) -> NDArray[np.float64]:
+    """Eq. (1) with the changes older minus newer and half weight, as holds on real people."""
+    v = past_velocities(track, sample_s)
+    total = v[0].copy()
+    for i in range(len(v) - 1):
+        total -= 0.5 * (v[i] - v[i + 1]) / 2**i
+    return total
+
+
+def exponential_mean(track: NDArray[np.float64], sample_s: float) -> NDArray[np.float64]:
+    """Past velocities weighted 1/2, 1/4, 1/8, ..., the oldest taking the rest."""
+    v = past_velocities(track, sample_s)
+    weights = [0.5 ** (i + 1) for i in range(len(v))]
+    weights[-1] += 1.0 - sum(weights)
+    return sum(w * velocity for w, velocity in zip(weights, v, strict=True))
+
+
+def integral_of_density(density, sigma_m: float) -> float:
+    """Sum of a density over a fine grid out to eight deviations."""
+    axis = np.linspace(-8.0 * sigma_m, 8.0 * sigma_m, 401)
+    step = axis[1] - axis[0]
+    return math.fsum(
+        float(density(np.array([x, y]), sigma_m)) * step * step for x in axis for y in axis
+    )

@@ -1,0 +1,45 @@
+"""Lei & Li, eq. (5), summed person by person and sample by sample, for one configuration."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning import Prediction, RiskModel
+
+
+def sigma_grid() -> list[tuple[float, float, float]]:
+    """Offsets in deviations and weights: an even grid within 2.5 deviations, by density."""
+    axis = [-2.5 + 0.625 * k for k in range(9)]
+    points = [(a, b) for a in axis for b in axis if a * a + b * b <= 6.25 + 1e-9]
+    weights = [math.exp(-(a * a + b * b) / 2.0) for a, b in points]
+    total = math.fsum(weights)
+    return [(a, b, w / total) for (a, b), w in zip(points, weights, strict=True)]
+
+
+def risk(
+    model: RiskModel,
+    prediction: Prediction,
+    k: int,
+    layer: int,
+    position: NDArray[np.float64],
+    velocity: NDArray[np.float64],
+    closing_weight: float,
+) -> float:
+    """Mean over each person's likely places of w1 · proximity + w2 · closing speed."""
+    near = 0.0
+    closing = 0.0
+    for p in range(len(prediction.layers)):
+        if prediction.layers[p] != layer:
+            continue
+        for a, b, weight in sigma_grid():
+            place = prediction.means[p, k] + prediction.sigmas[p, k] * np.array([a, b])
+            away = position - place
+            distance = math.hypot(*away)
+            near += weight * float(model.near(distance))
+            if distance > 1e-9:
+                speed = -(velocity - prediction.velocities[p, k]) @ (away / distance)
+                closing += weight * float(model.toward(distance)) * speed
+    return near + closing_weight * max(0.0, closing)

@@ -1,0 +1,139 @@
+"""Small worlds that the planning tests are set in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numba
+import numpy as np
+from hypothesis import settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from planning import LayeredGrid, Polygon, Prediction, RiskField, RiskModel, Scene
+from planning._reservation_kernels import Reservations, index_paths
+from planning._search_kernels import Task, World
+from planning.search import make_reservations
+
+COMPILED = not numba.config.DISABLE_JIT
+"""False in the leg that runs kernels as plain Python, a hundred times slower."""
+STEP_S = 0.4
+SLICES = 24
+
+Line = tuple[tuple[float, float], tuple[float, float]]
+
+
+def scaled(compiled: int, plain: int) -> int:
+    """How much of something to test: less where kernels are not compiled."""
+    return compiled if COMPILED else plain
+
+
+def holds(compiled: int, plain: int) -> settings:
+    """So many examples, the same in every run."""
+    return settings(max_examples=scaled(compiled, plain), deadline=None, derandomize=True)
+
+
+def open_grid(
+    side_m: float = 8.0,
+    walls: Sequence[Line] = (),
+    polygons: Sequence[Polygon] = (),
+    cell_m: float = 0.25,
+) -> LayeredGrid:
+    """A square of bare ground."""
+    scene = Scene.open_space((0.0, 0.0, side_m, side_m), walls=walls, polygons=polygons)
+    return LayeredGrid.from_scene(scene, cell_m)
+
+
+def walking(
+    positions: Sequence[Sequence[float]],
+    velocities: Sequence[Sequence[float]],
+    slices: int = SLICES,
+    slice_s: float = STEP_S / 2,
+    sigma_0_m: float = 0.05,
+    growth_mps: float = 0.17,
+) -> Prediction:
+    """People who go straight on, eqs. (2) and (3) without any walls."""
+    start = np.array(positions, dtype=np.float64).reshape(-1, 2)
+    v = np.array(velocities, dtype=np.float64).reshape(-1, 2)
+    seconds = slice_s * np.arange(slices + 1)
+    means = start[:, None] + seconds[None, :, None] * v[:, None]
+    sigmas = np.broadcast_to(sigma_0_m + growth_mps * seconds, means.shape[:2]).copy()
+    each = np.broadcast_to(v[:, None], means.shape).copy()
+    return Prediction(means, each, sigmas, np.zeros(len(start), dtype=np.int64))
+
+
+def field_of(grid: LayeredGrid, prediction: Prediction, slices: int = SLICES) -> RiskField:
+    """The risk field of a prediction, defaults throughout."""
+    field = RiskField(grid, RiskModel(), slices)
+    field.fill(prediction)
+    return field
+
+
+def reserved(
+    grid: LayeredGrid,
+    paths: NDArray[np.float64] | None = None,
+    radii_m: Sequence[float] = (0.25,),
+    ranks: Sequence[int] = (0,),
+    layers: Sequence[int] | None = None,
+    fastest_m: float = 0.34,
+) -> Reservations:
+    """Reservations of some actors; by default of one that stands far outside everyone's way."""
+    if paths is None:
+        paths = np.full((1, SLICES + 1, 2), -1e3)
+    reservations = make_reservations(
+        grid,
+        paths,
+        np.array(layers if layers is not None else [0] * len(paths), dtype=np.int64),
+        np.array(radii_m, dtype=np.float64),
+        np.array(ranks, dtype=np.int64),
+        fastest_m,
+    )
+    index_paths(reservations)
+    return reservations
+
+
+def world_of(grid: LayeredGrid, field: RiskField, reservations: Reservations) -> World:
+    """What kernels look up."""
+    return World(grid.arrays, field.fields, reservations, STEP_S)
+
+
+def task(
+    start: tuple[float, float],
+    goal: tuple[float, float],
+    velocity: tuple[float, float] = (0.0, 0.0),
+    **changes: object,
+) -> Task:
+    """The default actor's question; row 0 asks."""
+    return Task(
+        me=0,
+        layer=0,
+        x=start[0],
+        y=start[1],
+        vx=velocity[0],
+        vy=velocity[1],
+        goal_x=goal[0],
+        goal_y=goal[1],
+        radius_m=0.25,
+        speed_mps=1.3,
+        max_speed_mps=1.7,
+        max_acceleration_mps2=2.0,
+        goal_tolerance_m=0.2,
+        risk_weight=25.0,
+        closing_weight=0.1,
+        turn_weight=0.1,
+        wall_weight=0.3,
+        max_expansions=400,
+        hold=False,
+    )._replace(**changes)
+
+
+def points(low: float, high: float) -> st.SearchStrategy[tuple[float, float]]:
+    """Points of a square, whole centimetres."""
+    whole = st.integers(round(low * 100), round(high * 100)).map(lambda v: v / 100)
+    return st.tuples(whole, whole)
+
+
+def lines(low: float, high: float, most: int) -> st.SearchStrategy[list[Line]]:
+    """Up to so many walls that have a length."""
+    line = st.tuples(points(low, high), points(low, high)).filter(lambda line: line[0] != line[1])
+    return st.lists(line, max_size=most)
