@@ -56,8 +56,10 @@ class Running:
 
 
 @asynccontextmanager
-async def running(settings: ServerSettings) -> AsyncIterator[Running]:
-    """Run a server; on leaving, everyone is told goodbye.
+async def running(
+    settings: ServerSettings, assets: Assets | None = None
+) -> AsyncIterator[Running]:
+    """Run a server; on leaving, everyone is told goodbye. The assets are the built client's.
 
     Raises
     ------
@@ -67,6 +69,7 @@ async def running(settings: ServerSettings) -> AsyncIterator[Running]:
         A port cannot be had.
     """
     stage = set_stage(settings)
+    assets = assets or Assets.load()
     metrics = Metrics()
     loop = asyncio.get_running_loop()
     ready = False
@@ -93,7 +96,7 @@ async def running(settings: ServerSettings) -> AsyncIterator[Running]:
         )
         delivery = Delivery(world, hub.sessions, settings.tick_rate)
         ticker = Ticker(world, hub, delivery, schedule, metrics, thread)
-        listener = await Listener(hub, Assets.load(), settings, metrics).start()
+        listener = await Listener(hub, assets, settings, metrics).start()
         ticking = asyncio.create_task(ticker.run())
         guiding = asyncio.create_task(guidance.run(hub.way_found))
         ready = True

@@ -1,0 +1,174 @@
+"""People in a running server: coming in, moving, talking, coming back, going."""
+
+import math
+
+import pytest
+
+from protocol import VERSION, ByeCode, CloseCode, ErrorCode
+from protocol.messages import Bye, Chat, ChatLine, Error, Hello, Snapshot, WalkTo
+from tests.server.client import connected, joined
+from tests.server.conftest import Serving
+
+
+async def test_a_newcomer_is_told_who_and_where_they_are(serving: Serving) -> None:
+    async with serving() as server, joined(server.port, "Ann") as client:
+        welcome = client.welcome
+        assert welcome is not None
+        assert (welcome.name, welcome.resumed, welcome.version) == ("Ann", False, VERSION)
+        assert welcome.scene["name"] == "room"
+        assert (welcome.tick_rate, welcome.radius, welcome.max_speed) == (20, 0.25, 3.0)
+        assert client.entities[client.id].name == "Ann"
+        assert math.dist(client.position, (3.0, 3.0)) <= 1.1
+
+
+async def test_a_wished_place_is_given_or_the_nearest_free_one(serving: Serving) -> None:
+    async with serving() as server:
+        async with joined(server.port, at=(5.0, 6.0, 0)) as client:
+            assert client.position == pytest.approx((5.0, 6.0), abs=0.01)
+        async with joined(server.port, at=(-9.0, 1e4, 0)) as client:
+            assert client.position == pytest.approx((0.1, 19.9), abs=0.3)
+
+
+async def test_moving_is_acknowledged_and_seen_by_others(serving: Serving) -> None:
+    async with (
+        serving() as server,
+        joined(server.port, at=(2.0, 2.0, 0)) as ann,
+        joined(server.port, "Ben", at=(2.0, 3.0, 0)) as ben,
+    ):
+        await ann.move(0.0, 2.0)
+        await ann.wait_for(lambda: ann.ack == 1)
+        await ann.wait_for(lambda: ann.position[0] > 2.5)
+        await ben.wait_for(lambda: ben.positions[ann.id][0] > 2.5)
+
+
+async def test_walls_and_the_speed_limit_hold_for_everyone(serving: Serving) -> None:
+    async with serving() as server, joined(server.port, at=(8.0, 5.0, 0)) as client:
+        await client.move(0.0, 99.0)
+        await client.wait_for(lambda: client.ack == 1)
+        x, tick = client.position[0], client.tick
+        await client.ticks(5)
+        assert client.position[0] - x <= 3.0 * (client.tick - tick) / 20.0 + 0.02
+        await client.ticks(25)
+        assert client.position[0] == pytest.approx(9.75, abs=0.03)
+
+
+async def test_walk_to_goes_straight_and_around(serving: Serving) -> None:
+    async with (
+        serving(person_max_speed_mps=50.0, person_walk_speed_mps=40.0) as server,
+        joined(server.port, at=(8.0, 5.0, 0)) as client,
+    ):
+        await client.send(WalkTo(seq=1, x=5.0, y=5.0))
+        await client.wait_for(lambda: math.dist(client.position, (5.0, 5.0)) < 0.02)
+        await client.send(WalkTo(seq=2, x=12.0, y=5.0))
+        await client.wait_for(lambda: math.dist(client.position, (12.0, 5.0)) < 0.02)
+        assert client.ack == 2
+
+
+async def test_where_no_way_leads_a_person_is_told_and_stays(serving: Serving) -> None:
+    async with serving() as server, joined(server.port) as client:
+        await client.send(WalkTo(seq=1, x=5.0, y=5.0, layer=7))
+        error = await client.until(Error)
+        assert error.error is ErrorCode.NO_PATH
+        assert "(5.00, 5.00) on layer 7" in error.text
+        await client.ticks(2)
+
+
+async def test_chat_is_heard_by_those_who_see_the_speaker(serving: Serving) -> None:
+    async with (
+        serving(view_radius_m=5.0) as server,
+        joined(server.port, "Ann", at=(2.0, 2.0, 0)) as ann,
+        joined(server.port, "Ben", at=(4.0, 2.0, 0)) as ben,
+        joined(server.port, "Far", at=(18.0, 18.0, 0)) as far,
+    ):
+        await ben.wait_for(lambda: ann.id in ben.positions)
+        await ann.send(ChatLine(text=" hello "))
+        heard = await ben.until(Chat)
+        assert (heard.id, heard.name, heard.text) == (ann.id, "Ann", "hello")
+        assert (await ann.until(Chat)).text == "hello"
+        await far.send(ChatLine(text="anybody?"))
+        heard = await far.until(Chat)
+        assert (heard.name, heard.text) == ("Far", "anybody?")
+
+
+async def test_a_lost_connection_comes_back_as_the_same_avatar(serving: Serving) -> None:
+    async with serving() as server, joined(server.port, "Eve", at=(6.0, 6.0, 0)) as eve:
+        async with joined(server.port, "Ann", at=(2.0, 2.0, 0)) as ann:
+            await ann.move(0.0, 1.0)
+            await ann.wait_for(lambda: ann.position[0] > 2.3)
+            ann.connection.transport.abort()
+        assert ann.welcome is not None
+        await eve.until_tick(server.world.tick + 3)
+        stood = eve.positions[ann.id]
+        await eve.ticks(3)
+        assert eve.positions[ann.id] == stood
+        async with joined(server.port, "Other name", resume=ann.welcome.resume) as again:
+            assert again.welcome is not None
+            assert again.id == ann.id
+            assert again.welcome.resumed
+            assert again.welcome.name == "Ann"
+            assert again.position == pytest.approx(stood)
+            assert again.ack == 0
+            assert again.welcome.resume == ann.welcome.resume
+            assert server.world.count()[0] == 2
+
+
+async def test_an_avatar_waits_only_so_long(serving: Serving) -> None:
+    async with serving(resume_seconds=0.2) as server, joined(server.port, "Eve") as eve:
+        async with joined(server.port, "Ann") as ann:
+            await eve.wait_for(lambda: ann.id in eve.positions)
+            ann.connection.transport.abort()
+        await eve.wait_for(lambda: ann.id not in eve.positions)
+        assert ann.welcome is not None
+        async with joined(server.port, "Ann", resume=ann.welcome.resume) as again:
+            assert again.welcome is not None
+            assert again.id != ann.id
+            assert not again.welcome.resumed
+
+
+async def test_who_says_goodbye_is_gone_at_once(serving: Serving) -> None:
+    async with serving() as server, joined(server.port, "Eve") as eve:
+        async with joined(server.port, "Ann") as ann:
+            await eve.wait_for(lambda: ann.id in eve.positions)
+        await eve.wait_for(lambda: ann.id not in eve.positions)
+        assert server.world.count()[0] == 1
+
+
+async def test_a_token_in_use_replaces_the_first_connection(serving: Serving) -> None:
+    async with serving() as server, joined(server.port, "Ann") as first:
+        assert first.welcome is not None
+        async with joined(server.port, "Ann", resume=first.welcome.resume) as second:
+            assert second.id == first.id
+            messages, code = await first.last_words()
+            assert code == CloseCode.REPLACED
+            assert [m.reason for m in messages if isinstance(m, Bye)] == [ByeCode.REPLACED]
+            await second.move(0.0, 1.0)
+            await second.wait_for(lambda: second.ack == 1)
+            assert server.world.count()[0] == 1
+
+
+async def test_an_unknown_token_is_a_new_person(serving: Serving) -> None:
+    async with serving() as server, joined(server.port, resume="no such token") as client:
+        assert client.welcome is not None
+        assert not client.welcome.resumed
+
+
+async def test_a_full_world_turns_people_away_but_lets_its_own_back_in(serving: Serving) -> None:
+    async with serving(max_clients=1) as server:
+        async with joined(server.port, "Ann") as ann:
+            async with connected(server.port) as late:
+                await late.send(Hello(name="Late", version=VERSION))
+                assert await late.refusal() == ("server_full", CloseCode.SERVER_FULL)
+            ann.connection.transport.abort()
+        assert ann.welcome is not None
+        async with joined(server.port, "Ann", resume=ann.welcome.resume) as again:
+            assert again.id == ann.id
+
+
+async def test_who_leaves_at_the_door_leaves_nobody_behind(serving: Serving) -> None:
+    async with serving() as server, joined(server.port) as client:
+        for _ in range(30):
+            async with connected(server.port) as shy:
+                await shy.send(Hello(name="Shy", version=VERSION))
+        await client.wait_for(lambda: server.world.count()[0] == 1)
+        await client.until(Snapshot)
+        assert server.world.count()[0] == 1
