@@ -41,7 +41,7 @@ def direction_at(
         j, i = cell_at(grid, wx, wy)
         left, wx, wy = guide[layer, j, i]
         length = np.hypot(wx - x, wy - y)
-    if length < 1e-9:
+    if length < 1e-4:  # waypoints are rounded to float32
         return 0.0, 0.0, 0.0
     return (wx - x) / length, (wy - y) / length, length
 
