@@ -7,6 +7,7 @@ says so, and then sends the visitors: real clients over real sockets, ended with
 import argparse
 import contextlib
 import http.client
+import socket
 import subprocess
 import sys
 import threading
@@ -19,12 +20,22 @@ from rich.console import Console
 from rich.panel import Panel
 
 POLL_S: Final = 0.25
+GRACE_S: Final = 2.0
+EXIT_FAILED: Final = 1
 END_LIMIT_S: Final = 5.0
 
 
 def run(argv: Sequence[str]) -> int:
     """Run the demo until the server ends, and return the server's exit code."""
     options, passed_on = parser().parse_known_args(argv)
+    for port in (options.port, options.private_port):
+        if not _is_free(port):
+            print(
+                f"esplanade demo: port {port} is taken, perhaps by another world. "
+                "Others can be given by --port and --private-port.",
+                file=sys.stderr,
+            )
+            return EXIT_FAILED
     visitors = Visitors(options)
     visitors.start()
     try:
@@ -64,11 +75,28 @@ class Visitors:
             if self._ending.wait(POLL_S):
                 return
         _announce(self._options.port)
-        if self._options.visitors and not self._ending.is_set():
-            self._process = subprocess.Popen(
-                [sys.executable, "-m", "esplanade", "bots", *bots_arguments(self._options)],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
+        if not self._options.visitors or self._ending.is_set():
+            return
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "esplanade", "bots", *bots_arguments(self._options)],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            # Not the terminal's group: its Ctrl-C is ours alone, and we send them home.
+            process_group=0,
+        )
+        self._watch(self._process)
+
+    def _watch(self, process: subprocess.Popen[bytes]) -> None:
+        """Say so if the visitors leave before the world ends."""
+        while process.poll() is None:
+            if self._ending.wait(POLL_S):
+                return
+        if not self._ending.wait(GRACE_S):
+            print(
+                f"The visitors have left (status {process.returncode}). "
+                f"To see why: esplanade bots {' '.join(bots_arguments(self._options))}",
+                file=sys.stderr,
             )
 
 
@@ -89,6 +117,15 @@ def bots_arguments(options: argparse.Namespace) -> list[str]:
         f"--seed={options.seed}",
         "--duration=0",
     ]
+
+
+def _is_free(port: int) -> bool:
+    """Whether we may listen there; asked first, so that nobody waits for a start in vain."""
+    try:
+        socket.create_server(("", port)).close()
+    except OSError:
+        return False
+    return True
 
 
 def is_ready(private_port: int) -> bool:
@@ -127,7 +164,9 @@ def parser() -> argparse.ArgumentParser:
     )
     options.add_argument("--actors", type=amount, default=12, help="number of actors")
     options.add_argument("--visitors", type=amount, default=6, help="number of wandering bots")
-    options.add_argument("--seed", type=int, default=1, help="seed of everything drawn by chance")
+    options.add_argument(
+        "--seed", type=_number(0, 2**32 - 1), default=1, help="seed of everything drawn by chance"
+    )
     return options
 
 

@@ -115,3 +115,11 @@ def test_numbers_out_of_range_are_refused(
         demo.run([argument])
     option, _, value = argument.partition("=")
     assert f"argument {option}: '{value}' is no number from" in capsys.readouterr().err
+
+
+def test_taken_port_is_told_at_once(capsys: pytest.CaptureFixture[str]) -> None:
+    (free,) = free_ports(1)
+    with socket.create_server(("", 0)) as taken:
+        port = taken.getsockname()[1]
+        assert demo.run([f"--port={free}", f"--private-port={port}"]) == demo.EXIT_FAILED
+    assert f"port {port} is taken" in capsys.readouterr().err
