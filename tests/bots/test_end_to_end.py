@@ -1,0 +1,118 @@
+"""Bots against the real server, in this process, over real sockets."""
+
+import asyncio
+import math
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import bots
+from bots.load import LoadJob
+from bots.replay import ReplayJob
+from bots.tally import Tally
+from protocol.messages import Chat
+from recordings import Crowd, read_crowd
+from server.app import Running, running
+from server.settings import ServerSettings
+from tests.bots.scripted import until
+
+
+def two_people() -> str:
+    """Two who cross in the middle of a square, one of them through a wall's end."""
+    lines = ["t,id,x,y"]
+    for step in range(16):
+        t = 0.4 * step
+        lines.append(f"{t:.1f},ann,{-4 + 1.3 * t:.3f},0.3")
+        lines.append(f"{t + 0.2:.1f},bob,0.2,{-3 + t:.3f}")
+    return "\n".join(lines) + "\n"
+
+
+@pytest.fixture
+def recording(tmp_path: Path) -> Path:
+    path = tmp_path / "crossing.csv"
+    path.write_text(two_people())
+    path.with_suffix(".walls.json").write_text('{"segments": [[0.1, -1, 3, -1]]}')
+    return path
+
+
+@pytest.fixture
+def crowd(recording: Path) -> Crowd:
+    return read_crowd(recording)
+
+
+@pytest.fixture
+async def server(recording: Path) -> AsyncIterator[Running]:
+    settings = ServerSettings(
+        crowd=recording, actors=0, host="127.0.0.1", port=0, private_port=0, resume_seconds=20.0
+    )
+    async with running(settings) as server:
+        yield server
+
+
+def url_of(server: Running) -> str:
+    return f"ws://127.0.0.1:{server.port}"
+
+
+async def test_two_bots_meet_walk_and_talk(server: Running) -> None:
+    url = url_of(server)
+    async with (
+        bots.connect(url, name="Ann", at=(-2.0, 2.0, 0)) as ann,
+        bots.connect(url, name="Bob", at=(2.0, 2.0, 0)) as bob,
+    ):
+        assert ann.position[:2] == pytest.approx((-2.0, 2.0), abs=0.5)
+        await until(lambda: bob.id in ann.others and ann.id in bob.others)
+        assert ann.others[bob.id].name == "Bob"
+        start = bob.position
+        sequence = await bob.move(math.pi / 2, 1.0)
+        await until(lambda: bob.acknowledged >= sequence and bob.position[1] > start[1] + 0.3)
+        await until(lambda: ann.others[bob.id].y > start[1] + 0.3)
+        await bob.stop()
+        await ann.walk_to(1.0, 1.0)
+        await until(lambda: math.dist(ann.position[:2], (1.0, 1.0)) < 0.3)
+        assert 0.0 < await ann.ping() < 5.0
+        await ann.chat("good day")
+        async for event in bob.events():
+            if isinstance(event, Chat):
+                assert (event.id, event.name, event.text) == (ann.id, "Ann", "good day")
+                break
+        me = bob.id
+    async with bots.connect(url, name="Cid") as cid:
+        await until(lambda: me not in cid.others)
+
+
+async def test_a_lost_bot_comes_back_as_the_same_avatar(server: Running) -> None:
+    url = url_of(server)
+    async with bots.connect(url, name="Ann", at=(2.0, 2.0, 0)) as ann:
+        first, token, place = ann.id, ann.resume_token, ann.position
+        ann._connection._socket.transport.abort()
+        with pytest.raises(bots.Disconnected):
+            async for _ in ann.events():
+                pass
+    async with bots.connect(url, name="Ann", resume=token) as again:
+        assert again.id == first
+        assert again.welcome.resumed
+        assert again.position == pytest.approx(place, abs=0.02)
+
+
+async def test_visitors_do_well(server: Running) -> None:
+    tally = Tally()
+    job = LoadJob(url_of(server), count=8, first=0, step=1, seed=3, join_rate=50.0, duration_s=2.0)
+    await job.run(tally, asyncio.Event())
+    assert (tally.joined, tally.left, tally.lost) == (8, 8, 0)
+    assert set(tally.errors) <= {"no_path"}
+    assert tally.snapshot_age_s.count > 8 * 10
+    assert tally.round_trip_s.count >= 8 * 3
+
+
+async def test_recorded_people_follow_their_way_past_walls(server: Running, crowd: Crowd) -> None:
+    tally = Tally()
+    job = ReplayJob(url_of(server), crowd.tracks, speedup=1.0, linger_s=0.0)
+    await job.run(tally, asyncio.Event())
+    assert (tally.joined, tally.left) == (2, 2)
+    assert tally.well
+    assert tally.capped == 0
+    expected = sum(np.ptp(track.times) for track in crowd.tracks) * 20
+    assert tally.deviation_m.count > 0.7 * expected
+    assert tally.near == tally.deviation_m.count

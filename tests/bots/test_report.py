@@ -1,0 +1,75 @@
+"""Figures and tables of a run."""
+
+import io
+import json
+from collections import Counter
+
+import pytest
+from rich.console import Console
+
+from bots.histogram import Histogram
+from bots.report import figures, show
+from bots.tally import Tally
+
+
+def full() -> Tally:
+    return Tally(
+        expected=10,
+        joined=9,
+        failed=1,
+        left=8,
+        lost=1,
+        skipped=2,
+        messages_in=1000,
+        messages_out=50,
+        bytes_in=123_456,
+        bytes_out=789,
+        client_seconds=50.0,
+        cpu_seconds=0.5,
+        errors=Counter(flooding=3),
+        round_trip_s=Histogram([0.001] * 99 + [0.05]),
+        snapshot_age_s=Histogram([0.01]),
+        snapshot_interval_s=Histogram([0.05]),
+        deviation_m=Histogram([0.01] * 3 + [0.2]),
+        near=3,
+        capped=4,
+    )
+
+
+def text_of(tally: Tally) -> str:
+    out = io.StringIO()
+    show(Console(file=out, width=100), tally)
+    return out.getvalue()
+
+
+def test_figures_are_plain_json() -> None:
+    found = json.loads(json.dumps(figures(full())))
+    assert found["clients"]["lost"] == 1
+    assert found["bytes"] == {"in": 123_456, "out": 789}
+    assert found["per_client_and_second"]["bytes_in"] == pytest.approx(2469.12)
+    assert found["per_client_and_second"]["cpu_us"] == pytest.approx(10_000)
+    assert found["round_trip_ms"]["p50"] == pytest.approx(1.0, rel=0.011)
+    assert found["round_trip_ms"]["max"] == 50.0
+    assert found["errors"] == {"flooding": 3}
+    assert found["replay"]["share_within_0_1_m"] == 0.75
+    assert found["replay"]["skipped"] == 2
+
+
+def test_nothing_measured_is_none_not_zero() -> None:
+    found = figures(Tally())
+    assert found["round_trip_ms"]["p50"] is None
+    assert found["per_client_and_second"]["bytes_in"] is None
+    assert "replay" not in found
+    assert "0 of 0" in text_of(Tally())
+
+
+def test_tables_tell_everything() -> None:
+    text = text_of(full())
+    for words in ("9 of 10", "2,469.1", "1,000", "skipped", "75.00 %", "flooding", "50.0 ms"):
+        assert words in text
+
+
+def test_tables_leave_out_what_did_not_happen() -> None:
+    text = text_of(Tally(expected=1, joined=1, left=1))
+    for words in ("skipped", "Errors", "recorded way", "round trip"):
+        assert words not in text
