@@ -19,9 +19,9 @@ from typing import Final, cast
 from rich.console import Console
 from rich.panel import Panel
 
+EXIT_FAILED: Final = 1
 POLL_S: Final = 0.25
 GRACE_S: Final = 2.0
-EXIT_FAILED: Final = 1
 END_LIMIT_S: Final = 5.0
 
 
