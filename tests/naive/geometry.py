@@ -12,34 +12,29 @@ Point = tuple[float, float]
 
 def point_segment_distance(p: Point, a: Point, b: Point) -> float:
     """To the nearer end where the angle there is blunt, else by the height of the triangle."""
-    ab, ap, bp = np.subtract(b, a), np.subtract(p, a), np.subtract(p, b)
-    if not ab.any() or ap @ ab <= 0.0:
-        return float(np.hypot(*ap))
-    if bp @ ab >= 0.0:
-        return float(np.hypot(*bp))
+    ab, ap, bp = ((w[0] - v[0], w[1] - v[1]) for v, w in ((a, b), (a, p), (b, p)))
+    if a == b or ap[0] * ab[0] + ap[1] * ab[1] <= 0.0:
+        return math.hypot(*ap)
+    if bp[0] * ab[0] + bp[1] * ab[1] >= 0.0:
+        return math.hypot(*bp)
     twice_area = abs(ab[0] * ap[1] - ab[1] * ap[0])
-    return float(twice_area / np.hypot(*ab))
+    return twice_area / math.hypot(*ab)
 
 
 def segments_meet(a: Point, b: Point, c: Point, d: Point) -> bool:
     """Whether two closed segments share a point, decided without any rounding."""
-    ax, ay, bx, by, cx, cy, dx, dy = (Fraction(v) for p in (a, b, c, d) for v in p)
+    for axis in (0, 1):
+        if max(a[axis], b[axis]) < min(c[axis], d[axis]):
+            return False
+        if max(c[axis], d[axis]) < min(a[axis], b[axis]):
+            return False
+    return _side(a, b, c) * _side(a, b, d) <= 0 and _side(c, d, a) * _side(c, d, b) <= 0
 
-    def side(px: Fraction, py: Fraction, qx: Fraction, qy: Fraction, rx: Fraction, ry: Fraction):
-        turn = (qx - px) * (ry - py) - (qy - py) * (rx - px)
-        return (turn > 0) - (turn < 0)
 
-    sides = (
-        side(ax, ay, bx, by, cx, cy),
-        side(ax, ay, bx, by, dx, dy),
-        side(cx, cy, dx, dy, ax, ay),
-        side(cx, cy, dx, dy, bx, by),
-    )
-    boxes_overlap = (
-        max(min(ax, bx), min(cx, dx)) <= min(max(ax, bx), max(cx, dx))
-        and max(min(ay, by), min(cy, dy)) <= min(max(ay, by), max(cy, dy))
-    )  # fmt: skip
-    return boxes_overlap and sides[0] * sides[1] <= 0 and sides[2] * sides[3] <= 0
+def _side(p: Point, q: Point, r: Point) -> int:
+    (px, py), (qx, qy), (rx, ry) = [(Fraction(x), Fraction(y)) for x, y in (p, q, r)]
+    turn = (qx - px) * (ry - py) - (qy - py) * (rx - px)
+    return (turn > 0) - (turn < 0)
 
 
 def segment_distance(a: Point, b: Point, c: Point, d: Point) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 def past_velocities(track: NDArray[np.float64], sample_s: float) -> list[NDArray[np.float64]]:
     """Velocities between positions (n + 1, 2) that are listed newest first."""
-    return [(newer - older) / sample_s for newer, older in zip(track, track[1:], strict=False)]
+    return [(newer - older) / sample_s for newer, older in pairwise(track)]
 
 
 def printed_velocity(track: NDArray[np.float64], sample_s: float) -> NDArray[np.float64]:
@@ -40,9 +41,7 @@ def exponential_mean(track: NDArray[np.float64], sample_s: float) -> NDArray[np.
 
 
 def integral_of_density(density, sigma_m: float) -> float:
-    """Sum of a density over a fine grid out to eight deviations."""
-    axis = np.linspace(-8.0 * sigma_m, 8.0 * sigma_m, 401)
+    """Sum of a density over an even grid out to eight deviations."""
+    axis = np.linspace(-8.0 * sigma_m, 8.0 * sigma_m, 81)
     step = axis[1] - axis[0]
-    return math.fsum(
-        float(density(np.array([x, y]), sigma_m)) * step * step for x in axis for y in axis
-    )
+    return step * step * math.fsum(density(np.array([x, y]), sigma_m) for x in axis for y in axis)

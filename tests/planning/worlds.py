@@ -119,6 +119,7 @@ def task(
         max_acceleration_mps2=2.0,
         goal_tolerance_m=0.2,
         risk_weight=25.0,
+        foresight_s=20.0,
         closing_weight=0.1,
         turn_weight=0.1,
         wall_weight=0.3,

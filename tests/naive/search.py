@@ -1,0 +1,228 @@
+"""Best-first search in CT-space, Lei & Li, fig. 5, with lists and dictionaries."""
+
+from __future__ import annotations
+
+import heapq
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning import LayeredGrid, Potential, RiskField, SearchStatus
+from planning._reservation_kernels import MARGIN_M, Reservations
+from planning._search_kernels import Moves, Task, advance, risk_price, time_cost, wall_cost
+from tests.naive.geometry import Point
+from tests.naive.reservations import conflict
+
+
+@dataclass(frozen=True)
+class Ground:
+    """Everything that a path is judged by, one question at a time."""
+
+    grid: LayeredGrid
+    field: RiskField
+    potential: Potential
+    reservations: Reservations
+    task: Task
+    step_s: float
+
+    def cell(self, p: Point) -> tuple[int, int]:
+        return int(p[1] / self.grid.cell_m), int(p[0] / self.grid.cell_m)
+
+    def clearance(self, p: Point) -> float:
+        return float(self.grid.clearance([p], [self.task.layer])[0])
+
+    def needed(self) -> float:
+        return min(self.task.radius_m, max(0.0, self.clearance((self.task.x, self.task.y)))) - 1e-6
+
+    def seconds_left(self, p: Point) -> float:
+        if self.task.hold:
+            return 0.0
+        return float(self.potential.distance([p], [self.task.layer])[0]) / self.task.speed_mps
+
+    def risk(self, k: int, p: Point, v: Point) -> float:
+        layers = [self.task.layer]
+        return float(self.field.at(k, [p], layers, [v], self.task.closing_weight)[0])
+
+    def meeting(self, k: int, a: Point, b: Point) -> tuple[bool, int]:
+        return conflict(self.reservations, MARGIN_M, self.task.me, self.task.layer, k, a, b)
+
+    def heading_home(self, p: Point) -> Point:
+        if self.task.hold:
+            away = (self.task.goal_x - p[0], self.task.goal_y - p[1])
+            return away if math.hypot(*away) > 1e-9 else (1.0, 0.0)
+        down = self.potential.direction([p], [self.task.layer])[0]
+        return (down[0], down[1]) if down.any() else (1.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Node:
+    step: int
+    place: Point
+    velocity: Point
+    cost: float
+    parent: int
+    middle: Point
+
+
+def search(
+    ground: Ground, moves: Moves, steps: int, accumulate: bool
+) -> tuple[SearchStatus, NDArray[np.float64], int]:
+    """Status, positions half a step apart, and how many nodes were expanded."""
+    task = ground.task
+    start = (task.x, task.y)
+    nodes = [Node(0, start, (task.vx, task.vy), 0.0, -1, start)]
+    if math.isinf(ground.seconds_left(start)):
+        return SearchStatus.NO_PATH, _trace(nodes, 0, steps), 0
+    queue = [(ground.seconds_left(start), 0)]
+    cheapest: dict[tuple[int, tuple[int, int]], float] = {}
+    furthest = (0, math.inf, 0)
+    expansions = 0
+    while queue:
+        key, n = heapq.heappop(queue)
+        node = nodes[n]
+        at = (node.step, ground.cell(node.place))
+        if n and accumulate and cheapest[at] < node.cost - 1e-12:
+            continue
+        furthest = min(furthest, (-node.step, key, n))
+        home = math.dist(node.place, (task.goal_x, task.goal_y)) <= task.goal_tolerance_m
+        if node.step == steps or (home and not accumulate and not task.hold):
+            return SearchStatus.FOUND, _trace(nodes, n, steps), expansions
+        if expansions == task.max_expansions:
+            return SearchStatus.PARTIAL, _trace(nodes, furthest[2], steps), expansions
+        expansions += 1
+        for wish in _wishes(ground, moves, node):
+            made = _move(ground, node, n, wish, accumulate)
+            if made is None:
+                continue
+            child, key = made
+            at = (child.step, ground.cell(child.place))
+            if at in cheapest and (not accumulate or child.cost >= cheapest[at] - 1e-12):
+                continue
+            cheapest[at] = child.cost
+            heapq.heappush(queue, (key, len(nodes)))
+            nodes.append(child)
+    status = SearchStatus.PARTIAL if furthest[0] < 0 else SearchStatus.NO_PATH
+    return status, _trace(nodes, furthest[2], steps), expansions
+
+
+def _wishes(ground: Ground, moves: Moves, node: Node) -> list[Point]:
+    """Velocities to turn into: the moves, straight on no further than the goal, and staying."""
+    away = math.dist(node.place, (ground.task.goal_x, ground.task.goal_y))
+    ahead = 0.0
+    if moves.relative:
+        x, y = ground.heading_home(node.place)
+        ahead = math.atan2(y, x)
+    wishes = []
+    for heading, speed in zip(moves.headings.tolist(), moves.speeds.tolist(), strict=True):
+        v = min(speed, away / ground.step_s) if moves.relative and heading == 0.0 else speed
+        wishes.append((v * math.cos(ahead + heading), v * math.sin(ahead + heading)))
+    return [*wishes, (0.0, 0.0)]
+
+
+def _move(
+    ground: Ground, node: Node, n: int, wish: Point, accumulate: bool
+) -> tuple[Node, float] | None:
+    """The node after one step and its key; None when the move is not possible."""
+    task, half = ground.task, ground.step_s / 2
+    a_max = task.max_acceleration_mps2
+    *middle, vx, vy = advance(*node.place, *node.velocity, *wish, a_max, half)
+    *end, ux, uy = advance(*middle, vx, vy, *wish, a_max, half)
+    room = min(ground.clearance(tuple(middle)), ground.clearance(tuple(end)))
+    if room < ground.needed() or math.isinf(left := ground.seconds_left(tuple(end))):
+        return None
+    k = 2 * node.step
+    meetings = [
+        ground.meeting(k, node.place, tuple(middle)),
+        ground.meeting(k + 1, tuple(middle), tuple(end)),
+    ]
+    if any(blocked for blocked, _ in meetings):
+        return None
+    minded = sum(soft for _, soft in meetings)
+    minded += ground.risk(k + 1, tuple(middle), (vx, vy)) + ground.risk(k + 2, tuple(end), (ux, uy))
+    priced = risk_price(task, node.step * ground.step_s) * half * minded
+    if not accumulate:
+        return Node(node.step + 1, tuple(end), (ux, uy), 0.0, n, tuple(middle)), left + priced
+    speed = math.dist(node.place, end) / ground.step_s
+    cost = (
+        node.cost
+        + time_cost(task, *end, speed, ground.step_s)
+        + priced
+        + task.turn_weight * math.dist((ux, uy), node.velocity)
+        + wall_cost(task, room, ground.step_s)
+    )
+    return Node(node.step + 1, tuple(end), (ux, uy), cost, n, tuple(middle)), cost + left
+
+
+def _trace(nodes: list[Node], n: int, steps: int) -> NDArray[np.float64]:
+    places: list[Point] = [nodes[n].place]
+    while nodes[n].parent >= 0:
+        places += [nodes[n].middle, nodes[nodes[n].parent].place]
+        n = nodes[n].parent
+    places.reverse()
+    return np.array(places + places[-1:] * (2 * steps + 1 - len(places)))
+
+
+def path_cost(ground: Ground, path: NDArray[np.float64]) -> tuple[float, float]:
+    """Cost of a whole path as the search counts it, slice by slice, and its mean risk."""
+    task, ds = ground.task, ground.step_s / 2
+    velocities = [(task.vx, task.vy), *map(tuple, np.diff(path, axis=0) / ds)]
+    cost, risks = 0.0, []
+    for k, (a, b) in enumerate(zip(path, path[1:], strict=False)):
+        risks.append(ground.risk(k + 1, tuple(b), velocities[k + 1]))
+        soft = ground.meeting(k, tuple(a), tuple(b))[1]
+        cost += time_cost(task, b[0], b[1], math.dist(a, b) / ds, ds)
+        cost += risk_price(task, (k // 2) * ground.step_s) * ds * (risks[-1] + soft)
+        cost += task.turn_weight * math.dist(velocities[k], velocities[k + 1])
+        cost += wall_cost(task, ground.clearance(tuple(b)), ds)
+    return cost + ground.seconds_left(tuple(path[-1])), math.fsum(risks) / len(risks)
+
+
+def update_path(ground: Ground, path: NDArray[np.float64], offsets: int, offset_m: float) -> int:
+    """Figs. 7 and 8 as the recursion that they are; bends the path in place."""
+
+    def average_risk(p: NDArray[np.float64], left: int, right: int) -> float:
+        ds = ground.step_s / 2
+        risks = [ground.risk(k, tuple(p[k]), tuple((p[k] - p[k - 1]) / ds))
+                 for k in range(left + 1, right + 1)]  # fmt: skip
+        return math.fsum(risks) / len(risks)
+
+    def legal(p: NDArray[np.float64], left: int, right: int) -> bool:
+        most = ground.task.max_speed_mps * ground.step_s / 2 + 1e-9
+        return all(
+            math.dist(p[k], p[k + 1]) <= most
+            and ground.clearance(tuple(p[k + 1])) >= ground.needed()
+            and math.isfinite(ground.seconds_left(tuple(p[k + 1])))
+            and not ground.meeting(k, tuple(p[k]), tuple(p[k + 1]))[0]
+            for k in range(left, right)
+        )
+
+    def perturb(left: int, right: int) -> NDArray[np.float64] | None:
+        risk = average_risk(path, left, right)
+        chord = path[right] - path[left]
+        if risk <= 1e-9 or math.hypot(*chord) < 1e-6:
+            return None
+        normal = np.array([-chord[1], chord[0]]) / math.hypot(*chord)
+        middle = (left + right) // 2
+        for n in range(1, offsets + 1):
+            for side in (1.0, -1.0):
+                bend = path.copy()
+                tip = path[left] + 0.5 * chord + side * n * offset_m * normal
+                bend[left : middle + 1] = np.linspace(path[left], tip, middle - left + 1)
+                bend[middle : right + 1] = np.linspace(tip, path[right], right - middle + 1)
+                if average_risk(bend, left, right) < risk - 1e-9 and legal(bend, left, right):
+                    return bend
+        return None
+
+    def update(left: int, right: int) -> int:
+        bend = perturb(left, right)
+        if bend is not None:
+            path[:] = bend
+            return 1
+        if right - left < 4:
+            return 0
+        middle = (left + right) // 2
+        return update(left, middle) + update(middle, right)
+
+    return update(0, len(path) - 1)

@@ -1,0 +1,150 @@
+"""Wave fronts against Dijkstra over cells and against the shortest ways there are."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from planning import Polygon, Potential, Wave
+from planning._potential_kernels import direction_at, potential_at
+from tests.naive import waves as naive
+from tests.planning.worlds import holds, lines, open_grid, points
+
+RADIUS_M = 0.25
+CELL_M = 0.25
+ROOM = [
+    ((2.0, 2.0), (4.0, 2.0)),
+    ((4.0, 2.0), (4.0, 4.0)),
+    ((4.0, 4.0), (2.0, 4.0)),
+    ((2.0, 4.0), (2.0, 2.0)),
+]
+
+
+def centres(grid):
+    """Every cell's centre, row by row, and its layer."""
+    ny, nx = grid.arrays.clearance.shape[1:]
+    x, y = np.meshgrid((np.arange(nx) + 0.5) * CELL_M, (np.arange(ny) + 0.5) * CELL_M)
+    return np.stack([x.ravel(), y.ravel()], axis=1), np.zeros(nx * ny, dtype=np.int64)
+
+
+@given(lines(0.0, 6.0, 5), st.tuples(st.integers(0, 23), st.integers(0, 23)))
+@holds(15, 6)
+def test_nf1_is_the_shortest_way_over_cells(walls, goal) -> None:
+    grid = open_grid(6.0, walls)
+    free = grid.arrays.clearance[0] >= RADIUS_M
+    assume(free[goal])
+    place = ((goal[1] + 0.5) * CELL_M, (goal[0] + 0.5) * CELL_M)
+    potential = Potential(grid, place, 0, RADIUS_M, Wave.NF1)
+    found = potential.distance(*centres(grid)).reshape(free.shape)
+    expected = naive.nf1(free, goal, CELL_M)
+    assert found == pytest.approx(expected, abs=1e-4)
+    assert potential.reached_cells == np.isfinite(expected).sum()
+
+
+@given(lines(1.0, 7.0, 2), points(0.5, 7.5), points(0.5, 7.5))
+@holds(12, 4)
+def test_sight_is_nearly_the_shortest_way_at_any_angle(walls, start, goal) -> None:
+    grid = open_grid(8.0, walls)
+    # Cells know obstacles to within half a cell: bounds come from discs that much wider or thinner.
+    least = naive.shortest_way(walls, start, goal, max(0.01, RADIUS_M - CELL_M), corners=8)
+    most = naive.shortest_way(walls, start, goal, RADIUS_M + CELL_M, corners=8)
+    assume(math.isfinite(most))
+    found = Potential(grid, goal, 0, RADIUS_M).distance([start], [0])[0]
+    assert least * 0.97 - 1e-6 <= found <= most * 1.03 + 2.0 * CELL_M
+
+
+def test_around_one_wall_sight_is_within_three_percent_and_nf1_within_twelve() -> None:
+    wall = ((4.0, 0.0), (4.0, 5.0))
+    start, goal = (1.125, 1.125), (6.875, 2.375)
+    grid = open_grid(8.0, [wall])
+    beyond_the_bounds = ((4.0, -9.0), (4.0, 5.0))
+    exact = naive.shortest_way([beyond_the_bounds], start, goal, RADIUS_M)
+    sight = Potential(grid, goal, 0, RADIUS_M, Wave.SIGHT).distance([start], [0])[0]
+    nf1 = Potential(grid, goal, 0, RADIUS_M, Wave.NF1).distance([start], [0])[0]
+    assert abs(sight - exact) < 0.03 * exact
+    assert sight < nf1 < 1.12 * exact
+
+
+def test_in_the_open_sight_is_the_straight_way_from_everywhere() -> None:
+    grid = open_grid(8.0)
+    goal = (3.3, 5.1)
+    positions, layers = centres(grid)
+    potential = Potential(grid, goal, 0, RADIUS_M)
+    assert potential.distance(positions, layers) == pytest.approx(
+        np.hypot(*(positions - goal).T), abs=1e-5
+    )
+    down = potential.direction(positions, layers)
+    assert (positions + down * potential.distance(positions, layers)[:, None]) == pytest.approx(
+        np.broadcast_to(goal, positions.shape), abs=1e-4
+    )
+    assert potential.direction([goal], [0])[0].tolist() == [0.0, 0.0]
+
+
+@pytest.mark.parametrize("wave", list(Wave))
+def test_going_down_leads_to_the_goal_through_free_cells(wave) -> None:
+    walls = [((3.0, 0.0), (3.0, 6.0)), ((5.0, 2.0), (5.0, 8.0))]
+    grid = open_grid(8.0, walls)
+    goal = (7.125, 6.125)
+    potential = Potential(grid, goal, 0, RADIUS_M, wave)
+    position = np.array([[1.125, 1.125]])
+    length = potential.distance(position, [0])[0]
+    walked = 0.0
+    while potential.distance(position, [0])[0] > 0.2:
+        step = 0.1 * potential.direction(position, [0])
+        assert np.hypot(*step[0]) > 0.0
+        position = position + step
+        walked += 0.1
+        assert walked < 1.1 * length + 0.5
+        assert grid.clearance(position, [0])[0] > RADIUS_M - CELL_M * math.sqrt(0.5)
+    assert walked > 0.95 * length - 0.3
+
+
+@pytest.mark.parametrize("wave", list(Wave))
+def test_no_way_leads_out_of_a_closed_room(wave) -> None:
+    grid = open_grid(8.0, ROOM)
+    potential = Potential(grid, (3.125, 3.125), 0, RADIUS_M, wave)
+    assert potential.distance([(6.0, 6.0)], [0])[0] == math.inf
+    assert potential.direction([(6.0, 6.0)], [0])[0].tolist() == [0.0, 0.0]
+    assert math.isfinite(potential.distance([(2.6, 2.6)], [0])[0])
+
+
+def test_no_corner_is_cut() -> None:
+    blocks = [
+        Polygon(points=((1.0, 1.0), (2.0, 1.0), (2.0, 2.0), (1.0, 2.0)), height_m=2.0),
+        Polygon(points=((2.0, 2.0), (3.0, 2.0), (3.0, 3.0), (2.0, 3.0)), height_m=2.0),
+    ]
+    grid = open_grid(4.0, polygons=blocks)
+    between = Potential(grid, (2.5, 1.5), 0, 0.1, Wave.NF1)
+    assert between.distance([(1.5, 2.5)], [0])[0] > 3.0
+
+
+def test_who_stands_beside_a_wall_still_knows_the_way() -> None:
+    grid = open_grid(8.0, [((4.0, 0.0), (4.0, 8.0))])
+    potential = Potential(grid, (1.0, 4.0), 0, 0.5)
+    assert not grid.is_free([(3.8, 4.0)], [0], 0.5)[0]
+    assert math.isfinite(potential.distance([(3.8, 4.0)], [0])[0])
+    assert potential.direction([(3.8, 4.0)], [0])[0, 0] < -0.5
+
+
+def test_a_goals_potential_is_kept_and_the_oldest_forgotten() -> None:
+    grid = open_grid(2.0)
+    first = grid.potential((1.0, 1.0), 0, 0.25)
+    assert grid.potential((1.0, 1.0), 0, 0.25) is first
+    assert grid.potential((1.0, 1.0), 0, 0.3) is not first
+    for k in range(256):
+        grid.potential((0.5 + k / 300, 0.7), 0, 0.25)
+    assert grid.potential((1.0, 1.0), 0, 0.25) is not first
+
+
+def test_many_look_ups_are_the_single_one_many_times() -> None:
+    grid = open_grid(8.0, [((4.0, 0.0), (4.0, 5.0))])
+    potential = Potential(grid, (6.0, 1.0), 0, RADIUS_M)
+    rng = np.random.default_rng(3)
+    positions = rng.uniform(0.0, 8.0, (20, 2))
+    layers = np.zeros(20, dtype=np.int64)
+    found = potential.distance(positions, layers), potential.direction(positions, layers)
+    for k, (x, y) in enumerate(positions):
+        assert found[0][k] == potential_at(grid.arrays, potential.guide, 0, x, y)
+        assert tuple(found[1][k]) == direction_at(grid.arrays, potential.guide, 0, x, y)[:2]

@@ -1,0 +1,156 @@
+"""Eqs. (1)-(4) against the way they are written, and what becomes of people's tracks."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from planning import PredictionModel, TrackHistory, gaussian_density
+from planning import _prediction_kernels as kernels
+from tests.naive import prediction as naive
+from tests.planning.worlds import holds, open_grid
+
+TICK_S = 0.1
+SAMPLE_S = 0.4
+
+tracks = st.lists(
+    st.tuples(st.floats(-50.0, 50.0), st.floats(-50.0, 50.0)), min_size=2, max_size=6
+).map(np.array)
+
+
+@given(tracks)
+@holds(100, 100)
+def test_both_readings_of_eq_1_are_their_sums(track) -> None:
+    known = len(track)
+    default = kernels.mean_velocity(track, known, SAMPLE_S)
+    printed = kernels.printed_velocity(track, known, SAMPLE_S)
+    assert default == pytest.approx(naive.default_velocity(track, SAMPLE_S), abs=1e-9)
+    assert printed == pytest.approx(naive.printed_velocity(track, SAMPLE_S), abs=1e-9)
+
+
+@given(tracks)
+@holds(100, 100)
+def test_the_default_is_the_exponential_mean_of_past_velocities(track) -> None:
+    default = kernels.mean_velocity(track, len(track), SAMPLE_S)
+    assert default == pytest.approx(naive.exponential_mean(track, SAMPLE_S), abs=1e-9)
+
+
+@given(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0), st.integers(1, 12), st.booleans())
+@holds(60, 30)
+def test_who_walks_evenly_is_expected_to_go_on_so(vx, vy, ticks, printed) -> None:
+    history = TrackHistory(PredictionModel(printed=printed), TICK_S)
+    for k in range(ticks + 1):
+        history.observe({"p": (vx * k * TICK_S, vy * k * TICK_S)})
+    assert history.velocities()[0] == pytest.approx([vx, vy], abs=1e-9)
+
+
+def test_who_has_just_come_is_taken_to_stand() -> None:
+    history = TrackHistory(PredictionModel(), TICK_S)
+    history.observe({"p": (3.0, 4.0)})
+    assert history.velocities().tolist() == [[0.0, 0.0]]
+    assert history.positions.tolist() == [[3.0, 4.0]]
+
+
+def test_an_old_turn_counts_less_than_a_new_one() -> None:
+    straight = np.array([[0.0, 0.0], [-0.4, 0.0], [-0.8, 0.0], [-1.2, 0.0], [-1.6, 0.0]])
+    late, early = straight.copy(), straight.copy()
+    late[1:, 1] -= 0.2
+    early[4:, 1] -= 0.2
+    turned = [abs(kernels.mean_velocity(t, 5, SAMPLE_S)[1]) for t in (late, early)]
+    assert turned == pytest.approx([0.25, 0.0625])
+
+
+@pytest.mark.parametrize("sigma_m", [0.05, 0.3, 1.7])
+def test_the_density_of_eq_4_integrates_to_one(sigma_m) -> None:
+    assert naive.integral_of_density(gaussian_density, sigma_m) == pytest.approx(1.0, abs=1e-6)
+
+
+def test_the_density_is_that_of_two_dimensions() -> None:
+    assert gaussian_density(np.zeros(2), 0.5) == pytest.approx(1.0 / (2.0 * math.pi * 0.25))
+    printed = 1.0 / (0.5 * math.sqrt(2.0 * math.pi))
+    assert gaussian_density(np.zeros(2), 0.5) != pytest.approx(printed)
+
+
+@pytest.mark.parametrize("sigma_m", [0.0, -1.0, math.nan])
+def test_a_density_needs_a_width(sigma_m) -> None:
+    with pytest.raises(ValueError, match="sigma_m"):
+        gaussian_density(np.zeros(2), sigma_m)
+
+
+def walked(grid, velocity, model=None, start=(4.0, 4.0), ticks=20):
+    history = TrackHistory(model or PredictionModel(), TICK_S)
+    for k in range(ticks):
+        moved = np.multiply(velocity, (k - ticks + 1) * TICK_S)
+        history.observe({"p": tuple(np.add(start, moved))})
+    return history.predict(grid, 24, 0.2)
+
+
+def test_means_and_deviations_follow_eqs_2_and_3() -> None:
+    prediction = walked(open_grid(40.0), (1.0, -0.5), start=(20.0, 20.0))
+    seconds = 0.2 * np.arange(25)
+    assert prediction.means[0] == pytest.approx(
+        np.array([20.0, 20.0]) + seconds[:, None] * np.array([1.0, -0.5]), abs=1e-6
+    )
+    assert prediction.sigmas[0] == pytest.approx(0.05 + 0.17 * seconds)
+    assert prediction.layers.tolist() == [0]
+
+
+def test_a_prediction_slides_along_a_wall_and_never_through_it() -> None:
+    grid = open_grid(8.0, [((5.0, 0.0), (5.0, 8.0))])
+    prediction = walked(grid, (1.0, 0.5))
+    assert prediction.means[0, :, 0].max() <= 5.0 - 0.15 + 1e-6
+    assert prediction.means[0, -1, 1] == pytest.approx(4.0 + 24 * 0.2 * 0.5, abs=0.05)
+    assert prediction.velocities[0, -1] == pytest.approx([0.0, 0.5], abs=1e-6)
+
+
+def test_people_may_come_go_and_come_again() -> None:
+    history = TrackHistory(PredictionModel(), TICK_S)
+    for k in range(5):
+        history.observe({"a": (0.1 * k, 0.0), "b": (0.0, 1.0)})
+    history.observe({"b": (0.0, 1.0)})
+    assert history.ids == ["b"]
+    history.observe({"a": (9.0, 9.0), "b": (0.0, 1.0)})
+    velocities = dict(zip(history.ids, history.velocities().tolist(), strict=True))
+    assert velocities == {"a": [0.0, 0.0], "b": [0.0, 0.0]}
+
+
+def test_more_people_than_before_keep_their_tracks() -> None:
+    history = TrackHistory(PredictionModel(), TICK_S)
+    for k in range(6):
+        history.observe({who: (0.1 * k * who, 0.0) for who in range(k * 20 + 1)})
+    assert len(history.ids) == 101
+    assert history.velocities()[0] == pytest.approx([0.0, 0.0])
+    by_id = dict(zip(history.ids, history.velocities(), strict=True))
+    assert by_id[20] == pytest.approx([20.0, 0.0])
+
+
+def test_on_another_layer_a_track_begins_anew() -> None:
+    history = TrackHistory(PredictionModel(), TICK_S)
+    for k in range(6):
+        history.observe({"p": (0.1 * k, 0.0, 0)})
+    history.observe({"p": (0.6, 0.0, 1)})
+    assert history.layers.tolist() == [1]
+    assert history.velocities().tolist() == [[0.0, 0.0]]
+
+
+def test_the_order_of_listing_does_not_matter() -> None:
+    one, other = (TrackHistory(PredictionModel(), TICK_S) for _ in range(2))
+    people = {7: (1.0, 2.0), "b": (3.0, 4.0), "a": (5.0, 6.0), 30: (0.5, 0.5)}
+    one.observe(people)
+    other.observe(dict(reversed(people.items())))
+    assert one.ids == other.ids
+    assert one.positions.tolist() == other.positions.tolist()
+
+
+@pytest.mark.parametrize(
+    "where", [(math.nan, 0.0), (0.0, math.inf), (1.0,), (1.0, 2.0, 0, 0), (0.0, 0.0, math.nan)]
+)
+def test_a_bad_position_changes_nothing(where) -> None:
+    history = TrackHistory(PredictionModel(), TICK_S)
+    history.observe({"a": (1.0, 1.0)})
+    with pytest.raises(ValueError, match="'b'"):
+        history.observe({"a": (2.0, 2.0), "b": where})
+    assert history.ids == ["a"]
+    assert history.positions.tolist() == [[1.0, 1.0]]

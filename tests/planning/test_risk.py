@@ -1,0 +1,180 @@
+"""Risk against the direct sum of eq. (5), and what must always hold of it."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from planning import Prediction, RiskField, RiskModel
+from planning.risk import radial_tables, sigma_points
+from tests.naive import risk as naive
+from tests.planning.worlds import field_of, holds, open_grid, points, scaled, walking
+
+CLOSING_WEIGHT = 0.2
+
+speeds = st.tuples(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0))
+people = st.lists(st.tuples(points(1.0, 7.0), speeds), min_size=1, max_size=4)
+
+
+def centre(cell: tuple[int, int]) -> np.ndarray:
+    return (np.array(cell[::-1]) + 0.5) * 0.25
+
+
+@given(people, st.integers(0, 6), st.tuples(st.integers(0, 31), st.integers(0, 31)), speeds)
+@holds(60, 6)
+def test_the_field_is_the_direct_sum_at_centres_of_cells(crowd, k, cell, velocity) -> None:
+    grid = open_grid(8.0)
+    prediction = walking([p for p, _ in crowd], [v for _, v in crowd], slices=6)
+    field = field_of(grid, prediction, slices=6)
+    here = centre(cell)
+    found = field.at(k, [here], [0], [velocity], CLOSING_WEIGHT)[0]
+    direct = naive.risk(field.model, prediction, k, 0, here, np.array(velocity), CLOSING_WEIGHT)
+    # The tables are linear between 5 cm and read along one axis of the grid of sigma points.
+    assert found == pytest.approx(direct, abs=0.05 * len(crowd))
+
+
+def test_on_the_whole_the_field_is_close_to_the_direct_sum() -> None:
+    grid = open_grid(8.0)
+    rng = np.random.default_rng(1)
+    prediction = walking(rng.uniform(1.0, 7.0, (6, 2)), rng.normal(0.0, 1.0, (6, 2)), slices=12)
+    field = field_of(grid, prediction, slices=12)
+    errors = []
+    for _ in range(scaled(200, 40)):
+        here = centre(tuple(rng.integers(0, 32, 2)))
+        v = rng.normal(0.0, 1.0, 2)
+        found = field.at(6, [here], [0], [v], CLOSING_WEIGHT)[0]
+        errors.append(found - naive.risk(field.model, prediction, 6, 0, here, v, CLOSING_WEIGHT))
+    assert np.sqrt(np.mean(np.square(errors))) < 0.015
+    assert abs(np.mean(errors)) < 0.005
+
+
+@given(people, points(0.0, 8.0), speeds, st.floats(0.0, 5.0), st.integers(0, 4))
+@holds(100, 10)
+def test_risk_is_never_negative_and_bounded_by_the_number_of_people(
+    crowd, here, velocity, weight, k
+) -> None:
+    prediction = walking([p for p, _ in crowd], [v for _, v in crowd], slices=4)
+    field = field_of(open_grid(8.0), prediction, slices=4)
+    risk = field.at(k, [here], [0], [velocity], weight)[0]
+    closing = sum(np.hypot(*np.subtract(v, velocity)) for _, v in crowd)
+    assert 0.0 <= risk <= len(crowd) + weight * closing + 1e-4
+
+
+@given(people)
+@holds(20, 4)
+def test_where_nobody_can_be_there_is_no_risk(crowd) -> None:
+    prediction = walking([p for p, _ in crowd], [v for _, v in crowd], slices=2)
+    field = field_of(open_grid(40.0), prediction, slices=2)
+    assert field.at(1, [(30.0, 30.0)], [0], [(1.0, 1.0)], 1.0)[0] == 0.0
+
+
+def test_nearer_is_riskier() -> None:
+    field = field_of(open_grid(8.0), walking([(4.125, 4.125)], [(0.0, 0.0)]))
+    row = [(4.125 + 0.25 * k, 4.125) for k in range(8)]
+    risks = field.at(4, row, [0] * 8, [(0.0, 0.0)] * 8, 1.0)
+    assert (np.diff(risks) <= 0.0).all()
+    assert risks[0] > 10.0 * risks[5]
+
+
+def test_closing_is_riskier_and_drawing_apart_is_not_rewarded() -> None:
+    field = field_of(open_grid(8.0), walking([(4.125, 4.125)], [(0.0, 0.0)]))
+    here = [(4.875, 4.125)] * 4
+    closing, still, apart, fast = field.at(
+        2, here, [0] * 4, [(-1.0, 0.0), (0.0, 0.0), (1.0, 0.0), (-2.0, 0.0)], 1.0
+    )
+    assert fast > closing > still
+    assert still == pytest.approx(apart)
+
+
+def test_the_shared_form_bounds_the_sum_of_closing_speeds_not_each() -> None:
+    """One draws near and one as much apart: the sum is nothing, person by person it is not."""
+    both = walking([(3.125, 4.125), (5.125, 4.125)], [(0.0, 0.0), (0.0, 0.0)])
+    one = walking([(5.125, 4.125)], [(0.0, 0.0)])
+    here, velocity = [(4.125, 4.125)], [(1.0, 0.0)]
+    grid = open_grid(8.0)
+    shared = field_of(grid, both).at(5, here, [0], velocity, 1.0)[0]
+    proximity = field_of(grid, both).at(5, here, [0], velocity, 0.0)[0]
+    alone = field_of(grid, one)
+    closing = alone.at(5, here, [0], velocity, 1.0)[0] - alone.at(5, here, [0], velocity, 0.0)[0]
+    assert shared == pytest.approx(proximity, abs=1e-6)
+    assert closing > 0.02
+
+
+@pytest.mark.parametrize("turn", [1, 2, 3])
+def test_risk_turns_with_the_world(turn) -> None:
+    rotation = np.linalg.matrix_power(np.array([[0.0, -1.0], [1.0, 0.0]]), turn)
+    rng = np.random.default_rng(turn)
+    where, way = rng.uniform(-3.0, 3.0, (5, 2)), rng.normal(0.0, 1.0, (5, 2))
+    here, velocity = rng.uniform(-3.0, 3.0, (20, 2)), rng.normal(0.0, 1.0, (20, 2))
+    grid = open_grid(8.0)
+    risks = [
+        field_of(grid, walking(4.0 + where @ r.T, way @ r.T)).at(
+            3, 4.0 + here @ r.T, [0] * 20, velocity @ r.T, 0.5
+        )
+        for r in (np.eye(2), rotation)
+    ]
+    assert risks[0] == pytest.approx(risks[1], abs=1e-4)
+
+
+def test_people_on_another_layer_do_not_matter() -> None:
+    grid = open_grid(8.0)
+    two = np.concatenate([grid.arrays.clearance, grid.arrays.clearance])
+    grid = type(grid)(grid.arrays._replace(clearance=two), grid.index)
+    prediction = walking([(4.0, 4.0)], [(0.0, 0.0)])
+    prediction = Prediction(*prediction[:3], np.array([1]))
+    field = field_of(grid, prediction)
+    assert field.at(0, [(4.0, 4.0)], [0], [(0.0, 0.0)], 1.0)[0] == 0.0
+    assert field.at(0, [(4.0, 4.0)], [1], [(0.0, 0.0)], 1.0)[0] > 0.9
+
+
+def test_filling_again_leaves_nothing_of_before() -> None:
+    grid = open_grid(8.0)
+    field = field_of(grid, walking(np.full((40, 2), 4.0), np.ones((40, 2)), slices=4), slices=4)
+    assert field.fields.any()
+    field.fill(walking([(2.0, 2.0)], [(0.0, 0.0)], slices=4))
+    fresh = field_of(grid, walking([(2.0, 2.0)], [(0.0, 0.0)], slices=4), slices=4)
+    assert np.array_equal(field.fields, fresh.fields)
+    field.fill(walking([], [], slices=4))
+    assert not field.fields.any()
+
+
+def test_people_outside_the_bounds_are_no_trouble() -> None:
+    field = field_of(open_grid(8.0), walking([(-50.0, 3.0), (8.3, 4.0)], [(1.0, 0.0)] * 2))
+    assert np.isfinite(field.fields).all()
+    assert field.at(0, [(7.9, 4.0)], [0], [(0.0, 0.0)], 0.0)[0] > 0.1
+
+
+def test_how_work_is_shared_out_does_not_matter() -> None:
+    grid = open_grid(8.0)
+    prediction = walking([(2.0, 2.0), (5.0, 4.0)], [(1.0, 0.0), (0.0, 1.0)], slices=5)
+    whole = field_of(grid, prediction, slices=5)
+    parts = RiskField(grid, RiskModel(), 5)
+    parts.fill(prediction, lambda work: [work(k, 3) for k in (2, 0, 1)])
+    assert np.array_equal(whole.fields, parts.fields)
+
+
+def test_sigma_points_weigh_one_and_centre_on_the_mean() -> None:
+    offsets, weights = sigma_points()
+    assert weights.sum() == pytest.approx(1.0)
+    assert weights @ offsets == pytest.approx([0.0, 0.0], abs=1e-12)
+    listed = sorted(naive.sigma_grid())
+    assert sorted((*o, w) for o, w in zip(offsets, weights, strict=True)) == pytest.approx(
+        np.array(listed)
+    )
+
+
+def test_tables_are_bounded_and_end_in_nothing() -> None:
+    tables = radial_tables(RiskModel())
+    for table in (tables.near, tables.toward):
+        assert table.min() >= 0.0
+        assert table.max() <= 1.0 + 1e-6
+        assert not table[:, -1].any()
+
+
+def test_the_model_has_the_two_properties_of_eq_5() -> None:
+    model = RiskModel()
+    distances = np.linspace(0.0, 3.0, 301)
+    for term in (model.near(distances), model.toward(distances)):
+        assert (np.diff(term) <= 0.0).all()
+        assert term[0] == 1.0
+        assert not term[distances > model.contact_m + model.influence_m].any()
