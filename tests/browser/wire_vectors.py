@@ -1,4 +1,7 @@
-"""Frames with their meaning, for the web client's tests to read: `python -m tests.browser.wire_vectors`."""
+"""Frames with their meaning, for the web client's tests to read.
+
+Write them anew with `python -m tests.browser.wire_vectors`.
+"""
 
 import json
 from enum import Enum

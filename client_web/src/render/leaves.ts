@@ -17,6 +17,7 @@ export class LeavesMaterial extends MeshLambertMaterial {
       shader.fragmentShader = shader.fragmentShader
         .replace("void main() {", `uniform float avatarDistance;\nvoid main() {${THIN_OUT}`)
         .replace("avatarMargin", MARGIN_M.toFixed(2))
+        .replace("tooNear", TOO_NEAR.toFixed(2))
         .replace("middleTangent", MIDDLE.toFixed(2));
     };
   }
@@ -27,8 +28,12 @@ export class LeavesMaterial extends MeshLambertMaterial {
   }
 }
 
+/** Leaves nearer than this part of the way to the avatar are not drawn at all. */
+const TOO_NEAR = 0.45;
+
 /** Three of four pixels, in a fixed pattern, so that nothing needs to be sorted. */
 const THIN_OUT = `
+  if (vViewPosition.z < tooNear * avatarDistance) discard;
   bool between = vViewPosition.z < avatarDistance - avatarMargin
     && length(vViewPosition.xy) < middleTangent * vViewPosition.z;
   bool kept = mod(floor(gl_FragCoord.x), 2.0) + mod(floor(gl_FragCoord.y), 2.0) < 0.5;

@@ -23,15 +23,15 @@ const MOST_DOTS = 128;
 const MOST_CIRCLES = 512;
 const SOON = new Color("#e2483d");
 const LATE = new Color("#f4b942");
-/** Predictions this far ahead have the colour of the latest. */
-const LATEST_STEP = 8;
+/** Of all predicted circles of a person so many are drawn, evenly spread. */
+const DRAWN_CIRCLES = 6;
 
 export class Plans {
   readonly group = new Group();
   private readonly path = new Mesh(new BufferGeometry(), overlay({ color: ACTOR, opacity: 0.9 }));
   private readonly dots = instances(new CircleGeometry(0.14, 16), MOST_DOTS, 0.95, ACTOR);
-  private readonly rims = instances(new RingGeometry(0.94, 1, 40), MOST_CIRCLES, 0.85);
-  private readonly discs = instances(new CircleGeometry(1, 40), MOST_CIRCLES, 0.1);
+  private readonly rims = instances(new RingGeometry(0.95, 1, 48), MOST_CIRCLES, 0.85);
+  private readonly discs = instances(new CircleGeometry(1, 40), MOST_CIRCLES, 0.07);
   private readonly flag = goalFlag();
   private shown: Plan | null = null;
   private readonly matrix = new Matrix4();
@@ -72,16 +72,20 @@ export class Plans {
     const color = new Color();
     let count = 0;
     for (const circles of people) {
-      circles.forEach(({ x, y, radius }, step) => {
-        if (count === MOST_CIRCLES) return;
+      const drawn = Math.min(DRAWN_CIRCLES, circles.length);
+      for (let i = 0; i < drawn && count < MOST_CIRCLES; i++) {
+        const part = drawn > 1 ? i / (drawn - 1) : 0;
+        const circle = circles[Math.round(part * (circles.length - 1))];
+        if (!circle) continue;
+        const { x, y, radius } = circle;
         this.matrix.makeScale(radius, radius, 1).setPosition(x, y, 0.035);
-        color.lerpColors(SOON, LATE, Math.min(1, step / LATEST_STEP));
+        color.lerpColors(SOON, LATE, part);
         for (const mesh of [this.rims, this.discs]) {
           mesh.setMatrixAt(count, this.matrix);
           mesh.setColorAt(count, color);
         }
         count++;
-      });
+      }
     }
     for (const mesh of [this.rims, this.discs]) {
       mesh.count = count;

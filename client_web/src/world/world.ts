@@ -92,9 +92,11 @@ export class World {
   snapshot(tick: number, ack: number, records: readonly EntityRecord[], serverNowS: number): void {
     const timeS = this.timeOf(tick);
     for (const record of records) {
-      this.avatars_.get(record.id)?.motion.hold(this.heardS);
-      this.avatars_.get(record.id)?.motion.add(timeS, record);
-      if (record.id === this.ownId) this.prediction?.reconcile(tick, ack, record);
+      const { id, ...pose } = record;
+      const motion = this.avatars_.get(id)?.motion;
+      motion?.hold(this.heardS);
+      motion?.add(timeS, pose);
+      if (id === this.ownId) this.prediction?.reconcile(tick, ack, pose);
     }
     this.playout.arrived(timeS, serverNowS);
     this.heardS = timeS;

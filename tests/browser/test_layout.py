@@ -1,0 +1,112 @@
+"""The page on a desk and on a phone: what there is to press lies within reach and apart."""
+
+from collections.abc import Iterator
+from itertools import combinations
+from typing import Any
+
+import pytest
+from playwright.async_api import Browser
+
+from tests.browser.visitor import Visitor
+
+pytestmark = [pytest.mark.browser, pytest.mark.asyncio(loop_scope="module")]
+
+SIZES = pytest.mark.parametrize(
+    ("width", "height"), [(1280, 720), (390, 844), (360, 640)], ids=["desk", "phone", "small phone"]
+)
+CONTROLS = "#status, #top button, #minimap, #chat-toggle, #stick, #chat-line, #chat-form button"
+PANELS = "#people, #plan"
+THUMB_PX = 44.0
+PICTURE_BYTES = 100_000
+"""An empty picture of any size compresses to a few kilobytes."""
+
+_BOXES = """(selector) => [...document.querySelectorAll(selector)]
+  .map((e) => ({ name: e.id || e.textContent, box: e.getBoundingClientRect().toJSON() }))
+  .filter(({ box }) => box.width > 0)"""
+
+
+async def _visit(browser: Browser, url: str, width: int, height: int) -> Visitor:
+    narrow = width < 640
+    context = await browser.new_context(
+        viewport={"width": width, "height": height}, has_touch=narrow, is_mobile=narrow
+    )
+    visitor = await Visitor.arrive(context, url)
+    await visitor.join("Ann")
+    return visitor
+
+
+def _overlapping(boxes: list[dict[str, Any]]) -> Iterator[str]:
+    for a, b in combinations(boxes, 2):
+        one, other = a["box"], b["box"]
+        across = min(one["right"], other["right"]) - max(one["left"], other["left"])
+        down = min(one["bottom"], other["bottom"]) - max(one["top"], other["top"])
+        if across > 0 and down > 0:
+            yield f"{a['name']} and {b['name']}"
+
+
+@SIZES
+async def test_controls_lie_apart_and_within_the_window(
+    browser: Browser, url: str, width: int, height: int
+) -> None:
+    visitor = await _visit(browser, url, width, height)
+    boxes = await visitor.page.evaluate(_BOXES, CONTROLS)
+    assert len(boxes) >= 6
+    assert list(_overlapping(boxes)) == []
+    outside = [
+        each["name"]
+        for each in boxes
+        if each["box"]["left"] < 0
+        or each["box"]["top"] < 0
+        or each["box"]["right"] > width
+        or each["box"]["bottom"] > height
+    ]
+    assert outside == []
+    await visitor.page.context.close()
+
+
+@SIZES
+async def test_open_panels_cover_no_control(
+    browser: Browser, url: str, width: int, height: int
+) -> None:
+    visitor = await _visit(browser, url, width, height)
+    for opener in ("#people-open", "#plan-open"):
+        await visitor.page.click(opener)
+        boxes = await visitor.page.evaluate(_BOXES, f"{CONTROLS}, {PANELS}")
+        assert list(_overlapping(boxes)) == [], opener
+    await visitor.page.context.close()
+
+
+async def test_thumbs_have_room_on_a_phone(browser: Browser, url: str) -> None:
+    visitor = await _visit(browser, url, 390, 844)
+    boxes = await visitor.page.evaluate(_BOXES, "button")
+    assert [b["name"] for b in boxes if b["box"]["height"] < THUMB_PX] == []
+    await visitor.page.context.close()
+
+
+async def test_the_stick_walks_on_a_phone(browser: Browser, url: str) -> None:
+    visitor = await _visit(browser, url, 390, 844)
+    stick = await visitor.page.locator("#stick").bounding_box()
+    assert stick is not None
+    x, y = stick["x"] + stick["width"] / 2, stick["y"] + stick["height"] / 2
+    await visitor.page.mouse.move(x, y)
+    await visitor.page.mouse.down()
+    await visitor.page.mouse.move(x, y + stick["height"] / 2.5)
+    await visitor.until(
+        lambda view: any(a["own"] and a["pose"]["speed"] > 1 for a in view["avatars"])
+    )
+    await visitor.page.mouse.up()
+    await visitor.until(
+        lambda view: any(a["own"] and a["pose"]["speed"] == 0 for a in view["avatars"])
+    )
+    await visitor.page.context.close()
+
+
+@SIZES
+async def test_a_picture_is_drawn(browser: Browser, url: str, width: int, height: int) -> None:
+    visitor = await _visit(browser, url, width, height)
+    frames = (await visitor.look())["frames"]
+    await visitor.until(lambda view: view["frames"] > frames + 5)
+    picture = await visitor.page.screenshot()
+    assert len(picture) > PICTURE_BYTES
+    assert await visitor.complaints() == []
+    await visitor.page.context.close()

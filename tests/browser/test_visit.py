@@ -1,0 +1,135 @@
+"""Two people meet in the world, each through a page in a real browser."""
+
+import asyncio
+from functools import partial
+from typing import Any
+
+import pytest
+from playwright.async_api import BrowserContext, Error
+
+from tests.browser.visitor import View, Visitor, avatar_of, moved_m, own
+
+pytestmark = [pytest.mark.browser, pytest.mark.asyncio(loop_scope="module")]
+
+WALKED_M = 1.5
+
+
+async def test_two_people_see_each_other_walk(
+    url: str, profile: BrowserContext, other_profile: BrowserContext
+) -> None:
+    ann = await Visitor.arrive(profile, url)
+    await ann.join("Ann")
+    ben = await Visitor.arrive(other_profile, url)
+    await ben.join("Ben")
+    for walker, watcher in ((ann, ben), (ben, ann)):
+        walker_id = (await walker.look())["id"]
+        before = await _seen(watcher, walker_id)
+        # Backwards: before a spawn point there may be a wall, behind the camera there is room.
+        await walker.page.keyboard.down("s")
+        await watcher.until(partial(_has_walked, before=before))
+        await walker.page.keyboard.up("s")
+    assert await ann.complaints() == []
+    assert await ben.complaints() == []
+
+
+async def test_a_click_on_the_ground_walks_there(url: str, profile: BrowserContext) -> None:
+    ann = await Visitor.arrive(profile, url)
+    await ann.join("Ann")
+    before = own(await ann.look())
+    assert before is not None
+    await ann.page.mouse.click(320, 400)
+    await ann.until(partial(_has_walked, before=before))
+    assert await ann.complaints() == []
+
+
+async def test_actors_walk_about(url: str, profile: BrowserContext) -> None:
+    ann = await Visitor.arrive(profile, url)
+    await ann.join("Ann")
+    view = await ann.until(lambda view: any(a["kind"] == "actor" for a in view["avatars"]))
+    before = [avatar for avatar in view["avatars"] if avatar["kind"] == "actor"]
+    await ann.until(lambda view: sum(_has_walked(view, actor) for actor in before) >= 2)
+
+
+async def test_a_killed_page_comes_back_as_the_same_avatar(
+    url: str, profile: BrowserContext, other_profile: BrowserContext
+) -> None:
+    ann = await Visitor.arrive(profile, url)
+    await ann.join("Ann")
+    ann_id = (await ann.look())["id"]
+    ben = await Visitor.arrive(other_profile, url)
+    await ben.join("Ben")
+    await ben.until(lambda view: avatar_of(view, ann_id) is not None)
+
+    crashed = asyncio.Event()
+    ann.page.on("crash", lambda _page: crashed.set())
+    with pytest.raises(Error):
+        await ann.page.goto("chrome://crash")
+    await asyncio.wait_for(crashed.wait(), 30.0)
+
+    again = await Visitor.arrive(profile, url)
+    await again.join("Ann")
+    assert (await again.look())["id"] == ann_id
+    names = [avatar["name"] for avatar in (await ben.look())["avatars"]]
+    assert names.count("Ann") == 1
+
+
+async def test_a_reload_goes_straight_back_in(url: str, profile: BrowserContext) -> None:
+    ann = await Visitor.arrive(profile, url)
+    await ann.join("Ann")
+    ann_id = (await ann.look())["id"]
+    await ann.page.reload()
+    await ann.until(lambda view: view["phase"] == "live" and view["id"] == ann_id)
+
+
+async def test_two_tabs_are_two_people(url: str, profile: BrowserContext) -> None:
+    first = await Visitor.arrive(profile, url)
+    await first.join("Ann")
+    second = await Visitor.arrive(profile, url)
+    await second.join("Ann")
+    assert (await first.look())["id"] != (await second.look())["id"]
+    assert (await first.look())["phase"] == "live"
+
+
+async def test_what_one_says_the_other_reads(
+    url: str, profile: BrowserContext, other_profile: BrowserContext
+) -> None:
+    ann = await Visitor.arrive(profile, url)
+    await ann.join("Ann")
+    ben = await Visitor.arrive(other_profile, url)
+    await ben.join("Ben")
+    ben_id = (await ben.look())["id"]
+    await ann.until(lambda view: avatar_of(view, ben_id) is not None)
+    await ben.until(lambda view: len(view["avatars"]) > 1)
+    await ann.page.keyboard.press("Enter")
+    await ann.page.keyboard.type("Good morning <b>Ben</b>!")
+    await ann.page.keyboard.press("Enter")
+    await ann.page.keyboard.press("Escape")
+    line = ben.page.locator("#chat-log li", has_text="Good morning <b>Ben</b>!")
+    await line.wait_for()
+    assert (await ann.page.evaluate("() => document.activeElement.tagName")) == "BODY"
+
+
+async def test_the_overlay_shows_the_plan_of_an_actor(url: str, profile: BrowserContext) -> None:
+    ann = await Visitor.arrive(profile, url)
+    await ann.join("Ann")
+    await ann.page.click("#people-open")
+    actor = ann.page.locator("#people-list button").first
+    await actor.click()
+    view = await ann.until(lambda view: view["plan"] is not None and len(view["plan"]["path"]) > 1)
+    assert view["plan"]["id"] == view["chosenId"]
+    assert await ann.page.locator("#plan-reason").inner_text() != ""
+    await ann.page.click("#plan-open")
+    await ann.until(lambda view: view["plan"] is None)
+    assert await ann.complaints() == []
+
+
+async def _seen(watcher: Visitor, avatar_id: int) -> dict[str, Any]:
+    """Somebody, once the watcher has them in view."""
+    view = await watcher.until(lambda view: avatar_of(view, avatar_id) is not None)
+    avatar = avatar_of(view, avatar_id)
+    assert avatar is not None
+    return avatar
+
+
+def _has_walked(view: View, before: dict[str, Any]) -> bool:
+    return moved_m(view, before) > WALKED_M
