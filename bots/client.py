@@ -14,7 +14,7 @@ from bots.clock import ServerClock
 from bots.connection import Connection
 from bots.errors import BotError, Disconnected, Refused
 from bots.tally import Tally
-from protocol import ProtocolError, ServerCode, decode_server, peek_snapshot
+from protocol import ErrorCode, ProtocolError, ServerCode, decode_server, peek_snapshot
 from protocol.codes import CloseCode
 from protocol.messages import Error, FromClient, Hello, Ping, Pong, Welcome
 
@@ -99,11 +99,17 @@ class Client:
             return
         message = decode_server(frame)
         if isinstance(message, Error):
-            self._tally.errors[message.error.value] += 1
+            self._complain(message.error)
         elif isinstance(message, Pong) and message.nonce in self._pinged_s:
             sent_s = self._pinged_s.pop(message.nonce)
             round_trip_s = self._clock.add(sent_s, time.monotonic(), message.server_time)
             self._tally.round_trip_s.add(round_trip_s)
+
+    def _complain(self, code: ErrorCode) -> None:
+        if code is ErrorCode.NO_PATH:
+            self._tally.no_path += 1
+        else:
+            self._tally.errors[code.value] += 1
 
 
 async def visit(

@@ -35,6 +35,7 @@ def figures(tally: Tally) -> dict[str, Any]:
         "round_trip_ms": _spread(tally.round_trip_s, 1e3),
         "snapshot_age_ms": _spread(tally.snapshot_age_s, 1e3),
         "snapshot_interval_ms": _spread(tally.snapshot_interval_s, 1e3),
+        "no_path": tally.no_path,
         "errors": dict(sorted(tally.errors.items())),
     }
     if tally.deviation_m.count:

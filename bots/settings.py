@@ -22,7 +22,7 @@ REPLAY: Final = "replay of a recorded crowd"
 RESULT: Final = "result"
 
 CLIENTS_PER_PROCESS: Final = 400
-"""Measured: a client at 20 snapshots a second takes about 0.05 % of a core."""
+"""Measured: a client at 20 snapshots a second takes about 0.06 % of a core."""
 
 
 def _option(default: Any, group: str, description: str, unit: str = "", **limits: Any) -> Any:

@@ -35,6 +35,9 @@ class Tally:
     errors: Counter[str] = field(default_factory=Counter)
     """By code: what the server complained of, how connections failed or ended."""
 
+    no_path: int = 0
+    """Points that no way leads to: an answer to a wanderer, not a fault."""
+
     round_trip_s: Histogram = field(default_factory=Histogram)
     snapshot_age_s: Histogram = field(default_factory=Histogram)
     snapshot_interval_s: Histogram = field(default_factory=Histogram)

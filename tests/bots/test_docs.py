@@ -1,0 +1,66 @@
+"""The examples of the document run as they stand, but for the address."""
+
+import asyncio
+import re
+import sys
+from pathlib import Path
+
+import bots
+from protocol.messages import Chat
+from tests.bots.scripted import scripted_server, until
+
+ROOT = Path(__file__).resolve().parents[2]
+EXAMPLES = re.findall(
+    r"^```python\n(.*?)^```", (ROOT / "docs" / "bots.md").read_text(), re.MULTILINE | re.DOTALL
+)
+
+
+async def start(example: str, url: str) -> asyncio.subprocess.Process:
+    assert "ws://localhost:8080" in example
+    return await asyncio.create_subprocess_exec(
+        sys.executable,
+        "-u",
+        "-c",
+        example.replace("ws://localhost:8080", url),
+        cwd=ROOT,
+        stdout=asyncio.subprocess.PIPE,
+        stderr=asyncio.subprocess.PIPE,
+    )
+
+
+async def finish(process: asyncio.subprocess.Process) -> str:
+    out, err = await asyncio.wait_for(process.communicate(), 30.0)
+    assert process.returncode == 0, err.decode()
+    return out.decode()
+
+
+async def test_the_greeter_greets_and_leaves_on_bye() -> None:
+    async with scripted_server() as server:
+        process = await start(EXAMPLES[0], server.url)
+        await until(lambda: bool(server.people), within_s=30.0)
+        async with bots.connect(server.url, name="Ann") as ann:
+            greetings = []
+            async for event in ann.events():
+                if isinstance(event, Chat) and event.id != ann.id:
+                    greetings.append(event.text)
+                    await ann.chat("bye")
+                    break
+            assert greetings == ["Welcome, Ann!"]
+            out = await finish(process)
+    assert "I am 1 at (2.0" in out
+
+
+async def test_the_steady_one_comes_back_with_its_token() -> None:
+    async with scripted_server() as server:
+        process = await start(EXAMPLES[1], server.url)
+        assert process.stdout is not None
+        assert await asyncio.wait_for(process.stdout.readline(), 30.0) == b"here as 1\n"
+        server.people[1].socket.transport.abort()
+        await until(lambda: 2 in server.people, within_s=30.0)
+        assert server.people[2].hello.resume == "token-1"
+        process.terminate()
+        await process.communicate()
+
+
+def test_there_are_no_other_examples() -> None:
+    assert len(EXAMPLES) == 2

@@ -1,0 +1,196 @@
+"""`docs/protocol.md` says what the code does: tables, fields, limits, the worked example."""
+
+import re
+from pathlib import Path
+from types import UnionType
+from typing import Any, get_args, get_origin
+
+import pytest
+from pydantic import BaseModel
+from pydantic_core import PydanticUndefined
+
+from protocol import VERSION, ByeCode, ErrorCode, Kind, Reason, decode_server, peek_snapshot
+from protocol import codes as table
+from protocol.codec import MAX_BLOCK_BYTES, SNAPSHOT_HEAD_BYTES
+from protocol.codes import ClientCode, CloseCode, ServerCode
+from protocol.messages import Circle, Entity, FromClient, FromServer, Plan, Snapshot
+from protocol.snapshot import (
+    MAX_EXTENT_M,
+    RECORD,
+    headings_rad,
+    positions_m,
+    speeds_mps,
+    unpack_block,
+)
+
+TEXT = (Path(__file__).resolve().parents[2] / "docs" / "protocol.md").read_text(encoding="utf-8")
+
+Row = dict[str, str]
+
+
+def section(title: str) -> str:
+    """Text below a heading, up to the next of any level."""
+    found = re.search(rf"^#+ {re.escape(title)}\n(.*?)(?=^#+ |\Z)", TEXT, re.MULTILINE | re.DOTALL)
+    assert found is not None, f"no section {title!r}"
+    return found[1]
+
+
+def tables(text: str) -> list[list[Row]]:
+    """All tables of a text, as rows by the names of their columns."""
+    found = []
+    for block in re.findall(r"((?:^\|.*\n)+)", text, re.MULTILINE):
+        lines = [
+            [cell.strip().replace("`", "") for cell in line.strip().strip("|").split(" | ")]
+            for line in block.replace("| |", "|  |").splitlines()
+        ]
+        lines = [[cell.strip(" |") for cell in line] for line in lines]
+        head, _, *rows = lines
+        found.append([dict(zip(head, row, strict=False)) for row in rows])
+    return found
+
+
+def wire_name(model: type[FromClient | FromServer]) -> str:
+    return model.code.name.lower()
+
+
+def heading_of(model: type[FromClient | FromServer]) -> str:
+    """Both sides have a message `chat`; the server's heading says so."""
+    both = {code.name for code in ClientCode} & {code.name for code in ServerCode}
+    server = issubclass(model, FromServer) and model.code.name in both
+    return wire_name(model) + (" (from the server)" if server else "")
+
+
+MODELS = [*FromClient.__subclasses__(), *FromServer.__subclasses__()]
+
+
+def test_the_table_of_messages_is_the_codes() -> None:
+    (rows,) = tables(section("Messages"))
+    documented = [(int(row["Code"]), row["Name"], row["From"]) for row in rows]
+    assert documented == [
+        *((code.value, code.name.lower(), "client") for code in ClientCode),
+        *((code.value, code.name.lower(), "server") for code in ServerCode),
+    ]
+
+
+@pytest.mark.parametrize("model", MODELS, ids=heading_of)
+def test_every_field_is_documented_with_its_type(model: type[FromClient | FromServer]) -> None:
+    rows = tables(section(heading_of(model)))[0]
+    assert [row["Field"] for row in rows] == list(model.model_fields)
+    for row in rows:
+        field = model.model_fields[row["Field"]]
+        assert row["Type"] == documented_type(field.annotation), row["Field"]
+        if issubclass(model, FromClient):
+            default = "" if field.default is PydanticUndefined else field.default
+            assert row["Default"] == ("null" if default is None else str(default)), row["Field"]
+
+
+@pytest.mark.parametrize(
+    ("title", "model"), [("enter", Entity), ("plan", Circle)], ids=["entity", "circle"]
+)
+def test_every_field_of_a_part_is_documented(title: str, model: type[BaseModel]) -> None:
+    rows = tables(section(title))[1]
+    assert [row["Field"] for row in rows] == list(model.model_fields)
+    for row in rows:
+        assert row["Type"] == documented_type(model.model_fields[row["Field"]].annotation)
+
+
+def documented_type(kind: Any) -> str:
+    """How the document calls a field's type."""
+    names = {int: "integer", float: "number", str: "text", bool: "boolean", bytes: "binary"}
+    if kind in names:
+        return names[kind]
+    origin, inner = get_origin(kind), get_args(kind)
+    if origin is UnionType or str(origin) == "typing.Union":
+        return " or ".join(documented_type(part) for part in inner)
+    if kind is type(None):
+        return "null"
+    if str(origin) == "<class 'typing.Annotated'>" or hasattr(kind, "__metadata__"):
+        return documented_type(inner[0])
+    if origin is tuple:
+        return "[" + ", ".join(documented_type(part) for part in inner) + "]"
+    if origin is list:
+        part = documented_type(inner[0])
+        return "list of " + (part if part.startswith("[") else re.sub(r"^(\w+)", r"\1s", part))
+    if origin is dict or (isinstance(kind, type) and issubclass(kind, BaseModel)):
+        return "map"
+    if isinstance(kind, type) and issubclass(kind, int):
+        return "integer"
+    return "text"
+
+
+def test_reasons_errors_and_close_codes() -> None:
+    (reasons,) = tables(section("Reasons"))
+    assert [(int(row["Value"]), row["Name"]) for row in reasons] == [
+        (reason.value, reason.name.lower()) for reason in Reason
+    ]
+    errors, closes = tables(section("Errors"))
+    assert {row["error"] for row in errors} == {code.value for code in ErrorCode}
+    for row in errors:
+        close = CloseCode.__members__.get(row["error"].upper())
+        assert row["Close code"] == ("" if close is None else str(close.value)), row
+    assert [(int(row["Close code"]), row["Name"]) for row in closes] == [
+        (code.value, code.name.lower()) for code in CloseCode
+    ]
+
+
+def test_names_in_running_text() -> None:
+    for reason in ByeCode:
+        assert f"`{reason.value}`:" in section("bye")
+    for kind in Kind:
+        assert f"`{kind.value}`" in section("enter")
+    behaviours = get_args(Plan.model_fields["behaviour"].annotation)
+    for behaviour in behaviours:
+        assert f"`{behaviour}`" in section("plan")
+    assert f"# The protocol, version {VERSION}\n" in TEXT
+
+
+def test_limits() -> None:
+    fixed = {row["What"]: row["Limit"] for row in tables(section("Limits"))[0]}
+    assert fixed == {
+        "A frame from a client": f"{table.MAX_CLIENT_FRAME_BYTES} bytes",
+        "Name": f"{table.MAX_NAME_CHARS} characters",
+        "Line of chat": f"{table.MAX_CHAT_CHARS} characters",
+        "Resume token": f"{table.MAX_TOKEN_CHARS} characters",
+        "A snapshot's block": f"{MAX_BLOCK_BYTES} bytes",
+        "Extent of a zone": f"{MAX_EXTENT_M:g} m",
+    }
+
+
+def test_the_servers_defaults() -> None:
+    settings = pytest.importorskip("server.settings").ServerSettings
+    for row in tables(section("Limits"))[1]:
+        assert float(row["Default"]) == settings.model_fields[row["Setting"]].default, row
+
+
+def test_the_layout_of_a_record() -> None:
+    layout = tables(section("Snapshots"))[1]
+    assert RECORD.names is not None
+    assert RECORD.fields is not None
+    assert [(int(row["Offset"]), int(row["Bytes"]), row["Field"]) for row in layout] == [
+        (RECORD.fields[name][1], RECORD.fields[name][0].itemsize, name) for name in RECORD.names
+    ]
+    assert f"{RECORD.itemsize} bytes each" in section("Snapshots")
+    assert f"same {SNAPSHOT_HEAD_BYTES} bytes" in section("Snapshots")
+
+
+def test_the_worked_example() -> None:
+    text = section("Snapshots")
+    (example,) = re.findall(r"^```hex\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    frame = bytes.fromhex(example.replace("\n", " "))
+    assert f"frame of {len(frame)} bytes" in text
+    snapshot = decode_server(frame)
+    assert isinstance(snapshot, Snapshot)
+    assert peek_snapshot(frame) == (snapshot.tick, snapshot.ack) == (402, 7)
+    assert "is tick 402" in text
+    assert "ack 7" in text
+    records = unpack_block(snapshot.block)
+    positions = positions_m(records, (-10.0, -5.0))
+    turns, speeds = headings_rad(records) / 6.283185307179586, speeds_mps(records)
+    shown = [
+        [
+            *(str(records[name][row]) for name in ("id", "layer", "reason")),
+            *(f"{value:.2f}" for value in (*positions[row], turns[row], speeds[row])),
+        ]
+        for row in range(len(records))
+    ]
+    assert shown == [list(row.values()) for row in tables(text)[2]]
