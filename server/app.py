@@ -56,9 +56,7 @@ class Running:
 
 
 @asynccontextmanager
-async def running(
-    settings: ServerSettings, assets: Assets | None = None
-) -> AsyncIterator[Running]:
+async def running(settings: ServerSettings, assets: Assets | None = None) -> AsyncIterator[Running]:
     """Run a server; on leaving, everyone is told goodbye. The assets are the built client's.
 
     Raises

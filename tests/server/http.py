@@ -1,0 +1,30 @@
+"""A bare HTTP request, so that tests may send what no library would."""
+
+import asyncio
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Answer:
+    status: int
+    headers: dict[str, str]
+    body: bytes
+
+
+async def get(
+    port: int, path: str, headers: Mapping[str, str] | None = None, method: str = "GET"
+) -> Answer:
+    """One request; the path goes out exactly as it is."""
+    reader, writer = await asyncio.open_connection("127.0.0.1", port)
+    fields = {"Host": "localhost", **(headers or {})}
+    lines = [f"{method} {path} HTTP/1.1", *(f"{name}: {value}" for name, value in fields.items())]
+    writer.write("\r\n".join([*lines, "", ""]).encode())
+    async with asyncio.timeout(20.0):
+        received = await reader.read()
+    writer.close()
+    await writer.wait_closed()
+    head, _, body = received.partition(b"\r\n\r\n")
+    status, *rest = head.decode().split("\r\n")
+    pairs = (line.split(": ", 1) for line in rest)
+    return Answer(int(status.split(" ")[1]), {name.lower(): text for name, text in pairs}, body)

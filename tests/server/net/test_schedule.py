@@ -1,0 +1,45 @@
+import pytest
+
+from server.net.schedule import MAX_BEHIND_TICKS, Schedule
+
+PERIOD_S = 0.05
+
+
+def test_deadlines_do_not_drift_however_late_ticks_begin() -> None:
+    schedule = Schedule(PERIOD_S, start=100.0)
+    for tick in range(1000):
+        assert schedule.next_deadline == pytest.approx(100.0 + tick * PERIOD_S)
+        schedule.begin(schedule.next_deadline + 0.01)
+    assert schedule.late_ticks == schedule.given_up_ticks == 0
+
+
+def test_a_short_delay_is_caught_up_tick_by_tick() -> None:
+    schedule = Schedule(PERIOD_S, start=0.0)
+    schedule.begin(3.5 * PERIOD_S)
+    begun = 1
+    while schedule.next_deadline <= 3.5 * PERIOD_S:
+        schedule.begin(3.5 * PERIOD_S)
+        begun += 1
+    assert begun == 4
+    assert schedule.late_ticks == 3
+    assert schedule.given_up_ticks == 0
+
+
+def test_after_a_long_delay_the_lost_time_is_given_up() -> None:
+    schedule = Schedule(PERIOD_S, start=0.0)
+    now = 100.5 * PERIOD_S
+    begun = 0
+    while schedule.next_deadline <= now:
+        schedule.begin(now)
+        begun += 1
+    assert begun == MAX_BEHIND_TICKS + 1
+    assert schedule.given_up_ticks == 100 - MAX_BEHIND_TICKS
+
+
+def test_world_time_is_tick_times_period_and_runs_on_in_between() -> None:
+    schedule = Schedule(PERIOD_S, start=10.0)
+    for _ in range(8):
+        schedule.begin(schedule.next_deadline)
+    begun_at = 10.0 + 7 * PERIOD_S
+    assert schedule.world_time(8, begun_at) == pytest.approx(8 * PERIOD_S)
+    assert schedule.world_time(8, begun_at + 0.02) == pytest.approx(8 * PERIOD_S + 0.02)

@@ -1,0 +1,54 @@
+import asyncio
+import threading
+from typing import Any
+
+import pytest
+
+from actors import Cast
+from protocol.messages import Ping, Pong
+from tests.server.client import joined
+from tests.server.conftest import Serving
+
+
+async def test_ticks_follow_one_another_at_their_rate(serving: Serving) -> None:
+    async with serving(tick_rate=40) as server, joined(server.port) as client:
+        ticks = []
+        for _ in range(20):
+            await client.ticks(1)
+            ticks.append(client.tick)
+        assert ticks == list(range(ticks[0], ticks[0] + 20))
+
+
+async def test_when_planning_fails_people_walk_on(
+    serving: Serving, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: Any) -> None:
+        raise RuntimeError("told to fail")
+
+    async with serving(actors=1) as server, joined(server.port) as client:
+        monkeypatch.setattr(Cast, "tick", fail)
+        await client.move(0.0, 1.0)
+        x = client.position[0]
+        await client.wait_for(lambda: client.position[0] > x + 0.2)
+        assert b"esplanade_planning_failures_total 0.0" not in server.metrics.exposition()
+
+
+async def test_the_event_loop_serves_while_actors_are_planned(
+    serving: Serving, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    planning, go_on = threading.Event(), threading.Event()
+
+    def think_long(*_: Any) -> dict[str, Any]:
+        planning.set()
+        assert go_on.wait(20.0)
+        return {}
+
+    async with serving() as server, joined(server.port) as client:
+        monkeypatch.setattr(Cast, "tick", think_long)
+        await asyncio.to_thread(planning.wait, 20.0)
+        tick = server.world.tick
+        await client.send(Ping(nonce=5))
+        await client.until(Pong)
+        assert server.world.tick == tick
+        go_on.set()
+        await client.until_tick(tick + 2)

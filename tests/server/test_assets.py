@@ -1,0 +1,94 @@
+import gzip
+from pathlib import Path
+
+import pytest
+from websockets.datastructures import Headers
+from websockets.http11 import Request, Response
+
+from server.assets import SECURITY_HEADERS, Assets
+
+SCRIPT = b"console.log('esplanade');\n" * 100
+
+
+@pytest.fixture
+def assets(tmp_path: Path) -> Assets:
+    (tmp_path / "assets").mkdir()
+    (tmp_path / "index.html").write_bytes(b"<!doctype html><title>Esplanade</title>")
+    (tmp_path / "assets" / "index-D1y0ESrc.js").write_bytes(SCRIPT)
+    (tmp_path / "assets" / "logo-BvX_k-a2.png").write_bytes(b"\x89PNG")
+    (tmp_path / "apple-touch-icon.png").write_bytes(b"\x89PNG")
+    assets = Assets.load(tmp_path)
+    (tmp_path / "late.html").write_bytes(b"added after the start")
+    return assets
+
+
+def get(assets: Assets, path: str, **headers: str) -> Response:
+    fields = Headers({name.replace("_", "-"): value for name, value in headers.items()})
+    return assets.answer(Request(path, fields))
+
+
+@pytest.mark.parametrize("path", ["/", "/index.html", "/?room=1", "/index.html#top"])
+def test_the_page_is_never_cached_without_asking(assets: Assets, path: str) -> None:
+    answer = get(assets, path)
+    assert answer.status_code == 200
+    assert answer.headers["Content-Type"] == "text/html; charset=utf-8"
+    assert answer.headers["Cache-Control"] == "no-cache"
+
+
+@pytest.mark.parametrize(
+    ("path", "kind", "immutable"),
+    [
+        ("/assets/index-D1y0ESrc.js", "text/javascript; charset=utf-8", True),
+        ("/assets/logo-BvX_k-a2.png", "image/png", True),
+        ("/apple-touch-icon.png", "image/png", False),
+    ],
+)
+def test_files_with_a_hash_in_their_name_are_kept_for_ever(
+    assets: Assets, path: str, kind: str, immutable: bool
+) -> None:
+    headers = get(assets, path).headers
+    assert headers["Content-Type"] == kind
+    assert ("immutable" in headers["Cache-Control"]) == immutable
+
+
+def test_what_has_not_changed_is_not_sent_again(assets: Assets) -> None:
+    tag = get(assets, "/").headers["ETag"]
+    again = get(assets, "/", If_None_Match=f'"other", {tag}')
+    assert (again.status_code, again.body) == (304, b"")
+    assert again.headers["ETag"] == tag
+    assert get(assets, "/", If_None_Match='"other"').status_code == 200
+
+
+def test_text_is_compressed_for_those_who_can_read_it(assets: Assets) -> None:
+    path = "/assets/index-D1y0ESrc.js"
+    packed = get(assets, path, Accept_Encoding="br, gzip")
+    assert packed.headers["Content-Encoding"] == "gzip"
+    assert packed.headers["Vary"] == "Accept-Encoding"
+    assert gzip.decompress(packed.body) == SCRIPT
+    plain = get(assets, path)
+    assert plain.body == SCRIPT
+    assert "Content-Encoding" not in plain.headers
+    assert plain.headers["Content-Length"] == str(len(SCRIPT))
+
+
+@pytest.mark.parametrize(
+    "path", ["/late.html", "/../pyproject.toml", "/%2e%2e/x", "/assets", "/assets/", "", "\x00"]
+)
+def test_only_what_is_in_the_table_exists(assets: Assets, path: str) -> None:
+    assert get(assets, path).status_code == 404
+
+
+@pytest.mark.parametrize("path", ["/", "/nothing"])
+def test_every_answer_carries_the_security_headers(assets: Assets, path: str) -> None:
+    headers = get(assets, path).headers
+    for name, value in SECURITY_HEADERS.items():
+        assert headers[name] == value
+    policy = headers["Content-Security-Policy"]
+    assert "script-src 'self'" in policy
+    assert "unsafe" not in policy
+
+
+def test_without_a_client_a_page_says_how_to_build_it(tmp_path: Path) -> None:
+    answer = get(Assets.load(tmp_path / "nothing"), "/")
+    assert answer.status_code == 200
+    assert b"make client" in answer.body

@@ -1,0 +1,36 @@
+import json
+import logging
+from collections.abc import Iterator
+
+import pytest
+import structlog
+
+from server import logs
+from server.settings import ServerSettings
+
+
+@pytest.fixture(autouse=True)
+def _as_before() -> Iterator[None]:
+    root = logging.getLogger()
+    handlers, level = root.handlers, root.level
+    yield
+    root.handlers, root.level = handlers, level
+    structlog.reset_defaults()
+
+
+def test_lines_are_json_where_that_is_wanted(capsys: pytest.CaptureFixture[str]) -> None:
+    logs.configure(ServerSettings(log_format="json"))
+    structlog.get_logger("server.test").info("person here", id=3)
+    logging.getLogger("some.library").warning("told %s", "you")
+    ours, theirs = (json.loads(line) for line in capsys.readouterr().err.splitlines())
+    assert (ours["event"], ours["id"], ours["level"]) == ("person here", 3, "info")
+    assert (theirs["event"], theirs["logger"]) == ("told you", "some.library")
+
+
+def test_what_is_below_the_level_is_left_out(capsys: pytest.CaptureFixture[str]) -> None:
+    logs.configure(ServerSettings(log_level="warning"))
+    structlog.get_logger("server.test").info("unheard")
+    structlog.get_logger("server.test").warning("heard")
+    text = capsys.readouterr().err
+    assert "unheard" not in text
+    assert "heard" in text

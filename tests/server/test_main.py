@@ -1,0 +1,48 @@
+"""The server as a process of its own: signals and what it prints."""
+
+import asyncio
+import json
+import signal
+import sys
+from pathlib import Path
+from typing import Any
+
+from protocol import CloseCode
+from tests.server.client import joined
+
+DEADLINE_S = 200.0
+"""The first start on a machine compiles."""
+
+
+async def test_a_signal_ends_the_process_in_good_order(room_file: Path) -> None:
+    process = await asyncio.create_subprocess_exec(
+        sys.executable,
+        "-c",
+        "import sys; from server.cli import run; raise SystemExit(run(sys.argv[1:]))",
+        *("--scene", str(room_file), "--host", "127.0.0.1", "--port", "0", "--private-port", "0"),
+        *("--actors", "1", "--log-format", "json"),
+        stderr=asyncio.subprocess.PIPE,
+    )
+    assert process.stderr is not None
+    try:
+        async with asyncio.timeout(DEADLINE_S):
+            lines: list[dict[str, Any]] = []
+            while not lines or lines[-1]["event"] != "open":
+                lines.append(json.loads(await process.stderr.readline()))
+            assert lines[0]["event"].startswith("compiling")
+            port = int(lines[-1]["url"].rsplit(":", 1)[1])
+            async with joined(port) as client:
+                process.send_signal(signal.SIGTERM)
+                _, code = await client.last_words()
+            assert code == CloseCode.GOING_AWAY
+            rest = (await process.stderr.read()).decode()
+            assert await process.wait() == 0
+    finally:
+        if process.returncode is None:
+            process.kill()
+            await process.wait()
+    summary = json.loads(rest.splitlines()[-1])
+    assert summary["event"] == "summary"
+    assert summary["people_seen"] == 1
+    assert client.welcome is not None
+    assert client.welcome.resume not in rest

@@ -1,0 +1,35 @@
+import numpy as np
+import pytest
+
+from server.metrics import Durations, Metrics
+
+
+def test_percentiles_are_those_of_the_latest_durations() -> None:
+    durations = Durations()
+    assert durations.percentile(50) == 0.0
+    values = np.random.default_rng(1).uniform(0.0, 0.05, 30_000).astype(np.float32)
+    for value in values:
+        durations.add(float(value))
+    assert durations.percentile(99) == pytest.approx(np.percentile(values[-24_000:], 99))
+    assert durations.percentile(50, 1_200) == pytest.approx(np.percentile(values[-1_200:], 50))
+
+
+def test_traffic_is_read_when_it_is_asked_for() -> None:
+    metrics = Metrics()
+    metrics.traffic.bytes_out += 1234
+    assert b"esplanade_bytes_out_total 1234.0" in metrics.exposition()
+
+
+def test_a_tick_shows_in_histogram_percentiles_and_stages() -> None:
+    metrics = Metrics()
+    metrics.tick_took(0.012, {"people": 0.002, "actors": 0.009})
+    text = metrics.exposition().decode()
+    assert 'esplanade_tick_duration_seconds_bucket{le="0.015"} 1.0' in text
+    assert 'esplanade_tick_stage_seconds_total{stage="actors"} 0.009' in text
+    assert metrics.ticks.percentile(50) == pytest.approx(0.012)
+
+
+def test_two_servers_in_one_process_do_not_share_metrics() -> None:
+    one, other = Metrics(), Metrics()
+    one.chat_lines.inc()
+    assert b"esplanade_chat_lines_total 0.0" in other.exposition()

@@ -1,0 +1,95 @@
+import json
+from pathlib import Path
+
+import pytest
+
+from planning import LayeredGrid
+from server.settings import ServerSettings
+from server.stage import DEFAULT_SCENE, StageError, set_stage
+
+CROWD = "t,id,x,y\n0,a,0,0\n1,a,4,0\n0,b,2,3\n1,b,2,-3\n"
+
+
+@pytest.fixture
+def crowd_file(tmp_path: Path) -> Path:
+    path = tmp_path / "square.csv"
+    path.write_text(CROWD)
+    return path
+
+
+def test_a_scene_is_read_from_its_file(room_file: Path) -> None:
+    stage = set_stage(ServerSettings(scene=room_file))
+    assert stage.scene.name == "room"
+    assert stage.rules.person_clearance_m == 0.25
+
+
+def test_without_a_scene_there_is_one_that_comes_along() -> None:
+    stage = set_stage(ServerSettings())
+    assert DEFAULT_SCENE.is_file()
+    assert len(stage.scene.places) >= 4
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ("{", "Invalid JSON"),
+        ('{"bounds": [0, 0, 1, "x"]}', "bounds.3: "),
+        ('{"bounds": [0, 0, 1, 1], "walls": [{"start": [0, 0], "end": [0, 0]}]}', "walls.0: the"),
+        ('{"bounds": [5, 0, 1, 1]}', "bounds: x0 < x1"),
+    ],
+)
+def test_faults_in_a_scene_are_named_with_file_and_place(
+    tmp_path: Path, text: str, fault: str
+) -> None:
+    path = tmp_path / "bad.json"
+    path.write_text(text)
+    with pytest.raises(StageError) as caught:
+        set_stage(ServerSettings(scene=path))
+    assert str(caught.value).startswith(f"{path}: {fault}")
+
+
+def test_a_crowd_gets_ground_that_fits_and_speed_enough(crowd_file: Path) -> None:
+    stage = set_stage(ServerSettings(crowd=crowd_file))
+    assert stage.scene.name == "square"
+    assert stage.scene.bounds == (-2.0, -5.0, 6.0, 5.0)
+    assert stage.rules.person_clearance_m == 0.0
+    assert stage.rules.person_max_speed_mps == pytest.approx(1.5 * 6.0)
+    assert len(stage.scene.places) == 8
+    grid = LayeredGrid.from_scene(stage.scene)
+    for place in stage.scene.places:
+        assert grid.is_free([place.position], [place.layer], 0.25)[0]
+
+
+def test_walls_beside_a_crowd_are_built_and_opened_where_people_walk(crowd_file: Path) -> None:
+    walls = {"segments": [[-1, 4, 5, 4], [1, -4, 1, 2]]}
+    crowd_file.with_suffix(".walls.json").write_text(json.dumps(walls))
+    stage = set_stage(ServerSettings(crowd=crowd_file))
+    assert len(stage.scene.walls) == 3
+    grid = LayeredGrid.from_scene(stage.scene)
+    ways = [((0.0, 0.0), (4.0, 0.0)), ((2.0, 3.0), (2.0, -3.0))]
+    for start, end in ways:
+        line = [(end[0] - start[0], end[1] - start[1])]
+        reached, _ = grid.walk([start], [0], line, stage.rules.person_clearance_m)
+        assert tuple(reached[0]) == pytest.approx(end)
+
+
+def test_walls_may_lie_elsewhere(crowd_file: Path, tmp_path: Path) -> None:
+    path = tmp_path / "elsewhere.json"
+    path.write_text('{"segments": [[-1, 4, 5, 4]]}')
+    stage = set_stage(ServerSettings(crowd=crowd_file, walls=path))
+    assert len(stage.scene.walls) == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "fault"),
+    [
+        ("square.csv", "t,id,x,y\n0,a,0,nowhere\n", "square.csv:2"),
+        ("square.walls.json", '{"segments": [[1, 2]]}', "segments[0]"),
+        ("square.csv", "t,id,x,y\n0,a,0,0\n1,a,900,0\n", "bounds: a side may measure"),
+    ],
+)
+def test_faults_in_a_crowd_are_named(crowd_file: Path, name: str, text: str, fault: str) -> None:
+    (crowd_file.parent / name).write_text(text)
+    with pytest.raises(StageError) as caught:
+        set_stage(ServerSettings(crowd=crowd_file))
+    assert fault in str(caught.value)
