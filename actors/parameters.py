@@ -60,7 +60,17 @@ class ActorParameters(BaseModel):
             200.0,
             "Seconds of detour that a second of certain contact is worth; higher keeps wider.",
         ),
-    ] = 25.0
+    ] = 8.0
+    foresight_s: Annotated[
+        float,
+        _field(
+            "s",
+            0.2,
+            60.0,
+            "Time over which risk ahead fades to a third: higher turns aside earlier, "
+            "lower waits to see what people do.",
+        ),
+    ] = 3.0
     closing_weight: Annotated[
         float,
         _field(

@@ -44,6 +44,7 @@ PARAMETERS = np.dtype(
         ("goal_tolerance_m", "f8"),
         ("person_clearance_m", "f8"),
         ("risk_weight", "f8"),
+        ("foresight_s", "f8"),
         ("closing_weight", "f8"),
         ("turn_weight", "f8"),
         ("wall_weight", "f8"),
@@ -127,6 +128,7 @@ def make_task(
         p.max_acceleration_mps2,
         p.goal_tolerance_m,
         p.risk_weight,
+        p.foresight_s,
         p.closing_weight,
         p.turn_weight,
         p.wall_weight,
@@ -324,7 +326,7 @@ def decide(
     world: World,
     guides: NDArray[np.float32],
     no_guide: NDArray[np.float32],
-    moves: NDArray[np.float64],
+    moves: Moves,
     prediction: Prediction,
     crowd: Crowd,
     tick_s: float,
@@ -335,10 +337,11 @@ def decide(
 ) -> None:
     """Search anew, perturb the followed path, keep the better, and wish for a velocity.
 
-    Actors first..last. Followed paths, seen from now, are `world.reservations.paths`. `moves`
-    (M, 2) holds headings relative to the way down the potential and fractions of the speed.
+    Actors first..last. Followed paths, seen from now, are `world.reservations.paths`. The
+    speeds of `moves` are parts of each actor's own.
     """
     slices = out.paths.shape[1]
+    speeds = np.empty(len(moves.speeds))
     kept = np.empty((slices, 2))
     bent = np.empty((slices, 2))
     trial = np.empty((slices, 2))
@@ -347,13 +350,11 @@ def decide(
         task = make_task(world, guides, crowd, a, p.goal_tolerance_m)
         slot = crowd.guide_slots[a]
         guide = guides[slot] if slot >= 0 else no_guide
-        speeds = moves[:, 1] * task.speed_mps
-        for m in range(len(speeds)):
-            if moves[m, 1] > 1.0:
-                speeds[m] = task.max_speed_mps
-        found = search(
-            world, guide, Moves(moves[:, 0], speeds, True), task, True, workspace, out.paths[a]
-        )
+        for m in range(len(moves.speeds)):
+            part = moves.speeds[m]
+            speeds[m] = task.max_speed_mps if part > 1.0 else part * task.speed_mps
+        own = Moves(moves.cosines, moves.sines, speeds, moves.straight, True)
+        found = search(world, guide, own, task, True, workspace, out.paths[a])
         out.statuses[a] = found.status
         out.expansions[a] = found.expansions
         out.renewed[a] = True

@@ -13,6 +13,7 @@ from planning._search_kernels import (
     Task,
     World,
     needed_clearance,
+    risk_price,
     time_cost,
     wall_cost,
     way_left,
@@ -108,7 +109,7 @@ def path_cost(
         risk += r
         cost += (
             time_cost(task, bx, by, moved / ds, ds)
-            + task.risk_weight * ds * (r + soft)
+            + risk_price(task, (k // SUB) * world.step_s) * ds * (r + soft)
             + task.turn_weight * np.hypot(ux - vx, uy - vy)
             + wall_cost(task, clearance_at(world.grid, task.layer, bx, by), ds)
         )

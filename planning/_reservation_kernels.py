@@ -76,24 +76,25 @@ def conflict(
     ci = int((bx - r.x0) / r.bucket_m)
     cj = int((by - r.y0) / r.bucket_m)
     soft = 0.0
+    i0 = min(r.nx - 1, max(0, ci - 1))
+    i1 = min(r.nx - 1, max(0, ci + 1))
     for j in range(max(0, cj - 1), min(r.ny, cj + 2)):
-        for i in range(max(0, ci - 1), min(r.nx, ci + 2)):
-            b = j * r.nx + i
-            for m in range(r.starts[k + 1, b], r.starts[k + 1, b + 1]):
-                other = r.members[k + 1, m]
-                if other == me or r.layers[other] != layer:
-                    continue
-                rx = ax - r.paths[other, k, 0]
-                ry = ay - r.paths[other, k, 1]
-                ex = bx - r.paths[other, k + 1, 0]
-                ey = by - r.paths[other, k + 1, 1]
-                reach = r.radii[me] + r.radii[other] + MARGIN_M
-                d = closest_approach(rx, ry, ex - rx, ey - ry)
-                if d >= reach:
-                    continue
-                if d >= np.hypot(rx, ry) - 1e-9 and np.hypot(ex, ey) > np.hypot(rx, ry):
-                    continue
-                if r.ranks[other] < r.ranks[me]:
-                    return True, 1.0
-                soft += 1.0
+        row = j * r.nx  # buckets of a row are listed one after the other
+        for m in range(r.starts[k + 1, row + i0], r.starts[k + 1, row + i1 + 1]):
+            other = r.members[k + 1, m]
+            if other == me or r.layers[other] != layer:
+                continue
+            rx = ax - r.paths[other, k, 0]
+            ry = ay - r.paths[other, k, 1]
+            ex = bx - r.paths[other, k + 1, 0]
+            ey = by - r.paths[other, k + 1, 1]
+            reach = r.radii[me] + r.radii[other] + MARGIN_M
+            d = closest_approach(rx, ry, ex - rx, ey - ry)
+            if d >= reach:
+                continue
+            if d >= np.hypot(rx, ry) - 1e-9 and np.hypot(ex, ey) > np.hypot(rx, ry):
+                continue
+            if r.ranks[other] < r.ranks[me]:
+                return True, 1.0
+            soft += 1.0
     return False, soft

@@ -20,15 +20,23 @@ PARTIAL = 1
 NO_PATH = 2
 
 
+DEPTH_BONUS_S = 0.03
+"""Deeper nodes go first by so much a step: the path may cost that much more a step than the best,
+and the search looks at a fraction of the nodes."""
+
+
 class Moves(NamedTuple):
     """The moves that a node branches into, besides staying put.
 
-    `headings` (M,) rad, counted from the way down the potential when `relative`, else from +x;
-    `speeds` (M,) m/s.
+    `cosines` and `sines` (M,) are those of the heading, counted from the way down the potential
+    when `relative`, else from +x; `speeds` (M,) m/s. The first `straight` moves go straight down
+    and stop at the goal rather than beyond it.
     """
 
-    headings: NDArray[np.float64]
+    cosines: NDArray[np.float64]
+    sines: NDArray[np.float64]
     speeds: NDArray[np.float64]
+    straight: int
     relative: bool
 
 
@@ -49,6 +57,7 @@ class Task(NamedTuple):
     max_acceleration_mps2: float
     goal_tolerance_m: float
     risk_weight: float
+    foresight_s: float
     closing_weight: float
     turn_weight: float
     wall_weight: float
@@ -124,6 +133,12 @@ def time_cost(task: Task, x: float, y: float, speed: float, seconds: float) -> f
         return seconds * speed
     over = max(0.0, speed / task.speed_mps - 1.0)
     return seconds * (1.0 + over + 2.0 * over * over)
+
+
+@kernel
+def risk_price(task: Task, seconds_ahead: float) -> float:
+    """Weight of risk at a time ahead. What lies far ahead will be decided anew, so it fades."""
+    return float(task.risk_weight * np.exp(-seconds_ahead / task.foresight_s))
 
 
 @kernel
@@ -246,58 +261,67 @@ def search(
                 gx /= leg
                 gy /= leg
         away = np.hypot(task.goal_x - x, task.goal_y - y)
-        heading = 0.0
-        if moves.relative and leg > 1e-9:
-            heading = np.arctan2(gy, gx)
-        for m in range(len(moves.headings) + 1):
+        if not moves.relative or leg <= 1e-9:
+            gx = 1.0
+            gy = 0.0
+        price = risk_price(task, step * world.step_s) * ds
+        k = step * SUB
+        for m in range(len(moves.speeds) + 1):
             ux = 0.0
             uy = 0.0
-            if m < len(moves.headings):
+            if m < len(moves.speeds):
                 speed = moves.speeds[m]
-                if moves.relative and moves.headings[m] == 0.0 and away < speed * world.step_s:
+                if moves.relative and m < moves.straight and away < speed * world.step_s:
                     speed = away / world.step_s
-                ux = speed * np.cos(heading + moves.headings[m])
-                uy = speed * np.sin(heading + moves.headings[m])
+                ux = speed * (gx * moves.cosines[m] - gy * moves.sines[m])
+                uy = speed * (gx * moves.sines[m] + gy * moves.cosines[m])
             hx, hy, hvx, hvy = advance(x, y, vx, vy, ux, uy, task.max_acceleration_mps2, ds)
             ex, ey, evx, evy = advance(hx, hy, hvx, hvy, ux, uy, task.max_acceleration_mps2, ds)
             half_room = clearance_at(world.grid, layer, hx, hy)
             room = clearance_at(world.grid, layer, ex, ey)
             if half_room < need or room < need:
                 continue
-            ej, ei = cell_at(world.grid, ex, ey)
-            slot = _slot(workspace, (((step + 1) * layers + layer) * ny + ej) * nx + ei)
-            if slot < 0 or (not accumulate and np.isfinite(workspace.table_cost[slot])):
-                continue
             left = way_left(world, guide, task, layer, ex, ey)
             if not np.isfinite(left):
                 continue
-            k = step * SUB
+            ej, ei = cell_at(world.grid, ex, ey)
+            slot = _slot(workspace, (((step + 1) * layers + layer) * ny + ej) * nx + ei)
+            if slot < 0:
+                continue
+            moved = np.hypot(ex - x, ey - y)
+            cost = (
+                node[n, 4]
+                + time_cost(task, ex, ey, moved / world.step_s, world.step_s)
+                + task.turn_weight * np.hypot(evx - vx, evy - vy)
+                + wall_cost(task, min(half_room, room), world.step_s)
+            )
+            if not accumulate:
+                cost = 0.0
+            if cost >= workspace.table_cost[slot] - 1e-12:
+                continue
             blocked, soft = conflict(world.reservations, task.me, layer, k, x, y, hx, hy)
             if blocked:
                 continue
             blocked, soft_end = conflict(world.reservations, task.me, layer, k + 1, hx, hy, ex, ey)
             if blocked:
                 continue
-            risk = risk_at(
-                world.grid, world.fields, k + 1, layer, hx, hy, hvx, hvy, task.closing_weight
-            ) + risk_at(
-                world.grid, world.fields, k + 2, layer, ex, ey, evx, evy, task.closing_weight
+            risk = price * (
+                risk_at(
+                    world.grid, world.fields, k + 1, layer, hx, hy, hvx, hvy, task.closing_weight
+                )
+                + risk_at(
+                    world.grid, world.fields, k + 2, layer, ex, ey, evx, evy, task.closing_weight
+                )
+                + soft
+                + soft_end
             )
             if accumulate:
-                moved = np.hypot(ex - x, ey - y)
-                cost = (
-                    node[n, 4]
-                    + time_cost(task, ex, ey, moved / world.step_s, world.step_s)
-                    + task.risk_weight * ds * (risk + soft + soft_end)
-                    + task.turn_weight * np.hypot(evx - vx, evy - vy)
-                    + wall_cost(task, min(half_room, room), world.step_s)
-                )
+                cost += risk
                 if cost >= workspace.table_cost[slot] - 1e-12:
                     continue
-                key = cost + left
+                key = cost + left - DEPTH_BONUS_S * (step + 1)
             else:
-                cost = 0.0
-                key = left + task.risk_weight * ds * (risk + soft + soft_end)
+                key = left + risk
             if count == capacity:
                 continue
             workspace.table_cost[slot] = cost

@@ -70,7 +70,7 @@ class Batch:
 
     def _workspaces_for(self, budget: int) -> list[Workspace]:
         if budget > self._budget:
-            branching = len(self._moves) + 1
+            branching = len(self._moves.speeds) + 1
             self._budget = budget
             self._workspaces = [make_workspace(budget, branching) for _ in range(self.plan.threads)]
         return self._workspaces

@@ -37,13 +37,14 @@ class SearchForm(Enum):
     """f = time and risk so far + way left: what actors use."""
 
 
-def compass_moves() -> NDArray[np.float64]:
-    """Moves of the accumulated form, float64 (M, 2): heading from the way down, part of the speed.
+def compass_moves() -> Moves:
+    """Moves of the accumulated form; their `speeds` are parts of an actor's preferred speed.
 
     A part above one stands for the greatest speed. Straight on comes at three speeds, so that an
     actor may hurry or slow down; staying put is always possible and not listed.
     """
     rows = [(0.0, 1.0), (0.0, 0.5), (0.0, 2.0)]
+    straight = len(rows)
     for degrees in (15, 30, 50, 75, 110, 180):
         signs = (1, -1) if degrees < 180 else (1,)
         rows.extend((math.radians(sign * degrees), 1.0) for sign in signs)
@@ -51,7 +52,8 @@ def compass_moves() -> NDArray[np.float64]:
         rows.extend((math.radians(sign * degrees), 0.5) for sign in (1, -1))
     for degrees in (30, 75):
         rows.extend((math.radians(sign * degrees), 2.0) for sign in (1, -1))
-    return np.array(rows)
+    headings, parts = np.array(rows).T
+    return Moves(np.cos(headings), np.sin(headings), parts.copy(), straight, True)
 
 
 def lattice_moves(cell_m: float, step_s: float, max_speed_mps: float) -> Moves:
@@ -65,7 +67,7 @@ def lattice_moves(cell_m: float, step_s: float, max_speed_mps: float) -> Moves:
         if speed <= max_speed_mps + 1e-9:
             headings.append(eighth * math.pi / 4.0)
             speeds.append(speed)
-    return Moves(np.array(headings), np.array(speeds), False)
+    return Moves(np.cos(headings), np.sin(headings), np.array(speeds), 0, False)
 
 
 def make_workspace(max_expansions: int, branching: int) -> Workspace:
@@ -157,7 +159,7 @@ def uncertain_bfp(
         raise ValueError(f"step_s must be positive, got {step_s}")
     world = World(field.grid.arrays, field.fields, reservations, step_s)
     path = np.zeros((slices + 1, 2))
-    workspace = make_workspace(task.max_expansions, len(moves.headings) + 1)
+    workspace = make_workspace(task.max_expansions, len(moves.speeds) + 1)
     outcome = kernels.search(
         world,
         potential.guide,
