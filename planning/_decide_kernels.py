@@ -406,7 +406,9 @@ def _reason(
         return GIVING_WAY
     if slot >= 0 and task.hold and task.goal_x != crowd.goals[task.me, 0]:
         return BLOCKED
-    if slot < 0 or task.hold:
+    if slot < 0:
+        return WAITING
+    if task.hold:
         return ARRIVED
     if status == NO_PATH:
         return BLOCKED
