@@ -28,6 +28,9 @@ EXIT_WELL: Final = 0
 EXIT_FAILED: Final = 1
 EXIT_USAGE: Final = 2
 
+WELL_FOLLOWED: Final = 0.99
+"""A smaller share of samples near the recorded way than this wants an explanation."""
+
 EXAMPLES: Final = """\
 examples:
   esplanade bots                                   20 visitors walk about for a minute
@@ -112,13 +115,8 @@ def _conclude(
     show(Console(), tally)
     for fault in faults:
         print(f"esplanade bots: {fault}", file=sys.stderr)
-    if crowd is not None and tally.capped:
-        needed_mps = crowd.max_speed_mps * settings.speedup
-        print(
-            f"esplanade bots: the server's speed limit held {tally.capped} commands back; run it "
-            f"with --person-max-speed-mps {needed_mps:.1f} or lower --speedup",
-            file=sys.stderr,
-        )
+    for hint in _hints(settings, crowd, tally):
+        print(f"esplanade bots: {hint}", file=sys.stderr)
     if settings.json_file is not None:
         result = {"settings": settings.model_dump(mode="json"), **figures(tally)}
         try:
@@ -127,6 +125,23 @@ def _conclude(
             print(f"esplanade bots: --json: {error}", file=sys.stderr)
             return EXIT_FAILED
     return EXIT_WELL if tally.well and not faults else EXIT_FAILED
+
+
+def _hints(settings: BotsSettings, crowd: Crowd | None, tally: Tally) -> Iterator[str]:
+    """What kept a replay from its way, if anything did."""
+    if crowd is None:
+        return
+    if tally.capped:
+        needed_mps = crowd.max_speed_mps * settings.speedup
+        yield (
+            f"the server's speed limit held {tally.capped} commands back; run it with "
+            f"--person-max-speed-mps {needed_mps:.1f} or lower --speedup"
+        )
+    elif tally.near < WELL_FOLLOWED * tally.deviation_m.count:
+        yield (
+            "something kept people from their recorded ways; does the server run with "
+            f"`esplanade serve --crowd {settings.replay}`?"
+        )
 
 
 @contextmanager

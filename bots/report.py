@@ -90,7 +90,7 @@ def _spreads(tally: Tally) -> Table:
     for name, histogram, factor, unit in (
         ("round trip", tally.round_trip_s, 1e3, "ms"),
         ("age of snapshots", tally.snapshot_age_s, 1e3, "ms"),
-        ("time between snapshots", tally.snapshot_interval_s, 1e3, "ms"),
+        ("between snapshots", tally.snapshot_interval_s, 1e3, "ms"),
         ("off the recorded way", tally.deviation_m, 1.0, "m"),
     ):
         if histogram.count:

@@ -84,6 +84,17 @@ async def test_a_speed_limit_is_explained(tmp_path: Path) -> None:
     assert "--person-max-speed-mps 4.0 or lower --speedup" in err
 
 
+async def test_people_off_their_way_are_explained(tmp_path: Path) -> None:
+    recording = tmp_path / "two.csv"
+    recording.write_text(RECORDING)
+    async with scripted_server() as server:
+        server._apply = lambda: None  # type: ignore[method-assign]
+        process = await start("--url", server.url, "--replay", str(recording))
+        code, _, err = await finish(process)
+    assert code == 0
+    assert f"esplanade serve --crowd {recording}" in err
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 async def test_a_signal_sends_everyone_home_and_reports(number: int) -> None:
     async with scripted_server() as server:

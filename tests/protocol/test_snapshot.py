@@ -14,6 +14,7 @@ from protocol.snapshot import (
     RECORD,
     SPEED_MPS,
     Records,
+    find_position_m,
     headings_rad,
     pack_records,
     positions_m,
@@ -99,3 +100,26 @@ def test_nobody_in_view_is_an_empty_block() -> None:
 def test_a_block_cut_short_is_refused(length: int) -> None:
     with pytest.raises(ValueError, match=f"block of {length} bytes is no multiple of 12"):
         unpack_block(bytes(length))
+
+
+tricky = st.sampled_from([0, 1, 255, 256, 0x0101_0101, 0x0100_0000, 0x0001_0000, 2**32 - 1])
+
+
+@given(
+    st.lists(
+        st.tuples(tricky, st.just(1), st.just(1), *[st.integers(0, 65535)] * 2, *[st.just(0)] * 2),
+        max_size=8,
+        unique_by=lambda row: row[0],
+    ),
+    tricky,
+)
+def test_one_position_is_found_without_unpacking(rows: list[tuple[int, ...]], wanted: int) -> None:
+    """Ids made of few bytes, so that they also show up across other fields."""
+    records = np.array(rows, dtype=RECORD)
+    found = find_position_m(records.tobytes(), wanted, ORIGIN)
+    expected = [
+        tuple(place)
+        for record, place in zip(records, positions_m(records, ORIGIN).tolist(), strict=True)
+        if record["id"] == wanted
+    ]
+    assert found == (pytest.approx(expected[0]) if expected else None)
