@@ -3,7 +3,7 @@
 Pure mathematics: no sockets, no clock, no random numbers of its own.
 """
 
-from planning._decide_kernels import PARAMETERS, Crowd, Decisions
+from planning._crowd import PARAMETERS, Crowd, Decisions
 from planning._prediction_kernels import Prediction
 from planning.batch import Batch, PlanModel
 from planning.grid import LayeredGrid

@@ -9,11 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from planning import _decide_kernels as kernels
-from planning._decide_kernels import Crowd, Decisions
+from planning._crowd import Crowd, Decisions
+from planning._decide_kernels import continue_paths, decide
 from planning._prediction_kernels import Prediction
 from planning._reservation_kernels import index_paths
 from planning._search_kernels import SUB, Workspace, World
+from planning._step_kernels import resolve
 from planning.grid import LayeredGrid
 from planning.risk import RiskField, RiskModel
 from planning.search import compass_moves, make_reservations, make_workspace
@@ -121,11 +122,11 @@ class Batch:
         if not actors:
             return decisions, new_positions
         workspaces = self._workspaces_for(int(crowd.parameters["max_expansions"].max()))
-        kernels.continue_paths(world, guides, crowd, tick_s, 0, actors, paths)
+        continue_paths(world, guides, crowd, tick_s, 0, actors, paths)
         index_paths(reservations)
 
-        def decide(k: int, threads: int) -> None:
-            kernels.decide(
+        def work(k: int, threads: int) -> None:
+            decide(
                 world,
                 guides,
                 self._no_guide,
@@ -139,8 +140,8 @@ class Batch:
                 decisions,
             )
 
-        self._on_threads(decide)
-        kernels.resolve(
+        self._on_threads(work)
+        resolve(
             world,
             self.grid.index,
             self.grid.bounds,

@@ -1,0 +1,66 @@
+"""What kernels know of a crowd of actors, and what these decide."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+MOVING = 1
+GIVING_WAY = 2
+WAITING = 3
+REPLANNING = 4
+BLOCKED = 5
+ARRIVED = 6
+
+PARAMETERS = np.dtype(
+    [
+        ("radius_m", "f8"),
+        ("speed_mps", "f8"),
+        ("max_speed_mps", "f8"),
+        ("max_acceleration_mps2", "f8"),
+        ("goal_tolerance_m", "f8"),
+        ("person_clearance_m", "f8"),
+        ("risk_weight", "f8"),
+        ("foresight_s", "f8"),
+        ("closing_weight", "f8"),
+        ("turn_weight", "f8"),
+        ("wall_weight", "f8"),
+        ("hysteresis_s", "f8"),
+        ("max_expansions", "f8"),
+    ]
+)
+"""What kernels know of an actor's parameters; one field each, in the units of their names."""
+
+
+class Crowd(NamedTuple):
+    """State of A actors; every array has A rows.
+
+    `guide_slots` is the row of the guide pool, -1 without a goal; `known` tells whether `followed`
+    holds a path; `followed` (A, K, 2) begins at the tick that `ages` (A,) ticks ago was.
+    """
+
+    positions: NDArray[np.float64]
+    velocities: NDArray[np.float64]
+    layers: NDArray[np.int64]
+    goals: NDArray[np.float64]
+    guide_slots: NDArray[np.int64]
+    parameters: NDArray[np.void]
+    ranks: NDArray[np.int64]
+    known: NDArray[np.bool_]
+    ages: NDArray[np.int64]
+    followed: NDArray[np.float64]
+
+
+class Decisions(NamedTuple):
+    """What the actors decided; every array has A rows.
+
+    `paths` (A, K, 2); `wishes` (A, 2) m/s for the next tick; `reasons`; `statuses` of the
+    searches; `expansions`; `renewed` tells that `paths` replaces what was followed.
+    """
+
+    paths: NDArray[np.float64]
+    wishes: NDArray[np.float64]
+    reasons: NDArray[np.int64]
+    statuses: NDArray[np.int64]
+    expansions: NDArray[np.int64]
+    renewed: NDArray[np.bool_]

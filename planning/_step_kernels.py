@@ -1,0 +1,218 @@
+"""From a plan to the step of this tick, on bare arrays: the control, the last checks, the step."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning._crowd import GIVING_WAY, WAITING, Crowd, Decisions
+from planning._geometry_kernels import SegmentIndex, closest_approach, slide
+from planning._grid_kernels import clearance_at
+from planning._jit import kernel
+from planning._prediction_kernels import Prediction
+from planning._risk_kernels import separation_from_people
+from planning._search_kernels import Task, World, advance, needed_clearance
+
+
+@kernel
+def control_toward(task: Task, x: float, y: float, seconds: float) -> tuple[float, float]:
+    """Velocity to aim at so that the actor is at (x, y) after so many seconds."""
+    ux = (x - task.x) / seconds
+    uy = (y - task.y) / seconds
+    for _ in range(4):
+        ex, ey, _, _ = advance(
+            task.x, task.y, task.vx, task.vy, ux, uy, task.max_acceleration_mps2, seconds
+        )
+        ux += (x - ex) / seconds
+        uy += (y - ey) / seconds
+        speed = np.hypot(ux, uy)
+        if speed > task.max_speed_mps:
+            ux *= task.max_speed_mps / speed
+            uy *= task.max_speed_mps / speed
+    return ux, uy
+
+
+@kernel
+def limited(task: Task, ux: float, uy: float, tick_s: float) -> tuple[float, float]:
+    """The velocity nearest to u that the acceleration limit allows within a tick."""
+    dx = ux - task.vx
+    dy = uy - task.vy
+    change = np.hypot(dx, dy)
+    most = task.max_acceleration_mps2 * tick_s
+    if change <= most:
+        return ux, uy
+    return task.vx + dx * most / change, task.vy + dy * most / change
+
+
+@kernel
+def _gap(
+    world: World,
+    prediction: Prediction,
+    task: Task,
+    need: float,
+    ux: float,
+    uy: float,
+    seconds: float,
+) -> float:
+    """Smallest distance to people while turning to velocity u; negative where a wall is."""
+    half = 0.5 * seconds
+    a = task.max_acceleration_mps2
+    hx, hy, hvx, hvy = advance(task.x, task.y, task.vx, task.vy, ux, uy, a, half)
+    ex, ey, _, _ = advance(hx, hy, hvx, hvy, ux, uy, a, half)
+    if (
+        clearance_at(world.grid, task.layer, hx, hy) < need
+        or clearance_at(world.grid, task.layer, ex, ey) < need
+    ):
+        return -1.0
+    first = separation_from_people(
+        prediction, task.layer, task.x, task.y, hx - task.x, hy - task.y, half
+    )
+    best = first
+    for p in range(len(prediction.layers)):
+        if prediction.layers[p] != task.layer:
+            continue
+        rx = hx - prediction.means[p, 0, 0] - prediction.velocities[p, 0, 0] * half
+        ry = hy - prediction.means[p, 0, 1] - prediction.velocities[p, 0, 1] * half
+        if abs(rx) > 4.0 or abs(ry) > 4.0:
+            continue
+        d = closest_approach(
+            rx,
+            ry,
+            ex - hx - prediction.velocities[p, 0, 0] * half,
+            ey - hy - prediction.velocities[p, 0, 1] * half,
+        )
+        best = min(best, d)
+    return best
+
+
+@kernel
+def last_check(
+    world: World,
+    prediction: Prediction,
+    task: Task,
+    contact_m: float,
+    ux: float,
+    uy: float,
+) -> tuple[float, float, bool]:
+    """The wish itself when nobody would be touched soon, else the way out that leaves most room.
+
+    Ways out are stopping and sixteen directions at two speeds; the third value tells that one was
+    taken. Looks 0.6 s ahead.
+    """
+    seconds = 0.6
+    need = needed_clearance(world, task)
+    gap = _gap(world, prediction, task, need, ux, uy, seconds)
+    if gap >= contact_m:
+        return ux, uy, False
+    best = min(gap, contact_m) - 1e-6 if gap >= 0.0 else -np.inf
+    bx = ux
+    by = uy
+    for n in range(33):
+        vx = 0.0
+        vy = 0.0
+        if n > 0:
+            speed = task.max_speed_mps * (1.0 if n % 2 == 0 else 0.5)
+            angle = ((n - 1) // 2) * np.pi / 8.0
+            vx = speed * np.cos(angle)
+            vy = speed * np.sin(angle)
+        gap = min(_gap(world, prediction, task, need, vx, vy, seconds), contact_m + 0.1)
+        if gap < 0.0:
+            continue
+        score = gap - 0.02 * np.hypot(vx - ux, vy - uy)
+        if score > best:
+            best = score
+            bx = vx
+            by = vy
+    return bx, by, True
+
+
+@kernel
+def resolve(
+    world: World,
+    index: SegmentIndex,
+    bounds: tuple[float, float, float, float],
+    crowd: Crowd,
+    order: NDArray[np.int64],
+    tick_s: float,
+    decisions: Decisions,
+    new_positions: NDArray[np.float64],
+) -> None:
+    """Take the steps in rank order so that no two actors touch.
+
+    Each actor keeps clear of the steps already taken and of the places of those still to move,
+    so that standing still remains possible for everyone who comes after.
+    """
+    moved = np.zeros(len(order), dtype=np.bool_)
+    new_positions[:] = crowd.positions
+    for n in range(len(order)):
+        a = order[n]
+        x = crowd.positions[a, 0]
+        y = crowd.positions[a, 1]
+        need = min(
+            crowd.parameters[a].radius_m,
+            max(0.0, clearance_at(world.grid, crowd.layers[a], x, y)),
+        )
+        moved[a] = True
+        wx = decisions.wishes[a, 0]
+        wy = decisions.wishes[a, 1]
+        if wx == 0.0 and wy == 0.0:
+            continue
+        for trial in range(7):
+            vx, vy = _alternative(wx, wy, trial)
+            ex, ey = slide(index, bounds, x, y, vx * tick_s, vy * tick_s, need - 1e-6)
+            if trial == 6 or not _touches(world, crowd, moved, new_positions, a, ex, ey):
+                new_positions[a, 0] = ex
+                new_positions[a, 1] = ey
+                if trial > 0:
+                    stands = np.hypot(ex - x, ey - y) < 0.15 * tick_s
+                    decisions.reasons[a] = WAITING if stands else GIVING_WAY
+                break
+
+
+@kernel
+def _alternative(wx: float, wy: float, n: int) -> tuple[float, float]:
+    """The wish, then half of it, then sidesteps to either side, then standing."""
+    if n == 0:
+        return wx, wy
+    if n == 1:
+        return 0.5 * wx, 0.5 * wy
+    if n == 6:
+        return 0.0, 0.0
+    side = 0.5 if n % 2 == 0 else -0.5
+    back = 0.3 if n < 4 else -0.3
+    return back * wx - side * wy, back * wy + side * wx
+
+
+@kernel
+def _touches(
+    world: World,
+    crowd: Crowd,
+    moved: NDArray[np.bool_],
+    new_positions: NDArray[np.float64],
+    a: int,
+    ex: float,
+    ey: float,
+) -> bool:
+    """Whether actor a, moving to (ex, ey), comes closer than it may to another actor."""
+    r = world.reservations
+    x = crowd.positions[a, 0]
+    y = crowd.positions[a, 1]
+    ci = min(r.nx - 1, max(0, int((x - r.x0) / r.bucket_m)))
+    cj = min(r.ny - 1, max(0, int((y - r.y0) / r.bucket_m)))
+    for j in range(max(0, cj - 1), min(r.ny, cj + 2)):
+        for i in range(max(0, ci - 1), min(r.nx, ci + 2)):
+            b = j * r.nx + i
+            for m in range(r.starts[0, b], r.starts[0, b + 1]):
+                o = r.members[0, m]
+                if o == a or crowd.layers[o] != crowd.layers[a]:
+                    continue
+                rx = x - crowd.positions[o, 0]
+                ry = y - crowd.positions[o, 1]
+                dx = ex - x
+                dy = ey - y
+                if moved[o]:
+                    dx -= new_positions[o, 0] - crowd.positions[o, 0]
+                    dy -= new_positions[o, 1] - crowd.positions[o, 1]
+                reach = r.radii[a] + r.radii[o] + 0.01
+                d = closest_approach(rx, ry, dx, dy)
+                if d < reach and d < np.hypot(rx, ry) - 1e-9:
+                    return True
+    return False
