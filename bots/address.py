@@ -1,9 +1,12 @@
 """Where the server is, as people type it."""
 
+import socket
 from typing import Final
 from urllib.parse import urlsplit, urlunsplit
 
 DEFAULT_PATH: Final = "/ws"
+
+KNOCK_TIMEOUT_S: Final = 5.0
 
 _SCHEMES: Final = {"ws": "ws", "wss": "wss", "http": "ws", "https": "wss"}
 
@@ -35,3 +38,14 @@ def websocket_url(text: str) -> str:
         raise ValueError(f"url {text!r}: a fragment (#) means nothing here")
     path = parts.path if parts.path not in {"", "/"} else DEFAULT_PATH
     return urlunsplit((scheme, parts.netloc, path, parts.query, ""))
+
+
+def refusal(url: str) -> str | None:
+    """Why nothing takes connections at the address, None if something does."""
+    parts = urlsplit(websocket_url(url))
+    port = parts.port or (443 if parts.scheme == "wss" else 80)
+    try:
+        socket.create_connection((parts.hostname or "", port), KNOCK_TIMEOUT_S).close()
+    except OSError as error:
+        return error.strerror or str(error)
+    return None

@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from rich.console import Console
 
+from bots.address import refusal
 from bots.crew import Crew
 from bots.load import LoadJob
 from bots.progress import Progress
@@ -65,6 +66,13 @@ def run(argv: Sequence[str]) -> int:
             return _refuse(f"{settings.replay}: nobody in it has a way, only single samples")
     if settings.json_file is not None and not settings.json_file.parent.is_dir():
         return _refuse(f"--json: there is no folder {settings.json_file.parent}")
+    if (why := refusal(settings.url)) is not None:
+        print(
+            f"esplanade bots: nobody answers at {settings.url}: {why}; `esplanade serve` runs a "
+            "server, and says when it is open",
+            file=sys.stderr,
+        )
+        return EXIT_FAILED
     tally, faults = _carry_out(jobs)
     tally.skipped = skipped
     return _conclude(settings, crowd, tally, faults)

@@ -16,7 +16,7 @@ from protocol.messages import Hello, Move
 from protocol.snapshot import find_position_m
 from recordings import Track
 
-LEAD_S: Final = 0.3
+LEAD_S: Final = 0.5
 """A pedestrian joins this long (real time) before its recorded start, so that it stands at its
 first place when its way begins."""
 

@@ -143,6 +143,14 @@ def test_wrong_usage_is_told(
     assert fault in capsys.readouterr().err
 
 
+def test_a_server_that_is_not_there_is_told_at_once(
+    unused_tcp_port: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["--url", f"ws://127.0.0.1:{unused_tcp_port}", "--count", "500"]) == 1
+    err = capsys.readouterr().err
+    assert f"nobody answers at ws://127.0.0.1:{unused_tcp_port}: Connection refused" in err
+
+
 def test_a_recording_of_single_samples_has_nobody_to_send(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
