@@ -45,10 +45,10 @@ async def url() -> AsyncIterator[str]:
 async def browser() -> AsyncIterator[Browser]:
     """Chromium, drawing WebGL in software."""
     async with async_playwright() as playwright:
-        executable = _executable(playwright)
-        if executable is None:
+        path = executable(playwright)
+        if path is None:
             pytest.skip("no chromium or chrome on this machine")
-        started = await playwright.chromium.launch(executable_path=executable, args=[*FLAGS])
+        started = await playwright.chromium.launch(executable_path=path, args=[*FLAGS])
         try:
             yield started
         finally:
@@ -71,7 +71,7 @@ async def other_profile(browser: Browser) -> AsyncIterator[BrowserContext]:
     await context.close()
 
 
-def _executable(playwright: Playwright) -> str | None:
+def executable(playwright: Playwright) -> str | None:
     """What ESPLANADE_CHROMIUM names, the machine's own, or playwright's download."""
     named = os.environ.get("ESPLANADE_CHROMIUM")
     if named:

@@ -54,7 +54,7 @@ async def test_a_killed_page_comes_back_as_the_same_avatar(
     url: str, profile: BrowserContext, other_profile: BrowserContext
 ) -> None:
     ann = await Visitor.arrive(profile, url)
-    await ann.join("Ann")
+    await ann.join("Cora")
     ann_id = (await ann.look())["id"]
     ben = await Visitor.arrive(other_profile, url)
     await ben.join("Ben")
@@ -67,10 +67,10 @@ async def test_a_killed_page_comes_back_as_the_same_avatar(
     await asyncio.wait_for(crashed.wait(), 30.0)
 
     again = await Visitor.arrive(profile, url)
-    await again.join("Ann")
+    await again.join("Cora")
     assert (await again.look())["id"] == ann_id
     names = [avatar["name"] for avatar in (await ben.look())["avatars"]]
-    assert names.count("Ann") == 1
+    assert names.count("Cora") == 1
 
 
 async def test_a_reload_goes_straight_back_in(url: str, profile: BrowserContext) -> None:

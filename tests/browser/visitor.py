@@ -22,7 +22,6 @@ document.addEventListener("securitypolicyviolation", (event) => {
   window.violations.push(`${event.violatedDirective}: ${event.blockedURI}`);
 });
 """
-_DRAW_FAST: Final = 'localStorage.setItem("esplanade.drawing", "fast");'
 _LOOK: Final = """() => {
   const { phase, id, avatars, plan, chosenId, frames } = window.esplanade;
   return { phase, id, avatars, plan, chosenId, frames };
@@ -37,8 +36,8 @@ class Visitor:
     faults: list[str] = field(default_factory=list)
 
     @classmethod
-    async def arrive(cls, context: BrowserContext, url: str) -> "Visitor":
-        """Open the client in a new page."""
+    async def arrive(cls, context: BrowserContext, url: str, drawing: str = "fast") -> "Visitor":
+        """Open the client in a new page, that draws as finely as is said."""
         page = await context.new_page()
         visitor = cls(page)
         page.on("console", visitor._heard)
@@ -49,7 +48,8 @@ class Visitor:
                 visitor.faults.append(f"asks elsewhere: {request.url}")
 
         page.on("request", requested)
-        await page.add_init_script(_COLLECT_VIOLATIONS + _DRAW_FAST)
+        await page.add_init_script(_COLLECT_VIOLATIONS)
+        await page.add_init_script(f"localStorage.setItem('esplanade.drawing', '{drawing}');")
         await page.goto(url)
         return visitor
 

@@ -106,9 +106,7 @@ export class Session {
       void this.seats.keep(name, resume);
       this.join.close();
       this.chat.note(
-        resumed
-          ? `Welcome back, ${name}.`
-          : `Welcome, ${name}. Under Help stands how to get about.`,
+        resumed ? `Welcome back, ${name}.` : `Welcome, ${name}. See Help for how to get about.`,
       );
     }
     if (state.phase === "refused") this.join.open(state.text);

@@ -8,7 +8,7 @@ const REASONS: Record<number, string> = {
   [Reason.NONE]: "no reason given",
   [Reason.MOVING]: "moving along its path",
   [Reason.GIVING_WAY]: "giving way to somebody",
-  [Reason.WAITING]: "waiting until there is room",
+  [Reason.WAITING]: "waiting",
   [Reason.REPLANNING]: "looking for another way",
   [Reason.NO_PATH]: "finds no way to its goal",
   [Reason.ARRIVED]: "has arrived",
@@ -45,7 +45,7 @@ export class PlanPanel {
     const seconds = plan.path.at(-1)?.[3] ?? 0;
     const path = plan.path.length > 1 ? `Path for ${seconds.toFixed(0)} s` : "No path";
     const people = plan.people.length === 1 ? "1 person" : `${plan.people.length} people`;
-    set(this.outlook, `${path}, ${people} near by`);
+    set(this.outlook, `${path}, ${people} near`);
   }
 }
 
