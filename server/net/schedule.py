@@ -2,7 +2,7 @@
 
 from typing import Final
 
-MAX_BEHIND_TICKS: Final = 5
+MAX_BEHIND_TICKS: Final = 2
 """Further behind than this, the world gives the lost time up instead of rushing after it."""
 
 

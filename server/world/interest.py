@@ -31,7 +31,8 @@ class Interest:
     """What each viewer has in view: always itself, and at most `view_limit` others.
 
     `rows[viewer]` lists the slots in view; unused places hold the capacity, a slot that no
-    avatar ever has. `since[viewer, slot]` is the tick at which it came into view, 0 if it is not.
+    avatar ever has. `rows_since` has beside each the tick at which it came into view, and
+    `since[viewer, slot]` the same by slot, 0 for what is not in view.
     """
 
     def __init__(self, state: State, rules: Rules) -> None:
@@ -44,6 +45,7 @@ class Interest:
         self._leave_m = rules.view_radius_m * LEAVE_RATIO
         self.viewing = np.zeros(state.capacity, dtype=np.bool_)
         self.rows = np.full((state.capacity, self._columns), self._nobody, dtype=np.int64)
+        self.rows_since = np.zeros((state.capacity, self._columns), dtype=np.int32)
         self.since = np.zeros((state.capacity, state.capacity + 1), dtype=np.int32)
         self._unseeing = np.zeros(state.capacity, dtype=np.bool_)
         self._changes = Changes()
@@ -100,9 +102,11 @@ class Interest:
         row, column = np.nonzero(keep)
 
         old = self.rows[due]
+        stamps = np.where(since > 0, since, tick)
         self.since[viewer, old] = 0
-        self.since[due[row], found[row, column]] = np.where(since > 0, since, tick)[row, column]
+        self.since[due[row], found[row, column]] = stamps[row, column]
         self.rows[due] = np.where(keep, found, self._nobody)
+        self.rows_since[due] = np.where(keep, stamps, 0)
 
         gone = (old != self._nobody) & (self.since[viewer, old] == 0)
         ids = self._state.ids

@@ -36,7 +36,7 @@ class Troupe:
 
     def plan(self, people: Mapping[Hashable, Point]) -> ActorStates:
         """The next tick of all actors. Heavy: touches nothing but the cast."""
-        return self._cast.tick(people)
+        return self._cast.tick(people) if len(self._cast) else {}
 
     def place(self, states: ActorStates) -> None:
         """Move the avatars; whoever is new comes into the world. Without states all stand."""

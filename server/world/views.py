@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from protocol.snapshot import RECORD, pack_records
+from protocol.snapshot import RECORD, Records, pack_records
 from server.world.interest import Interest
 from server.world.state import Slots, State
 
@@ -54,11 +54,13 @@ class Views:
         viewers = interest.viewers()
         in_view = interest.rows[viewers]
         written = self._written[viewers][:, None]
-        wanted = self._changed[in_view] > written
-        wanted |= interest.since[viewers[:, None], in_view] > written
+        wanted = self._changed.take(in_view) > written
+        wanted |= interest.rows_since[viewers] > written
         wanted |= in_view == viewers[:, None]
-        ends: npt.NDArray[np.int64] = np.cumsum(wanted.sum(axis=1)) * RECORD_BYTES
-        data = self._records[in_view[wanted]].tobytes()
+        ends = np.cumsum(np.count_nonzero(wanted, axis=1)) * RECORD_BYTES
+        # Gathering rows of words is forty times faster than gathering structured records.
+        slots = in_view.ravel().take(np.flatnonzero(wanted))
+        data = _words(self._records).take(slots, axis=0).tobytes()
         return Snapshots(
             tick=tick,
             slots=viewers,
@@ -80,8 +82,12 @@ class Views:
             state.speeds[live],
             self._origin_m,
         )
-        words = RECORD_BYTES // 4
-        before = self._records[live].view(np.uint32).reshape(-1, words)
-        changed = (records.view(np.uint32).reshape(-1, words) != before).any(axis=1)
+        known = _words(self._records)
+        changed = (_words(records) != known[live]).any(axis=1)
         self._changed[live[changed]] = tick
-        self._records[live] = records
+        known[live] = _words(records)
+
+
+def _words(records: Records) -> npt.NDArray[np.uint32]:
+    """The same memory as 32-bit words, (N, 3)."""
+    return records.view(np.uint32).reshape(-1, RECORD_BYTES // 4)

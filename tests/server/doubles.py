@@ -30,6 +30,9 @@ class ScriptedCast:
         self.positions[actor_id] = position
         self.velocities[actor_id] = velocity
 
+    def __len__(self) -> int:
+        return len(self.positions)
+
     def tick(self, people: Mapping[Hashable, Place]) -> dict[Hashable, ActorState]:
         if self.failing:
             raise RuntimeError("told to fail")

@@ -43,7 +43,7 @@ async def test_the_event_loop_serves_while_actors_are_planned(
         assert go_on.wait(20.0)
         return {}
 
-    async with serving() as server, joined(server.port) as client:
+    async with serving(actors=1) as server, joined(server.port) as client:
         monkeypatch.setattr(Cast, "tick", think_long)
         await asyncio.to_thread(planning.wait, 20.0)
         tick = server.world.tick

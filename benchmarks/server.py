@@ -1,0 +1,237 @@
+"""What a tick costs, by stage and by client.
+
+    python -m benchmarks.server                      worlds of 100, 300 and 1000, then 200 sockets
+    python -m benchmarks.server --clients 1000
+
+First a world without sockets: simulated people steer about, everything but the writing is timed.
+Then a server in a process of its own with real sockets, and beside it, in the same run, a bare
+server that does nothing but send frames of the same size at the same times and swallow the same
+input: the ratio of the two is what sessions, world and encoding cost on top of the sockets.
+"""
+
+import argparse
+import asyncio
+import math
+import multiprocessing as mp
+import resource
+import struct
+import tempfile
+import time
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+import uvloop
+
+from planning import LayeredGrid, Scene
+from protocol import VERSION, encode
+from protocol.messages import Hello, Move
+from server import logs
+from server.app import running
+from server.casting import assemble
+from server.settings import ServerSettings
+from server.stage import set_stage
+from server.world.inputs import Join, Steer
+from server.world.world import World
+
+SIDE_M = 100.0
+WARM_UP_TICKS = 40
+MEASURED_TICKS = 200
+STEER_EVERY_S = 2.0
+TICK_S = 0.05
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--clients", type=int, default=200)
+    parser.add_argument("--seconds", type=float, default=10.0)
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        scene = Path(folder, "field.json")
+        scene.write_text(Scene.open_space((0.0, 0.0, SIDE_M, SIDE_M)).model_dump_json())
+        settings = ServerSettings(
+            scene=scene, actors=0, host="127.0.0.1", port=0, private_port=0, log_level="error"
+        )
+        print(f"world without sockets, {SIDE_M:g} m square, milliseconds a tick, median")
+        for people in (100, 300, 1000):
+            print_stages(settings, people)
+        print(f"\n{options.clients} clients over sockets for {options.seconds:g} s, 20 ticks/s")
+        print_sockets(settings, options.clients, options.seconds)
+
+
+# --- the world alone --------------------------------------------------------------------------
+
+
+def print_stages(settings: ServerSettings, people: int) -> None:
+    """Median time of each stage, and of a client in all of them."""
+    stage = set_stage(settings)
+    grid = LayeredGrid.from_scene(stage.scene)
+    troupe, bodies = assemble(grid, stage.scene, 0, TICK_S, 0)
+    world = World(
+        stage.scene,
+        grid,
+        troupe,
+        bodies,
+        stage.rules,
+        tick_s=TICK_S,
+        max_people=people,
+        seed=0,
+        clock=time.perf_counter,
+    )
+    random = np.random.default_rng(1)
+    ids = [i for _, i in world.begin([Join(k, "p", None) for k in range(people)])]
+    times: dict[str, list[float]] = {}
+    in_view = 0.0
+    for tick in range(WARM_UP_TICKS + MEASURED_TICKS):
+        turning = random.random(people) < TICK_S / STEER_EVERY_S if tick else np.ones(people, bool)
+        angles = random.uniform(0.0, 2.0 * math.pi, people)
+        world.begin(
+            [Steer(ids[k], tick, float(angles[k]), 1.3) for k in np.flatnonzero(turning).tolist()]
+        )
+        sight = world.finish(world.think())
+        world.wrote(sight.snapshots, list(range(people)))
+        if tick >= WARM_UP_TICKS:
+            in_view = len(sight.snapshots.data) / 12 / people
+            for name, seconds in world.times.seconds.items():
+                times.setdefault(name, []).append(seconds)
+    troupe.close()
+    medians = {name: float(np.median(values)) for name, values in times.items()}
+    total = sum(medians.values())
+    parts = "  ".join(f"{name} {1e3 * seconds:6.3f}" for name, seconds in medians.items())
+    print(
+        f"{people:5d} people  {parts}  all {1e3 * total:6.3f}"
+        f"  = {1e6 * total / people:5.1f} µs a client ({in_view:.0f} records each)"
+    )
+
+
+# --- with sockets -----------------------------------------------------------------------------
+
+
+def print_sockets(settings: ServerSettings, clients: int, seconds: float) -> None:
+    ours, size = measure(serve_world, settings, clients, seconds)
+    print(f"  esplanade    {ours:6.1f} µs of processor a client-tick, {size:.0f} bytes each")
+    bare, _ = measure(serve_bare, round(size), clients, seconds)
+    print(f"  bare sockets {bare:6.1f} µs; ratio {ours / bare:.2f}")
+
+
+def measure(
+    server: Callable[[Connection, object], None], what: object, clients: int, seconds: float
+) -> tuple[float, float]:
+    """Processor microseconds and bytes a client-tick of a server in its own process."""
+    here, there = mp.get_context("spawn").Pipe()
+    process = mp.get_context("spawn").Process(target=server, args=(there, what), daemon=True)
+    process.start()
+    received = uvloop.run(visit(here.recv(), clients, seconds, here))
+    used_s, ticks = here.recv()
+    process.join()
+    return 1e6 * used_s / (clients * ticks), received / (clients * ticks)
+
+
+async def visit(port: int, clients: int, seconds: float, server: Connection) -> int:
+    """Join with raw sockets, steer now and then; returns the bytes received while measuring."""
+    visitors = [Visitor(k) for k in range(clients)]
+    loop = asyncio.get_running_loop()
+    for visitor in visitors:
+        await loop.create_connection(lambda v=visitor: v, "127.0.0.1", port)
+        await asyncio.sleep(0.002)
+    await asyncio.sleep(2.0)
+    server.send("begin")
+    before = sum(visitor.received for visitor in visitors)
+    end = loop.time() + seconds
+    while loop.time() < end:
+        for visitor in visitors[:: int(STEER_EVERY_S / TICK_S)]:
+            visitor.steer()
+        visitors.append(visitors.pop(0))
+        await asyncio.sleep(TICK_S)
+    received = sum(visitor.received for visitor in visitors) - before
+    server.send("end")
+    return received
+
+
+class Visitor(asyncio.Protocol):
+    """A client that does not look at what it gets."""
+
+    def __init__(self, number: int) -> None:
+        self._random = np.random.default_rng(number)
+        self.received = 0
+        self._seq = 0
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        self._transport = cast(asyncio.Transport, transport)
+        self._transport.write(
+            b"GET /ws HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\n"
+            b"Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+            b"Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n"
+        )
+        x, y = self._random.uniform(1.0, SIDE_M - 1.0, 2).tolist()
+        self._send(encode(Hello(name="p", version=VERSION, at=(x, y, 0))))
+        self.steer()
+
+    def data_received(self, data: bytes) -> None:
+        self.received += len(data)
+
+    def steer(self) -> None:
+        self._seq += 1
+        angle = float(self._random.uniform(0.0, 2.0 * math.pi))
+        self._send(encode(Move(seq=self._seq, direction=angle, speed=1.3)))
+
+    def _send(self, payload: bytes) -> None:
+        self._transport.write(struct.pack(">BB", 0x82, 0x80 | len(payload)) + bytes(4) + payload)
+
+
+def serve_world(parent: Connection, settings: object) -> None:
+    """Our server; reports its processor time and ticks between `begin` and `end`."""
+    assert isinstance(settings, ServerSettings)
+
+    async def serve() -> None:
+        async with running(settings) as server:
+            parent.send(server.port)
+            await asyncio.to_thread(parent.recv)
+            used_s, tick = processor_s(), server.world.tick
+            await asyncio.to_thread(parent.recv)
+            parent.send((processor_s() - used_s, server.world.tick - tick))
+
+    logs.configure(settings)
+    uvloop.run(serve())
+
+
+def serve_bare(parent: Connection, size: object) -> None:
+    """Frames of one size to every connection, 20 times a second; nothing else."""
+    transports: list[asyncio.Transport] = []
+
+    class Bare(asyncio.Protocol):
+        def connection_made(self, transport: asyncio.BaseTransport) -> None:
+            transports.append(cast(asyncio.Transport, transport))
+
+    async def serve() -> None:
+        loop = asyncio.get_running_loop()
+        listening = await loop.create_server(Bare, "127.0.0.1", 0)
+        parent.send(listening.sockets[0].getsockname()[1])
+        measured: list[tuple[float, int]] = []
+        tick, next_tick = 0, loop.time()
+        while True:
+            tick += 1
+            for transport in transports:
+                transport.write(bytes(int(str(size))))
+            next_tick += TICK_S
+            await asyncio.sleep(next_tick - loop.time())
+            if parent.poll():
+                parent.recv()
+                measured.append((processor_s(), tick))
+                if len(measured) == 2:
+                    (used_s, ticks), (used_end_s, ticks_end) = measured
+                    parent.send((used_end_s - used_s, ticks_end - ticks))
+                    return
+
+    uvloop.run(serve())
+
+
+def processor_s() -> float:
+    usage = resource.getrusage(resource.RUSAGE_SELF)
+    return usage.ru_utime + usage.ru_stime
+
+
+if __name__ == "__main__":
+    main()
