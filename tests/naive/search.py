@@ -5,13 +5,22 @@ from __future__ import annotations
 import heapq
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from planning import LayeredGrid, Potential, RiskField, SearchStatus
 from planning._reservation_kernels import MARGIN_M, Reservations
-from planning._search_kernels import Moves, Task, advance, risk_price, time_cost, wall_cost
+from planning._search_kernels import (
+    DEPTH_BONUS_S,
+    Moves,
+    Task,
+    advance,
+    risk_price,
+    time_cost,
+    wall_cost,
+)
 from tests.naive.geometry import Point
 from tests.naive.reservations import conflict
 
@@ -110,14 +119,13 @@ def search(
 def _wishes(ground: Ground, moves: Moves, node: Node) -> list[Point]:
     """Velocities to turn into: the moves, straight on no further than the goal, and staying."""
     away = math.dist(node.place, (ground.task.goal_x, ground.task.goal_y))
-    ahead = 0.0
-    if moves.relative:
-        x, y = ground.heading_home(node.place)
-        ahead = math.atan2(y, x)
+    x, y = ground.heading_home(node.place) if moves.relative else (1.0, 0.0)
+    ahead = math.atan2(y, x)
     wishes = []
-    for heading, speed in zip(moves.headings.tolist(), moves.speeds.tolist(), strict=True):
-        v = min(speed, away / ground.step_s) if moves.relative and heading == 0.0 else speed
-        wishes.append((v * math.cos(ahead + heading), v * math.sin(ahead + heading)))
+    for m, speed in enumerate(moves.speeds.tolist()):
+        turn = math.atan2(moves.sines[m], moves.cosines[m])
+        v = min(speed, away / ground.step_s) if m < moves.straight else speed
+        wishes.append((v * math.cos(ahead + turn), v * math.sin(ahead + turn)))
     return [*wishes, (0.0, 0.0)]
 
 
@@ -152,7 +160,9 @@ def _move(
         + task.turn_weight * math.dist((ux, uy), node.velocity)
         + wall_cost(task, room, ground.step_s)
     )
-    return Node(node.step + 1, tuple(end), (ux, uy), cost, n, tuple(middle)), cost + left
+    return Node(
+        node.step + 1, tuple(end), (ux, uy), cost, n, tuple(middle)
+    ), cost + left - DEPTH_BONUS_S * (node.step + 1)
 
 
 def _trace(nodes: list[Node], n: int, steps: int) -> NDArray[np.float64]:
@@ -169,7 +179,7 @@ def path_cost(ground: Ground, path: NDArray[np.float64]) -> tuple[float, float]:
     task, ds = ground.task, ground.step_s / 2
     velocities = [(task.vx, task.vy), *map(tuple, np.diff(path, axis=0) / ds)]
     cost, risks = 0.0, []
-    for k, (a, b) in enumerate(zip(path, path[1:], strict=False)):
+    for k, (a, b) in enumerate(pairwise(path)):
         risks.append(ground.risk(k + 1, tuple(b), velocities[k + 1]))
         soft = ground.meeting(k, tuple(a), tuple(b))[1]
         cost += time_cost(task, b[0], b[1], math.dist(a, b) / ds, ds)

@@ -1,0 +1,213 @@
+"""A tick of decisions for many actors: symmetry, order, threads, and what must not touch."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from planning import PARAMETERS, Batch, Crowd, PlanModel, RiskModel
+from tests.planning.worlds import holds, open_grid, scaled, walking
+
+TICK_S = 0.1
+PLAN = PlanModel(threads=1)
+BODY = {
+    "radius_m": 0.25,
+    "speed_mps": 1.3,
+    "max_speed_mps": 1.7,
+    "max_acceleration_mps2": 2.0,
+    "goal_tolerance_m": 0.2,
+    "person_clearance_m": 0.3,
+    "risk_weight": 25.0,
+    "foresight_s": 4.0,
+    "closing_weight": 0.1,
+    "turn_weight": 0.1,
+    "wall_weight": 0.3,
+    "hysteresis_s": 0.15,
+    "max_expansions": float(scaled(150, 30)),
+}
+
+
+def crowd_of(positions, goals, velocities=None, ranks=None, **changes) -> Crowd:
+    positions = np.array(positions, dtype=np.float64)
+    actors = len(positions)
+    row = np.array(tuple(BODY[name] for name in PARAMETERS.names or ()), dtype=PARAMETERS)
+    parameters = np.repeat(row, actors)
+    for name, value in changes.items():
+        parameters[name] = value
+    return Crowd(
+        positions,
+        np.zeros((actors, 2)) if velocities is None else np.array(velocities),
+        np.zeros(actors, dtype=np.int64),
+        np.array(goals, dtype=np.float64),
+        np.arange(actors),
+        parameters,
+        np.arange(actors) if ranks is None else np.array(ranks),
+        np.zeros(actors, dtype=np.bool_),
+        np.zeros(actors, dtype=np.int64),
+        np.zeros((actors, PLAN.slices + 1, 2)),
+    )
+
+
+def guides_of(grid, crowd):
+    return np.stack([
+        grid.potential(tuple(goal), 0, radius).guide
+        for goal, radius in zip(crowd.goals, crowd.parameters["radius_m"], strict=True)
+    ])  # fmt: skip
+
+
+@pytest.fixture
+def batch():
+    batch = Batch(open_grid(8.0), PLAN, RiskModel())
+    yield batch
+    batch.close()
+
+
+def tick(batch, crowd, people=()):
+    prediction = walking([p for p, _ in people], [v for _, v in people])
+    return batch.tick(crowd, guides_of(batch.grid, crowd), prediction, TICK_S)
+
+
+def step(crowd, decisions, positions) -> None:
+    """What the owner of the state does after a tick."""
+    crowd.velocities[:] = (positions - crowd.positions) / TICK_S
+    crowd.positions[:] = positions
+    crowd.followed[decisions.renewed] = decisions.paths[decisions.renewed]
+    crowd.ages[decisions.renewed] = 0
+    crowd.ages[:] += 1
+    crowd.known[:] = True
+
+
+def around(points, turn, mirrored):
+    """Points turned by quarter turns about (4, 4), and mirrored first where asked for."""
+    out = np.array(points, dtype=np.float64).reshape(-1, 2) * ((1.0, -1.0) if mirrored else 1.0)
+    for _ in range(turn):
+        out = np.stack([-out[:, 1], out[:, 0]], axis=1)
+    return out
+
+
+@given(st.integers(0, 10_000), st.integers(0, 3), st.booleans())
+@holds(12, 2)
+def test_a_first_decision_turns_and_mirrors_with_the_world(seed, turn, mirrored) -> None:
+    rng = np.random.default_rng(seed)
+    start, goal = rng.uniform(-3.0, -1.0, (1, 2)), rng.uniform(1.0, 3.0, (1, 2))
+    velocity = rng.normal(0.0, 0.5, (1, 2))
+    where, way = rng.uniform(-2.0, 2.0, (2, 2)), rng.normal(0.0, 0.6, (2, 2))
+    wishes = []
+    batch = Batch(open_grid(8.0), PLAN, RiskModel())
+    for t, m in ((0, False), (turn, mirrored)):
+        ends = (4.0 + around(start, t, m), 4.0 + around(goal, t, m))
+        crowd = crowd_of(*ends, around(velocity, t, m))
+        people = list(zip(4.0 + around(where, t, m), around(way, t, m), strict=True))
+        decisions, positions = tick(batch, crowd, people)
+        wishes.append((decisions.wishes, positions - 4.0))
+    batch.close()
+    assert around(wishes[0][0], turn, mirrored) == pytest.approx(wishes[1][0], abs=2e-3)
+    assert around(wishes[0][1], turn, mirrored) == pytest.approx(wishes[1][1], abs=2e-4)
+
+
+def some(seed, actors):
+    rng = np.random.default_rng(seed)
+    cells = rng.permutation(49)[: 2 * actors]
+    spots = 1.0 + np.stack([cells % 7, cells // 7], axis=1)
+    spots = spots + rng.uniform(-0.15, 0.15, spots.shape)
+    people = list(zip(rng.uniform(1.0, 7.0, (3, 2)), rng.normal(0.0, 0.8, (3, 2)), strict=True))
+    return spots[:actors], spots[actors:], people
+
+
+def run(seed, actors, ticks, threads=1, order=None):
+    """Positions after so many ticks, row by row as they were before being reordered."""
+    starts, goals, people = some(seed, actors)
+    order = np.arange(actors) if order is None else order
+    batch = Batch(open_grid(8.0), PlanModel(threads=threads), RiskModel())
+    crowd = crowd_of(starts[order], goals[order], ranks=order)
+    for _ in range(ticks):
+        decisions, positions = tick(batch, crowd, people)
+        step(crowd, decisions, positions)
+        people = [(np.add(p, np.multiply(TICK_S, v)), v) for p, v in people]
+    batch.close()
+    back = np.argsort(order)
+    return crowd.positions[back], decisions.paths[back], decisions.reasons[back]
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_neither_threads_nor_rows_matter_bit_for_bit(seed) -> None:
+    actors, ticks = scaled(10, 3), scaled(12, 2)
+    once = run(seed, actors, ticks)
+    shuffled = np.random.default_rng(seed).permutation(actors)
+    for other in (
+        run(seed, actors, ticks, threads=2),
+        run(seed, actors, ticks, threads=3),
+        run(seed, actors, ticks, order=shuffled),
+    ):
+        for a, b in zip(once, other, strict=True):
+            assert np.array_equal(a, b)
+
+
+@pytest.mark.parametrize("seed", range(scaled(3, 1)))
+@pytest.mark.parametrize(("radius_m", "speed_mps"), [(0.25, 1.7), (0.34, 4.0)])
+def test_actors_never_touch_and_keep_their_limits(seed, radius_m, speed_mps) -> None:
+    actors = scaled(10, 3)
+    starts, goals, people = some(seed, actors)
+    batch = Batch(open_grid(8.0), PLAN, RiskModel())
+    crowd = crowd_of(starts, goals, radius_m=radius_m, max_speed_mps=speed_mps)
+    nearest = math.inf
+    for _ in range(scaled(60, 2)):
+        before = crowd.velocities.copy()
+        decisions, positions = tick(batch, crowd, people)
+        speeds = np.hypot(*(positions - crowd.positions).T) / TICK_S
+        assert (speeds <= speed_mps + 1e-6).all()
+        change = np.hypot(*(decisions.wishes - before).T)
+        assert (change <= 2.0 * TICK_S + 1e-9).all()
+        step(crowd, decisions, positions)
+        away = np.hypot(*(positions[:, None] - positions[None]).transpose(2, 0, 1))
+        nearest = min(nearest, away[~np.eye(actors, dtype=bool)].min())
+        assert ((positions >= 0.0) & (positions <= 8.0)).all()
+    batch.close()
+    assert nearest >= 2.0 * crowd.parameters["radius_m"][0]
+
+
+def test_fast_wide_actors_see_each_other_in_time(batch) -> None:
+    """Both would meet within one tick although they are more than a metre and a half apart."""
+    crowd = crowd_of(
+        [(3.0, 4.0), (4.7, 4.0)],
+        [(7.0, 4.0), (1.0, 4.0)],
+        velocities=[(4.0, 0.0), (-4.0, 0.0)],
+        radius_m=0.5,
+        max_speed_mps=4.0,
+        speed_mps=3.0,
+        max_acceleration_mps2=0.2,
+    )
+    _, positions = tick(batch, crowd)
+    assert math.dist(*positions) >= 1.0
+
+
+def test_expansions_stay_within_the_budget(batch) -> None:
+    crowd = crowd_of([(1.0, 4.0)], [(7.0, 4.0)], max_expansions=10)
+    decisions, _ = tick(batch, crowd, [((4.0, 4.0), (-0.5, 0.0)), ((4.0, 4.6), (-0.5, 0.0))])
+    assert 0 < decisions.expansions[0] <= 10
+
+
+def test_the_last_check_gives_way_to_who_is_about_to_be_touched(batch) -> None:
+    crowd = crowd_of([(4.0, 4.0)], [(7.0, 4.0)], velocities=[(1.3, 0.0)])
+    free, _ = tick(batch, crowd)
+    checked, positions = tick(batch, crowd, [((4.62, 4.0), (0.0, 0.0))])
+    assert checked.wishes[0, 0] < free.wishes[0, 0] - 0.1
+    assert math.dist(positions[0], (4.62, 4.0)) > 0.5
+
+
+def test_an_empty_zone_ticks(batch) -> None:
+    crowd = crowd_of(np.zeros((0, 2)), np.zeros((0, 2)))
+    guides = np.zeros((0, *batch.grid.arrays.clearance.shape, 3), dtype=np.float32)
+    decisions, positions = batch.tick(crowd, guides, walking([(4.0, 4.0)], [(1.0, 0.0)]), TICK_S)
+    assert positions.shape == (0, 2)
+    assert decisions.paths.shape == (0, PLAN.slices + 1, 2)
+
+
+def test_an_error_in_a_thread_comes_up(batch) -> None:
+    def work(first: int, step: int) -> None:
+        raise RuntimeError("no such kernel")
+
+    with pytest.raises(RuntimeError, match="no such kernel"):
+        batch._on_threads(work)
