@@ -20,8 +20,15 @@ export const LEVELS: readonly Quality[] = [
 
 export type Choice = "automatic" | "fine" | "fast";
 
+/** A window of frames is judged when it has this many, or a few that took long together. */
 const WINDOW = 30;
+const FEW = 4;
+const LONG_S = 1;
 const SLOW_S = 1 / 28;
+/** This slow goes down two levels at once. */
+const VERY_SLOW_S = 1 / 10;
+/** A longer pause says nothing of the drawing: the page was hidden. */
+const PAUSE_S = 3;
 const QUICK_S = 1 / 55;
 /** Quick windows in a row before something finer is tried. */
 const PATIENCE = 12;
@@ -41,15 +48,15 @@ export class QualityControl {
   /** One frame took this long; true if the level changed. */
   frame(frameS: number): boolean {
     if (this.choice !== "automatic") return false;
-    // A pause says nothing of the drawing: the page was hidden.
-    if (frameS > 1) return false;
+    if (frameS > PAUSE_S) return false;
     this.sumS += frameS;
-    if (++this.frames < WINDOW) return false;
+    this.frames++;
+    if (this.frames < WINDOW && (this.frames < FEW || this.sumS < LONG_S)) return false;
     const mean = this.sumS / this.frames;
     this.sumS = this.frames = 0;
     this.quickWindows = mean < QUICK_S ? this.quickWindows + 1 : 0;
     if (mean > SLOW_S && this.level < LEVELS.length - 1) {
-      this.level++;
+      this.level = Math.min(LEVELS.length - 1, this.level + (mean > VERY_SLOW_S ? 2 : 1));
       this.patience *= 2;
       return true;
     }
