@@ -1,11 +1,11 @@
 """A process that runs one share of the clients and reports to the one that started it."""
 
 import asyncio
-import os
 import signal
 import sys
 import time
 import traceback
+from contextlib import suppress
 from multiprocessing.connection import Connection as Pipe
 from typing import Final, NamedTuple, Protocol
 
@@ -58,7 +58,6 @@ async def _run(job: Job, pipe: Pipe) -> None:
 
 
 def _report(pipe: Pipe, report: Report) -> None:
-    try:
+    # Nobody listens any more when whoever started this is gone; the pipe has said stop by then.
+    with suppress(OSError):
         pipe.send(report)
-    except OSError:  # nobody listens any more: the run is over
-        os._exit(1)

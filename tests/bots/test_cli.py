@@ -114,7 +114,7 @@ async def test_bots_end_with_the_process_that_sent_them() -> None:
         process.kill()
         await process.communicate()
         await until(lambda: not server.people, within_s=30.0)
-    assert len(server.all_people) == 3
+    assert [person.socket.close_code for person in server.all_people] == [1000] * 3
 
 
 async def test_refused_bots_are_a_failure() -> None:
