@@ -64,7 +64,8 @@ class Outbox:
         """The first frame, however large: its size and the time to read it are granted."""
         self._allowance_bytes = len(frame)
         self._patience_s = max(self._policy.drop_seconds, JOINING_PATIENCE_S)
-        self._write(frame)
+        if self.open:
+            self._write(frame)
 
     def post(self, frame: bytes) -> None:
         """Send what must not be lost; it waits while the client is slow."""
