@@ -9,7 +9,8 @@ NPM := $(RUN) tools/npm.py
 PYTEST := $(RUN) -m pytest
 
 CLIENT := server/client_assets/index.html
-CLIENT_SOURCES := $(shell find client_web -type f -not -path '*/node_modules/*')
+CLIENT_SOURCES := $(shell find client_web -type f -not -path '*/node_modules/*' -not -path '*/tests/*')
+BENCHMARKS ?= $(patsubst benchmarks/%.py,%,$(wildcard benchmarks/[a-z]*.py))
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
@@ -24,6 +25,7 @@ help:  ## show what there is to do
 	@echo
 	@echo "Options go in ARGS:  make serve ARGS='--port 9000 --actors 30'"
 	@echo "                     make test ARGS='tests/planning -k risk'"
+	@echo "                     make bench BENCHMARKS=server"
 
 serve: $(VENV)/.serve $(CLIENT)  ## run the demo world at http://localhost:8080
 	@exec $(RUN) -m esplanade demo $(ARGS)
@@ -48,8 +50,10 @@ check: $(VENV)/.dev client_web/node_modules/.installed  ## lint, types, import a
 	$(NPM) run --silent format:check
 	$(NPM) run --silent test
 
-bench: $(VENV)/.test  ## measure what must stay fast
-	$(RUN) -m benchmarks $(ARGS)
+bench: $(VENV)/.test  ## measure what must stay fast, each part by itself
+	@for name in $(BENCHMARKS); do \
+	  echo "--- $$name"; $(RUN) -m benchmarks.$$name $(ARGS) || exit; \
+	done
 
 format: $(VENV)/.dev client_web/node_modules/.installed  ## format all sources
 	$(RUN) -m ruff check --fix-only
