@@ -55,6 +55,7 @@ class Hub:
         metrics.gauge("clients", "People connected", lambda: len(self.sessions))
         metrics.gauge("clients_away", "Avatars that wait for a lost person", self._vacant)
         metrics.gauge("joining", "People at the door", lambda: len(self._joining))
+        metrics.gauge("frames_waiting", "Frames that wait for slow clients", self._frames_waiting)
         metrics.gauge("movements_waiting", "Movements for next tick", lambda: len(self._movements))
 
     # --- what sessions ask for ----------------------------------------------------------------
@@ -233,3 +234,6 @@ class Hub:
 
     def _vacant(self) -> int:
         return self._seats.vacant
+
+    def _frames_waiting(self) -> int:
+        return sum(session.outbox.waiting for session in self.sessions.values())

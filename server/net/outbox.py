@@ -57,6 +57,11 @@ class Outbox:
         _bound_kernel_buffers(connection)
 
     @property
+    def waiting(self) -> int:
+        """Important frames that wait for a slow client."""
+        return len(self._waiting)
+
+    @property
     def open(self) -> bool:
         return self._connection.state is State.OPEN and self.dropped is None
 

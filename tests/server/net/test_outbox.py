@@ -82,7 +82,7 @@ def test_a_slow_client_misses_snapshots_but_nothing_important_and_in_order(
     assert not outbox.offer(b"offered")
     outbox.post(b"first")
     outbox.post(b"second")
-    assert line.frames == []
+    assert (line.frames, outbox.waiting) == ([], 2)
     line.unsent = 0
     outbox.post(b"third")
     assert line.frames == []
