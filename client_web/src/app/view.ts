@@ -2,6 +2,7 @@
 
 import { FollowCamera } from "../render/follow";
 import { Figures } from "../render/figures";
+import { drawsInSoftware } from "../render/hardware";
 import { Labels } from "../render/labels";
 import { Marks } from "../render/marks";
 import { Picking, type ScreenPoint } from "../render/picking";
@@ -20,15 +21,16 @@ export class View {
   private readonly labels: Labels;
   private readonly picking: Picking;
   private control: QualityControl;
+  private readonly software = drawsInSoftware();
   private town: Town | null = null;
 
   constructor(canvas: HTMLCanvasElement, labelLayer: HTMLElement, choice: Choice, calm: boolean) {
-    this.stage = new Stage(canvas);
+    this.stage = new Stage(canvas, choice === "fine" || (choice === "automatic" && !this.software));
     this.camera = new FollowCamera(this.stage.camera);
     this.marks = new Marks(calm);
     this.labels = new Labels(labelLayer);
     this.picking = new Picking(this.stage.camera);
-    this.control = new QualityControl(choice);
+    this.control = new QualityControl(choice, this.software);
     this.stage.scene.add(this.figures.group, this.marks.group, this.plans.group);
     this.applyQuality();
     new ResizeObserver(() => {
@@ -44,7 +46,7 @@ export class View {
   }
 
   choose(choice: Choice): void {
-    this.control = new QualityControl(choice);
+    this.control = new QualityControl(choice, this.software);
     this.applyQuality();
   }
 

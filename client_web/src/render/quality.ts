@@ -18,6 +18,8 @@ export const LEVELS: readonly Quality[] = [
   { pixelRatio: 0.5, livingShadows: false, shadows: false },
 ];
 
+const SOFTWARE_LEVEL = 3;
+
 export type Choice = "automatic" | "fine" | "fast";
 
 /** A window of frames is judged when it has this many, or a few that took long together. */
@@ -41,8 +43,13 @@ export class QualityControl {
   private quickWindows = 0;
   private patience = PATIENCE;
 
-  constructor(private readonly choice: Choice) {
-    this.level = choice === "fast" ? LEVELS.length - 1 : 0;
+  /** `software`: there is no graphics card, so that it is better to begin with a fast level. */
+  constructor(
+    private readonly choice: Choice,
+    software: boolean,
+  ) {
+    const first = software ? SOFTWARE_LEVEL : 0;
+    this.level = { automatic: first, fine: 0, fast: LEVELS.length - 1 }[choice];
   }
 
   /** One frame took this long; true if the level changed. */

@@ -39,10 +39,13 @@ export class Stage {
   private town: Town | null = null;
   private shadowsAt: { x: number; y: number } | null = null;
 
-  constructor(private readonly canvas: HTMLCanvasElement) {
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    antialias: boolean,
+  ) {
     this.renderer = new WebGLRenderer({
       canvas,
-      antialias: true,
+      antialias,
       powerPreference: "high-performance",
     });
     this.renderer.shadowMap.enabled = true;
