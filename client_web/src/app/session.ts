@@ -109,6 +109,7 @@ export class Session {
         resumed ? `Welcome back, ${name}.` : `Welcome, ${name}. See Help for how to get about.`,
       );
     }
+    if (state.phase === "reconnecting") this.join.wait(state.text);
     if (state.phase === "refused") this.join.open(state.text);
   }
 
@@ -192,6 +193,7 @@ export class Session {
     const { world } = this;
     if (!world) return;
     const steppedS = Math.min(frameS, LONGEST_FRAME_S);
+    this.view.camera.orbit(this.walking.turnPerS * steppedS, 0);
     this.walking.frame(this.view.camera.yaw);
     world.advance(this.serverNowS(), steppedS);
     this.view.frame(world, this.planSwitch.open ? this.chosenId : null, frameS);

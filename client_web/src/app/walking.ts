@@ -9,6 +9,7 @@ import type { World } from "../world/world";
 
 /** This near a walk to a point counts as done, metres. */
 const THERE_M = 0.4;
+const TURN_PER_S = 1.8;
 
 export class Walking {
   private readonly keys = new WalkKeys();
@@ -59,6 +60,11 @@ export class Walking {
   /** The server knows no way to where the walk was to lead. */
   callOff(): void {
     this.setTarget(null);
+  }
+
+  /** How fast the keys turn the camera, radians a second. */
+  get turnPerS(): number {
+    return this.keys.wish.turn * TURN_PER_S;
   }
 
   frame(cameraYaw: number): void {

@@ -1,10 +1,12 @@
-/** Keys that walk: which way the person wants to go, seen from the camera. */
+/** Keys that walk and turn: where the person wants to go, seen from the camera. */
 
 export interface Wish {
   /** 1 is away from the camera. */
   forward: number;
   /** 1 is to the right. */
   right: number;
+  /** 1 turns the camera to the left. */
+  turn: number;
   hurry: boolean;
 }
 
@@ -12,14 +14,24 @@ const FORWARD = ["KeyW", "ArrowUp"];
 const BACK = ["KeyS", "ArrowDown"];
 const LEFT = ["KeyA", "ArrowLeft"];
 const RIGHT = ["KeyD", "ArrowRight"];
+const TURN_LEFT = ["KeyQ"];
+const TURN_RIGHT = ["KeyE"];
 const HURRY = ["ShiftLeft", "ShiftRight"];
-const USED = new Set([...FORWARD, ...BACK, ...LEFT, ...RIGHT, ...HURRY]);
+const USED = new Set([
+  ...FORWARD,
+  ...BACK,
+  ...LEFT,
+  ...RIGHT,
+  ...TURN_LEFT,
+  ...TURN_RIGHT,
+  ...HURRY,
+]);
 
 /** Keys by their place on the keyboard, so that WASD works on every layout. */
 export class WalkKeys {
   private readonly held = new Set<string>();
 
-  /** True if the key walks. */
+  /** True if the key walks or turns. */
   press(code: string): boolean {
     if (!USED.has(code)) return false;
     this.held.add(code);
@@ -39,6 +51,7 @@ export class WalkKeys {
     return {
       forward: any(FORWARD) - any(BACK),
       right: any(RIGHT) - any(LEFT),
+      turn: any(TURN_LEFT) - any(TURN_RIGHT),
       hurry: any(HURRY) > 0,
     };
   }

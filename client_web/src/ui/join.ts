@@ -37,7 +37,13 @@ export class JoinDialog {
 
   close(): void {
     this.busy(false);
+    this.reason.textContent = "";
     this.dialog.close();
+  }
+
+  /** Why it takes long to come in. */
+  wait(reason: string): void {
+    this.reason.textContent = `${reason} Trying again…`;
   }
 
   /** While the server is being asked. */

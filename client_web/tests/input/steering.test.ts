@@ -5,17 +5,23 @@ import { WALK_MPS } from "../../src/world/prediction";
 
 const EAST = 0;
 const NORTH = Math.PI / 2;
-const REST: Wish = { forward: 0, right: 0, hurry: false };
+const REST: Wish = { forward: 0, right: 0, turn: 0, hurry: false };
 
 describe("keys", () => {
   it("walk by their place on the keyboard", () => {
     const keys = new WalkKeys();
     expect(keys.press("KeyW")).toBe(true);
     expect(keys.press("ArrowRight")).toBe(true);
-    expect(keys.press("KeyQ")).toBe(false);
-    expect(keys.wish).toEqual({ forward: 1, right: 1, hurry: false });
+    expect(keys.press("KeyX")).toBe(false);
+    expect(keys.wish).toEqual({ forward: 1, right: 1, turn: 0, hurry: false });
     keys.release("KeyW");
     expect(keys.wish.forward).toBe(0);
+  });
+
+  it("turn the camera", () => {
+    const keys = new WalkKeys();
+    keys.press("KeyQ");
+    expect(keys.wish.turn).toBe(1);
   });
 
   it("that oppose each other cancel out", () => {
@@ -52,10 +58,10 @@ describe("headingOf", () => {
   });
 
   it("hurries with shift or a stick that is pushed all the way, within what is allowed", () => {
-    expect(headingOf({ forward: 1, right: 0, hurry: true }, null, NORTH, 2.5).speed).toBe(2.5);
+    expect(headingOf({ ...REST, forward: 1, hurry: true }, null, NORTH, 2.5).speed).toBe(2.5);
     expect(headingOf(REST, { x: 0, y: 1 }, NORTH, 2.5).speed).toBe(2.5);
     expect(headingOf(REST, { x: 0, y: 0.5 }, NORTH, 2.5).speed).toBeCloseTo(WALK_MPS / 2);
-    expect(headingOf({ forward: 1, right: 0, hurry: false }, null, NORTH, 1).speed).toBe(1);
+    expect(headingOf({ ...REST, forward: 1 }, null, NORTH, 1).speed).toBe(1);
   });
 });
 
