@@ -76,7 +76,12 @@ class World(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """Memory of one search at a time; `node_*` rows are nodes in the order they were made."""
+    """Memory of one search at a time; `node_*` rows are nodes in the order they were made.
+
+    `table_*` is a hash table of the best node so far in each cell and step. Best means the least
+    cost so far + way left: places differ within a cell, and less cost alone would favour whoever
+    has come less far.
+    """
 
     node_state: NDArray[np.float64]
     """(N, 7): x, y, vx, vy at the node, cost so far, x, y half a step before."""
@@ -86,7 +91,7 @@ class Workspace(NamedTuple):
     heap_keys: NDArray[np.float64]
     heap_items: NDArray[np.int64]
     table_key: NDArray[np.int64]
-    table_cost: NDArray[np.float64]
+    table_worth: NDArray[np.float64]
     table_stamp: NDArray[np.int64]
     stamp: NDArray[np.int64]
 
@@ -172,7 +177,7 @@ def _slot(workspace: Workspace, key: int) -> int:
         if workspace.table_stamp[h] != stamp:
             workspace.table_stamp[h] = stamp
             workspace.table_key[h] = key
-            workspace.table_cost[h] = np.inf
+            workspace.table_worth[h] = np.inf
             return h
         if workspace.table_key[h] == key:
             return h
@@ -235,7 +240,7 @@ def search(
         if n > 0 and accumulate:
             j, i = cell_at(world.grid, x, y)
             slot = _slot(workspace, ((step * layers + layer) * ny + j) * nx + i)
-            if slot < 0 or workspace.table_cost[slot] < node[n, 4] - 1e-12:
+            if slot < 0 or workspace.table_worth[slot] < key + DEPTH_BONUS_S * step - 1e-9:
                 continue
         if step > best_step or (step == best_step and key < best_key):
             best = n
@@ -295,9 +300,8 @@ def search(
                 + task.turn_weight * np.hypot(evx - vx, evy - vy)
                 + wall_cost(task, min(half_room, room), world.step_s)
             )
-            if not accumulate:
-                cost = 0.0
-            if cost >= workspace.table_cost[slot] - 1e-12:
+            worth = cost + left if accumulate else 0.0
+            if worth >= workspace.table_worth[slot] - 1e-12:
                 continue
             blocked, soft = conflict(world.reservations, task.me, layer, k, x, y, hx, hy)
             if blocked:
@@ -317,14 +321,15 @@ def search(
             )
             if accumulate:
                 cost += risk
-                if cost >= workspace.table_cost[slot] - 1e-12:
+                worth += risk
+                if worth >= workspace.table_worth[slot] - 1e-12:
                     continue
-                key = cost + left - DEPTH_BONUS_S * (step + 1)
+                key = worth - DEPTH_BONUS_S * (step + 1)
             else:
                 key = left + risk
             if count == capacity:
                 continue
-            workspace.table_cost[slot] = cost
+            workspace.table_worth[slot] = worth
             node[count, 0] = ex
             node[count, 1] = ey
             node[count, 2] = evx

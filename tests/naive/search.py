@@ -71,6 +71,7 @@ class Node:
     place: Point
     velocity: Point
     cost: float
+    worth: float
     parent: int
     middle: Point
 
@@ -81,18 +82,18 @@ def search(
     """Status, positions half a step apart, and how many nodes were expanded."""
     task = ground.task
     start = (task.x, task.y)
-    nodes = [Node(0, start, (task.vx, task.vy), 0.0, -1, start)]
+    nodes = [Node(0, start, (task.vx, task.vy), 0.0, 0.0, -1, start)]
     if math.isinf(ground.seconds_left(start)):
         return SearchStatus.NO_PATH, _trace(nodes, 0, steps), 0
     queue = [(ground.seconds_left(start), 0)]
-    cheapest: dict[tuple[int, tuple[int, int]], float] = {}
+    best: dict[tuple[int, tuple[int, int]], float] = {}
     furthest = (0, math.inf, 0)
     expansions = 0
     while queue:
         key, n = heapq.heappop(queue)
         node = nodes[n]
         at = (node.step, ground.cell(node.place))
-        if n and accumulate and cheapest[at] < node.cost - 1e-12:
+        if n and accumulate and best[at] < node.worth - 1e-12:
             continue
         furthest = min(furthest, (-node.step, key, n))
         home = math.dist(node.place, (task.goal_x, task.goal_y)) <= task.goal_tolerance_m
@@ -107,9 +108,9 @@ def search(
                 continue
             child, key = made
             at = (child.step, ground.cell(child.place))
-            if at in cheapest and (not accumulate or child.cost >= cheapest[at] - 1e-12):
+            if at in best and (not accumulate or child.worth >= best[at] - 1e-12):
                 continue
-            cheapest[at] = child.cost
+            best[at] = child.worth
             heapq.heappush(queue, (key, len(nodes)))
             nodes.append(child)
     status = SearchStatus.PARTIAL if furthest[0] < 0 else SearchStatus.NO_PATH
@@ -150,8 +151,9 @@ def _move(
     minded = sum(soft for _, soft in meetings)
     minded += ground.risk(k + 1, tuple(middle), (vx, vy)) + ground.risk(k + 2, tuple(end), (ux, uy))
     priced = risk_price(task, node.step * ground.step_s) * half * minded
+    made = (node.step + 1, tuple(end), (ux, uy))
     if not accumulate:
-        return Node(node.step + 1, tuple(end), (ux, uy), 0.0, n, tuple(middle)), left + priced
+        return Node(*made, 0.0, 0.0, n, tuple(middle)), left + priced
     speed = math.dist(node.place, end) / ground.step_s
     cost = (
         node.cost
@@ -160,9 +162,8 @@ def _move(
         + task.turn_weight * math.dist((ux, uy), node.velocity)
         + wall_cost(task, room, ground.step_s)
     )
-    return Node(
-        node.step + 1, tuple(end), (ux, uy), cost, n, tuple(middle)
-    ), cost + left - DEPTH_BONUS_S * (node.step + 1)
+    child = Node(*made, cost, cost + left, n, tuple(middle))
+    return child, child.worth - DEPTH_BONUS_S * child.step
 
 
 def _trace(nodes: list[Node], n: int, steps: int) -> NDArray[np.float64]:
