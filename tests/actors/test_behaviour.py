@@ -1,0 +1,168 @@
+"""Behaviours on their own: what goal they give for what they see."""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+import pytest
+
+from actors import GoTo, Guide, Idle, Patrol, View, Wander
+from planning import LayeredGrid, Scene
+from tests.actors.worlds import plaza
+
+SCENE = plaza()
+GRID = LayeredGrid.from_scene(SCENE)
+GATE, FOUNTAIN, STAGE = ((*place.position, 0) for place in SCENE.places)
+
+
+def seeing(
+    time_s: float = 0.0,
+    position: tuple[float, float] = (6.0, 6.0),
+    arrived: bool = False,
+    stuck: bool = False,
+    people: Mapping[str, tuple[float, float, int]] | None = None,
+    scene: Scene = SCENE,
+    grid: LayeredGrid = GRID,
+    seed: int = 0,
+) -> View:
+    rng = np.random.default_rng(seed)
+    return View(time_s, position, 0, arrived, stuck, people or {}, scene, grid, 0.25, rng)
+
+
+def test_idle_wants_nothing() -> None:
+    assert Idle().update(seeing()) is None
+    assert Idle().targets() == ()
+
+
+def test_go_to_wants_one_place_or_point() -> None:
+    assert GoTo("gate").update(seeing()) == GATE
+    assert GoTo((3.0, 4.0, 0)).update(seeing(arrived=True)) == (3.0, 4.0, 0)
+    assert GoTo("gate").targets() == ("gate",)
+    with pytest.raises(KeyError, match=r"no place named 'moon'.*gate, fountain, stage"):
+        GoTo("moon").update(seeing())
+
+
+def test_wander_rests_where_it_arrives_and_then_goes_elsewhere() -> None:
+    wander = Wander(pause_s=(2.0, 2.0))
+    first = wander.update(seeing())
+    assert first in {GATE, FOUNTAIN, STAGE}
+    there = first[:2]
+    assert wander.update(seeing(1.0)) == first
+    assert wander.update(seeing(5.0, there, arrived=True)) == first
+    assert wander.update(seeing(6.9, there, arrived=True)) == first
+    second = wander.update(seeing(7.0, there, arrived=True))
+    assert second != first
+    assert wander.update(seeing(7.1, there)) == second
+
+
+def test_wander_gives_up_what_cannot_be_reached() -> None:
+    wander = Wander()
+    first = wander.update(seeing(seed=1))
+    goals = {wander.update(seeing(stuck=True, seed=seed)) for seed in range(10)}
+    assert goals - {first}
+
+
+def test_wander_without_places_goes_anywhere_free() -> None:
+    scene = Scene.open_space((0.0, 0.0, 12.0, 12.0))
+    goals = [
+        Wander().update(seeing(scene=scene, grid=LayeredGrid.from_scene(scene), seed=seed))
+        for seed in range(20)
+    ]
+    assert len(set(goals)) == 20
+    assert all(math.dist(goal[:2], (6.0, 6.0)) > 1.0 for goal in goals)
+
+
+def test_wander_stays_where_there_is_nowhere_else() -> None:
+    scene = Scene.open_space((0.0, 0.0, 0.8, 0.8))
+    view = seeing(position=(0.4, 0.4), scene=scene, grid=LayeredGrid.from_scene(scene))
+    assert Wander().update(view) is None
+
+
+def test_patrol_goes_round_and_round() -> None:
+    patrol = Patrol(["gate", "fountain", (6.0, 10.0, 0)], pause_s=1.0)
+    time_s, visited = 0.0, []
+    for _ in range(5):
+        goal = patrol.update(seeing(time_s))
+        visited.append(goal)
+        assert patrol.update(seeing(time_s, arrived=True)) == goal
+        assert patrol.update(seeing(time_s + 0.9, arrived=True)) == goal
+        patrol.update(seeing(time_s + 1.0, arrived=True))
+        time_s += 2.0
+    assert visited == [GATE, FOUNTAIN, STAGE, GATE, FOUNTAIN]
+
+
+def test_patrol_leaves_out_a_stop_it_cannot_reach() -> None:
+    patrol = Patrol(["gate", "fountain"])
+    assert patrol.update(seeing()) == GATE
+    assert patrol.update(seeing(3.0, stuck=True)) == FOUNTAIN
+
+
+@pytest.mark.parametrize("behaviour", [Patrol, Guide])
+def test_a_round_needs_stops(behaviour) -> None:
+    with pytest.raises(ValueError, match="at least one stop"):
+        behaviour([])
+
+
+def test_a_guides_distances_are_in_order() -> None:
+    with pytest.raises(ValueError, match="join_m must lie below lag_m"):
+        Guide(["gate"], join_m=5.0, lag_m=4.0)
+
+
+def near(distance_m: float, layer: int = 0) -> dict[str, tuple[float, float, int]]:
+    return {"ann": (6.0 + distance_m, 6.0, layer)}
+
+
+def joined() -> Guide:
+    guide = Guide(["gate", "fountain"], join_m=3.0, lag_m=6.0, join_after_s=2.0, patience_s=15.0)
+    for time_s in (0.0, 1.0, 2.0):
+        assert guide.update(seeing(time_s, people=near(2.0))) == GATE
+    assert guide.followers == {"ann"}
+    return guide
+
+
+def test_who_stays_near_a_guide_follows_and_who_passes_does_not() -> None:
+    guide = Guide(["gate"], join_after_s=2.0)
+    guide.update(seeing(0.0, people=near(2.0)))
+    guide.update(seeing(1.0, people=near(4.0)))
+    guide.update(seeing(2.5, people=near(2.0)))
+    assert guide.followers == frozenset()
+    joined()
+
+
+def test_a_guide_waits_for_who_falls_behind_and_goes_on_when_they_are_back() -> None:
+    guide = joined()
+    assert guide.update(seeing(3.0, people=near(5.9))) == GATE
+    assert guide.update(seeing(4.0, people=near(6.1))) is None
+    assert guide.waiting
+    assert guide.update(seeing(5.0, people=near(4.0))) is None
+    assert guide.update(seeing(6.0, people=near(2.9))) == GATE
+    assert not guide.waiting
+    assert guide.followers == {"ann"}
+
+
+def test_a_guides_patience_ends() -> None:
+    guide = joined()
+    assert guide.update(seeing(4.0, people=near(9.0))) is None
+    assert guide.update(seeing(18.9, people=near(9.0))) is None
+    assert guide.update(seeing(19.0, people=near(9.0))) == GATE
+    assert guide.followers == frozenset()
+
+
+def test_a_guide_forgets_who_has_left() -> None:
+    guide = joined()
+    assert guide.update(seeing(4.0, people=near(9.0))) is None
+    assert guide.update(seeing(5.0, people={})) == GATE
+    assert guide.followers == frozenset()
+    assert not guide.waiting
+
+
+def test_a_follower_on_another_layer_is_far_behind() -> None:
+    guide = joined()
+    assert guide.update(seeing(4.0, people=near(1.0, layer=1))) is None
+
+
+def test_a_guide_leads_on_along_its_tour() -> None:
+    guide = Guide(["gate", "fountain"], pause_s=1.0)
+    assert guide.targets() == ("gate", "fountain")
+    guide.update(seeing(0.0, arrived=True))
+    assert guide.update(seeing(1.0, arrived=True)) == FOUNTAIN
