@@ -61,7 +61,6 @@ class Session:
 
     async def run(self) -> None:
         """From hello to the end of the connection."""
-        faulty = False
         try:
             hello = await self._hello()
             self.name = hello.name
@@ -69,13 +68,13 @@ class Session:
             async for frame in self._connection:
                 self._take(self._decode(frame))
         except ProtocolError as fault:
-            faulty = True
             self.tell(fault)
+            self._hub.depart(self, comes_back=False)
             await self._close(fault.close or CloseCode.NORMAL, fault.code.value)
         except ConnectionClosed:
             pass
         finally:
-            self._end(faulty)
+            self._end()
         if self._dismissal:
             await self._dismissal
 
@@ -144,13 +143,13 @@ class Session:
             case Hello():
                 raise ProtocolError(ErrorCode.INVALID, "hello comes only once", CloseCode.INVALID)
 
-    def _end(self, faulty: bool) -> None:
+    def _end(self) -> None:
         if self.outbox.dropped:
             self._metrics.dropped_slow.labels(self.outbox.dropped).inc()
             self._metrics.closes.labels(CloseCode.TOO_SLOW.name.lower()).inc()
             log.warning("client dropped, too slow", id=self.avatar_id, limit=self.outbox.dropped)
-        left = self._connection.close_code == CloseCode.NORMAL
-        self._hub.depart(self, comes_back=not (faulty or left))
+        # Whoever closes with 1000 means to go; all else may be a tunnel or a page that reloads.
+        self._hub.depart(self, comes_back=self._connection.close_code != CloseCode.NORMAL)
 
     async def _close(self, code: CloseCode, reason: str) -> None:
         self.outbox.flush()

@@ -123,7 +123,10 @@ class Client:
 async def connected(port: int) -> AsyncIterator[Client]:
     """A connection that has not said hello."""
     url = f"ws://127.0.0.1:{port}/ws"
-    async with connect(url, compression=None, max_size=None, proxy=None) as connection:
+    # Without a bound on its queue, a client that a test does not read from can still close.
+    async with connect(
+        url, compression=None, max_size=None, max_queue=None, proxy=None
+    ) as connection:
         yield Client(connection)
 
 
