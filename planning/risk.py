@@ -28,7 +28,7 @@ class RiskModel:
     """Distance of centres that counts as contact: sum of the radii and a margin, metres."""
     influence_m: float = 0.6
     """Beyond contact the proximity term falls to zero over this distance, metres."""
-    comfort: float = 0.15
+    comfort: float = 0.05
     """Proximity term just outside contact, where contact itself counts 1."""
 
     def near(self, distance_m: ArrayLike) -> NDArray[np.float64]:
