@@ -163,6 +163,8 @@ class Navigator:
         """Put an actor where another simulation has it; the path it follows stays."""
         row = self._row(actor_id)
         self._check_place(position, int(self._crowd.layers[row]))
+        if not np.isfinite(velocity).all():
+            raise ValueError(f"velocity of {actor_id!r} must be finite, got {velocity}")
         self._crowd.positions[row] = position
         self._crowd.velocities[row] = velocity
 
@@ -180,8 +182,11 @@ class Navigator:
         Raises
         ------
         ValueError
-            A position is not finite; nothing is changed then.
+            A position is not finite or on a layer that does not exist; nothing is changed then.
         """
+        for who, where in people.items():
+            if len(where) == 3 and where[2] not in range(self.grid.layers):
+                raise ValueError(f"{who!r} is on layer {where[2]}, which does not exist")
         self._history.observe(people)
 
     def tick(self) -> dict[Hashable, ActorState]:

@@ -112,8 +112,19 @@ class RiskField:
         """Replace the field by that of a prediction with as many slices.
 
         `run(work)` may call `work(first, step)` for first in range(step) on threads of its own.
+
+        Raises
+        ------
+        ValueError
+            Another number of slices, or a person on a layer that does not exist.
         """
         people = len(prediction.layers)
+        if prediction.sigmas.shape[1] != len(self.fields):
+            raise ValueError(
+                f"the field has {len(self.fields)} slices, the prediction "
+                f"{prediction.sigmas.shape[1]}"
+            )
+        self.grid.as_points(prediction.means[:, 0], prediction.layers)
         if people > self._windows.shape[1]:
             grown = np.full((len(self.fields), 2 * people, 5), -1, dtype=np.int64)
             grown[:, : self._windows.shape[1]] = self._windows
@@ -138,6 +149,8 @@ class RiskField:
         closing_weight: float,
     ) -> NDArray[np.float64]:
         """Risk of N configurations, float64 (N,); positions and velocities (N, 2), layers (N,)."""
+        if slice_index not in range(len(self.fields)):
+            raise ValueError(f"slices are 0..{len(self.fields) - 1}, got {slice_index}")
         points, floors = self.grid.as_points(positions, layers)
         v = np.ascontiguousarray(velocities, dtype=np.float64).reshape(-1, 2)
         out = np.empty(len(points))

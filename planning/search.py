@@ -150,13 +150,15 @@ def uncertain_bfp(
     Raises
     ------
     ValueError
-        The field's number of slices is odd, or the step is not positive.
+        The field's number of slices is odd, the step is not positive, or the start is not finite
+        or on a layer that does not exist.
     """
     slices = len(field.fields) - 1
     if slices % SUB or slices < SUB:
         raise ValueError(f"the risk field must hold a multiple of {SUB} slices, it holds {slices}")
     if not step_s > 0.0:
         raise ValueError(f"step_s must be positive, got {step_s}")
+    field.grid.as_points([(task.x, task.y)], [task.layer])
     world = World(field.grid.arrays, field.fields, reservations, step_s)
     path = np.zeros((slices + 1, 2))
     workspace = make_workspace(task.max_expansions, len(moves.speeds) + 1)
