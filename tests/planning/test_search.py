@@ -218,3 +218,5 @@ def test_a_search_names_what_is_wrong() -> None:
         uncertain_bfp(odd, *arguments, STEP_S)
     with pytest.raises(ValueError, match="step_s"):
         uncertain_bfp(ground.field, *arguments, 0.0)
+    with pytest.raises(ValueError, match="layers"):
+        found(ground_of(task((1.0, 4.0), (7.0, 4.0), layer=3)))

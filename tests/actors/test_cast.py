@@ -1,0 +1,186 @@
+"""The cast: behaviours and navigator together, trips, explanations, sameness."""
+
+import math
+
+import numpy as np
+import pytest
+
+from actors import ActorParameters, Cast, GoTo, Guide, Idle, Patrol, Reason, Wander
+from planning import LayeredGrid, Scene
+from tests.actors.worlds import BODY, along, plaza
+
+SCENE = plaza()
+GRID = LayeredGrid.from_scene(SCENE)
+TICK_S = 0.1
+
+
+@pytest.fixture
+def cast():
+    cast = Cast(GRID, SCENE, tick_s=TICK_S, seed=3)
+    yield cast
+    cast.close()
+
+
+def play(cast, seconds, people=None, first_s=0.0):
+    """States of every tick; people are walks, seconds -> (x, y)."""
+    states = []
+    for k in range(round(seconds / TICK_S)):
+        now = first_s + k * TICK_S
+        states.append(cast.tick({name: (*walk(now), 0) for name, walk in (people or {}).items()}))
+    return states
+
+
+def test_a_trip_counts_when_the_goal_is_reached(cast) -> None:
+    cast.add("a", GoTo("fountain"), BODY, position=(7.0, 2.0))
+    states = play(cast, 5.0)
+    assert math.dist(states[-1]["a"].position, (10.0, 2.0)) < 0.25
+    assert states[-1]["a"].reason is Reason.ARRIVED
+    assert cast.trips == 1
+    cast.set_behaviour("a", GoTo("gate"))
+    play(cast, 9.0)
+    assert cast.trips == 2
+
+
+def test_a_patrol_goes_on_by_itself(cast) -> None:
+    cast.add("a", Patrol([(4.0, 4.0, 0), (6.0, 4.0, 0)], pause_s=0.5), BODY, position=(3.0, 4.0))
+    play(cast, 14.0)
+    assert cast.trips >= 4
+
+
+def test_wanderers_keep_making_trips(cast) -> None:
+    for k in range(3):
+        cast.add(f"a{k}", Wander(pause_s=(0.2, 0.5)))
+    play(cast, 20.0)
+    assert cast.trips >= 3
+    assert len(cast) == 3
+
+
+def test_a_guide_waits_for_who_falls_behind_and_goes_on(cast) -> None:
+    guide = Guide([(10.0, 6.0, 0)], join_m=2.0, lag_m=3.5, join_after_s=1.0, patience_s=60.0)
+    cast.add("guide", guide, BODY, position=(2.0, 6.0))
+    # Follows slower than the guide walks, so that it has to wait now and then.
+    person = along((1.0, 6.0), (9.0, 6.0), speed_mps=0.7)
+    states = play(cast, 16.0, {"ann": person})
+    reasons = [state["guide"].reason for state in states]
+    assert Reason.WAITING in reasons
+    assert states[-1]["guide"].reason is Reason.ARRIVED
+    assert guide.followers == {"ann"}
+    apart = [math.dist(s["guide"].position, person(k * TICK_S)) for k, s in enumerate(states)]
+    assert max(apart) < 5.0
+    assert min(apart) > 0.5
+
+
+def test_a_guide_goes_on_when_its_follower_has_left(cast) -> None:
+    guide = Guide([(10.0, 6.0, 0)], join_m=2.0, lag_m=3.5, join_after_s=1.0, patience_s=60.0)
+    cast.add("guide", guide, BODY, position=(2.0, 6.0))
+    play(cast, 6.0, {"ann": along((1.0, 6.0), (1.0, 6.0))})
+    assert guide.waiting
+    play(cast, 9.0)
+    assert not guide.waiting
+    assert cast.trips == 1
+
+
+def test_an_explanation_says_what_is_done_and_why(cast) -> None:
+    cast.add("a", GoTo("fountain"), BODY, position=(3.0, 2.0))
+    play(cast, 1.0, {"near": along((6.0, 5.0), (6.0, 1.0)), "far": along((1.0, 11.5), (2.0, 11.5))})
+    told = cast.explain("a")
+    assert told.behaviour == "go_to"
+    assert told.reason in {Reason.MOVING, Reason.REPLANNING, Reason.GIVING_WAY}
+    assert told.goal == (10.0, 2.0, 0)
+    assert told.path.shape[1] == 4
+    assert (np.diff(told.path[:, 3]) > 0.0).all()
+    assert len(told.people) == 1
+    x, y, layer, radius = told.people[0][0]
+    assert (x, layer) == (pytest.approx(6.0), 0.0)
+    assert y == pytest.approx(5.0 - 1.2 * 0.9, abs=0.01)
+    assert radius == pytest.approx(2.0 * 0.05, abs=0.05)
+
+
+def test_places_are_chosen_with_the_seed_and_free() -> None:
+    where = []
+    for seed in (3, 3, 4):
+        cast = Cast(GRID, SCENE, tick_s=TICK_S, seed=seed)
+        where.append([cast.add(f"a{k}", Idle()).position for k in range(10)])
+        cast.close()
+    assert where[0] == where[1] != where[2]
+    spots = np.array(where[0])
+    away = np.hypot(*(spots[:, None] - spots[None]).transpose(2, 0, 1))
+    assert away[~np.eye(10, dtype=bool)].min() > 0.5
+    assert GRID.is_free(spots, [0] * 10, 0.25).all()
+
+
+def wander_for(seed, names, seconds=4.0):
+    cast = Cast(GRID, SCENE, tick_s=TICK_S, seed=seed)
+    for name in names:
+        cast.add(name, Wander(), BODY, position=(2.0 + 1.5 * int(name[1:]), 5.0))
+    states = play(cast, seconds, {"p": along((1.0, 6.0), (11.0, 6.0))})
+    cast.close()
+    return [{name: state[name].position for name in sorted(state)} for state in states]
+
+
+def test_the_same_seed_and_people_give_the_same_walks() -> None:
+    names = ["a0", "a1", "a2", "a3"]
+    assert wander_for(5, names) == wander_for(5, names)
+    assert wander_for(5, names) == wander_for(5, names[::-1])
+    assert wander_for(5, names) != wander_for(6, names)
+
+
+def test_unknown_places_are_refused_and_nothing_is_added(cast) -> None:
+    with pytest.raises(KeyError, match="no place named 'moon'"):
+        cast.add("a", GoTo("moon"), position=(6.0, 6.0))
+    assert len(cast) == 0
+    assert cast.tick({}) == {}
+    cast.add("a", Idle(), position=(6.0, 6.0))
+    with pytest.raises(KeyError, match="no place named 'moon'"):
+        cast.set_behaviour("a", Patrol(["gate", "moon"]))
+    cast.tick({})
+    assert cast.explain("a").behaviour == "idle"
+
+
+def test_unknown_actors_are_refused(cast) -> None:
+    for call in (
+        lambda: cast.remove("x"),
+        lambda: cast.explain("x"),
+        lambda: cast.set_behaviour("x", Idle()),
+        lambda: cast.set_parameters("x", BODY),
+    ):
+        with pytest.raises(KeyError):
+            call()
+
+
+def test_an_actor_may_leave_and_its_id_come_back(cast) -> None:
+    cast.add("a", Idle(), position=(6.0, 6.0))
+    with pytest.raises(ValueError, match="already is an actor 'a'"):
+        cast.add("a", Idle(), position=(7.0, 6.0))
+    cast.remove("a")
+    assert cast.tick({}) == {}
+    cast.add("a", Idle(), position=(3.0, 6.0))
+    assert cast.tick({})["a"].position == (3.0, 6.0)
+
+
+def test_parameters_reach_the_navigator(cast) -> None:
+    cast.add("a", GoTo("fountain"), BODY, position=(3.0, 2.0))
+    cast.set_parameters("a", ActorParameters(speed_mps=0.4, max_speed_mps=0.5))
+    states = play(cast, 3.0)
+    assert all(math.hypot(*state["a"].velocity) <= 0.5 + 1e-6 for state in states)
+
+
+def test_where_no_place_is_free_an_actor_is_refused() -> None:
+    scene = Scene.open_space((0.0, 0.0, 1.0, 1.0), walls=[((0.0, 0.5), (1.0, 0.5))])
+    cast = Cast(LayeredGrid.from_scene(scene), scene, tick_s=TICK_S)
+    for k in range(8):
+        try:
+            cast.add(k, Idle(), ActorParameters(radius_m=0.5))
+        except ValueError as error:
+            assert "no free place" in str(error)  # noqa: PT017 - one of several must be refused
+            break
+    cast.close()
+    assert len(cast) < 8
+
+
+def test_warming_up_changes_nothing(cast) -> None:
+    cast.add("a", GoTo("fountain"), BODY, position=(3.0, 2.0))
+    cast.warm_up()
+    assert cast.trips == 0
+    assert len(cast) == 1
+    assert set(cast.tick({})) == {"a"}

@@ -1,0 +1,315 @@
+"""The navigator's API: what may be asked, what is refused, and what never matters."""
+
+import inspect
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from actors import ActorParameters, Navigator, Reason
+from planning import LayeredGrid, Scene
+from tests.actors.worlds import BODY, TICK_S, along, block, holds, navigator, run
+
+OPEN = Scene.open_space((0.0, 0.0, 12.0, 12.0))
+GRID = LayeredGrid.from_scene(OPEN)
+
+
+def test_others_measure_through_these_names() -> None:
+    text = OPEN.model_dump_json()
+    scene = Scene.model_validate_json(text)
+    nav = Navigator(scene, tick_s=0.1, seed=0)
+    nav.add_actor(
+        "a",
+        position=(2.0, 2.0),
+        goal=(4.0, 2.0),
+        parameters=ActorParameters(
+            radius_m=0.25, speed_mps=1.3, max_speed_mps=1.7, max_acceleration_mps2=2.0
+        ),
+    )
+    nav.observe({"p1": (8.0, 8.0), "p2": (9.0, 9.0)})
+    state = nav.tick()["a"]
+    nav.close()
+    assert state.position == pytest.approx((2.01, 2.0), abs=0.02)
+    assert state.velocity == pytest.approx((0.2, 0.0), abs=0.15)
+    assert abs(state.heading) < 1.0
+    assert (state.layer, state.goal) == (0, (4.0, 2.0, 0))
+    assert state.reason is Reason.MOVING
+    assert state.path.shape == (nav.plan.slices + 1, 4)
+    assert state.path[0] == pytest.approx([2.0, 2.0, 0.0, 0.0])
+    assert list(inspect.signature(Navigator).parameters)[:3] == ["scene", "tick_s", "seed"]
+
+
+def test_an_actor_walks_to_its_goal_at_its_speed_and_stays() -> None:
+    nav = navigator(GRID)
+    nav.add_actor("a", (2.0, 6.0), (10.0, 6.0), BODY)
+    record = run(nav, 12.0)
+    nav.close()
+    speeds = np.hypot(*np.diff(record.positions["a"], axis=0).T) / TICK_S
+    assert speeds.max() <= 1.7 + 1e-6
+    assert np.median(speeds[10:50]) == pytest.approx(1.3, abs=0.1)
+    assert record.arrival_s("a") < 8.0 / 1.3 + 2.0
+    assert record.sideways("a", 6.0) < 0.3
+    assert record.reasons["a"][-1] is Reason.ARRIVED
+    assert record.positions["a"][-1] == pytest.approx([10.0, 6.0], abs=BODY.goal_tolerance_m)
+    assert np.ptp(record.positions["a"][-20:], axis=0).max() < 0.02
+
+
+def test_without_a_goal_it_stands() -> None:
+    nav = navigator(GRID)
+    nav.add_actor("a", (2.0, 6.0))
+    record = run(nav, 1.0)
+    nav.close()
+    assert np.ptp(record.positions["a"], axis=0).max() < 1e-9
+    assert record.reasons["a"][-1] is Reason.WAITING
+
+
+def test_a_goal_may_change_and_be_taken_away() -> None:
+    nav = navigator(GRID)
+    nav.add_actor("a", (6.0, 6.0), (10.0, 6.0), BODY)
+    run(nav, 1.5)
+    nav.set_goal("a", (2.0, 6.0))
+    back = run(nav, 6.0)
+    assert back.positions["a"][-1] == pytest.approx([2.0, 6.0], abs=0.25)
+    nav.set_goal("a", None)
+    assert run(nav, 0.5).reasons["a"][-1] is Reason.WAITING
+    nav.close()
+
+
+def test_a_goal_inside_a_building_is_moved_beside_it() -> None:
+    scene = Scene.open_space((0.0, 0.0, 12.0, 12.0), polygons=[block(7.0, 4.0, 9.0, 8.0)])
+    nav = navigator(scene)
+    nav.add_actor("a", (2.0, 6.0), (7.4, 6.0), BODY)
+    record = run(nav, 6.0)
+    nav.close()
+    assert record.reasons["a"][-1] is Reason.ARRIVED
+    assert 6.2 < record.positions["a"][-1, 0] < 6.8
+
+
+def test_where_no_way_leads_it_says_so_and_stands() -> None:
+    room = [
+        ((4.0, 4.0), (8.0, 4.0)),
+        ((8.0, 4.0), (8.0, 8.0)),
+        ((8.0, 8.0), (4.0, 8.0)),
+        ((4.0, 8.0), (4.0, 4.0)),
+    ]
+    nav = navigator(Scene.open_space((0.0, 0.0, 12.0, 12.0), walls=room))
+    nav.add_actor("a", (2.0, 2.0), (6.0, 6.0), BODY)
+    record = run(nav, 2.0)
+    nav.close()
+    assert set(record.reasons["a"]) == {Reason.NO_PATH}
+    assert np.ptp(record.positions["a"], axis=0).max() < 0.05
+
+
+def test_parameters_may_change_while_it_walks() -> None:
+    nav = navigator(GRID)
+    nav.add_actor("a", (1.0, 6.0), (11.0, 6.0), BODY)
+    run(nav, 2.0)
+    slow = ActorParameters(radius_m=0.3, speed_mps=0.5, max_speed_mps=0.6)
+    nav.set_parameters("a", slow)
+    assert nav.parameters("a") == slow
+    record = run(nav, 4.0)
+    nav.close()
+    speeds = np.hypot(*np.diff(record.positions["a"][20:], axis=0).T) / TICK_S
+    assert speeds.max() <= 0.6 + 1e-6
+    assert np.median(speeds) == pytest.approx(0.5, abs=0.1)
+
+
+def test_another_simulation_may_put_it_elsewhere() -> None:
+    nav = navigator(GRID)
+    nav.add_actor("a", (2.0, 6.0), (10.0, 6.0), BODY)
+    run(nav, 1.0)
+    nav.place_actor("a", (5.0, 7.0), velocity=(1.0, 0.0))
+    nav.observe({})
+    state = nav.tick()["a"]
+    nav.close()
+    assert state.position == pytest.approx((5.1, 7.0), abs=0.06)
+
+
+def test_predicted_people_are_those_near_and_their_circles_grow() -> None:
+    nav = navigator(GRID)
+    for k in range(10):
+        nav.observe({"near": (5.0 + 0.1 * k, 6.0), "far": (11.0, 11.0)})
+        nav.tick()
+    circles = nav.predicted_near((6.0, 6.0), 0, 3.0)
+    nav.close()
+    assert len(circles) == 1
+    assert circles[0].shape == (nav.plan.slices + 1, 4)
+    assert circles[0][0, :3] == pytest.approx([5.9, 6.0, 0.0], abs=1e-6)
+    assert circles[0][10, 0] == pytest.approx(5.9 + 2.0, abs=0.05)
+    assert (np.diff(circles[0][:, 3]) > 0.0).all()
+
+
+def snapshot(nav):
+    return [np.copy(array) for array in nav._crowd], list(nav._ids), nav._history.ids
+
+
+@pytest.mark.parametrize(
+    ("error", "call"),
+    [
+        (ValueError, lambda nav: nav.add_actor("a", (3.0, 3.0))),
+        (ValueError, lambda nav: nav.add_actor("b", (math.nan, 3.0))),
+        (ValueError, lambda nav: nav.add_actor("b", (13.0, 3.0))),
+        (ValueError, lambda nav: nav.add_actor("b", (3.0, 3.0), (3.0, math.inf))),
+        (ValueError, lambda nav: nav.add_actor("b", (3.0, 3.0), (3.0, -1.0))),
+        (ValueError, lambda nav: nav.add_actor("b", (3.0, 3.0), layer=1)),
+        (ValueError, lambda nav: nav.add_actor("b", (3.0, 3.0), (4.0, 4.0), goal_layer=1)),
+        (ValueError, lambda nav: nav.set_goal("a", (math.nan, 0.0))),
+        (ValueError, lambda nav: nav.set_goal("a", (-1.0, 0.0))),
+        (ValueError, lambda nav: nav.set_goal("a", (1.0, 1.0), layer=2)),
+        (ValueError, lambda nav: nav.place_actor("a", (99.0, 1.0))),
+        (ValueError, lambda nav: nav.place_actor("a", (1.0, 1.0), velocity=(math.nan, 0.0))),
+        (ValueError, lambda nav: nav.observe({"p": (math.nan, 1.0)})),
+        (ValueError, lambda nav: nav.observe({"q": (1.0, 1.0), "p": (1.0,)})),
+        (ValueError, lambda nav: nav.observe({"p": (1.0, 1.0, 7)})),
+        (ValueError, lambda nav: nav.observe({"p": (1.0, 1.0, -1)})),
+        (KeyError, lambda nav: nav.set_goal("x", (1.0, 1.0))),
+        (KeyError, lambda nav: nav.set_parameters("x", BODY)),
+        (KeyError, lambda nav: nav.remove_actor("x")),
+        (KeyError, lambda nav: nav.place_actor("x", (1.0, 1.0))),
+        (KeyError, lambda nav: nav.parameters("x")),
+    ],
+)
+def test_bad_input_is_refused_and_changes_nothing(error, call) -> None:
+    nav = navigator(GRID)
+    nav.add_actor("a", (2.0, 2.0), (9.0, 9.0), BODY)
+    nav.observe({"p": (6.0, 6.0)})
+    nav.tick()
+    before = snapshot(nav)
+    with pytest.raises(error):
+        call(nav)
+    after = snapshot(nav)
+    assert all(np.array_equal(a, b) for a, b in zip(before[0], after[0], strict=True))
+    assert before[1:] == after[1:]
+    nav.observe({"p": (6.1, 6.0)})
+    assert np.isfinite(nav.tick()["a"].position).all()
+    nav.close()
+
+
+@pytest.mark.parametrize("tick_s", [0.0, -0.1, 0.6, math.nan])
+def test_a_tick_has_a_sensible_length(tick_s) -> None:
+    with pytest.raises(ValueError, match="tick_s"):
+        Navigator(GRID, tick_s=tick_s)
+
+
+def some(seed: int, actors: int):
+    """Starts, goals and walking people that do not stand in each other."""
+    rng = np.random.default_rng(seed)
+    cells = rng.permutation(100)[: 2 * actors + 4]
+    spots = (
+        1.0 + np.stack([cells % 10, cells // 10], axis=1) + rng.uniform(-0.1, 0.1, (len(cells), 2))
+    )
+    spots = spots.tolist()
+    people = {
+        f"p{k}": along(spots[-1 - k], rng.uniform(1.0, 11.0, 2).tolist(), speed_mps=0.9)
+        for k in range(4)
+    }
+    return spots[:actors], spots[actors : 2 * actors], people
+
+
+def play(world: int, actors: int, seconds: float, *, turned: bool = False, **changes):
+    starts, goals, people = some(world, actors)
+    nav = navigator(GRID, **changes)
+    rows = list(range(actors))
+    for k in reversed(rows) if turned else rows:
+        nav.add_actor(f"a{k}", starts[k], goals[k], BODY)
+    if turned:
+        people = dict(reversed(people.items()))
+    record = run(nav, seconds, people)
+    nav.close()
+    return record
+
+
+def same(one, other) -> bool:
+    return (
+        one.positions.keys() == other.positions.keys()
+        and all(np.array_equal(one.positions[a], other.positions[a]) for a in one.positions)
+        and one.reasons == other.reasons
+    )
+
+
+@given(st.integers(0, 1000))
+@holds(2)
+def test_neither_the_order_of_adding_nor_of_listing_nor_threads_matter(seed) -> None:
+    once = play(seed, 8, 3.0)
+    assert same(once, play(seed, 8, 3.0))
+    assert same(once, play(seed, 8, 3.0, turned=True))
+    assert same(once, play(seed, 8, 3.0, threads=2))
+
+
+def test_the_seed_decides_who_goes_first_and_nothing_else() -> None:
+    assert not same(play(4, 8, 4.0), play(4, 8, 4.0, seed=1))
+    assert same(play(4, 1, 4.0), play(4, 1, 4.0, seed=1))
+
+
+@given(st.integers(0, 1000))
+@holds(4)
+def test_actors_never_touch_each_other(seed) -> None:
+    record = play(seed, 10, 5.0)
+    assert record.nearest_actors() >= 0.5
+    for track in record.positions.values():
+        assert (track >= 0.0).all()
+        assert (track <= 12.0).all()
+
+
+@given(st.integers(0, 1000))
+@holds(6)
+def test_among_walls_nobody_walks_through_one(seed) -> None:
+    rng = np.random.default_rng(seed)
+    turns = rng.uniform(0.0, np.pi, 6)
+    starts = rng.uniform(1.0, 9.0, (6, 2))
+    ends = starts + 2.5 * np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    walls = list(zip(map(tuple, starts), map(tuple, ends), strict=True))
+    nav = navigator(Scene.open_space((0.0, 0.0, 12.0, 12.0), walls=walls))
+    spots = [spot for spot in rng.uniform(0.5, 11.5, (60, 2)).tolist()
+             if nav.grid.is_free([spot], [0], 0.4)[0]][:8]  # fmt: skip
+    for k in range(4):
+        nav.add_actor(f"a{k}", spots[k], spots[k + 4], BODY)
+    before = np.array(spots[:4])
+    for _ in range(50):
+        nav.observe({})
+        states = nav.tick()
+        now = np.array([states[f"a{k}"].position for k in range(4)])
+        assert [states[f"a{k}"].layer for k in range(4)] == [0] * 4
+        for a, b in zip(before, now, strict=True):
+            assert not any(meets(a, b, *map(np.array, wall)) for wall in walls)
+        # Cells know a wall to within half their diagonal.
+        assert nav.grid.clearance(now, [0] * 4).min() > 0.25 - 0.18
+        before = now
+    nav.close()
+
+
+def meets(a, b, c, d) -> bool:
+    def side(p, q, r) -> float:
+        return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
+
+    return side(a, b, c) * side(a, b, d) < 0.0 and side(c, d, a) * side(c, d, b) < 0.0
+
+
+def test_acceleration_is_kept_but_when_another_actor_is_in_the_way() -> None:
+    nav = navigator(GRID)
+    nav.add_actor("a", (2.0, 6.0), (10.0, 6.0), BODY)
+    velocity = np.zeros(2)
+    crossing = along((6.0, 2.0), (6.0, 10.0))
+    for k in range(90):
+        nav.observe({"p": crossing(k * TICK_S)})
+        state = nav.tick()["a"]
+        assert math.dist(state.velocity, velocity) <= 2.0 * TICK_S + 1e-6
+        velocity = state.velocity
+    nav.close()
+
+
+def test_who_leaves_is_forgotten_and_ids_may_be_used_again() -> None:
+    nav = navigator(GRID)
+    for name in ("a", "b", "c"):
+        nav.add_actor(name, (2.0 + 2.0 * ord(name[0]) % 7, 3.0), (6.0, 9.0), BODY)
+    run(nav, 0.5)
+    nav.remove_actor("b")
+    nav.observe({})
+    assert set(nav.tick()) == {"a", "c"}
+    nav.add_actor("b", (9.0, 2.0), (2.0, 2.0), BODY)
+    record = run(nav, 1.0)
+    nav.close()
+    assert record.positions["b"][-1, 0] < 9.0
+    assert set(record.positions) == {"a", "b", "c"}
