@@ -67,17 +67,17 @@ def make_task(
         crowd.velocities[a, 1],
         gx,
         gy,
-        p.radius_m,
-        p.speed_mps,
-        p.max_speed_mps,
-        p.max_acceleration_mps2,
-        p.goal_tolerance_m,
-        p.risk_weight,
-        p.foresight_s,
-        p.closing_weight,
-        p.turn_weight,
-        p.wall_weight,
-        int(p.max_expansions),
+        p["radius_m"],
+        p["speed_mps"],
+        p["max_speed_mps"],
+        p["max_acceleration_mps2"],
+        p["goal_tolerance_m"],
+        p["risk_weight"],
+        p["foresight_s"],
+        p["closing_weight"],
+        p["turn_weight"],
+        p["wall_weight"],
+        int(p["max_expansions"]),
         hold,
     )
 
@@ -150,7 +150,7 @@ def _carry_on(
     if slot < 0:
         return x, y
     gx, gy, leg = direction_at(world.grid, guides[slot], crowd.layers[a], x, y)
-    way = min(leg, crowd.parameters[a].speed_mps * seconds)
+    way = min(leg, crowd.parameters[a]["speed_mps"] * seconds)
     return x + gx * way, y + gy * way
 
 
@@ -180,7 +180,7 @@ def decide(
     trial = np.empty((slices, 2))
     for a in range(first, last):
         p = crowd.parameters[a]
-        task = make_task(world, guides, crowd, a, p.goal_tolerance_m)
+        task = make_task(world, guides, crowd, a, p["goal_tolerance_m"])
         slot = crowd.guide_slots[a]
         guide = guides[slot] if slot >= 0 else no_guide
         for m in range(len(moves.speeds)):
@@ -206,7 +206,7 @@ def decide(
                         kept[:] = bent
                         changed = True
                 new_cost = path_cost(world, guide, task, out.paths[a])[0]
-                if found.status != NO_PATH and new_cost < cost - p.hysteresis_s:
+                if found.status != NO_PATH and new_cost < cost - p["hysteresis_s"]:
                     switched = True
                 else:
                     out.paths[a] = kept
@@ -215,7 +215,7 @@ def decide(
                 switched = True
         path = out.paths[a]
         ux, uy = control_toward(task, path[SUB, 0], path[SUB, 1], world.step_s)
-        contact = p.radius_m + p.person_clearance_m
+        contact = p["radius_m"] + p["person_clearance_m"]
         ux, uy, dodged = last_check(world, prediction, task, contact, ux, uy)
         wx, wy = limited(task, ux, uy, tick_s)
         out.wishes[a, 0] = wx

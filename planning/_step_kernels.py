@@ -147,7 +147,7 @@ def resolve(
         x = crowd.positions[a, 0]
         y = crowd.positions[a, 1]
         need = min(
-            crowd.parameters[a].radius_m,
+            crowd.parameters[a]["radius_m"],
             max(0.0, clearance_at(world.grid, crowd.layers[a], x, y)),
         )
         moved[a] = True
