@@ -14,14 +14,17 @@ from planning._prediction_kernels import Prediction
 class RadialTables(NamedTuple):
     """What one predicted person adds at a distance, by deviation (rows) and distance (columns).
 
-    `near` is the proximity term, `toward` the factor of the closing speed; both are means over
-    the person's likely range.
+    Columns are even in the squared distance, so that no root has to be drawn. `near` is the
+    proximity term; `toward` the factor of the closing speed over the distance, so that its
+    product with the offset is the factor times n. Both are means over the person's likely range.
+    `reaches` holds for each row how many columns matter.
     """
 
     near: NDArray[np.float32]
     toward: NDArray[np.float32]
+    reaches: NDArray[np.int64]
     sigma_step_m: float
-    distance_step_m: float
+    squared_step_m2: float
 
 
 RiskFields = NDArray[np.float32]
@@ -37,17 +40,28 @@ def _blend_rows(
     toward: NDArray[np.float32],
 ) -> float:
     """Tables for one deviation into two rows; returns the reach in metres."""
-    rows, columns = tables.near.shape
+    rows = len(tables.near)
     u = min(rows - 1.000001, max(0.0, sigma / tables.sigma_step_m))
     r = int(u)
-    w = u - r
-    last = 0
-    for c in range(columns):
-        near[c] = (1.0 - w) * tables.near[r, c] + w * tables.near[r + 1, c]
-        toward[c] = (1.0 - w) * tables.toward[r, c] + w * tables.toward[r + 1, c]
-        if near[c] > 1e-4 or toward[c] > 1e-4:
-            last = c
-    return float(min(last + 1, columns - 2) * tables.distance_step_m)
+    w1 = np.float32(u - r)
+    w0 = np.float32(1.0) - w1
+    columns = max(tables.reaches[r], tables.reaches[r + 1])
+    for c in range(columns + 1):
+        near[c] = w0 * tables.near[r, c] + w1 * tables.near[r + 1, c]
+        toward[c] = w0 * tables.toward[r, c] + w1 * tables.toward[r + 1, c]
+    return float(np.sqrt(columns * tables.squared_step_m2))
+
+
+@kernel
+def _matters(
+    x: float, y: float, reach: float, seconds: float, seekers: NDArray[np.float64]
+) -> bool:
+    """Whether any seeker may come within reach of a point by then; without seekers all matters."""
+    for s in range(len(seekers)):
+        room = reach + seekers[s, 2] * seconds
+        if (seekers[s, 0] - x) ** 2 + (seekers[s, 1] - y) ** 2 <= room * room:
+            return True
+    return len(seekers) == 0
 
 
 @kernel
@@ -55,6 +69,8 @@ def fill_slices(
     grid: GridArrays,
     tables: RadialTables,
     prediction: Prediction,
+    seekers: NDArray[np.float64],
+    slice_s: float,
     first: int,
     step: int,
     windows: NDArray[np.int64],
@@ -62,14 +78,17 @@ def fill_slices(
 ) -> None:
     """Fill slices first, first + step, ... Only cells near people are touched.
 
-    `windows` (K, P', 5) remembers what was written (layer, j0, j1, i0, i1) so that the next call
-    clears no more than that; rows with layer -1 are empty.
+    `seekers` (S, 3) are places and greatest speeds of those who will look things up: people out
+    of everyone's reach are left out. `windows` (K, P', 5) remembers what was written (layer, j0,
+    j1, i0, i1) so that the next call clears no more than that; rows with layer -1 are empty.
     """
     people = len(prediction.layers)
     columns = tables.near.shape[1]
-    near = np.empty(columns, dtype=np.float32)
-    toward = np.empty(columns, dtype=np.float32)
+    near = np.zeros(columns, dtype=np.float32)
+    toward = np.zeros(columns, dtype=np.float32)
     _, ny, nx = grid.clearance.shape
+    cell = np.float32(grid.cell_m)
+    per_column = np.float32(1.0 / tables.squared_step_m2)
     for k in range(first, len(fields), step):
         for w in range(windows.shape[1]):
             layer, j0, j1, i0, i1 = windows[k, w]
@@ -77,44 +96,49 @@ def fill_slices(
                 break
             fields[k, layer, j0:j1, i0:i1] = 0.0
             windows[k, w, 0] = -1
+        written = 0
         for p in range(people):
             layer = prediction.layers[p]
             mx = prediction.means[p, k, 0]
             my = prediction.means[p, k, 1]
-            vx = prediction.velocities[p, k, 0]
-            vy = prediction.velocities[p, k, 1]
+            vx = np.float32(prediction.velocities[p, k, 0])
+            vy = np.float32(prediction.velocities[p, k, 1])
             reach = _blend_rows(tables, prediction.sigmas[p, k], near, toward)
+            if not _matters(mx, my, reach + 2.0 * grid.cell_m, k * slice_s, seekers):
+                continue
             i0 = max(0, int(np.floor((mx - reach - grid.x0) / grid.cell_m)))
             i1 = min(nx, int(np.floor((mx + reach - grid.x0) / grid.cell_m)) + 1)
             j0 = max(0, int(np.floor((my - reach - grid.y0) / grid.cell_m)))
             j1 = min(ny, int(np.floor((my + reach - grid.y0) / grid.cell_m)) + 1)
             if i0 >= i1 or j0 >= j1:
-                i0 = i1 = j0 = j1 = 0
-            windows[k, p, 0] = layer
-            windows[k, p, 1] = j0
-            windows[k, p, 2] = j1
-            windows[k, p, 3] = i0
-            windows[k, p, 4] = i1
+                continue
+            windows[k, written, 0] = layer
+            windows[k, written, 1] = j0
+            windows[k, written, 2] = j1
+            windows[k, written, 3] = i0
+            windows[k, written, 4] = i1
+            written += 1
+            left = np.float32(grid.x0 + (i0 + 0.5) * grid.cell_m - mx)
+            most = np.float32(reach * reach)
             for j in range(j0, j1):
-                ry = grid.y0 + (j + 0.5) * grid.cell_m - my
+                ry = np.float32(grid.y0 + (j + 0.5) * grid.cell_m - my)
+                vy_ry = vy * ry
+                ry2 = ry * ry
+                row = fields[k, layer, j]
                 for i in range(i0, i1):
-                    rx = grid.x0 + (i + 0.5) * grid.cell_m - mx
-                    d = np.sqrt(rx * rx + ry * ry)
-                    if d >= reach:
+                    rx = left + np.float32(i - i0) * cell
+                    d2 = rx * rx + ry2
+                    if d2 >= most:
                         continue
-                    u = d / tables.distance_step_m
+                    u = d2 * per_column
                     c = int(u)
-                    w1 = np.float32(u - c)
+                    w1 = u - np.float32(c)
                     w0 = np.float32(1.0) - w1
                     t = w0 * toward[c] + w1 * toward[c + 1]
-                    f = fields[k, layer, j, i]
-                    f[0] += w0 * near[c] + w1 * near[c + 1]
-                    if d > 1e-6:
-                        ux = t * np.float32(rx / d)
-                        uy = t * np.float32(ry / d)
-                        f[1] += ux
-                        f[2] += uy
-                        f[3] += ux * np.float32(vx) + uy * np.float32(vy)
+                    row[i, 0] += w0 * near[c] + w1 * near[c + 1]
+                    row[i, 1] += t * rx
+                    row[i, 2] += t * ry
+                    row[i, 3] += t * (vx * rx + vy_ry)
 
 
 @kernel

@@ -98,18 +98,6 @@ class Batch:
         """
         actors = len(crowd.positions)
         slices = self.plan.slices + 1
-        self.field.fill(prediction, self._on_threads)
-        paths = np.empty((actors, slices, 2))
-        reservations = make_reservations(
-            self.grid,
-            paths,
-            crowd.layers,
-            crowd.parameters["radius_m"].copy(),
-            crowd.ranks,
-            float(crowd.parameters["max_speed_mps"].max(initial=0.0))
-            * max(tick_s, self.plan.slice_s),
-        )
-        world = World(self.grid.arrays, self.field.fields, reservations, self.plan.step_s)
         decisions = Decisions(
             np.empty((actors, slices, 2)),
             np.zeros((actors, 2)),
@@ -121,6 +109,18 @@ class Batch:
         new_positions = np.empty((actors, 2))
         if not actors:
             return decisions, new_positions
+        seekers = np.column_stack([crowd.positions, crowd.parameters["max_speed_mps"]])
+        self.field.fill(prediction, self._on_threads, seekers, self.plan.slice_s)
+        paths = np.empty((actors, slices, 2))
+        reservations = make_reservations(
+            self.grid,
+            paths,
+            crowd.layers,
+            crowd.parameters["radius_m"].copy(),
+            crowd.ranks,
+            float(crowd.parameters["max_speed_mps"].max()) * max(tick_s, self.plan.slice_s),
+        )
+        world = World(self.grid.arrays, self.field.fields, reservations, self.plan.step_s)
         workspaces = self._workspaces_for(int(crowd.parameters["max_expansions"].max()))
         continue_paths(world, guides, crowd, tick_s, 0, actors, paths)
         index_paths(reservations)

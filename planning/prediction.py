@@ -109,12 +109,15 @@ class TrackHistory:
             A position is not finite or not of length 2 or 3; nothing is changed then.
         """
         listed = sorted(people, key=_by_name)
-        rows = np.zeros((len(people), 3))
-        for k, who in enumerate(listed):
-            where = people[who]
-            if len(where) not in (2, 3) or not np.isfinite(where).all():
-                raise ValueError(f"position of {who!r} must be finite (x, y[, layer]), got {where}")
-            rows[k, : len(where)] = where
+        places = [tuple(people[who]) for who in listed]
+        rows = np.array(
+            [(*place, 0.0)[:3] if len(place) in (2, 3) else (np.nan,) * 3 for place in places],
+            dtype=np.float64,
+        ).reshape(-1, 3)
+        broken = np.flatnonzero(~np.isfinite(rows).all(axis=1))
+        if len(broken):
+            who, place = listed[broken[0]], places[broken[0]]
+            raise ValueError(f"position of {who!r} must be finite (x, y[, layer]), got {place}")
         for who in [who for who in self._rows if who not in people]:
             self._free.append(self._rows.pop(who))
         for who in listed:

@@ -15,7 +15,8 @@ from planning.grid import LayeredGrid
 
 _SIGMA_STEP_M = 0.05
 _SIGMA_MAX_M = 1.5
-_DISTANCE_STEP_M = 0.05
+_SQUARED_STEP_M2 = 0.04
+_LEAST = 1e-4
 _SIGMA_POINTS = 9
 _SIGMA_SPAN = 2.5
 
@@ -69,18 +70,24 @@ def radial_tables(model: RiskModel) -> RadialTables:
     offsets, weights = sigma_points()
     sigmas = np.arange(0.0, _SIGMA_MAX_M + _SIGMA_STEP_M / 2, _SIGMA_STEP_M)
     reach = model.contact_m + model.influence_m + _SIGMA_SPAN * _SIGMA_MAX_M
-    distances = np.arange(0.0, reach + 3 * _DISTANCE_STEP_M, _DISTANCE_STEP_M)
+    squared = np.arange(0.0, reach**2 + 3 * _SQUARED_STEP_M2, _SQUARED_STEP_M2)
+    distances = np.sqrt(squared)
     here = np.stack([distances, np.zeros_like(distances)], axis=1)
     relative = here[None, :, None, :] - sigmas[:, None, None, None] * offsets[None, None]
     length = np.linalg.norm(relative, axis=-1)
     along = np.divide(relative[..., 0], length, out=np.zeros_like(length), where=length > 1e-9)
     near = (model.near(length) * weights).sum(axis=-1)
-    toward = (model.toward(length) * along * weights).sum(axis=-1)
+    toward = np.maximum((model.toward(length) * along * weights).sum(axis=-1), 0.0)
+    matters = (near > _LEAST) | (toward > _LEAST)
+    reaches = len(squared) - 2 - np.argmax(matters[:, -2::-1], axis=1)
+    toward[:, 1:] /= distances[1:]
+    toward[:, 0] = toward[:, 1]
     return RadialTables(
         near.astype(np.float32),
-        np.maximum(toward, 0.0).astype(np.float32),
+        toward.astype(np.float32),
+        reaches.astype(np.int64) + 1,
         _SIGMA_STEP_M,
-        _DISTANCE_STEP_M,
+        _SQUARED_STEP_M2,
     )
 
 
@@ -108,9 +115,13 @@ class RiskField:
         self,
         prediction: Prediction,
         run: Callable[[Callable[[int, int], None]], None] | None = None,
+        seekers: ArrayLike = (),
+        slice_s: float = 0.0,
     ) -> None:
         """Replace the field by that of a prediction with as many slices.
 
+        `seekers`, float (S, 3) x, y, greatest speed, are those who will look things up: whom they
+        cannot reach by the time of a slice is left out of it. Without any, everyone is in.
         `run(work)` may call `work(first, step)` for first in range(step) on threads of its own.
 
         Raises
@@ -119,6 +130,7 @@ class RiskField:
             Another number of slices, or a person on a layer that does not exist.
         """
         people = len(prediction.layers)
+        places = np.ascontiguousarray(seekers, dtype=np.float64).reshape(-1, 3)
         if prediction.sigmas.shape[1] != len(self.fields):
             raise ValueError(
                 f"the field has {len(self.fields)} slices, the prediction "
@@ -132,7 +144,15 @@ class RiskField:
 
         def work(first: int, step: int) -> None:
             kernels.fill_slices(
-                self.grid.arrays, self.tables, prediction, first, step, self._windows, self.fields
+                self.grid.arrays,
+                self.tables,
+                prediction,
+                places,
+                slice_s,
+                first,
+                step,
+                self._windows,
+                self.fields,
             )
 
         if run is None:

@@ -165,7 +165,8 @@ def test_sigma_points_weigh_one_and_centre_on_the_mean() -> None:
 
 def test_tables_are_bounded_and_end_in_nothing() -> None:
     tables = radial_tables(RiskModel())
-    for table in (tables.near, tables.toward):
+    distances = np.sqrt(np.arange(tables.near.shape[1]) * tables.squared_step_m2)
+    for table in (tables.near, tables.toward * distances):
         assert table.min() >= 0.0
         assert table.max() <= 1.0 + 1e-6
         assert not table[:, -1].any()
