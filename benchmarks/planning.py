@@ -1,0 +1,198 @@
+"""What planning costs: a tick of many actors among many people, by stage.
+
+    python -m benchmarks.planning                        100 actors among 0 and 100 people
+    python -m benchmarks.planning --actors 100 300 1000 --people 0 100 500 --ticks 60
+
+The world is 64 m x 64 m in cells of 0.25 m, a tenth of it buildings. People walk from place to
+place at 1.2 m/s; actors do the same, each to another place whenever it has arrived. Stages: `field`
+fills the risk field, `search` decides for every actor (search and perturbation), `resolve` takes
+the steps in order of priority, `rest` is all else: observing, prediction, and making states.
+"""
+
+import argparse
+import resource
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from typing import Any
+from unittest import mock
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actors import Navigator, Reason
+from planning import (
+    Batch,
+    LayeredGrid,
+    PlanModel,
+    Polygon,
+    Potential,
+    RiskField,
+    Scene,
+    Wave,
+    batch,
+)
+
+SIDE_M = 64.0
+BUILT_PART = 0.1
+CELL_M = 0.25
+TICK_S = 0.05
+PLACES = 40
+WALK_MPS = 1.2
+WARM_UP_TICKS = 30
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.planning", description=__doc__)
+    parser.add_argument("--actors", type=int, nargs="+", default=[100])
+    parser.add_argument("--people", type=int, nargs="+", default=[0, 100])
+    parser.add_argument("--ticks", type=int, default=60, help="measured ticks of each case")
+    parser.add_argument("--threads", type=int, default=2)
+    options = parser.parse_args(argv)
+
+    begun = time.perf_counter()
+    scene, grid = make_world(np.random.default_rng(0))
+    full = float(np.mean(grid.arrays.clearance < 0.0))
+    print(f"{SIDE_M:g} m x {SIDE_M:g} m at {CELL_M} m, {len(scene.polygons)} buildings, {full:.0%}")
+    print(f"grid of the scene: {1e3 * (time.perf_counter() - begun):.0f} ms (kernels may compile)")
+    print_goals(grid)
+    for actors in options.actors:
+        for people in options.people:
+            print_case(grid, actors, people, options.ticks, options.threads)
+
+
+def make_world(random: np.random.Generator) -> tuple[Scene, LayeredGrid]:
+    """Buildings at random places until they cover their part of the ground."""
+    buildings: list[Polygon] = []
+    grid = LayeredGrid.from_scene(Scene.open_space((0.0, 0.0, SIDE_M, SIDE_M)), CELL_M)
+    while np.mean(grid.arrays.clearance < 0.0) < BUILT_PART:
+        x, y = random.uniform(2.0, SIDE_M - 8.0, 2).tolist()
+        w, d = random.uniform(2.0, 6.0, 2).tolist()
+        ring = ((x, y), (x + w, y), (x + w, y + d), (x, y + d))
+        buildings.append(Polygon(points=ring, height_m=6.0))
+        scene = Scene.open_space((0.0, 0.0, SIDE_M, SIDE_M), polygons=buildings)
+        grid = LayeredGrid.from_scene(scene, CELL_M)
+    return scene, grid
+
+
+def free_points(grid: LayeredGrid, count: int, random: np.random.Generator) -> NDArray[np.float64]:
+    """Places that a disc may stand at, as far from each other as their number allows."""
+    found: list[NDArray[np.float64]] = []
+    apart = min(3.0, 0.5 * SIDE_M / np.sqrt(count + 1))
+    while len(found) < count:
+        point = random.uniform(1.0, SIDE_M - 1.0, 2)
+        near = found and np.hypot(*(np.array(found) - point).T).min() < apart
+        if not near and grid.is_free([point], [0], 0.5)[0]:
+            found.append(point)
+    return np.array(found)
+
+
+def print_goals(grid: LayeredGrid) -> None:
+    """Time of a wave front for a goal that nobody had before."""
+    goals = free_points(grid, 6, np.random.default_rng(3))
+    for wave in Wave:
+        times = []
+        for goal in goals:
+            begun = time.perf_counter()
+            potential = Potential(grid, (goal[0], goal[1]), 0, 0.25, wave)
+            times.append(1e3 * (time.perf_counter() - begun))
+        size = potential.guide.nbytes / 1e6
+        print(f"new goal, {wave.value:5s}: {np.median(times[1:]):6.1f} ms, {size:.1f} MB kept")
+
+
+class Crowd:
+    """People who walk to places and turn to others every ten seconds, sliding along walls."""
+
+    def __init__(self, grid: LayeredGrid, count: int, random: np.random.Generator) -> None:
+        self._grid = grid
+        self._random = random
+        self.positions = free_points(grid, count, random) if count else np.zeros((0, 2))
+        self._targets = random.uniform(1.0, SIDE_M - 1.0, (count, 2))
+        self._layers = np.zeros(count, dtype=np.int64)
+
+    def walk(self) -> dict[str, tuple[float, float]]:
+        turning = self._random.random(len(self.positions)) < TICK_S / 10.0
+        fresh = self._random.uniform(1.0, SIDE_M - 1.0, self.positions.shape)
+        self._targets[turning] = fresh[turning]
+        way = self._targets - self.positions
+        length = np.maximum(1.0, np.hypot(way[:, 0], way[:, 1]))[:, None]
+        steps = WALK_MPS * TICK_S * way / length
+        self.positions, _ = self._grid.walk(self.positions, self._layers, steps, 0.25)
+        return {f"p{k}": (x, y) for k, (x, y) in enumerate(self.positions.tolist())}
+
+
+class Stopwatch:
+    """Seconds of calls, by stage; everything is timed from outside."""
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        begun = time.perf_counter()
+        yield
+        self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - begun
+
+    def around(self, name: str, function: Callable[..., Any]) -> Callable[..., Any]:
+        def timed(*arguments: Any, **named: Any) -> Any:
+            with self.stage(name):
+                return function(*arguments, **named)
+
+        return timed
+
+
+def print_case(grid: LayeredGrid, actors: int, people: int, ticks: int, threads: int) -> None:
+    """Milliseconds a tick, median and 99th percentile, and how they are spent."""
+    random = np.random.default_rng(1)
+    places = free_points(grid, PLACES, random)
+    crowd = Crowd(grid, people, random)
+    nav = Navigator(grid, TICK_S, seed=0, plan=PlanModel(threads=threads))
+
+    def another_place() -> tuple[float, float]:
+        x, y = places[random.integers(PLACES)]
+        return float(x), float(y)
+
+    for k, (x, y) in enumerate(free_points(grid, actors, random).tolist()):
+        nav.add_actor(f"a{k}", (x, y), another_place())
+
+    watch = Stopwatch()
+    rows: list[dict[str, float]] = []
+    with ExitStack() as patches:
+        for target, attribute, stage in (
+            (RiskField, "fill", "field"),
+            (Batch, "tick", "batch"),
+            (batch, "resolve", "resolve"),
+        ):
+            timed = watch.around(stage, getattr(target, attribute))
+            patches.enter_context(mock.patch.object(target, attribute, timed))
+        for _ in range(WARM_UP_TICKS + ticks):
+            seen = crowd.walk()
+            watch.seconds = {}
+            with watch.stage("all"):
+                nav.observe(seen)
+                states = nav.tick()
+            rows.append(watch.seconds)
+            for who, state in states.items():
+                if state.reason is Reason.ARRIVED:
+                    nav.set_goal(who, another_place())
+    nav.close()
+    print_rows(actors, people, rows[WARM_UP_TICKS:])
+
+
+def print_rows(actors: int, people: int, rows: list[dict[str, float]]) -> None:
+    """One line a case."""
+    spent = {name: 1e3 * np.array([row[name] for row in rows]) for name in rows[0]}
+    spent["search"] = spent["batch"] - spent["field"] - spent["resolve"]
+    spent["rest"] = spent["all"] - spent["batch"]
+    parts = "  ".join(
+        f"{name} {np.median(spent[name]):.2f}" for name in ("field", "search", "resolve", "rest")
+    )
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    print(
+        f"{actors:5d} actors {people:4d} people: p50 {np.median(spent['all']):7.2f} ms  "
+        f"p99 {np.percentile(spent['all'], 99):7.2f} ms  ({parts})  at most {memory:.0f} MB"
+    )
+
+
+if __name__ == "__main__":
+    main()
