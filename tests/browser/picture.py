@@ -24,7 +24,8 @@ VISITORS: Final = 14
 SPREAD_S: Final = 25.0
 """Time for everybody to walk away from where they came in."""
 VIEWPOINT: Final = (31.0, 14.4)
-NEAR_M: Final = 7.0
+NEAR_M: Final = 9.0
+WALKING_MPS: Final = 0.8
 
 
 def take() -> bytes:
@@ -82,7 +83,7 @@ async def _picture(url: str) -> bytes:
 
 
 def _actor_ahead(view: View) -> int | None:
-    """The nearest actor near by, in front of the camera, which looks to the north."""
+    """The nearest actor that comes towards the camera, which looks to the north."""
     me = own(view)
     if me is None:
         return None
@@ -90,7 +91,10 @@ def _actor_ahead(view: View) -> int | None:
     ahead = {
         int(avatar["id"]): math.dist((x, y), place_of(avatar))
         for avatar in view["avatars"]
-        if avatar["kind"] == "actor" and abs(place_of(avatar)[0] - x) < place_of(avatar)[1] - y
+        if avatar["kind"] == "actor"
+        and avatar["pose"]["speed"] > WALKING_MPS
+        and math.sin(avatar["pose"]["heading"]) < 0.0
+        and abs(place_of(avatar)[0] - x) < place_of(avatar)[1] - y
     }
     nearest = min(ahead, key=ahead.__getitem__, default=None)
     return nearest if nearest is not None and ahead[nearest] < NEAR_M else None

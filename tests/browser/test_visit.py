@@ -117,7 +117,7 @@ async def test_the_overlay_shows_the_plan_of_an_actor(url: str, profile: Browser
     await actor.click()
     view = await ann.until(lambda view: view["plan"] is not None and len(view["plan"]["path"]) > 1)
     assert view["plan"]["id"] == view["chosenId"]
-    assert await ann.page.locator("#plan-reason").inner_text() != ""
+    await ann.page.locator("#plan-reason:not(:empty)").wait_for()
     await ann.page.click("#plan-open")
     await ann.until(lambda view: view["plan"] is None)
     assert await ann.complaints() == []
