@@ -147,7 +147,10 @@ class Cast:
         return Explanation(actor.behaviour.name, state.reason, actor.goal, state.path, near)
 
     def warm_up(self) -> None:
-        """Compile every kernel by running a small zone of its own, so that no tick has to wait."""
+        """Make ready all that a tick would have to wait for: kernels, and potentials of places.
+
+        Kernels are compiled by running a small zone of their own.
+        """
         scene = Scene.open_space((0.0, 0.0, 6.0, 6.0), walls=[((3.0, 0.0), (3.0, 2.0))])
         navigator = Navigator(scene, self.navigator.tick_s)
         navigator.add_actor("a", (1.0, 1.0), (5.0, 1.0))
@@ -160,6 +163,8 @@ class Cast:
         potential.direction([(1.0, 1.0)], [0])
         potential.distance([(1.0, 1.0)], [0])
         navigator.close()
+        for place in self.scene.places:
+            self.navigator.prepare_goal(place.position, place.layer, ActorParameters())
 
     def close(self) -> None:
         """End the planning threads."""

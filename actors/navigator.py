@@ -25,6 +25,9 @@ from planning import (
 
 Point = tuple[float, float]
 
+_SLACK_M = 0.02
+"""A goal may lie so much closer to a wall than the radius."""
+
 
 class Navigator:
     """Takes every actor to its goal among people whose future is not known.
@@ -138,7 +141,7 @@ class Navigator:
         target = None if goal is None else (float(goal[0]), float(goal[1]), layer)
         if target is not None:
             radius = self._parameters[actor_id].radius_m
-            free = self.grid.nearest_free(target[:2], layer, radius - 0.02)
+            free = self.grid.nearest_free(target[:2], layer, radius - _SLACK_M)
             if free is not None:
                 slot = self._guides.take(free, layer, radius)
                 c.goals[row] = free
@@ -146,6 +149,12 @@ class Navigator:
         c.known[row] = c.known[row] and slot == old
         self._guides.release(old)
         self._goals[actor_id] = target
+
+    def prepare_goal(self, goal: Point, layer: int, parameters: ActorParameters) -> None:
+        """Work out the potential of a goal before somebody needs it in the middle of a tick."""
+        free = self.grid.nearest_free(goal, layer, parameters.radius_m - _SLACK_M)
+        if free is not None:
+            self._guides.release(self._guides.take(free, layer, parameters.radius_m))
 
     def set_parameters(self, actor_id: Hashable, parameters: ActorParameters) -> None:
         """Change an actor's parameters from the next tick on."""

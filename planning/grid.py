@@ -19,7 +19,7 @@ CLEARANCE_CAP_M = 3.0
 """Distances to obstacles are kept up to here; further is as good as far."""
 _BUCKET_M = 1.0
 _BUCKET_REACH_M = 1.5
-_POTENTIALS_KEPT = 256
+_POTENTIALS_BYTES = 256 * 2**20
 
 Segments = NDArray[np.float64]
 
@@ -192,14 +192,14 @@ class LayeredGrid:
         return out, floors.copy()
 
     def potential(self, goal: tuple[float, float], layer: int, radius_m: float) -> Potential:
-        """The potential of a goal, kept for others that go there (the last 256 are)."""
+        """The potential of a goal, kept for others that go there (the latest 256 MiB are)."""
         points, floors = self.as_points([goal], [layer])
         key = (float(points[0, 0]), float(points[0, 1]), int(floors[0]), float(radius_m))
         found = self._potentials.get(key)
         if found is None:
             found = Potential(self, (key[0], key[1]), key[2], key[3])
             self._potentials[key] = found
-            if len(self._potentials) > _POTENTIALS_KEPT:
+            if len(self._potentials) > max(1, _POTENTIALS_BYTES // found.guide.nbytes):
                 self._potentials.popitem(last=False)
         else:
             self._potentials.move_to_end(key)
