@@ -23,7 +23,7 @@ from server.settings import ServerSettings
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md"))]
 ANSWER_LIMIT_S = 30.0
-NOT_OURS = {"crowdbotp/OpenTraj", "server/client_assets/"}
+NOT_OURS = {"crowdbotp/OpenTraj", "crowds/", "server/client_assets/"}
 
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 SPAN = re.compile(r"`([^`\n]+)`")
