@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 
 import bots
+from esplanade.cli import COMMANDS
 from planning import Scene
 from protocol.messages import Chat, Enter
 from server.app import running
@@ -79,6 +80,14 @@ def test_options_exist(document: Path) -> None:
         )
     ]
     assert unknown == []
+
+
+@documents
+def test_options_named_alone_are_options_of_a_command(document: Path) -> None:
+    spans = SPAN.findall(FENCE.sub("", document.read_text()))
+    options = {span.split()[0] for span in spans if span.startswith("--")}
+    known = "".join(help_of(command) for command in COMMANDS)
+    assert {option for option in options if option not in known} == set()
 
 
 @documents
