@@ -237,14 +237,15 @@ def _reason(
     slot = crowd.guide_slots[task.me]
     if dodged:
         return GIVING_WAY
-    if slot >= 0 and task.hold and task.goal_x != crowd.goals[task.me, 0]:
+    goal_x, goal_y = crowd.goals[task.me]
+    if slot >= 0 and task.hold and (task.goal_x != goal_x or task.goal_y != goal_y):
         return BLOCKED
     if slot < 0:
         return WAITING
     if task.hold:
         return ARRIVED
-    if status == NO_PATH:
-        return BLOCKED
+    if status == NO_PATH:  # a way leads there, but every first move is taken by somebody
+        return WAITING
     ramp = 2 * SUB  # from a stand it takes so many slices to get going
     ahead = 2 * ramp
     pace = np.hypot(path[ahead, 0] - path[ramp, 0], path[ahead, 1] - path[ramp, 1]) / (2.0 * step_s)

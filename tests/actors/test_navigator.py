@@ -87,7 +87,8 @@ def test_a_goal_inside_a_building_is_moved_beside_it() -> None:
     assert 6.2 < record.positions["a"][-1, 0] < 6.8
 
 
-def test_where_no_way_leads_it_says_so_and_stands() -> None:
+@pytest.mark.parametrize("start", [(2.0, 2.0), (6.0, 2.0), (2.0, 6.0)])
+def test_where_no_way_leads_it_says_so_and_stands(start) -> None:
     room = [
         ((4.0, 4.0), (8.0, 4.0)),
         ((8.0, 4.0), (8.0, 8.0)),
@@ -95,7 +96,7 @@ def test_where_no_way_leads_it_says_so_and_stands() -> None:
         ((4.0, 8.0), (4.0, 4.0)),
     ]
     nav = navigator(Scene.open_space((0.0, 0.0, 12.0, 12.0), walls=room))
-    nav.add_actor("a", (2.0, 2.0), (6.0, 6.0), BODY)
+    nav.add_actor("a", start, (6.0, 6.0), BODY)
     record = run(nav, 2.0)
     nav.close()
     assert set(record.reasons["a"]) == {Reason.NO_PATH}

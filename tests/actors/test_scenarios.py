@@ -104,7 +104,7 @@ def corridor(width):
     return open_space(walls=walls), 5.0 + width / 2
 
 
-@pytest.mark.parametrize("width", [1.6, 2.4, 6.0])
+@pytest.mark.parametrize("width", [1.3, 1.6, 2.4, 6.0])
 def test_two_who_meet_head_on_pass_each_other(width) -> None:
     scene, y = corridor(width)
     ways = [((2.0, y), (14.0, y)), ((14.0, y), (2.0, y))]
@@ -112,6 +112,7 @@ def test_two_who_meet_head_on_pass_each_other(width) -> None:
     assert record.nearest_actors() >= 0.5
     for actor in ("a0", "a1"):
         assert record.arrival_s(actor) < straight_s(*ways[0]) + 3.0
+        assert Reason.NO_PATH not in record.reasons[actor], "somebody in the way is no wall"
 
 
 @pytest.mark.parametrize("width", [0.75, 0.9])
