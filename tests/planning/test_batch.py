@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planning import PARAMETERS, Batch, Crowd, PlanModel, RiskModel
+from planning._crowd import ARRIVED, BLOCKED, WAITING
 from tests.planning.worlds import holds, open_grid, scaled, walking
 
 TICK_S = 0.1
@@ -195,6 +196,61 @@ def test_the_last_check_gives_way_to_who_is_about_to_be_touched(batch) -> None:
     checked, positions = tick(batch, crowd, [((4.62, 4.0), (0.0, 0.0))])
     assert checked.wishes[0, 0] < free.wishes[0, 0] - 0.1
     assert math.dist(positions[0], (4.62, 4.0)) > 0.5
+
+
+def reason_of(batch, crowd, ticks=1, people=()) -> int:
+    for _ in range(ticks):
+        decisions, positions = tick(batch, crowd, people)
+        step(crowd, decisions, positions)
+    return int(decisions.reasons[0])
+
+
+def test_without_a_goal_an_actor_stands_and_makes_way(batch) -> None:
+    crowd = crowd_of([(4.0, 4.0)], [(7.0, 4.0)])
+    crowd.guide_slots[0] = -1
+    assert reason_of(batch, crowd, 2) == WAITING
+    assert crowd.positions[0] == pytest.approx([4.0, 4.0], abs=1e-6)
+    for k in range(4):
+        people = [((4.9 - 0.12 * k, 4.1), (-1.2, 0.0))]
+        decisions, positions = tick(batch, crowd, people)
+        step(crowd, decisions, positions)
+    assert math.dist(crowd.positions[0], (4.0, 4.0)) > 0.02
+
+
+def test_at_its_goal_an_actor_has_arrived_and_stays(batch) -> None:
+    crowd = crowd_of([(4.0, 4.0)], [(4.05, 4.0)])
+    assert reason_of(batch, crowd, 3) == ARRIVED
+    assert math.dist(crowd.positions[0], (4.05, 4.0)) < 0.1
+
+
+@pytest.mark.parametrize("start", [(1.0, 1.0), (5.0, 1.0), (1.0, 5.0)])
+def test_behind_walls_there_is_no_way(start) -> None:
+    room = [
+        ((4.0, 4.0), (6.0, 4.0)),
+        ((6.0, 4.0), (6.0, 6.0)),
+        ((6.0, 6.0), (4.0, 6.0)),
+        ((4.0, 6.0), (4.0, 4.0)),
+    ]
+    batch = Batch(open_grid(8.0, room), PLAN, RiskModel())
+    crowd = crowd_of([start], [(5.0, 5.0)])
+    assert reason_of(batch, crowd, 2) == BLOCKED
+    assert crowd.positions[0] == pytest.approx(start, abs=1e-6)
+    batch.close()
+
+
+def test_an_old_path_is_read_on_and_lengthened(batch) -> None:
+    """A path that is almost over goes on straight down the potential."""
+    crowd = crowd_of([(1.0, 4.0)], [(7.0, 4.0)], velocities=[(1.3, 0.0)])
+    seconds = 0.2 * np.arange(PLAN.slices + 1)
+    crowd.followed[0, :, 0] = 1.0 + 1.3 * np.minimum(seconds, 1.0)
+    crowd.followed[0, :, 1] = 4.0
+    crowd.known[0] = True
+    crowd.ages[0] = 0
+    decisions, _ = tick(batch, crowd)
+    assert decisions.renewed[0]
+    crowd.ages[0] = 30
+    decisions, _ = tick(batch, crowd)
+    assert decisions.paths[0, -1, 0] > 4.0
 
 
 def test_an_empty_zone_ticks(batch) -> None:

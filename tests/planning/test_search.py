@@ -93,6 +93,13 @@ def test_on_the_lattice_too(start, goal, crowd) -> None:
     )
 
 
+@given(goal=ends, crowd=people, away=st.tuples(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5)))
+@holds(10, 2)
+def test_and_for_who_stays_where_it_is(goal, crowd, away) -> None:
+    question = task((goal[0] + away[0], goal[1] + away[1]), goal, max_expansions=40, hold=True)
+    same_as_twin(ground_of(question, 5, (), crowd), relative_moves(), SearchForm.ACCUMULATED)
+
+
 @given(st.integers(0, 1000))
 @holds(8, 2)
 def test_and_among_certain_obstacles(seed) -> None:
