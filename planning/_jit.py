@@ -1,13 +1,18 @@
 """How kernels are compiled: numba, without the interpreter's lock, cached by what they say."""
 
+import contextlib
 import hashlib
 import logging
+import shutil
 import tempfile
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar, cast
 
 import numba
+
+_KEPT_S = 30 * 24 * 3600.0
 
 F = TypeVar("F", bound=Callable[..., object])
 
@@ -25,6 +30,14 @@ def _source_digest() -> str:
     return digest.hexdigest()[:16]
 
 
+def _forget_old(base: Path) -> None:
+    """Remove what was compiled from sources that nobody has run for a month."""
+    for marker in base.glob("kernels-*/.writable"):
+        with contextlib.suppress(OSError):
+            if time.time() - marker.stat().st_mtime > _KEPT_S:
+                shutil.rmtree(marker.parent)
+
+
 def _open_cache() -> bool:
     """Point numba at a folder of its own for this very source; False where none can be written."""
     for base in (Path.home() / ".cache", Path(tempfile.gettempdir())):
@@ -34,6 +47,7 @@ def _open_cache() -> bool:
             (folder / ".writable").touch()
         except OSError:
             continue
+        _forget_old(folder.parent)
         numba.config.CACHE_DIR = str(folder)  # type: ignore[attr-defined]
         return True
     logging.getLogger(__name__).warning(

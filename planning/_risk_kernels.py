@@ -5,7 +5,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planning._geometry_kernels import closest_approach
 from planning._grid_kernels import GridArrays
 from planning._jit import kernel
 from planning._prediction_kernels import Prediction
@@ -208,32 +207,3 @@ def risk_many(
             velocities[n, 1],
             closing_weight,
         )
-
-
-@kernel
-def separation_from_people(
-    prediction: Prediction,
-    layer: int,
-    x: float,
-    y: float,
-    dx: float,
-    dy: float,
-    seconds: float,
-) -> float:
-    """Smallest distance to anyone while moving evenly by (dx, dy) and they as predicted now."""
-    best = np.inf
-    for p in range(len(prediction.layers)):
-        if prediction.layers[p] != layer:
-            continue
-        rx = x - prediction.means[p, 0, 0]
-        ry = y - prediction.means[p, 0, 1]
-        if abs(rx) > 4.0 or abs(ry) > 4.0:
-            continue
-        d = closest_approach(
-            rx,
-            ry,
-            dx - prediction.velocities[p, 0, 0] * seconds,
-            dy - prediction.velocities[p, 0, 1] * seconds,
-        )
-        best = min(best, d)
-    return best

@@ -20,7 +20,7 @@ PARTIAL = 1
 NO_PATH = 2
 
 
-DEPTH_BONUS_S = 0.03
+DEPTH_BONUS_S = 0.01
 """Deeper nodes go first by so much a step: the path may cost that much more a step than the best,
 and the search looks at a fraction of the nodes."""
 

@@ -8,7 +8,6 @@ from planning._geometry_kernels import SegmentIndex, closest_approach, slide
 from planning._grid_kernels import clearance_at
 from planning._jit import kernel
 from planning._prediction_kernels import Prediction
-from planning._risk_kernels import separation_from_people
 from planning._search_kernels import Task, World, advance, needed_clearance
 
 
@@ -42,18 +41,65 @@ def limited(task: Task, ux: float, uy: float, tick_s: float) -> tuple[float, flo
     return task.vx + dx * most / change, task.vy + dy * most / change
 
 
+LOOK_AHEAD_S = 0.6
+"""How far ahead the last check before a step looks, in two halves."""
+NEAR_M = 4.0
+"""Nobody further away can be met in that time."""
+
+
+@kernel
+def _people_near(prediction: Prediction, task: Task, near: NDArray[np.int64]) -> int:
+    """List the people near an actor into `near`; returns how many they are."""
+    count = 0
+    for p in range(len(prediction.layers)):
+        if (
+            prediction.layers[p] == task.layer
+            and abs(prediction.means[p, 0, 0] - task.x) <= NEAR_M
+            and abs(prediction.means[p, 0, 1] - task.y) <= NEAR_M
+        ):
+            near[count] = p
+            count += 1
+    return count
+
+
+@kernel
+def _separation(
+    prediction: Prediction,
+    near: NDArray[np.int64],
+    since: float,
+    seconds: float,
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+) -> float:
+    """Smallest distance to the people listed while moving evenly from a to b.
+
+    The move begins `since` seconds from now; people walk on at their present velocity.
+    """
+    best = np.inf
+    for n in range(len(near)):
+        p = near[n]
+        vx = prediction.velocities[p, 0, 0]
+        vy = prediction.velocities[p, 0, 1]
+        rx = ax - prediction.means[p, 0, 0] - vx * since
+        ry = ay - prediction.means[p, 0, 1] - vy * since
+        best = min(best, closest_approach(rx, ry, bx - ax - vx * seconds, by - ay - vy * seconds))
+    return best
+
+
 @kernel
 def _gap(
     world: World,
     prediction: Prediction,
+    near: NDArray[np.int64],
     task: Task,
     need: float,
     ux: float,
     uy: float,
-    seconds: float,
 ) -> float:
     """Smallest distance to people while turning to velocity u; negative where a wall is."""
-    half = 0.5 * seconds
+    half = 0.5 * LOOK_AHEAD_S
     a = task.max_acceleration_mps2
     hx, hy, hvx, hvy = advance(task.x, task.y, task.vx, task.vy, ux, uy, a, half)
     ex, ey, _, _ = advance(hx, hy, hvx, hvy, ux, uy, a, half)
@@ -62,25 +108,10 @@ def _gap(
         or clearance_at(world.grid, task.layer, ex, ey) < need
     ):
         return -1.0
-    first = separation_from_people(
-        prediction, task.layer, task.x, task.y, hx - task.x, hy - task.y, half
+    return min(
+        _separation(prediction, near, 0.0, half, task.x, task.y, hx, hy),
+        _separation(prediction, near, half, half, hx, hy, ex, ey),
     )
-    best = first
-    for p in range(len(prediction.layers)):
-        if prediction.layers[p] != task.layer:
-            continue
-        rx = hx - prediction.means[p, 0, 0] - prediction.velocities[p, 0, 0] * half
-        ry = hy - prediction.means[p, 0, 1] - prediction.velocities[p, 0, 1] * half
-        if abs(rx) > 4.0 or abs(ry) > 4.0:
-            continue
-        d = closest_approach(
-            rx,
-            ry,
-            ex - hx - prediction.velocities[p, 0, 0] * half,
-            ey - hy - prediction.velocities[p, 0, 1] * half,
-        )
-        best = min(best, d)
-    return best
 
 
 @kernel
@@ -95,11 +126,12 @@ def last_check(
     """The wish itself when nobody would be touched soon, else the way out that leaves most room.
 
     Ways out are stopping and sixteen directions at two speeds; the third value tells that one was
-    taken. Looks 0.6 s ahead.
+    taken. Costs O(people) once and O(people near) for each way out.
     """
-    seconds = 0.6
+    listed = np.empty(len(prediction.layers), dtype=np.int64)
+    near = listed[: _people_near(prediction, task, listed)]
     need = needed_clearance(world, task)
-    gap = _gap(world, prediction, task, need, ux, uy, seconds)
+    gap = _gap(world, prediction, near, task, need, ux, uy)
     if gap >= contact_m:
         return ux, uy, False
     best = min(gap, contact_m) - 1e-6 if gap >= 0.0 else -np.inf
@@ -113,7 +145,7 @@ def last_check(
             angle = ((n - 1) // 2) * np.pi / 8.0
             vx = speed * np.cos(angle)
             vy = speed * np.sin(angle)
-        gap = min(_gap(world, prediction, task, need, vx, vy, seconds), contact_m + 0.1)
+        gap = min(_gap(world, prediction, near, task, need, vx, vy), contact_m + 0.1)
         if gap < 0.0:
             continue
         score = gap - 0.02 * np.hypot(vx - ux, vy - uy)
