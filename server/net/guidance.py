@@ -57,8 +57,11 @@ class Guidance:
             log.exception("no way found because of a fault", id=avatar_id, goal=goal)
             way = None
         # While the way was sought, the person may have changed their mind.
-        if self._wishes.get(avatar_id) is wish:
-            del self._wishes[avatar_id]
+        latest = self._wishes.pop(avatar_id, None)
+        if latest is wish:
             found(avatar_id, wish, way)
+        elif latest is not None:
+            # Behind the others: whoever changes their mind all the time keeps nobody waiting.
+            self._wishes[avatar_id] = latest
         # Resting as long as it worked, this never takes more than half a core from the actors.
         await asyncio.sleep(loop.time() - start)

@@ -28,6 +28,28 @@ class SlowWorld:
         return find
 
 
+async def test_who_changes_their_mind_all_the_time_keeps_nobody_waiting() -> None:
+    world, answered = SlowWorld(), asyncio.Event()
+    world.go.set()
+    asked: list[int] = []
+    with ThreadPoolExecutor(1) as thread:
+        guidance = Guidance(cast(World, world), thread)
+
+        def change_minds(avatar_id: int, goal: Point) -> Callable[[], Way | None]:
+            asked.append(avatar_id)
+            guidance.ask(1, WalkTo(seq=len(asked), x=1.0, y=0.0))
+            return lambda: (goal,)
+
+        world.way_finder = change_minds  # type: ignore[method-assign]
+        guidance.ask(1, WalkTo(seq=0, x=1.0, y=0.0))
+        guidance.ask(2, WalkTo(seq=0, x=2.0, y=0.0))
+        running = asyncio.create_task(guidance.run(lambda *_: answered.set()))
+        async with asyncio.timeout(20.0):
+            await answered.wait()
+        running.cancel()
+    assert asked[:2] == [1, 2]
+
+
 async def test_wishes_are_taken_in_turn_the_latest_of_each_person() -> None:
     world, answers, done = SlowWorld(), [], asyncio.Event()
 
@@ -51,5 +73,5 @@ async def test_wishes_are_taken_in_turn_the_latest_of_each_person() -> None:
         async with asyncio.timeout(20.0):
             await done.wait()
         running.cancel()
-    assert answers == [(1, 2, None), (2, 1, ((2.0, 0.0, 0),)), (4, 1, ((4.0, 0.0, 0),))]
+    assert answers == [(2, 1, ((2.0, 0.0, 0),)), (4, 1, ((4.0, 0.0, 0),)), (1, 2, None)]
     assert guidance.waiting == 0
