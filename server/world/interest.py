@@ -66,8 +66,9 @@ class Interest:
         """This avatar is out of the world: out of every view, at once."""
         self.detach(slot)
         for viewer in self.seen_by(slot).tolist():
-            row = self.rows[viewer]
-            row[row == slot] = self._nobody
+            place = self.rows[viewer] == slot
+            self.rows[viewer, place] = self._nobody
+            self.rows_since[viewer, place] = 0
             self._changes.left[int(self._state.ids[viewer])].append(avatar_id)
         self.since[:, slot] = 0
 

@@ -66,6 +66,21 @@ def test_a_slot_used_again_is_new_to_everyone() -> None:
     assert seen == {ann, cem}
 
 
+def test_who_came_and_went_unsent_leaves_no_record_behind() -> None:
+    trial = Trial(scene=FIELD)
+    (ann,) = trial.join((50.0, 50.0))
+    trial.ticks(2)
+    trial.tick(Join(9, "Ben", (53.0, 50.0, 0)), writing=False)
+    ((_, ben),) = trial.joined
+    for _ in range(PERIOD_TICKS):
+        if trial.world.sees(ann, ben):
+            break
+        trial.tick(writing=False)
+    assert trial.world.sees(ann, ben)
+    sight = trial.tick(Leave(ben))
+    assert ids_in(unpack_block(block_of(sight, ann))) == [ann]
+
+
 def test_snapshots_alone_rebuild_the_world_however_many_are_lost() -> None:
     random = np.random.default_rng(2)
     trial = Trial(scene=FIELD, view_radius_m=100.0)
