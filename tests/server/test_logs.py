@@ -1,6 +1,7 @@
 import json
 import logging
 from collections.abc import Iterator
+from typing import Literal
 
 import pytest
 import structlog
@@ -25,6 +26,21 @@ def test_lines_are_json_where_that_is_wanted(capsys: pytest.CaptureFixture[str])
     ours, theirs = (json.loads(line) for line in capsys.readouterr().err.splitlines())
     assert (ours["event"], ours["id"], ours["level"]) == ("person here", 3, "info")
     assert (theirs["event"], theirs["logger"]) == ("told you", "some.library")
+
+
+@pytest.mark.parametrize("log_format", ["console", "json"])
+def test_faults_are_logged_without_the_values_of_variables(
+    capsys: pytest.CaptureFixture[str], log_format: Literal["console", "json"]
+) -> None:
+    logs.configure(ServerSettings(log_format=log_format))
+    token = str(40 + 2)
+    try:
+        int(f"no number {len(token)}")
+    except ValueError:
+        structlog.get_logger("server.test").exception("a fault")
+    text = capsys.readouterr().err
+    assert "ValueError: invalid literal" in text
+    assert f"'{token}'" not in text
 
 
 def test_what_is_below_the_level_is_left_out(capsys: pytest.CaptureFixture[str]) -> None:
