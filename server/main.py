@@ -34,6 +34,9 @@ def serve(settings: ServerSettings) -> None:
 async def _serve(settings: ServerSettings) -> None:
     loop = asyncio.get_running_loop()
     stop = asyncio.Event()
+    # Until people can come in there is nothing to put in order, but a thread that compiles for
+    # a minute or two and cannot be interrupted: Ctrl-C ends the process as SIGTERM does.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
     def on_signal(number: int) -> None:
         log.info("stopping", signal=signal.Signals(number).name)

@@ -2,8 +2,12 @@
 
 import asyncio
 import json
+import os
 import signal
 import sys
+from asyncio.subprocess import Process
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +18,9 @@ DEADLINE_S = 200.0
 """The first start on a machine compiles."""
 
 
-async def test_a_signal_ends_the_process_in_good_order(room_file: Path) -> None:
+@asynccontextmanager
+async def started(room_file: Path, **environment: str) -> AsyncIterator[Process]:
+    """A server's process; killed at the end if it still runs."""
     process = await asyncio.create_subprocess_exec(
         sys.executable,
         "-c",
@@ -22,25 +28,41 @@ async def test_a_signal_ends_the_process_in_good_order(room_file: Path) -> None:
         *("--scene", str(room_file), "--host", "127.0.0.1", "--port", "0", "--private-port", "0"),
         *("--actors", "1", "--log-format", "json"),
         stderr=asyncio.subprocess.PIPE,
+        env={**os.environ, **environment},
     )
-    assert process.stderr is not None
     try:
         async with asyncio.timeout(DEADLINE_S):
-            lines: list[dict[str, Any]] = []
-            while not lines or lines[-1]["event"] != "open":
-                lines.append(json.loads(await process.stderr.readline()))
-            assert lines[0]["event"].startswith("compiling")
-            port = int(lines[-1]["url"].rsplit(":", 1)[1])
-            async with joined(port) as client:
-                process.send_signal(signal.SIGTERM)
-                _, code = await client.last_words()
-            assert code == CloseCode.GOING_AWAY
-            rest = (await process.stderr.read()).decode()
-            assert await process.wait() == 0
+            yield process
     finally:
         if process.returncode is None:
             process.kill()
             await process.wait()
+
+
+async def test_ctrl_c_ends_a_start_at_once(room_file: Path, tmp_path: Path) -> None:
+    # In an empty home there are no kernels yet: this start would compile for a long time.
+    async with started(room_file, HOME=str(tmp_path)) as process:
+        assert process.stderr is not None
+        assert b"compiling" in await process.stderr.readline()
+        process.send_signal(signal.SIGINT)
+        assert await process.stderr.read() == b""
+        assert await process.wait() == -signal.SIGINT
+
+
+async def test_a_signal_ends_the_process_in_good_order(room_file: Path) -> None:
+    async with started(room_file) as process:
+        assert process.stderr is not None
+        lines: list[dict[str, Any]] = []
+        while not lines or lines[-1]["event"] != "open":
+            lines.append(json.loads(await process.stderr.readline()))
+        assert lines[0]["event"].startswith("compiling")
+        port = int(lines[-1]["url"].rsplit(":", 1)[1])
+        async with joined(port) as client:
+            process.send_signal(signal.SIGTERM)
+            _, code = await client.last_words()
+        assert code == CloseCode.GOING_AWAY
+        rest = (await process.stderr.read()).decode()
+        assert await process.wait() == 0
     summary = json.loads(rest.splitlines()[-1])
     assert summary["event"] == "summary"
     assert summary["people_seen"] == 1
