@@ -168,11 +168,11 @@ class Hub:
             token = self._seats.issue(avatar_id, hello.name, session)
             session.avatar_id, session.token = avatar_id, token
             self._bind(session, avatar_id, resumed=False)
-        for item in inputs:
-            if isinstance(item, Attach):
-                seat = self._seats.of(item.id)
-                if seat is not None and seat.occupant is not None:
-                    self._bind(seat.occupant, item.id, resumed=True)
+        # Two may have come back to one avatar since the last tick: the later one sits there.
+        for avatar_id in dict.fromkeys(item.id for item in inputs if isinstance(item, Attach)):
+            seat = self._seats.of(avatar_id)
+            if seat is not None and seat.occupant is not None:
+                self._bind(seat.occupant, avatar_id, resumed=True)
 
     async def close(self) -> None:
         """Say goodbye to everyone and wait until they are gone, or cut off."""

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 import structlog
 from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
+from websockets.frames import CloseCode as LibraryCode
 
 from protocol import VERSION, CloseCode, ErrorCode, ProtocolError, decode_client
 from protocol.messages import (
@@ -66,13 +67,15 @@ class Session:
             self.name = hello.name
             self._hub.admit(self, hello)
             async for frame in self._connection:
-                self._take(self._decode(frame))
+                # Whoever was dismissed may go on talking until the connection ends.
+                if self._dismissal is None:
+                    self._take(self._decode(frame))
         except ProtocolError as fault:
             self.tell(fault)
             self._hub.depart(self, comes_back=False)
             await self._close(fault.close or CloseCode.NORMAL, fault.code.value)
-        except ConnectionClosed:
-            pass
+        except ConnectionClosed as closed:
+            self._count_end(closed)
         finally:
             self._end()
         if self._dismissal:
@@ -142,6 +145,11 @@ class Session:
                 self._hub.watch(self, message.id)
             case Hello():
                 raise ProtocolError(ErrorCode.INVALID, "hello comes only once", CloseCode.INVALID)
+
+    def _count_end(self, closed: ConnectionClosed) -> None:
+        """Ends that the library made by itself: broken frames, too large ones, no more answers."""
+        if self._dismissal is None and closed.sent is not None and not closed.rcvd_then_sent:
+            self._metrics.closes.labels(LibraryCode(closed.sent.code).name.lower()).inc()
 
     def _end(self) -> None:
         if self.outbox.dropped:

@@ -1,11 +1,12 @@
 """People in a running server: coming in, moving, talking, coming back, going."""
 
+import asyncio
 import math
 
 import pytest
 
 from protocol import VERSION, ByeCode, CloseCode, ErrorCode
-from protocol.messages import Bye, Chat, ChatLine, Error, Hello, Snapshot, WalkTo
+from protocol.messages import Bye, Chat, ChatLine, Error, Hello, Snapshot, WalkTo, Welcome
 from tests.server.client import connected, joined
 from tests.server.conftest import Serving
 
@@ -144,6 +145,33 @@ async def test_a_token_in_use_replaces_the_first_connection(serving: Serving) ->
             await second.move(0.0, 1.0)
             await second.wait_for(lambda: second.ack == 1)
             assert server.world.count()[0] == 1
+
+
+async def test_who_was_replaced_moves_the_avatar_no_more(serving: Serving) -> None:
+    async with serving() as server, joined(server.port, "Ann", at=(2.0, 2.0, 0)) as first:
+        assert first.welcome is not None
+        # Its answer to the closing handshake is held back, as a faulty client would.
+        first.connection.transport.pause_reading()
+        async with joined(server.port, "Ann", resume=first.welcome.resume) as second:
+            stood = second.position
+            await first.move(0.0, 3.0)
+            await second.ticks(5)
+            assert second.position == stood
+            assert second.ack == 0
+        first.connection.transport.abort()
+
+
+async def test_of_two_who_come_back_at_once_the_later_is_welcomed_once(serving: Serving) -> None:
+    async with serving(tick_rate=5) as server, joined(server.port, "Ann") as first:
+        assert first.welcome is not None
+        hello = Hello(name="Ann", version=VERSION, resume=first.welcome.resume)
+        async with connected(server.port) as second, connected(server.port) as third:
+            await asyncio.gather(second.send(hello), third.send(hello))
+            ends = [asyncio.create_task(c.connection.wait_closed()) for c in (second, third)]
+            await asyncio.wait(ends, return_when=asyncio.FIRST_COMPLETED)
+            winner = third if second.connection.close_code else second
+            await winner.until(Welcome)
+            assert not [m for m in [await winner.next() for _ in range(5)] if type(m) is Welcome]
 
 
 async def test_an_unknown_token_is_a_new_person(serving: Serving) -> None:

@@ -73,10 +73,17 @@ async def test_a_bad_later_message_ends_the_person(
 
 
 async def test_a_frame_beyond_all_bounds_is_not_even_read(serving: Serving) -> None:
-    async with serving() as server, joined(server.port) as client:
+    async with (
+        serving(resume_seconds=0.0) as server,
+        joined(server.port, "Eve") as eve,
+        joined(server.port) as client,
+    ):
+        await eve.wait_for(lambda: client.id in eve.positions)
         await client.connection.send(bytes(1_000_000))
         _, code = await client.last_words()
         assert code == CloseCode.TOO_LARGE
+        await eve.wait_for(lambda: client.id not in eve.positions)
+    assert b'esplanade_closes_total{reason="message_too_big"} 1.0' in server.metrics.exposition()
 
 
 async def test_garbage_below_the_websocket_layer_harms_nobody(serving: Serving) -> None:
@@ -85,6 +92,7 @@ async def test_garbage_below_the_websocket_layer_harms_nobody(serving: Serving) 
             client.connection.transport.write(struct.pack(">BB", 0xFF, 0xFF) + os.urandom(500))
             await client.connection.wait_closed()
         await other.until_tick(server.world.tick + 3)
+    assert b'esplanade_closes_total{reason="protocol_error"} 1.0' in server.metrics.exposition()
 
 
 async def test_flooding_ends_the_connection(serving: Serving) -> None:
