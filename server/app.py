@@ -19,7 +19,7 @@ from server.net.delivery import Delivery
 from server.net.guidance import Guidance
 from server.net.hub import Hub
 from server.net.listener import Listener
-from server.net.private import start_private
+from server.net.private import private_port
 from server.net.schedule import Schedule
 from server.net.ticker import Ticker
 from server.settings import ServerSettings
@@ -73,9 +73,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     ready = False
     async with AsyncExitStack() as stack:
         thread = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="actors"))
-        private = await stack.enter_async_context(
-            await start_private(settings, metrics, lambda: ready)
-        )
+        private = await stack.enter_async_context(private_port(settings, metrics, lambda: ready))
         log.info("compiling; the first start on a machine takes a minute or two")
         cast, world = await loop.run_in_executor(thread, _build, stage, settings)
         stack.callback(cast.close)
@@ -94,7 +92,9 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         )
         delivery = Delivery(world, hub.sessions, settings.tick_rate)
         ticker = Ticker(world, hub, delivery, schedule, metrics, thread)
-        listener = await Listener(hub, assets, settings, metrics).start()
+        listener = await stack.enter_async_context(
+            Listener(hub, assets, settings, metrics).listening()
+        )
         ticking = asyncio.create_task(ticker.run())
         guiding = asyncio.create_task(guidance.run(hub.way_found))
         ready = True
@@ -103,7 +103,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         finally:
             ready = False
             guiding.cancel()
-            await _stop(ticker, ticking, hub, listener)
+            await _stop(ticker, ticking, hub)
 
 
 def _build(stage: Stage, settings: ServerSettings) -> tuple[Cast, World]:
@@ -129,14 +129,12 @@ def _build(stage: Stage, settings: ServerSettings) -> tuple[Cast, World]:
     return cast, world
 
 
-async def _stop(ticker: Ticker, ticking: "asyncio.Task[None]", hub: Hub, listener: Server) -> None:
+async def _stop(ticker: Ticker, ticking: "asyncio.Task[None]", hub: Hub) -> None:
     ticker.stop()
     try:
         await ticking
     finally:
         await hub.close()
-        listener.close()
-        await listener.wait_closed()
 
 
 def _watch(world: World, metrics: Metrics) -> None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from http import HTTPStatus
 from pathlib import Path, PurePosixPath
 from typing import Final
-from urllib.parse import unquote, urlsplit
+from urllib.parse import unquote
 
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
@@ -85,7 +85,7 @@ class Assets:
 
     def answer(self, request: Request) -> Response:
         """The response to a GET."""
-        asset = self._table.get(unquote(urlsplit(request.path).path))
+        asset = self._table.get(unquote(path_of(request)))
         if asset is None:
             return respond(HTTPStatus.NOT_FOUND, b"there is nothing here\n")
         if asset.headers["ETag"] in " ".join(request.headers.get_all("If-None-Match")):
@@ -95,6 +95,11 @@ class Assets:
             headers = {**asset.headers, "Content-Encoding": "gzip"}
             return respond(HTTPStatus.OK, asset.compressed, headers)
         return respond(HTTPStatus.OK, asset.body, asset.headers)
+
+
+def path_of(request: Request) -> str:
+    """What is asked for, without query and fragment. Taken as it comes: it need not be a URL."""
+    return request.path.partition("#")[0].partition("?")[0]
 
 
 def respond(status: HTTPStatus, body: bytes, headers: Mapping[str, str] | None = None) -> Response:

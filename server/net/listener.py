@@ -1,18 +1,19 @@
 """The one port for people: the web client by GET, the world by WebSocket at /ws."""
 
 import logging
-from collections.abc import Sequence
+from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager
 from http import HTTPStatus
 from typing import Final, cast
-from urllib.parse import urlsplit
 
 from websockets.asyncio.server import Server, ServerConnection, serve
 from websockets.http11 import Request, Response
 from websockets.typing import Origin
 
 from protocol.codes import MAX_CLIENT_FRAME_BYTES
-from server.assets import Assets, respond
+from server.assets import Assets, path_of, respond
 from server.metrics import Metrics
+from server.net.connections import Connections
 from server.net.hub import Hub
 from server.net.session import CLOSE_S, Session
 from server.settings import ServerSettings
@@ -28,6 +29,10 @@ MAX_AT_DOOR: Final = 256
 """Connections that have not said hello yet; beyond, new ones are turned away."""
 
 
+MAX_VISITS: Final = 256
+"""Connections that fetch a page, or have not asked for anything yet; beyond, new ones are cut."""
+
+
 class Listener:
     """Accepts connections and runs a session for each."""
 
@@ -39,10 +44,18 @@ class Listener:
         self._settings = settings
         self._metrics = metrics
         self._sessions = 0
+        self._connections = Connections(settings.max_clients + MAX_AT_DOOR + MAX_VISITS)
         metrics.gauge("connections", "Open WebSocket connections", lambda: self._sessions)
+        metrics.gauge("sockets", "Open connections of any kind", lambda: len(self._connections))
+        metrics.total(
+            "sockets_refused",
+            "Connections cut off because there were too many",
+            lambda: self._connections.refused,
+        )
 
-    async def start(self) -> Server:
-        """Listen on the settings' host and port.
+    @asynccontextmanager
+    async def listening(self) -> AsyncIterator[Server]:
+        """Listen on the settings' host and port; afterwards nobody is connected any more.
 
         Raises
         ------
@@ -50,7 +63,7 @@ class Listener:
             The address cannot be had.
         """
         origins = cast(Sequence[Origin] | None, self._settings.origins)
-        return await serve(
+        server = await serve(
             self._serve,
             self._settings.host,
             self._settings.port,
@@ -62,7 +75,12 @@ class Listener:
             close_timeout=CLOSE_S,
             max_size=MAX_FRAME_BYTES,
             logger=logging.getLogger("server.websockets"),
+            create_connection=self._connections.factory,
         )
+        try:
+            yield server
+        finally:
+            await self._connections.shut(server)
 
     async def _serve(self, connection: ServerConnection) -> None:
         self._sessions += 1
@@ -76,7 +94,7 @@ class Listener:
             return respond(
                 HTTPStatus.METHOD_NOT_ALLOWED, b"only GET is answered here\n", {"Allow": "GET"}
             )
-        if urlsplit(request.path).path != SOCKET_PATH:
+        if path_of(request) != SOCKET_PATH:
             return self._assets.answer(request)
         if self._sessions >= self._settings.max_clients + MAX_AT_DOOR:
             return respond(HTTPStatus.SERVICE_UNAVAILABLE, b"too many connections\n")
