@@ -28,7 +28,8 @@ def straight_way(grid: LayeredGrid, start: Point, goal: Point, clearance_m: floa
 def find_way(grid: LayeredGrid, start: Point, goal: Point, clearance_m: float) -> Way | None:
     """A shortest way to the free place nearest to the goal; None where no way leads.
 
-    Cost O(cells log cells): up to a second in a large scene, so not for the event loop.
+    Cost: that of a potential where no straight way leads. Some 40 ms in the plaza, half a second
+    at 150 m a side and more than a minute at 650 m, so not for the event loop.
     """
     if goal[2] >= grid.layers:
         return None
