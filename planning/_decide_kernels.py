@@ -22,6 +22,7 @@ from planning._perturb_kernels import path_cost, stretch_is_legal, update_path
 from planning._potential_kernels import direction_at, potential_at
 from planning._prediction_kernels import Prediction
 from planning._search_kernels import (
+    FOUND,
     NO_PATH,
     SUB,
     Moves,
@@ -168,10 +169,11 @@ def decide(
     workspace: Workspace,
     out: Decisions,
 ) -> None:
-    """Search anew, perturb the followed path, keep the better, and wish for a velocity.
+    """Perturb the followed path, search anew, keep the better, and wish for a velocity.
 
-    Actors first..last. Followed paths, seen from now, are `world.reservations.paths`. The
-    speeds of `moves` are parts of each actor's own.
+    The search only looks at what may be better than the followed path by the hysteresis, so that
+    it costs little while that path is good. Actors first..last; their followed paths, seen from
+    now, are `world.reservations.paths`. The speeds of `moves` are parts of each actor's own.
     """
     slices = out.paths.shape[1]
     speeds = np.empty(len(moves.speeds))
@@ -187,32 +189,24 @@ def decide(
             part = moves.speeds[m]
             speeds[m] = task.max_speed_mps if part > 1.0 else part * task.speed_mps
         own = Moves(moves.cosines, moves.sines, speeds, moves.straight, True)
-        found = search(world, guide, own, task, True, workspace, out.paths[a])
-        out.statuses[a] = found.status
-        out.expansions[a] = found.expansions
-        out.renewed[a] = True
-        switched = False
+        bound = np.inf
+        changed = False
         if crowd.known[a]:
             kept[:] = world.reservations.paths[a]
-            need = needed_clearance(world, task)
-            if stretch_is_legal(world, guide, task, need, kept, 0, slices - 1):
-                cost, risk = path_cost(world, guide, task, kept)
-                bent[:] = kept
-                changed = False
-                if update_path(world, guide, task, bent, trial) > 0:
-                    bent_cost, bent_risk = path_cost(world, guide, task, bent)
-                    if bent_risk < risk and bent_cost < cost:
-                        cost = bent_cost
-                        kept[:] = bent
-                        changed = True
-                new_cost = path_cost(world, guide, task, out.paths[a])[0]
-                if found.status != NO_PATH and new_cost < cost - p["hysteresis_s"]:
-                    switched = True
-                else:
-                    out.paths[a] = kept
-                    out.renewed[a] = changed
-            else:
-                switched = True
+            cost, changed = _improve(world, guide, task, kept, bent, trial)
+            bound = cost - p["hysteresis_s"]
+        found = search(world, guide, own, task, True, bound, workspace, out.paths[a])
+        status = found.status
+        better = True
+        if bound < np.inf:
+            better = status != NO_PATH and path_cost(world, guide, task, out.paths[a])[0] < bound
+            if not better:
+                out.paths[a] = kept
+                status = FOUND
+        out.statuses[a] = status
+        out.expansions[a] = found.expansions
+        out.renewed[a] = better or changed
+        switched = better and crowd.known[a]
         path = out.paths[a]
         ux, uy = control_toward(task, path[SUB, 0], path[SUB, 1], world.step_s)
         contact = p["radius_m"] + p["person_clearance_m"]
@@ -220,7 +214,33 @@ def decide(
         wx, wy = limited(task, ux, uy, tick_s)
         out.wishes[a, 0] = wx
         out.wishes[a, 1] = wy
-        out.reasons[a] = _reason(crowd, task, path, found.status, switched, dodged, world.step_s)
+        out.reasons[a] = _reason(crowd, task, path, status, switched, dodged, world.step_s)
+
+
+@kernel
+def _improve(
+    world: World,
+    guide: NDArray[np.float32],
+    task: Task,
+    path: NDArray[np.float64],
+    bent: NDArray[np.float64],
+    trial: NDArray[np.float64],
+) -> tuple[float, bool]:
+    """Perturb a path in place where that is worth it: its cost, inf if illegal, and if it changed.
+
+    Worth it means less mean risk and less cost, in which time and length are.
+    """
+    need = needed_clearance(world, task)
+    if not stretch_is_legal(world, guide, task, need, path, 0, len(path) - 1):
+        return np.inf, False
+    cost, risk = path_cost(world, guide, task, path)
+    bent[:] = path
+    if update_path(world, guide, task, bent, trial) > 0:
+        bent_cost, bent_risk = path_cost(world, guide, task, bent)
+        if bent_risk < risk and bent_cost < cost:
+            path[:] = bent
+            return bent_cost, True
+    return cost, False
 
 
 @kernel

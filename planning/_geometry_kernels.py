@@ -246,9 +246,13 @@ def negate_inside(
     """Negate a field of distances (ny, nx) at cell centres inside a closed ring (K, 2)."""
     ny, nx = field.shape
     n = len(ring)
-    for j in range(ny):
+    j0 = max(0, int((ring[:, 1].min() - y0) / cell) - 1)
+    j1 = min(ny, int((ring[:, 1].max() - y0) / cell) + 2)
+    i0 = max(0, int((ring[:, 0].min() - x0) / cell) - 1)
+    i1 = min(nx, int((ring[:, 0].max() - x0) / cell) + 2)
+    for j in range(j0, j1):
         py = y0 + (j + 0.5) * cell
-        for i in range(nx):
+        for i in range(i0, i1):
             px = x0 + (i + 0.5) * cell
             inside = False
             b = n - 1

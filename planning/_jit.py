@@ -5,7 +5,6 @@ import hashlib
 import logging
 import shutil
 import tempfile
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar, cast
@@ -30,12 +29,12 @@ def _source_digest() -> str:
     return digest.hexdigest()[:16]
 
 
-def _forget_old(base: Path) -> None:
-    """Remove what was compiled from sources that nobody has run for a month."""
-    for marker in base.glob("kernels-*/.writable"):
+def _forget_older(marker: Path) -> None:
+    """Remove what was compiled from sources that nobody ran for a month before this run."""
+    for other in marker.parent.parent.glob(f"kernels-*/{marker.name}"):
         with contextlib.suppress(OSError):
-            if time.time() - marker.stat().st_mtime > _KEPT_S:
-                shutil.rmtree(marker.parent)
+            if marker.stat().st_mtime - other.stat().st_mtime > _KEPT_S:
+                shutil.rmtree(other.parent)
 
 
 def _open_cache() -> bool:
@@ -44,10 +43,11 @@ def _open_cache() -> bool:
         folder = base / "esplanade" / f"kernels-{_source_digest()}"
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            (folder / ".writable").touch()
+            marker = folder / ".used"
+            marker.touch()
         except OSError:
             continue
-        _forget_old(folder.parent)
+        _forget_older(marker)
         numba.config.CACHE_DIR = str(folder)  # type: ignore[attr-defined]
         return True
     logging.getLogger(__name__).warning(

@@ -16,6 +16,11 @@ Guide = NDArray[np.float32]
 Unreachable cells hold inf."""
 
 
+LONGEST_SIGHT_M = 24.0
+"""A waypoint is followed by another at the latest after this way, so that a line of sight costs
+no more in a large zone than in a small one."""
+
+
 @kernel
 def potential_at(grid: GridArrays, guide: Guide, layer: int, x: float, y: float) -> float:
     """Metres from a point to the goal; inf where no way leads."""
@@ -132,11 +137,18 @@ def sight_wave(
                     continue
                 cx = grid.x0 + (ni + 0.5) * grid.cell_m
                 cy = grid.y0 + (nj + 0.5) * grid.cell_m
-                cost = own[0] + np.hypot(own[1] - cx, own[2] - cy)
+                left = own[0]
+                wx = own[1]
+                wy = own[2]
+                if np.hypot(wx - cx, wy - cy) > LONGEST_SIGHT_M:
+                    left = own[0] + np.hypot(wx - x, wy - y)
+                    wx = x
+                    wy = y
+                cost = left + np.hypot(wx - cx, wy - cy)
                 if cost < potential_at(grid, guide, layer, cx, cy):
-                    guide[layer, nj, ni, 0] = own[0]
-                    guide[layer, nj, ni, 1] = own[1]
-                    guide[layer, nj, ni, 2] = own[2]
+                    guide[layer, nj, ni, 0] = left
+                    guide[layer, nj, ni, 1] = wx
+                    guide[layer, nj, ni, 2] = wy
                     size = heap_push(keys, items, size, cost, nj * nx + ni)
     _extend_into_obstacles(grid, guide, settled, layer)
     return reached

@@ -83,7 +83,7 @@ def extrapolate(
     velocity: NDArray[np.float64],
     slice_s: float,
     sigma_0: float,
-    sigma_growth: float,
+    sigma_growth: NDArray[np.float64],
     wall_clearance: float,
     prediction: Prediction,
 ) -> None:
@@ -110,4 +110,4 @@ def extrapolate(
                 prediction.velocities[p, k, 1] = vy
             prediction.means[p, k, 0] = x
             prediction.means[p, k, 1] = y
-            prediction.sigmas[p, k] = sigma_0 + sigma_growth * k * slice_s
+            prediction.sigmas[p, k] = sigma_0 + sigma_growth[p] * k * slice_s

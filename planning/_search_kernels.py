@@ -192,6 +192,7 @@ def search(
     moves: Moves,
     task: Task,
     accumulate: bool,
+    bound: float,
     workspace: Workspace,
     path: NDArray[np.float64],
 ) -> Outcome:
@@ -199,6 +200,7 @@ def search(
 
     With `accumulate` the key of a node is f = cost so far + way left, cost being time, risk and
     what else is minded; without, it is the printed U(q') = potential(q') + Risk(q').
+    Nodes that cannot end below `bound` are left out.
     """
     steps = (len(path) - 1) // SUB
     ds = world.step_s / SUB
@@ -282,26 +284,28 @@ def search(
                 uy = speed * (gx * moves.sines[m] + gy * moves.cosines[m])
             hx, hy, hvx, hvy = advance(x, y, vx, vy, ux, uy, task.max_acceleration_mps2, ds)
             ex, ey, evx, evy = advance(hx, hy, hvx, hvy, ux, uy, task.max_acceleration_mps2, ds)
-            half_room = clearance_at(world.grid, layer, hx, hy)
-            room = clearance_at(world.grid, layer, ex, ey)
-            if half_room < need or room < need:
-                continue
             left = way_left(world, guide, task, layer, ex, ey)
             if not np.isfinite(left):
-                continue
-            ej, ei = cell_at(world.grid, ex, ey)
-            slot = _slot(workspace, (((step + 1) * layers + layer) * ny + ej) * nx + ei)
-            if slot < 0:
                 continue
             moved = np.hypot(ex - x, ey - y)
             cost = (
                 node[n, 4]
                 + time_cost(task, ex, ey, moved / world.step_s, world.step_s)
                 + task.turn_weight * np.hypot(evx - vx, evy - vy)
-                + wall_cost(task, min(half_room, room), world.step_s)
             )
+            if cost + left >= bound:
+                continue
+            half_room = clearance_at(world.grid, layer, hx, hy)
+            room = clearance_at(world.grid, layer, ex, ey)
+            if half_room < need or room < need:
+                continue
+            ej, ei = cell_at(world.grid, ex, ey)
+            slot = _slot(workspace, (((step + 1) * layers + layer) * ny + ej) * nx + ei)
+            if slot < 0:
+                continue
+            cost += wall_cost(task, min(half_room, room), world.step_s)
             worth = cost + left if accumulate else 0.0
-            if worth >= workspace.table_worth[slot] - 1e-12:
+            if worth >= min(bound, workspace.table_worth[slot] - 1e-12):
                 continue
             blocked, soft = conflict(world.reservations, task.me, layer, k, x, y, hx, hy)
             if blocked:
@@ -322,7 +326,7 @@ def search(
             if accumulate:
                 cost += risk
                 worth += risk
-                if worth >= workspace.table_worth[slot] - 1e-12:
+                if worth >= min(bound, workspace.table_worth[slot] - 1e-12):
                     continue
                 key = worth - DEPTH_BONUS_S * (step + 1)
             else:

@@ -143,20 +143,35 @@ class LayeredGrid:
     def nearest_free(
         self, position: tuple[float, float], layer: int, clearance_m: float
     ) -> tuple[float, float] | None:
-        """The position itself when free, else the centre of the nearest free cell, if any."""
+        """The position itself when free, else the centre of the nearest free cell, if any.
+
+        Costs O(cells as near as the answer).
+        """
         if self.is_free([position], [layer], clearance_m)[0]:
             return float(position[0]), float(position[1])
         a = self.arrays
-        rows, columns = np.nonzero(a.clearance[layer] >= clearance_m)
-        centres = np.stack(
-            [a.x0 + (columns + 0.5) * a.cell_m, a.y0 + (rows + 0.5) * a.cell_m], axis=1
-        )
-        inside = (centres[:, 0] <= a.x1) & (centres[:, 1] <= a.y1)
-        centres = centres[inside]
-        if not len(centres):
-            return None
-        x, y = centres[np.argmin(((centres - np.asarray(position)) ** 2).sum(axis=1))]
-        return float(x), float(y)
+        x, y = np.clip(position, (a.x0, a.y0), (a.x1, a.y1))
+        row, column = int((y - a.y0) / a.cell_m), int((x - a.x0) / a.cell_m)
+        field = a.clearance[layer]
+        reach = 4
+        while True:
+            j0, i0 = max(0, row - reach), max(0, column - reach)
+            rows, columns = np.nonzero(
+                field[j0 : row + reach + 1, i0 : column + reach + 1] >= clearance_m
+            )
+            centres = np.stack(
+                [a.x0 + (columns + i0 + 0.5) * a.cell_m, a.y0 + (rows + j0 + 0.5) * a.cell_m],
+                axis=1,
+            )
+            centres = centres[(centres <= (a.x1, a.y1)).all(axis=1)]
+            away = np.hypot(*(centres - (x, y)).T)
+            everything = reach >= max(field.shape)
+            if len(away) and (everything or away.min() <= (reach - 1) * a.cell_m):
+                nearest = centres[away.argmin()]
+                return float(nearest[0]), float(nearest[1])
+            if everything:
+                return None
+            reach *= 2
 
     def walk(
         self,

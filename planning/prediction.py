@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -29,6 +30,11 @@ class PredictionModel:
     """sigma_0 of eq. (3): how far a person's centre may lie from where it is reported, metres."""
     sigma_growth_mps: float = 0.17
     """Growth of the deviation: alpha(i) = 1 + (growth / sigma_0) * i * slice of eq. (3)."""
+    calibration_s: float = 4.0
+    """Memory of the calibration: over this time a person's own errors replace `sigma_growth_mps`;
+    infinite keeps the same growth for everyone. Seconds."""
+    least_growth_mps: float = 0.08
+    """However steadily somebody walks, the deviation grows at least so fast, metres a second."""
     wall_clearance_m: float = 0.15
     """How close to walls people are expected to pass, metres."""
     printed: bool = False
@@ -82,6 +88,13 @@ class TrackHistory:
         self._layer = np.zeros(0, dtype=np.int64)
         self._newest = -1
         self._order = np.zeros(0, dtype=np.int64)
+        self._lag = 2 * self.stride
+        self._lag_s = self._lag * tick_s
+        self._memory = -math.expm1(-tick_s / model.calibration_s)
+        self._expected = np.zeros((0, self._lag, 2))
+        self._growth2 = np.zeros(0)
+        self._velocities = np.zeros((0, 2))
+        self._ticks = -1
 
     @property
     def ids(self) -> list[object]:
@@ -131,6 +144,27 @@ class TrackHistory:
         self._layer[self._order] = rows[:, 2].astype(np.int64)
         self._ring[self._order, self._newest] = rows[:, :2]
         self._count[self._order] = np.minimum(self._count[self._order] + 1, self._depth)
+        self._calibrate()
+
+    def _calibrate(self) -> None:
+        """Hold what was expected of everyone two samples ago against where they are now.
+
+        The square of a person's growth is a running mean of their squared errors per axis over
+        the squared time, beginning with the model's.
+        """
+        self._ticks += 1
+        order, slot = self._order, self._ticks % self._lag
+        ready = order[self._count[order] > self._lag + self.stride]
+        missed = self._ring[ready, self._newest] - self._expected[ready, slot]
+        growth2 = (missed**2).sum(axis=1) / (2.0 * self._lag_s**2)
+        self._growth2[ready] += self._memory * (growth2 - self._growth2[ready])
+        self._velocities = self._predicted_velocities()
+        self._expected[order, slot] = self.positions + self._velocities * self._lag_s
+
+    @property
+    def growth_mps(self) -> NDArray[np.float64]:
+        """Growth of everyone's deviation, calibrated on their own past, float64 (P,), m/s."""
+        return np.maximum(np.sqrt(self._growth2[self._order]), self.model.least_growth_mps)
 
     def _take_row(self) -> int:
         if not self._free:
@@ -139,9 +173,13 @@ class TrackHistory:
             self._ring = np.concatenate([self._ring, np.zeros((grown - size, self._depth, 2))])
             self._count = np.concatenate([self._count, np.zeros(grown - size, dtype=np.int64)])
             self._layer = np.concatenate([self._layer, np.zeros(grown - size, dtype=np.int64)])
+            more = np.zeros((grown - size, self._lag, 2))
+            self._expected = np.concatenate([self._expected, more])
+            self._growth2 = np.concatenate([self._growth2, np.zeros(grown - size)])
             self._free = list(range(grown - 1, size - 1, -1))
         row = self._free.pop()
         self._count[row] = 0
+        self._growth2[row] = self.model.sigma_growth_mps**2
         return row
 
     def velocities(self) -> NDArray[np.float64]:
@@ -149,6 +187,9 @@ class TrackHistory:
 
         Who has been seen for less than one sample gets the mean velocity so far, zero at first.
         """
+        return self._velocities
+
+    def _predicted_velocities(self) -> NDArray[np.float64]:
         people = len(self._order)
         out = np.zeros((people, 2))
         if not people:
@@ -181,7 +222,7 @@ class TrackHistory:
             self.velocities(),
             slice_s,
             self.model.sigma_0_m,
-            self.model.sigma_growth_mps,
+            self.growth_mps,
             self.model.wall_clearance_m,
             prediction,
         )

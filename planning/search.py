@@ -140,12 +140,14 @@ def uncertain_bfp(
     reservations: Reservations,
     step_s: float,
     form: SearchForm = SearchForm.ACCUMULATED,
+    bound: float = math.inf,
 ) -> SearchResult:
     """Search one path from `task`'s start: Uncertain_BFP of fig. 5.
 
     The horizon is the risk field's last slice. Nodes are configurations (layer, cell, step) that
     keep their exact position; with `lattice_moves`, a start at a cell's centre and unbounded
-    acceleration they are cells, as printed.
+    acceleration they are cells, as printed. What cannot cost less than `bound` (seconds) is not
+    looked at: a caller who already has a path only wants a better one.
 
     Raises
     ------
@@ -168,6 +170,7 @@ def uncertain_bfp(
         moves,
         task,
         form is SearchForm.ACCUMULATED,
+        bound,
         workspace,
         path,
     )

@@ -88,13 +88,41 @@ def walked(grid, velocity, model=None, start=(4.0, 4.0), ticks=20):
 
 
 def test_means_and_deviations_follow_eqs_2_and_3() -> None:
-    prediction = walked(open_grid(40.0), (1.0, -0.5), start=(20.0, 20.0))
+    alike = PredictionModel(calibration_s=math.inf)
+    prediction = walked(open_grid(40.0), (1.0, -0.5), alike, start=(20.0, 20.0))
     seconds = 0.2 * np.arange(25)
     assert prediction.means[0] == pytest.approx(
         np.array([20.0, 20.0]) + seconds[:, None] * np.array([1.0, -0.5]), abs=1e-6
     )
     assert prediction.sigmas[0] == pytest.approx(0.05 + 0.17 * seconds)
     assert prediction.layers.tolist() == [0]
+
+
+def test_deviations_follow_how_steadily_somebody_walks() -> None:
+    model = PredictionModel()
+    history = TrackHistory(model, TICK_S)
+    rng = np.random.default_rng(5)
+    astray = np.array([20.0, 20.0])
+    for k in range(120):
+        astray = astray + rng.normal(0.0, 0.1, 2)
+        history.observe({"steady": (0.13 * k, 5.0), "erratic": tuple(astray), "z": (1.0, 1.0)})
+        if k == 0:
+            assert history.growth_mps == pytest.approx([model.sigma_growth_mps] * 3)
+    erratic, steady, _ = history.growth_mps
+    assert history.ids == ["erratic", "steady", "z"]
+    assert steady == model.least_growth_mps
+    assert erratic > 1.2 * model.sigma_growth_mps
+
+
+def test_who_comes_back_is_judged_anew() -> None:
+    model = PredictionModel()
+    history = TrackHistory(model, TICK_S)
+    for k in range(60):
+        history.observe({"p": (0.13 * k, 5.0)})
+    assert history.growth_mps[0] < 0.9 * model.sigma_growth_mps
+    history.observe({})
+    history.observe({"p": (1.0, 5.0)})
+    assert history.growth_mps == pytest.approx([model.sigma_growth_mps])
 
 
 def test_a_prediction_slides_along_a_wall_and_never_through_it() -> None:

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planning import SearchForm, SearchStatus, uncertain_bfp
+from planning._perturb_kernels import path_cost
 from planning._search_kernels import Moves, advance
 from planning.search import compass_moves, lattice_moves
 from tests.naive import search as naive
@@ -20,6 +21,7 @@ from tests.planning.worlds import (
     scaled,
     task,
     walking,
+    world_of,
 )
 
 WALLS = [((3.0, 1.0), (3.0, 4.5)), ((5.0, 3.5), (5.0, 7.0))]
@@ -82,6 +84,32 @@ def test_both_forms_are_their_twins(form, start, goal, crowd, walled) -> None:
     question = task(start, goal, max_expansions=40)
     ground = ground_of(question, 5, WALLS if walled else (), crowd)
     same_as_twin(ground, relative_moves(), form)
+
+
+@given(start=spots, goal=ends, crowd=people, slack=st.floats(-1.0, 1.0))
+@holds(15, 3)
+def test_a_bound_only_leaves_out_what_is_not_better(start, goal, crowd, slack) -> None:
+    ground = ground_of(task(start, goal, max_expansions=5000), 5, (), crowd)
+    world = world_of(ground.field.grid, ground.field, ground.reservations)
+
+    def cost(path) -> float:
+        return path_cost(world, ground.potential.guide, ground.task, path)[0]
+
+    best = cost(found(ground).path)
+    bounded = uncertain_bfp(
+        ground.field,
+        ground.potential,
+        ground.task,
+        relative_moves(),
+        ground.reservations,
+        ground.step_s,
+        bound=best + slack,
+    )
+    # The search adds up changes of velocity by steps, a path's cost does by slices.
+    if bounded.status is SearchStatus.FOUND:
+        assert cost(bounded.path) == pytest.approx(best, abs=0.2)
+    else:
+        assert slack < 0.2
 
 
 @given(start=spots, goal=ends, crowd=people)
