@@ -19,6 +19,7 @@ class Command(NamedTuple):
 COMMANDS: Final = {
     "serve": Command("server.cli", "run a world for people and actors"),
     "bots": Command("bots.cli", "send people made of code: load, or a recorded crowd"),
+    "evaluate": Command("evaluation.cli", "measure actors among recorded people"),
     "demo": Command("esplanade.demo", "run the demo world with actors and a few visitors"),
 }
 
@@ -64,6 +65,7 @@ def _help() -> str:
         "  esplanade demo                           then open http://localhost:8080",
         "  esplanade serve --scene my.json --actors 10",
         "  esplanade bots --count 200 --duration 60",
+        "  esplanade evaluate zara1.csv --policy esplanade straight",
         "",
         "`esplanade COMMAND --help` explains a command and all its options.",
     ]

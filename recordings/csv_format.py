@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Final
 
 from recordings.errors import RecordingError, read_text
-from recordings.sample import Sample
+from recordings.sample import Sample, number
 
 HEADER: Final = ["t", "id", "x", "y"]
 
@@ -24,29 +24,22 @@ def read_csv(path: Path) -> Iterator[Sample]:
     header = [cell.strip() for cell in lines[0].split(",")]
     if header != HEADER:
         raise RecordingError(path, f"expected the header t,id,x,y, not {lines[0]!r:.60}", 1)
-    for number, line in enumerate(lines[1:], start=2):
-        if line.strip():
-            yield _sample(path, number, line)
+    for line, text in enumerate(lines[1:], start=2):
+        if text.strip():
+            yield _sample(path, line, text)
 
 
-def _sample(path: Path, number: int, line: str) -> Sample:
-    cells = [cell.strip() for cell in line.split(",")]
+def _sample(path: Path, line: int, text: str) -> Sample:
+    cells = [cell.strip() for cell in text.split(",")]
     if len(cells) != len(HEADER):
-        raise RecordingError(path, f"expected 4 columns t,id,x,y, not {len(cells)}", number)
+        raise RecordingError(path, f"expected 4 columns t,id,x,y, not {len(cells)}", line)
     t, pedestrian, x, y = cells
     if not pedestrian:
-        raise RecordingError(path, "expected a pedestrian's id, not an empty cell", number)
+        raise RecordingError(path, "expected a pedestrian's id, not an empty cell", line)
     return Sample(
-        number,
-        _number(path, number, "t", t),
+        line,
+        number(path, line, "t", t),
         pedestrian,
-        _number(path, number, "x", x),
-        _number(path, number, "y", y),
+        number(path, line, "x", x),
+        number(path, line, "y", y),
     )
-
-
-def _number(path: Path, line: int, column: str, text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        raise RecordingError(path, f"{column} is {text!r:.40}, expected a number", line) from None

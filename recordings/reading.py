@@ -14,9 +14,15 @@ import numpy as np
 from recordings.crowd import Crowd, Track
 from recordings.csv_format import read_csv
 from recordings.errors import RecordingError
+from recordings.ndjson_format import read_ndjson
+from recordings.obsmat_format import read_obsmat
 from recordings.sample import MAX_METRES, Sample
 
-_FORMATS: Final[dict[str, Callable[[Path], Iterable[Sample]]]] = {".csv": read_csv}
+_FORMATS: Final[dict[str, Callable[[Path, float | None], Iterable[Sample]]]] = {
+    ".csv": lambda path, _: read_csv(path),
+    ".ndjson": read_ndjson,
+    ".txt": read_obsmat,
+}
 
 MIN_STEP_S: Final = 1e-3
 """Two samples of one pedestrian closer in time than this count as the same moment."""
@@ -24,9 +30,11 @@ MIN_STEP_S: Final = 1e-3
 MAX_SECONDS: Final = 1e10
 
 
-def read_crowd(path: str | Path) -> Crowd:
+def read_crowd(path: str | Path, fps: float | None = None) -> Crowd:
     """Everyone in a recording.
 
+    `fps`, more than 0, is the number of frames a second where a format counts frames: ETH's
+    `obsmat.txt` (default 15) and TrajNet++ ndjson (default: what its scenes say).
     A pedestrian with a single sample is kept, as a track without duration.
 
     Raises
@@ -41,13 +49,18 @@ def read_crowd(path: str | Path) -> Crowd:
         known = ", ".join(sorted(_FORMATS))
         raise RecordingError(path, f"unknown format {path.suffix!r}, expected one of: {known}")
     samples_by_id: dict[str, list[Sample]] = {}
-    for sample in read(path):
+    for sample in read(path, fps):
         samples = samples_by_id.setdefault(sample.id, [])
         _check(path, sample, samples[-1] if samples else None)
         samples.append(sample)
     if not samples_by_id:
         raise RecordingError(path, "holds no samples, expected at least one")
-    return Crowd(path.stem, tuple(_track(samples) for samples in samples_by_id.values()))
+    return Crowd(_name(path), tuple(_track(samples) for samples in samples_by_id.values()))
+
+
+def _name(path: Path) -> str:
+    """All recordings of ETH lie in an `obsmat.txt`: the folder tells them apart."""
+    return path.resolve().parent.name if path.stem == "obsmat" else path.stem
 
 
 def _check(path: Path, sample: Sample, before: Sample | None) -> None:

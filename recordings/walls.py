@@ -3,7 +3,7 @@
 import json
 import math
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from recordings.errors import RecordingError, read_text
 from recordings.sample import MAX_METRES
@@ -21,10 +21,26 @@ def walls_beside(crowd_path: str | Path) -> Path | None:
     return path if path.is_file() else None
 
 
-def read_walls(path: str | Path) -> list[Wall]:
-    """Walls from `{"segments": [[x1, y1, x2, y2], ...], "circles": [[x, y, r], ...]}`.
+class Obstacles(NamedTuple):
+    """What a file of walls holds: straight walls, and circles as (x, y, radius), metres."""
 
-    Either list may be absent. A circle becomes the edges of a regular polygon around it.
+    segments: tuple[Wall, ...] = ()
+    circles: tuple[tuple[float, float, float], ...] = ()
+
+    def as_walls(self) -> list[Wall]:
+        """All of it as straight walls: of a circle, the edges of a regular polygon around it."""
+        return [*self.segments, *(edge for circle in self.circles for edge in _polygon(*circle))]
+
+
+def read_walls(path: str | Path) -> list[Wall]:
+    """Walls from a file as `read_obstacles` takes it, circles as polygons."""
+    return read_obstacles(path).as_walls()
+
+
+def read_obstacles(path: str | Path) -> Obstacles:
+    """Obstacles from `{"segments": [[x1, y1, x2, y2], ...], "circles": [[x, y, r], ...]}`.
+
+    Either list may be absent.
 
     Raises
     ------
@@ -34,16 +50,17 @@ def read_walls(path: str | Path) -> list[Wall]:
     """
     path = Path(path)
     content = _parse(path)
-    walls: list[Wall] = []
+    segments: list[Wall] = []
+    circles: list[tuple[float, float, float]] = []
     for where, (x1, y1, x2, y2) in _rows(path, content, "segments", "x1, y1, x2, y2"):
         if (x1, y1) == (x2, y2):
             raise RecordingError(path, f"{where} has no length, expected two different ends")
-        walls.append(((x1, y1), (x2, y2)))
+        segments.append(((x1, y1), (x2, y2)))
     for where, (x, y, radius_m) in _rows(path, content, "circles", "x, y, r"):
         if radius_m <= 0.0:
             raise RecordingError(path, f"{where} has radius {radius_m:g}, expected more than 0")
-        walls.extend(_polygon(x, y, radius_m))
-    return walls
+        circles.append((x, y, radius_m))
+    return Obstacles(tuple(segments), tuple(circles))
 
 
 def _parse(path: Path) -> dict[str, Any]:

@@ -100,7 +100,7 @@ def test_faults_name_file_line_and_expectation(
 @pytest.mark.parametrize(
     ("name", "content", "fault"),
     [
-        ("crowd.txt", b"0 1 2 3", "unknown format '.txt', expected one of: .csv"),
+        ("crowd.tsv", b"0 1 2 3", "unknown format '.tsv', expected one of: .csv, .ndjson, .txt"),
         ("crowd.csv", b"t,id,x,y\n0,\xff,1,2", "is not UTF-8 text (byte 11)"),
         ("crowd.csv", b"\x00\x01\x02", "expected the header"),
     ],

@@ -1,0 +1,1 @@
+"""Measures navigation and prediction among recorded people who do not react."""

@@ -1,0 +1,106 @@
+"""The project's own actor, driven as a guest of this simulation."""
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ValidationError
+
+from actors import ActorParameters, Navigator
+from evaluation.policies.policy import Policy, PolicyError, Task, Thoughts, View
+from evaluation.replay import Replay
+from evaluation.rules import Rules
+from planning import LayeredGrid, PlanModel, Scene
+
+MARGIN_M: Final = 10.0
+"""Ground around everyone's recorded ways."""
+DRAWN_WITHIN_M: Final = 8.0
+DRAWN_EVERY_S: Final = 0.8
+DRAWN_SIGMAS: Final = 2.0
+"""Predicted circles are drawn for those near, now and then, with this many deviations."""
+UNLIMITED_MPS2: Final = 20.0
+
+_ACTOR: Final = "robot"
+
+
+class Esplanade(Policy):
+    """`actors.Navigator` with one actor: placed by the simulation, asked for its next velocity.
+
+    The ground is worked out once for a recording; a navigator lives for one episode. Before its
+    first decision it is told the visible past: in a world that runs, it has been watching too.
+    """
+
+    def __init__(self, parameters: Mapping[str, Any] | None = None) -> None:
+        self._changes = dict(parameters or {})
+        self._replay: Replay | None = None
+        self._navigator: Navigator | None = None
+
+    def reset(self, task: Task) -> None:
+        if self._replay is not task.replay:
+            self._grid = LayeredGrid.from_scene(_scene(task.replay))
+            self._replay = task.replay
+        if self._navigator is not None:
+            self._navigator.close()
+        self._navigator = Navigator(self._grid, tick_s=task.rules.tick_s, plan=PlanModel(threads=1))
+        self._navigator.add_actor(
+            _ACTOR, task.episode.start, task.episode.goal, _parameters(task.rules, self._changes)
+        )
+        self._fresh = True
+
+    def decide(self, view: View) -> NDArray[np.float64]:
+        navigator = self._running
+        if self._fresh:
+            self._tell_past(view)
+            self._fresh = False
+        position, velocity = self._grid_place(view.position), view.velocity
+        navigator.place_actor(_ACTOR, position, (float(velocity[0]), float(velocity[1])))
+        navigator.observe({person.id: tuple(person.position) for person in view.people})
+        self._state = navigator.tick()[_ACTOR]
+        return np.array(self._state.velocity)
+
+    def thoughts(self) -> Thoughts:
+        circles = [
+            np.column_stack([future[::every, :2], DRAWN_SIGMAS * future[::every, 3]])
+            for every in [max(1, round(DRAWN_EVERY_S / self._running.plan.slice_s))]
+            for future in self._running.predicted_near(self._state.position, 0, DRAWN_WITHIN_M)
+        ]
+        return Thoughts(self._state.way, np.concatenate([np.zeros((0, 3)), *circles]))
+
+    @property
+    def _running(self) -> Navigator:
+        if self._navigator is None:
+            raise RuntimeError("reset comes before the first decision")
+        return self._navigator
+
+    def _tell_past(self, view: View) -> None:
+        longest = max((len(person.track) for person in view.people), default=1)
+        for back in range(longest, 1, -1):
+            self._running.observe(
+                {p.id: tuple(p.track[-back]) for p in view.people if len(p.track) >= back}
+            )
+
+    def _grid_place(self, position: NDArray[np.float64]) -> tuple[float, float]:
+        x0, y0, x1, y1 = self._grid.bounds
+        x, y = np.clip(position, (x0, y0), (x1, y1)).tolist()
+        return x, y
+
+
+def _scene(replay: Replay) -> Scene:
+    x0, y0, x1, y1 = replay.bounds
+    bounds = (x0 - MARGIN_M, y0 - MARGIN_M, x1 + MARGIN_M, y1 + MARGIN_M)
+    try:
+        return Scene.open_space(bounds, replay.obstacles.obstacles.as_walls(), name=replay.name)
+    except ValidationError as error:
+        raise PolicyError(f"{replay.name} makes no scene: {error.errors()[0]['msg']}") from None
+
+
+def _parameters(rules: Rules, changes: Mapping[str, Any]) -> ActorParameters:
+    limit_mps2 = rules.max_acceleration_mps2
+    given = {
+        "radius_m": rules.robot_radius_m,
+        "speed_mps": rules.speed_mps,
+        "max_speed_mps": rules.max_speed_mps,
+        "max_acceleration_mps2": UNLIMITED_MPS2 if limit_mps2 is None else limit_mps2,
+    }
+    return ActorParameters(**{**given, **changes})

@@ -1,0 +1,91 @@
+"""Results as tables for people, and as one object for programs."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from evaluation.runner import Result
+from evaluation.scores import Score, Summary, summarise
+
+POOLED = "all together"
+
+LINES = (
+    ("episodes", "episodes", 0),
+    ("contacts, % of episodes", "contacts_percent", 1),
+    ("  robot moving toward them, %", "moved_toward_percent", 1),
+    ("smallest clearance, mean m", "clearance_m", 2),
+    ("within 0.2 m, s an episode", "near_s", 2),
+    ("goal reached, %", "reached_percent", 1),
+    ("time / straight way", "time_ratio", 3),
+    ("path / straight way", "path_ratio", 3),
+    ("wall contacts, %", "wall_contacts_percent", 1),
+    ("greatest acceleration, m/s²", "acceleration_max_mps2", 1),
+    ("turn rate, rms rad/s", "turn_rms_radps", 2),
+    ("decision, mean ms", "decision_ms", 2),
+    ("decision, greatest ms", "decision_max_ms", 1),
+)
+"""What is shown of a summary: its name, the field, digits after the point."""
+
+
+def summaries(
+    results: Sequence[Result], names: Mapping[Any, str]
+) -> list[tuple[str, str, Summary]]:
+    """(recording, policy, summary), recording by recording, then all recordings together."""
+    rows = [(names[r.trial.source], r.trial.policy, summarise(r.scores)) for r in results]
+    if len({r.trial.source for r in results}) > 1:
+        pooled: dict[str, list[Score]] = {}
+        for result in results:
+            pooled.setdefault(result.trial.policy, []).extend(result.scores)
+        rows += [(POOLED, policy, summarise(scores)) for policy, scores in pooled.items()]
+    return rows
+
+
+def show(console: Console, rows: Sequence[tuple[str, str, Summary]]) -> None:
+    """A table for every recording, a column for every policy."""
+    for recording in dict.fromkeys(name for name, _, _ in rows):
+        shown = {policy: summary for name, policy, summary in rows if name == recording}
+        table = Table("", title=recording, title_justify="left", box=box.SIMPLE_HEAD)
+        for policy in shown:
+            table.add_column(policy, justify="right")
+        for heading, field, digits in LINES:
+            values = (getattr(summary, field) for summary in shown.values())
+            table.add_row(heading, *(_cell(value, digits) for value in values))
+        console.print(table)
+
+
+def figures(
+    results: Sequence[Result],
+    rows: Sequence[tuple[str, str, Summary]],
+    names: Mapping[Any, str],
+    settings: Mapping[str, Any],
+) -> dict[str, Any]:
+    """Everything that was measured, for JSON; null where there is nothing to measure."""
+    return {
+        "settings": dict(settings),
+        "summaries": [
+            {"recording": name, "policy": policy, **plain(asdict(summary))}
+            for name, policy, summary in rows
+        ],
+        "episodes": [
+            {"recording": names[r.trial.source], "policy": r.trial.policy, **plain(asdict(score))}
+            for r in results
+            for score in r.scores
+        ],
+    }
+
+
+def plain(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Values as JSON has them: None for what is not finite."""
+    return {
+        name: None if isinstance(value, float) and not math.isfinite(value) else value
+        for name, value in values.items()
+    }
+
+
+def _cell(value: float, digits: int) -> str:
+    return f"{value:.{digits}f}" if math.isfinite(value) else "–"

@@ -1,0 +1,157 @@
+"""What an episode came to, and what many came to."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from evaluation.contacts import Encounters
+from evaluation.episodes import Episode
+from evaluation.replay import Replay
+from evaluation.rules import Rules
+
+Floats = NDArray[np.float64]
+
+WALKING_MPS = 0.2
+"""Slower than this, a direction means nothing."""
+
+
+@dataclass(frozen=True)
+class Score:
+    """One episode. Units are in the names; nan where there is nothing to measure."""
+
+    number: int
+    pedestrian: str
+    start_s: float
+    reverse: bool
+    people_touched: int
+    moved_toward: bool
+    """Whether in a contact the robot moved toward the person."""
+    clearance_m: float
+    near_s: float
+    reached: bool
+    time_s: float
+    time_ratio: float
+    path_ratio: float
+    wall_contact: bool
+    pop_ins: int
+    acceleration_max_mps2: float
+    acceleration_rms_mps2: float
+    jerk_rms_mps3: float
+    turn_rms_radps: float
+    decisions: int
+    decision_ms: float
+    decision_max_ms: float
+
+    @property
+    def touched(self) -> bool:
+        return self.people_touched > 0
+
+    @property
+    def failed(self) -> bool:
+        return self.touched or not self.reached
+
+
+def score(
+    replay: Replay,
+    rules: Rules,
+    episode: Episode,
+    encounters: Encounters,
+    pop_ins: int,
+    way: Floats,
+    velocities: Floats,
+    wall_m: float,
+    reached: bool,
+    decide_s: Sequence[float],
+) -> Score:
+    """Score an episode from its way (T + 1, 2) and velocities (T, 2)."""
+    to_go_m = episode.way_m - rules.goal_tolerance_m
+    time_s = len(velocities) * rules.tick_s if reached else np.nan
+    straight_s = max(rules.tick_s, to_go_m / rules.speed_mps)
+    walked_m = float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
+    accelerations = np.linalg.norm(np.diff(velocities, axis=0), axis=1) / rules.tick_s
+    jerks = np.linalg.norm(np.diff(velocities, n=2, axis=0), axis=1) / rules.tick_s**2
+    return Score(
+        number=episode.number,
+        pedestrian=replay.ids[episode.pedestrian],
+        start_s=episode.first_tick * rules.tick_s,
+        reverse=episode.reverse,
+        people_touched=len(encounters.met),
+        moved_toward=encounters.caused > 0,
+        clearance_m=encounters.clearance_m,
+        near_s=encounters.near_s,
+        reached=reached,
+        time_s=time_s,
+        time_ratio=time_s / straight_s,
+        path_ratio=walked_m / max(1e-9, to_go_m) if reached else np.nan,
+        wall_contact=wall_m < rules.robot_radius_m - rules.wall_overlap_m,
+        pop_ins=pop_ins,
+        acceleration_max_mps2=float(accelerations.max(initial=0.0)),
+        acceleration_rms_mps2=_rms(accelerations),
+        jerk_rms_mps3=_rms(jerks),
+        turn_rms_radps=_rms(_turns(velocities) / rules.tick_s),
+        decisions=len(decide_s),
+        decision_ms=float(np.mean(decide_s)) * 1e3,
+        decision_max_ms=float(np.max(decide_s)) * 1e3,
+    )
+
+
+def _turns(velocities: Floats) -> Floats:
+    """Angles between velocities of neighbouring ticks, where both are of one who walks."""
+    walking = np.linalg.norm(velocities, axis=1) > WALKING_MPS
+    headings = np.arctan2(velocities[:, 1], velocities[:, 0])
+    turns = np.abs((np.diff(headings) + np.pi) % (2.0 * np.pi) - np.pi)
+    return np.asarray(turns[walking[1:] & walking[:-1]])
+
+
+def _rms(values: Floats) -> float:
+    return float(np.sqrt(np.mean(values**2))) if len(values) else 0.0
+
+
+@dataclass(frozen=True)
+class Summary:
+    """Many episodes. Shares are in per cent; times and paths of those that arrived."""
+
+    episodes: int
+    contacts_percent: float
+    moved_toward_percent: float
+    clearance_m: float
+    near_s: float
+    reached_percent: float
+    time_ratio: float
+    path_ratio: float
+    wall_contacts_percent: float
+    acceleration_max_mps2: float
+    """Median of the episodes' greatest."""
+    turn_rms_radps: float
+    decision_ms: float
+    decision_max_ms: float
+
+
+def summarise(scores: Sequence[Score]) -> Summary:
+    """Put episodes together, at least one."""
+    decisions = sum(s.decisions for s in scores)
+    return Summary(
+        episodes=len(scores),
+        contacts_percent=_percent([s.touched for s in scores]),
+        moved_toward_percent=_percent([s.moved_toward for s in scores]),
+        clearance_m=float(np.mean([s.clearance_m for s in scores])),
+        near_s=float(np.mean([s.near_s for s in scores])),
+        reached_percent=_percent([s.reached for s in scores]),
+        time_ratio=_mean([s.time_ratio for s in scores if s.reached]),
+        path_ratio=_mean([s.path_ratio for s in scores if s.reached]),
+        wall_contacts_percent=_percent([s.wall_contact for s in scores]),
+        acceleration_max_mps2=float(np.median([s.acceleration_max_mps2 for s in scores])),
+        turn_rms_radps=float(np.mean([s.turn_rms_radps for s in scores])),
+        decision_ms=sum(s.decision_ms * s.decisions for s in scores) / decisions,
+        decision_max_ms=max(s.decision_max_ms for s in scores),
+    )
+
+
+def _percent(found: Sequence[bool]) -> float:
+    return 100.0 * sum(found) / len(found)
+
+
+def _mean(values: Sequence[float]) -> float:
+    return float(np.mean(values)) if values else float("nan")
