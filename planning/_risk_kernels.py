@@ -70,6 +70,7 @@ def fill_slices(
     prediction: Prediction,
     seekers: NDArray[np.float64],
     slice_s: float,
+    last_wider: int,
     first: int,
     step: int,
     windows: NDArray[np.int64],
@@ -78,8 +79,9 @@ def fill_slices(
     """Fill slices first, first + step, ... Only cells near people are touched.
 
     `seekers` (S, 3) are places and greatest speeds of those who will look things up: people out
-    of everyone's reach are left out. `windows` (K, P', 5) remembers what was written (layer, j0,
-    j1, i0, i1) so that the next call clears no more than that; rows with layer -1 are empty.
+    of everyone's reach are left out. After slice `last_wider` deviations grow no more. `windows`
+    (K, P', 5) remembers what was written (layer, j0, j1, i0, i1) so that the next call clears no
+    more than that; rows with layer -1 are empty.
     """
     people = len(prediction.layers)
     columns = tables.near.shape[1]
@@ -102,7 +104,7 @@ def fill_slices(
             my = prediction.means[p, k, 1]
             vx = np.float32(prediction.velocities[p, k, 0])
             vy = np.float32(prediction.velocities[p, k, 1])
-            reach = _blend_rows(tables, prediction.sigmas[p, k], near, toward)
+            reach = _blend_rows(tables, prediction.sigmas[p, min(k, last_wider)], near, toward)
             if not _matters(mx, my, reach + 2.0 * grid.cell_m, k * slice_s, seekers):
                 continue
             i0 = max(0, int(np.floor((mx - reach - grid.x0) / grid.cell_m)))

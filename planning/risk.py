@@ -31,6 +31,9 @@ class RiskModel:
     """Beyond contact the proximity term falls to zero over this distance, metres."""
     comfort: float = 0.05
     """Proximity term just outside contact, where contact itself counts 1."""
+    reaction_s: float = 1.2
+    """Deviations count as they are so far ahead at most, seconds: whoever is to be met later will
+    have been seen again before there is need to turn aside."""
 
     def near(self, distance_m: ArrayLike) -> NDArray[np.float64]:
         """Proximity term w1·d of eq. (5) for a person known to be at a distance; in [0, 1].
@@ -131,6 +134,7 @@ class RiskField:
         """
         people = len(prediction.layers)
         places = np.ascontiguousarray(seekers, dtype=np.float64).reshape(-1, 3)
+        last_wider = round(self.model.reaction_s / slice_s) if slice_s else len(self.fields)
         if prediction.sigmas.shape[1] != len(self.fields):
             raise ValueError(
                 f"the field has {len(self.fields)} slices, the prediction "
@@ -149,6 +153,7 @@ class RiskField:
                 prediction,
                 places,
                 slice_s,
+                last_wider,
                 first,
                 step,
                 self._windows,
