@@ -1,0 +1,45 @@
+"""An independent judge with the same rules, where its file lies beside the recordings."""
+
+import importlib.util
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+from evaluation.episodes import Episode
+from evaluation.policies.policy import Person, Policy, Task, View
+from evaluation.replay import Floats, Replay
+from evaluation.rules import Rules
+
+
+def load_judge(recording: Path) -> ModuleType:
+    """The module `tools/crowd_eval.py` of the folder that holds `data/`; skips where absent."""
+    path = recording.parents[2] / "tools" / "crowd_eval.py"
+    if not path.is_file():
+        pytest.skip("the independent judge crowd_eval.py is absent")
+    spec = importlib.util.spec_from_file_location("crowd_eval", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["crowd_eval"] = module  # its dataclasses look themselves up there
+    spec.loader.exec_module(module)
+    return module
+
+
+class Judged:
+    """A policy of ours in the judge's form."""
+
+    def __init__(self, policy: Policy, replay: Replay, rules: Rules, episode: Episode) -> None:
+        self._policy = policy
+        self._task = Task(rules, replay, episode)
+
+    def reset(self, info: object) -> None:
+        self._policy.reset(self._task)
+
+    def __call__(
+        self, t: float, pos: Floats, vel: Floats, goal: Floats, others: list[object]
+    ) -> Floats:
+        people = [Person(o.id, np.array(o.pos_hist)) for o in others]  # type: ignore[attr-defined]
+        return self._policy.decide(View(t, pos, vel, goal, people))
