@@ -14,7 +14,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from actors import ActorParameters
 from evaluation import forecast_report, plotting, report
-from evaluation.policies import POLICIES, PolicyError, make_policy
+from evaluation.policies import POLICIES, PolicyError
 from evaluation.rules import Rules
 from evaluation.runner import Result, Source, plan_trials, ready_policy, run_trials
 from recordings import RecordingError
@@ -58,8 +58,6 @@ def _trips(options: argparse.Namespace) -> int:
     sources = _sources(options)
     names = _names(sources)
     _check_targets(options)
-    for name in options.policy:
-        make_policy(name, parameters)
     if options.plots is not None:
         plotting.require_matplotlib()
     rules = Rules(max_acceleration_mps2=options.a_max)

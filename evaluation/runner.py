@@ -80,13 +80,19 @@ def plan_trials(
     seed: int,
     parameters: Mapping[str, Any],
 ) -> list[Trial]:
-    """Every policy on the same episodes of every recording."""
+    """Every policy on the same episodes of every recording.
+
+    Raises
+    ------
+    RecordingError, PolicyError
+        A file is broken, or a policy cannot be had: before anything has run.
+    """
+    follows = {name: make_policy(name, parameters).follows_recording for name in policies}
     trials = []
     for source in sources:
         episodes = choose_episodes(source.ground(rules.tick_s).replay, rules, count, seed)
         for name in policies:
-            follows = name == "human"
-            taken = tuple(e for e in episodes if not (follows and e.reverse))
+            taken = tuple(e for e in episodes if not (follows[name] and e.reverse))
             trials.append(Trial(source, name, rules, taken, tuple(parameters.items())))
     return trials
 

@@ -73,7 +73,7 @@ def test_options_exist(document: Path) -> None:
     unknown = [
         line
         for line in commands(document.read_text())
-        if (call := re.match(r"esplanade (serve|bots|demo)\b(.*)", line))
+        if (call := re.match(rf"esplanade ({'|'.join(COMMANDS)})\b(.*)", line))
         and not all(
             re.search(rf"(?<![\w-]){option}(?![\w-])", help_of(call[1]))
             for option in re.findall(r"--[a-z][a-z-]*", call[2])

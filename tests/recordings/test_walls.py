@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from recordings import RecordingError, read_walls, walls_beside
+from recordings import RecordingError, read_obstacles, read_walls, walls_beside
 
 
 def write(folder: Path, text: str) -> Path:
@@ -27,6 +27,14 @@ def test_a_circle_is_a_closed_polygon_just_around_it(tmp_path: Path) -> None:
         middle = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2)
         assert math.dist(middle, (3, 4)) == pytest.approx(0.5)
         assert 0.5 < math.dist(start, (3, 4)) < 0.51
+
+
+def test_obstacles_keep_circles_as_they_are(tmp_path: Path) -> None:
+    text = '{"segments": [[0, 0, 1, 2]], "circles": [[3, 4, 0.5]]}'
+    obstacles = read_obstacles(write(tmp_path, text))
+    assert obstacles.segments == (((0.0, 0.0), (1.0, 2.0)),)
+    assert obstacles.circles == ((3.0, 4.0, 0.5),)
+    assert len(obstacles.as_walls()) == 17
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,180 @@
+"""The command: tables, JSON, pictures, exit codes, and what wrong usage is told."""
+
+import json
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from evaluation import cli
+from tests.evaluation.worlds import busy_plaza, crowd, walk, write_csv
+
+
+@pytest.fixture
+def plaza(tmp_path: Path) -> Path:
+    return write_csv(tmp_path, busy_plaza())
+
+
+def run(*arguments: object) -> int:
+    return cli.run(["--processes=1", *map(str, arguments)])
+
+
+def refused(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
+    """What the command says when it does not do it."""
+    try:
+        code: object = run(*arguments)
+    except SystemExit as end:  # how the parser of options refuses
+        code = end.code
+    assert code == cli.EXIT_USAGE
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert "Traceback" not in shown.err
+    return shown.err
+
+
+def test_a_table_for_every_recording_and_one_for_all(
+    tmp_path: Path, plaza: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    other = write_csv(tmp_path, busy_plaza(), "market")
+    assert run(plaza, other, "--policy", "straight", "human", "--episodes", 4) == cli.EXIT_WELL
+    shown = capsys.readouterr().out
+    assert [line for line in shown.split("\n") if line.strip() in {"plaza", "market"}]
+    assert "all together" in shown
+    assert shown.count("contacts, % of episodes") == 3
+    assert "human" in shown
+
+
+def test_every_episode_and_summary_is_in_the_json(tmp_path: Path, plaza: Path) -> None:
+    target = tmp_path / "all.json"
+    assert run(plaza, "--policy", "straight", "--episodes", 6, "--json", target) == cli.EXIT_WELL
+    found: dict[str, Any] = json.loads(target.read_text())
+    assert found["settings"]["max_acceleration_mps2"] == 2.0
+    (summary,) = found["summaries"]
+    assert summary["recording"] == "plaza"
+    assert summary["episodes"] == len(found["episodes"]) == 6
+    touched = [episode["people_touched"] > 0 for episode in found["episodes"]]
+    assert summary["contacts_percent"] == pytest.approx(100 * sum(touched) / 6)
+    assert [episode["number"] for episode in found["episodes"]] == list(range(6))
+
+
+def test_what_did_not_arrive_has_no_time_in_the_json(tmp_path: Path) -> None:
+    walls = tmp_path / "cage.json"
+    walls.write_text('{"segments": [[6, -3, 6, 3]]}')
+    path = write_csv(
+        tmp_path, crowd(walk("1", 0, (0, 0), (9, 0)), walk("2", 90, (0, 0), (1, 0))), "cage"
+    )
+    target = tmp_path / "all.json"
+    run(path, "--walls", walls, "--set", "speed_mps=0.1", "--set=max_speed_mps=0.1",
+        "--episodes=1", "--json", target)  # fmt: skip
+    found = json.loads(target.read_text())
+    assert found["episodes"][0]["reached"] is False
+    assert found["episodes"][0]["time_s"] is None
+    assert found["summaries"][0]["time_ratio"] is None
+
+
+def test_strict_fails_where_somebody_was_touched(plaza: Path) -> None:
+    assert run(plaza, "--policy", "straight", "--episodes", 20) == cli.EXIT_WELL
+    assert run(plaza, "--policy", "straight", "--episodes", 20, "--strict") == cli.EXIT_FAILED
+
+
+@pytest.mark.skipif(find_spec("matplotlib") is None, reason="matplotlib is absent")
+def test_chosen_episodes_are_drawn(tmp_path: Path, plaza: Path) -> None:
+    folder = tmp_path / "strips" / "today"
+    run(plaza, "--policy", "straight", "--episodes", 4, "--plots", folder, "--plot-episodes=0,2")
+    assert sorted(path.name for path in folder.iterdir()) == [
+        "plaza-straight-000.png",
+        "plaza-straight-002.png",
+    ]
+
+
+@pytest.mark.skipif(find_spec("matplotlib") is None, reason="matplotlib is absent")
+def test_failed_episodes_are_drawn(tmp_path: Path, plaza: Path) -> None:
+    folder, target = tmp_path / "strips", tmp_path / "all.json"
+    run(plaza, "--policy=straight", "--episodes=5", "--plots", folder, "--json", target)
+    failed = [
+        f"plaza-straight-{episode['number']:03d}.png"
+        for episode in json.loads(target.read_text())["episodes"]
+        if episode["people_touched"] or not episode["reached"]
+    ]
+    assert failed
+    assert sorted(path.name for path in folder.iterdir()) == failed
+
+
+def test_predictions_are_measured_and_fitted(
+    tmp_path: Path, plaza: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    other = write_csv(tmp_path, busy_plaza(), "market")
+    target = tmp_path / "all.json"
+    assert run(plaza, other, "--fit", "--json", target) == cli.EXIT_WELL
+    shown = capsys.readouterr().out
+    assert "Prediction, default" in shown
+    assert "Prediction, eq. (1) as printed" in shown
+    assert "Fitted deviation" in shown
+    found = json.loads(target.read_text())
+    assert [row["left_out"] for row in found["fits"]] == ["plaza", "market", None]
+    assert len(found["predictions"]) == 6
+
+
+def test_one_recording_is_fitted_as_a_whole(plaza: Path, tmp_path: Path) -> None:
+    target = tmp_path / "all.json"
+    assert run(plaza, "--fit", "--json", target) == cli.EXIT_WELL
+    assert [row["left_out"] for row in json.loads(target.read_text())["fits"]] == [None]
+
+
+def test_recordings_of_one_name_are_told_apart_by_their_paths(
+    tmp_path: Path, plaza: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "other"
+    folder.mkdir()
+    other = write_csv(folder, busy_plaza())
+    assert run(plaza, other, "--policy=straight", "--episodes=2") == cli.EXIT_WELL
+    assert "other/plaza" in capsys.readouterr().out.replace("\n", "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "fault"),
+    [
+        (["--policy", "magic"], "invalid choice: 'magic'"),
+        (["--episodes", "0"], "'0' is no number from 1"),
+        (["--a-max", "fast"], "'fast' is no number from 0.2 to 20"),
+        (["--fps", "nan"], "'nan' is no number"),
+        (["--set", "tempo=3"], "--set tempo: Extra inputs are not permitted"),
+        (["--set", "risk_weight=-1"], "--set risk_weight: Input should be greater"),
+        (["--json", "/nowhere/all.json"], "--json: there is no folder /nowhere"),
+        (["--plots", "/dev/null/x"], "--plots: "),
+        (["--plot-episodes", "many"], "'many' is neither `failed` nor numbers"),
+        (["--plot-episodes", "1,500"], "but there are episodes 0 to"),
+        (["--walls", "nowhere.json"], "nowhere.json: cannot be read"),
+        (["missing.csv"], "missing.csv: cannot be read"),
+        (["missing.csv", "--walls", "w.json"], "--walls belongs to one recording"),
+        (["--prediction", "--sample-s", "0.3"], "invalid choice: 0.3"),
+    ],
+)
+def test_wrong_usage(
+    arguments: list[str], fault: str, plaza: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert fault in refused(capsys, plaza, *arguments)
+
+
+def test_a_broken_file_is_named_with_its_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "obsmat.txt"
+    path.write_text("1 1 0 0 0 0 0 0\n2 1 0\n")
+    said = refused(capsys, path)
+    assert said.startswith(f"esplanade evaluate: {path}:2: expected 8 columns")
+
+
+def test_recordings_in_which_nothing_can_be_judged(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write_csv(tmp_path, crowd(walk("1", 0.0, (0, 0), (1, 0))))
+    assert "nobody in it makes a trip" in refused(capsys, path)
+    assert "nobody in it is followed for long enough" in refused(capsys, path, "--prediction")
+
+
+def test_no_limit_of_acceleration(tmp_path: Path, plaza: Path) -> None:
+    target = tmp_path / "all.json"
+    run(plaza, "--policy=straight", "--episodes=1", "--a-max=none", "--json", target)
+    assert json.loads(target.read_text())["settings"]["max_acceleration_mps2"] is None
