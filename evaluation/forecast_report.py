@@ -1,5 +1,6 @@
 """Predictions as tables, and as one object for programs."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any, Final, NamedTuple
@@ -24,6 +25,7 @@ from recordings import Crowd, Obstacles
 
 MODELS: Final = {
     "default": PredictionModel(),
+    "the same deviation for everyone": PredictionModel(calibration_s=math.inf),
     "eq. (1) as printed": PredictionModel(printed=True),
 }
 POOLED: Final = "all together"

@@ -216,8 +216,6 @@ def search(
                 cost = nodes.costs[node] + p.step_s + 0.05 * change
                 row = _slot(nodes, p, nx, ny, wx, wy, k + 1)
                 old = nodes.table[row, 1]
-                if old != NO_NODE and nodes.costs[old] + 1e-9 < cost + 0.0:
-                    continue
                 key = cost + left / p.speed_mps - 1e-3 * (k + 1)
                 if old != NO_NODE and nodes.keys[old] <= key:
                     continue

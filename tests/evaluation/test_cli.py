@@ -113,7 +113,7 @@ def test_predictions_are_measured_and_fitted(
     assert "Fitted deviation" in shown
     found = json.loads(target.read_text())
     assert [row["left_out"] for row in found["fits"]] == ["plaza", "market", None]
-    assert len(found["predictions"]) == 6
+    assert len(found["predictions"]) == 9
 
 
 def test_one_recording_is_fitted_as_a_whole(plaza: Path, tmp_path: Path) -> None:
