@@ -103,7 +103,7 @@ class ActorParameters(BaseModel):
     max_expansions: Annotated[
         int,
         _field("nodes", 10, 20000, "Budget of one search; a smaller one may end before the goal."),
-    ] = 400
+    ] = 100
 
     @model_validator(mode="after")
     def _speeds_in_order(self) -> Self:

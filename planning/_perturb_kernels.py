@@ -180,6 +180,18 @@ def perturb_path(
 
 
 @kernel
+def _arrival(task: Task, path: NDArray[np.float64]) -> int:
+    """Slice at which a path arrives at the goal, its last if it does not."""
+    last = len(path) - 1
+    if not task.hold:
+        for k in range(1, last):
+            away = np.hypot(path[k, 0] - task.goal_x, path[k, 1] - task.goal_y)
+            if away <= task.goal_tolerance_m:
+                return k
+    return last
+
+
+@kernel
 def update_path(
     world: World,
     guide: Guide,
@@ -189,12 +201,13 @@ def update_path(
 ) -> int:
     """Fig. 7: perturb the whole path, else its halves, and so on; returns how many bends held.
 
-    The recursion is a stack of stretches; the earlier half comes first, as printed.
+    The recursion is a stack of stretches; the earlier half comes first, as printed. What lies
+    after the arrival at the goal is left alone: a bend over it would arrive later and later.
     """
     need = needed_clearance(world, task)
     stack = np.empty((64, 2), dtype=np.int64)
     stack[0, 0] = 0
-    stack[0, 1] = len(path) - 1
+    stack[0, 1] = _arrival(task, path)
     height = 1
     bends = 0
     while height > 0:

@@ -26,7 +26,7 @@ class PlanModel:
 
     step_s: float = 0.4
     """Time step of the search (delta), seconds; the risk field has two slices in each."""
-    steps: int = 12
+    steps: int = 9
     """Steps to the horizon."""
     threads: int = 2
     """Threads that share the work; the result does not depend on their number."""

@@ -191,7 +191,7 @@ def path_cost(ground: Ground, path: NDArray[np.float64]) -> tuple[float, float]:
 
 
 def update_path(ground: Ground, path: NDArray[np.float64], offsets: int, offset_m: float) -> int:
-    """Figs. 7 and 8 as the recursion that they are; bends the path in place."""
+    """Figs. 7 and 8 as the recursion that they are; bends the path up to its arrival in place."""
 
     def average_risk(p: NDArray[np.float64], left: int, right: int) -> float:
         ds = ground.step_s / 2
@@ -236,4 +236,7 @@ def update_path(ground: Ground, path: NDArray[np.float64], offsets: int, offset_
         middle = (left + right) // 2
         return update(left, middle) + update(middle, right)
 
-    return update(0, len(path) - 1)
+    goal = (ground.task.goal_x, ground.task.goal_y)
+    there = [k for k in range(1, len(path) - 1)
+             if math.dist(path[k], goal) <= ground.task.goal_tolerance_m]  # fmt: skip
+    return update(0, there[0] if there and not ground.task.hold else len(path) - 1)

@@ -19,6 +19,15 @@ def path_between(start, goal, speed=1.3):
     return start + way[:, None] * (goal - start) / length
 
 
+def test_a_bend_never_makes_an_actor_arrive_later() -> None:
+    path, bends, *_ = bent([((5.0, 4.1), (0.0, 0.0))], question=task((4.0, 4.0), (6.0, 4.0)),
+                           path=path_between((4.0, 4.0), (6.0, 4.0)))  # fmt: skip
+    before = path_between((4.0, 4.0), (6.0, 4.0))
+    arrival = int(np.argmax(np.hypot(*(before - (6.0, 4.0)).T) <= 0.2))
+    assert bends >= 1
+    assert np.array_equal(path[arrival:], before[arrival:])
+
+
 def kernel_view(ground):
     return world_of(ground.grid, ground.field, ground.reservations), ground.potential.guide
 

@@ -10,7 +10,7 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from planning import LayeredGrid, Polygon, Prediction, RiskField, RiskModel, Scene
+from planning import LayeredGrid, PlanModel, Polygon, Prediction, RiskField, RiskModel, Scene
 from planning._reservation_kernels import Reservations, index_paths
 from planning._search_kernels import Task, World
 from planning.search import make_reservations
@@ -18,7 +18,7 @@ from planning.search import make_reservations
 COMPILED = not numba.config.DISABLE_JIT
 """False in the leg that runs kernels as plain Python, a hundred times slower."""
 STEP_S = 0.4
-SLICES = 24
+SLICES = PlanModel().slices
 
 Line = tuple[tuple[float, float], tuple[float, float]]
 
