@@ -20,7 +20,7 @@ def test_closest_approach_is_that_of_a_dense_sampling(
     offset, change = np.array([ox, oy]), np.array([dx, dy])
     naive = np.hypot(*(offset + np.linspace(0, 1, 401)[:, None] * change).T).min()
     assert closest_approach(offset, change) == pytest.approx(naive, abs=0.02)
-    assert closest_approach(offset, change) <= naive + 1e-9
+    assert closest_approach(offset, change) <= naive + 2e-6  # tiny changes count as none
 
 
 def meet(walked: Replay, tick: int, old: Point, new: Point) -> Encounters:
