@@ -25,7 +25,7 @@ _SIGMA_SPAN = 2.5
 class RiskModel:
     """Shape of the risk around one person."""
 
-    contact_m: float = 0.55
+    contact_m: float = 0.6
     """Distance of centres that counts as contact: sum of the radii and a margin, metres."""
     influence_m: float = 0.6
     """Beyond contact the proximity term falls to zero over this distance, metres."""

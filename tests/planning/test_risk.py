@@ -183,10 +183,10 @@ def test_the_model_has_the_two_properties_of_eq_5() -> None:
 
 def test_what_does_not_fit_is_refused() -> None:
     field = field_of(open_grid(8.0), walking([(4.0, 4.0)], [(0.0, 0.0)]))
-    with pytest.raises(ValueError, match="the field has [0-9]+ slices, the prediction 5"):
+    with pytest.raises(ValueError, match=r"the field has [0-9]+ slices, the prediction 5"):
         field.fill(walking([(4.0, 4.0)], [(0.0, 0.0)], slices=4))
     astray = Prediction(*walking([(4.0, 4.0)], [(0.0, 0.0)])[:3], np.array([1]))
     with pytest.raises(ValueError, match="layers"):
         field.fill(astray)
-    with pytest.raises(ValueError, match=r"slices are 0\.\.24"):
+    with pytest.raises(ValueError, match=r"slices are 0\.\.[0-9]+"):
         field.at(25, [(4.0, 4.0)], [0], [(0.0, 0.0)], 1.0)
