@@ -16,11 +16,6 @@ Guide = NDArray[np.float32]
 Unreachable cells hold inf."""
 
 
-LONGEST_SIGHT_M = 24.0
-"""A waypoint is followed by another at the latest after this way, so that a line of sight costs
-no more in a large zone than in a small one."""
-
-
 @kernel
 def potential_at(grid: GridArrays, guide: Guide, layer: int, x: float, y: float) -> float:
     """Metres from a point to the goal; inf where no way leads."""
@@ -52,24 +47,38 @@ def direction_at(
 
 
 @kernel
-def sight_wave(
+def _may_pass(
+    grid: GridArrays, layer: int, radius: float, j: int, i: int, nj: int, ni: int
+) -> bool:
+    """Whether a neighbouring cell is free and reached without cutting an obstacle's corner."""
+    _, ny, nx = grid.clearance.shape
+    if not (0 <= nj < ny and 0 <= ni < nx) or grid.clearance[layer, nj, ni] < radius:
+        return False
+    beside = min(grid.clearance[layer, j, ni], grid.clearance[layer, nj, i])
+    return bool(beside >= radius)
+
+
+@kernel
+def spread_wave(
     grid: GridArrays,
     radius: float,
     layer: int,
     goal_x: float,
     goal_y: float,
+    longest_sight: float,
     guide: Guide,
     settled: NDArray[np.uint8],
     keys: NDArray[np.float64],
     items: NDArray[np.int64],
 ) -> int:
-    """Fill a guide with shortest ways of any angle; returns how many cells were reached.
+    """Fill a guide; returns how many cells were reached.
 
-    A wave front by distance as NF1's, but a cell that sees its neighbour's waypoint takes that
-    waypoint over (lines of sight are tested once a cell, when it leaves the heap).
-    `keys` and `items` hold 8 entries a cell plus one.
+    The wave spreads from cell to cell over the eight around, never cutting a corner. A cell that
+    sees its neighbour's waypoint within `longest_sight` metres takes that waypoint over, else the
+    neighbour itself is its waypoint; at zero sight this is NF1. Lines of sight are tested once a
+    cell, when it leaves the heap. `keys` and `items` hold 8 entries a cell plus one.
     """
-    _, ny, nx = grid.clearance.shape
+    nx = grid.clearance.shape[2]
     guide[:, :, :, 0] = np.inf
     guide[:, :, :, 1:] = 0.0
     settled[:] = 0
@@ -89,22 +98,14 @@ def sight_wave(
         x = grid.x0 + (i + 0.5) * grid.cell_m
         y = grid.y0 + (j + 0.5) * grid.cell_m
         own = guide[layer, j, i]
-        if reached > 0 and not line_is_clear(grid, layer, x, y, own[1], own[2], radius):
+        seen = longest_sight == 0.0 or line_is_clear(grid, layer, x, y, own[1], own[2], radius)
+        if reached > 0 and not seen:
             own[0] = np.inf
             for dj in range(-1, 2):
                 for di in range(-1, 2):
                     nj = j + dj
                     ni = i + di
-                    if 0 <= nj < ny and 0 <= ni < nx and settled[layer, nj, ni]:
-                        if (
-                            dj != 0
-                            and di != 0
-                            and (
-                                grid.clearance[layer, j, ni] < radius
-                                or grid.clearance[layer, nj, i] < radius
-                            )
-                        ):
-                            continue
+                    if _may_pass(grid, layer, radius, j, i, nj, ni) and settled[layer, nj, ni]:
                         cx = grid.x0 + (ni + 0.5) * grid.cell_m
                         cy = grid.y0 + (nj + 0.5) * grid.cell_m
                         left = potential_at(grid, guide, layer, cx, cy)
@@ -122,25 +123,14 @@ def sight_wave(
             for di in range(-1, 2):
                 nj = j + dj
                 ni = i + di
-                if not (0 <= nj < ny and 0 <= ni < nx) or settled[layer, nj, ni]:
-                    continue
-                if grid.clearance[layer, nj, ni] < radius:
-                    continue
-                if (
-                    dj != 0
-                    and di != 0
-                    and (
-                        grid.clearance[layer, j, ni] < radius
-                        or grid.clearance[layer, nj, i] < radius
-                    )
-                ):
+                if not _may_pass(grid, layer, radius, j, i, nj, ni) or settled[layer, nj, ni]:
                     continue
                 cx = grid.x0 + (ni + 0.5) * grid.cell_m
                 cy = grid.y0 + (nj + 0.5) * grid.cell_m
                 left = own[0]
                 wx = own[1]
                 wy = own[2]
-                if np.hypot(wx - cx, wy - cy) > LONGEST_SIGHT_M:
+                if np.hypot(wx - cx, wy - cy) > longest_sight:
                     left = own[0] + np.hypot(wx - x, wy - y)
                     wx = x
                     wy = y
@@ -150,12 +140,11 @@ def sight_wave(
                     guide[layer, nj, ni, 1] = wx
                     guide[layer, nj, ni, 2] = wy
                     size = heap_push(keys, items, size, cost, nj * nx + ni)
-    _extend_into_obstacles(grid, guide, settled, layer)
     return reached
 
 
 @kernel
-def _extend_into_obstacles(
+def extend_into_obstacles(
     grid: GridArrays, guide: Guide, settled: NDArray[np.uint8], layer: int
 ) -> None:
     """Lead out of cells that are not free but lie next to reached ones, three rings deep.
@@ -192,73 +181,6 @@ def _extend_into_obstacles(
                             guide[layer, j, i, 2] = cy
                 if np.isfinite(best):
                     settled[layer, j, i] = ring + 1
-
-
-@kernel
-def nf1_wave(
-    grid: GridArrays,
-    radius: float,
-    layer: int,
-    goal_x: float,
-    goal_y: float,
-    guide: Guide,
-    settled: NDArray[np.uint8],
-    keys: NDArray[np.float64],
-    items: NDArray[np.int64],
-) -> int:
-    """NF1 as in the paper: the wave spreads from cell to cell; returns how many were reached.
-
-    Neighbours are the eight around, a diagonal costs sqrt(2) and must not cut a corner. A cell's
-    waypoint is the neighbour that it was reached from.
-    """
-    _, ny, nx = grid.clearance.shape
-    guide[:, :, :, 0] = np.inf
-    guide[:, :, :, 1:] = 0.0
-    settled[:] = 0
-    gj, gi = cell_at(grid, goal_x, goal_y)
-    guide[layer, gj, gi, 0] = 0.0
-    guide[layer, gj, gi, 1] = grid.x0 + (gi + 0.5) * grid.cell_m
-    guide[layer, gj, gi, 2] = grid.y0 + (gj + 0.5) * grid.cell_m
-    size = heap_push(keys, items, 0, 0.0, gj * nx + gi)
-    reached = 0
-    while size > 0:
-        value = keys[0]
-        cell = items[0]
-        size = heap_pop(keys, items, size)
-        j = cell // nx
-        i = cell % nx
-        if settled[layer, j, i]:
-            continue
-        settled[layer, j, i] = 1
-        reached += 1
-        x = grid.x0 + (i + 0.5) * grid.cell_m
-        y = grid.y0 + (j + 0.5) * grid.cell_m
-        for dj in range(-1, 2):
-            for di in range(-1, 2):
-                nj = j + dj
-                ni = i + di
-                if not (0 <= nj < ny and 0 <= ni < nx) or settled[layer, nj, ni]:
-                    continue
-                if grid.clearance[layer, nj, ni] < radius:
-                    continue
-                if (
-                    dj != 0
-                    and di != 0
-                    and (
-                        grid.clearance[layer, j, ni] < radius
-                        or grid.clearance[layer, nj, i] < radius
-                    )
-                ):
-                    continue
-                cost = value + grid.cell_m * np.sqrt(float(dj * dj + di * di))
-                cx = grid.x0 + (ni + 0.5) * grid.cell_m
-                cy = grid.y0 + (nj + 0.5) * grid.cell_m
-                if cost < potential_at(grid, guide, layer, cx, cy) - 1e-9:
-                    guide[layer, nj, ni, 0] = value
-                    guide[layer, nj, ni, 1] = x
-                    guide[layer, nj, ni, 2] = y
-                    size = heap_push(keys, items, size, cost, nj * nx + ni)
-    return reached
 
 
 @kernel

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from planning import _geometry_kernels as geometry
 from planning._geometry_kernels import SegmentIndex
-from planning._grid_kernels import GridArrays, clearance_many
+from planning._grid_kernels import GridArrays, cell_at, clearance_many
 from planning.potential import Potential
 from planning.scene import Scene
 
@@ -106,6 +106,12 @@ class LayeredGrid:
     def layers(self) -> int:
         """Number of layers."""
         return int(self.arrays.clearance.shape[0])
+
+    def cell_centre(self, position: tuple[float, float]) -> tuple[float, float]:
+        """Centre of the cell that holds a position."""
+        a = self.arrays
+        j, i = cell_at(a, position[0], position[1])
+        return a.x0 + (i + 0.5) * a.cell_m, a.y0 + (j + 0.5) * a.cell_m
 
     def as_points(
         self, positions: ArrayLike, layers: ArrayLike

@@ -23,8 +23,10 @@ if TYPE_CHECKING:
 class Wave(Enum):
     """How a wave front measures the way."""
 
-    SIGHT = "sight"
-    NF1 = "nf1"
+    SIGHT = 24.0
+    """Along lines of sight up to so many metres, so that they cost no more in a large zone."""
+    NF1 = 0.0
+    """From cell to cell."""
 
 
 class Potential:
@@ -48,18 +50,22 @@ class Potential:
         shape = grid.arrays.clearance.shape
         self.guide: NDArray[np.float32] = np.empty((*shape, 3), dtype=np.float32)
         cells = shape[1] * shape[2]
-        spread = kernels.sight_wave if wave is Wave.SIGHT else kernels.nf1_wave
-        self.reached_cells = spread(
+        x, y = goal if wave is Wave.SIGHT else grid.cell_centre(goal)
+        settled = np.empty(shape, dtype=np.uint8)
+        self.reached_cells = kernels.spread_wave(
             grid.arrays,
             radius_m,
             layer,
-            goal[0],
-            goal[1],
+            x,
+            y,
+            wave.value,
             self.guide,
-            np.empty(shape, dtype=np.uint8),
+            settled,
             np.empty(8 * cells + 1, dtype=np.float64),
             np.empty(8 * cells + 1, dtype=np.int64),
         )
+        if wave is Wave.SIGHT:
+            kernels.extend_into_obstacles(grid.arrays, self.guide, settled, layer)
 
     def distance(self, positions: ArrayLike, layers: ArrayLike) -> NDArray[np.float64]:
         """Metres to the goal, float64 (N,), inf where no way leads, for (N, 2) and (N,)."""
