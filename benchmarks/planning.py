@@ -97,7 +97,8 @@ def print_goals(grid: LayeredGrid) -> None:
             potential = Potential(grid, (goal[0], goal[1]), 0, 0.25, wave)
             times.append(1e3 * (time.perf_counter() - begun))
         size = potential.guide.nbytes / 1e6
-        print(f"new goal, {wave.name.lower():5s}: {np.median(times[1:]):6.1f} ms, {size:.1f} MB kept")
+        name, took = wave.name.lower(), np.median(times[1:])
+        print(f"new goal, {name:5s}: {took:6.1f} ms, {size:.1f} MB kept")
 
 
 class Crowd:
