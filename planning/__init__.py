@@ -8,13 +8,16 @@ from planning._prediction_kernels import Prediction
 from planning.batch import Batch, PlanModel
 from planning.grid import LayeredGrid
 from planning.potential import Potential, Wave
-from planning.prediction import PredictionModel, TrackHistory, gaussian_density
+from planning.prediction import PredictionModel, TrackHistory
 from planning.risk import RiskField, RiskModel
 from planning.scene import Place, Polygon, Scene, Spawn, Wall
 from planning.search import SearchForm, SearchResult, SearchStatus, uncertain_bfp
+from planning.spread import GAUSSIAN, PEOPLE, Spread
 
 __all__ = [
+    "GAUSSIAN",
     "PARAMETERS",
+    "PEOPLE",
     "Batch",
     "Crowd",
     "Decisions",
@@ -32,9 +35,9 @@ __all__ = [
     "SearchResult",
     "SearchStatus",
     "Spawn",
+    "Spread",
     "TrackHistory",
     "Wall",
     "Wave",
-    "gaussian_density",
     "uncertain_bfp",
 ]

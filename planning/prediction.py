@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from planning import _prediction_kernels as kernels
 from planning._prediction_kernels import Prediction
 from planning.grid import LayeredGrid
+from planning.spread import PEOPLE, Spread
 
 
 @dataclass(frozen=True)
@@ -19,7 +20,8 @@ class PredictionModel:
     """Constants of the prediction.
 
     The defaults are those that hold on recorded pedestrians: velocities 0.4 s apart, weighted
-    1/2, 1/4, 1/8, ...; a deviation per axis that grows by 0.17 m a second.
+    1/2, 1/4, 1/8, ...; a deviation per axis that grows by 0.17 m a second; errors that are mostly
+    smaller, and now and then larger, than those of one Gaussian.
     """
 
     samples: int = 4
@@ -35,33 +37,12 @@ class PredictionModel:
     infinite keeps the same growth for everyone. Seconds."""
     least_growth_mps: float = 0.08
     """However steadily somebody walks, the deviation grows at least so fast, metres a second."""
+    spread: Spread = PEOPLE
+    """Shape of the errors, in deviations: `GAUSSIAN` is eq. (4) as it stands."""
     wall_clearance_m: float = 0.15
     """How close to walls people are expected to pass, metres."""
     printed: bool = False
     """Eq. (1) with the signs as printed. It extrapolates noise on real tracks: reference only."""
-
-
-def gaussian_density(offset_m: NDArray[np.float64], sigma_m: float) -> NDArray[np.float64]:
-    """Density of a predicted position at an offset from its mean, eq. (4).
-
-    Parameters
-    ----------
-    offset_m : float64 (..., 2), metres
-    sigma_m : float > 0, metres per axis
-
-    Returns
-    -------
-    float64 (...), 1/m².
-
-    Notes
-    -----
-    The paper prints the normaliser of one dimension, 1/(sigma sqrt(2 pi)). The field has two, so
-    that the density integrates to one with 1/(2 pi sigma²), which is used here.
-    """
-    if not sigma_m > 0.0:
-        raise ValueError(f"sigma_m must be positive, got {sigma_m}")
-    squared = (np.asarray(offset_m, dtype=np.float64) ** 2).sum(axis=-1)
-    return np.asarray(np.exp(-squared / (2.0 * sigma_m**2)) / (2.0 * np.pi * sigma_m**2))
 
 
 def _by_name(who: object) -> tuple[str, str]:

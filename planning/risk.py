@@ -12,6 +12,7 @@ from planning import _risk_kernels as kernels
 from planning._prediction_kernels import Prediction
 from planning._risk_kernels import RadialTables
 from planning.grid import LayeredGrid
+from planning.spread import GAUSSIAN, Spread
 
 _SIGMA_STEP_M = 0.05
 _SIGMA_MAX_M = 1.5
@@ -64,23 +65,30 @@ def sigma_points() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return offsets, weights / weights.sum()
 
 
-def radial_tables(model: RiskModel) -> RadialTables:
+def radial_tables(model: RiskModel, spread: Spread = GAUSSIAN) -> RadialTables:
     """Influence of one person by deviation and distance; it is the same in every direction.
 
-    Each entry is the mean over the sigma points of density × term of eq. (5). For the closing
-    term the points' directions n are projected on the direction from the mean.
+    Each entry is the mean over the sigma points of density × term of eq. (5), for every Gaussian
+    of the spread over a likely range of its own. For the closing term the points' directions n
+    are projected on the direction from the mean.
     """
     offsets, weights = sigma_points()
     sigmas = np.arange(0.0, _SIGMA_MAX_M + _SIGMA_STEP_M / 2, _SIGMA_STEP_M)
-    reach = model.contact_m + model.influence_m + _SIGMA_SPAN * _SIGMA_MAX_M
+    widest = max(spread.scales) * _SIGMA_MAX_M
+    reach = model.contact_m + model.influence_m + _SIGMA_SPAN * widest
     squared = np.arange(0.0, reach**2 + 3 * _SQUARED_STEP_M2, _SQUARED_STEP_M2)
     distances = np.sqrt(squared)
     here = np.stack([distances, np.zeros_like(distances)], axis=1)
-    relative = here[None, :, None, :] - sigmas[:, None, None, None] * offsets[None, None]
-    length = np.linalg.norm(relative, axis=-1)
-    along = np.divide(relative[..., 0], length, out=np.zeros_like(length), where=length > 1e-9)
-    near = (model.near(length) * weights).sum(axis=-1)
-    toward = np.maximum((model.toward(length) * along * weights).sum(axis=-1), 0.0)
+    near = np.zeros((len(sigmas), len(squared)))
+    toward = np.zeros_like(near)
+    for scale, share in spread.parts:
+        strayed = scale * sigmas[:, None, None, None] * offsets[None, None]
+        relative = here[None, :, None, :] - strayed
+        length = np.linalg.norm(relative, axis=-1)
+        along = np.divide(relative[..., 0], length, out=np.zeros_like(length), where=length > 1e-9)
+        near += share * (model.near(length) * weights).sum(axis=-1)
+        toward += share * (model.toward(length) * along * weights).sum(axis=-1)
+    toward = np.maximum(toward, 0.0)
     matters = (near > _LEAST) | (toward > _LEAST)
     reaches = len(squared) - 2 - np.argmax(matters[:, -2::-1], axis=1)
     toward[:, 1:] /= distances[1:]
@@ -106,10 +114,12 @@ class RiskField:
     slice, layer and cell.
     """
 
-    def __init__(self, grid: LayeredGrid, model: RiskModel, slices: int) -> None:
+    def __init__(
+        self, grid: LayeredGrid, model: RiskModel, slices: int, spread: Spread = GAUSSIAN
+    ) -> None:
         self.grid = grid
         self.model = model
-        self.tables = radial_tables(model)
+        self.tables = radial_tables(model, spread)
         shape = grid.arrays.clearance.shape
         self.fields: NDArray[np.float32] = np.zeros((slices + 1, *shape, 4), dtype=np.float32)
         self._windows = np.full((slices + 1, 16, 5), -1, dtype=np.int64)

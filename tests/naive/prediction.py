@@ -40,8 +40,21 @@ def exponential_mean(track: NDArray[np.float64], sample_s: float) -> NDArray[np.
     return sum(w * velocity for w, velocity in zip(weights, v, strict=True))
 
 
-def integral_of_density(density, sigma_m: float) -> float:
-    """Sum of a density over an even grid out to eight deviations."""
-    axis = np.linspace(-8.0 * sigma_m, 8.0 * sigma_m, 81)
+def density(
+    parts: list[tuple[float, float]], offset_m: NDArray[np.float64], sigma_m: float
+) -> float:
+    """Eq. (4) for the plane, summed over Gaussians (scale, weight) of the deviation."""
+    squared = offset_m[0] ** 2 + offset_m[1] ** 2
+    total = 0.0
+    for scale, weight in parts:
+        variance = (scale * sigma_m) ** 2
+        total += weight * math.exp(-squared / (2.0 * variance)) / (2.0 * math.pi * variance)
+    return total
+
+
+def integral_of_density(density, sigma_m: float, within: float = 8.0) -> float:
+    """Sum of a density over an even grid of the circle of so many deviations."""
+    axis = np.linspace(-8.0 * sigma_m, 8.0 * sigma_m, 161)
     step = axis[1] - axis[0]
-    return step * step * math.fsum(density(np.array([x, y]), sigma_m) for x in axis for y in axis)
+    inside = [(x, y) for x in axis for y in axis if math.hypot(x, y) <= within * sigma_m]
+    return step * step * math.fsum(density(np.array(place), sigma_m) for place in inside)

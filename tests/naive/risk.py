@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from planning import Prediction, RiskModel
+from planning import Prediction, RiskModel, Spread
 
 
 def sigma_grid() -> list[tuple[float, float, float]]:
@@ -21,6 +21,7 @@ def sigma_grid() -> list[tuple[float, float, float]]:
 
 def risk(
     model: RiskModel,
+    spread: Spread,
     prediction: Prediction,
     k: int,
     layer: int,
@@ -28,13 +29,21 @@ def risk(
     velocity: NDArray[np.float64],
     closing_weight: float,
 ) -> float:
-    """Mean over each person's likely places of w1 · proximity + w2 · closing speed."""
+    """Mean over each person's likely places of w1 · proximity + w2 · closing speed.
+
+    Every Gaussian of the spread has likely places of its own.
+    """
     near = 0.0
     closing = 0.0
     for p in range(len(prediction.layers)):
         if prediction.layers[p] != layer:
             continue
-        for a, b, weight in sigma_grid():
+        likely = [
+            (scale * a, scale * b, share * weight)
+            for scale, share in zip(spread.scales, spread.weights, strict=True)
+            for a, b, weight in sigma_grid()
+        ]
+        for a, b, weight in likely:
             place = prediction.means[p, k] + prediction.sigmas[p, k] * np.array([a, b])
             away = position - place
             distance = math.hypot(*away)

@@ -1,4 +1,4 @@
-"""Eqs. (1)-(4) against the way they are written, and what becomes of people's tracks."""
+"""Eqs. (1)-(3) against the way they are written, and what becomes of people's tracks."""
 
 import math
 
@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning import PredictionModel, TrackHistory, gaussian_density
+from planning import PredictionModel, TrackHistory
 from planning import _prediction_kernels as kernels
 from tests.naive import prediction as naive
 from tests.planning.worlds import holds, open_grid
@@ -60,23 +60,6 @@ def test_an_old_turn_counts_less_than_a_new_one() -> None:
     early[4:, 1] -= 0.2
     turned = [abs(kernels.mean_velocity(t, 5, SAMPLE_S)[1]) for t in (late, early)]
     assert turned == pytest.approx([0.25, 0.0625])
-
-
-@pytest.mark.parametrize("sigma_m", [0.05, 0.3, 1.7])
-def test_the_density_of_eq_4_integrates_to_one(sigma_m) -> None:
-    assert naive.integral_of_density(gaussian_density, sigma_m) == pytest.approx(1.0, abs=1e-6)
-
-
-def test_the_density_is_that_of_two_dimensions() -> None:
-    assert gaussian_density(np.zeros(2), 0.5) == pytest.approx(1.0 / (2.0 * math.pi * 0.25))
-    printed = 1.0 / (0.5 * math.sqrt(2.0 * math.pi))
-    assert gaussian_density(np.zeros(2), 0.5) != pytest.approx(printed)
-
-
-@pytest.mark.parametrize("sigma_m", [0.0, -1.0, math.nan])
-def test_a_density_needs_a_width(sigma_m) -> None:
-    with pytest.raises(ValueError, match="sigma_m"):
-        gaussian_density(np.zeros(2), sigma_m)
 
 
 def walked(grid, velocity, model=None, start=(4.0, 4.0), ticks=20):

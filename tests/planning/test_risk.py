@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning import Prediction, RiskField, RiskModel
+from planning import GAUSSIAN, PEOPLE, Prediction, RiskField, RiskModel, Spread
 from planning.risk import radial_tables, sigma_points
 from tests.naive import risk as naive
 from tests.planning.worlds import field_of, holds, open_grid, points, scaled, walking
@@ -20,15 +20,17 @@ def centre(cell: tuple[int, int]) -> np.ndarray:
     return (np.array(cell[::-1]) + 0.5) * 0.25
 
 
+@pytest.mark.parametrize("spread", [GAUSSIAN, PEOPLE])
 @given(people, st.integers(0, 6), st.tuples(st.integers(0, 31), st.integers(0, 31)), speeds)
 @holds(60, 6)
-def test_the_field_is_the_direct_sum_at_centres_of_cells(crowd, k, cell, velocity) -> None:
-    grid = open_grid(8.0)
+def test_the_field_is_the_direct_sum_at_centres_of_cells(spread, crowd, k, cell, velocity) -> None:
+    model = RiskModel()
     prediction = walking([p for p, _ in crowd], [v for _, v in crowd], slices=6)
-    field = field_of(grid, prediction, slices=6)
+    field = RiskField(open_grid(8.0), model, 6, spread)
+    field.fill(prediction)
     here = centre(cell)
     found = field.at(k, [here], [0], [velocity], CLOSING_WEIGHT)[0]
-    direct = naive.risk(field.model, prediction, k, 0, here, np.array(velocity), CLOSING_WEIGHT)
+    direct = naive.risk(model, spread, prediction, k, 0, here, np.array(velocity), CLOSING_WEIGHT)
     # The tables are linear between 5 cm and read along one axis of the grid of sigma points.
     assert found == pytest.approx(direct, abs=0.05 * len(crowd))
 
@@ -43,7 +45,8 @@ def test_on_the_whole_the_field_is_close_to_the_direct_sum() -> None:
         here = centre(tuple(rng.integers(0, 32, 2)))
         v = rng.normal(0.0, 1.0, 2)
         found = field.at(6, [here], [0], [v], CLOSING_WEIGHT)[0]
-        errors.append(found - naive.risk(field.model, prediction, 6, 0, here, v, CLOSING_WEIGHT))
+        direct = naive.risk(field.model, PEOPLE, prediction, 6, 0, here, v, CLOSING_WEIGHT)
+        errors.append(found - direct)
     assert np.sqrt(np.mean(np.square(errors))) < 0.015
     assert abs(np.mean(errors)) < 0.005
 
@@ -148,7 +151,7 @@ def test_how_work_is_shared_out_does_not_matter() -> None:
     grid = open_grid(8.0)
     prediction = walking([(2.0, 2.0), (5.0, 4.0)], [(1.0, 0.0), (0.0, 1.0)], slices=5)
     whole = field_of(grid, prediction, slices=5)
-    parts = RiskField(grid, RiskModel(), 5)
+    parts = RiskField(grid, RiskModel(), 5, PEOPLE)
     parts.fill(prediction, lambda work: [work(k, 3) for k in (2, 0, 1)])
     assert np.array_equal(whole.fields, parts.fields)
 
@@ -163,13 +166,28 @@ def test_sigma_points_weigh_one_and_centre_on_the_mean() -> None:
     )
 
 
-def test_tables_are_bounded_and_end_in_nothing() -> None:
-    tables = radial_tables(RiskModel())
+@pytest.mark.parametrize("spread", [GAUSSIAN, PEOPLE, Spread((0.1, 3.0), (0.5, 0.5))])
+def test_tables_are_bounded_and_end_in_nothing(spread) -> None:
+    tables = radial_tables(RiskModel(), spread)
     distances = np.sqrt(np.arange(tables.near.shape[1]) * tables.squared_step_m2)
     for table in (tables.near, tables.toward * distances):
         assert table.min() >= 0.0
         assert table.max() <= 1.0 + 1e-6
         assert not table[:, -1].any()
+
+
+def test_tables_of_a_mixture_are_those_of_its_parts_by_weight() -> None:
+    mixed = radial_tables(RiskModel(), Spread((1.0, 2.0), (0.75, 0.25)))
+    one = radial_tables(RiskModel())
+    rows, columns = np.arange(len(one.near) // 2), one.near.shape[1]
+    expected = 0.75 * one.near[rows] + 0.25 * one.near[2 * rows]
+    np.testing.assert_allclose(mixed.near[rows, :columns], expected, atol=1e-5)
+
+
+def test_what_seldom_happens_reaches_further() -> None:
+    even, heavy = (radial_tables(RiskModel(), spread) for spread in (GAUSSIAN, PEOPLE))
+    assert (heavy.reaches >= even.reaches).all()
+    assert heavy.reaches[10] > even.reaches[10]
 
 
 def test_the_model_has_the_two_properties_of_eq_5() -> None:

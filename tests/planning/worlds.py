@@ -10,7 +10,16 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from planning import LayeredGrid, PlanModel, Polygon, Prediction, RiskField, RiskModel, Scene
+from planning import (
+    PEOPLE,
+    LayeredGrid,
+    PlanModel,
+    Polygon,
+    Prediction,
+    RiskField,
+    RiskModel,
+    Scene,
+)
 from planning._reservation_kernels import Reservations, index_paths
 from planning._search_kernels import Task, World
 from planning.search import make_reservations
@@ -64,7 +73,7 @@ def walking(
 
 def field_of(grid: LayeredGrid, prediction: Prediction, slices: int = SLICES) -> RiskField:
     """The risk field of a prediction, defaults throughout."""
-    field = RiskField(grid, RiskModel(), slices)
+    field = RiskField(grid, RiskModel(), slices, PEOPLE)
     field.fill(prediction)
     return field
 
@@ -123,6 +132,7 @@ def task(
         closing_weight=0.1,
         turn_weight=0.1,
         wall_weight=0.3,
+        hurry_weight=2.0,
         max_expansions=400,
         hold=False,
     )._replace(**changes)
