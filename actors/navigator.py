@@ -55,8 +55,9 @@ class Navigator:
         self.tick_s = tick_s
         self.plan = plan or PlanModel()
         self._seed = seed
-        self._batch = Batch(grid, self.plan, risk or RiskModel())
-        self._history = TrackHistory(prediction or PredictionModel(), tick_s)
+        people = prediction or PredictionModel()
+        self._batch = Batch(grid, self.plan, risk or RiskModel(), people.spread)
+        self._history = TrackHistory(people, tick_s)
         self._prediction = self._history.predict(grid, self.plan.slices, self.plan.slice_s)
         self._guides = GuidePool(grid)
         self._ids: list[Hashable] = []

@@ -18,6 +18,7 @@ from planning._step_kernels import resolve
 from planning.grid import LayeredGrid
 from planning.risk import RiskField, RiskModel
 from planning.search import compass_moves, make_reservations, make_workspace
+from planning.spread import GAUSSIAN, Spread
 
 
 @dataclass(frozen=True)
@@ -49,10 +50,12 @@ class Batch:
     expansions × moves) for the searches; both are spread over the threads.
     """
 
-    def __init__(self, grid: LayeredGrid, plan: PlanModel, risk: RiskModel) -> None:
+    def __init__(
+        self, grid: LayeredGrid, plan: PlanModel, risk: RiskModel, spread: Spread = GAUSSIAN
+    ) -> None:
         self.grid = grid
         self.plan = plan
-        self.field = RiskField(grid, risk, plan.slices)
+        self.field = RiskField(grid, risk, plan.slices, spread)
         self._moves = compass_moves()
         self._no_guide = np.full((*grid.arrays.clearance.shape, 3), np.inf, dtype=np.float32)
         self._pool = ThreadPoolExecutor(plan.threads, thread_name_prefix="planning")
