@@ -14,6 +14,8 @@ examples:
   esplanade evaluate zara1.csv --episodes 20 --plots failed/
   esplanade evaluate zara1.csv --set risk_weight=12 --set foresight_s=2
   esplanade evaluate eth.csv zara1.csv --prediction --fit
+  esplanade evaluate eth.csv zara1.csv --sensitivity --ledger done.jsonl --plots .
+  esplanade evaluate eth.csv zara1.csv --tune --vary risk_weight=6,8,12 --ledger done.jsonl
 
 files: CSV with the header t,id,x,y; ETH's obsmat.txt; TrajNet++ .ndjson
 
@@ -75,10 +77,12 @@ def parser() -> argparse.ArgumentParser:
         metavar="NAME=VALUE",
         action="append",
         default=[],
-        help="change a parameter of our actor; may be given several times",
+        help="change a setting of our actor: a parameter, risk.NAME, prediction.NAME or plan.NAME; "
+        "may be given several times",
     )
     trips.add_argument("--processes", metavar="N", type=_whole(1, 64), default=2, help="[2]")
     trips.add_argument("--strict", action="store_true", help="exit with 1 if an episode failed")
+    _add_studies(made.add_argument_group("settings of our actor"))
     forecasts = made.add_argument_group("prediction")
     forecasts.add_argument(
         "--prediction", action="store_true", help="measure predictions instead of episodes"
@@ -95,6 +99,12 @@ def parser() -> argparse.ArgumentParser:
     )
     results = made.add_argument_group("results")
     results.add_argument("--json", metavar="FILE", type=Path, help="write every episode there")
+    results.add_argument(
+        "--ledger",
+        metavar="FILE",
+        type=Path,
+        help="keep scores there as they come; what is there is not walked again",
+    )
     results.add_argument("--plots", metavar="FOLDER", type=Path, help="draw episodes there, as PNG")
     results.add_argument(
         "--plot-episodes",
@@ -103,6 +113,34 @@ def parser() -> argparse.ArgumentParser:
         help="which ones [default: failed]",
     )
     return made
+
+
+def _add_studies(studies: Any) -> None:
+    kinds = studies.add_mutually_exclusive_group()
+    kinds.add_argument(
+        "--sensitivity",
+        action="store_true",
+        help="vary one setting after the other, instead of walking once; --plots draws a picture",
+    )
+    kinds.add_argument(
+        "--tune",
+        action="store_true",
+        help="compare candidates, choosing without one recording after the other",
+    )
+    studies.add_argument(
+        "--vary",
+        metavar="NAME=V1,V2,..",
+        action="append",
+        default=[],
+        help="a setting and its values; may be given several times: --sensitivity takes one at a "
+        "time [default: all that make the actor's temper], --tune all combinations",
+    )
+    studies.add_argument(
+        "--candidates",
+        metavar="FILE",
+        type=Path,
+        help='more candidates for --tune, a line each: {"risk_weight": 12, "risk.comfort": 0.1}',
+    )
 
 
 def _number(least: float, most: float) -> Any:

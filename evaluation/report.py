@@ -64,26 +64,18 @@ def figures(
     names: Mapping[Any, str],
     settings: Mapping[str, Any],
 ) -> dict[str, Any]:
-    """Everything that was measured, for JSON; null where there is nothing to measure."""
+    """Everything that was measured, for JSON."""
     return {
         "settings": dict(settings),
         "summaries": [
-            {"recording": name, "policy": policy, **plain(asdict(summary))}
+            {"recording": name, "policy": policy, **asdict(summary)}
             for name, policy, summary in rows
         ],
         "episodes": [
-            {"recording": names[r.trial.source], "policy": r.trial.policy, **plain(asdict(score))}
+            {"recording": names[r.trial.source], "policy": r.trial.policy, **asdict(score)}
             for r in results
             for score in r.scores
         ],
-    }
-
-
-def plain(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Values as JSON has them: None for what is not finite."""
-    return {
-        name: None if isinstance(value, float) and not math.isfinite(value) else value
-        for name, value in values.items()
     }
 
 

@@ -2,66 +2,20 @@
 
 import multiprocessing
 import signal
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import dataclass, field, replace
-from functools import cache
-from pathlib import Path
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
-from evaluation.episodes import Episode, choose_episodes
+from evaluation.ledger import Ledger
 from evaluation.policies import Policy, make_policy
-from evaluation.replay import Interpolation, Replay
 from evaluation.rules import Rules
 from evaluation.scores import Score
-from evaluation.simulation import Ground, run_episode
-from recordings import Crowd, Obstacles, read_crowd, read_obstacles, walls_beside
+from evaluation.simulation import run_episode
+from evaluation.trials import Source, Trial
 
 EPISODES_AT_ONCE: Final = 5
 WARM_UP_S: Final = 1.0
-
-
-@dataclass(frozen=True)
-class Source:
-    """A recording on disk: every process reads it for itself."""
-
-    path: Path
-    walls: Path | None = None
-    fps: float | None = None
-    interpolation: Interpolation = "linear"
-
-    def read(self) -> tuple[Crowd, Obstacles]:
-        """What the files hold; RecordingError says what is wrong with one."""
-        return _read(self)
-
-    def ground(self, tick_s: float) -> Ground:
-        """The recording, ready for episodes; read once in a process."""
-        return _ground(self, tick_s)
-
-
-@cache
-def _read(source: Source) -> tuple[Crowd, Obstacles]:
-    walls = source.walls or walls_beside(source.path)
-    crowd = read_crowd(source.path, source.fps)
-    return crowd, Obstacles() if walls is None else read_obstacles(walls)
-
-
-@cache
-def _ground(source: Source, tick_s: float) -> Ground:
-    replay = Replay(*source.read(), tick_s=tick_s, interpolation=source.interpolation)
-    return Ground.of(replay)
-
-
-@dataclass(frozen=True)
-class Trial:
-    """One policy on the episodes of one recording."""
-
-    source: Source
-    policy: str
-    rules: Rules
-    episodes: tuple[Episode, ...]
-    parameters: tuple[tuple[str, Any], ...] = field(default=())
-    """Changes of the actor's parameters, for our own policy."""
 
 
 @dataclass(frozen=True)
@@ -72,74 +26,73 @@ class Result:
     scores: tuple[Score, ...]
 
 
-def plan_trials(
-    sources: Sequence[Source],
-    policies: Sequence[str],
-    rules: Rules,
-    count: int,
-    seed: int,
-    parameters: Mapping[str, Any],
-) -> list[Trial]:
-    """Every policy on the same episodes of every recording.
-
-    Raises
-    ------
-    RecordingError, PolicyError
-        A file is broken, or a policy cannot be had: before anything has run.
-    """
-    follows = {name: make_policy(name, parameters).follows_recording for name in policies}
-    trials = []
-    for source in sources:
-        episodes = choose_episodes(source.ground(rules.tick_s).replay, rules, count, seed)
-        for name in policies:
-            taken = tuple(e for e in episodes if not (follows[name] and e.reverse))
-            trials.append(Trial(source, name, rules, taken, tuple(parameters.items())))
-    return trials
-
-
 def run_trials(
-    trials: Sequence[Trial], processes: int, report: Callable[[int], None]
+    trials: Sequence[Trial],
+    processes: int,
+    report: Callable[[int], None],
+    ledger: Ledger | None = None,
 ) -> list[Result]:
-    """Run all trials; `report` is told each time how many more episodes are done."""
-    chunks = [(index, part) for index, trial in enumerate(trials) for part in _parts(trial)]
-    found: dict[int, list[Score]] = {index: [] for index in range(len(trials))}
-    for index, scores in _carry_out(chunks, processes):
-        found[index] += scores
+    """Run all trials; `report` is told each time how many more episodes are done.
+
+    What the ledger has is not run again. What has been run is in the ledger, even if this is
+    interrupted: then it comes to its end as soon as the episodes under way have.
+    """
+    ledger = ledger or Ledger()
+    found = [ledger.find(trial) for trial in trials]
+    report(sum(map(len, found)))
+
+    def keep(index: int, part: Trial, scores: Sequence[Score]) -> None:
+        ledger.add(part, scores)
+        found[index] |= {score.number: score for score in scores}
         report(len(scores))
-    return [
-        Result(trial, tuple(sorted(found[index], key=lambda score: score.number)))
+
+    parts = [
+        (index, part)
         for index, trial in enumerate(trials)
+        for part in _parts(trial, found[index].keys())
+    ]
+    _carry_out(parts, processes, keep)
+    return [
+        Result(trial, tuple(scores[episode.number] for episode in trial.episodes))
+        for trial, scores in zip(trials, found, strict=True)
     ]
 
 
 def ready_policy(trial: Trial) -> Policy:
     """The policy of a trial, compiled: the first episode's first second has been walked."""
-    policy = make_policy(trial.policy, dict(trial.parameters))
+    policy = make_policy(trial.policy, dict(trial.settings))
     short = replace(trial.rules, time_limit_s=WARM_UP_S)
     run_episode(trial.source.ground(short.tick_s), trial.episodes[0], policy, short)
     return policy
 
 
-def _parts(trial: Trial) -> Iterator[Trial]:
-    for first in range(0, len(trial.episodes), EPISODES_AT_ONCE):
-        yield replace(trial, episodes=trial.episodes[first : first + EPISODES_AT_ONCE])
+def _parts(trial: Trial, done: Collection[int]) -> Iterator[Trial]:
+    """What is left of a trial, some episodes at a time."""
+    left = [episode for episode in trial.episodes if episode.number not in done]
+    for first in range(0, len(left), EPISODES_AT_ONCE):
+        yield replace(trial, episodes=tuple(left[first : first + EPISODES_AT_ONCE]))
 
 
 def _carry_out(
-    chunks: Sequence[tuple[int, Trial]], processes: int
-) -> Iterator[tuple[int, list[Score]]]:
+    parts: Sequence[tuple[int, Trial]],
+    processes: int,
+    keep: Callable[[int, Trial, Sequence[Score]], None],
+) -> None:
     if processes == 1:
-        for index, part in chunks:
-            yield index, _run(part)
+        for index, part in parts:
+            keep(index, part, _run(part))
         return
     spawn = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(processes, spawn, _leave_interrupts_to_the_parent) as pool:
-        futures = {pool.submit(_run, part): index for index, part in chunks}
+        waiting = {pool.submit(_run, part): (index, part) for index, part in parts}
         try:
-            for future in as_completed(futures):
-                yield futures[future], future.result()
+            for future in as_completed(waiting):
+                keep(*waiting.pop(future), future.result())
         finally:
             pool.shutdown(cancel_futures=True)
+            for future, (index, part) in waiting.items():
+                if not future.cancelled() and future.exception() is None:
+                    keep(index, part, future.result())
 
 
 def _leave_interrupts_to_the_parent() -> None:
@@ -151,7 +104,7 @@ _last: dict[tuple[Source, str, Rules, tuple[tuple[str, Any], ...]], Policy] = {}
 
 def _run(part: Trial) -> list[Score]:
     """Run some episodes; the policy of the chunk before is used again where it is the same."""
-    key = (part.source, part.policy, part.rules, part.parameters)
+    key = (part.source, part.policy, part.rules, part.settings)
     if key not in _last:
         _last.clear()
         _last[key] = ready_policy(part)

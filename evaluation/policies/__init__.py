@@ -29,8 +29,8 @@ POLICIES: Final = {
 }
 
 
-def make_policy(name: str, parameters: Mapping[str, Any] | None = None) -> Policy:
-    """A policy by its name; `parameters` of an actor are for "esplanade" alone.
+def make_policy(name: str, settings: Mapping[str, Any] | None = None) -> Policy:
+    """A policy by its name; `settings` of our actor are for "esplanade" alone.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def make_policy(name: str, parameters: Mapping[str, Any] | None = None) -> Polic
         Callable[..., Policy],
         getattr(import_module(f"evaluation.policies.{entry.module}"), entry.maker),
     )
-    return maker(parameters) if name == "esplanade" else maker()
+    return maker(settings) if name == "esplanade" else maker()
 
 
 __all__ = ["POLICIES", "Policy", "PolicyError", "make_policy"]

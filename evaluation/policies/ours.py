@@ -1,6 +1,7 @@
 """The project's own actor, driven as a guest of this simulation."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
@@ -11,7 +12,8 @@ from actors import ActorParameters, Navigator
 from evaluation.policies.policy import Policy, PolicyError, Task, Thoughts, View
 from evaluation.replay import Replay
 from evaluation.rules import Rules
-from planning import LayeredGrid, PlanModel, Scene
+from evaluation.settings import models_of, parameters_of
+from planning import LayeredGrid, Scene
 
 MARGIN_M: Final = 10.0
 """Ground around everyone's recorded ways."""
@@ -31,8 +33,9 @@ class Esplanade(Policy):
     first decision it is told the visible past: in a world that runs, it has been watching too.
     """
 
-    def __init__(self, parameters: Mapping[str, Any] | None = None) -> None:
-        self._changes = dict(parameters or {})
+    def __init__(self, settings: Mapping[str, Any] | None = None) -> None:
+        self._settings = dict(settings or {})
+        self._models = models_of(self._settings)
         self._replay: Replay | None = None
         self._navigator: Navigator | None = None
 
@@ -42,9 +45,15 @@ class Esplanade(Policy):
             self._replay = task.replay
         if self._navigator is not None:
             self._navigator.close()
-        self._navigator = Navigator(self._grid, tick_s=task.rules.tick_s, plan=PlanModel(threads=1))
+        self._navigator = Navigator(
+            self._grid,
+            tick_s=task.rules.tick_s,
+            plan=replace(self._models.plan, threads=1),
+            risk=self._models.risk,
+            prediction=self._models.prediction,
+        )
         self._navigator.add_actor(
-            _ACTOR, task.episode.start, task.episode.goal, _parameters(task.rules, self._changes)
+            _ACTOR, task.episode.start, task.episode.goal, _parameters(task.rules, self._settings)
         )
         self._fresh = True
 
@@ -95,7 +104,7 @@ def _scene(replay: Replay) -> Scene:
         raise PolicyError(f"{replay.name} makes no scene: {error.errors()[0]['msg']}") from None
 
 
-def _parameters(rules: Rules, changes: Mapping[str, Any]) -> ActorParameters:
+def _parameters(rules: Rules, settings: Mapping[str, Any]) -> ActorParameters:
     limit_mps2 = rules.max_acceleration_mps2
     given = {
         "radius_m": rules.robot_radius_m,
@@ -103,4 +112,4 @@ def _parameters(rules: Rules, changes: Mapping[str, Any]) -> ActorParameters:
         "max_speed_mps": rules.max_speed_mps,
         "max_acceleration_mps2": UNLIMITED_MPS2 if limit_mps2 is None else limit_mps2,
     }
-    return ActorParameters(**{**given, **changes})
+    return parameters_of(settings, given)

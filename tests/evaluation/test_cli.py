@@ -139,7 +139,7 @@ def test_recordings_of_one_name_are_told_apart_by_their_paths(
         (["--episodes", "0"], "'0' is no number from 1"),
         (["--a-max", "fast"], "'fast' is no number from 0.2 to 20"),
         (["--fps", "nan"], "'nan' is no number"),
-        (["--set", "tempo=3"], "--set tempo: Extra inputs are not permitted"),
+        (["--set", "tempo=3"], "--set tempo: there is no such setting"),
         (["--set", "risk_weight=-1"], "--set risk_weight: Input should be greater"),
         (["--json", "/nowhere/all.json"], "--json: there is no folder /nowhere"),
         (["--plots", "/dev/null/x"], "--plots: "),

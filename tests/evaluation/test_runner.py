@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from evaluation.runner import Source, Trial, plan_trials, run_trials
+from evaluation.runner import run_trials
 from evaluation.scores import Score
+from evaluation.trials import Source, Trial, plan_trials
 from recordings import RecordingError
 from tests.evaluation.worlds import RULES, busy_plaza, write_csv
 

@@ -1,0 +1,171 @@
+"""Scores kept on disk, so that no episode is run twice and an interrupted run loses nothing."""
+
+import hashlib
+import json
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict, fields, replace
+from functools import cache
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Final, Self, TextIO
+
+from evaluation.episodes import Episode
+from evaluation.scores import Score
+from evaluation.trials import Source, Trial
+from recordings import walls_beside
+
+_ROOT: Final = Path(__file__).resolve().parents[1]
+_PACKAGES: Final = ("actors", "evaluation", "planning", "recordings")
+_SHOW_ONLY: Final = frozenset(
+    {
+        "calibration",
+        "cli",
+        "console",
+        "forecast_report",
+        "forecasts",
+        "ledger",
+        "options",
+        "plotting",
+        "report",
+        "studies",
+    }
+)
+"""Parts of `evaluation` that no score depends on."""
+
+_Key = tuple[str, int, bool]
+
+
+class LedgerError(Exception):
+    """A ledger that cannot be used; the message says which and why."""
+
+
+class Ledger:
+    """One line of JSON for every episode that was scored.
+
+    A score is found again where all that it depends on is the same: recording, rules, policy,
+    settings, trip, and the source code. Runs of different studies may share one ledger, in one
+    process at a time. Without a path, scores last as long as this object.
+    """
+
+    def __init__(self, path: Path | None = None) -> None:
+        self._scores: dict[_Key, Score] = {}
+        self._file: TextIO | None = None
+        if path is not None:
+            try:
+                self._file = path.open("a+", encoding="utf-8")
+                self._load(path, self._file)
+            except (OSError, UnicodeDecodeError) as error:
+                raise LedgerError(f"{path}: {error}") from None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._file is not None:
+            self._file.close()
+
+    def find(self, trial: Trial) -> dict[int, Score]:
+        """What is known of a trial's episodes, by their numbers in it."""
+        kind = _digest_of(trial)
+        known = ((e.number, self._scores.get((kind, *_trip(e)))) for e in trial.episodes)
+        return {k: replace(score, number=k) for k, score in known if score is not None}
+
+    def add(self, trial: Trial, scores: Sequence[Score]) -> None:
+        """Keep the scores of a trial's episodes; they are on disk when this returns."""
+        kind = _digest_of(trial)
+        lines = []
+        for episode, score in zip(trial.episodes, scores, strict=True):
+            self._scores[kind, *_trip(episode)] = score
+            lines.append(json.dumps(_line(kind, trial, episode, score), allow_nan=False) + "\n")
+        if self._file is not None:
+            try:
+                self._file.write("".join(lines))
+                self._file.flush()
+            except OSError as error:
+                raise LedgerError(f"{self._file.name}: {error}") from None
+
+    def _load(self, path: Path, file: TextIO) -> None:
+        file.seek(0)
+        whole, newline, broken = file.read().rpartition("\n")
+        for number, line in enumerate(whole.split("\n") if newline else (), start=1):
+            try:
+                entry = json.loads(line)
+                key = entry["trial"], entry["pedestrian"], entry["reverse"]
+                self._scores[key] = _score(entry["score"])
+            except (ValueError, TypeError, KeyError):
+                raise LedgerError(f"{path}:{number}: this is no line of a ledger") from None
+        if broken:  # whoever wrote it was ended in the middle of a line
+            file.truncate(len((whole + newline).encode()))
+
+
+def _line(kind: str, trial: Trial, episode: Episode, score: Score) -> dict[str, Any]:
+    """What one line holds; recording, policy and settings are for those who read it."""
+    pedestrian, reverse = _trip(episode)
+    return {
+        "trial": kind,
+        "recording": trial.source.path.stem,
+        "policy": trial.policy,
+        "settings": {name: _finite(value) for name, value in trial.settings},
+        "pedestrian": pedestrian,
+        "reverse": reverse,
+        "score": {name: _finite(value) for name, value in asdict(score).items()},
+    }
+
+
+def _trip(episode: Episode) -> tuple[int, bool]:
+    """Tells a trip from all others of its recording."""
+    return episode.pedestrian, episode.reverse
+
+
+def _score(values: dict[str, Any]) -> Score:
+    if set(values) != {field.name for field in fields(Score)}:
+        raise ValueError("fields of another form of score")
+    known: dict[str, Any] = {k: math.nan if v is None else v for k, v in values.items()}
+    return Score(**known)
+
+
+def _finite(value: Any) -> Any:
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _digest_of(trial: Trial) -> str:
+    """Of everything that the score of one of its trips depends on."""
+    settings = sorted((name, repr(value)) for name, value in trial.settings)
+    rules = sorted(asdict(trial.rules).items())
+    told = repr((_code(), _recorded(trial.source), trial.policy, rules, settings))
+    return hashlib.sha256(told.encode()).hexdigest()[:16]
+
+
+@cache
+def _recorded(source: Source) -> str:
+    walls = source.walls or walls_beside(source.path)
+    parts = [source.path.read_bytes(), b"" if walls is None else walls.read_bytes()]
+    how = repr((source.path.suffix, source.fps, source.interpolation)).encode()
+    return _digest([*parts, how])
+
+
+@cache
+def _code() -> str:
+    """Of the source of all that makes scores; cached, for it is what has been imported."""
+    return _digest(path.read_bytes() for path in sorted(_sources()))
+
+
+def _sources() -> Iterator[Path]:
+    for package in _PACKAGES:
+        for path in (_ROOT / package).rglob("*.py"):
+            part = path.relative_to(_ROOT / package).parts[0].removesuffix(".py")
+            if not (package == "evaluation" and part in _SHOW_ONLY):
+                yield path
+
+
+def _digest(parts: Iterable[bytes]) -> str:
+    found = hashlib.sha256()
+    for part in parts:
+        found.update(hashlib.sha256(part).digest())
+    return found.hexdigest()

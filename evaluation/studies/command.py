@@ -1,0 +1,82 @@
+"""`esplanade evaluate --sensitivity` and `--tune`."""
+
+import argparse
+from collections.abc import Mapping
+from typing import Any
+
+from rich.console import Console
+
+from evaluation import plotting
+from evaluation.console import UsageError, check_targets, named_sources, walk, write_json
+from evaluation.rules import Rules
+from evaluation.settings import read_changes, read_choices
+from evaluation.studies import report, sensitivity, sensitivity_plot, tuning
+from evaluation.studies.variants import Variant, tables_of, trials_of
+from evaluation.trials import Source
+
+
+def show_sensitivity(options: argparse.Namespace) -> None:
+    """Vary one setting after the other; show, write and draw what came of it."""
+    names, base, rules = _begin(options)
+    choices = read_choices(options.vary or sensitivity.TEMPER)
+    values = sensitivity.ranges(choices, base)
+    variants = [
+        sensitivity.variant_of(rules, base, name, value)
+        for name, taken in values.items()
+        for value in taken
+    ]
+    trials = trials_of(variants, list(names), options.episodes, options.seed)
+    tables = tables_of(walk(trials, options))
+    found = sensitivity.curves(values, base, rules, tables, options.seed)
+    report.show_curves(Console(), found)
+    if options.json is not None:
+        told = {"settings": _settings(options, names, base), "points": sensitivity.figures(found)}
+        write_json(options.json, told)
+    if options.plots is not None:
+        sensitivity_plot.draw(options.plots / "sensitivity.svg", found)
+
+
+def show_tuning(options: argparse.Namespace) -> None:
+    """Compare candidates, and choose among them without one recording after the other."""
+    names, base, rules = _begin(options)
+    choices = read_choices(options.vary)
+    grid = {name: values for name, values in choices.items() if values is not None}
+    if set(grid) != set(choices):
+        raise UsageError("--vary: --tune needs values, as NAME=V1,V2,..")
+    listed = [] if options.candidates is None else tuning.read_candidates(options.candidates)
+    if not grid and not listed:
+        raise UsageError("--tune needs candidates: --vary NAME=V1,V2,.. or --candidates FILE")
+    variants = [Variant.of(rules, found) for found in tuning.candidates(grid, listed, base)]
+    trials = trials_of(variants, list(names), options.episodes, options.seed)
+    tables = tables_of(walk(trials, options))
+    found = tuning.tune(tables, variants[0], options.seed)
+    report.show_tuning(Console(), found, names)
+    if options.json is not None:
+        told = {"settings": _settings(options, names, base), **tuning.figures(found, names)}
+        write_json(options.json, told)
+
+
+def _begin(options: argparse.Namespace) -> tuple[dict[Source, str], dict[str, Any], Rules]:
+    """Recordings with their names, the settings that all variants share, and the rules."""
+    base = read_changes(options.set)
+    if options.ledger is None:
+        raise UsageError("this takes long: say with --ledger FILE where to keep what is done")
+    names = named_sources(options)
+    check_targets(options)
+    if options.plots is not None:
+        plotting.require_matplotlib()
+    return names, base, Rules(max_acceleration_mps2=options.a_max)
+
+
+def _settings(
+    options: argparse.Namespace, names: Mapping[Source, str], base: Mapping[str, Any]
+) -> dict[str, Any]:
+    """How it was measured, for JSON."""
+    return {
+        "recordings": list(names.values()),
+        "episodes": options.episodes,
+        "seed": options.seed,
+        "max_acceleration_mps2": options.a_max,
+        "interpolation": options.interp,
+        **base,
+    }

@@ -1,0 +1,89 @@
+"""Studies as tables for people."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from evaluation.studies.measures import MEASURES
+from evaluation.studies.sensitivity import Curve
+from evaluation.studies.tuning import Tuning
+from evaluation.studies.variants import Variant
+from evaluation.trials import Source
+
+RANKED_SHOWN: Final = 15
+CHOSEN: Final = "settings"
+"""This column takes the lines it needs."""
+
+
+def show_curves(console: Console, curves: Sequence[Curve]) -> None:
+    """A row for every value; a star where a measure differs from the unchanged beyond chance."""
+    table = _table("Sensitivity (*: differs from `as is` beyond chance)", "setting", "value")
+    for curve in curves:
+        for point in curve.points:
+            here = point.value == curve.unchanged
+            cells = (
+                _cell(mean, measure.digits) + ("*" if differs else " ")
+                for measure, mean, differs in zip(MEASURES, point.means, point.differs, strict=True)
+            )
+            value = f"{point.value} as is" if here else f"{point.value}"
+            table.add_row(curve.name if point is curve.points[0] else "", value, *cells)
+        table.add_section()
+    console.print(table)
+
+
+def show_tuning(console: Console, tuning: Tuning, names: Mapping[Source, str]) -> None:
+    """The best candidates on all recordings, then what was chosen without each of them."""
+    table = _table("Candidates on all recordings", CHOSEN, "cost")
+    for variant, measures, cost in tuning.ranked[:RANKED_SHOWN]:
+        table.add_row(told(variant), _cell(cost, 2), *_cells(measures))
+    if len(tuning.ranked) > RANKED_SHOWN:
+        table.add_row(f"and {len(tuning.ranked) - RANKED_SHOWN} more")
+    console.print(table)
+    table = _table(
+        "Chosen without one recording, held against that one",
+        "left out",
+        CHOSEN,
+        "cost",
+        "as is",
+        "least",
+    )
+    for fold in tuning.folds:
+        table.add_row(
+            names[fold.left_out],
+            told(fold.chosen),
+            *(_cell(cost, 2) for cost in (fold.cost, fold.unchanged_cost, fold.least_cost)),
+            *_cells(fold.measures),
+        )
+    console.print(table)
+    console.print(
+        f"Chosen on all recordings: {told(tuning.ranked[0][0])}; costs less than `as is` "
+        f"in {tuning.sure_percent:.0f} % of draws of episodes."
+    )
+
+
+def told(variant: Variant) -> str:
+    """A variant in one line, as options of the command say it."""
+    return " ".join(f"{name}={value}" for name, value in variant.settings) or "as is"
+
+
+def _table(title: str, *headings: str) -> Table:
+    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD)
+    for heading in headings:
+        table.add_column(
+            heading, no_wrap=heading != CHOSEN, min_width=20 if heading == CHOSEN else None
+        )
+    for measure in MEASURES:
+        table.add_column(measure.short, justify="right", no_wrap=True)
+    return table
+
+
+def _cells(measures: Sequence[float] | Any) -> list[str]:
+    return [_cell(v, measure.digits) for v, measure in zip(measures, MEASURES, strict=True)]
+
+
+def _cell(value: float, digits: int) -> str:
+    return f"{value:.{digits}f}" if math.isfinite(value) else "–"
