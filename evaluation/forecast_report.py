@@ -12,23 +12,23 @@ from rich.table import Table
 from evaluation.calibration import (
     HORIZONS_S,
     SHARES,
-    Fit,
     ForecastScore,
-    fit_deviation,
-    negative_log_likelihood,
     pool,
     score_forecasts,
 )
+from evaluation.fits import FitRow, Fits, Growth, fit_each
 from evaluation.forecasts import Forecasts, forecast
-from planning import PredictionModel
+from planning import GAUSSIAN, PredictionModel, Spread
 from recordings import Crowd, Obstacles
 
 MODELS: Final = {
     "default": PredictionModel(),
+    "one Gaussian": PredictionModel(spread=GAUSSIAN),
     "the same deviation for everyone": PredictionModel(calibration_s=math.inf),
     "eq. (1) as printed": PredictionModel(printed=True),
 }
 POOLED: Final = "all together"
+NOTHING: Final = "nothing"
 
 
 class Row(NamedTuple):
@@ -39,20 +39,9 @@ class Row(NamedTuple):
     score: ForecastScore
 
 
-class FitRow(NamedTuple):
-    """A deviation fitted to all recordings but one, held against that one."""
-
-    left_out: str
-    fit: Fit
-    fitted: float
-    """Negative log-likelihood of the one left out, with the fit."""
-    default: float
-    """The same with the model's own deviations."""
-
-
 def measure(
     crowds: Sequence[tuple[str, Crowd, Obstacles]], sample_s: float, *, fit: bool
-) -> tuple[list[Row], list[FitRow]]:
+) -> tuple[list[Row], Fits]:
     """Every model on every recording; who is not followed for long enough does not count."""
     rows: list[Row] = []
     by_model: dict[str, list[tuple[str, Forecasts]]] = {name: [] for name in MODELS}
@@ -61,37 +50,16 @@ def measure(
             found = forecast(crowd, obstacles, constants, sample_s)
             if len(found.errors):
                 by_model[model].append((recording, found))
-                rows.append(Row(recording, model, score_forecasts(found)))
+                rows.append(Row(recording, model, score_forecasts(found, constants.spread)))
     for model, parts in by_model.items():
         if len(parts) > 1:
             pooled = pool([found for _, found in parts])
-            rows.append(Row(POOLED, model, score_forecasts(pooled)))
-    return rows, _fits(by_model["default"]) if fit else []
+            rows.append(Row(POOLED, model, score_forecasts(pooled, MODELS[model].spread)))
+    used = MODELS["default"].spread
+    return rows, fit_each(by_model["default"], used) if fit else Fits()
 
 
-def _fits(parts: Sequence[tuple[str, Forecasts]]) -> list[FitRow]:
-    """With one recording, the fit is to it; with several, also to all but each."""
-    if not parts:
-        return []
-    everything = pool([found for _, found in parts])
-    chosen = fit_deviation([found for _, found in parts])
-    rows = []
-    for name, found in parts if len(parts) > 1 else ():
-        others = fit_deviation([other for other_name, other in parts if other_name != name])
-        rows.append(_held_against(name, others, found))
-    return [*rows, _held_against("nothing", chosen, everything)]
-
-
-def _held_against(left_out: str, fit: Fit, found: Forecasts) -> FitRow:
-    return FitRow(
-        left_out,
-        fit,
-        negative_log_likelihood(found, fit.sigmas()),
-        negative_log_likelihood(found, found.sigmas),
-    )
-
-
-def show(console: Console, rows: Sequence[Row], fits: Sequence[FitRow]) -> None:
+def show(console: Console, rows: Sequence[Row], fits: Fits) -> None:
     """A table for every model, a column for every recording; then the fits."""
     for model in MODELS:
         shown = {row.recording: row.score for row in rows if row.model == model}
@@ -102,8 +70,10 @@ def show(console: Console, rows: Sequence[Row], fits: Sequence[FitRow]) -> None:
         for heading, *cells in zip(*(_lines(score) for score in shown.values()), strict=True):
             table.add_row(heading[0], *(cell for _, cell in (heading, *cells)))
         console.print(table)
-    if fits:
-        console.print(_fit_table(fits))
+    if fits.growths:
+        console.print(_growth_table(fits.growths))
+    if fits.spreads:
+        console.print(_spread_table(fits.spreads))
 
 
 def _lines(score: ForecastScore) -> list[tuple[str, str]]:
@@ -120,30 +90,48 @@ def _lines(score: ForecastScore) -> list[tuple[str, str]]:
     ]
 
 
-def _fit_table(fits: Sequence[FitRow]) -> Table:
-    table = Table("left out", title="Fitted deviation", title_justify="left", box=box.SIMPLE_HEAD)
-    for heading in ("sigma_0, m", "growth, m/s", "neg. log-likelihood", "by default"):
-        table.add_column(heading, justify="right")
+def _growth_table(fits: Sequence[FitRow[Growth]]) -> Table:
+    headings = ("sigma_0, m", "growth, m/s", "neg. log-likelihood", "each their own")
+    table = _table("Fitted deviation, the same for everyone", headings)
     for row in fits:
         values = (row.fit.sigma_0_m, row.fit.growth_mps, row.fitted, row.default)
-        table.add_row(row.left_out, *(f"{value:.3f}" for value in values))
+        table.add_row(row.left_out or NOTHING, *(f"{value:.3f}" for value in values))
     return table
 
 
-def figures(rows: Sequence[Row], fits: Sequence[FitRow], sample_s: float) -> dict[str, Any]:
+def _spread_table(fits: Sequence[FitRow[Spread]]) -> Table:
+    headings = ("narrow", "weight", "wide", "weight", "neg. log-likelihood", "by default")
+    table = _table("Fitted spread of those who moved, in deviations", headings)
+    for row in fits:
+        parts = [value for part in row.fit.parts for value in part]
+        values = (*parts, row.fitted, row.default)
+        table.add_row(row.left_out or NOTHING, *(f"{value:.3f}" for value in values))
+    return table
+
+
+def _table(title: str, headings: Sequence[str]) -> Table:
+    table = Table("left out", title=title, title_justify="left", box=box.SIMPLE_HEAD)
+    for heading in headings:
+        table.add_column(heading, justify="right")
+    return table
+
+
+def figures(rows: Sequence[Row], fits: Fits, sample_s: float) -> dict[str, Any]:
     """Everything that was measured, for JSON."""
     return {
         "settings": {"sample_s": sample_s, "horizons_s": HORIZONS_S, "circles": SHARES},
         "predictions": [
             {"recording": row.recording, "model": row.model, **asdict(row.score)} for row in rows
         ],
-        "fits": [
-            {
-                "left_out": None if row.left_out == "nothing" else row.left_out,
-                **asdict(row.fit),
-                "negative_log_likelihood": row.fitted,
-                "default_negative_log_likelihood": row.default,
-            }
-            for row in fits
-        ],
+        "fitted_deviations": [_figures_of(row) for row in fits.growths],
+        "fitted_spreads": [_figures_of(row) for row in fits.spreads],
+    }
+
+
+def _figures_of(row: FitRow[Growth] | FitRow[Spread]) -> dict[str, Any]:
+    return {
+        "left_out": row.left_out,
+        **asdict(row.fit),
+        "negative_log_likelihood": row.fitted,
+        "default_negative_log_likelihood": row.default,
     }

@@ -96,5 +96,5 @@ class Spread:
 
 GAUSSIAN: Final = Spread()
 """The paper's eq. (4)."""
-PEOPLE: Final = Spread(scales=(0.48, 1.38), weights=(0.6, 0.4))
+PEOPLE: Final = Spread(scales=(0.5, 1.4), weights=(0.63, 0.37))
 """What holds on recorded pedestrians: most go on as expected, some do something else."""

@@ -112,14 +112,16 @@ def test_predictions_are_measured_and_fitted(
     assert "Prediction, eq. (1) as printed" in shown
     assert "Fitted deviation" in shown
     found = json.loads(target.read_text())
-    assert [row["left_out"] for row in found["fits"]] == ["plaza", "market", None]
-    assert len(found["predictions"]) == 9
+    assert [row["left_out"] for row in found["fitted_deviations"]] == ["plaza", "market", None]
+    assert found["fitted_spreads"] == [], "everyone goes on as expected"
+    assert len(found["predictions"]) == 12
 
 
 def test_one_recording_is_fitted_as_a_whole(plaza: Path, tmp_path: Path) -> None:
     target = tmp_path / "all.json"
     assert run(plaza, "--fit", "--json", target) == cli.EXIT_WELL
-    assert [row["left_out"] for row in json.loads(target.read_text())["fits"]] == [None]
+    found = json.loads(target.read_text())
+    assert [row["left_out"] for row in found["fitted_deviations"]] == [None]
 
 
 def test_recordings_of_one_name_are_told_apart_by_their_paths(

@@ -6,10 +6,13 @@ from pathlib import Path
 import numpy as np
 
 from evaluation.episodes import Episode
+from evaluation.fits import Growth
+from evaluation.forecasts import STEPS, Forecasts
 from evaluation.policies.policy import Policy, Task, View
 from evaluation.replay import Floats, Replay
 from evaluation.rules import Rules
 from evaluation.simulation import Ground
+from planning import GAUSSIAN, Spread
 from recordings import Crowd, Obstacles, Track
 
 Point = tuple[float, float]
@@ -81,3 +84,18 @@ class Scripted(Policy):
 
     def seen(self) -> Sequence[list[int]]:
         return [[person.id for person in view.people] for view in self.views]
+
+
+def drawn(
+    sigma_0_m: float,
+    growth_mps: float,
+    spread: Spread = GAUSSIAN,
+    count: int = 4000,
+    seed: int = 3,
+) -> Forecasts:
+    """Predictions whose errors are as uncertain as said."""
+    rng = np.random.default_rng(seed)
+    sigmas = np.broadcast_to(Growth(sigma_0_m, growth_mps).sigmas(), (count, STEPS))
+    scales = rng.choice(spread.scales, (count, STEPS, 1), p=spread.weights)
+    noise = rng.standard_normal((count, STEPS, 2))
+    return Forecasts(noise * scales * sigmas[:, :, None], sigmas)
