@@ -1,0 +1,177 @@
+"""How many actors get along: they change sides of a doorway, of a square, and on a circle.
+
+    python -m benchmarks.social                                   200 actors, all three scenes
+    python -m benchmarks.social --actors 50 --scenes doorway --door 1.2 --plots pictures
+
+Nobody is among them but actors, each with a goal of its own. Contacts are pairs of discs that ever
+overlap, looked for between ticks too; time is against the same way alone at the preferred speed;
+stuck is who comes less than 0.5 m nearer to the goal in 20 s. Exit code 1 if there was a contact,
+somebody stuck, or somebody who did not arrive.
+"""
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from importlib import import_module
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from rich import box
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from actors import ActorParameters, Navigator
+from benchmarks._swaps import SWAPS, Swap
+from benchmarks._walks import Floats, Verdict, Walks, judge, ways_left
+from planning import LayeredGrid, PlanModel
+
+TICK_S: Final = 0.05
+CELL_M: Final = 0.25
+EPILOGUE_S: Final = 2.0
+"""Those who have arrived are watched so much longer."""
+
+ROWS: Final = (
+    ("actors", "actors", "{:d}"),
+    ("contacts, pairs", "contacts", "{:d}"),
+    ("smallest clearance, m", "clearance_m", "{:.3f}"),
+    ("arrived, %", "arrived_percent", "{:.1f}"),
+    ("last to arrive, s", "last_s", "{:.1f}"),
+    ("time / alone, mean", "time_ratio", "{:.2f}"),
+    ("time / alone, worst", "worst_time_ratio", "{:.2f}"),
+    ("stuck", "stuck", "{:d}"),
+    ("tick, p50 ms", "tick_p50_ms", "{:.1f}"),
+    ("tick, p99 ms", "tick_p99_ms", "{:.1f}"),
+)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    options = parser().parse_args(argv)
+    random = np.random.default_rng(options.seed)
+    swaps = [SWAPS[name](options.actors, options.door, random) for name in options.scenes]
+    verdicts: dict[str, Verdict] = {}
+    for swap in swaps:
+        walks, tick_ms = walk_watched(swap, options.seed, options.until, options.threads)
+        verdicts[swap.name] = judge(walks, tick_ms)
+        if options.plots is not None:
+            draw(options.plots / f"{swap.name.replace(' ', '_')}.png", swap, walks)
+    show(verdicts)
+    if options.json is not None:
+        figures = {name: asdict(verdict) for name, verdict in verdicts.items()}
+        options.json.write_text(json.dumps(figures, indent=1, allow_nan=False) + "\n")
+    return int(any(v.contacts or v.stuck or v.last_s is None for v in verdicts.values()))
+
+
+def parser() -> argparse.ArgumentParser:
+    """The options."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.social", description=__doc__)
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.add_argument("--actors", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--scenes", nargs="+", choices=SWAPS, default=list(SWAPS), metavar="SCENE")
+    parser.add_argument("--door", type=float, default=2.0, metavar="M", help="width of the doorway")
+    parser.add_argument("--until", type=float, default=300.0, metavar="S", help="simulated seconds")
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--plots", type=Path, metavar="DIR", help="draw all ways, as PNG")
+    parser.add_argument("--json", type=Path, metavar="F")
+    return parser
+
+
+def walk_watched(swap: Swap, seed: int, until_s: float, threads: int) -> tuple[Walks, Floats]:
+    """`walk`, with a progress bar for who sits at a terminal."""
+    with Progress(
+        TextColumn("{task.description}, {task.fields[here]} arrived"),
+        BarColumn(),
+        TimeElapsedColumn(),
+        console=Console(stderr=True),
+        transient=True,
+        disable=not sys.stderr.isatty(),
+    ) as progress:
+        task = progress.add_task(swap.name, total=until_s, here=0)
+
+        def report(now_s: float, here: int) -> None:
+            progress.update(task, completed=now_s, here=here)
+
+        return walk(swap, seed, until_s, threads, report)
+
+
+def walk(
+    swap: Swap,
+    seed: int,
+    until_s: float,
+    threads: int = 1,
+    report: Callable[[float, int], None] | None = None,
+) -> tuple[Walks, Floats]:
+    """Run until all have arrived, and a little longer; also milliseconds of every tick.
+
+    `report` hears of every tick: seconds, and how many have arrived.
+    """
+    body = ActorParameters()
+    grid = LayeredGrid.from_scene(swap.scene, CELL_M)
+    nav = Navigator(grid, TICK_S, seed, plan=PlanModel(threads=threads))
+    for k, (start, goal) in enumerate(zip(swap.starts.tolist(), swap.goals.tolist(), strict=True)):
+        nav.add_actor(k, tuple(start), tuple(goal), body)
+    track, tick_ms = [swap.starts], []
+    arrived = np.zeros(len(swap.starts), dtype=bool)
+    end = round(until_s / TICK_S)
+    while len(track) <= end:
+        begun = time.perf_counter()
+        nav.observe({})
+        states = nav.tick()
+        tick_ms.append(1e3 * (time.perf_counter() - begun))
+        track.append(np.array([states[k].position for k in range(len(swap.starts))]))
+        arrived |= np.hypot(*(track[-1] - swap.goals).T) <= body.goal_tolerance_m
+        if arrived.all():
+            end = min(end, len(track) + round(EPILOGUE_S / TICK_S))
+        if report is not None:
+            report((len(track) - 1) * TICK_S, int(arrived.sum()))
+    nav.close()
+    positions = np.array(track)
+    left_m = ways_left(grid, positions, swap.goals, body.radius_m)
+    walks = Walks(positions, left_m, TICK_S, body.radius_m, body.speed_mps, body.goal_tolerance_m)
+    return walks, np.array(tick_ms)
+
+
+def show(verdicts: dict[str, Verdict]) -> None:
+    """A table with a column for every scene."""
+    table = Table(box=box.SIMPLE)
+    table.add_column("")
+    for name in verdicts:
+        table.add_column(name, justify="right")
+    for title, field, shape in ROWS:
+        values = [getattr(verdict, field) for verdict in verdicts.values()]
+        table.add_row(title, *("–" if v is None else shape.format(v) for v in values))
+    Console().print(table)
+
+
+def draw(path: Path, swap: Swap, walks: Walks) -> None:
+    """All ways on one picture, their colour the time; crosses are goals never reached."""
+    try:
+        figure_of = import_module("matplotlib.figure").Figure
+        lines_of = import_module("matplotlib.collections").LineCollection
+    except ImportError:
+        sys.exit("pictures need matplotlib, which comes with `esplanade[evaluate]`")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    x0, y0, x1, y1 = swap.scene.bounds
+    figure = figure_of(figsize=(10.0, 1.0 + 9.0 * (y1 - y0) / (x1 - x0)), layout="constrained")
+    axes = figure.add_subplot()
+    thinned = walks.positions[:: round(0.2 / walks.tick_s)].transpose(1, 0, 2)
+    pieces = np.stack([thinned[:, :-1], thinned[:, 1:]], axis=2).reshape(-1, 2, 2)
+    ways = lines_of(list(pieces), cmap="viridis", linewidths=0.7)
+    ways.set_array(np.tile(0.2 * np.arange(thinned.shape[1] - 1), len(thinned)))
+    axes.add_collection(ways)
+    for wall in swap.scene.walls:
+        axes.plot(*zip(wall.start, wall.end, strict=True), color="0.2", lw=3)
+    axes.scatter(*walks.positions[-1].T, s=12, color="tab:red", zorder=3)
+    axes.scatter(*swap.goals[np.isinf(walks.arrivals_s)].T, marker="x", color="tab:red", zorder=3)
+    axes.set(xlim=(x0, x1), ylim=(y0, y1), aspect="equal", title=f"{len(thinned)}, {swap.name}")
+    figure.colorbar(ways, label="seconds", shrink=0.8)
+    figure.savefig(path, dpi=110)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
