@@ -18,8 +18,8 @@ MODELS: Final[Mapping[str, type]] = {
 }
 """A model's field is called by this name, a point, and its own; a parameter by its own alone."""
 
-NOT_SET: Final = frozenset({"plan.threads"})
-"""Changes no result: processes share the work already."""
+NOT_SET: Final = frozenset({"plan.threads", "prediction.spread"})
+"""Threads change no result: processes share the work already. A spread is no single value."""
 
 DEFAULTS: Final[Mapping[str, Any]] = {
     **{name: field.default for name, field in ActorParameters.model_fields.items()},
