@@ -36,6 +36,7 @@ def run(argv: Sequence[str]) -> int:
     """Evaluate as the command line says; returns the exit code."""
     options = parser().parse_args(argv)
     try:
+        _check_studies(options)
         if options.sensitivity:
             command.show_sensitivity(options)
         elif options.tune:
@@ -48,6 +49,14 @@ def run(argv: Sequence[str]) -> int:
         print(f"esplanade evaluate: {error}", file=sys.stderr)
         return EXIT_USAGE
     return EXIT_WELL
+
+
+def _check_studies(options: argparse.Namespace) -> None:
+    """Nothing is asked for that would be left aside."""
+    if options.vary and not (options.sensitivity or options.tune):
+        raise UsageError("--vary is for --sensitivity and --tune")
+    if options.candidates is not None and not options.tune:
+        raise UsageError("--candidates is for --tune")
 
 
 def _trips(options: argparse.Namespace) -> bool:

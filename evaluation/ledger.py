@@ -23,6 +23,7 @@ _SHOW_ONLY: Final = frozenset(
         "cli",
         "console",
         "forecast_report",
+        "fits",
         "forecasts",
         "ledger",
         "options",
@@ -51,12 +52,17 @@ class Ledger:
     def __init__(self, path: Path | None = None) -> None:
         self._scores: dict[_Key, Score] = {}
         self._file: TextIO | None = None
-        if path is not None:
-            try:
-                self._file = path.open("a+", encoding="utf-8")
-                self._load(path, self._file)
-            except (OSError, UnicodeDecodeError) as error:
-                raise LedgerError(f"{path}: {error}") from None
+        if path is None:
+            return
+        try:
+            text = path.read_text(encoding="utf-8") if path.exists() else ""
+            whole = text[: text.rfind("\n") + 1]
+            self._scores |= _entries(path, whole)
+            self._file = path.open("a", encoding="utf-8")
+            if whole != text:  # whoever wrote it was ended in the middle of a line
+                self._file.truncate(len(whole.encode()))
+        except (OSError, UnicodeDecodeError) as error:
+            raise LedgerError(f"{path}: {error}") from None
 
     def __enter__(self) -> Self:
         return self
@@ -90,18 +96,17 @@ class Ledger:
             except OSError as error:
                 raise LedgerError(f"{self._file.name}: {error}") from None
 
-    def _load(self, path: Path, file: TextIO) -> None:
-        file.seek(0)
-        whole, newline, broken = file.read().rpartition("\n")
-        for number, line in enumerate(whole.split("\n") if newline else (), start=1):
-            try:
-                entry = json.loads(line)
-                key = entry["trial"], entry["pedestrian"], entry["reverse"]
-                self._scores[key] = _score(entry["score"])
-            except (ValueError, TypeError, KeyError):
-                raise LedgerError(f"{path}:{number}: this is no line of a ledger") from None
-        if broken:  # whoever wrote it was ended in the middle of a line
-            file.truncate(len((whole + newline).encode()))
+
+def _entries(path: Path, text: str) -> dict[_Key, Score]:
+    found = {}
+    for number, line in enumerate(text.splitlines(), start=1):
+        try:
+            entry = json.loads(line)
+            key = entry["trial"], entry["pedestrian"], entry["reverse"]
+            found[key] = _score(entry["score"])
+        except (ValueError, TypeError, KeyError):
+            raise LedgerError(f"{path}:{number}: this is no line of a ledger") from None
+    return found
 
 
 def _line(kind: str, trial: Trial, episode: Episode, score: Score) -> dict[str, Any]:

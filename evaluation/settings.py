@@ -27,10 +27,10 @@ DEFAULTS: Final[Mapping[str, Any]] = {
         f"{model}.{field.name}": field.default
         for model, kind in MODELS.items()
         for field in fields(kind)
-        if f"{model}.{field.name}" not in NOT_SET
+        if isinstance(field.default, int | float) and f"{model}.{field.name}" not in NOT_SET
     },
 }
-"""Every setting there is, with its default."""
+"""Every setting there is, with its default: all that is a number, or yes or no."""
 
 
 class SettingError(ValueError):

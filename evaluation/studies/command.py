@@ -46,6 +46,8 @@ def show_tuning(options: argparse.Namespace) -> None:
     listed = [] if options.candidates is None else tuning.read_candidates(options.candidates)
     if not grid and not listed:
         raise UsageError("--tune needs candidates: --vary NAME=V1,V2,.. or --candidates FILE")
+    if len(names) < 2:
+        raise UsageError("--tune needs two recordings: one to be held against what others chose")
     variants = [Variant.of(rules, found) for found in tuning.candidates(grid, listed, base)]
     trials = trials_of(variants, list(names), options.episodes, options.seed)
     tables = tables_of(walk(trials, options))

@@ -51,7 +51,7 @@ def candidates(
 ) -> list[dict[str, Any]]:
     """Settings to compare: the unchanged first, all combinations of a grid, and those listed."""
     combined = [
-        dict(zip(grid, values, strict=True)) for values in itertools.product(*grid.values())
+        dict(zip(grid, values, strict=True)) for values in itertools.product(*grid.values()) if grid
     ]
     return [check({**base, **changes}) for changes in [{}, *combined, *listed]]
 
@@ -103,12 +103,11 @@ def tune(tables: Mapping[Variant, Tables], unchanged: Variant, seed: int) -> Tun
         ((variant, found, float(cost(found))) for variant, found in measured.items()),
         key=lambda row: row[2],
     )
-    sources = list(tables[unchanged])
     best = cost(resampled(tables[ranked[0][0]].values(), seed))
     before = cost(resampled(tables[unchanged].values(), seed))
     return Tuning(
         tuple(ranked),
-        tuple(_fold(tables, unchanged, source) for source in sources if len(sources) > 1),
+        tuple(_fold(tables, unchanged, source) for source in tables[unchanged]),
         float(100.0 * np.mean(best < before)),
     )
 

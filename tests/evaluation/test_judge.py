@@ -94,6 +94,15 @@ def test_our_actor_is_judged_the_same(name: str) -> None:
     assert_same(judge, theirs, ours, episodes[:4], "esplanade")
 
 
+@pytest.mark.parametrize("name", ["hotel", "zara1", "students3"])
+@pytest.mark.parametrize("policy", ["esplanade", "straight"])
+def test_trips_backward_are_judged_the_same(name: str, policy: str) -> None:
+    judge, theirs, ours = open_recording(name)
+    backward = [e for e in choose_episodes(ours, RULES, 250, 0) if e.reverse]
+    assert len(backward) > 60
+    assert_same(judge, theirs, ours, backward[:3], policy)
+
+
 @pytest.mark.parametrize("name", ["hotel", "zara1"])
 def test_who_has_no_map_is_led_around_walls_the_same(name: str) -> None:
     judge, theirs, ours = open_recording(name)

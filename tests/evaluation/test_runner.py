@@ -1,31 +1,25 @@
-"""Many episodes: what comes out does not depend on processes or on their order."""
+"""Many episodes: what comes out does not depend on processes, order or interruptions."""
 
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from evaluation.ledger import Ledger
 from evaluation.runner import run_trials
 from evaluation.scores import Score
 from evaluation.trials import Source, Trial, plan_trials
-from recordings import RecordingError
 from tests.evaluation.worlds import RULES, busy_plaza, write_csv
 
 
-def planned(folder: Path, *policies: str, count: int = 100) -> list[Trial]:
+def planned(folder: Path, *policies: str) -> list[Trial]:
     source = Source(write_csv(folder, busy_plaza()))
-    return plan_trials([source], policies, RULES, count, 0, {})
+    return plan_trials([source], policies, RULES, 100, 0, {})
 
 
 def timeless(scores: tuple[Score, ...]) -> list[Score]:
     """Scores without what the clock of this machine said."""
     return [replace(score, decision_ms=0.0, decision_max_ms=0.0) for score in scores]
-
-
-def test_policies_get_the_same_episodes_and_humans_only_those_forward(tmp_path: Path) -> None:
-    straight, human = planned(tmp_path, "straight", "human")
-    assert any(episode.reverse for episode in straight.episodes)
-    assert human.episodes == tuple(e for e in straight.episodes if not e.reverse)
 
 
 def test_processes_change_nothing_but_the_time(tmp_path: Path) -> None:
@@ -40,14 +34,24 @@ def test_processes_change_nothing_but_the_time(tmp_path: Path) -> None:
     assert sum(done) == 2 * sum(len(trial.episodes) for trial in trials)
 
 
-def test_walls_beside_a_recording_are_found(tmp_path: Path) -> None:
-    path = write_csv(tmp_path, busy_plaza())
-    path.with_suffix(".walls.json").write_text('{"segments": [[50, 0, 50, 9]]}')
-    assert len(Source(path).ground(0.1).replay.obstacles.segments) == 1
+@pytest.mark.parametrize("processes", [1, 2])
+def test_an_interrupted_run_goes_on_where_it_was(tmp_path: Path, processes: int) -> None:
+    trials = planned(tmp_path, "straight")
+    total = len(trials[0].episodes)
+    path = tmp_path / "done.jsonl"
 
+    def interrupt(done: int) -> None:
+        if done:
+            raise KeyboardInterrupt
 
-def test_broken_recordings_are_found_before_anything_runs(tmp_path: Path) -> None:
-    path = tmp_path / "plaza.csv"
-    path.write_text("t,id,x,y\n0,1,a,0\n")
-    with pytest.raises(RecordingError, match=":2: x is 'a'"):
-        plan_trials([Source(path)], ["straight"], RULES, 5, 0, {})
+    with Ledger(path) as ledger, pytest.raises(KeyboardInterrupt):
+        run_trials(trials, processes, interrupt, ledger)
+    kept = len(path.read_text().splitlines())
+    assert 0 < kept <= total
+    reports: list[int] = []
+    with Ledger(path) as ledger:
+        (result,) = run_trials(trials, processes, reports.append, ledger)
+    assert reports[0] == kept
+    assert sum(reports) == len(path.read_text().splitlines()) == total
+    (whole,) = run_trials(trials, 1, reports.append)
+    assert timeless(result.scores) == timeless(whole.scores)

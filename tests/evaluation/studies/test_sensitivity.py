@@ -1,0 +1,105 @@
+"""One setting after the other: its values, its curve, its picture."""
+
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from actors import ActorParameters
+from evaluation.settings import DEFAULTS, SettingError, check
+from evaluation.studies import sensitivity, sensitivity_plot
+from evaluation.studies.measures import MEASURES, Floats
+from evaluation.studies.sensitivity import BODY, TEMPER, Curve
+from evaluation.studies.variants import Tables, Variant
+from evaluation.trials import Source
+from tests.evaluation.worlds import RULES
+
+NEAR = [measure.name for measure in MEASURES].index("near_s")
+WEIGHTS = {"risk_weight": (4.0, 8.0, 16.0)}
+
+
+def test_every_parameter_is_body_or_temper() -> None:
+    assert set(TEMPER) | BODY == set(ActorParameters.model_fields)
+    assert "risk_weight" in TEMPER
+
+
+def test_by_default_values_double_around_the_unchanged_within_limits() -> None:
+    taken = sensitivity.ranges(dict.fromkeys(TEMPER), {})
+    for name, values in taken.items():
+        assert DEFAULTS[name] in values
+        assert list(values) == sorted(set(values))
+        assert [check({name: value})[name] for value in values] == list(values)
+    weight = DEFAULTS["risk_weight"]
+    assert taken["risk_weight"] == tuple(weight * 2.0**k for k in range(-2, 3))
+    assert all(isinstance(value, int) for value in taken["max_expansions"])
+    assert max(taken["person_clearance_m"]) == 1.0
+
+
+def test_given_values_are_taken_beside_the_unchanged() -> None:
+    choices = {"risk_weight": (3.0, 100.0), "risk.comfort": None}
+    taken = sensitivity.ranges(choices, {"risk_weight": 5.0, "risk.comfort": 0.2})
+    assert taken == {"risk_weight": (3.0, 5.0, 100.0), "risk.comfort": (0.05, 0.1, 0.2, 0.4, 0.8)}
+
+
+def test_what_cannot_be_multiplied_needs_values() -> None:
+    with pytest.raises(SettingError, match=r"prediction.printed is False: say which values"):
+        sensitivity.ranges({"prediction.printed": None}, {})
+    with pytest.raises(SettingError, match=r"wall_weight is 0.0: say which values"):
+        sensitivity.ranges({"wall_weight": None}, {"wall_weight": 0.0})
+
+
+def measured(shift: float) -> Tables:
+    """Three recordings; `shift` is added to the time near others."""
+    found: dict[Source, Floats] = {}
+    for k in range(3):
+        rows = np.random.default_rng(k).uniform(0.0, 1.0, (40, len(MEASURES)))
+        rows[:, NEAR] += shift
+        found[Source(Path(f"{k}.csv"))] = rows
+    return found
+
+
+@pytest.fixture
+def curve() -> Curve:
+    tables = {
+        sensitivity.variant_of(RULES, {}, "risk_weight", value): measured(shift)
+        for value, shift in ((4.0, 0.3), (8.0, 0.0), (16.0, -1e-3))
+    }
+    values = {"risk_weight": (4.0, DEFAULTS["risk_weight"], 16.0)}
+    tables[Variant(RULES)] = measured(0.0)
+    (found,) = sensitivity.curves(values, {}, RULES, tables, seed=0)
+    return found
+
+
+def test_a_difference_on_all_episodes_is_beyond_chance_however_much_these_scatter(
+    curve: Curve,
+) -> None:
+    less, unchanged, more = curve.points
+    assert less.means[NEAR] == pytest.approx(unchanged.means[NEAR] + 0.3)
+    assert unchanged.lows[NEAR] < more.means[NEAR] < unchanged.highs[NEAR]
+    assert [point.differs[NEAR] for point in curve.points] == [True, False, True]
+    assert not any(differs for k, differs in enumerate(more.differs) if k != NEAR)
+
+
+def test_every_point_is_in_the_json(curve: Curve) -> None:
+    rows = sensitivity.figures([curve])
+    assert [row["value"] for row in rows] == [point.value for point in curve.points]
+    assert rows[0]["near_s"]["differs"] is True
+    assert rows[0]["unit"] == "s/s"
+    assert rows[0]["near_s"]["low"] < rows[0]["near_s"]["mean"] < rows[0]["near_s"]["high"]
+
+
+@pytest.mark.skipif(find_spec("matplotlib") is None, reason="matplotlib is absent")
+def test_the_picture_is_the_same_for_the_same_figures(curve: Curve, tmp_path: Path) -> None:
+    pictures = [tmp_path / "one.svg", tmp_path / "two.svg"]
+    for path in pictures:
+        sensitivity_plot.draw(path, [curve, curve])
+    one, two = (path.read_text() for path in pictures)
+    assert one == two
+    assert one.count("risk_weight") == 2
+    assert all(measure.label in one for measure in MEASURES[: sensitivity_plot.SHOWN])
+
+
+def test_labels_of_values_are_short() -> None:
+    labels = [sensitivity_plot._short(value) for value in (0.0375, 0.75, 12.0, 100, 250.0, False)]
+    assert labels == [".037", ".75", "12", "100", "250", "false"]

@@ -1,0 +1,39 @@
+"""Variants that behave the same are the same."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from evaluation.runner import run_trials
+from evaluation.settings import DEFAULTS
+from evaluation.studies.measures import MEASURES
+from evaluation.studies.variants import LIMIT, Variant, tables_of, trials_of
+from evaluation.trials import Source
+from tests.evaluation.worlds import RULES, busy_plaza, write_csv
+
+
+def test_what_is_as_by_default_changes_nothing() -> None:
+    assert Variant.of(RULES, {"risk_weight": DEFAULTS["risk_weight"]}) == Variant(RULES)
+    assert Variant.of(RULES, {"risk_weight": 1.0}) == Variant(RULES, (("risk_weight", 1.0),))
+
+
+def test_what_the_rules_say_of_the_body_is_only_left_out_where_they_do() -> None:
+    slow = replace(RULES, speed_mps=0.8)
+    assert Variant.of(slow, {"speed_mps": DEFAULTS["speed_mps"]}) != Variant(slow)
+
+
+def test_the_rules_follow_the_limit_of_the_body() -> None:
+    variant = Variant.of(RULES, {LIMIT: 0.7, "risk.comfort": 0.2})
+    assert variant == Variant(replace(RULES, max_acceleration_mps2=0.7), (("risk.comfort", 0.2),))
+    assert Variant.of(RULES, {LIMIT: RULES.max_acceleration_mps2}) == Variant(RULES)
+
+
+def test_every_variant_walks_the_same_episodes_once(tmp_path: Path) -> None:
+    sources = [Source(write_csv(tmp_path, busy_plaza(), name)) for name in ("plaza", "market")]
+    wary = Variant.of(RULES, {"risk_weight": 30.0})
+    trials = trials_of([Variant(RULES), wary, wary], sources, 2, 0)
+    assert len(trials) == 4
+    assert len({trial.episodes for trial in trials}) == 1
+    tables = tables_of(run_trials(trials, 1, lambda _: None))
+    assert list(tables) == [Variant(RULES), wary]
+    assert [list(rows) for rows in tables.values()] == [sources, sources]
+    assert all(t.shape == (2, len(MEASURES)) for rows in tables.values() for t in rows.values())
