@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -65,12 +66,13 @@ def sigma_points() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return offsets, weights / weights.sum()
 
 
+@lru_cache(maxsize=8)
 def radial_tables(model: RiskModel, spread: Spread = GAUSSIAN) -> RadialTables:
     """Influence of one person by deviation and distance; it is the same in every direction.
 
     Each entry is the mean over the sigma points of density × term of eq. (5), for every Gaussian
     of the spread over a likely range of its own. For the closing term the points' directions n
-    are projected on the direction from the mean.
+    are projected on the direction from the mean. It takes a while, so that zones alike share it.
     """
     offsets, weights = sigma_points()
     sigmas = np.arange(0.0, _SIGMA_MAX_M + _SIGMA_STEP_M / 2, _SIGMA_STEP_M)
