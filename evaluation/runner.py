@@ -39,7 +39,9 @@ def run_trials(
     """
     ledger = ledger or Ledger()
     found = [ledger.find(trial) for trial in trials]
-    report(sum(map(len, found)))
+    known = sum(map(len, found))
+    if known:
+        report(known)
 
     def keep(index: int, part: Trial, scores: Sequence[Score]) -> None:
         ledger.add(part, scores)

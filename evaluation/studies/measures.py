@@ -29,14 +29,12 @@ class Measure(NamedTuple):
 
 
 MEASURES: Final = (
-    Measure(
-        "contacts_percent", "contacts, %", "contacts", 1, 1.0, 0.0, lambda s: 100.0 * s.touched
-    ),
+    Measure("contacts_percent", "contacts, %", "touch %", 1, 1.0, 0.0, lambda s: 100.0 * s.touched),
     Measure("near_s", "within 0.2 m, s", "near s", 3, 0.08, 0.0, lambda s: s.near_s),
     Measure("time_ratio", "time / straight way", "time", 3, 1.09, 1.0, lambda s: s.time_ratio),
     Measure("turn_rms_radps", "turn rate, rad/s", "turn", 2, 0.6, 0.0, lambda s: s.turn_rms_radps),
     Measure(
-        "missed_percent", "not arrived, %", "missed", 1, 0.0, 0.0, lambda s: 100.0 * (not s.reached)
+        "missed_percent", "not arrived, %", "lost %", 1, 0.0, 0.0, lambda s: 100.0 * (not s.reached)
     ),
 )
 

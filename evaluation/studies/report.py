@@ -8,7 +8,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from evaluation.studies.measures import MEASURES
+from evaluation.studies.measures import MEASURES, Measure
 from evaluation.studies.sensitivity import Curve
 from evaluation.studies.tuning import Tuning
 from evaluation.studies.variants import Variant
@@ -17,6 +17,8 @@ from evaluation.trials import Source
 RANKED_SHOWN: Final = 15
 CHOSEN: Final = "settings"
 """This column takes the lines it needs."""
+HELD_AGAINST: Final = MEASURES[:3]
+"""What is shown of a recording that was left out; the rest is in the JSON."""
 
 
 def show_curves(console: Console, curves: Sequence[Curve]) -> None:
@@ -50,13 +52,14 @@ def show_tuning(console: Console, tuning: Tuning, names: Mapping[Source, str]) -
         "cost",
         "as is",
         "least",
+        measures=HELD_AGAINST,
     )
     for fold in tuning.folds:
         table.add_row(
             names[fold.left_out],
             told(fold.chosen),
             *(_cell(cost, 2) for cost in (fold.cost, fold.unchanged_cost, fold.least_cost)),
-            *_cells(fold.measures),
+            *_cells(fold.measures)[: len(HELD_AGAINST)],
         )
     console.print(table)
     console.print(
@@ -70,13 +73,18 @@ def told(variant: Variant) -> str:
     return " ".join(f"{name}={value}" for name, value in variant.settings) or "as is"
 
 
-def _table(title: str, *headings: str) -> Table:
-    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD)
+def _table(title: str, *headings: str, measures: Sequence[Measure] = MEASURES) -> Table:
+    table = Table(
+        title=title,
+        title_justify="left",
+        box=box.SIMPLE_HEAD,
+        collapse_padding=True,
+        pad_edge=False,
+    )
     for heading in headings:
-        table.add_column(
-            heading, no_wrap=heading != CHOSEN, min_width=20 if heading == CHOSEN else None
-        )
-    for measure in MEASURES:
+        chosen = heading == CHOSEN
+        table.add_column(heading, no_wrap=not chosen, min_width=20 if chosen else None)
+    for measure in measures:
         table.add_column(measure.short, justify="right", no_wrap=True)
     return table
 
