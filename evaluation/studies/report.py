@@ -15,6 +15,7 @@ from evaluation.studies.variants import Variant
 from evaluation.trials import Source
 
 RANKED_SHOWN: Final = 15
+AS_IS: Final = "as is"
 CHOSEN: Final = "settings"
 """This column takes the lines it needs."""
 HELD_AGAINST: Final = MEASURES[:3]
@@ -31,7 +32,7 @@ def show_curves(console: Console, curves: Sequence[Curve]) -> None:
                 _cell(mean, measure.digits) + ("*" if differs else " ")
                 for measure, mean, differs in zip(MEASURES, point.means, point.differs, strict=True)
             )
-            value = f"{point.value} as is" if here else f"{point.value}"
+            value = f"{point.value} {AS_IS}" if here else f"{point.value}"
             table.add_row(curve.name if point is curve.points[0] else "", value, *cells)
         table.add_section()
     console.print(table)
@@ -41,7 +42,7 @@ def show_tuning(console: Console, tuning: Tuning, names: Mapping[Source, str]) -
     """The best candidates on all recordings, then what was chosen without each of them."""
     table = _table("Candidates on all recordings", CHOSEN, "cost")
     for variant, measures, cost in tuning.ranked[:RANKED_SHOWN]:
-        table.add_row(told(variant), _cell(cost, 2), *_cells(measures))
+        table.add_row(_told(variant, tuning), _cell(cost, 2), *_cells(measures))
     if len(tuning.ranked) > RANKED_SHOWN:
         table.add_row(f"and {len(tuning.ranked) - RANKED_SHOWN} more")
     console.print(table)
@@ -57,20 +58,25 @@ def show_tuning(console: Console, tuning: Tuning, names: Mapping[Source, str]) -
     for fold in tuning.folds:
         table.add_row(
             names[fold.left_out],
-            told(fold.chosen),
+            _told(fold.chosen, tuning),
             *(_cell(cost, 2) for cost in (fold.cost, fold.unchanged_cost, fold.least_cost)),
             *_cells(fold.measures)[: len(HELD_AGAINST)],
         )
     console.print(table)
-    console.print(
-        f"Chosen on all recordings: {told(tuning.ranked[0][0])}; costs less than `as is` "
-        f"in {tuning.sure_percent:.0f} % of draws of episodes."
-    )
+    best = tuning.ranked[0][0]
+    if best == tuning.unchanged:
+        console.print(f"No candidate costs less than `{AS_IS}`.")
+    else:
+        sure = f"in {tuning.sure_percent:.0f} % of draws of episodes"
+        console.print(
+            f"Chosen on all recordings: {_told(best, tuning)}; costs less than `{AS_IS}` {sure}."
+        )
 
 
-def told(variant: Variant) -> str:
+def _told(variant: Variant, tuning: Tuning) -> str:
     """A variant in one line, as options of the command say it."""
-    return " ".join(f"{name}={value}" for name, value in variant.settings) or "as is"
+    settings = " ".join(f"{name}={value}" for name, value in variant.settings)
+    return AS_IS if variant == tuning.unchanged else settings
 
 
 def _table(title: str, *headings: str, measures: Sequence[Measure] = MEASURES) -> Table:

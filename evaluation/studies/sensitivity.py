@@ -17,7 +17,8 @@ BODY: Final = frozenset({"radius_m", "speed_mps", "max_speed_mps", "goal_toleran
 TEMPER: Final = tuple(name for name in ActorParameters.model_fields if name not in BODY)
 EACH_SIDE: Final = 2
 FACTOR: Final = 2.0
-"""By default a setting takes so many values on each side, each so many times its neighbour."""
+"""By default a setting takes so many values on each side, each so many times its neighbour; one
+that is zero takes parts of its limit."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ def ranges(
     Raises
     ------
     SettingError
-        No values are given, and there is nothing to multiply.
+        No values are given, and there is nothing to multiply or divide.
     """
     return {name: _values(name, given, base) for name, given in choices.items()}
 
@@ -115,12 +116,15 @@ def _values(name: str, given: tuple[Any, ...] | None, base: Mapping[str, Any]) -
     unchanged = _unchanged(name, base)
     if given is not None:
         return tuple(sorted({*given, unchanged}))
-    if isinstance(unchanged, bool) or not 0.0 < unchanged < np.inf:
-        raise SettingError(f"{name} is {unchanged}: say which values, as {name}=V1,V2,..")
     limits = _schema(name)
     least, most = limits.get("minimum", 0.0), limits.get("maximum", np.inf)
-    steps = range(-EACH_SIDE, EACH_SIDE + 1)
-    spread = (min(most, max(least, unchanged * FACTOR**step)) for step in steps)
+    if unchanged == 0 and most < np.inf and not isinstance(unchanged, bool):
+        spread = [0.0, *(most / FACTOR**step for step in range(2 * EACH_SIDE, 0, -1))]
+    elif 0.0 < unchanged < np.inf and not isinstance(unchanged, bool):
+        steps = range(-EACH_SIDE, EACH_SIDE + 1)
+        spread = [min(most, max(least, unchanged * FACTOR**step)) for step in steps]
+    else:
+        raise SettingError(f"{name} is {unchanged}: say which values, as {name}=V1,V2,..")
     whole = isinstance(unchanged, int)
     return tuple(sorted({round(value) if whole else value for value in spread}))
 

@@ -39,6 +39,7 @@ class Fold:
 class Tuning:
     """Candidates on all recordings, best first, and one fold for each recording."""
 
+    unchanged: Variant
     ranked: tuple[tuple[Variant, Floats, float], ...]
     """Candidate, measures, cost."""
     folds: tuple[Fold, ...]
@@ -106,6 +107,7 @@ def tune(tables: Mapping[Variant, Tables], unchanged: Variant, seed: int) -> Tun
     best = cost(resampled(tables[ranked[0][0]].values(), seed))
     before = cost(resampled(tables[unchanged].values(), seed))
     return Tuning(
+        unchanged,
         tuple(ranked),
         tuple(_fold(tables, unchanged, source) for source in tables[unchanged]),
         float(100.0 * np.mean(best < before)),

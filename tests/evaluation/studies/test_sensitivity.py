@@ -11,12 +11,12 @@ from evaluation.settings import DEFAULTS, SettingError, check
 from evaluation.studies import sensitivity, sensitivity_plot
 from evaluation.studies.measures import MEASURES, Floats
 from evaluation.studies.sensitivity import BODY, TEMPER, Curve
-from evaluation.studies.variants import Tables, Variant
+from evaluation.studies.variants import Tables
 from evaluation.trials import Source
 from tests.evaluation.worlds import RULES
 
 NEAR = [measure.name for measure in MEASURES].index("near_s")
-WEIGHTS = {"risk_weight": (4.0, 8.0, 16.0)}
+BASE = {"risk_weight": 8.0}
 
 
 def test_every_parameter_is_body_or_temper() -> None:
@@ -33,7 +33,8 @@ def test_by_default_values_double_around_the_unchanged_within_limits() -> None:
     weight = DEFAULTS["risk_weight"]
     assert taken["risk_weight"] == tuple(weight * 2.0**k for k in range(-2, 3))
     assert all(isinstance(value, int) for value in taken["max_expansions"])
-    assert max(taken["person_clearance_m"]) == 1.0
+    (wide,) = sensitivity.ranges({"person_clearance_m": None}, {"person_clearance_m": 0.4}).values()
+    assert wide == (0.1, 0.2, 0.4, 0.8, 1.0)
 
 
 def test_given_values_are_taken_beside_the_unchanged() -> None:
@@ -42,11 +43,16 @@ def test_given_values_are_taken_beside_the_unchanged() -> None:
     assert taken == {"risk_weight": (3.0, 5.0, 100.0), "risk.comfort": (0.05, 0.1, 0.2, 0.4, 0.8)}
 
 
+def test_what_is_zero_takes_parts_of_its_limit() -> None:
+    taken = sensitivity.ranges({"wall_weight": None}, {"wall_weight": 0.0})
+    assert taken == {"wall_weight": (0.0, 0.625, 1.25, 2.5, 5.0)}
+
+
 def test_what_cannot_be_multiplied_needs_values() -> None:
     with pytest.raises(SettingError, match=r"prediction.printed is False: say which values"):
         sensitivity.ranges({"prediction.printed": None}, {})
-    with pytest.raises(SettingError, match=r"wall_weight is 0.0: say which values"):
-        sensitivity.ranges({"wall_weight": None}, {"wall_weight": 0.0})
+    with pytest.raises(SettingError, match=r"risk.comfort is 0.0: say which values"):
+        sensitivity.ranges({"risk.comfort": None}, {"risk.comfort": 0.0})
 
 
 def measured(shift: float) -> Tables:
@@ -62,12 +68,11 @@ def measured(shift: float) -> Tables:
 @pytest.fixture
 def curve() -> Curve:
     tables = {
-        sensitivity.variant_of(RULES, {}, "risk_weight", value): measured(shift)
+        sensitivity.variant_of(RULES, BASE, "risk_weight", value): measured(shift)
         for value, shift in ((4.0, 0.3), (8.0, 0.0), (16.0, -1e-3))
     }
-    values = {"risk_weight": (4.0, DEFAULTS["risk_weight"], 16.0)}
-    tables[Variant(RULES)] = measured(0.0)
-    (found,) = sensitivity.curves(values, {}, RULES, tables, seed=0)
+    values = {"risk_weight": (4.0, 8.0, 16.0)}
+    (found,) = sensitivity.curves(values, BASE, RULES, tables, seed=0)
     return found
 
 
