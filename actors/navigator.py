@@ -108,6 +108,8 @@ class Navigator:
             np.append(c.known, False),
             np.append(c.ages, np.int64(0)),
             np.concatenate([c.followed, np.zeros((1, slices, 2))]),
+            np.append(c.left_m, np.nan),
+            np.append(c.behind_s, 0.0),
         )
         self._ids.append(actor_id)
         self._rows[actor_id] = rows
@@ -148,6 +150,8 @@ class Navigator:
                 c.goals[row] = free
         c.guide_slots[row] = slot
         c.known[row] = c.known[row] and slot == old
+        c.left_m[row] = np.nan
+        c.behind_s[row] = 0.0
         self._guides.release(old)
         self._goals[actor_id] = target
 
@@ -298,4 +302,6 @@ def _empty_crowd(slices: int) -> Crowd:
         np.zeros(0, dtype=np.bool_),
         np.zeros(0, dtype=np.int64),
         np.zeros((0, slices, 2)),
+        np.zeros(0),
+        np.zeros(0),
     )

@@ -90,6 +90,26 @@ class ActorParameters(BaseModel):
         float,
         _field("s/s", 0.0, 10.0, "Cost of brushing along walls within 0.15 m of the body."),
     ] = 0.3
+    hurry_weight: Annotated[
+        float,
+        _field(
+            "s/s",
+            0.0,
+            20.0,
+            "Cost of walking faster than preferred, by the square of how much faster; "
+            "lower passes in front where higher waits.",
+        ),
+    ] = 0.0
+    catch_up: Annotated[
+        float,
+        _field(
+            "1",
+            0.0,
+            1.0,
+            "Part of the preferred speed by which the actor walks faster while it makes up time "
+            "that it has lost on its way.",
+        ),
+    ] = 0.1
     hysteresis_s: Annotated[
         float,
         _field(

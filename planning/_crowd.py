@@ -25,6 +25,8 @@ PARAMETERS = np.dtype(
         ("closing_weight", "f8"),
         ("turn_weight", "f8"),
         ("wall_weight", "f8"),
+        ("hurry_weight", "f8"),
+        ("catch_up", "f8"),
         ("hysteresis_s", "f8"),
         ("max_expansions", "f8"),
     ]
@@ -37,6 +39,8 @@ class Crowd(NamedTuple):
 
     `guide_slots` is the row of the guide pool, -1 without a goal; `known` tells whether `followed`
     holds a path; `followed` (A, K, 2) begins at the tick that `ages` (A,) ticks ago was.
+    `left_m` is the way that was left a tick ago, nan at first; `behind_s` the time lost since the
+    goal was set and not made up yet. Both are written by who decides.
     """
 
     positions: NDArray[np.float64]
@@ -49,6 +53,8 @@ class Crowd(NamedTuple):
     known: NDArray[np.bool_]
     ages: NDArray[np.int64]
     followed: NDArray[np.float64]
+    left_m: NDArray[np.float64]
+    behind_s: NDArray[np.float64]
 
 
 class Decisions(NamedTuple):

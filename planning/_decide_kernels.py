@@ -35,9 +35,37 @@ from planning._search_kernels import (
 from planning._step_kernels import control_toward, last_check, limited
 
 
+MOST_BEHIND_S = 5.0
+"""More lost time than this is not made up."""
+EASE_S = 0.5
+"""Who is behind by less than this makes it up more slowly."""
+
+
+@kernel
+def keep_account(crowd: Crowd, a: int, left: float, tick_s: float) -> float:
+    """Book the time that an actor lost or made up since the last tick; its speed from now on.
+
+    Lost is what a tick lasts beyond the time that the way made good in it takes at the preferred
+    speed.
+    """
+    p = crowd.parameters[a]
+    before = crowd.left_m[a]
+    crowd.left_m[a] = left
+    if np.isfinite(before) and np.isfinite(left):
+        lost = tick_s - (before - left) / p["speed_mps"]
+        crowd.behind_s[a] = min(MOST_BEHIND_S, max(0.0, crowd.behind_s[a] + lost))
+    faster = 1.0 + p["catch_up"] * min(1.0, crowd.behind_s[a] / EASE_S)
+    return float(min(p["max_speed_mps"], p["speed_mps"] * faster))
+
+
 @kernel
 def make_task(
-    world: World, guides: NDArray[np.float32], crowd: Crowd, a: int, max_hold_m: float
+    world: World,
+    guides: NDArray[np.float32],
+    crowd: Crowd,
+    a: int,
+    max_hold_m: float,
+    tick_s: float,
 ) -> Task:
     """The question that actor a asks this tick. Without a goal or a way to it, it stays around."""
     p = crowd.parameters[a]
@@ -48,6 +76,7 @@ def make_task(
     gy = crowd.goals[a, 1]
     slot = crowd.guide_slots[a]
     hold = slot < 0
+    speed = p["speed_mps"]
     if not hold:
         left = potential_at(world.grid, guides[slot], layer, x, y)
         if not np.isfinite(left):
@@ -56,6 +85,8 @@ def make_task(
             gy = y
         elif left <= max_hold_m:
             hold = True
+        else:
+            speed = keep_account(crowd, a, left, tick_s)
     else:
         gx = x
         gy = y
@@ -69,7 +100,7 @@ def make_task(
         gx,
         gy,
         p["radius_m"],
-        p["speed_mps"],
+        speed,
         p["max_speed_mps"],
         p["max_acceleration_mps2"],
         p["goal_tolerance_m"],
@@ -78,6 +109,7 @@ def make_task(
         p["closing_weight"],
         p["turn_weight"],
         p["wall_weight"],
+        p["hurry_weight"],
         int(p["max_expansions"]),
         hold,
     )
@@ -182,7 +214,7 @@ def decide(
     trial = np.empty((slices, 2))
     for a in range(first, last):
         p = crowd.parameters[a]
-        task = make_task(world, guides, crowd, a, p["goal_tolerance_m"])
+        task = make_task(world, guides, crowd, a, p["goal_tolerance_m"], tick_s)
         slot = crowd.guide_slots[a]
         guide = guides[slot] if slot >= 0 else no_guide
         for m in range(len(moves.speeds)):

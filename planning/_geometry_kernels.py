@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planning._jit import kernel
+from planning._jit import inlined, kernel
 
 
 class SegmentIndex(NamedTuple):
@@ -75,14 +75,16 @@ def segments_cross(
     return -hair <= t <= 1.0 + hair and -hair <= u <= 1.0 + hair
 
 
-@kernel
+@inlined
 def closest_approach(rx: float, ry: float, dx: float, dy: float) -> float:
     """Smallest distance while a relative position (rx, ry) changes evenly by (dx, dy)."""
     length2 = dx * dx + dy * dy
     u = 0.0
     if length2 > 1e-12:
         u = min(1.0, max(0.0, -(rx * dx + ry * dy) / length2))
-    return float(np.hypot(rx + u * dx, ry + u * dy))
+    qx = rx + u * dx
+    qy = ry + u * dy
+    return float(np.sqrt(qx * qx + qy * qy))
 
 
 @kernel

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planning._jit import kernel
+from planning._jit import inlined, kernel
 
 
 class GridArrays(NamedTuple):
@@ -21,7 +21,13 @@ class GridArrays(NamedTuple):
     cell_m: float
 
 
-@kernel
+@inlined
+def length(x: float, y: float) -> float:
+    """Length of a vector; quicker than `np.hypot`, which guards against overflow."""
+    return float(np.sqrt(x * x + y * y))
+
+
+@inlined
 def cell_at(grid: GridArrays, x: float, y: float) -> tuple[int, int]:
     """Row and column of the cell that holds a point, clamped to the grid."""
     _, ny, nx = grid.clearance.shape
@@ -30,7 +36,7 @@ def cell_at(grid: GridArrays, x: float, y: float) -> tuple[int, int]:
     return j, i
 
 
-@kernel
+@inlined
 def clearance_at(grid: GridArrays, layer: int, x: float, y: float) -> float:
     """Distance to the nearest obstacle by bilinear interpolation; -inf outside the bounds."""
     if not (grid.x0 <= x <= grid.x1 and grid.y0 <= y <= grid.y1):

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from planning._jit import kernel
+from planning._jit import inlined, kernel
 
 
 @kernel
@@ -11,7 +11,7 @@ def _before(key_a: float, item_a: int, key_b: float, item_b: int) -> bool:
     return key_a < key_b or (key_a == key_b and item_a < item_b)
 
 
-@kernel
+@inlined
 def heap_push(
     keys: NDArray[np.float64], items: NDArray[np.int64], size: int, key: float, item: int
 ) -> int:
@@ -29,7 +29,7 @@ def heap_push(
     return size + 1
 
 
-@kernel
+@inlined
 def heap_pop(keys: NDArray[np.float64], items: NDArray[np.int64], size: int) -> int:
     """Take the first item off a heap that is not empty; it was keys[0], items[0]. New size."""
     size -= 1

@@ -62,3 +62,13 @@ _CACHED = _open_cache()
 def kernel(function: F) -> F:
     """Compile a function of arrays and scalars; it runs without the interpreter's lock."""
     return cast(F, numba.njit(nogil=True, cache=_CACHED, error_model="numpy")(function))
+
+
+def inlined(function: F) -> F:
+    """A kernel that is always compiled into those that call it.
+
+    For what runs in the innermost loops: numba counts references to every array that is handed to
+    a function, and the compiler removes that only where it sees both ends.
+    """
+    options = {"nogil": True, "cache": _CACHED, "error_model": "numpy", "forceinline": True, "_nrt": False}
+    return cast(F, numba.njit(**options)(function))

@@ -7,24 +7,24 @@ place, so that the potential anywhere in the cell is `guide distance + way to th
 import numpy as np
 from numpy.typing import NDArray
 
-from planning._grid_kernels import GridArrays, cell_at, line_is_clear
+from planning._grid_kernels import GridArrays, cell_at, length, line_is_clear
 from planning._heap_kernels import heap_pop, heap_push
-from planning._jit import kernel
+from planning._jit import inlined, kernel
 
 Guide = NDArray[np.float32]
 """(L, ny, nx, 3): metres from the waypoint to the goal, waypoint x, waypoint y.
 Unreachable cells hold inf."""
 
 
-@kernel
+@inlined
 def potential_at(grid: GridArrays, guide: Guide, layer: int, x: float, y: float) -> float:
     """Metres from a point to the goal; inf where no way leads."""
     j, i = cell_at(grid, x, y)
     g = guide[layer, j, i]
-    return float(g[0] + np.hypot(g[1] - x, g[2] - y))
+    return float(g[0] + length(g[1] - x, g[2] - y))
 
 
-@kernel
+@inlined
 def direction_at(
     grid: GridArrays, guide: Guide, layer: int, x: float, y: float
 ) -> tuple[float, float, float]:
@@ -36,14 +36,14 @@ def direction_at(
     left, wx, wy = guide[layer, j, i]
     if not np.isfinite(left):
         return 0.0, 0.0, 0.0
-    length = np.hypot(wx - x, wy - y)
-    if length < 0.25 * grid.cell_m and left > 0.0:
+    leg = length(wx - x, wy - y)
+    if leg < 0.25 * grid.cell_m and left > 0.0:
         j, i = cell_at(grid, wx, wy)
         left, wx, wy = guide[layer, j, i]
-        length = np.hypot(wx - x, wy - y)
-    if length < 1e-4:  # waypoints are rounded to float32
+        leg = length(wx - x, wy - y)
+    if leg < 1e-4:  # waypoints are rounded to float32
         return 0.0, 0.0, 0.0
-    return (wx - x) / length, (wy - y) / length, length
+    return (wx - x) / leg, (wy - y) / leg, leg
 
 
 @kernel

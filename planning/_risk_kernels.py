@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning._grid_kernels import GridArrays
-from planning._jit import kernel
+from planning._jit import inlined, kernel
 from planning._prediction_kernels import Prediction
 
 
@@ -142,7 +142,7 @@ def fill_slices(
                     row[i, 3] += t * (vx * rx + vy_ry)
 
 
-@kernel
+@inlined
 def risk_at(
     grid: GridArrays,
     fields: RiskFields,

@@ -5,11 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planning._grid_kernels import GridArrays, cell_at, clearance_at
+from planning._grid_kernels import GridArrays, cell_at, clearance_at, length
 from planning._heap_kernels import heap_pop, heap_push
-from planning._jit import kernel
+from planning._jit import inlined
 from planning._potential_kernels import Guide, direction_at, potential_at
-from planning._reservation_kernels import Reservations, conflict
+from planning._reservation_kernels import Reservations, meetings, others_near
 from planning._risk_kernels import RiskFields, risk_at
 
 SUB = 2
@@ -21,8 +21,12 @@ NO_PATH = 2
 
 
 DEPTH_BONUS_S = 0.01
-"""Deeper nodes go first by so much a step: the path may cost that much more a step than the best,
-and the search looks at a fraction of the nodes."""
+"""Deeper nodes go first by at least so much a step: the path may cost that much more a step than
+the best, and the search looks at a fraction of the nodes."""
+LIKELY_PART = 0.5
+"""Part of what the followed path costs beyond its time that any other is expected to cost too."""
+WALL_COST_M = 0.15
+"""Walls are minded within so much of the body."""
 
 
 class Moves(NamedTuple):
@@ -61,6 +65,7 @@ class Task(NamedTuple):
     closing_weight: float
     turn_weight: float
     wall_weight: float
+    hurry_weight: float
     max_expansions: int
     hold: bool
     """Stay where the start is rather than go anywhere: at the goal, or with no way to it."""
@@ -94,6 +99,8 @@ class Workspace(NamedTuple):
     table_worth: NDArray[np.float64]
     table_stamp: NDArray[np.int64]
     stamp: NDArray[np.int64]
+    others: NDArray[np.int64]
+    """Actors near the node that is looked at."""
 
 
 class Outcome(NamedTuple):
@@ -104,49 +111,55 @@ class Outcome(NamedTuple):
     cost: float
 
 
-@kernel
+@inlined
 def advance(
     x: float, y: float, vx: float, vy: float, ux: float, uy: float, a_max: float, seconds: float
 ) -> tuple[float, float, float, float]:
     """Position and velocity after turning the velocity v evenly into u at no more than a_max."""
     dvx = ux - vx
     dvy = uy - vy
-    change = np.hypot(dvx, dvy)
-    if change <= 1e-12:
-        return x + ux * seconds, y + uy * seconds, ux, uy
-    ramp = change / a_max
+    ramp = np.sqrt(dvx * dvx + dvy * dvy) / a_max
+    return _on_ramp(x, y, vx, vy, dvx, dvy, ramp, seconds)
+
+
+@inlined
+def _on_ramp(
+    x: float, y: float, vx: float, vy: float, dvx: float, dvy: float, ramp: float, seconds: float
+) -> tuple[float, float, float, float]:
+    """Position and velocity `seconds` into a change of velocity by dv that takes `ramp` seconds."""
     if ramp <= seconds:
-        lag = 0.5 * ramp
-        return x + ux * seconds - dvx * lag, y + uy * seconds - dvy * lag, ux, uy
+        lag = seconds - 0.5 * ramp
+        return x + vx * seconds + dvx * lag, y + vy * seconds + dvy * lag, vx + dvx, vy + dvy
     f = seconds / ramp
+    half = 0.5 * f * seconds
     return (
-        x + vx * seconds + 0.5 * dvx * f * seconds,
-        y + vy * seconds + 0.5 * dvy * f * seconds,
+        x + vx * seconds + dvx * half,
+        y + vy * seconds + dvy * half,
         vx + dvx * f,
         vy + dvy * f,
     )
 
 
-@kernel
+@inlined
 def time_cost(task: Task, x: float, y: float, speed: float, seconds: float) -> float:
     """Seconds that a stretch is worth: its time, more when faster than preferred, none while
     standing at the goal."""
     if task.hold:
-        away = float(np.hypot(x - task.goal_x, y - task.goal_y))
+        away = length(x - task.goal_x, y - task.goal_y)
         return seconds * (speed / task.speed_mps + 0.5 * min(1.0, away))
-    if speed < 0.2 and np.hypot(x - task.goal_x, y - task.goal_y) <= task.goal_tolerance_m:
+    if speed < 0.2 and length(x - task.goal_x, y - task.goal_y) <= task.goal_tolerance_m:
         return seconds * speed
     over = max(0.0, speed / task.speed_mps - 1.0)
-    return seconds * (1.0 + over + 2.0 * over * over)
+    return seconds * (1.0 + over + task.hurry_weight * over * over)
 
 
-@kernel
+@inlined
 def risk_price(task: Task, seconds_ahead: float) -> float:
     """Weight of risk at a time ahead. What lies far ahead will be decided anew, so it fades."""
     return float(task.risk_weight * np.exp(-seconds_ahead / task.foresight_s))
 
 
-@kernel
+@inlined
 def way_left(world: World, guide: Guide, task: Task, layer: int, x: float, y: float) -> float:
     """Seconds to the goal at the preferred speed."""
     if task.hold:
@@ -154,20 +167,33 @@ def way_left(world: World, guide: Guide, task: Task, layer: int, x: float, y: fl
     return potential_at(world.grid, guide, layer, x, y) / task.speed_mps
 
 
-@kernel
+@inlined
 def wall_cost(task: Task, clearance: float, seconds: float) -> float:
-    """Cost of brushing along a wall within 0.15 m."""
-    return task.wall_weight * seconds * max(0.0, task.radius_m + 0.15 - clearance) / 0.15
+    """Cost of brushing along a wall."""
+    lacking = max(0.0, task.radius_m + WALL_COST_M - clearance)
+    return task.wall_weight * seconds * lacking / WALL_COST_M
 
 
-@kernel
+@inlined
+def depth_bonus(excess: float, steps: int) -> float:
+    """Seconds that each step ahead is expected to cost beyond its time.
+
+    A known path's excess over the bare time tells how hard the way is. Expecting a part of it of
+    every other path keeps the search from looking into all that begins well.
+    """
+    if excess < np.inf:
+        return max(DEPTH_BONUS_S, LIKELY_PART * excess / steps)
+    return DEPTH_BONUS_S
+
+
+@inlined
 def needed_clearance(world: World, task: Task) -> float:
     """The radius; less for who starts closer to a wall than that, so that it can come out."""
     here = clearance_at(world.grid, task.layer, task.x, task.y)
     return min(task.radius_m, max(0.0, here)) - 1e-6
 
 
-@kernel
+@inlined
 def _slot(workspace: Workspace, key: int) -> int:
     """Row of the table for a key, found or fresh; -1 when the table is full."""
     size = len(workspace.table_key)
@@ -185,7 +211,7 @@ def _slot(workspace: Workspace, key: int) -> int:
     return -1
 
 
-@kernel
+@inlined
 def search(
     world: World,
     guide: Guide,
@@ -202,12 +228,20 @@ def search(
     what else is minded; without, it is the printed U(q') = potential(q') + Risk(q').
     Nodes that cannot end below `bound` are left out.
     """
+    grid = world.grid
+    fields = world.fields
+    reservations = world.reservations
     steps = (len(path) - 1) // SUB
-    ds = world.step_s / SUB
+    step_s = world.step_s
+    ds = step_s / SUB
     need = needed_clearance(world, task)
+    a_max = task.max_acceleration_mps2
+    most_m = task.max_speed_mps * step_s
+    open_m = task.radius_m + WALL_COST_M + most_m + 1.5 * grid.cell_m
     node = workspace.node_state
+    others = workspace.others
     capacity = len(node)
-    layers, ny, nx = world.grid.clearance.shape
+    layers, ny, nx = grid.clearance.shape
     workspace.stamp[0] += 1
     path[:, 0] = task.x
     path[:, 1] = task.y
@@ -222,6 +256,7 @@ def search(
     start = way_left(world, guide, task, task.layer, task.x, task.y)
     if not np.isfinite(start):
         return Outcome(NO_PATH, 0, np.inf)
+    bonus = depth_bonus(bound - start, steps)
     count = 1
     size = heap_push(workspace.heap_keys, workspace.heap_items, 0, start, 0)
     expansions = 0
@@ -240,15 +275,16 @@ def search(
         vx = node[n, 2]
         vy = node[n, 3]
         if n > 0 and accumulate:
-            j, i = cell_at(world.grid, x, y)
+            j, i = cell_at(grid, x, y)
             slot = _slot(workspace, ((step * layers + layer) * ny + j) * nx + i)
-            if slot < 0 or workspace.table_worth[slot] < key + DEPTH_BONUS_S * step - 1e-9:
+            if slot < 0 or workspace.table_worth[slot] < key + bonus * step - 1e-9:
                 continue
         if step > best_step or (step == best_step and key < best_key):
             best = n
             best_step = step
             best_key = key
-        at_goal = np.hypot(x - task.goal_x, y - task.goal_y) <= task.goal_tolerance_m
+        away = length(x - task.goal_x, y - task.goal_y)
+        at_goal = away <= task.goal_tolerance_m
         if step == steps or (at_goal and not accumulate and not task.hold):
             best = n
             best_step = step
@@ -259,76 +295,79 @@ def search(
             status = PARTIAL
             break
         expansions += 1
-        gx, gy, leg = direction_at(world.grid, guide, layer, x, y)
+        gx, gy, leg = direction_at(grid, guide, layer, x, y)
         if task.hold:
             gx = task.goal_x - x
             gy = task.goal_y - y
-            leg = np.hypot(gx, gy)
+            leg = away
             if leg > 1e-9:
                 gx /= leg
                 gy /= leg
-        away = np.hypot(task.goal_x - x, task.goal_y - y)
         if not moves.relative or leg <= 1e-9:
             gx = 1.0
             gy = 0.0
-        price = risk_price(task, step * world.step_s) * ds
+        price = risk_price(task, step * step_s) * ds
         k = step * SUB
+        near = others_near(reservations, task.me, layer, k, x, y, task.max_speed_mps * ds, others)
+        # The clearance falls by no more than the way: far from walls no child has to be asked.
+        in_the_open = clearance_at(grid, layer, x, y) >= open_m
+        # What the rest of the way is bound to cost beyond its time, if it is like the path known.
+        room_s = bound - bonus * (steps - step - 1) if accumulate else bound
         for m in range(len(moves.speeds) + 1):
             ux = 0.0
             uy = 0.0
             if m < len(moves.speeds):
                 speed = moves.speeds[m]
-                if moves.relative and m < moves.straight and away < speed * world.step_s:
-                    speed = away / world.step_s
+                if moves.relative and m < moves.straight and away < speed * step_s:
+                    speed = away / step_s
                 ux = speed * (gx * moves.cosines[m] - gy * moves.sines[m])
                 uy = speed * (gx * moves.sines[m] + gy * moves.cosines[m])
-            hx, hy, hvx, hvy = advance(x, y, vx, vy, ux, uy, task.max_acceleration_mps2, ds)
-            ex, ey, evx, evy = advance(hx, hy, hvx, hvy, ux, uy, task.max_acceleration_mps2, ds)
+            dvx = ux - vx
+            dvy = uy - vy
+            ramp = length(dvx, dvy) / a_max
+            ex, ey, evx, evy = _on_ramp(x, y, vx, vy, dvx, dvy, ramp, step_s)
             left = way_left(world, guide, task, layer, ex, ey)
-            if not np.isfinite(left):
-                continue
-            moved = np.hypot(ex - x, ey - y)
             cost = (
                 node[n, 4]
-                + time_cost(task, ex, ey, moved / world.step_s, world.step_s)
-                + task.turn_weight * np.hypot(evx - vx, evy - vy)
+                + time_cost(task, ex, ey, length(ex - x, ey - y) / step_s, step_s)
+                + task.turn_weight * length(evx - vx, evy - vy)
             )
-            if cost + left >= bound:
+            if not cost + left < room_s:
                 continue
-            half_room = clearance_at(world.grid, layer, hx, hy)
-            room = clearance_at(world.grid, layer, ex, ey)
-            if half_room < need or room < need:
-                continue
-            ej, ei = cell_at(world.grid, ex, ey)
+            ej, ei = cell_at(grid, ex, ey)
             slot = _slot(workspace, (((step + 1) * layers + layer) * ny + ej) * nx + ei)
             if slot < 0:
                 continue
-            cost += wall_cost(task, min(half_room, room), world.step_s)
+            least = workspace.table_worth[slot] - 1e-12
+            if accumulate and cost + left >= least:
+                continue
+            hx, hy, hvx, hvy = _on_ramp(x, y, vx, vy, dvx, dvy, ramp, ds)
+            if not in_the_open:
+                room = min(clearance_at(grid, layer, hx, hy), clearance_at(grid, layer, ex, ey))
+                if room < need:
+                    continue
+                cost += wall_cost(task, room, step_s)
             worth = cost + left if accumulate else 0.0
-            if worth >= min(bound, workspace.table_worth[slot] - 1e-12):
+            if worth >= least:
                 continue
-            blocked, soft = conflict(world.reservations, task.me, layer, k, x, y, hx, hy)
-            if blocked:
-                continue
-            blocked, soft_end = conflict(world.reservations, task.me, layer, k + 1, hx, hy, ex, ey)
-            if blocked:
-                continue
+            soft = 0.0
+            if near > 0:
+                blocked, soft = meetings(
+                    reservations, others, near, task.me, k, x, y, hx, hy, ex, ey
+                )
+                if blocked:
+                    continue
             risk = price * (
-                risk_at(
-                    world.grid, world.fields, k + 1, layer, hx, hy, hvx, hvy, task.closing_weight
-                )
-                + risk_at(
-                    world.grid, world.fields, k + 2, layer, ex, ey, evx, evy, task.closing_weight
-                )
+                risk_at(grid, fields, k + 1, layer, hx, hy, hvx, hvy, task.closing_weight)
+                + risk_at(grid, fields, k + 2, layer, ex, ey, evx, evy, task.closing_weight)
                 + soft
-                + soft_end
             )
             if accumulate:
                 cost += risk
                 worth += risk
-                if worth >= min(bound, workspace.table_worth[slot] - 1e-12):
+                if worth >= min(room_s, least):
                     continue
-                key = worth - DEPTH_BONUS_S * (step + 1)
+                key = worth - bonus * (step + 1)
             else:
                 key = left + risk
             if count == capacity:
@@ -352,7 +391,7 @@ def search(
     return Outcome(status, expansions, best_key)
 
 
-@kernel
+@inlined
 def _trace(workspace: Workspace, last: int, path: NDArray[np.float64]) -> None:
     """Write the way to a node; after its end the path stays where it is."""
     k = workspace.node_step[last] * SUB

@@ -16,6 +16,9 @@ from planning.grid import LayeredGrid
 from planning.potential import Potential
 from planning.risk import RiskField
 
+_MOST_NEAR = 64
+"""Room for the actors near a node; so many discs do not fit around it."""
+
 
 class SearchStatus(IntEnum):
     """How a search ended."""
@@ -45,12 +48,10 @@ def compass_moves() -> Moves:
     """
     rows = [(0.0, 1.0), (0.0, 0.5), (0.0, 2.0)]
     straight = len(rows)
-    for degrees in (15, 30, 50, 75, 110, 180):
+    for degrees in (10, 25, 45, 80, 180):
         signs = (1, -1) if degrees < 180 else (1,)
         rows.extend((math.radians(sign * degrees), 1.0) for sign in signs)
-    for degrees in (50, 110):
-        rows.extend((math.radians(sign * degrees), 0.5) for sign in (1, -1))
-    for degrees in (30, 75):
+    for degrees in (25, 60):
         rows.extend((math.radians(sign * degrees), 2.0) for sign in (1, -1))
     headings, parts = np.array(rows).T
     return Moves(np.cos(headings), np.sin(headings), parts.copy(), straight, True)
@@ -85,6 +86,7 @@ def make_workspace(max_expansions: int, branching: int) -> Workspace:
         np.zeros(table),
         np.zeros(table, dtype=np.int64),
         np.zeros(1, dtype=np.int64),
+        np.zeros(_MOST_NEAR, dtype=np.int64),
     )
 
 
@@ -99,11 +101,11 @@ def make_reservations(
     """Room for the planned ways of A actors, (A, K, 2); `index_paths` fills its index.
 
     `fastest_m` is how far anyone can get from one slice, or tick, to the next: buckets are so
-    wide that whoever can be met in that time is in one of the nine around.
+    wide that whoever can be met in two slices is in one of the nine around.
     """
     x0, y0, x1, y1 = grid.bounds
     widest = float(radii_m.max()) if len(radii_m) else 0.0
-    bucket = 2.0 * (widest + fastest_m) + MARGIN_M
+    bucket = 2.0 * widest + 3.0 * fastest_m + MARGIN_M
     nx = max(1, math.ceil((x1 - x0) / bucket))
     ny = max(1, math.ceil((y1 - y0) / bucket))
     actors, slices = paths.shape[:2]
@@ -146,8 +148,9 @@ def uncertain_bfp(
 
     The horizon is the risk field's last slice. Nodes are configurations (layer, cell, step) that
     keep their exact position; with `lattice_moves`, a start at a cell's centre and unbounded
-    acceleration they are cells, as printed. What cannot cost less than `bound` (seconds) is not
-    looked at: a caller who already has a path only wants a better one.
+    acceleration they are cells, as printed. A caller who already has a path only wants one that
+    costs less than `bound` (seconds): what would have to be much easier than that path from some
+    step on to get below it is not looked at.
 
     Raises
     ------

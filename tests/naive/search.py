@@ -14,6 +14,7 @@ from planning import LayeredGrid, Potential, RiskField, SearchStatus
 from planning._reservation_kernels import MARGIN_M, Reservations
 from planning._search_kernels import (
     DEPTH_BONUS_S,
+    LIKELY_PART,
     Moves,
     Task,
     advance,
@@ -77,7 +78,7 @@ class Node:
 
 
 def search(
-    ground: Ground, moves: Moves, steps: int, accumulate: bool
+    ground: Ground, moves: Moves, steps: int, accumulate: bool, bound: float = math.inf
 ) -> tuple[SearchStatus, NDArray[np.float64], int]:
     """Status, positions half a step apart, and how many nodes were expanded."""
     task = ground.task
@@ -86,6 +87,9 @@ def search(
     if math.isinf(ground.seconds_left(start)):
         return SearchStatus.NO_PATH, _trace(nodes, 0, steps), 0
     queue = [(ground.seconds_left(start), 0)]
+    bonus = DEPTH_BONUS_S
+    if bound < math.inf:
+        bonus = max(bonus, LIKELY_PART * (bound - ground.seconds_left(start)) / steps)
     best: dict[tuple[int, tuple[int, int]], float] = {}
     furthest = (0, math.inf, 0)
     expansions = 0
@@ -107,6 +111,10 @@ def search(
             if made is None:
                 continue
             child, key = made
+            if accumulate:
+                key -= bonus * child.step
+                if child.worth + bonus * (steps - child.step) >= bound:
+                    continue
             at = (child.step, ground.cell(child.place))
             if at in best and (not accumulate or child.worth >= best[at] - 1e-12):
                 continue
@@ -137,7 +145,7 @@ def _move(
     task, half = ground.task, ground.step_s / 2
     a_max = task.max_acceleration_mps2
     *middle, vx, vy = advance(*node.place, *node.velocity, *wish, a_max, half)
-    *end, ux, uy = advance(*middle, vx, vy, *wish, a_max, half)
+    *end, ux, uy = advance(*node.place, *node.velocity, *wish, a_max, ground.step_s)
     room = min(ground.clearance(tuple(middle)), ground.clearance(tuple(end)))
     if room < ground.needed() or math.isinf(left := ground.seconds_left(tuple(end))):
         return None
@@ -163,7 +171,7 @@ def _move(
         + wall_cost(task, room, ground.step_s)
     )
     child = Node(*made, cost, cost + left, n, tuple(middle))
-    return child, child.worth - DEPTH_BONUS_S * child.step
+    return child, child.worth
 
 
 def _trace(nodes: list[Node], n: int, steps: int) -> NDArray[np.float64]:

@@ -25,6 +25,8 @@ BODY = {
     "closing_weight": 0.1,
     "turn_weight": 0.1,
     "wall_weight": 0.3,
+    "hurry_weight": 2.0,
+    "catch_up": 0.0,
     "hysteresis_s": 0.15,
     "max_expansions": float(scaled(150, 30)),
 }
@@ -48,6 +50,8 @@ def crowd_of(positions, goals, velocities=None, ranks=None, **changes) -> Crowd:
         np.zeros(actors, dtype=np.bool_),
         np.zeros(actors, dtype=np.int64),
         np.zeros((actors, PLAN.slices + 1, 2)),
+        np.full(actors, np.nan),
+        np.zeros(actors),
     )
 
 

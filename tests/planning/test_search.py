@@ -48,7 +48,7 @@ def ground_of(question, steps=12, walls=(), people=(), others=None):
     return naive.Ground(grid, field, potential, others, question, STEP_S)
 
 
-def found(ground, moves=None, form=SearchForm.ACCUMULATED):
+def found(ground, moves=None, form=SearchForm.ACCUMULATED, bound=math.inf):
     return uncertain_bfp(
         ground.field,
         ground.potential,
@@ -57,13 +57,15 @@ def found(ground, moves=None, form=SearchForm.ACCUMULATED):
         ground.reservations,
         ground.step_s,
         form,
+        bound,
     )
 
 
-def same_as_twin(ground, moves, form) -> None:
-    ours = found(ground, moves, form)
+def same_as_twin(ground, moves, form, bound=math.inf) -> None:
+    ours = found(ground, moves, form, bound)
     steps = (len(ground.field.fields) - 1) // 2
-    status, path, expansions = naive.search(ground, moves, steps, form is SearchForm.ACCUMULATED)
+    accumulate = form is SearchForm.ACCUMULATED
+    status, path, expansions = naive.search(ground, moves, steps, accumulate, bound)
     assert ours.status == status
     assert ours.expansions == expansions
     assert ours.path == pytest.approx(path, abs=1e-6)
@@ -88,28 +90,28 @@ def test_both_forms_are_their_twins(form, start, goal, crowd, walled) -> None:
 
 @given(start=spots, goal=ends, crowd=people, slack=st.floats(-1.0, 1.0))
 @holds(15, 3)
-def test_a_bound_only_leaves_out_what_is_not_better(start, goal, crowd, slack) -> None:
+def test_a_bound_holds_and_saves_work(start, goal, crowd, slack) -> None:
     ground = ground_of(task(start, goal, max_expansions=5000), 5, (), crowd)
     world = world_of(ground.field.grid, ground.field, ground.reservations)
 
     def cost(path) -> float:
         return path_cost(world, ground.potential.guide, ground.task, path)[0]
 
-    best = cost(found(ground).path)
-    bounded = uncertain_bfp(
-        ground.field,
-        ground.potential,
-        ground.task,
-        relative_moves(),
-        ground.reservations,
-        ground.step_s,
-        bound=best + slack,
-    )
+    free = found(ground)
+    bound = cost(free.path) + slack
+    bounded = found(ground, bound=bound)
+    assert bounded.expansions <= free.expansions or free.status is not SearchStatus.FOUND
     # The search adds up changes of velocity by steps, a path's cost does by slices.
     if bounded.status is SearchStatus.FOUND:
-        assert cost(bounded.path) == pytest.approx(best, abs=0.2)
-    else:
-        assert slack < 0.2
+        assert cost(bounded.path) < bound + 0.2
+
+
+@given(start=spots, goal=ends, crowd=people, slack=st.floats(-0.5, 3.0))
+@holds(15, 3)
+def test_a_bounded_search_is_its_twin(start, goal, crowd, slack) -> None:
+    ground = ground_of(task(start, goal, max_expansions=40), 5, (), crowd)
+    bound = ground.seconds_left(start) + slack
+    same_as_twin(ground, relative_moves(), SearchForm.ACCUMULATED, bound)
 
 
 @given(start=spots, goal=ends, crowd=people)
@@ -124,6 +126,7 @@ def test_on_the_lattice_too(start, goal, crowd) -> None:
 @given(goal=ends, crowd=people, away=st.tuples(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5)))
 @holds(10, 2)
 def test_and_for_who_stays_where_it_is(goal, crowd, away) -> None:
+    goal = (goal[0] + 0.0137, goal[1] + 0.0071)  # moves along an edge of cells would be a toss-up
     question = task((goal[0] + away[0], goal[1] + away[1]), goal, max_expansions=40, hold=True)
     same_as_twin(ground_of(question, 5, (), crowd), relative_moves(), SearchForm.ACCUMULATED)
 
