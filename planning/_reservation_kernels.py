@@ -10,6 +10,13 @@ from planning._jit import inlined, kernel
 
 MARGIN_M = 0.03
 """Planned ways keep this much more than the sum of the radii."""
+SOFT = 0.25
+"""What a meeting with somebody who will yield weighs, in certain contacts with a person. If it were
+as dear, everyone would rather wait than go where others stand, and nobody would make way."""
+EVADING_SLICES = 2
+"""So soon there may be no time left to get out of somebody's way."""
+EVADING_M = 0.005
+"""Who then gains so much room over standing may move, even if they would meet all the same."""
 
 
 class Reservations(NamedTuple):
@@ -68,9 +75,8 @@ def conflict(
 ) -> tuple[bool, float]:
     """Meetings while moving from a at slice k to b at slice k + 1.
 
-    The first value tells of one with an actor of smaller rank: that is forbidden, unless they
-    are too close already and draw apart. The second counts those with actors of larger rank, who
-    will yield; they are dear, not forbidden. Swapping places is a meeting.
+    The first value tells of one that is forbidden, the second adds up what the others weigh.
+    Swapping places is a meeting.
     """
     r = reservations
     ci = int((bx - r.x0) / r.bucket_m)
@@ -84,11 +90,10 @@ def conflict(
             other = r.members[k + 1, m]
             if other == me or r.layers[other] != layer:
                 continue
-            if not _meets(r, me, other, k, ax, ay, bx, by):
-                continue
-            if r.ranks[other] < r.ranks[me]:
+            weight = _meeting(r, me, other, k, ax, ay, bx, by)
+            if weight == np.inf:
                 return True, 1.0
-            soft += 1.0
+            soft += weight
     return False, soft
 
 
@@ -153,16 +158,17 @@ def meetings(
     soft = 0.0
     for n in range(count):
         o = others[n]
-        first = _meets(reservations, me, o, k, ax, ay, bx, by)
-        second = _meets(reservations, me, o, k + 1, bx, by, cx, cy)
-        if (first or second) and reservations.ranks[o] < reservations.ranks[me]:
+        weight = _meeting(reservations, me, o, k, ax, ay, bx, by) + _meeting(
+            reservations, me, o, k + 1, bx, by, cx, cy
+        )
+        if weight == np.inf:
             return True, 1.0
-        soft += (1.0 if first else 0.0) + (1.0 if second else 0.0)
+        soft += weight
     return False, soft
 
 
 @inlined
-def _meets(
+def _meeting(
     reservations: Reservations,
     me: int,
     other: int,
@@ -171,8 +177,14 @@ def _meets(
     ay: float,
     bx: float,
     by: float,
-) -> bool:
-    """Whether two touch on their way from slice k to the next, other than by drawing apart."""
+) -> float:
+    """What a move from a at slice k to b weighs because of one other actor; inf if forbidden.
+
+    Nothing if the two stay clear, or are too close already and draw apart. A meeting with an actor
+    of larger rank, who will yield, is dear; with one of smaller rank it is forbidden, unless it
+    is about to come to me wherever I stand and the move gains room: who cannot get out of the way
+    in time has to begin with it.
+    """
     r = reservations
     rx = ax - r.paths[other, k, 0]
     ry = ay - r.paths[other, k, 1]
@@ -181,6 +193,15 @@ def _meets(
     reach = r.radii[me] + r.radii[other] + MARGIN_M
     d = closest_approach(rx, ry, ex - rx, ey - ry)
     if d >= reach:
-        return False
+        return 0.0
     before = np.sqrt(rx * rx + ry * ry)
-    return not (d >= before - 1e-9 and np.sqrt(ex * ex + ey * ey) > before)
+    if d >= before - 1e-9 and np.sqrt(ex * ex + ey * ey) > before:
+        return 0.0
+    if r.ranks[other] > r.ranks[me]:
+        return SOFT
+    if (
+        k < EVADING_SLICES
+        and d > closest_approach(rx, ry, ex + ax - bx - rx, ey + ay - by - ry) + EVADING_M
+    ):
+        return SOFT
+    return np.inf

@@ -6,27 +6,35 @@ import math
 
 import numpy as np
 
-from planning._reservation_kernels import Reservations
+from planning._reservation_kernels import EVADING_M, EVADING_SLICES, SOFT, Reservations
 from tests.naive.geometry import Point, closest_approach
 
 
 def conflict(
     r: Reservations, margin_m: float, me: int, layer: int, k: int, a: Point, b: Point
-) -> tuple[bool, int]:
-    """Whether a move meets someone of smaller rank, and how many of larger rank it meets."""
+) -> tuple[bool, float]:
+    """Whether a move has a forbidden meeting, and what the others weigh together."""
     blocked = False
-    soft = 0
+    soft = 0.0
     for other in range(len(r.layers)):
         if other == me or r.layers[other] != layer:
             continue
-        before = np.subtract(a, r.paths[other, k])
-        after = np.subtract(b, r.paths[other, k + 1])
-        nearest = closest_approach(tuple(before), tuple(after - before))
-        apart = nearest >= math.hypot(*before) - 1e-9 and math.hypot(*after) > math.hypot(*before)
+        from_there, to_there = r.paths[other, k], r.paths[other, k + 1]
+        nearest = _nearest(a, b, from_there, to_there)
+        before = math.dist(a, from_there)
+        apart = nearest >= before - 1e-9 and math.dist(b, to_there) > before
         if nearest >= r.radii[me] + r.radii[other] + margin_m or apart:
             continue
-        if r.ranks[other] < r.ranks[me]:
+        gained = nearest - _nearest(a, a, from_there, to_there)
+        evades = k < EVADING_SLICES and gained > EVADING_M
+        if r.ranks[other] < r.ranks[me] and not evades:
             blocked = True
         else:
-            soft += 1
+            soft += SOFT
     return blocked, soft
+
+
+def _nearest(a: Point, b: Point, c: Point, d: Point) -> float:
+    """Smallest distance of two who go evenly from a to b, and from c to d."""
+    before, after = np.subtract(a, c), np.subtract(b, d)
+    return closest_approach(tuple(before), tuple(after - before))

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from planning._reservation_kernels import MARGIN_M, conflict
+from planning._reservation_kernels import MARGIN_M, SOFT, conflict
 from tests.naive import reservations as naive
 from tests.planning.worlds import holds, open_grid, reserved
 
@@ -57,7 +57,7 @@ def test_swapping_places_is_a_meeting() -> None:
 def test_who_goes_first_is_not_forbidden_but_pays() -> None:
     paths = np.array([straight((3.0, 4.0), (0.0, 0.0)), straight((3.6, 4.0), (0.0, 0.0))])
     r = reserved(open_grid(8.0), paths, (0.25, 0.25), (0, 1))
-    assert conflict(r, 0, 0, 0, 3.0, 4.0, 3.3, 4.0) == (False, 1.0)
+    assert conflict(r, 0, 0, 0, 3.0, 4.0, 3.3, 4.0) == (False, SOFT)
     assert conflict(r, 1, 0, 0, 3.6, 4.0, 3.3, 4.0)[0]
 
 
@@ -66,6 +66,22 @@ def test_who_is_too_close_may_draw_apart_but_not_come_nearer() -> None:
     r = reserved(open_grid(8.0), paths, (0.25, 0.25), (1, 0))
     assert conflict(r, 0, 0, 0, 3.0, 4.0, 2.8, 4.0) == (False, 0.0)
     assert conflict(r, 0, 0, 0, 3.0, 4.0, 3.1, 4.0)[0]
+
+
+def test_who_cannot_get_out_of_the_way_in_time_may_begin_to() -> None:
+    """One who goes first comes at 1.3 m/s and would touch me in this slice, wherever I stand."""
+    paths = np.array([straight((3.0, 4.0), (1.3, 0.0)), straight((3.6, 4.1), (0.0, 0.0))])
+    r = reserved(open_grid(8.0), paths, (0.25, 0.25), (0, 1))
+    away = (3.6, 4.1, 3.65, 4.16)
+    assert conflict(r, 1, 0, 0, *away) == (False, SOFT)
+    assert conflict(r, 1, 0, 0, 3.6, 4.1, 3.6, 4.1)[0], "standing gains nothing"
+    assert conflict(r, 1, 0, 0, 3.6, 4.1, 3.55, 4.05)[0], "nor does coming nearer"
+
+
+def test_who_has_time_to_get_out_of_the_way_has_to() -> None:
+    paths = np.array([straight((2.5, 4.0), (1.3, 0.0)), straight((3.6, 4.1), (0.0, 0.0))])
+    r = reserved(open_grid(8.0), paths, (0.25, 0.25), (0, 1))
+    assert conflict(r, 1, 0, 2, 3.6, 4.1, 3.65, 4.16)[0]
 
 
 def test_another_layer_is_another_world() -> None:
