@@ -196,23 +196,22 @@ def decide(
     prediction: Prediction,
     crowd: Crowd,
     tick_s: float,
-    first: int,
-    last: int,
+    turns: NDArray[np.int64],
     workspace: Workspace,
     out: Decisions,
 ) -> None:
     """Perturb the followed path, search anew, keep the better, and wish for a velocity.
 
     The search only looks at what may be better than the followed path by the hysteresis, so that
-    it costs little while that path is good. Actors first..last; their followed paths, seen from
-    now, are `world.reservations.paths`. The speeds of `moves` are parts of each actor's own.
+    it costs little while that path is good. The actors are those of `turns`; their followed
+    paths, seen from now, are `world.reservations.paths`. The speeds of `moves` are parts of each actor's own.
     """
     slices = out.paths.shape[1]
     speeds = np.empty(len(moves.speeds))
     kept = np.empty((slices, 2))
     bent = np.empty((slices, 2))
     trial = np.empty((slices, 2))
-    for a in range(first, last):
+    for a in turns:
         p = crowd.parameters[a]
         task = make_task(world, guides, crowd, a, p["goal_tolerance_m"], tick_s)
         slot = crowd.guide_slots[a]

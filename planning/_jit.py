@@ -70,5 +70,11 @@ def inlined(function: F) -> F:
     For what runs in the innermost loops: numba counts references to every array that is handed to
     a function, and the compiler removes that only where it sees both ends.
     """
-    options = {"nogil": True, "cache": _CACHED, "error_model": "numpy", "forceinline": True, "_nrt": False}
+    options = {
+        "nogil": True,
+        "cache": _CACHED,
+        "error_model": "numpy",
+        "forceinline": True,
+        "_nrt": False,
+    }
     return cast(F, numba.njit(**options)(function))

@@ -31,24 +31,29 @@ RiskFields = NDArray[np.float32]
 centres of cells; slice by slice."""
 
 
-@kernel
+@inlined
+def _row_of(tables: RadialTables, sigma: float) -> float:
+    """Row of a deviation, between two as a rule."""
+    return min(len(tables.near) - 1.000001, max(0.0, sigma / tables.sigma_step_m))
+
+
+@inlined
+def _columns(tables: RadialTables, row: float) -> int:
+    """How many columns matter there."""
+    return max(tables.reaches[int(row)], tables.reaches[int(row) + 1])
+
+
+@inlined
 def _blend_rows(
-    tables: RadialTables,
-    sigma: float,
-    near: NDArray[np.float32],
-    toward: NDArray[np.float32],
-) -> float:
-    """Tables for one deviation into two rows; returns the reach in metres."""
-    rows = len(tables.near)
-    u = min(rows - 1.000001, max(0.0, sigma / tables.sigma_step_m))
-    r = int(u)
-    w1 = np.float32(u - r)
+    tables: RadialTables, row: float, near: NDArray[np.float32], toward: NDArray[np.float32]
+) -> None:
+    """Tables for one deviation into two rows."""
+    r = int(row)
+    w1 = np.float32(row - r)
     w0 = np.float32(1.0) - w1
-    columns = max(tables.reaches[r], tables.reaches[r + 1])
-    for c in range(columns + 1):
+    for c in range(_columns(tables, row) + 1):
         near[c] = w0 * tables.near[r, c] + w1 * tables.near[r + 1, c]
         toward[c] = w0 * tables.toward[r, c] + w1 * tables.toward[r + 1, c]
-    return float(np.sqrt(columns * tables.squared_step_m2))
 
 
 @kernel
@@ -61,6 +66,24 @@ def _matters(
         if (seekers[s, 0] - x) ** 2 + (seekers[s, 1] - y) ** 2 <= room * room:
             return True
     return len(seekers) == 0
+
+
+@kernel
+def _box(
+    grid: GridArrays, seconds: float, seekers: NDArray[np.float64]
+) -> tuple[int, int, int, int]:
+    """Rows and columns (j0, j1, i0, i1) that any seeker may look at by then."""
+    _, ny, nx = grid.clearance.shape
+    j0, j1, i0, i1 = (ny, 0, nx, 0) if len(seekers) else (0, ny, 0, nx)
+    for s in range(len(seekers)):
+        room = seekers[s, 2] * seconds + 2.0 * grid.cell_m
+        x = seekers[s, 0] - grid.x0
+        y = seekers[s, 1] - grid.y0
+        j0 = min(j0, max(0, int((y - room) / grid.cell_m)))
+        j1 = max(j1, min(ny, int((y + room) / grid.cell_m) + 1))
+        i0 = min(i0, max(0, int((x - room) / grid.cell_m)))
+        i1 = max(i1, min(nx, int((x + room) / grid.cell_m) + 1))
+    return j0, j1, i0, i1
 
 
 @kernel
@@ -78,8 +101,8 @@ def fill_slices(
 ) -> None:
     """Fill slices first, first + step, ... Only cells near people are touched.
 
-    `seekers` (S, 3) are places and greatest speeds of those who will look things up: people out
-    of everyone's reach are left out. After slice `last_wider` deviations grow no more. `windows`
+    `seekers` (S, 3) are places and greatest speeds of those who will look things up: what nobody
+    can reach by the time of a slice is left out. After slice `last_wider` deviations grow no more. `windows`
     (K, P', 5) remembers what was written (layer, j0, j1, i0, i1) so that the next call clears no
     more than that; rows with layer -1 are empty.
     """
@@ -98,21 +121,24 @@ def fill_slices(
             fields[k, layer, j0:j1, i0:i1] = 0.0
             windows[k, w, 0] = -1
         written = 0
+        box_j0, box_j1, box_i0, box_i1 = _box(grid, k * slice_s, seekers)
         for p in range(people):
             layer = prediction.layers[p]
             mx = prediction.means[p, k, 0]
             my = prediction.means[p, k, 1]
             vx = np.float32(prediction.velocities[p, k, 0])
             vy = np.float32(prediction.velocities[p, k, 1])
-            reach = _blend_rows(tables, prediction.sigmas[p, min(k, last_wider)], near, toward)
+            blended = _row_of(tables, prediction.sigmas[p, min(k, last_wider)])
+            reach = float(np.sqrt(_columns(tables, blended) * tables.squared_step_m2))
             if not _matters(mx, my, reach + 2.0 * grid.cell_m, k * slice_s, seekers):
                 continue
-            i0 = max(0, int(np.floor((mx - reach - grid.x0) / grid.cell_m)))
-            i1 = min(nx, int(np.floor((mx + reach - grid.x0) / grid.cell_m)) + 1)
-            j0 = max(0, int(np.floor((my - reach - grid.y0) / grid.cell_m)))
-            j1 = min(ny, int(np.floor((my + reach - grid.y0) / grid.cell_m)) + 1)
+            i0 = max(box_i0, int(np.floor((mx - reach - grid.x0) / grid.cell_m)))
+            i1 = min(box_i1, int(np.floor((mx + reach - grid.x0) / grid.cell_m)) + 1)
+            j0 = max(box_j0, int(np.floor((my - reach - grid.y0) / grid.cell_m)))
+            j1 = min(box_j1, int(np.floor((my + reach - grid.y0) / grid.cell_m)) + 1)
             if i0 >= i1 or j0 >= j1:
                 continue
+            _blend_rows(tables, blended, near, toward)
             windows[k, written, 0] = layer
             windows[k, written, 1] = j0
             windows[k, written, 2] = j1

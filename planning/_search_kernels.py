@@ -23,7 +23,7 @@ NO_PATH = 2
 DEPTH_BONUS_S = 0.01
 """Deeper nodes go first by at least so much a step: the path may cost that much more a step than
 the best, and the search looks at a fraction of the nodes."""
-LIKELY_PART = 0.5
+LIKELY_PART = 0.7
 """Part of what the followed path costs beyond its time that any other is expected to cost too."""
 WALL_COST_M = 0.15
 """Walls are minded within so much of the body."""
