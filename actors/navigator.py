@@ -33,8 +33,8 @@ class Navigator:
     """Takes every actor to its goal among people whose future is not known.
 
     A tick is `observe` (where everyone is now) and `tick` (one step of every actor). Time is
-    tick × `tick_s`; the seed decides nothing but the order of priority among actors; the order
-    in which actors were added or people are listed never matters.
+    tick × `tick_s`; the seed decides nothing but who goes first of two with equal ways left; the
+    order in which actors were added or people are listed never matters.
     """
 
     def __init__(
@@ -274,7 +274,7 @@ class Navigator:
             raise ValueError(f"({x:g}, {y:g}) lies outside the bounds {self.grid.bounds}")
 
     def _rank(self) -> None:
-        """Order of priority: fixed for each id, fair (a hash of id and seed), free of ties."""
+        """Order among those with equal ways left: a hash of id and seed, free of ties."""
         keys = [(_priority(self._seed, who), str(who)) for who in self._ids]
         order = sorted(range(len(keys)), key=keys.__getitem__)
         ranks = np.empty(len(keys), dtype=np.int64)

@@ -99,7 +99,7 @@ class ActorParameters(BaseModel):
             "Cost of walking faster than preferred, by the square of how much faster; "
             "lower passes in front where higher waits.",
         ),
-    ] = 0.0
+    ] = 0.2
     catch_up: Annotated[
         float,
         _field(

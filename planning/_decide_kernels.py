@@ -34,7 +34,6 @@ from planning._search_kernels import (
 )
 from planning._step_kernels import control_toward, last_check, limited
 
-
 MOST_BEHIND_S = 5.0
 """More lost time than this is not made up."""
 EASE_S = 0.5
@@ -204,7 +203,8 @@ def decide(
 
     The search only looks at what may be better than the followed path by the hysteresis, so that
     it costs little while that path is good. The actors are those of `turns`; their followed
-    paths, seen from now, are `world.reservations.paths`. The speeds of `moves` are parts of each actor's own.
+    paths, seen from now, are `world.reservations.paths`. The speeds of `moves` are parts of each
+    actor's own.
     """
     slices = out.paths.shape[1]
     speeds = np.empty(len(moves.speeds))

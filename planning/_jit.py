@@ -77,4 +77,5 @@ def inlined(function: F) -> F:
         "forceinline": True,
         "_nrt": False,
     }
-    return cast(F, numba.njit(**options)(function))
+    compiled: F = numba.njit(**options)(function)  # type: ignore[call-overload]
+    return compiled

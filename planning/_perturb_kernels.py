@@ -115,7 +115,9 @@ def path_cost(
         )
         vx = ux
         vy = uy
-    cost += way_left(world, guide, task, task.layer, path[slices, 0], path[slices, 1])
+    x = path[slices, 0]
+    y = path[slices, 1]
+    cost += way_left(world, guide, task, task.layer, x, y, np.hypot(vx, vy))
     return cost, risk / slices
 
 

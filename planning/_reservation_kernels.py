@@ -5,8 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from planning._crowd import Crowd
 from planning._geometry_kernels import closest_approach
+from planning._grid_kernels import GridArrays
 from planning._jit import inlined, kernel
+from planning._potential_kernels import potential_at
 
 MARGIN_M = 0.03
 """Planned ways keep this much more than the sum of the radii."""
@@ -17,6 +20,8 @@ EVADING_SLICES = 2
 """So soon there may be no time left to get out of somebody's way."""
 EVADING_M = 0.005
 """Who then gains so much room over standing may move, even if they would meet all the same."""
+SETTLED_M = 1.0
+"""Who is so near the goal lets everyone else pass."""
 
 
 class Reservations(NamedTuple):
@@ -60,6 +65,25 @@ def index_paths(reservations: Reservations) -> None:
         for b in range(r.nx * r.ny):
             r.starts[k, b] = r.starts[k, b + 1]
         r.starts[k, r.nx * r.ny] = actors
+
+
+@kernel
+def ways_left(
+    grid: GridArrays, guides: NDArray[np.float32], crowd: Crowd, out: NDArray[np.float64]
+) -> None:
+    """Fill (A,) with the metres that decide who goes first: who has the least way left.
+
+    Two do not change their order while one lets the other pass, since only the other gains.
+    Those who are about there, or have no way to go, have inf.
+    """
+    for a in range(len(out)):
+        out[a] = np.inf
+        slot = crowd.guide_slots[a]
+        if slot >= 0:
+            x, y = crowd.positions[a]
+            left = potential_at(grid, guides[slot], crowd.layers[a], x, y)
+            if left > SETTLED_M:
+                out[a] = left
 
 
 @inlined

@@ -40,7 +40,7 @@ def _row_of(tables: RadialTables, sigma: float) -> float:
 @inlined
 def _columns(tables: RadialTables, row: float) -> int:
     """How many columns matter there."""
-    return max(tables.reaches[int(row)], tables.reaches[int(row) + 1])
+    return int(max(tables.reaches[int(row)], tables.reaches[int(row) + 1]))
 
 
 @inlined
@@ -102,15 +102,14 @@ def fill_slices(
     """Fill slices first, first + step, ... Only cells near people are touched.
 
     `seekers` (S, 3) are places and greatest speeds of those who will look things up: what nobody
-    can reach by the time of a slice is left out. After slice `last_wider` deviations grow no more. `windows`
-    (K, P', 5) remembers what was written (layer, j0, j1, i0, i1) so that the next call clears no
-    more than that; rows with layer -1 are empty.
+    can reach by the time of a slice is left out. After slice `last_wider` deviations grow no
+    more. `windows` (K, P', 5) remembers what was written (layer, j0, j1, i0, i1) so that the next
+    call clears no more than that; rows with layer -1 are empty.
     """
     people = len(prediction.layers)
     columns = tables.near.shape[1]
     near = np.zeros(columns, dtype=np.float32)
     toward = np.zeros(columns, dtype=np.float32)
-    _, ny, nx = grid.clearance.shape
     cell = np.float32(grid.cell_m)
     per_column = np.float32(1.0 / tables.squared_step_m2)
     for k in range(first, len(fields), step):

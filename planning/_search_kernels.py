@@ -160,11 +160,23 @@ def risk_price(task: Task, seconds_ahead: float) -> float:
 
 
 @inlined
-def way_left(world: World, guide: Guide, task: Task, layer: int, x: float, y: float) -> float:
-    """Seconds to the goal at the preferred speed."""
+def way_left(
+    world: World, guide: Guide, task: Task, layer: int, x: float, y: float, speed: float
+) -> float:
+    """Seconds to the goal at the preferred speed, and what it costs to get to that speed.
+
+    Without the latter who is slow would seem as good as who has speed already. About to arrive
+    there is no need to be fast any more.
+    """
     if task.hold:
         return 0.0
-    return potential_at(world.grid, guide, layer, x, y) / task.speed_mps
+    left = potential_at(world.grid, guide, layer, x, y)
+    seconds = left / task.speed_mps
+    lacking = task.speed_mps - speed
+    if lacking > 0.0 and left > task.speed_mps:
+        lag = lacking / (2.0 * task.max_acceleration_mps2 * task.speed_mps)
+        seconds += lacking * (lag + task.turn_weight)
+    return seconds
 
 
 @inlined
@@ -253,7 +265,8 @@ def search(
     workspace.node_layer[0] = task.layer
     workspace.node_parent[0] = -1
     workspace.node_step[0] = 0
-    start = way_left(world, guide, task, task.layer, task.x, task.y)
+    speed = length(task.vx, task.vy)
+    start = way_left(world, guide, task, task.layer, task.x, task.y, speed)
     if not np.isfinite(start):
         return Outcome(NO_PATH, 0, np.inf)
     bonus = depth_bonus(bound - start, steps)
@@ -326,7 +339,8 @@ def search(
             dvy = uy - vy
             ramp = length(dvx, dvy) / a_max
             ex, ey, evx, evy = _on_ramp(x, y, vx, vy, dvx, dvy, ramp, step_s)
-            left = way_left(world, guide, task, layer, ex, ey)
+            end_speed = length(evx, evy) if accumulate else task.speed_mps
+            left = way_left(world, guide, task, layer, ex, ey, end_speed)
             cost = (
                 node[n, 4]
                 + time_cost(task, ex, ey, length(ex - x, ey - y) / step_s, step_s)

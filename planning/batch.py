@@ -12,14 +12,13 @@ from numpy.typing import NDArray
 from planning._crowd import Crowd, Decisions
 from planning._decide_kernels import continue_paths, decide
 from planning._prediction_kernels import Prediction
-from planning._reservation_kernels import index_paths
+from planning._reservation_kernels import index_paths, ways_left
 from planning._search_kernels import SUB, Workspace, World
 from planning._step_kernels import resolve
 from planning.grid import LayeredGrid
 from planning.risk import RiskField, RiskModel
 from planning.search import compass_moves, make_reservations, make_workspace
 from planning.spread import GAUSSIAN, Spread
-
 
 _NEIGHBOURHOOD_M = 4.0
 _WORTH_A_THREAD = 4
@@ -120,6 +119,10 @@ class Batch:
         new_positions = np.empty((actors, 2))
         if not actors:
             return decisions, new_positions
+        left_m = np.empty(actors)
+        ways_left(self.grid.arrays, guides, crowd, left_m)
+        order = np.lexsort((crowd.ranks, left_m))
+        crowd = crowd._replace(ranks=np.argsort(order))
         seekers = np.column_stack([crowd.positions, crowd.parameters["max_speed_mps"]])
         self.field.fill(
             prediction, lambda work: self._on_threads(work, threads), seekers, self.plan.slice_s
@@ -159,7 +162,7 @@ class Batch:
             self.grid.index,
             self.grid.bounds,
             crowd,
-            np.argsort(crowd.ranks, kind="stable"),
+            order,
             tick_s,
             decisions,
             new_positions,

@@ -46,10 +46,14 @@ class Ground:
     def needed(self) -> float:
         return min(self.task.radius_m, max(0.0, self.clearance((self.task.x, self.task.y)))) - 1e-6
 
-    def seconds_left(self, p: Point) -> float:
-        if self.task.hold:
+    def seconds_left(self, p: Point, speed: float = math.inf) -> float:
+        t = self.task
+        if t.hold:
             return 0.0
-        return float(self.potential.distance([p], [self.task.layer])[0]) / self.task.speed_mps
+        metres = float(self.potential.distance([p], [t.layer])[0])
+        lacking = max(0.0, t.speed_mps - speed) if metres > t.speed_mps else 0.0
+        accelerating = lacking**2 / (2.0 * t.max_acceleration_mps2 * t.speed_mps)
+        return metres / t.speed_mps + accelerating + t.turn_weight * lacking
 
     def risk(self, k: int, p: Point, v: Point) -> float:
         layers = [self.task.layer]
@@ -86,10 +90,11 @@ def search(
     nodes = [Node(0, start, (task.vx, task.vy), 0.0, 0.0, -1, start)]
     if math.isinf(ground.seconds_left(start)):
         return SearchStatus.NO_PATH, _trace(nodes, 0, steps), 0
-    queue = [(ground.seconds_left(start), 0)]
+    left = ground.seconds_left(start, math.hypot(task.vx, task.vy))
+    queue = [(left, 0)]
     bonus = DEPTH_BONUS_S
     if bound < math.inf:
-        bonus = max(bonus, LIKELY_PART * (bound - ground.seconds_left(start)) / steps)
+        bonus = max(bonus, LIKELY_PART * (bound - left) / steps)
     best: dict[tuple[int, tuple[int, int]], float] = {}
     furthest = (0, math.inf, 0)
     expansions = 0
@@ -170,8 +175,8 @@ def _move(
         + task.turn_weight * math.dist((ux, uy), node.velocity)
         + wall_cost(task, room, ground.step_s)
     )
-    child = Node(*made, cost, cost + left, n, tuple(middle))
-    return child, child.worth
+    worth = cost + ground.seconds_left(tuple(end), math.hypot(ux, uy))
+    return Node(*made, cost, worth, n, tuple(middle)), worth
 
 
 def _trace(nodes: list[Node], n: int, steps: int) -> NDArray[np.float64]:
@@ -195,7 +200,8 @@ def path_cost(ground: Ground, path: NDArray[np.float64]) -> tuple[float, float]:
         cost += risk_price(task, (k // 2) * ground.step_s) * ds * (risks[-1] + soft)
         cost += task.turn_weight * math.dist(velocities[k], velocities[k + 1])
         cost += wall_cost(task, ground.clearance(tuple(b)), ds)
-    return cost + ground.seconds_left(tuple(path[-1])), math.fsum(risks) / len(risks)
+    left = ground.seconds_left(tuple(path[-1]), math.hypot(*velocities[-1]))
+    return cost + left, math.fsum(risks) / len(risks)
 
 
 def update_path(ground: Ground, path: NDArray[np.float64], offsets: int, offset_m: float) -> int:
