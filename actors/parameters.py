@@ -60,7 +60,7 @@ class ActorParameters(BaseModel):
             200.0,
             "Seconds of detour that a second of certain contact is worth; higher keeps wider.",
         ),
-    ] = 8.0
+    ] = 9.5
     foresight_s: Annotated[
         float,
         _field(
