@@ -1,0 +1,82 @@
+"""The navigation mesh beside us: its units, and a real one where it is installed."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from benchmarks._detour import Detour, NavMeshSettings, missing, y_up, z_up
+
+SETTINGS = NavMeshSettings(radius_m=0.25, height_m=1.8, climb_m=0.6, cell_m=0.125)
+
+
+def floor(x0: float, x1: float, z: float) -> tuple[np.ndarray, np.ndarray]:
+    """A floor 4 m deep."""
+    corners = [[x0, 0, z], [x1, 0, z], [x1, 4, z], [x0, 4, z]]
+    return np.array(corners, dtype=float), np.array([[0, 1, 2], [0, 2, 3]])
+
+
+def together(*parts: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    starts = np.cumsum([0, *(len(vertices) for vertices, _ in parts)])
+    faces = [faces + start for (_, faces), start in zip(parts, starts[:-1], strict=True)]
+    return np.concatenate([vertices for vertices, _ in parts]), np.concatenate(faces)
+
+
+@pytest.fixture(scope="module")
+def detour() -> Iterator[Detour]:
+    if absent := missing():
+        pytest.skip(absent)
+    with Detour() as running:
+        yield running
+
+
+def test_lengths_become_cells_on_the_safe_side() -> None:
+    config = SETTINGS.config()
+    assert config["walkableRadius"] == 2
+    assert config["walkableHeight"] == 36
+    assert config["walkableClimb"] == 12
+    assert config["minRegionArea"] == 8
+    coarse = NavMeshSettings(0.25, 1.85, 0.55, cell_m=0.1, cell_height_m=0.1).config()
+    assert (coarse["walkableRadius"], coarse["walkableHeight"], coarse["walkableClimb"]) == (
+        3,
+        19,
+        5,
+    )
+
+
+def test_axes_turn_forth_and_back() -> None:
+    assert y_up(np.array([1.0, 2.0, 3.0])).tolist() == [1.0, 3.0, -2.0]
+    points = np.random.default_rng(0).random((5, 3))
+    assert np.array_equal(z_up(y_up(points)), points)
+
+
+def test_step_is_climbed_by_the_tall_only(detour: Detour) -> None:
+    vertices, faces = together(floor(0, 6, 0.0), floor(6, 12, 0.5), floor(14, 20, 0.0))
+    pairs = np.array([[[1, 2, 0], [11, 2, 0.5]], [[1, 2, 0], [19, 2, 0]], [[1, 2, 0], [1, 9, 0]]])
+    detour.build(vertices, faces, SETTINGS)
+    up, across, outside = detour.ways(pairs.astype(float))
+    assert up.found
+    assert up.length_m == pytest.approx(10.0, abs=0.2)
+    assert across.stands == (True, True)
+    assert not across.found
+    assert outside.stands == (True, False)
+    assert detour.stands(pairs[:, 1].astype(float)).tolist() == [True, True, False]
+    detour.build(vertices, faces, NavMeshSettings(0.2, 1.3, 0.3))
+    assert not detour.ways(pairs[:1].astype(float))[0].found
+
+
+def test_walkable_ground_lies_where_the_floor_is(detour: Detour) -> None:
+    made = detour.build(*floor(0, 6, 1.0), SETTINGS)
+    assert made["polygons"] >= 1
+    assert made["bytes"] > 0
+    triangles = detour.triangles()
+    assert triangles.shape[1:] == (3, 3)
+    assert 0.0 < triangles[..., 0].min() < triangles[..., 0].max() < 6.0
+    assert 0.0 < triangles[..., 1].min() < triangles[..., 1].max() < 4.0
+    assert triangles[..., 2] == pytest.approx(1.0, abs=0.1)
+
+
+def test_mesh_without_ground_is_told_of(detour: Detour) -> None:
+    vertices, faces = floor(0, 6, 0.0)
+    with pytest.raises(RuntimeError, match="navigation mesh says"):
+        detour.build(vertices, faces[:, ::-1], SETTINGS)
