@@ -5,15 +5,15 @@ from __future__ import annotations
 import json
 import math
 import subprocess
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final, Self
 
 import numpy as np
 
-from benchmarks._pairs import Answer, Floats, Ints
+from benchmarks._pairs import Answer, Bools, Floats, Ints
 
 RECAST: Final = Path(__file__).parent / "recast"
 REACH_M: Final = (0.5, 0.6)
@@ -48,9 +48,13 @@ class NavMeshSettings:
 
 
 class Detour:
-    """A Node.js process with one navigation mesh in it. Points are ours: z up, metres."""
+    """A Node.js process with one navigation mesh in it. Points are ours: z up, metres.
 
-    def __init__(self) -> None:
+    `made` tells the milliseconds it took to make, its polygons and its bytes.
+    """
+
+    def __init__(self, vertices: Floats, faces: Ints, settings: NavMeshSettings) -> None:
+        self._mesh, self._settings = (vertices, faces), settings
         self._node = subprocess.Popen(
             [_node(), "detour.mjs"],
             cwd=RECAST,
@@ -58,6 +62,16 @@ class Detour:
             stdout=subprocess.PIPE,
             text=True,
         )
+        geometry = {
+            "positions": y_up(vertices).ravel().tolist(),
+            "indices": faces.ravel().tolist(),
+            "config": settings.config(),
+        }
+        try:
+            self.made: dict[str, float] = self._ask({"build": geometry})
+        except RuntimeError:
+            self._node.communicate()
+            raise
 
     def __enter__(self) -> Self:
         return self
@@ -65,14 +79,13 @@ class Detour:
     def __exit__(self, *_: object) -> None:
         self._node.communicate()
 
-    def build(self, vertices: Floats, faces: Ints, settings: NavMeshSettings) -> dict[str, float]:
-        """Make the navigation mesh anew: milliseconds, polygons and bytes."""
-        positions, indices = y_up(vertices).ravel().tolist(), faces.ravel().tolist()
-        geometry = {"positions": positions, "indices": indices, "config": settings.config()}
-        made: dict[str, float] = self._ask({"build": geometry})
-        return made
+    def eased(self) -> Iterator[tuple[str, Detour]]:
+        """The same mesh with one rule eased at a time, in a process of its own."""
+        for rule, settings in _eased(self._settings):
+            with Detour(*self._mesh, settings) as other:
+                yield rule, other
 
-    def stands(self, points: Floats) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    def stands(self, points: Floats) -> Bools:
         """Whether there is a place to stand near each of the points (N, 3)."""
         places = self._ask({"stand": y_up(points).tolist(), "reach": _reach()})["places"]
         return np.array([place is not None for place in places])
@@ -120,6 +133,17 @@ def z_up(points: Sequence[Sequence[float]] | Floats) -> Floats:
     """Turn (..., 3) so that up is z; east stays x."""
     xyz = np.asarray(points, dtype=np.float64).reshape(-1, 3)
     return np.stack([xyz[:, 0], -xyz[:, 2], xyz[:, 1]], axis=-1)
+
+
+def _eased(settings: NavMeshSettings) -> Iterator[tuple[str, NavMeshSettings]]:
+    cell_m, cell_height_m = settings.cell_m, settings.cell_height_m
+    yield "small ground left out", replace(settings, smallest_side_m=0.0)
+    yield "headroom", replace(settings, height_m=settings.height_m - 0.1)
+    yield "step", replace(settings, climb_m=settings.climb_m + 0.05)
+    yield "slope", replace(settings, slope_deg=settings.slope_deg + 5.0)
+    yield "narrow by a cell", replace(settings, radius_m=settings.radius_m - cell_m)
+    yield "resolution", replace(settings, cell_m=cell_m / 2.0, cell_height_m=cell_height_m / 2.0)
+    yield "narrow", replace(settings, radius_m=0.0)
 
 
 def _reach() -> tuple[float, float, float]:

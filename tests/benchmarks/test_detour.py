@@ -1,6 +1,7 @@
 """The navigation mesh beside us: its units, and a real one where it is installed."""
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -22,11 +23,13 @@ def together(*parts: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndar
     return np.concatenate([vertices for vertices, _ in parts]), np.concatenate(faces)
 
 
-@pytest.fixture(scope="module")
-def detour() -> Iterator[Detour]:
+@contextmanager
+def detour(
+    mesh: tuple[np.ndarray, np.ndarray], settings: NavMeshSettings = SETTINGS
+) -> Iterator[Detour]:
     if absent := missing():
         pytest.skip(absent)
-    with Detour() as running:
+    with Detour(*mesh, settings) as running:
         yield running
 
 
@@ -50,33 +53,46 @@ def test_axes_turn_forth_and_back() -> None:
     assert np.array_equal(z_up(y_up(points)), points)
 
 
-def test_step_is_climbed_by_the_tall_only(detour: Detour) -> None:
-    vertices, faces = together(floor(0, 6, 0.0), floor(6, 12, 0.5), floor(14, 20, 0.0))
-    pairs = np.array([[[1, 2, 0], [11, 2, 0.5]], [[1, 2, 0], [19, 2, 0]], [[1, 2, 0], [1, 9, 0]]])
-    detour.build(vertices, faces, SETTINGS)
-    up, across, outside = detour.ways(pairs.astype(float))
-    assert up.found
-    assert up.length_m == pytest.approx(10.0, abs=0.2)
-    assert across.stands == (True, True)
-    assert not across.found
-    assert outside.stands == (True, False)
-    assert detour.stands(pairs[:, 1].astype(float)).tolist() == [True, True, False]
-    detour.build(vertices, faces, NavMeshSettings(0.2, 1.3, 0.3))
-    assert not detour.ways(pairs[:1].astype(float))[0].found
+def test_step_is_climbed_by_the_tall_only() -> None:
+    mesh = together(floor(0, 6, 0.0), floor(6, 12, 0.5), floor(14, 20, 0.0))
+    pairs = np.array(
+        [[[1, 2, 0], [11, 2, 0.5]], [[1, 2, 0], [19, 2, 0]], [[1, 2, 0], [1, 9, 0]]], dtype=float
+    )
+    with detour(mesh) as tall:
+        up, across, outside = tall.ways(pairs)
+        assert up.found
+        assert up.length_m == pytest.approx(10.0, abs=0.2)
+        assert across.stands == (True, True)
+        assert not across.found
+        assert outside.stands == (True, False)
+        assert tall.stands(pairs[:, 1]).tolist() == [True, True, False]
+    with detour(mesh, NavMeshSettings(0.2, 1.3, 0.3)) as short:
+        assert not short.ways(pairs[:1])[0].found
 
 
-def test_walkable_ground_lies_where_the_floor_is(detour: Detour) -> None:
-    made = detour.build(*floor(0, 6, 1.0), SETTINGS)
-    assert made["polygons"] >= 1
-    assert made["bytes"] > 0
-    triangles = detour.triangles()
+def test_rules_are_eased_one_at_a_time() -> None:
+    pair = np.array([[[1, 2, 0], [11, 2, 0.66]]])
+    with detour(together(floor(0, 6, 0.0), floor(6, 12, 0.66))) as refusing:
+        assert not refusing.ways(pair)[0].found
+        assert [rule for rule, other in refusing.eased() if other.ways(pair)[0].found] == ["step"]
+        assert not refusing.ways(pair)[0].found
+
+
+def test_walkable_ground_lies_where_the_floor_is() -> None:
+    with detour(floor(0, 6, 1.0)) as plain:
+        assert plain.made["polygons"] >= 1
+        assert plain.made["bytes"] > 0
+        triangles = plain.triangles()
     assert triangles.shape[1:] == (3, 3)
     assert 0.0 < triangles[..., 0].min() < triangles[..., 0].max() < 6.0
     assert 0.0 < triangles[..., 1].min() < triangles[..., 1].max() < 4.0
     assert triangles[..., 2] == pytest.approx(1.0, abs=0.1)
 
 
-def test_mesh_without_ground_is_told_of(detour: Detour) -> None:
+def test_mesh_without_ground_is_told_of() -> None:
     vertices, faces = floor(0, 6, 0.0)
-    with pytest.raises(RuntimeError, match="navigation mesh says"):
-        detour.build(vertices, faces[:, ::-1], SETTINGS)
+    with (
+        pytest.raises(RuntimeError, match="navigation mesh says"),
+        detour((vertices, faces[:, ::-1])),
+    ):
+        pass
