@@ -50,7 +50,7 @@ class NavMeshSettings:
 class Detour:
     """A Node.js process with one navigation mesh in it. Points are ours: z up, metres.
 
-    `made` tells the milliseconds it took to make, its polygons and its bytes.
+    `made` tells the milliseconds it took to make, its polygons and its size.
     """
 
     def __init__(self, vertices: Floats, faces: Ints, settings: NavMeshSettings) -> None:
@@ -68,10 +68,15 @@ class Detour:
             "config": settings.config(),
         }
         try:
-            self.made: dict[str, float] = self._ask({"build": geometry})
+            made = self._ask({"build": geometry})
         except RuntimeError:
             self._node.communicate()
             raise
+        self.made: dict[str, float] = {
+            "ms": made["ms"],
+            "polygons": made["polygons"],
+            "KiB": made["bytes"] / 1024.0,
+        }
 
     def __enter__(self) -> Self:
         return self

@@ -81,7 +81,7 @@ def test_rules_are_eased_one_at_a_time() -> None:
 def test_walkable_ground_lies_where_the_floor_is() -> None:
     with detour(floor(0, 6, 1.0)) as plain:
         assert plain.made["polygons"] >= 1
-        assert plain.made["bytes"] > 0
+        assert plain.made["KiB"] > 0
         triangles = plain.triangles()
     assert triangles.shape[1:] == (3, 3)
     assert 0.0 < triangles[..., 0].min() < triangles[..., 0].max() < 6.0
