@@ -10,7 +10,7 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from planning import LayeredGrid, Scene
+from planning import LayeredGrid, Place, Scene
 
 Goal = tuple[float, float, int]
 """x, y in metres and the layer."""
@@ -39,9 +39,12 @@ class View:
     def resolve(self, target: Target) -> Goal:
         """The point that a target means; KeyError for a place that the scene does not have."""
         if isinstance(target, str):
-            place = self.scene.place(target)
-            return place.position[0], place.position[1], place.layer
+            return self.point(self.scene.place(target))
         return target
+
+    def point(self, place: Place) -> Goal:
+        """Where a place is."""
+        return (*place.position, self.grid.layer_near(place.position, place.z_m))
 
 
 class Behaviour(ABC):
@@ -110,7 +113,7 @@ class Wander(Behaviour):
     def _choose(self, view: View) -> Goal | None:
         here = np.array(view.position)
         places = [
-            (*place.position, place.layer)
+            view.point(place)
             for place in view.scene.places
             if math.dist(place.position, view.position) > 1.0
         ]

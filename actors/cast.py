@@ -164,7 +164,8 @@ class Cast:
         potential.distance([(1.0, 1.0)], [0])
         navigator.close()
         for place in self.scene.places:
-            self.navigator.prepare_goal(place.position, place.layer, ActorParameters())
+            layer = self.grid.layer_near(place.position, place.z_m)
+            self.navigator.prepare_goal(place.position, layer, ActorParameters())
 
     def close(self) -> None:
         """End the planning threads."""

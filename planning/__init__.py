@@ -10,7 +10,7 @@ from planning.grid import LayeredGrid
 from planning.potential import Potential, Wave
 from planning.prediction import PredictionModel, TrackHistory
 from planning.risk import RiskField, RiskModel
-from planning.scene import Place, Polygon, Scene, Spawn, Wall
+from planning.scene import Door, Place, Polygon, Ramp, Scene, Spawn, Stairs, Wall
 from planning.search import SearchForm, SearchResult, SearchStatus, uncertain_bfp
 from planning.spread import GAUSSIAN, PEOPLE, Spread
 
@@ -21,6 +21,7 @@ __all__ = [
     "Batch",
     "Crowd",
     "Decisions",
+    "Door",
     "LayeredGrid",
     "Place",
     "PlanModel",
@@ -28,6 +29,7 @@ __all__ = [
     "Potential",
     "Prediction",
     "PredictionModel",
+    "Ramp",
     "RiskField",
     "RiskModel",
     "Scene",
@@ -36,6 +38,7 @@ __all__ = [
     "SearchStatus",
     "Spawn",
     "Spread",
+    "Stairs",
     "TrackHistory",
     "Wall",
     "Wave",

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections import OrderedDict
+from collections.abc import Callable
+from functools import cached_property
 from typing import Self
 
 import numpy as np
@@ -12,8 +14,10 @@ from numpy.typing import ArrayLike, NDArray
 from planning import _geometry_kernels as geometry
 from planning._geometry_kernels import SegmentIndex
 from planning._grid_kernels import GridArrays, cell_at, clearance_many
+from planning._layered import LayeredArrays, cell_near
 from planning.potential import Potential
 from planning.scene import Scene
+from planning.surfaces import Surfaces, surfaces_of_scene
 
 CLEARANCE_CAP_M = 3.0
 """Distances to obstacles are kept up to here; further is as good as far."""
@@ -62,9 +66,15 @@ class LayeredGrid:
     its C-obstacles. Memory is 4 bytes a cell and layer; each cached potential 12 bytes more.
     """
 
-    def __init__(self, arrays: GridArrays, index: SegmentIndex) -> None:
+    def __init__(
+        self,
+        arrays: GridArrays,
+        index: SegmentIndex,
+        derive_surfaces: Callable[[], Surfaces],
+    ) -> None:
         self.arrays = arrays
         self.index = index
+        self._derive_surfaces = derive_surfaces
         self._potentials: OrderedDict[tuple[float, float, int, float], Potential] = OrderedDict()
 
     @classmethod
@@ -82,14 +92,18 @@ class LayeredGrid:
         ny = max(1, math.ceil((y1 - y0) / cell_m - 1e-9))
         nx = max(1, math.ceil((x1 - x0) / cell_m - 1e-9))
         segments = scene_segments(scene)
-        clearance = np.full((scene.layers, ny, nx), CLEARANCE_CAP_M, dtype=np.float32)
+        clearance = np.full((1, ny, nx), CLEARANCE_CAP_M, dtype=np.float32)
         for field in clearance:
             geometry.lower_to_segments(field, segments, x0, y0, cell_m, CLEARANCE_CAP_M)
             for polygon in scene.polygons:
                 ring = np.array(polygon.points, dtype=np.float64)
                 geometry.negate_inside(field, ring, x0, y0, cell_m)
         arrays = GridArrays(clearance, float(x0), float(y0), float(x1), float(y1), float(cell_m))
-        return cls(arrays, _index(segments, scene.bounds))
+        return cls(
+            arrays,
+            _index(segments, scene.bounds),
+            lambda: surfaces_of_scene(scene, cell_m),
+        )
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
@@ -106,6 +120,21 @@ class LayeredGrid:
     def layers(self) -> int:
         """Number of layers."""
         return int(self.arrays.clearance.shape[0])
+
+    @cached_property
+    def surfaces(self) -> Surfaces:
+        """Where one can stand."""
+        return self._derive_surfaces()
+
+    @cached_property
+    def layered(self) -> LayeredArrays:
+        """The same as tiles of cells."""
+        return self.surfaces.layered()
+
+    def layer_near(self, position: tuple[float, float], z_m: float) -> int:
+        """The layer whose floor is nearest to a height there; 0 where nobody can stand."""
+        cell = cell_near(self.layered, position[0], position[1], z_m)
+        return int(self.layered.places[cell, 0]) if cell >= 0 else 0
 
     def cell_centre(self, position: tuple[float, float]) -> tuple[float, float]:
         """Centre of the cell that holds a position."""

@@ -22,6 +22,7 @@ Metres = Annotated[float, Field(allow_inf_nan=False, ge=-1e6, le=1e6)]
 Point = tuple[Metres, Metres]
 Bounds = tuple[Metres, Metres, Metres, Metres]
 Name = Annotated[str, StringConstraints(strip_whitespace=True, max_length=64)]
+RequiredName = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=64)]
 
 
 def _twice_area(points: tuple[Point, ...]) -> float:
@@ -76,8 +77,35 @@ class _Part(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
 
+class _Line(_Part):
+    start: Point
+    end: Point
+
+    @model_validator(mode="after")
+    def _has_length(self) -> Self:
+        if math.dist(self.start, self.end) < 1e-6:
+            raise ValueError(f"the {type(self).__name__.lower()} has no length")
+        return self
+
+
+class _Spot(_Part):
+    position: Point
+    z_m: Metres = 0.0
+    """Which floor: the one nearest in height."""
+
+
+class Ramp(_Line):
+    """How the top of a polygon rises evenly along a line, and no further before and behind it.
+
+    At its end the top is as high as the polygon.
+    """
+
+    start_height_m: Annotated[float, Field(ge=0.0, le=500.0)] = 0.0
+    """From the polygon's underside to its top at the start."""
+
+
 class Polygon(_Part):
-    """A prism over a polygon on the ground plane."""
+    """A prism over a polygon on the ground plane. Its top can be stood on if it carries."""
 
     points: Ring
     """Corners in order, metres. The ring closes itself; it must not cross itself."""
@@ -85,39 +113,90 @@ class Polygon(_Part):
     """From its underside to its top."""
     offset_m: Annotated[float, Field(ge=0.0, le=500.0)] = 0.0
     """Clearance of its underside above the ground."""
-    kind: Literal["building", "wall", "furniture", "plant", "water"] = "building"
-    """What it is drawn as. Every kind is an obstacle."""
+    ramp: Ramp | None = None
+    """How its top rises; level without."""
+    kind: Literal["building", "floor", "wall", "furniture", "plant", "water"] = "building"
+    """What it is drawn as. Plants and water carry nobody."""
     name: Name = ""
 
+    @property
+    def carries(self) -> bool:
+        """Whether one can stand on top."""
+        return self.kind not in ("plant", "water")
 
-class Wall(_Part):
+
+class Wall(_Line):
     """A thin vertical wall between two points."""
 
-    start: Point
-    end: Point
     height_m: Annotated[float, Field(gt=0.0, le=500.0)] = 2.5
+    offset_m: Annotated[float, Field(ge=0.0, le=500.0)] = 0.0
+    """Height of its foot above the ground."""
+
+
+class Door(_Line):
+    """A wall that is there only while it is closed."""
+
+    name: RequiredName
+    height_m: Annotated[float, Field(gt=0.0, le=500.0)] = 2.2
+    offset_m: Annotated[float, Field(ge=0.0, le=500.0)] = 0.0
+    """Height of its foot above the ground."""
+    open: bool = True
+    """How it is when the world starts."""
+
+
+class Stairs(_Line):
+    """A straight flight of even steps from the middle of its foot to that of its head.
+
+    It is solid below each tread.
+    """
+
+    width_m: Annotated[float, Field(gt=0.0, le=100.0)]
+    bottom_m: Annotated[float, Field(ge=0.0, le=500.0)] = 0.0
+    """Height of the floor that it rises from."""
+    top_m: Annotated[float, Field(gt=0.0, le=500.0)]
+    """Height of the last tread."""
+    steps: Annotated[int, Field(ge=1, le=500)]
 
     @model_validator(mode="after")
-    def _has_length(self) -> Self:
-        if math.dist(self.start, self.end) < 1e-6:
-            raise ValueError("the wall has no length")
+    def _rises(self) -> Self:
+        if self.top_m <= self.bottom_m:
+            raise ValueError("the stairs end no higher than they begin: top_m > bottom_m must hold")
         return self
 
+    def treads(self) -> tuple[Polygon, ...]:
+        """A prism for each step, from the floor that the flight rises from to its tread."""
+        (ax, ay), (bx, by) = self.start, self.end
+        half = 0.5 * self.width_m / math.dist(self.start, self.end)
+        sx, sy = half * (by - ay), half * (ax - bx)
 
-class Spawn(_Part):
+        def across(share: float) -> tuple[Point, Point]:
+            x, y = ax + share * (bx - ax), ay + share * (by - ay)
+            return (x + sx, y + sy), (x - sx, y - sy)
+
+        rise = (self.top_m - self.bottom_m) / self.steps
+        edges = [across(k / self.steps) for k in range(self.steps + 1)]
+        # Right by construction, so the checks of a polygon from a file are left out.
+        return tuple(
+            Polygon.model_construct(
+                points=(edges[k][0], edges[k + 1][0], edges[k + 1][1], edges[k][1]),
+                offset_m=self.bottom_m,
+                height_m=(k + 1) * rise,
+                kind="floor",
+            )
+            for k in range(self.steps)
+        )
+
+
+class Spawn(_Spot):
     """Where avatars come into the world: anywhere free within `radius_m` of the position."""
 
-    position: Point
-    layer: Annotated[int, Field(ge=0, le=255)] = 0
     radius_m: Annotated[float, Field(ge=0.0, le=50.0)] = 1.0
 
 
-class Place(_Part):
+class Place(_Spot):
     """A point with a name, for behaviours and for people to speak of."""
 
-    name: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=64)]
-    position: Point
-    layer: Annotated[int, Field(ge=0, le=255)] = 0
+    name: RequiredName
 
 
 class Scene(_Part):
@@ -133,13 +212,10 @@ class Scene(_Part):
     """x0, y0, x1, y1 in metres, x to the east and y to the north."""
     polygons: tuple[Polygon, ...] = ()
     walls: tuple[Wall, ...] = ()
+    stairs: tuple[Stairs, ...] = ()
+    doors: tuple[Door, ...] = ()
     spawns: tuple[Spawn, ...] = ()
     places: tuple[Place, ...] = ()
-
-    @property
-    def layers(self) -> int:
-        """Number of layers; a scene of polygons that stand on the ground has one."""
-        return 1
 
     @model_validator(mode="after")
     def _fits_together(self) -> Self:
@@ -149,19 +225,25 @@ class Scene(_Part):
         if max(x1 - x0, y1 - y0) > MAX_EXTENT_M:
             raise ValueError(f"bounds: a side may measure {MAX_EXTENT_M:g} m, got {self.bounds}")
         for group, points in (
-            ("spawns", [(s.position, s.layer) for s in self.spawns]),
-            ("places", [(p.position, p.layer) for p in self.places]),
+            ("spawns", [spawn.position for spawn in self.spawns]),
+            ("places", [place.position for place in self.places]),
         ):
-            for i, ((x, y), layer) in enumerate(points):
+            for i, (x, y) in enumerate(points):
                 if not (x0 <= x <= x1 and y0 <= y <= y1):
                     raise ValueError(f"{group}.{i}: ({x:g}, {y:g}) lies outside the bounds")
-                if layer >= self.layers:
-                    raise ValueError(f"{group}.{i}: there is no layer {layer}")
-        names = [place.name for place in self.places]
-        for i, name in enumerate(names):
-            if name in names[:i]:
-                raise ValueError(f"places.{i}: the name {name!r} is taken")
+        for group, names in (
+            ("doors", [door.name for door in self.doors]),
+            ("places", [place.name for place in self.places]),
+        ):
+            for i, name in enumerate(names):
+                if name in names[:i]:
+                    raise ValueError(f"{group}.{i}: the name {name!r} is taken")
         return self
+
+    def solids(self) -> tuple[Polygon, ...]:
+        """Everything that fills space: the polygons, and the treads of stairs."""
+        treads = [tread for flight in self.stairs for tread in flight.treads()]
+        return (*self.polygons, *treads)
 
     @classmethod
     def open_space(

@@ -46,4 +46,4 @@ class Spawning:
         distance_m = spawn.radius_m * np.sqrt(self._random.uniform())
         x = spawn.position[0] + distance_m * np.cos(angle)
         y = spawn.position[1] + distance_m * np.sin(angle)
-        return (float(x), float(y)), spawn.layer
+        return (float(x), float(y)), self._grid.layer_near(spawn.position, spawn.z_m)

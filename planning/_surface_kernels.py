@@ -1,0 +1,288 @@
+"""Standing surfaces on bare arrays: columns of solids, links between columns, grouping.
+
+Columns are numbered row by row. What belongs to a column is listed in CSR form: the entries of
+column c are starts[c] .. starts[c + 1], surfaces in order of height.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning._jit import inlined, kernel
+from planning._layered import LINK_COLUMNS, LINK_M, LINK_ROOM_M, LINK_ROWS
+
+LOWEST_M = 1.0
+"""A surface with less headroom than this is none: nobody is that small."""
+_SAME_M = 1e-4
+
+
+class SolidArrays(NamedTuple):
+    """K solids: prisms over rings of points, with a level or evenly rising top."""
+
+    points: NDArray[np.float64]
+    """(P, 2): corners, ring after ring, metres."""
+    starts: NDArray[np.int64]
+    """(K + 1,): where each ring begins."""
+    bottoms: NDArray[np.float64]
+    """(K,): height of the underside."""
+    tops: NDArray[np.float64]
+    """(K, 5): the top at (x, y) is a + b x + c y, no lower and no higher than the last two."""
+    standable: NDArray[np.bool_]
+    """(K,): whether the top carries anyone."""
+    groups: NDArray[np.int16]
+    """(K,): which offset, counted from the ground (0)."""
+
+
+class Raster(NamedTuple):
+    """The columns of a grid."""
+
+    x0: float
+    y0: float
+    cell_m: float
+    ny: int
+    nx: int
+
+
+@inlined
+def top_at(solids: SolidArrays, k: int, x: float, y: float) -> float:
+    """Height of a solid's top at a point."""
+    t = solids.tops
+    return float(min(t[k, 4], max(t[k, 3], t[k, 0] + t[k, 1] * x + t[k, 2] * y)))
+
+
+@kernel
+def _crossings(ring: NDArray[np.float64], y: float, out: NDArray[np.float64]) -> int:
+    """Where a closed ring crosses a height on the map, in ascending order; returns how many."""
+    count = 0
+    b = len(ring) - 1
+    for a in range(len(ring)):
+        if (ring[a, 1] > y) != (ring[b, 1] > y):
+            x = ring[a, 0] + (y - ring[a, 1]) * (ring[b, 0] - ring[a, 0]) / (
+                ring[b, 1] - ring[a, 1]
+            )
+            k = count
+            while k > 0 and out[k - 1] > x:
+                out[k] = out[k - 1]
+                k -= 1
+            out[k] = x
+            count += 1
+        b = a
+    return count
+
+
+@kernel
+def runs_of_solids(
+    raster: Raster, solids: SolidArrays, runs: NDArray[np.int32], counts: NDArray[np.int32]
+) -> int:
+    """Rows of cells whose centres lie in each solid.
+
+    `runs` (R, 4) receives solid, row, first and last column + 1, as far as it has room; `counts`
+    (columns + 1,) how many solids each column has, at its number + 1. Returns how many runs there
+    are: if more than R, nothing was counted in full and it has to be called again.
+    """
+    used = 0
+    for k in range(len(solids.bottoms)):
+        ring = solids.points[solids.starts[k] : solids.starts[k + 1]]
+        crossings = np.empty(len(ring))
+        j0 = max(0, int(np.ceil((ring[:, 1].min() - raster.y0) / raster.cell_m - 0.5)))
+        j1 = min(raster.ny, int(np.ceil((ring[:, 1].max() - raster.y0) / raster.cell_m - 0.5)))
+        for j in range(j0, j1):
+            found = _crossings(ring, raster.y0 + (j + 0.5) * raster.cell_m, crossings)
+            for c in range(0, found - 1, 2):
+                i0 = max(0, int(np.ceil((crossings[c] - raster.x0) / raster.cell_m - 0.5)))
+                i1 = int(np.ceil((crossings[c + 1] - raster.x0) / raster.cell_m - 0.5))
+                i1 = min(raster.nx, i1)
+                if i0 >= i1:
+                    continue
+                if used < len(runs):
+                    runs[used] = (k, j, i0, i1)
+                    for i in range(i0, i1):
+                        counts[j * raster.nx + i + 1] += 1
+                used += 1
+    return used
+
+
+@kernel
+def fill_columns(
+    nx: int,
+    runs: NDArray[np.int32],
+    starts: NDArray[np.int32],
+    members: NDArray[np.int32],
+) -> None:
+    """List the solids of each column: starts (columns + 1,) already summed -> members."""
+    ends = starts[:-1].copy()
+    for r in range(len(runs)):
+        k, j, i0, i1 = runs[r]
+        for c in range(j * nx + i0, j * nx + i1):
+            members[ends[c]] = k
+            ends[c] += 1
+
+
+@kernel
+def surfaces_of_columns(
+    raster: Raster,
+    solids: SolidArrays,
+    starts: NDArray[np.int32],
+    members: NDArray[np.int32],
+    ground: bool,
+    heights: tuple[NDArray[np.float32], NDArray[np.float32]],
+    groups: NDArray[np.int16],
+    surface_starts: NDArray[np.int32],
+) -> int:
+    """The standing surfaces of every column, lowest first -> floors, ceilings, groups.
+
+    Candidates are the ground, at height 0, and the tops that carry; what lies in another solid
+    or has too little headroom is dropped. Returns the number of surfaces.
+    """
+    floors, ceilings = heights
+    used = 0
+    for c in range(raster.ny * raster.nx):
+        surface_starts[c] = used
+        first, last = starts[c], starts[c + 1]
+        if first == last:
+            if ground:
+                floors[used] = 0.0
+                ceilings[used] = np.inf
+                groups[used] = 0
+                used += 1
+            continue
+        x = raster.x0 + (c % raster.nx + 0.5) * raster.cell_m
+        y = raster.y0 + (c // raster.nx + 0.5) * raster.cell_m
+        for candidate in range(first - 1 if ground else first, last):
+            z = 0.0
+            group = np.int16(0)
+            if candidate >= first:
+                k = members[candidate]
+                if not solids.standable[k]:
+                    continue
+                z = top_at(solids, k, x, y)
+                group = solids.groups[k]
+            ceiling = np.inf
+            for m in range(first, last):
+                if top_at(solids, members[m], x, y) > z + _SAME_M:
+                    ceiling = min(ceiling, solids.bottoms[members[m]])
+            if ceiling - z < LOWEST_M - _SAME_M:
+                continue
+            k = used
+            while k > surface_starts[c] and floors[k - 1] > z:
+                k -= 1
+            if k > surface_starts[c] and z - floors[k - 1] < _SAME_M:
+                continue
+            for m in range(used, k, -1):
+                floors[m] = floors[m - 1]
+                ceilings[m] = ceilings[m - 1]
+                groups[m] = groups[m - 1]
+            floors[k] = z
+            ceilings[k] = ceiling
+            groups[k] = group
+            used += 1
+    surface_starts[raster.ny * raster.nx] = used
+    return used
+
+
+@inlined
+def _match(
+    floors: NDArray[np.float32], ceilings: NDArray[np.float32], a: int, q0: int, q1: int
+) -> int:
+    """The surface q0 .. q1 that is nearest in height to a, of those that it could be linked to."""
+    best = -1
+    away = LINK_M + _SAME_M
+    for q in range(q0, q1):
+        d = abs(floors[q] - floors[a])
+        room = min(ceilings[q], ceilings[a]) - max(floors[q], floors[a])
+        if d < away and room >= LINK_ROOM_M:
+            away = d
+            best = q
+    return best
+
+
+@kernel
+def link_columns(
+    ny: int,
+    nx: int,
+    starts: NDArray[np.int32],
+    floors: NDArray[np.float32],
+    ceilings: NDArray[np.float32],
+    links: NDArray[np.int32],
+) -> None:
+    """Link surfaces of neighbouring columns that are nearest to one another -> links (S, 8)."""
+    for j in range(ny):
+        for i in range(nx):
+            c = j * nx + i
+            p0, p1 = starts[c], starts[c + 1]
+            if p0 == p1:
+                continue
+            for d in range(4):
+                jj, ii = j + LINK_ROWS[d], i + LINK_COLUMNS[d]
+                if jj == ny or ii < 0 or ii == nx:
+                    continue
+                q0, q1 = starts[jj * nx + ii], starts[jj * nx + ii + 1]
+                for a in range(p0, p1):
+                    b = _match(floors, ceilings, a, q0, q1)
+                    if b >= 0 and _match(floors, ceilings, b, p0, p1) == a:
+                        links[a, d] = b
+                        links[b, d + 4] = a
+
+
+@kernel
+def flood(links: NDArray[np.int32], seeds: NDArray[np.int64], reached: NDArray[np.bool_]) -> None:
+    """Mark every surface that links lead to from the seeds."""
+    stack = np.empty(len(links), dtype=np.int32)
+    size = 0
+    for seed in seeds:
+        if not reached[seed]:
+            reached[seed] = True
+            stack[size] = seed
+            size += 1
+    while size > 0:
+        size -= 1
+        s = stack[size]
+        for d in range(8):
+            t = links[s, d]
+            if t >= 0 and not reached[t]:
+                reached[t] = True
+                stack[size] = t
+                size += 1
+
+
+@kernel
+def keep_surfaces(
+    kept: NDArray[np.bool_], links: NDArray[np.int32], renumbered: NDArray[np.int32]
+) -> None:
+    """Renumber links (S, 8) in place, for rows that are kept; the others' rows mean nothing."""
+    count = 0
+    for s in range(len(kept)):
+        renumbered[s] = -1
+        if kept[s]:
+            renumbered[s] = count
+            count += 1
+    for s in range(len(kept)):
+        for d in range(8):
+            if links[s, d] >= 0:
+                links[s, d] = renumbered[links[s, d]]
+
+
+@kernel
+def relate_groups(
+    columns: NDArray[np.int32],
+    groups: NDArray[np.int16],
+    links: NDArray[np.int32],
+    overlap: NDArray[np.bool_],
+    joined: NDArray[np.bool_],
+) -> None:
+    """Which groups (G, G) lie above one another anywhere, and which are linked anywhere.
+
+    Surfaces of one column follow one another; `columns` (S,) are numbers of columns.
+    """
+    for s in range(len(groups)):
+        t = s + 1
+        while t < len(groups) and columns[t] == columns[s]:
+            overlap[groups[s], groups[t]] = True
+            overlap[groups[t], groups[s]] = True
+            t += 1
+        for d in range(4):
+            t = links[s, d]
+            if t >= 0 and groups[t] != groups[s]:
+                joined[groups[s], groups[t]] = True
+                joined[groups[t], groups[s]] = True
