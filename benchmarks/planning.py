@@ -1,12 +1,13 @@
 """What planning costs: a tick of many actors among many people, by stage.
 
     python -m benchmarks.planning                        100 actors among 0 and 100 people
-    python -m benchmarks.planning --actors 100 300 1000 --people 0 100 500 --ticks 60
+    python -m benchmarks.planning --actors 100 300 1000 --people 0 100 500 --cell-m 0.25 0.5
 
-The world is 64 m x 64 m in cells of 0.25 m, a tenth of it buildings. People walk from place to
+The world is 64 m x 64 m, a tenth of it buildings. People walk from place to
 place at 1.2 m/s; actors do the same, each to another place whenever it has arrived. Stages: `field`
 fills the risk field, `search` decides for every actor (search and perturbation), `resolve` takes
 the steps in order of priority, `rest` is all else: observing, prediction, and making states.
+At the end it says how medians grow with actors, people and cells, the others at their most.
 """
 
 import argparse
@@ -14,7 +15,7 @@ import resource
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from typing import Any
+from typing import Any, NamedTuple
 from unittest import mock
 
 import numpy as np
@@ -46,25 +47,41 @@ def main(argv: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.planning", description=__doc__)
     parser.add_argument("--actors", type=int, nargs="+", default=[100])
     parser.add_argument("--people", type=int, nargs="+", default=[0, 100])
+    parser.add_argument("--cell-m", type=float, nargs="+", default=[CELL_M], help="sizes of cells")
     parser.add_argument("--ticks", type=int, default=60, help="measured ticks of each case")
     parser.add_argument("--threads", type=int, default=2)
     options = parser.parse_args(argv)
 
-    begun = time.perf_counter()
-    scene, grid = make_world(np.random.default_rng(0))
-    full = float(np.mean(grid.arrays.clearance < 0.0))
-    print(f"{SIDE_M:g} m x {SIDE_M:g} m at {CELL_M} m, {len(scene.polygons)} buildings, {full:.0%}")
-    print(f"grid of the scene: {1e3 * (time.perf_counter() - begun):.0f} ms (kernels may compile)")
-    print_goals(grid)
-    for actors in options.actors:
-        for people in options.people:
-            print_case(grid, actors, people, options.ticks, options.threads)
+    scene = make_scene(np.random.default_rng(0))
+    medians: dict[Case, float] = {}
+    for cell_m in options.cell_m:
+        begun = time.perf_counter()
+        grid = LayeredGrid.from_scene(scene, cell_m)
+        took = 1e3 * (time.perf_counter() - begun)
+        full = float(np.mean(grid.arrays.clearance < 0.0))
+        size = f"{SIDE_M:g} m x {SIDE_M:g} m in cells of {cell_m:g} m"
+        print(f"{size}, {full:.0%} built: made in {took:.0f} ms")
+        print_goals(grid)
+        for actors in options.actors:
+            for people in options.people:
+                case = Case(actors, people, grid.arrays.clearance.size)
+                medians[case] = print_case(grid, case, options.ticks, options.threads)
+    print_growth(medians)
 
 
-def make_world(random: np.random.Generator) -> tuple[Scene, LayeredGrid]:
+class Case(NamedTuple):
+    """What a tick is measured with."""
+
+    actors: int
+    people: int
+    cells: int
+
+
+def make_scene(random: np.random.Generator) -> Scene:
     """Buildings at random places until they cover their part of the ground."""
     buildings: list[Polygon] = []
-    grid = LayeredGrid.from_scene(Scene.open_space((0.0, 0.0, SIDE_M, SIDE_M)), CELL_M)
+    scene = Scene.open_space((0.0, 0.0, SIDE_M, SIDE_M))
+    grid = LayeredGrid.from_scene(scene, CELL_M)
     while np.mean(grid.arrays.clearance < 0.0) < BUILT_PART:
         x, y = random.uniform(2.0, SIDE_M - 8.0, 2).tolist()
         w, d = random.uniform(2.0, 6.0, 2).tolist()
@@ -72,7 +89,7 @@ def make_world(random: np.random.Generator) -> tuple[Scene, LayeredGrid]:
         buildings.append(Polygon(points=ring, height_m=6.0))
         scene = Scene.open_space((0.0, 0.0, SIDE_M, SIDE_M), polygons=buildings)
         grid = LayeredGrid.from_scene(scene, CELL_M)
-    return scene, grid
+    return scene
 
 
 def free_points(grid: LayeredGrid, count: int, random: np.random.Generator) -> NDArray[np.float64]:
@@ -142,18 +159,18 @@ class Stopwatch:
         return timed
 
 
-def print_case(grid: LayeredGrid, actors: int, people: int, ticks: int, threads: int) -> None:
-    """Milliseconds a tick, median and 99th percentile, and how they are spent."""
+def print_case(grid: LayeredGrid, case: Case, ticks: int, threads: int) -> float:
+    """Milliseconds a tick, median and 99th percentile, and how they are spent; the median."""
     random = np.random.default_rng(1)
     places = free_points(grid, PLACES, random)
-    crowd = Crowd(grid, people, random)
+    crowd = Crowd(grid, case.people, random)
     nav = Navigator(grid, TICK_S, seed=0, plan=PlanModel(threads=threads))
 
     def another_place() -> tuple[float, float]:
         x, y = places[random.integers(PLACES)]
         return float(x), float(y)
 
-    for k, (x, y) in enumerate(free_points(grid, actors, random).tolist()):
+    for k, (x, y) in enumerate(free_points(grid, case.actors, random).tolist()):
         nav.add_actor(f"a{k}", (x, y), another_place())
 
     watch = Stopwatch()
@@ -177,22 +194,35 @@ def print_case(grid: LayeredGrid, actors: int, people: int, ticks: int, threads:
                 if state.reason is Reason.ARRIVED:
                     nav.set_goal(who, another_place())
     nav.close()
-    print_rows(actors, people, rows[WARM_UP_TICKS:])
+    return print_rows(case, rows[WARM_UP_TICKS:])
 
 
-def print_rows(actors: int, people: int, rows: list[dict[str, float]]) -> None:
-    """One line a case."""
+def print_rows(case: Case, rows: list[dict[str, float]]) -> float:
+    """One line a case; the median of the whole tick."""
     spent = {name: 1e3 * np.array([row[name] for row in rows]) for name in rows[0]}
     spent["search"] = spent["batch"] - spent["field"] - spent["resolve"]
     spent["rest"] = spent["all"] - spent["batch"]
     parts = "  ".join(
         f"{name} {np.median(spent[name]):.2f}" for name in ("field", "search", "resolve", "rest")
     )
+    median = float(np.median(spent["all"]))
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     print(
-        f"{actors:5d} actors {people:4d} people: p50 {np.median(spent['all']):7.2f} ms  "
+        f"{case.actors:5d} actors {case.people:4d} people: p50 {median:7.2f} ms  "
         f"p99 {np.percentile(spent['all'], 99):7.2f} ms  ({parts})  at most {memory:.0f} MB"
     )
+    return median
+
+
+def print_growth(medians: dict[Case, float]) -> None:
+    """How the median grows with one thing, all others at their most."""
+    most = Case(*(max(column) for column in zip(*medians, strict=True)))
+    for name in Case._fields:
+        line = sorted(c for c in medians if c == most._replace(**{name: getattr(c, name)}))
+        if len(line) > 1:
+            steps = ", ".join(f"{getattr(case, name)}: {medians[case]:.1f}" for case in line)
+            rest = ", ".join(f"{n} {v}" for n, v in most._asdict().items() if n != name)
+            print(f"ms by {name} ({rest}): {steps}")
 
 
 if __name__ == "__main__":
