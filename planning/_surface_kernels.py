@@ -34,6 +34,15 @@ class SolidArrays(NamedTuple):
     """(K,): which offset, counted from the ground (0)."""
 
 
+class SolidColumns(NamedTuple):
+    """The solids of a scene, and which of them each column goes through (CSR)."""
+
+    solids: SolidArrays
+    starts: NDArray[np.int32]
+    """(columns + 1,)"""
+    members: NDArray[np.int32]
+
+
 class Raster(NamedTuple):
     """The columns of a grid."""
 
@@ -122,9 +131,7 @@ def fill_columns(
 @kernel
 def surfaces_of_columns(
     raster: Raster,
-    solids: SolidArrays,
-    starts: NDArray[np.int32],
-    members: NDArray[np.int32],
+    columns: SolidColumns,
     ground: bool,
     heights: tuple[NDArray[np.float32], NDArray[np.float32]],
     groups: NDArray[np.int16],
@@ -136,6 +143,7 @@ def surfaces_of_columns(
     or has too little headroom is dropped. Returns the number of surfaces.
     """
     floors, ceilings = heights
+    solids, starts, members = columns
     used = 0
     for c in range(raster.ny * raster.nx):
         surface_starts[c] = used

@@ -15,9 +15,12 @@ from planning import _geometry_kernels as geometry
 from planning._geometry_kernels import SegmentIndex
 from planning._grid_kernels import GridArrays, cell_at, clearance_many
 from planning._layered import LayeredArrays, cell_near
+from planning.barriers import Barriers
+from planning.doors import Doors
+from planning.floors import Floors, floors_of_scene
 from planning.potential import Potential
 from planning.scene import Scene
-from planning.surfaces import Surfaces, surfaces_of_scene
+from planning.surfaces import Surfaces
 
 CLEARANCE_CAP_M = 3.0
 """Distances to obstacles are kept up to here; further is as good as far."""
@@ -70,11 +73,11 @@ class LayeredGrid:
         self,
         arrays: GridArrays,
         index: SegmentIndex,
-        derive_surfaces: Callable[[], Surfaces],
+        derive_floors: Callable[[], Floors],
     ) -> None:
         self.arrays = arrays
         self.index = index
-        self._derive_surfaces = derive_surfaces
+        self._derive_floors = derive_floors
         self._potentials: OrderedDict[tuple[float, float, int, float], Potential] = OrderedDict()
 
     @classmethod
@@ -102,7 +105,7 @@ class LayeredGrid:
         return cls(
             arrays,
             _index(segments, scene.bounds),
-            lambda: surfaces_of_scene(scene, cell_m),
+            lambda: floors_of_scene(scene, cell_m),
         )
 
     @property
@@ -122,14 +125,28 @@ class LayeredGrid:
         return int(self.arrays.clearance.shape[0])
 
     @cached_property
+    def _floors(self) -> Floors:
+        return self._derive_floors()
+
+    @property
     def surfaces(self) -> Surfaces:
         """Where one can stand."""
-        return self._derive_surfaces()
+        return self._floors.surfaces
 
-    @cached_property
+    @property
     def layered(self) -> LayeredArrays:
         """The same as tiles of cells."""
-        return self.surfaces.layered()
+        return self._floors.layered
+
+    @property
+    def barriers(self) -> Barriers:
+        """What stops bodies, doors included."""
+        return self._floors.barriers
+
+    @property
+    def doors(self) -> Doors:
+        """What of the barriers opens and closes."""
+        return self._floors.doors
 
     def layer_near(self, position: tuple[float, float], z_m: float) -> int:
         """The layer whose floor is nearest to a height there; 0 where nobody can stand."""

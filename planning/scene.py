@@ -119,6 +119,17 @@ class Polygon(_Part):
     """What it is drawn as. Plants and water carry nobody."""
     name: Name = ""
 
+    def top_at(self, x: float, y: float) -> float:
+        """Height of its top at a point, metres above the ground."""
+        top = self.offset_m + self.height_m
+        if self.ramp is None:
+            return top
+        (ax, ay), (bx, by) = self.ramp.start, self.ramp.end
+        along = (x - ax) * (bx - ax) + (y - ay) * (by - ay)
+        share = min(1.0, max(0.0, along / ((bx - ax) ** 2 + (by - ay) ** 2)))
+        low = self.offset_m + self.ramp.start_height_m
+        return low + share * (top - low)
+
     @property
     def carries(self) -> bool:
         """Whether one can stand on top."""

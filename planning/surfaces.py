@@ -12,6 +12,7 @@ from planning._layered import TILE, LayeredArrays, lay_cells, lay_pages, lay_pla
 from planning._surface_kernels import (
     Raster,
     SolidArrays,
+    SolidColumns,
     fill_columns,
     flood,
     keep_surfaces,
@@ -50,6 +51,11 @@ class Surfaces:
     cell_m: float
     ny: int
     nx: int
+
+    @property
+    def raster(self) -> Raster:
+        """The columns that the surfaces lie in."""
+        return Raster(self.bounds[0], self.bounds[1], self.cell_m, self.ny, self.nx)
 
     def __len__(self) -> int:
         return len(self.floors)
@@ -115,25 +121,12 @@ def surfaces_of_scene(scene: Scene, cell_m: float = 0.25) -> Surfaces:
         `cell_m` is not between 0.05 and 2 m; there are too many layers.
     """
     raster = raster_of(scene.bounds, cell_m)
-    solids = _solid_arrays(scene)
-    runs = np.empty((256, 4), dtype=np.int32)
-    while True:
-        starts = np.zeros(raster.ny * raster.nx + 1, dtype=np.int32)
-        used = runs_of_solids(raster, solids, runs, starts)
-        if used <= len(runs):
-            break
-        runs = np.empty((used, 4), dtype=np.int32)
-    np.cumsum(starts, out=starts)
-    members = np.empty(starts[-1], dtype=np.int32)
-    fill_columns(raster.nx, runs[:used], starts, members)
-
-    room = raster.ny * raster.nx + len(members)
+    columns = solid_columns(scene, raster)
+    room = raster.ny * raster.nx + len(columns.members)
     floors, ceilings = np.empty(room, dtype=np.float32), np.empty(room, dtype=np.float32)
     groups = np.empty(room, dtype=np.int16)
-    tops = np.empty_like(starts)
-    count = surfaces_of_columns(
-        raster, solids, starts, members, True, (floors, ceilings), groups, tops
-    )
+    tops = np.empty_like(columns.starts)
+    count = surfaces_of_columns(raster, columns, True, (floors, ceilings), groups, tops)
     floors, ceilings, groups = floors[:count].copy(), ceilings[:count].copy(), groups[:count]
     links = linked(raster, tops, floors, ceilings)
     numbers = np.repeat(np.arange(raster.ny * raster.nx, dtype=np.int32), np.diff(tops))
@@ -143,10 +136,10 @@ def surfaces_of_scene(scene: Scene, cell_m: float = 0.25) -> Surfaces:
         keep_surfaces(kept, links, np.empty(count, dtype=np.int32))
         floors, ceilings, links = floors[kept], ceilings[kept], links[kept]
         groups, numbers = groups[kept], numbers[kept]
-    rows, columns = np.divmod(numbers, np.int32(raster.nx))
+    rows, cols = np.divmod(numbers, np.int32(raster.nx))
     layers = _layers_of_groups(numbers, groups, links)
     return Surfaces(
-        rows, columns, floors, ceilings, layers, links, scene.bounds, cell_m, raster.ny, raster.nx
+        rows, cols, floors, ceilings, layers, links, scene.bounds, cell_m, raster.ny, raster.nx
     )
 
 
@@ -160,6 +153,22 @@ def linked(
     links = np.full((len(floors), 8), -1, dtype=np.int32)
     link_columns(raster.ny, raster.nx, starts, floors, ceilings, links)
     return links
+
+
+def solid_columns(scene: Scene, raster: Raster) -> SolidColumns:
+    """The solids of a scene, and which of them each column goes through."""
+    solids = _solid_arrays(scene)
+    runs = np.empty((256, 4), dtype=np.int32)
+    while True:
+        starts = np.zeros(raster.ny * raster.nx + 1, dtype=np.int32)
+        used = runs_of_solids(raster, solids, runs, starts)
+        if used <= len(runs):
+            break
+        runs = np.empty((used, 4), dtype=np.int32)
+    np.cumsum(starts, out=starts)
+    members = np.empty(starts[-1], dtype=np.int32)
+    fill_columns(raster.nx, runs[:used], starts, members)
+    return SolidColumns(solids, starts, members)
 
 
 def _solid_arrays(scene: Scene) -> SolidArrays:

@@ -1,0 +1,209 @@
+"""Ledges on bare arrays: where floors end or change their height between neighbouring cells.
+
+A ledge is written as a barrier: x0, y0, x1, y1, z0, z1, rise.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning._jit import inlined, kernel
+from planning._layered import LINK_COLUMNS, LINK_M, LINK_ROWS, LayeredArrays, cell_index
+from planning._surface_kernels import LOWEST_M, SolidArrays, SolidColumns, top_at
+
+LEAST_STEP_M = 0.05
+"""Floors that differ by less are as good as level."""
+_BELOW_M = 0.05
+_ABOVE_M = 2.0
+_HIGHEST_M = 2.5
+"""Ceilings further above a floor than this hinder nobody."""
+_SAME_M = 1e-4
+
+
+@inlined
+def _common_edge(
+    arrays: LayeredArrays, j: int, i: int, d: int
+) -> tuple[float, float, float, float]:
+    """The edge between a cell and one of its four neighbours, from south to north, west to east."""
+    dj, di = LINK_ROWS[d], LINK_COLUMNS[d]
+    x = arrays.x0 + (i + 0.5 + 0.5 * di) * arrays.cell_m
+    y = arrays.y0 + (j + 0.5 + 0.5 * dj) * arrays.cell_m
+    h = 0.5 * arrays.cell_m
+    return x - h * abs(dj), y - h * abs(di), x + h * abs(dj), y + h * abs(di)
+
+
+@kernel
+def _solid_stops(columns: SolidColumns, c: int, x: float, y: float, floor: float) -> bool:
+    """Whether the side of a solid in a column stops everybody who stands beside it."""
+    s = columns.solids
+    for m in range(columns.starts[c], columns.starts[c + 1]):
+        k = columns.members[m]
+        top = top_at(s, k, x, y) + (0.0 if s.standable[k] else LINK_M)
+        if s.bottoms[k] < floor + LOWEST_M and top > floor + LINK_M:
+            return True
+    return False
+
+
+@kernel
+def _carrier(columns: SolidColumns, c: int, x: float, y: float, floor: float) -> int:
+    """The solid whose top is that floor; -1: the ground."""
+    for m in range(columns.starts[c], columns.starts[c + 1]):
+        k = columns.members[m]
+        if columns.solids.standable[k] and abs(top_at(columns.solids, k, x, y) - floor) < _SAME_M:
+            return int(k)
+    return -1
+
+
+@kernel
+def _outline_between(
+    solids: SolidArrays, k: int, axis: int, line: tuple[float, float, float, float]
+) -> tuple[float, float, float, float]:
+    """Where a solid's outline really passes between two cells that differ along an axis.
+
+    `line` is their common edge; it is returned as it is where no outline is within half a cell.
+    """
+    across = 1 - axis
+    low, high = line[across], line[across + 2]
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    ring = solids.points[solids.starts[k] : solids.starts[k + 1]]
+    p = ring[len(ring) - 1]
+    for q in ring:
+        if (p[across] > middle) != (q[across] > middle):
+            slope = (q[axis] - p[axis]) / (q[across] - p[across])
+            if abs(p[axis] + (middle - p[across]) * slope - line[axis]) <= half + _SAME_M:
+                u = max(min(p[across], q[across]), low)
+                v = min(max(p[across], q[across]), high)
+                a = p[axis] + (u - p[across]) * slope
+                b = p[axis] + (v - p[across]) * slope
+                return (a, u, b, v) if axis == 0 else (u, a, v, b)
+        p = q
+    return line
+
+
+@kernel
+def _put(
+    out: NDArray[np.float64],
+    count: int,
+    line: tuple[float, float, float, float],
+    heights: tuple[float, float, float],
+) -> int:
+    """Write a barrier, or lengthen the last one if it goes straight on; returns the new count.
+
+    Barriers beyond the room in `out` are counted, not written.
+    """
+    x0, y0, x1, y1 = line
+    z0, z1, rise = heights
+    if 0 < count <= len(out):
+        last = out[count - 1]
+        ux, uy = last[2] - last[0], last[3] - last[1]
+        vx, vy = x1 - x0, y1 - y0
+        if (
+            abs(last[2] - x0) + abs(last[3] - y0) < 1e-9
+            and abs(last[4] - z0) + abs(last[5] - z1) < _SAME_M
+            and (last[6] == rise or abs(last[6] - rise) < _SAME_M)
+            and abs(ux * vy - uy * vx) < 1e-9
+            and ux * vx + uy * vy > 0.0
+        ):
+            last[2], last[3] = x1, y1
+            return count
+    if count < len(out):
+        out[count] = (x0, y0, x1, y1, z0, z1, rise)
+    return count + 1
+
+
+@inlined
+def _passes(arrays: LayeredArrays, cell: int, d: int) -> bool:
+    """Whether nothing is to be written at a side: level ground, or a ledge found from the west
+    or south already."""
+    other = arrays.links[cell, d]
+    return bool(
+        other >= 0 and (d >= 4 or abs(arrays.floors[other] - arrays.floors[cell]) < LEAST_STEP_M)
+    )
+
+
+@kernel
+def _ledge(
+    arrays: LayeredArrays, columns: SolidColumns, cell: int, d: int
+) -> tuple[bool, float, float]:
+    """Whether there is a ledge at a side of a cell that is not level, its floor and its rise."""
+    j = arrays.places[cell, 1] + LINK_ROWS[d]
+    i = arrays.places[cell, 2] + LINK_COLUMNS[d]
+    floor = float(arrays.floors[cell])
+    other = arrays.links[cell, d]
+    if other >= 0:
+        neighbour = float(arrays.floors[other])
+        return True, max(floor, neighbour), abs(floor - neighbour)
+    if not (0 <= j < arrays.ny and 0 <= i < arrays.nx):
+        return False, 0.0, 0.0
+    x = arrays.x0 + (i + 0.5) * arrays.cell_m
+    y = arrays.y0 + (j + 0.5) * arrays.cell_m
+    return not _solid_stops(columns, j * arrays.nx + i, x, y, floor), floor, np.inf
+
+
+@kernel
+def _ledge_line(
+    arrays: LayeredArrays, columns: SolidColumns, cell: int, d: int, floor: float
+) -> tuple[float, float, float, float]:
+    """Where a ledge is: on the outline of the solid that carries the floor, if one does."""
+    axis = 0 if d in (0, 4) else 1
+    j, i = arrays.places[cell, 1], arrays.places[cell, 2]
+    if abs(arrays.floors[cell] - floor) > _SAME_M:
+        j += LINK_ROWS[d]
+        i += LINK_COLUMNS[d]
+    x = arrays.x0 + (i + 0.5) * arrays.cell_m
+    y = arrays.y0 + (j + 0.5) * arrays.cell_m
+    line = _common_edge(arrays, arrays.places[cell, 1], arrays.places[cell, 2], d)
+    k = _carrier(columns, j * arrays.nx + i, x, y, floor)
+    return line if k < 0 else _outline_between(columns.solids, k, axis, line)
+
+
+@kernel
+def ledges_towards(
+    arrays: LayeredArrays, columns: SolidColumns, d: int, out: NDArray[np.float64]
+) -> int:
+    """Ledges of every cell towards its neighbour E (d = 0), N (2), W (4) or S (6).
+
+    Linked cells have one if their floors differ, with the difference as its rise. A cell whose
+    neighbour is not linked has one of its own that nobody passes, unless a solid stops everybody
+    there. Returns how many there are; those beyond the room in `out` are not written.
+    """
+    count = 0
+    by_column = d in (0, 4)
+    lines, length = (arrays.nx, arrays.ny) if by_column else (arrays.ny, arrays.nx)
+    for layer in range(arrays.pages.shape[0]):
+        for a in range(lines):
+            for b in range(length):
+                j, i = (b, a) if by_column else (a, b)
+                cell = cell_index(arrays, layer, j, i)
+                if cell < 0 or _passes(arrays, cell, d):
+                    continue
+                found, floor, rise = _ledge(arrays, columns, cell, d)
+                if found:
+                    line = _ledge_line(arrays, columns, cell, d, floor)
+                    count = _put(out, count, line, (floor - _BELOW_M, floor + _ABOVE_M, rise))
+    return count
+
+
+@kernel
+def lintels_between(arrays: LayeredArrays, d: int, out: NDArray[np.float64]) -> int:
+    """Where the ceiling changes its height between linked cells, low enough to hinder anyone.
+
+    For the neighbours to the east (d = 0) or north (d = 2), as `ledges_towards`. Only meshes need
+    them: of polygons the exact outline is known.
+    """
+    outer, inner = (arrays.nx, arrays.ny) if d == 0 else (arrays.ny, arrays.nx)
+    count = 0
+    for layer in range(arrays.pages.shape[0]):
+        for a in range(outer):
+            for b in range(inner):
+                j, i = (b, a) if d == 0 else (a, b)
+                cell = cell_index(arrays, layer, j, i)
+                other = arrays.links[cell, d] if cell >= 0 else -1
+                if other < 0:
+                    continue
+                low = min(arrays.ceilings[cell], arrays.ceilings[other])
+                high = max(arrays.ceilings[cell], arrays.ceilings[other])
+                floor = max(arrays.floors[cell], arrays.floors[other])
+                if high - low >= LEAST_STEP_M and low < floor + _HIGHEST_M:
+                    line = _common_edge(arrays, j, i, d)
+                    count = _put(out, count, line, (low, low + _ABOVE_M, np.inf))
+    return count
