@@ -17,6 +17,7 @@ from protocol import VERSION, ProtocolError, decode_server
 from protocol.messages import (
     Bye,
     ChatLine,
+    Doors,
     Enter,
     FromClient,
     Hello,
@@ -25,6 +26,7 @@ from protocol.messages import (
     Ping,
     Pong,
     ServerMessage,
+    SetDoor,
     Snapshot,
     WalkTo,
     Watch,
@@ -42,7 +44,7 @@ class Bot:
         self._connection = connection
         self._clock = ServerClock()
         self._clock.seed(welcome.server_time, time.monotonic())
-        self._view = View(welcome.id, welcome.name, welcome.radius)
+        self._view = View(welcome)
         self._mailbox = Mailbox()
         self._placed = asyncio.Event()
         self._sequence = 0
@@ -85,10 +87,10 @@ class Bot:
         return self.welcome.resume
 
     @property
-    def position(self) -> tuple[float, float, int]:
-        """Own place (x, y, layer) of the newest snapshot, metres."""
+    def position(self) -> tuple[float, float, float]:
+        """Own place (x, y, z) of the newest snapshot, metres; z is the height of the feet."""
         own = self._view.own
-        return own.x, own.y, own.layer
+        return own.x, own.y, own.z
 
     @property
     def avatar(self) -> Avatar:
@@ -99,6 +101,11 @@ class Bot:
     def others(self) -> Mapping[int, Avatar]:
         """Everyone else in view, by id; changes as snapshots come in."""
         return MappingProxyType(self._view.others)
+
+    @property
+    def doors(self) -> Mapping[str, bool]:
+        """Which doors stand open, by name; changes as they do."""
+        return MappingProxyType(self._view.doors)
 
     @property
     def tick(self) -> int:
@@ -135,10 +142,13 @@ class Bot:
         """Stand still."""
         return await self.move(self._view.own.heading, 0.0)
 
-    async def walk_to(self, x: float, y: float, layer: int = 0) -> int:
-        """Walk to a point (metres) around what stands in the way; returns as `move` does."""
+    async def walk_to(self, x: float, y: float, z: float = 0.0) -> int:
+        """Walk to a point (metres) around what stands in the way; returns as `move` does.
+
+        Of several floors at (x, y) the one nearest in height to z is meant.
+        """
         self._sequence += 1
-        await self._send(WalkTo(seq=self._sequence, x=x, y=y, layer=layer))
+        await self._send(WalkTo(seq=self._sequence, x=x, y=y, z=z))
         return self._sequence
 
     async def chat(self, text: str) -> None:
@@ -148,6 +158,10 @@ class Bot:
     async def watch(self, actor_id: int | None) -> None:
         """Ask for the plans of an actor in view, or for none any more."""
         await self._send(Watch(id=actor_id))
+
+    async def set_door(self, name: str, is_open: bool) -> None:
+        """Open or close a door of the scene; only for those who joined with the operator key."""
+        await self._send(SetDoor(name=name, open=is_open))
 
     async def ping(self) -> float:
         """Round trip to the server and back, seconds; sharpens `server_time`."""
@@ -222,6 +236,8 @@ class Bot:
                 self._view.enter(message)
             case Leave():
                 self._view.leave(message)
+            case Doors():
+                self._view.doors.update(message.doors)
             case Pong():
                 self._take_pong(message)
             case Bye():
@@ -243,8 +259,9 @@ class Bot:
 async def connect(
     url: str,
     name: str = "Bot",
-    at: tuple[float, float, int] | None = None,
+    at: tuple[float, float, float] | None = None,
     resume: str | None = None,
+    operator: str | None = None,
 ) -> AsyncIterator[Bot]:
     """Join the world at `url` and leave it at the end of the block.
 
@@ -252,8 +269,9 @@ async def connect(
     ----------
     url : like ws://localhost:8080; the path /ws is added when there is none
     name : what others read above the avatar, up to 32 characters
-    at : wished place (x, y, layer) of a new avatar, metres
+    at : wished place (x, y, z) of a new avatar, metres
     resume : token of an earlier connection whose avatar is to be taken up again
+    operator : the server's operator key; `welcome.operator` says whether it fits
 
     Raises
     ------
@@ -264,7 +282,7 @@ async def connect(
     Disconnected
         The connection ended before the avatar stood in the world.
     """
-    hello = Hello(name=name, version=VERSION, resume=resume, at=at)
+    hello = Hello(name=name, version=VERSION, resume=resume, at=at, operator=operator)
     bot = await Bot.join(url, hello)
     try:
         yield bot

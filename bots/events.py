@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from protocol.messages import Bye, Census, Chat, Enter, Error, Leave, Notice, Plan, Pong
-from protocol.snapshot import Floats, Records, headings_rad, positions_m, speeds_mps
+from protocol.messages import Bye, Census, Chat, Doors, Enter, Error, Leave, Notice, Plan, Pong
+from protocol.snapshot import Floats, Records, headings_rad, heights_m, positions_m, speeds_mps
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,6 +25,11 @@ class SnapshotEvent:
         return positions_m(self.records, self.origin)
 
     @property
+    def heights(self) -> Floats:
+        """Heights of the feet, float64 (N,), metres above the scene's ground."""
+        return heights_m(self.records)
+
+    @property
     def headings(self) -> Floats:
         """Headings, float64 (N,), radians from +x."""
         return headings_rad(self.records)
@@ -35,4 +40,4 @@ class SnapshotEvent:
         return speeds_mps(self.records)
 
 
-Event = SnapshotEvent | Enter | Leave | Chat | Notice | Error | Bye | Pong | Plan | Census
+Event = SnapshotEvent | Enter | Leave | Chat | Notice | Error | Bye | Pong | Plan | Census | Doors

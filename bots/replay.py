@@ -52,7 +52,7 @@ class ReplayJob:
         self, track: Track, pace: Pace, clock: ServerClock, tally: Tally, stop: asyncio.Event
     ) -> None:
         name = f"Pedestrian {track.id}"[:MAX_NAME_CHARS].strip()
-        hello = Hello(name=name, version=VERSION, at=(*track.at(track.start_s), 0))
+        hello = Hello(name=name, version=VERSION, at=(*track.at(track.start_s), 0.0))
 
         async def stay(client: Client) -> None:
             done = asyncio.Event()

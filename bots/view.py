@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from bots.events import SnapshotEvent
 from protocol import Kind, Reason
-from protocol.messages import Enter, Leave
+from protocol.messages import Enter, Leave, Welcome
 from protocol.snapshot import HEADING_RAD, POSITION_M, SPEED_MPS
 
 
@@ -18,6 +18,7 @@ class Avatar:
     layer: int
     x: float
     y: float
+    z: float
     heading: float
     speed: float
     reason: Reason
@@ -27,9 +28,22 @@ class Avatar:
 class View:
     """Everyone in view, by id; fed with messages in the order in which they came."""
 
-    def __init__(self, own_id: int, name: str, radius: float) -> None:
-        self._own_id = own_id
-        self.own = Avatar(own_id, Kind.PERSON, name, 0, 0.0, 0.0, 0.0, 0.0, Reason.NONE, radius)
+    def __init__(self, welcome: Welcome) -> None:
+        self._own_id = welcome.id
+        self.own = Avatar(
+            id=welcome.id,
+            kind=Kind.PERSON,
+            name=welcome.name,
+            layer=0,
+            x=0.0,
+            y=0.0,
+            z=0.0,
+            heading=0.0,
+            speed=0.0,
+            reason=Reason.NONE,
+            radius=welcome.radius,
+        )
+        self.doors = dict(welcome.doors)
         self.others: dict[int, Avatar] = {}
         self.tick = 0
         self.ack = 0
@@ -46,6 +60,7 @@ class View:
                     entity.layer,
                     entity.x,
                     entity.y,
+                    entity.z,
                     entity.heading,
                     0.0,
                     Reason.NONE,
@@ -60,7 +75,7 @@ class View:
         self.tick = event.tick
         self.ack = event.ack
         x0, y0 = event.origin
-        for entity_id, layer, reason, x, y, heading, speed in event.records.tolist():
+        for entity_id, layer, reason, x, y, z, heading, speed in event.records.tolist():
             if entity_id == self._own_id:
                 avatar = self.own
                 self.placed = True
@@ -72,5 +87,6 @@ class View:
             avatar.reason = Reason(reason)
             avatar.x = x0 + x * POSITION_M
             avatar.y = y0 + y * POSITION_M
+            avatar.z = z * POSITION_M
             avatar.heading = heading * HEADING_RAD
             avatar.speed = speed * SPEED_MPS

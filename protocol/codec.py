@@ -25,6 +25,7 @@ from protocol.messages import (
     Chat,
     ChatLine,
     ClientMessage,
+    Doors,
     Enter,
     Error,
     FromClient,
@@ -37,6 +38,7 @@ from protocol.messages import (
     Plan,
     Pong,
     ServerMessage,
+    SetDoor,
     Snapshot,
     WalkTo,
     Watch,
@@ -44,11 +46,11 @@ from protocol.messages import (
 )
 
 CLIENT_MESSAGES: Final[dict[int, type[FromClient]]] = {
-    int(model.code): model for model in (Hello, Move, WalkTo, ChatLine, Ping, Watch)
+    int(model.code): model for model in (Hello, Move, WalkTo, ChatLine, Ping, Watch, SetDoor)
 }
 SERVER_MESSAGES: Final[dict[int, type[FromServer]]] = {
     int(model.code): model
-    for model in (Welcome, Enter, Leave, Chat, Notice, Error, Bye, Pong, Plan, Census)
+    for model in (Welcome, Enter, Leave, Chat, Notice, Error, Bye, Pong, Plan, Census, Doors)
 }
 
 _SNAPSHOT_HEAD = struct.Struct(">BBBIBIBH")
@@ -80,7 +82,7 @@ def encode_snapshot(tick: int, ack: int, block: bytes | memoryview) -> bytes:
     Raises
     ------
     ValueError
-        The block is longer than 65 535 bytes (5461 records).
+        The block is longer than 65 535 bytes (4681 records).
     """
     if len(block) > MAX_BLOCK_BYTES:
         raise ValueError(f"a block holds at most {MAX_BLOCK_BYTES} bytes, not {len(block)}")

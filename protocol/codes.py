@@ -6,7 +6,7 @@ the browser and `tests/protocol/test_codes.py` holds the two together.
 
 from enum import IntEnum, StrEnum
 
-VERSION = 1
+VERSION = 2
 """Version of the protocol. Both sides must speak the same one."""
 
 MAX_CLIENT_FRAME_BYTES = 2048
@@ -15,6 +15,7 @@ MAX_CLIENT_FRAME_BYTES = 2048
 MAX_NAME_CHARS = 32
 MAX_CHAT_CHARS = 300
 MAX_TOKEN_CHARS = 64
+MAX_DOOR_CHARS = 64
 
 
 class ClientCode(IntEnum):
@@ -26,6 +27,7 @@ class ClientCode(IntEnum):
     CHAT = 4
     PING = 5
     WATCH = 6
+    SET_DOOR = 7
 
 
 class ServerCode(IntEnum):
@@ -42,6 +44,7 @@ class ServerCode(IntEnum):
     PONG = 72
     PLAN = 73
     CENSUS = 74
+    DOORS = 75
 
 
 class Kind(StrEnum):
@@ -75,6 +78,7 @@ class ErrorCode(StrEnum):
     FLOODING = "flooding"
     SERVER_FULL = "server_full"
     NO_PATH = "no_path"
+    FORBIDDEN = "forbidden"
 
 
 class CloseCode(IntEnum):

@@ -1,8 +1,8 @@
 """Every message, as a pydantic model. Field names are those on the wire.
 
 What comes from a client is checked strictly: unknown fields, wrong types, infinities and
-over-long texts are refused. Positions are metres on the ground plane with the layer they are
-on; directions are radians, counter-clockwise from +x; speeds are metres a second.
+over-long texts are refused. Positions are metres, z being the height of the feet above the
+scene's ground; directions are radians, counter-clockwise from +x; speeds are metres a second.
 """
 
 import unicodedata
@@ -12,6 +12,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstra
 
 from protocol.codes import (
     MAX_CHAT_CHARS,
+    MAX_DOOR_CHARS,
     MAX_NAME_CHARS,
     MAX_TOKEN_CHARS,
     ByeCode,
@@ -37,6 +38,7 @@ def _one_visible_line(text: str) -> str:
 
 Metres = Annotated[float, Field(ge=-100_000.0, le=100_000.0, allow_inf_nan=False)]
 Layer = Annotated[int, Field(ge=0, le=255)]
+Token = Annotated[str, Field(max_length=MAX_TOKEN_CHARS)]
 EntityId = Annotated[int, Field(ge=0, le=0xFFFF_FFFF)]
 Sequence = Annotated[int, Field(ge=0, le=0xFFFF_FFFF)]
 Name = Annotated[
@@ -74,9 +76,11 @@ class Hello(FromClient):
     code = ClientCode.HELLO
     name: Name
     version: Annotated[int, Field(ge=0, le=0xFFFF)]
-    resume: Annotated[str, Field(max_length=MAX_TOKEN_CHARS)] | None = None
-    at: Annotated[tuple[Metres, Metres, Layer], Field(strict=False)] | None = None
-    """Wished place (x, y, layer) of a new avatar; the server takes the nearest free one."""
+    resume: Token | None = None
+    at: Annotated[tuple[Metres, Metres, Metres], Field(strict=False)] | None = None
+    """Wished place (x, y, z) of a new avatar; the server takes the nearest free one."""
+    operator: Token | None = None
+    """The server's operator key; who does not know it comes in without an operator's rights."""
 
 
 class Move(FromClient):
@@ -89,13 +93,16 @@ class Move(FromClient):
 
 
 class WalkTo(FromClient):
-    """Walk to a point around what stands in the way; a later `move` cancels it."""
+    """Walk to a point around what stands in the way; a later `move` cancels it.
+
+    Of several floors at (x, y) the one nearest in height to z is meant.
+    """
 
     code = ClientCode.WALK_TO
     seq: Sequence
     x: Metres
     y: Metres
-    layer: Layer = 0
+    z: Metres = 0.0
 
 
 class ChatLine(FromClient):
@@ -119,7 +126,15 @@ class Watch(FromClient):
     id: EntityId | None
 
 
-ClientMessage = Hello | Move | WalkTo | ChatLine | Ping | Watch
+class SetDoor(FromClient):
+    """Open or close a door of the scene; for operators."""
+
+    code = ClientCode.SET_DOOR
+    name: Annotated[str, Field(min_length=1, max_length=MAX_DOOR_CHARS)]
+    open: bool
+
+
+ClientMessage = Hello | Move | WalkTo | ChatLine | Ping | Watch | SetDoor
 
 # --- server → client --------------------------------------------------------------------------
 
@@ -141,6 +156,10 @@ class Welcome(FromServer):
     max_speed: float
     origin: tuple[float, float]
     """World position (x, y) of the snapshot's coordinate (0, 0), metres."""
+    doors: dict[str, bool]
+    """Which of the scene's doors stand open now, by name."""
+    operator: bool
+    """Whether this client may do what only operators may."""
 
 
 class Entity(BaseModel):
@@ -153,6 +172,7 @@ class Entity(BaseModel):
     layer: Layer
     x: float
     y: float
+    z: float
     heading: float
     radius: float
 
@@ -223,12 +243,12 @@ class Pong(FromServer):
 
 
 class Circle(BaseModel):
-    """Where a person may be at one predicted time: centre, layer and radius (two sigma)."""
+    """Where a person may be at one predicted time: centre and radius (two sigma)."""
 
     model_config = ConfigDict(frozen=True, extra="ignore")
     x: float
     y: float
-    layer: Layer
+    z: float
     radius: float
 
 
@@ -240,9 +260,9 @@ class Plan(FromServer):
     id: EntityId
     reason: Reason
     behaviour: Literal["go_to", "wander", "patrol", "guide", "idle"]
-    goal: tuple[float, float, Layer] | None
-    path: list[tuple[float, float, Layer, float]]
-    """Points (x, y, layer, seconds from now)."""
+    goal: tuple[float, float, float] | None
+    path: list[tuple[float, float, float, float]]
+    """Points (x, y, z, seconds from now)."""
     people: list[list[Circle]]
     """For every person near the actor: the predicted circles, soonest first."""
 
@@ -255,6 +275,13 @@ class Census(FromServer):
     actors: int
 
 
+class Doors(FromServer):
+    """Doors that opened (true) or closed (false), by name."""
+
+    code = ServerCode.DOORS
+    doors: dict[str, bool]
+
+
 ServerMessage = (
-    Welcome | Enter | Leave | Snapshot | Chat | Notice | Error | Bye | Pong | Plan | Census
+    Welcome | Enter | Leave | Snapshot | Chat | Notice | Error | Bye | Pong | Plan | Census | Doors
 )

@@ -1,7 +1,7 @@
 """The packed block inside a snapshot: one fixed record an avatar, little-endian.
 
 Positions are whole centimetres from the `origin` that `welcome` gave, so a zone may measure up
-to 655 m a side. The height is not sent: it follows from the scene, the layer and the position.
+to 655 m a side. Heights are those of the feet, from the scene's ground.
 """
 
 import struct
@@ -16,11 +16,12 @@ RECORD = np.dtype(
         ("reason", "u1"),
         ("x", "<u2"),
         ("y", "<u2"),
+        ("z", "<i2"),
         ("heading", "u1"),
         ("speed", "u1"),
     ]
 )
-"""12 bytes. x, y in cm; heading in 1/256 turns from +x; speed in 2 cm/s, saturating at 5.1 m/s."""
+"""14 bytes. x, y, z in cm; heading in 1/256 turns from +x; speed in 2 cm/s, up to 5.1 m/s."""
 
 POSITION_M = 0.01
 HEADING_RAD = 2.0 * np.pi / 256.0
@@ -39,6 +40,7 @@ def pack_records(
     layers: npt.NDArray[np.integer],
     reasons: npt.NDArray[np.integer],
     positions_m: npt.NDArray[np.floating],
+    heights_m: npt.NDArray[np.floating],
     headings_rad: npt.NDArray[np.floating],
     speeds_mps: npt.NDArray[np.floating],
     origin_m: tuple[float, float],
@@ -49,6 +51,7 @@ def pack_records(
     ----------
     ids, layers, reasons : integer (N,)
     positions_m : float (N, 2), metres, world frame, finite
+    heights_m : float (N,), metres above the scene's ground, finite
     headings_rad : float (N,), radians from +x, any turn, finite
     speeds_mps : float (N,), metres a second, finite
     origin_m : the zone's lower corner
@@ -64,6 +67,7 @@ def pack_records(
     cm = np.clip(np.rint((positions_m - np.asarray(origin_m)) / POSITION_M), 0, 0xFFFF)
     records["x"] = cm[:, 0]
     records["y"] = cm[:, 1]
+    records["z"] = np.clip(np.rint(heights_m / POSITION_M), -0x8000, 0x7FFF)
     records["heading"] = np.rint(headings_rad / HEADING_RAD).astype(np.int64) & 0xFF
     records["speed"] = np.clip(np.rint(speeds_mps / SPEED_MPS), 0, 0xFF)
     return records
@@ -106,6 +110,12 @@ def positions_m(records: Records, origin_m: tuple[float, float]) -> Floats:
     positions: Floats = np.stack([records["x"], records["y"]], axis=1) * POSITION_M
     positions += origin_m
     return positions
+
+
+def heights_m(records: Records) -> Floats:
+    """Heights of the feet above the scene's ground, float64 (N,), metres."""
+    heights: Floats = records["z"] * POSITION_M
+    return heights
 
 
 def headings_rad(records: Records) -> Floats:

@@ -15,7 +15,9 @@ const view = new View(picture, byId("labels", HTMLElement), storedChoice(), calm
 const seats = new Seats(sessionStorage, localStorage, browserLocks(navigator.locks), Date.now);
 const socketUrl = new URL("ws", document.baseURI);
 socketUrl.protocol = socketUrl.protocol === "https:" ? "wss:" : "ws:";
-const session = new Session(view, seats, socketUrl.href);
+// The key stands behind the #, so that it is in no request and no server's log.
+const operator = new URLSearchParams(location.hash.slice(1)).get("operator");
+const session = new Session(view, seats, socketUrl.href, operator);
 
 listenToPointer(picture, {
   orbit: (yaw, pitch) => {

@@ -1,7 +1,7 @@
 """After a tick: everyone is told what they are to know, in one pass that never waits."""
 
 from collections.abc import Mapping
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -11,6 +11,8 @@ from protocol.messages import Census, Circle, Plan
 from server.net import frames
 from server.net.outbox import Outbox
 from server.net.session import Session
+from server.world.floors import heights_at
+from server.world.state import Floats
 from server.world.world import Sight, World
 
 PLANS_PER_SECOND: Final = 5
@@ -85,19 +87,23 @@ class Delivery:
 
 def plan(tick: int, actor: int, explanation: Explanation) -> Plan:
     """An actor's explanation as it goes over the wire, to the millimetre."""
-    path = np.round(explanation.path, 3).tolist()
+    goal = explanation.goal
     return Plan(
         tick=tick,
         id=actor,
         reason=Reason(explanation.reason),
         behaviour=explanation.behaviour,
-        goal=explanation.goal,
-        path=[(x, y, int(layer), seconds) for x, y, layer, seconds in path],
+        goal=None if goal is None else _with_heights(np.array([goal]))[0],
+        path=_with_heights(explanation.path),
         people=[
-            [
-                Circle(x=x, y=y, layer=int(layer), radius=radius)
-                for x, y, layer, radius in np.round(circles, 3).tolist()
-            ]
+            [Circle(x=x, y=y, z=z, radius=radius) for x, y, z, radius in _with_heights(circles)]
             for circles in explanation.people
         ],
     )
+
+
+def _with_heights(places: Floats) -> Any:
+    """Rows that begin with x, y and layer, with the floor's height in place of the layer."""
+    placed = places.copy()
+    placed[:, 2] = heights_at(places[:, :2], places[:, 2].astype(np.int64))
+    return np.round(placed, 3).tolist()

@@ -14,6 +14,7 @@ from server.net.guidance import Guidance
 from server.net.seats import Seat, Seats
 from server.net.session import Session
 from server.settings import ServerSettings
+from server.world.floors import point_at
 from server.world.inputs import Attach, Detach, Follow, Input, Join, Leave, Movement, Steer
 from server.world.ways import Way
 from server.world.world import Joined, World
@@ -90,7 +91,7 @@ class Hub:
         if isinstance(wish, Move):
             self._want(Steer(avatar_id, wish.seq, wish.direction, wish.speed))
             return
-        straight = self._world.straight_way(avatar_id, (wish.x, wish.y, wish.layer))
+        straight = self._world.straight_way(avatar_id, point_at(wish.x, wish.y, wish.z))
         if straight is not None:
             self._want(Follow(avatar_id, wish.seq, straight))
         else:
@@ -104,7 +105,7 @@ class Hub:
         if way is not None:
             self._want(Follow(avatar_id, wish.seq, way))
         else:
-            text = f"no way leads to ({wish.x:.2f}, {wish.y:.2f}) on layer {wish.layer}"
+            text = f"no way leads to ({wish.x:.2f}, {wish.y:.2f}, {wish.z:.2f})"
             session.tell(ProtocolError(ErrorCode.NO_PATH, text, None))
 
     def say(self, session: Session, text: str) -> None:
@@ -156,7 +157,8 @@ class Hub:
         inputs: list[Input] = [*self._comings]
         for ticket in list(self._joining)[:MAX_JOINS_PER_TICK]:
             hello = self._joining[ticket][1]
-            inputs.append(Join(ticket, hello.name, hello.at))
+            at = point_at(*hello.at) if hello.at else None
+            inputs.append(Join(ticket, hello.name, at))
         inputs.extend(self._movements.values())
         self._comings, self._movements = [], {}
         return inputs
@@ -212,6 +214,8 @@ class Hub:
             radius=world.rules.person_radius_m,
             max_speed=world.rules.person_max_speed_mps,
             origin=world.origin_m,
+            doors={},
+            operator=False,
         )
         session.outbox.welcome(self._welcomes.frame(welcome))
         self._metrics.joins.labels("resumed" if resumed else "new").inc()

@@ -17,6 +17,7 @@ from protocol.messages import (
     Move,
     Ping,
     Pong,
+    SetDoor,
     WalkTo,
     Watch,
 )
@@ -143,6 +144,9 @@ class Session:
                     self.tell(ProtocolError(ErrorCode.FLOODING, "you talk too fast", None))
             case Watch():
                 self._hub.watch(self, message.id)
+            case SetDoor():
+                text = "only operators open and close doors"
+                self.tell(ProtocolError(ErrorCode.FORBIDDEN, text, None))
             case Hello():
                 raise ProtocolError(ErrorCode.INVALID, "hello comes only once", CloseCode.INVALID)
 

@@ -23,7 +23,8 @@ class State:
     """Every avatar of the zone.
 
     Arrays are indexed by slot and have a fixed capacity. A slot is used again once its avatar
-    is gone; an id never is. `before` holds the positions of the tick before.
+    is gone; an id never is. `before` holds the positions of the tick before; `heights` are those of
+    the feet above the scene's ground, metres.
     """
 
     def __init__(self, capacity: int) -> None:
@@ -33,6 +34,7 @@ class State:
         self.kinds = np.zeros(capacity, dtype=np.uint8)
         self.layers = np.zeros(capacity, dtype=np.int64)
         self.positions = np.zeros((capacity, 2))
+        self.heights = np.zeros(capacity)
         self.before = np.zeros((capacity, 2))
         self.headings = np.zeros(capacity)
         self.speeds = np.zeros(capacity)
@@ -75,6 +77,7 @@ class State:
         self.kinds[slot] = kind
         self.layers[slot] = layer
         self.positions[slot] = self.before[slot] = position
+        self.heights[slot] = 0.0
         self.headings[slot] = self.speeds[slot] = 0.0
         self.reasons[slot] = 0
         self.radii[slot] = radius_m

@@ -78,6 +78,7 @@ class Views:
             state.layers[live],
             state.reasons[live],
             state.positions[live],
+            state.heights[live],
             state.headings[live],
             state.speeds[live],
             self._origin_m,
@@ -88,6 +89,6 @@ class Views:
         known[live] = _words(records)
 
 
-def _words(records: Records) -> npt.NDArray[np.uint32]:
-    """The same memory as 32-bit words, (N, 3)."""
-    return records.view(np.uint32).reshape(-1, RECORD_BYTES // 4)
+def _words(records: Records) -> npt.NDArray[np.uint16]:
+    """The same memory as 16-bit words, (N, 7)."""
+    return records.view(np.uint16).reshape(-1, RECORD_BYTES // 2)

@@ -134,6 +134,7 @@ class World:
             "layer": int(state.layers[slot]),
             "x": x,
             "y": y,
+            "z": float(state.heights[slot]),
             "heading": float(state.headings[slot]),
             "radius": float(state.radii[slot]),
         }

@@ -15,25 +15,29 @@ import numpy as np
 from websockets.asyncio.server import ServerConnection, serve
 from websockets.exceptions import ConnectionClosed
 
-from protocol import VERSION, Kind, decode_client, encode, encode_snapshot
+from protocol import VERSION, ErrorCode, Kind, decode_client, encode, encode_snapshot
 from protocol.messages import (
     Chat,
     ChatLine,
     ClientMessage,
+    Doors,
     Enter,
     Entity,
+    Error,
     FromServer,
     Hello,
     Leave,
     Move,
     Ping,
     Pong,
+    SetDoor,
     WalkTo,
     Welcome,
 )
 from protocol.snapshot import pack_records
 
 ORIGIN = (-50.0, -50.0)
+OPERATOR = "key"
 SCENE: dict[str, Any] = {"name": "scripted", "bounds": [-50.0, -50.0, 50.0, 50.0]}
 
 
@@ -46,6 +50,7 @@ class Person:
     hello: Hello
     position: tuple[float, float]
     velocity: tuple[float, float] = (0.0, 0.0)
+    height: float = 0.0
     ack: int = 0
     heard: list[ClientMessage] = field(default_factory=list)
 
@@ -62,6 +67,7 @@ class ScriptedServer:
         self.all_people: list[Person] = []
         self.on_hello: Callable[[Hello], FromServer | None] = lambda hello: None
         self.silent = False
+        self.doors = {"gate": True}
         self.port = 0
         self._loop_start_s = 0.0
         self._late: list[tuple[int, Person, ClientMessage]] = []
@@ -118,6 +124,8 @@ class ScriptedServer:
             radius=0.25,
             max_speed=self.max_speed,
             origin=ORIGIN,
+            doors=self.doors,
+            operator=person.hello.operator == OPERATOR,
         )
 
     def _enter(self, people: list[Person]) -> Enter:
@@ -131,6 +139,7 @@ class ScriptedServer:
                     layer=0,
                     x=person.position[0],
                     y=person.position[1],
+                    z=person.height,
                     heading=0.0,
                     radius=0.25,
                 )
@@ -147,8 +156,17 @@ class ScriptedServer:
                 await person.socket.send(encode(Pong(nonce=message.nonce, server_time=self.time_s)))
             case ChatLine():
                 line = Chat(id=person.id, name=person.hello.name, text=message.text)
-                for other in self.people.values():
-                    await other.socket.send(encode(line))
+                await self._tell_all(line)
+            case SetDoor() if person.hello.operator == OPERATOR:
+                self.doors[message.name] = message.open
+                await self._tell_all(Doors(doors={message.name: message.open}))
+            case SetDoor():
+                error = Error(error=ErrorCode.FORBIDDEN, text="only operators")
+                await person.socket.send(encode(error))
+
+    async def _tell_all(self, message: FromServer) -> None:
+        for person in self.people.values():
+            await person.socket.send(encode(message))
 
     async def run_ticks(self) -> None:
         """Tick on schedule for ever."""
@@ -173,6 +191,7 @@ class ScriptedServer:
             person.ack = message.seq
             if isinstance(message, WalkTo):
                 person.position = (message.x, message.y)
+                person.height = message.z
                 person.velocity = (0.0, 0.0)
                 continue
             speed = min(message.speed, self.max_speed)
@@ -194,6 +213,7 @@ class ScriptedServer:
             none,
             none,
             np.array([each.position for each in people]),
+            np.array([each.height for each in people]),
             np.arctan2(velocities[:, 1], velocities[:, 0]),
             np.hypot(velocities[:, 0], velocities[:, 1]),
             ORIGIN,

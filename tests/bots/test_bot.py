@@ -10,7 +10,7 @@ import bots
 from bots.events import SnapshotEvent
 from protocol import ByeCode, CloseCode, ErrorCode, encode
 from protocol.messages import Bye, Chat, Enter, Error, FromServer, Hello, Move, Notice, Watch
-from tests.bots.scripted import scripted_server, until
+from tests.bots.scripted import OPERATOR, scripted_server, until
 
 
 async def test_a_bot_stands_where_it_wished_to() -> None:
@@ -32,8 +32,25 @@ async def test_it_walks_as_it_is_told_and_knows_when_it_was_heeded() -> None:
         stopped = await bot.stop()
         await until(lambda: bot.acknowledged >= stopped)
         assert bot.avatar.speed == 0.0
-        await bot.walk_to(7.0, 8.0)
-        await until(lambda: bot.position[:2] == pytest.approx((7.0, 8.0), abs=0.01))
+        await bot.walk_to(7.0, 8.0, 3.5)
+        await until(lambda: bot.position == pytest.approx((7.0, 8.0, 3.5), abs=0.01))
+
+
+async def test_an_operator_closes_a_door_and_everyone_learns_of_it() -> None:
+    async with (
+        scripted_server() as server,
+        bots.connect(server.url, name="Ann") as ann,
+        bots.connect(server.url, name="Olga", operator=OPERATOR) as olga,
+    ):
+        assert (ann.welcome.operator, olga.welcome.operator) == (False, True)
+        assert ann.doors == {"gate": True}
+        await ann.set_door("gate", False)
+        async for event in ann.events():
+            if isinstance(event, Error):
+                assert event.error is ErrorCode.FORBIDDEN
+                break
+        await olga.set_door("gate", False)
+        await until(lambda: ann.doors == olga.doors == {"gate": False})
 
 
 async def test_it_sees_others_come_walk_and_go() -> None:

@@ -29,6 +29,7 @@ from protocol.messages import (
     Chat,
     ChatLine,
     Circle,
+    Doors,
     Enter,
     Entity,
     Error,
@@ -41,6 +42,7 @@ from protocol.messages import (
     Ping,
     Plan,
     Pong,
+    SetDoor,
     WalkTo,
     Watch,
     Welcome,
@@ -53,13 +55,14 @@ ORIGIN: Final = (-12.5, 3.25)
 
 FROM_CLIENT: Final[tuple[FromClient, ...]] = (
     Hello(name="Ann", version=VERSION, resume=None, at=None),
-    Hello(name="Zoë ✿", version=VERSION, resume="token", at=None),
+    Hello(name="Zoë ✿", version=VERSION, resume="token", at=None, operator="key"),
     Move(seq=1, direction=-2.5, speed=1.6),
-    WalkTo(seq=4294967295, x=-3.25, y=40.5, layer=2),
+    WalkTo(seq=4294967295, x=-3.25, y=40.5, z=3.5),
     ChatLine(text="Good morning!"),
     Ping(nonce=70000),
     Watch(id=17),
     Watch(id=None),
+    SetDoor(name="Gate", open=False),
 )
 
 FROM_SERVER: Final[tuple[FromServer, ...]] = (
@@ -76,12 +79,22 @@ FROM_SERVER: Final[tuple[FromServer, ...]] = (
         radius=0.25,
         max_speed=2.5,
         origin=ORIGIN,
+        doors={"Gate": True},
+        operator=False,
     ),
     Enter(
         tick=1201,
         entities=[
             Entity(
-                id=8, kind=Kind.ACTOR, name="A1", layer=1, x=1.5, y=-2.5, heading=0.5, radius=0.25
+                id=8,
+                kind=Kind.ACTOR,
+                name="A1",
+                layer=1,
+                x=1.5,
+                y=-2.5,
+                z=3.5,
+                heading=0.5,
+                radius=0.25,
             )
         ],
     ),
@@ -96,11 +109,12 @@ FROM_SERVER: Final[tuple[FromServer, ...]] = (
         id=8,
         reason=Reason.GIVING_WAY,
         behaviour="wander",
-        goal=(4.5, 5.5, 0),
-        path=[(1.5, -2.5, 0, 0.0), (2.5, -1.5, 0, 1.25)],
-        people=[[Circle(x=2.0, y=3.0, layer=0, radius=0.75)]],
+        goal=(4.5, 5.5, 0.0),
+        path=[(1.5, -2.5, 3.5, 0.0), (2.5, -1.5, 3.25, 1.25)],
+        people=[[Circle(x=2.0, y=3.0, z=3.5, radius=0.75)]],
     ),
     Census(people=3, actors=10),
+    Doors(doors={"Gate": False}),
 )
 
 
@@ -143,6 +157,7 @@ def _snapshot() -> dict[str, Any]:
         layers=np.array([0, 3]),
         reasons=np.array([Reason.NONE, Reason.WAITING]),
         positions_m=np.array([[-12.5, 3.25], [10.01, 20.5]]),
+        heights_m=np.array([-0.25, 3.5]),
         headings_rad=np.array([0.0, -np.pi / 2]),
         speeds_mps=np.array([0.0, 1.6]),
         origin_m=ORIGIN,
@@ -159,6 +174,7 @@ def _snapshot() -> dict[str, Any]:
                 "reason": 0,
                 "x": -12.5,
                 "y": 3.25,
+                "z": -0.25,
                 "heading": 0.0,
                 "speed": 0.0,
             },
@@ -168,6 +184,7 @@ def _snapshot() -> dict[str, Any]:
                 "reason": 3,
                 "x": 10.01,
                 "y": 20.5,
+                "z": 3.5,
                 "heading": 1.5 * np.pi,
                 "speed": 1.6,
             },

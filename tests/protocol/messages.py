@@ -5,13 +5,14 @@ from typing import Any
 from hypothesis import strategies as st
 
 from protocol import ByeCode, ErrorCode, Kind, Reason
-from protocol.codes import MAX_CHAT_CHARS, MAX_NAME_CHARS, MAX_TOKEN_CHARS
+from protocol.codes import MAX_CHAT_CHARS, MAX_DOOR_CHARS, MAX_NAME_CHARS, MAX_TOKEN_CHARS
 from protocol.messages import (
     Bye,
     Census,
     Chat,
     ChatLine,
     Circle,
+    Doors,
     Enter,
     Entity,
     Error,
@@ -24,6 +25,7 @@ from protocol.messages import (
     Ping,
     Plan,
     Pong,
+    SetDoor,
     Snapshot,
     WalkTo,
     Watch,
@@ -36,6 +38,8 @@ metres = st.floats(-100_000, 100_000, allow_nan=False)
 floats = st.floats(allow_nan=False, allow_infinity=False)
 texts = st.text(st.characters(codec="utf-8"), max_size=80)
 bounds = st.tuples(floats, floats)
+tokens = st.text(st.characters(codec="utf-8"), max_size=MAX_TOKEN_CHARS)
+doors = st.dictionaries(texts, st.booleans(), max_size=3)
 
 
 def lines(max_chars: int) -> st.SearchStrategy[str]:
@@ -53,14 +57,20 @@ client_messages: st.SearchStrategy[FromClient] = st.one_of(
         Hello,
         name=lines(MAX_NAME_CHARS),
         version=st.integers(0, 0xFFFF),
-        resume=st.none() | st.text(st.characters(codec="utf-8"), max_size=MAX_TOKEN_CHARS),
-        at=st.none() | st.tuples(metres, metres, layers),
+        resume=st.none() | tokens,
+        at=st.none() | st.tuples(metres, metres, metres),
+        operator=st.none() | tokens,
     ),
     st.builds(Move, seq=u32, direction=st.floats(-1000, 1000), speed=st.floats(0, 100)),
-    st.builds(WalkTo, seq=u32, x=metres, y=metres, layer=layers),
+    st.builds(WalkTo, seq=u32, x=metres, y=metres, z=metres),
     st.builds(ChatLine, text=lines(MAX_CHAT_CHARS)),
     st.builds(Ping, nonce=u32),
     st.builds(Watch, id=st.none() | u32),
+    st.builds(
+        SetDoor,
+        name=st.text(st.characters(codec="utf-8"), min_size=1, max_size=MAX_DOOR_CHARS),
+        open=st.booleans(),
+    ),
 )
 
 entities = st.builds(
@@ -71,10 +81,11 @@ entities = st.builds(
     layer=layers,
     x=floats,
     y=floats,
+    z=floats,
     heading=floats,
     radius=floats,
 )
-circles = st.builds(Circle, x=floats, y=floats, layer=layers, radius=floats)
+circles = st.builds(Circle, x=floats, y=floats, z=floats, radius=floats)
 
 server_messages: st.SearchStrategy[FromServer] = st.one_of(
     st.builds(
@@ -91,6 +102,8 @@ server_messages: st.SearchStrategy[FromServer] = st.one_of(
         radius=floats,
         max_speed=floats,
         origin=bounds,
+        doors=doors,
+        operator=st.booleans(),
     ),
     st.builds(Enter, tick=u32, entities=st.lists(entities, max_size=4)),
     st.builds(Leave, tick=u32, ids=st.lists(u32)),
@@ -106,9 +119,10 @@ server_messages: st.SearchStrategy[FromServer] = st.one_of(
         id=u32,
         reason=st.sampled_from(Reason),
         behaviour=st.sampled_from(["go_to", "wander", "patrol", "guide", "idle"]),
-        goal=st.none() | st.tuples(floats, floats, layers),
-        path=st.lists(st.tuples(floats, floats, layers, floats), max_size=4),
+        goal=st.none() | st.tuples(floats, floats, floats),
+        path=st.lists(st.tuples(floats, floats, floats, floats), max_size=4),
         people=st.lists(st.lists(circles, max_size=3), max_size=3),
     ),
     st.builds(Census, people=u32, actors=u32),
+    st.builds(Doors, doors=doors),
 )

@@ -18,6 +18,7 @@ from protocol.snapshot import (
     MAX_EXTENT_M,
     RECORD,
     headings_rad,
+    heights_m,
     positions_m,
     speeds_mps,
     unpack_block,
@@ -150,7 +151,8 @@ def test_limits() -> None:
         "A frame from a client": f"{table.MAX_CLIENT_FRAME_BYTES} bytes",
         "Name": f"{table.MAX_NAME_CHARS} characters",
         "Line of chat": f"{table.MAX_CHAT_CHARS} characters",
-        "Resume token": f"{table.MAX_TOKEN_CHARS} characters",
+        "Resume token, operator key": f"{table.MAX_TOKEN_CHARS} characters",
+        "Name of a door": f"{table.MAX_DOOR_CHARS} characters",
         "A snapshot's block": f"{MAX_BLOCK_BYTES} bytes",
         "Extent of a zone": f"{MAX_EXTENT_M:g} m",
     }
@@ -186,10 +188,11 @@ def test_the_worked_example() -> None:
     records = unpack_block(snapshot.block)
     positions = positions_m(records, (-10.0, -5.0))
     turns, speeds = headings_rad(records) / 6.283185307179586, speeds_mps(records)
+    heights = heights_m(records)
     shown = [
         [
             *(str(records[name][row]) for name in ("id", "layer", "reason")),
-            *(f"{value:.2f}" for value in (*positions[row], turns[row], speeds[row])),
+            *(f"{value:.2f}" for value in (*positions[row], heights[row], turns[row], speeds[row])),
         ]
         for row in range(len(records))
     ]

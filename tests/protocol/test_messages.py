@@ -6,7 +6,17 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from protocol.messages import ChatLine, FromClient, Hello, Move, Ping, Pong, WalkTo, Watch
+from protocol.messages import (
+    ChatLine,
+    FromClient,
+    Hello,
+    Move,
+    Ping,
+    Pong,
+    SetDoor,
+    WalkTo,
+    Watch,
+)
 
 
 @pytest.mark.parametrize(
@@ -23,7 +33,8 @@ from protocol.messages import ChatLine, FromClient, Hello, Move, Ping, Pong, Wal
         (Hello, {"name": "Ann", "version": 1, "resume": "x" * 65}, "resume"),
         (Hello, {"name": "Ann", "version": 1, "at": [1.0, 2.0]}, "at"),
         (Hello, {"name": "Ann", "version": 1, "at": [1.0, math.nan, 0]}, "at"),
-        (Hello, {"name": "Ann", "version": 1, "at": [1.0, 2.0, 256]}, "at"),
+        (Hello, {"name": "Ann", "version": 1, "at": [1.0, 2.0, 1e6]}, "at"),
+        (Hello, {"name": "Ann", "version": 1, "operator": "x" * 65}, "operator"),
         (Hello, {"name": "Ann", "version": 1, "admin": True}, "admin"),
         (Move, {"seq": -1, "direction": 0.0, "speed": 1.0}, "seq"),
         (Move, {"seq": 2**32, "direction": 0.0, "speed": 1.0}, "seq"),
@@ -33,11 +44,13 @@ from protocol.messages import ChatLine, FromClient, Hello, Move, Ping, Pong, Wal
         (Move, {"seq": 1, "direction": 0.0, "speed": -1.0}, "speed"),
         (Move, {"seq": 1, "direction": 0.0, "speed": "fast"}, "speed"),
         (WalkTo, {"seq": 1, "x": 1e6, "y": 0.0}, "x"),
-        (WalkTo, {"seq": 1, "x": 0.0, "y": 0.0, "layer": -1}, "layer"),
+        (WalkTo, {"seq": 1, "x": 0.0, "y": 0.0, "z": math.nan}, "z"),
         (ChatLine, {"text": "x" * 301}, "text"),
         (ChatLine, {"text": "\n\t "}, "text"),
         (Ping, {"nonce": None}, "nonce"),
         (Watch, {}, "id"),
+        (SetDoor, {"name": "", "open": True}, "name"),
+        (SetDoor, {"name": "gate", "open": 1}, "open"),
     ],
 )
 def test_what_breaks_a_rule_is_refused(

@@ -16,6 +16,7 @@ from protocol.snapshot import (
     Records,
     find_position_m,
     headings_rad,
+    heights_m,
     pack_records,
     positions_m,
     speeds_mps,
@@ -24,18 +25,21 @@ from protocol.snapshot import (
 
 ORIGIN = (-10.0, -5.0)
 
+Row = tuple[int, int, int, float, float, float, float, float]
+
 
 def pack(
-    avatars: list[tuple[int, int, int, float, float, float, float]],
+    avatars: list[Row],
     origin_m: tuple[float, float] = ORIGIN,
 ) -> Records:
-    """Rows of (id, layer, reason, x, y, heading, speed)."""
-    ids, layers, reasons, xs, ys, headings, speeds = np.array(avatars, dtype=np.float64).T
+    """Rows of (id, layer, reason, x, y, z, heading, speed)."""
+    ids, layers, reasons, xs, ys, zs, headings, speeds = np.array(avatars, dtype=np.float64).T
     return pack_records(
         ids.astype(np.int64),
         layers.astype(np.int64),
         reasons.astype(np.int64),
         np.stack([xs, ys], axis=1),
+        zs,
         headings,
         speeds,
         origin_m,
@@ -49,6 +53,7 @@ avatars = st.lists(
         st.integers(0, 6),
         st.floats(0, MAX_EXTENT_M),
         st.floats(0, MAX_EXTENT_M),
+        st.floats(-327.68, 327.67),
         st.floats(-100, 100),
         st.floats(0, 255 * SPEED_MPS),
     ),
@@ -59,36 +64,38 @@ avatars = st.lists(
 
 @given(avatars, st.tuples(st.floats(-1e5, 1e5), st.floats(-1e5, 1e5)))
 def test_what_comes_back_is_as_near_as_the_steps_allow(
-    rows: list[tuple[int, int, int, float, float, float, float]], origin: tuple[float, float]
+    rows: list[Row], origin: tuple[float, float]
 ) -> None:
-    placed = [(i, z, r, x + origin[0], y + origin[1], h, s) for i, z, r, x, y, h, s in rows]
+    placed = [(i, f, r, x + origin[0], y + origin[1], z, h, s) for i, f, r, x, y, z, h, s in rows]
     records = unpack_block(pack(placed, origin).tobytes())
-    ids, layers, reasons, xs, ys, headings, speeds = np.array(placed).T
+    ids, layers, reasons, xs, ys, zs, headings, speeds = np.array(placed).T
     np.testing.assert_array_equal(records["id"], ids)
     np.testing.assert_array_equal(records["layer"], layers)
     np.testing.assert_array_equal(records["reason"], reasons)
     off_m = np.abs(positions_m(records, origin) - np.stack([xs, ys], axis=1))
     assert off_m.max() <= POSITION_M / 2 + 1e-9
+    assert np.abs(heights_m(records) - zs).max() <= POSITION_M / 2 + 1e-9
     turned = np.abs(np.angle(np.exp(1j * (headings_rad(records) - headings))))
     assert turned.max() <= HEADING_RAD / 2 + 1e-9
     assert np.abs(speeds_mps(records) - speeds).max() <= SPEED_MPS / 2 + 1e-9
 
 
 def test_the_layout_byte_by_byte() -> None:
-    block = pack([(0x01020304, 2, 3, 1.5, -2.0, math.pi / 2, 1.26)]).tobytes()
-    assert block.hex(" ") == "04 03 02 01 02 03 7e 04 2c 01 40 3f"
-    assert RECORD.itemsize == 12
+    block = pack([(0x01020304, 2, 3, 1.5, -2.0, -0.5, math.pi / 2, 1.26)]).tobytes()
+    assert block.hex(" ") == "04 03 02 01 02 03 7e 04 2c 01 ce ff 40 3f"
+    assert RECORD.itemsize == 14
 
 
 def test_what_lies_outside_is_clamped_to_the_edge() -> None:
-    records = pack([(1, 0, 0, -1e6, 1e6, -7.0, 99.0), (2, 0, 0, 1e6, -1e6, 7.0, -1.0)])
+    records = pack([(1, 0, 0, -1e6, 1e6, 1e6, -7.0, 99.0), (2, 0, 0, 1e6, -1e6, -1e6, 7.0, -1.0)])
     assert records["x"].tolist() == [0, 65535]
     assert records["y"].tolist() == [65535, 0]
+    assert records["z"].tolist() == [32767, -32768]
     assert records["speed"].tolist() == [255, 0]
 
 
 def test_a_heading_just_below_a_full_turn_is_a_full_turn() -> None:
-    assert pack([(1, 0, 0, 0.0, 0.0, 2 * math.pi - 1e-6, 0.0)])["heading"].tolist() == [0]
+    assert pack([(1, 0, 0, 0.0, 0.0, 0.0, 2 * math.pi - 1e-6, 0.0)])["heading"].tolist() == [0]
 
 
 def test_nobody_in_view_is_an_empty_block() -> None:
@@ -96,9 +103,9 @@ def test_nobody_in_view_is_an_empty_block() -> None:
     assert positions_m(unpack_block(b""), ORIGIN).shape == (0, 2)
 
 
-@pytest.mark.parametrize("length", [1, 11, 13, 25])
+@pytest.mark.parametrize("length", [1, 13, 15, 29])
 def test_a_block_cut_short_is_refused(length: int) -> None:
-    with pytest.raises(ValueError, match=f"block of {length} bytes is no multiple of 12"):
+    with pytest.raises(ValueError, match=f"block of {length} bytes is no multiple of 14"):
         unpack_block(bytes(length))
 
 
@@ -107,7 +114,7 @@ tricky = st.sampled_from([0, 1, 255, 256, 0x0101_0101, 0x0100_0000, 0x0001_0000,
 
 @given(
     st.lists(
-        st.tuples(tricky, st.just(1), st.just(1), *[st.integers(0, 65535)] * 2, *[st.just(0)] * 2),
+        st.tuples(tricky, st.just(1), st.just(1), *[st.integers(0, 65535)] * 2, *[st.just(0)] * 3),
         max_size=8,
         unique_by=lambda row: row[0],
     ),

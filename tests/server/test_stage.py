@@ -57,7 +57,7 @@ def test_a_crowd_gets_ground_that_fits_and_speed_enough(crowd_file: Path) -> Non
     assert len(stage.scene.places) == 8
     grid = LayeredGrid.from_scene(stage.scene)
     for place in stage.scene.places:
-        assert grid.is_free([place.position], [place.layer], 0.25)[0]
+        assert grid.is_free([place.position], [0], 0.25)[0]
 
 
 def test_walls_beside_a_crowd_are_built_and_opened_where_people_walk(crowd_file: Path) -> None:

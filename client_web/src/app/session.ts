@@ -41,6 +41,8 @@ export class Session {
     private readonly view: View,
     private readonly seats: Seats,
     socketUrl: string,
+    /** The operator key, for those who have it. */
+    private readonly operator: string | null,
   ) {
     this.connection = new Connection(() => new WebSocket(socketUrl), {
       state: (state) => {
@@ -80,7 +82,8 @@ export class Session {
       this.frame(ms);
     });
     const seat = await this.seats.ofThisTab();
-    if (seat) this.connection.join({ name: seat.name, resume: seat.token });
+    if (seat)
+      this.connection.join({ name: seat.name, resume: seat.token, operator: this.operator });
     else this.join.open();
   }
 
@@ -96,7 +99,7 @@ export class Session {
   private async comeIn(name: string): Promise<void> {
     this.join.busy(true);
     const seat = await this.seats.abandoned(name);
-    this.connection.join({ name, resume: seat?.token ?? null });
+    this.connection.join({ name, resume: seat?.token ?? null, operator: this.operator });
   }
 
   private stateChanged(state: ConnectionState): void {
@@ -151,6 +154,9 @@ export class Session {
         break;
       case "notice":
         this.chat.note(message.text);
+        break;
+      case "doors":
+        world?.doorsMoved(message.doors);
         break;
       case "bye":
       case "pong":

@@ -50,10 +50,10 @@ export class Walking {
     const own = this.world?.own;
     if (!own) return;
     const seq = ++this.seq;
-    const { layer } = own.pose;
-    if (!this.send({ type: "walk_to", seq, x, y, layer })) return;
+    const { z } = own.pose;
+    if (!this.send({ type: "walk_to", seq, x, y, z })) return;
     this.steering.reset();
-    this.world?.command({ kind: "walk_to", seq, x, y, layer });
+    this.world?.command({ kind: "walk_to", seq, x, y, z });
     this.setTarget({ x, y });
   }
 

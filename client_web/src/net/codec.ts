@@ -11,6 +11,7 @@ const CLIENT_CODES: Record<ClientMessage["type"], number> = {
   chat: ClientCode.CHAT,
   ping: ClientCode.PING,
   watch: ClientCode.WATCH,
+  set_door: ClientCode.SET_DOOR,
 };
 
 const SERVER_TYPES = new Map<unknown, ServerMessage["type"]>([
@@ -24,9 +25,10 @@ const SERVER_TYPES = new Map<unknown, ServerMessage["type"]>([
   [ServerCode.PONG, "pong"],
   [ServerCode.PLAN, "plan"],
   [ServerCode.CENSUS, "census"],
+  [ServerCode.DOORS, "doors"],
 ]);
 
-const RECORD_BYTES = 12;
+const RECORD_BYTES = 14;
 const POSITION_M = 0.01;
 const HEADING_RAD = (2 * Math.PI) / 256;
 const SPEED_MPS = 0.02;
@@ -78,8 +80,9 @@ export function unpackBlock(block: Uint8Array, origin: Point): EntityRecord[] {
       reason: view.getUint8(at + 5),
       x: view.getUint16(at + 6, true) * POSITION_M + origin[0],
       y: view.getUint16(at + 8, true) * POSITION_M + origin[1],
-      heading: view.getUint8(at + 10) * HEADING_RAD,
-      speed: view.getUint8(at + 11) * SPEED_MPS,
+      z: view.getInt16(at + 10, true) * POSITION_M,
+      heading: view.getUint8(at + 12) * HEADING_RAD,
+      speed: view.getUint8(at + 13) * SPEED_MPS,
     });
   }
   return records;

@@ -1,6 +1,6 @@
 /** The numbers and names on the wire; the same table as `protocol/codes.py`. */
 
-export const VERSION = 1;
+export const VERSION = 2;
 
 export const MAX_NAME_CHARS = 32;
 export const MAX_CHAT_CHARS = 300;
@@ -12,6 +12,7 @@ export const ClientCode = {
   CHAT: 4,
   PING: 5,
   WATCH: 6,
+  SET_DOOR: 7,
 } as const;
 
 export const ServerCode = {
@@ -26,6 +27,7 @@ export const ServerCode = {
   PONG: 72,
   PLAN: 73,
   CENSUS: 74,
+  DOORS: 75,
 } as const;
 
 export const Reason = {

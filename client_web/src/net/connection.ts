@@ -26,10 +26,11 @@ export interface ConnectionEvents {
   message(message: ServerMessage): void;
 }
 
-/** Who comes in: the name, and the token of an avatar that is to be taken up again. */
+/** Who comes in: the name, the token of an avatar that is to be taken up again, the operator key. */
 export interface Greeting {
   name: string;
   resume: string | null;
+  operator: string | null;
 }
 
 const OPEN = 1;
@@ -136,8 +137,9 @@ export class Connection {
   }
 
   private welcome(message: Welcome): void {
+    const { name, resume } = message;
     this.attempt = 0;
-    this.greeting = { name: message.name, resume: message.resume };
+    this.greeting = { name, resume, operator: this.greeting?.operator ?? null };
     this.clock.seed(message.server_time, nowS());
     this.change({ phase: "live" });
     this.ping();

@@ -1,36 +1,59 @@
-/** What travels on the wire, as `protocol/messages.py` defines it. Metres, radians, seconds. */
+/**
+ * What travels on the wire, as `protocol/messages.py` defines it. Metres, radians, seconds; z is
+ * the height of the feet above the scene's ground.
+ */
 
 import type { Kind } from "./codes";
 
 export type Point = [x: number, y: number];
-export type PlacePoint = [x: number, y: number, layer: number];
 
 export type ClientMessage =
-  | { type: "hello"; name: string; resume: string | null }
+  | { type: "hello"; name: string; resume: string | null; operator: string | null }
   | { type: "move"; seq: number; direction: number; speed: number }
-  | { type: "walk_to"; seq: number; x: number; y: number; layer: number }
+  | { type: "walk_to"; seq: number; x: number; y: number; z: number }
   | { type: "chat"; text: string }
   | { type: "ping"; nonce: number }
-  | { type: "watch"; id: number | null };
+  | { type: "watch"; id: number | null }
+  | { type: "set_door"; name: string; open: boolean };
+
+/** Whether each door stands open, by name. */
+export type Doors = Record<string, boolean>;
 
 export interface ScenePolygon {
   points: Point[];
   height_m: number;
   offset_m: number;
-  kind: "building" | "wall" | "furniture" | "plant" | "water";
+  kind: "building" | "floor" | "wall" | "furniture" | "plant" | "water";
   name: string;
+  ramp: SceneRamp | null;
+}
+
+/** The top rises evenly from `start_height_m` at the start to the polygon's height at the end. */
+export interface SceneRamp {
+  start: Point;
+  end: Point;
+  start_height_m: number;
 }
 
 export interface SceneWall {
   start: Point;
   end: Point;
+  offset_m: number;
   height_m: number;
 }
 
-export interface ScenePlace {
+/** From the middle of the foot to the middle of the head; solid below each tread. */
+export interface SceneStairs {
+  start: Point;
+  end: Point;
+  width_m: number;
+  bottom_m: number;
+  top_m: number;
+  steps: number;
+}
+
+export interface SceneDoor extends SceneWall {
   name: string;
-  position: Point;
-  layer: number;
 }
 
 export interface SceneData {
@@ -38,7 +61,8 @@ export interface SceneData {
   bounds: [x0: number, y0: number, x1: number, y1: number];
   polygons: ScenePolygon[];
   walls: SceneWall[];
-  places: ScenePlace[];
+  stairs: SceneStairs[];
+  doors: SceneDoor[];
 }
 
 export interface Welcome {
@@ -55,6 +79,8 @@ export interface Welcome {
   radius: number;
   max_speed: number;
   origin: Point;
+  doors: Doors;
+  operator: boolean;
 }
 
 /** One avatar as it comes into view. */
@@ -65,6 +91,7 @@ export interface EntityInfo {
   layer: number;
   x: number;
   y: number;
+  z: number;
   heading: number;
   radius: number;
 }
@@ -76,6 +103,7 @@ export interface EntityRecord {
   reason: number;
   x: number;
   y: number;
+  z: number;
   heading: number;
   speed: number;
 }
@@ -90,7 +118,7 @@ export interface Snapshot {
 export interface PlanCircle {
   x: number;
   y: number;
-  layer: number;
+  z: number;
   radius: number;
 }
 
@@ -100,9 +128,9 @@ export interface Plan {
   id: number;
   reason: number;
   behaviour: string;
-  goal: PlacePoint | null;
-  /** Points (x, y, layer, seconds from now). */
-  path: [x: number, y: number, layer: number, seconds: number][];
+  goal: [x: number, y: number, z: number] | null;
+  /** Points (x, y, z, seconds from now). */
+  path: [x: number, y: number, z: number, seconds: number][];
   people: PlanCircle[][];
 }
 
@@ -124,4 +152,5 @@ export type ServerMessage =
   | { type: "error"; error: string; text: string }
   | { type: "bye"; reason: string; text: string }
   | { type: "pong"; nonce: number; server_time: number }
-  | { type: "census"; people: number; actors: number };
+  | { type: "census"; people: number; actors: number }
+  | { type: "doors"; doors: Doors };

@@ -6,6 +6,7 @@ import { byId } from "./dom";
 
 const KIND_COLORS = {
   building: "#8b8173",
+  floor: "#f7f3ea",
   wall: "#6f675c",
   furniture: "#b08c63",
   plant: "#86a667",

@@ -5,6 +5,8 @@ import { mixAngles } from "./angles";
 export interface Pose {
   x: number;
   y: number;
+  /** Height of the feet. */
+  z: number;
   layer: number;
   heading: number;
   speed: number;
@@ -60,6 +62,7 @@ export class Motion {
     return {
       x: a.x + (b.x - a.x) * part,
       y: a.y + (b.y - a.y) * part,
+      z: a.z + (b.z - a.z) * part,
       layer: part < 0.5 ? a.layer : b.layer,
       heading: mixAngles(a.heading, b.heading, part),
       speed: a.speed + (b.speed - a.speed) * part,

@@ -1,119 +1,122 @@
-/** What a walking disc bumps into: the edges of the scene's prisms and its thin walls. */
+/** Where a walking body gets to: it slides along what is in the way, and goes up and down steps. */
 
-export type Vec2 = readonly [x: number, y: number];
+import type { Doors, SceneData } from "../net/messages";
+import { type Barrier, barriersOf, STEP_ON_M, type Vec2 } from "./barriers";
+import { Buckets } from "./buckets";
+import { Floors } from "./floors";
 
-interface Ground {
-  bounds: readonly [x0: number, y0: number, x1: number, y1: number];
-  polygons: readonly { points: readonly Vec2[] }[];
-  walls: readonly { start: Vec2; end: Vec2 }[];
-}
+/** Where the feet are. */
+export type Vec3 = readonly [x: number, y: number, z: number];
 
-interface Edge {
-  a: Vec2;
-  b: Vec2;
-}
-
-const BUCKET_M = 2;
-/** Discs may be as large as this. */
+/** Bodies may be as wide as this. */
 const LARGEST_RADIUS_M = 0.75;
+const HEIGHT_M = 1.8;
 const STEP_M = 0.1;
 const PUSHES = 4;
 
-/** The obstacles of one layer. There is one layer, 0. */
-export class Obstacles {
-  private readonly buckets = new Map<string, Edge[]>();
-  private readonly bounds: Ground["bounds"];
+type Built = Pick<SceneData, "bounds" | "polygons" | "walls" | "stairs" | "doors">;
 
-  constructor(ground: Ground) {
-    this.bounds = ground.bounds;
-    for (const { points } of ground.polygons) {
-      points.forEach((a, i) => {
-        this.add({ a, b: points[(i + 1) % points.length] ?? a });
-      });
-    }
-    for (const { start, end } of ground.walls) this.add({ a: start, b: end });
+export class Obstacles {
+  /** Doors of which nothing is said stand open. */
+  doors: Readonly<Doors> = {};
+  private readonly barriers = new Buckets<Barrier>();
+  private readonly bounds: SceneData["bounds"];
+
+  constructor(
+    scene: Built,
+    private readonly floors = new Floors(scene),
+  ) {
+    this.bounds = scene.bounds;
+    for (const barrier of barriersOf(scene, floors)) this.add(barrier);
   }
 
-  /** Where a disc gets to that wants to move by (dx, dy): it slides along what is in the way. */
-  walk(from: Vec2, dx: number, dy: number, radiusM: number): Vec2 {
+  /** Where a body gets to that wants to move by (dx, dy). */
+  walk(from: Vec3, dx: number, dy: number, radiusM: number): Vec3 {
     const steps = Math.max(1, Math.ceil(Math.hypot(dx, dy) / STEP_M));
     let at = from;
     for (let i = 0; i < steps; i++) {
-      at = this.pushOut([at[0] + dx / steps, at[1] + dy / steps], radiusM);
+      at = this.stand(this.pushOut([at[0] + dx / steps, at[1] + dy / steps, at[2]], radiusM));
     }
     return at;
   }
 
-  /** Whether a disc can go straight from one point to the other. */
-  clear(from: Vec2, to: Vec2, radiusM: number): boolean {
+  /** Whether a body can go straight from one place to the other. */
+  clear(from: Vec3, to: Vec3, radiusM: number): boolean {
     const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
     const steps = Math.ceil(length / STEP_M);
+    let z = from[2];
     for (let i = 1; i <= steps; i++) {
       const part = i / steps;
-      const at: Vec2 = [from[0] + (to[0] - from[0]) * part, from[1] + (to[1] - from[1]) * part];
-      const meets = this.near(at).some((edge) => {
-        const [x, y] = nearestOn(edge, at);
-        return Math.hypot(at[0] - x, at[1] - y) < radiusM;
+      const x = from[0] + (to[0] - from[0]) * part;
+      const y = from[1] + (to[1] - from[1]) * part;
+      const meets = this.near([x, y, z]).some((barrier) => {
+        const [bx, by] = nearestOn(barrier, [x, y]);
+        return Math.hypot(x - bx, y - by) < radiusM;
       });
       if (meets) return false;
+      [, , z] = this.stand([x, y, z]);
     }
-    return true;
+    return Math.abs(z - to[2]) <= STEP_ON_M;
   }
 
-  private pushOut(wish: Vec2, radiusM: number): Vec2 {
+  /** On the floor that is a step away at most; where the scene has none, as high as before. */
+  private stand([x, y, z]: Vec3): Vec3 {
+    const floor = this.floors.at(x, y, z);
+    return [x, y, floor !== null && Math.abs(floor - z) <= STEP_ON_M ? floor : z];
+  }
+
+  private pushOut(wish: Vec3, radiusM: number): Vec3 {
     let [x, y] = wish;
+    const z = wish[2];
     for (let push = 0; push < PUSHES; push++) {
       let moved = false;
-      for (const edge of this.near([x, y])) {
-        const [ex, ey] = nearestOn(edge, [x, y]);
-        const distance = Math.hypot(x - ex, y - ey);
+      for (const barrier of this.near([x, y, z])) {
+        const [bx, by] = nearestOn(barrier, [x, y]);
+        const distance = Math.hypot(x - bx, y - by);
         if (distance >= radiusM || distance < 1e-9) continue;
-        x = ex + ((x - ex) / distance) * radiusM;
-        y = ey + ((y - ey) / distance) * radiusM;
+        x = bx + ((x - bx) / distance) * radiusM;
+        y = by + ((y - by) / distance) * radiusM;
         moved = true;
       }
       if (!moved) break;
     }
     const [x0, y0, x1, y1] = this.bounds;
-    return [Math.min(x1, Math.max(x0, x)), Math.min(y1, Math.max(y0, y))];
+    return [Math.min(x1, Math.max(x0, x)), Math.min(y1, Math.max(y0, y)), z];
   }
 
-  private near([x, y]: Vec2): readonly Edge[] {
-    return this.buckets.get(bucketKey(x, y)) ?? [];
+  /** What can be touched from here and reaches between the highest step and the head. */
+  private near([x, y, z]: Vec3): Barrier[] {
+    return this.barriers
+      .at(x, y)
+      .filter(
+        ({ bottomM, topM, door }) =>
+          bottomM < z + HEIGHT_M &&
+          topM > z + STEP_ON_M &&
+          (door === null || this.doors[door] === false),
+      );
   }
 
-  /** Into every bucket from which the edge can be touched. */
-  private add(edge: Edge): void {
-    const [ax, ay] = edge.a;
-    const [bx, by] = edge.b;
+  /** Into every square from which the barrier can be touched. */
+  private add(barrier: Barrier): void {
+    const { a, b } = barrier;
     const reach = LARGEST_RADIUS_M;
-    const across = reach + BUCKET_M * Math.SQRT1_2;
-    const [i0, i1] = [Math.min(ax, bx) - reach, Math.max(ax, bx) + reach].map(bucketOf) as [
-      number,
-      number,
-    ];
-    const [j0, j1] = [Math.min(ay, by) - reach, Math.max(ay, by) + reach].map(bucketOf) as [
-      number,
-      number,
-    ];
-    for (let i = i0; i <= i1; i++) {
-      for (let j = j0; j <= j1; j++) {
-        const centre: Vec2 = [(i + 0.5) * BUCKET_M, (j + 0.5) * BUCKET_M];
-        const [x, y] = nearestOn(edge, centre);
-        if (Math.hypot(centre[0] - x, centre[1] - y) > across) continue;
-        const key = `${i},${j}`;
-        const bucket = this.buckets.get(key);
-        if (bucket) bucket.push(edge);
-        else this.buckets.set(key, [edge]);
-      }
-    }
+    this.barriers.put(
+      barrier,
+      [
+        Math.min(a[0], b[0]) - reach,
+        Math.min(a[1], b[1]) - reach,
+        Math.max(a[0], b[0]) + reach,
+        Math.max(a[1], b[1]) + reach,
+      ],
+      (x, y, reachM) => {
+        const [bx, by] = nearestOn(barrier, [x, y]);
+        return Math.hypot(x - bx, y - by) <= reach + reachM;
+      },
+    );
   }
 }
 
-const bucketOf = (metres: number): number => Math.floor(metres / BUCKET_M);
-const bucketKey = (x: number, y: number): string => `${bucketOf(x)},${bucketOf(y)}`;
-
-function nearestOn({ a, b }: Edge, [x, y]: Vec2): Vec2 {
+function nearestOn({ a, b }: Barrier, [x, y]: Vec2): Vec2 {
   const dx = b[0] - a[0];
   const dy = b[1] - a[1];
   const lengthSq = dx * dx + dy * dy;

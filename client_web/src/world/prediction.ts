@@ -8,11 +8,12 @@
  */
 
 import type { Pose } from "./motion";
-import type { Obstacles, Vec2 } from "./obstacles";
+import type { Vec2 } from "./barriers";
+import type { Obstacles, Vec3 } from "./obstacles";
 
 export type Command =
   | { kind: "move"; seq: number; direction: number; speed: number }
-  | { kind: "walk_to"; seq: number; x: number; y: number; layer: number };
+  | { kind: "walk_to"; seq: number; x: number; y: number; z: number };
 
 interface Pending {
   command: Command;
@@ -22,6 +23,7 @@ interface Pending {
 interface Body {
   x: number;
   y: number;
+  z: number;
   heading: number;
   speed: number;
 }
@@ -44,7 +46,6 @@ const MOST_PENDING = 64;
 export class Prediction {
   private pending: Pending[] = [{ command: STAND, playedS: 0 }];
   private body: Body;
-  private layer: number;
   private offset: Vec2 = [0, 0];
   private heading: number;
   private server: Pose;
@@ -58,8 +59,7 @@ export class Prediction {
     private readonly tickS: number,
   ) {
     this.server = start;
-    this.body = { x: start.x, y: start.y, heading: start.heading, speed: 0 };
-    this.layer = start.layer;
+    this.body = { x: start.x, y: start.y, z: start.z, heading: start.heading, speed: 0 };
     this.heading = start.heading;
   }
 
@@ -77,10 +77,10 @@ export class Prediction {
       this.ackTick = tick;
     }
     this.server = server;
-    this.layer = server.layer;
     const was = this.shownAt();
     const serverPlayedS = (tick - this.ackTick + 1) * this.tickS;
-    this.body = { x: server.x, y: server.y, heading: server.heading, speed: server.speed };
+    const { x, y, z, heading, speed } = server;
+    this.body = { x, y, z, heading, speed };
     this.endWalk(serverPlayedS);
     this.pending.forEach(({ command, playedS }, i) => {
       const leftS = i === 0 ? Math.max(0, playedS - serverPlayedS) : playedS;
@@ -105,8 +105,9 @@ export class Prediction {
 
   get shown(): Pose {
     const [x, y] = this.shownAt();
-    const { speed } = this.body;
-    return { x, y, layer: this.layer, heading: this.heading, speed, reason: this.server.reason };
+    const { z, speed } = this.body;
+    const { layer, reason } = this.server;
+    return { x, y, z, layer, heading: this.heading, speed, reason };
   }
 
   /** Distance between what is shown and what is predicted, metres. */
@@ -130,10 +131,11 @@ export class Prediction {
     const stepS = durationS / steps;
     for (let i = 0; i < steps; i++) {
       const [vx, vy] = this.velocity(command, stepS);
-      const from: Vec2 = [this.body.x, this.body.y];
+      const from: Vec3 = [this.body.x, this.body.y, this.body.z];
       const to = this.obstacles.walk(from, vx * stepS, vy * stepS, this.radiusM);
       this.body.x = to[0];
       this.body.y = to[1];
+      this.body.z = to[2];
       this.body.speed = Math.hypot(to[0] - from[0], to[1] - from[1]) / stepS;
       if (Math.hypot(vx, vy) > 0) this.body.heading = Math.atan2(vy, vx);
     }
@@ -148,7 +150,8 @@ export class Prediction {
     const dy = command.y - this.body.y;
     const distance = Math.hypot(dx, dy);
     if (distance < ARRIVED_M) return [0, 0];
-    if (this.obstacles.clear([this.body.x, this.body.y], [command.x, command.y], this.radiusM)) {
+    const here: Vec3 = [this.body.x, this.body.y, this.body.z];
+    if (this.obstacles.clear(here, [command.x, command.y, command.z], this.radiusM)) {
       const speed = Math.min(WALK_MPS, this.maxSpeedMps, distance / stepS);
       return [(dx / distance) * speed, (dy / distance) * speed];
     }

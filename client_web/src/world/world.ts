@@ -1,6 +1,7 @@
 /** Everything in view as this client knows it: who is here, where they are drawn, and the plans. */
 
-import type { EntityInfo, EntityRecord, Plan, SceneData, Welcome } from "../net/messages";
+import type { Doors, EntityInfo, EntityRecord, Plan, SceneData, Welcome } from "../net/messages";
+import { Floors } from "./floors";
 import { Motion, type Pose } from "./motion";
 import { Obstacles } from "./obstacles";
 import { Playout } from "./playout";
@@ -16,6 +17,11 @@ export interface Avatar {
   pose: Pose;
 }
 
+/** Heights of feet are drawn evened out over this time, so that nobody hops from tread to tread. */
+const LIFT_S = 0.09;
+/** A greater difference in height is no step. */
+const FALL_M = 1.5;
+
 interface Followed extends Avatar {
   readonly motion: Motion;
 }
@@ -24,6 +30,7 @@ export class World {
   readonly scene: SceneData;
   readonly ownId: number;
   readonly maxSpeedMps: number;
+  readonly floors: Floors;
   /** The newest plan of the watched actor. */
   plan: Plan | null = null;
   private readonly avatars_ = new Map<number, Followed>();
@@ -39,7 +46,9 @@ export class World {
     this.maxSpeedMps = welcome.max_speed;
     this.tickS = 1 / welcome.tick_rate;
     this.playout = new Playout(this.tickS);
-    this.obstacles = new Obstacles(welcome.scene);
+    this.floors = new Floors(welcome.scene);
+    this.obstacles = new Obstacles(welcome.scene, this.floors);
+    this.obstacles.doors = welcome.doors;
     this.heardS = welcome.server_time;
   }
 
@@ -65,8 +74,8 @@ export class World {
   enter(tick: number, entities: readonly EntityInfo[]): void {
     for (const info of entities) {
       const own = info.id === this.ownId;
-      const { x, y, layer, heading } = info;
-      const pose = { x, y, layer, heading, speed: 0, reason: 0 };
+      const { x, y, z, layer, heading } = info;
+      const pose = { x, y, z, layer, heading, speed: 0, reason: 0 };
       const motion = new Motion(this.timeOf(tick), pose);
       this.avatars_.set(info.id, {
         id: info.id,
@@ -102,6 +111,15 @@ export class World {
     this.heardS = timeS;
   }
 
+  /** Which doors stand open; false if closed. */
+  get doors(): Readonly<Doors> {
+    return this.obstacles.doors;
+  }
+
+  doorsMoved(doors: Doors): void {
+    this.obstacles.doors = { ...this.obstacles.doors, ...doors };
+  }
+
   command(command: Command): void {
     this.prediction?.command(command);
   }
@@ -111,10 +129,11 @@ export class World {
     const timeS = this.playout.advance(serverNowS, frameS);
     this.prediction?.advance(frameS);
     for (const avatar of this.avatars_.values()) {
-      avatar.pose =
+      const pose =
         avatar.own && this.prediction
           ? this.prediction.shown
           : avatar.motion.at(timeS, this.heardS);
+      avatar.pose = { ...pose, z: lifted(avatar.pose.z, pose.z, frameS) };
     }
   }
 
@@ -125,4 +144,10 @@ export class World {
   private timeOf(tick: number): number {
     return this.welcome.server_time + (tick - this.welcome.tick) * this.tickS;
   }
+}
+
+/** The height on the way from the one that was drawn to the one that is right. */
+function lifted(drawnM: number, rightM: number, frameS: number): number {
+  const off = rightM - drawnM;
+  return Math.abs(off) > FALL_M ? rightM : drawnM + off * (1 - Math.exp(-frameS / LIFT_S));
 }

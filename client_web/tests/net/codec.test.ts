@@ -70,6 +70,6 @@ describe("decodeServer", () => {
 
 describe("unpackBlock", () => {
   it("refuses a block that is cut off", () => {
-    expect(() => unpackBlock(new Uint8Array(13), [0, 0])).toThrow("no multiple of 12");
+    expect(() => unpackBlock(new Uint8Array(15), [0, 0])).toThrow("no multiple of 14");
   });
 });

@@ -46,16 +46,18 @@ export const WebSocketState = { CONNECTING: 0, OPEN: 1, CLOSED: 3 } as const;
 
 export const WELCOME: Welcome = {
   type: "welcome",
-  version: 1,
+  version: 2,
   id: 7,
   name: "Ann",
   resume: "token-1",
   resumed: false,
-  scene: { name: "bare", bounds: [0, 0, 10, 10], polygons: [], walls: [], places: [] },
+  scene: { name: "bare", bounds: [0, 0, 10, 10], polygons: [], walls: [], stairs: [], doors: [] },
   tick: 100,
   tick_rate: 20,
   server_time: 5,
   radius: 0.25,
   max_speed: 2.5,
   origin: [0, 0],
+  doors: {},
+  operator: false,
 };

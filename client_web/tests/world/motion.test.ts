@@ -4,6 +4,7 @@ import { Motion, type Pose } from "../../src/world/motion";
 const pose = (x: number, heading = 0): Pose => ({
   x,
   y: 0,
+  z: 0,
   layer: 0,
   heading,
   speed: 1,

@@ -1,47 +1,40 @@
 import { describe, expect, it } from "vitest";
-import { Obstacles, type Vec2 } from "../../src/world/obstacles";
+import type { Vec2 } from "../../src/world/barriers";
+import { Obstacles, type Vec3 } from "../../src/world/obstacles";
+import { bare, box, twoFloors, wall } from "../scenes";
 
 const RADIUS_M = 0.25;
-const ground = {
-  bounds: [0, 0, 20, 20] as const,
-  polygons: [
-    {
-      points: [
-        [8, 8],
-        [12, 8],
-        [12, 12],
-        [8, 12],
-      ] as Vec2[],
-    },
-  ],
-  walls: [{ start: [5, 0] as Vec2, end: [5, 6] as Vec2 }],
-};
-const obstacles = new Obstacles(ground);
+const obstacles = new Obstacles({
+  ...bare,
+  bounds: [0, 0, 20, 20],
+  polygons: [box([8, 8], [12, 12])],
+  walls: [wall([5, 0], [5, 6])],
+});
 
 describe("walking", () => {
   it("goes where nothing is in the way", () => {
-    const [x, y] = obstacles.walk([1, 1], 1, 0.5, RADIUS_M);
+    const [x, y] = obstacles.walk([1, 1, 0], 1, 0.5, RADIUS_M);
     expect([x, y]).toEqual([expect.closeTo(2), expect.closeTo(1.5)]);
   });
 
   it("slides along a face and keeps the radius", () => {
-    let at: Vec2 = [7, 10];
+    let at: Vec3 = [7, 10, 0];
     for (let i = 0; i < 40; i++) at = obstacles.walk(at, 0.05, 0.05, RADIUS_M);
     expect(at[0]).toBeCloseTo(8 - RADIUS_M);
     expect(at[1]).toBeCloseTo(12, 0);
   });
 
   it("never gets through a wall, however long the step", () => {
-    const [x] = obstacles.walk([4, 3], 10, 0, RADIUS_M);
+    const [x] = obstacles.walk([4, 3, 0], 10, 0, RADIUS_M);
     expect(x).toBeCloseTo(5 - RADIUS_M);
   });
 
   it("stays within the bounds", () => {
-    expect(obstacles.walk([1, 1], -5, -5, RADIUS_M)).toEqual([0, 0]);
+    expect(obstacles.walk([1, 1, 0], -5, -5, RADIUS_M)).toEqual([0, 0, 0]);
   });
 
   it("never comes nearer to anything than the radius on a random walk", () => {
-    let at: Vec2 = [2, 2];
+    let at: Vec3 = [2, 2, 0];
     let direction = 0;
     for (let i = 0; i < 3000; i++) {
       direction += Math.sin(i * i);
@@ -62,6 +55,79 @@ describe("a straight way", () => {
     ["round the end of a wall", [4, 6.3], [6, 6.3], true],
     ["through a wall", [4, 3], [6, 3], false],
   ])("%s", (_what, from, to, expected) => {
-    expect(obstacles.clear(from, to, RADIUS_M)).toBe(expected);
+    expect(obstacles.clear([...from, 0], [...to, 0], RADIUS_M)).toBe(expected);
+  });
+});
+
+describe("several floors", () => {
+  const { walls } = twoFloors;
+  const built = new Obstacles(twoFloors);
+  /** Walk on and on in one direction. */
+  const stroll = (from: Vec3, dx: number, dy: number, metres: number): Vec3 => {
+    let at = from;
+    for (let i = 0; i < metres / 0.05; i++) at = built.walk(at, dx * 0.05, dy * 0.05, RADIUS_M);
+    return at;
+  };
+
+  it("climbs stairs and goes down again", () => {
+    const above = stroll([3.5, 13, 0], 1, 0, 8);
+    expect(above).toEqual([expect.closeTo(11.5), expect.closeTo(13), expect.closeTo(3)]);
+    const below = stroll(above, -1, 0, 8);
+    expect(below).toEqual([expect.closeTo(3.5), expect.closeTo(13), expect.closeTo(0)]);
+  });
+
+  it("goes up a ramp", () => {
+    expect(stroll([15, 1, 0.3], 0, 1, 4.5)[2]).toBeCloseTo(1.65);
+    expect(stroll([15, 1, 0.3], 0, 1, 11)).toEqual([
+      expect.closeTo(15),
+      expect.closeTo(12),
+      expect.closeTo(3),
+    ]);
+  });
+
+  it("passes under a slab and on it", () => {
+    expect(stroll([12, 25, 0], 0, -1, 0.3)[2]).toBe(0);
+    expect(stroll([12, 22, 0], 0, -1, 10)).toEqual([12, expect.closeTo(12), 0]);
+    expect(stroll([12, 12, 3], 0, 1, 5)).toEqual([12, expect.closeTo(17), 3]);
+  });
+
+  it("does not fall from a ledge, but slides along it", () => {
+    const [x, y, z] = stroll([17, 17, 3], 1, 0.5, 6);
+    expect(x).toBeCloseTo(20 - RADIUS_M);
+    expect(y).toBeGreaterThan(19);
+    expect(z).toBe(3);
+  });
+
+  it("does not fall from the side of stairs", () => {
+    const [, y, z] = stroll([8, 13, 1.9], 0, 1, 3);
+    expect(y).toBeCloseTo(14 - RADIUS_M);
+    expect(z).toBeGreaterThan(1.5);
+  });
+
+  it("is held by a railing above and passes under it below", () => {
+    expect(walls).toHaveLength(1);
+    expect(stroll([12, 18, 3], 0, 1, 5)[1]).toBeCloseTo(20 - RADIUS_M);
+    expect(stroll([12, 18, 0], 0, 1, 4)[1]).toBeCloseTo(22);
+  });
+
+  it("steps onto a kerb and off it", () => {
+    expect(stroll([1.5, 12, 0], 1, 0, 1)[2]).toBeCloseTo(0.4);
+    expect(stroll([2.5, 12, 0.4], 1, 0, 1)[2]).toBe(0);
+  });
+
+  it("is stopped by a closed door", () => {
+    expect(stroll([12, 25, 0], 0, -1, 2)[1]).toBeCloseTo(23);
+    built.doors = { gate: false };
+    expect(stroll([12, 25, 0], 0, -1, 2)[1]).toBeCloseTo(24 + RADIUS_M);
+    built.doors = {};
+  });
+
+  it.each<[string, Vec3, Vec3, boolean]>([
+    ["up the stairs", [4, 13, 0], [12, 13, 3], true],
+    ["to the floor below where the stairs lead above", [4, 13, 0], [12, 13, 0], false],
+    ["through under the slab", [12, 22, 0], [12, 11, 0], true],
+    ["over a ledge", [18, 15, 3], [22, 15, 0], false],
+  ])("sees a straight way or none: %s", (_what, from, to, expected) => {
+    expect(built.clear(from, to, RADIUS_M)).toBe(expected);
   });
 });

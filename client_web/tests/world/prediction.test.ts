@@ -1,18 +1,15 @@
 import { describe, expect, it } from "vitest";
 import type { Pose } from "../../src/world/motion";
 import { Obstacles } from "../../src/world/obstacles";
+import { bare, twoFloors, wall } from "../scenes";
 import { type Command, Prediction, WALK_MPS } from "../../src/world/prediction";
 
 const TICK_S = 0.05;
 const FRAME_S = 1 / 60;
 const FRAMES_PER_TICK = 3;
-const open = new Obstacles({ bounds: [0, 0, 100, 100], polygons: [], walls: [] });
-const walled = new Obstacles({
-  bounds: [0, 0, 100, 100],
-  polygons: [],
-  walls: [{ start: [52, 0], end: [52, 100] }],
-});
-const start: Pose = { x: 50, y: 50, layer: 0, heading: 0, speed: 0, reason: 0 };
+const open = new Obstacles(bare);
+const walled = new Obstacles({ ...bare, walls: [wall([52, 0], [52, 100])] });
+const start: Pose = { x: 50, y: 50, z: 0, layer: 0, heading: 0, speed: 0, reason: 0 };
 const move = (seq: number, speed: number, direction = 0): Command => ({
   kind: "move",
   seq,
@@ -67,8 +64,9 @@ class Rehearsal {
       const { direction, speed } = this.current;
       const dx = Math.cos(direction) * speed * TICK_S;
       const dy = Math.sin(direction) * speed * TICK_S;
-      const [x, y] = this.obstacles.walk([this.server.x, this.server.y], dx, dy, 0.25);
-      this.server = { ...this.server, x, y, speed, heading: direction };
+      const { server } = this;
+      const [x, y, z] = this.obstacles.walk([server.x, server.y, server.z], dx, dy, 0.25);
+      this.server = { ...server, x, y, z, speed, heading: direction };
     }
     const { tick, ack, server } = this;
     this.downlink.push({ due: tick + this.lagTicks, tick, ack, pose: server });
@@ -132,7 +130,7 @@ describe("Prediction", () => {
 
   it("walks straight to a point it can see, and stops there", () => {
     const { prediction } = new Rehearsal(1);
-    prediction.command({ kind: "walk_to", seq: 1, x: 53, y: 50, layer: 0 });
+    prediction.command({ kind: "walk_to", seq: 1, x: 53, y: 50, z: 0 });
     for (let i = 0; i < 60; i++) prediction.advance(FRAME_S);
     expect(prediction.shown.x).toBeCloseTo(50 + WALK_MPS, 1);
     for (let i = 0; i < 120; i++) prediction.advance(FRAME_S);
@@ -142,7 +140,7 @@ describe("Prediction", () => {
 
   it("leaves the way around walls to the server", () => {
     const { prediction } = new Rehearsal(1, walled);
-    prediction.command({ kind: "walk_to", seq: 1, x: 54, y: 50, layer: 0 });
+    prediction.command({ kind: "walk_to", seq: 1, x: 54, y: 50, z: 0 });
     prediction.advance(FRAME_S);
     expect(prediction.shown.x).toBe(50);
     prediction.reconcile(1, 1, { ...start, heading: Math.PI / 2, speed: 1 });
@@ -152,12 +150,22 @@ describe("Prediction", () => {
 
   it("takes the server's word that a walk has ended short of the point", () => {
     const { prediction } = new Rehearsal(1);
-    prediction.command({ kind: "walk_to", seq: 1, x: 53, y: 50, layer: 0 });
+    prediction.command({ kind: "walk_to", seq: 1, x: 53, y: 50, z: 0 });
     for (let tick = 1; tick < 40; tick++) {
       prediction.reconcile(tick, 1, { ...start, x: 52 });
       prediction.advance(TICK_S);
     }
     expect(prediction.shown.speed).toBe(0);
     expect(prediction.shown.x).toBeCloseTo(52, 1);
+  });
+
+  it("climbs ahead of the server, which has the last word on the height", () => {
+    const foot: Pose = { ...start, x: 4.5, y: 13 };
+    const prediction = new Prediction(foot, new Obstacles(twoFloors), 0.25, 2.5, TICK_S);
+    prediction.command(move(1, 1.5));
+    for (let i = 0; i < 60; i++) prediction.advance(FRAME_S);
+    expect(prediction.shown.z).toBeGreaterThan(0.4);
+    prediction.reconcile(1, 0, { ...foot, x: 15, y: 15, z: 3 });
+    expect(prediction.shown.z).toBe(3);
   });
 });

@@ -10,6 +10,7 @@ const info = (id: number, kind: EntityInfo["kind"] = "actor"): EntityInfo => ({
   layer: 0,
   x: 2,
   y: 2,
+  z: 0,
   heading: 0,
   radius: 0.25,
 });
@@ -19,6 +20,7 @@ const record = (id: number, x: number): EntityRecord => ({
   reason: 1,
   x,
   y: 2,
+  z: 0,
   heading: 0,
   speed: 1,
 });
@@ -74,5 +76,32 @@ describe("World", () => {
   it("passes over records of avatars that are not in view", () => {
     world.snapshot(101, 0, [record(99, 1)], timeOf(101));
     expect(world.avatars.has(99)).toBe(false);
+  });
+
+  it("lifts somebody on stairs from tread to tread without a jump", () => {
+    const heights: number[] = [];
+    for (let tick = 101; tick <= 160; tick++) {
+      const z = Math.floor((tick - 100) / 4) * 0.17;
+      world.snapshot(tick, 0, [{ ...record(8, 2), z }], timeOf(tick));
+      for (let frame = 0; frame < 3; frame++) {
+        world.advance(timeOf(tick), 0.05 / 3);
+        heights.push(world.avatars.get(8)?.pose.z ?? 0);
+      }
+    }
+    const rises = heights.map((z, i) => z - (heights[i - 1] ?? 0));
+    expect(Math.max(...rises)).toBeLessThan(0.04);
+    expect(Math.min(...rises)).toBeGreaterThanOrEqual(0);
+  });
+
+  it("puts somebody on another floor at once", () => {
+    world.snapshot(101, 0, [{ ...record(7, 2), z: 3 }], timeOf(101));
+    world.advance(timeOf(101), 1 / 60);
+    expect(world.own?.pose.z).toBe(3);
+  });
+
+  it("keeps which doors stand open", () => {
+    world.doorsMoved({ gate: false });
+    world.doorsMoved({ porch: true });
+    expect(world.doors).toEqual({ gate: false, porch: true });
   });
 });

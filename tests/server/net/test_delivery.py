@@ -19,7 +19,7 @@ def test_an_explanation_becomes_a_plan_to_the_millimetre() -> None:
     )
     made = plan(9, 4, explanation)
     assert made.reason is WireReason.GIVING_WAY
-    assert made.path[0] == (0.123, 1.0, 0, 0.0)
+    assert made.path[0] == (0.123, 1.0, 0.0, 0.0)
     assert made.people[0][0].x == 3.0
     assert decode_server(encode(made)) == made
 

@@ -2,7 +2,7 @@ import pytest
 from websockets.frames import Frame, Opcode
 from websockets.streams import StreamReader
 
-from protocol import ByeCode, Kind, decode_server
+from protocol import VERSION, ByeCode, Kind, decode_server
 from protocol.messages import Bye, Enter, Entity, Leave, Snapshot, Welcome
 from server.net import frames
 from tests.server.worlds import ROOM
@@ -36,7 +36,17 @@ def test_a_snapshot_is_what_the_protocol_says() -> None:
 
 def test_hand_packed_messages_are_the_models_messages() -> None:
     entities = [
-        Entity(id=k, kind=Kind.ACTOR, name=f"é{k}", layer=0, x=1.5, y=2.0, heading=0.5, radius=0.25)
+        Entity(
+            id=k,
+            kind=Kind.ACTOR,
+            name=f"é{k}",
+            layer=0,
+            x=1.5,
+            y=2.0,
+            z=0.0,
+            heading=0.5,
+            radius=0.25,
+        )
         for k in range(40)
     ]
     packed = [frames.entity(entity.model_dump(mode="json")) for entity in entities]
@@ -49,7 +59,7 @@ def test_hand_packed_messages_are_the_models_messages() -> None:
 def test_a_welcome_carries_the_scene_that_was_packed_once() -> None:
     scene = ROOM.model_dump(mode="json")
     welcome = Welcome(
-        version=1,
+        version=VERSION,
         id=5,
         name="Ann",
         resume="token",
@@ -61,6 +71,8 @@ def test_a_welcome_carries_the_scene_that_was_packed_once() -> None:
         radius=0.25,
         max_speed=3.0,
         origin=(0.0, 0.0),
+        doors={"gate": True},
+        operator=False,
     )
     frame = frames.Welcomes(scene).frame(welcome.model_copy(update={"scene": {}}))
     assert decode_server(payload_of(frame)) == welcome

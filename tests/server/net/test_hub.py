@@ -2,13 +2,16 @@
 
 import asyncio
 import math
+from pathlib import Path
 
 import pytest
 
+from planning import Wall
 from protocol import VERSION, ByeCode, CloseCode, ErrorCode
-from protocol.messages import Bye, Chat, ChatLine, Error, Hello, Snapshot, WalkTo, Welcome
+from protocol.messages import Bye, Chat, ChatLine, Error, Hello, SetDoor, Snapshot, WalkTo, Welcome
 from tests.server.client import connected, joined
 from tests.server.conftest import Serving
+from tests.server.worlds import ROOM
 
 
 async def test_a_newcomer_is_told_who_and_where_they_are(serving: Serving) -> None:
@@ -65,12 +68,26 @@ async def test_walk_to_goes_straight_and_around(serving: Serving) -> None:
         assert client.ack == 2
 
 
-async def test_where_no_way_leads_a_person_is_told_and_stays(serving: Serving) -> None:
-    async with serving() as server, joined(server.port) as client:
-        await client.send(WalkTo(seq=1, x=5.0, y=5.0, layer=7))
+async def test_where_no_way_leads_a_person_is_told_and_stays(
+    serving: Serving, tmp_path: Path
+) -> None:
+    shut = ROOM.model_copy(update={"walls": (Wall(start=(10.0, 0.0), end=(10.0, 20.0)),)})
+    scene = tmp_path / "shut.json"
+    scene.write_text(shut.model_dump_json())
+    async with serving(scene=scene) as server, joined(server.port) as client:
+        await client.send(WalkTo(seq=1, x=15.0, y=5.0, z=0.5))
         error = await client.until(Error)
         assert error.error is ErrorCode.NO_PATH
-        assert "(5.00, 5.00) on layer 7" in error.text
+        assert "(15.00, 5.00, 0.50)" in error.text
+        await client.ticks(2)
+
+
+async def test_only_operators_move_doors(serving: Serving) -> None:
+    async with serving() as server, joined(server.port) as client:
+        assert client.welcome is not None
+        assert not client.welcome.operator
+        await client.send(SetDoor(name="gate", open=False))
+        assert (await client.until(Error)).error is ErrorCode.FORBIDDEN
         await client.ticks(2)
 
 
