@@ -6,6 +6,8 @@ Pure mathematics: no sockets, no clock, no random numbers of its own.
 from planning._crowd import PARAMETERS, Crowd, Decisions
 from planning._prediction_kernels import Prediction
 from planning.batch import Batch, PlanModel
+from planning.bodies import Body
+from planning.find_path import LayeredPath, PathStatus, find_path
 from planning.grid import LayeredGrid
 from planning.potential import Potential, Wave
 from planning.prediction import PredictionModel, TrackHistory
@@ -19,10 +21,13 @@ __all__ = [
     "PARAMETERS",
     "PEOPLE",
     "Batch",
+    "Body",
     "Crowd",
     "Decisions",
     "Door",
     "LayeredGrid",
+    "LayeredPath",
+    "PathStatus",
     "Place",
     "PlanModel",
     "Polygon",
@@ -42,5 +47,6 @@ __all__ = [
     "TrackHistory",
     "Wall",
     "Wave",
+    "find_path",
     "uncertain_bfp",
 ]

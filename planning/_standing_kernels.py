@@ -1,0 +1,78 @@
+"""Where a body stands that is said to be at some point, on bare arrays."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning._barrier_kernels import HAIR_M, crosses, to_raise
+from planning._footing import Footing
+from planning._jit import kernel
+from planning._layered import cell_index, cell_near
+from planning._stability_kernels import FORBIDDEN
+from planning._straightening_kernels import is_clear
+
+SNAP_M = 0.5
+"""A body may be moved so far to where it can stand."""
+FLOOR_M = 1.0
+"""A point belongs to a floor that is no further above or below it."""
+
+
+@kernel
+def stand(
+    footing: Footing,
+    classes: NDArray[np.uint8],
+    x: float,
+    y: float,
+    z: float,
+) -> tuple[int, float, float]:
+    """The cell where a body stands that is said to be at (x, y, z), and its place; -1: nowhere.
+
+    The point itself, if the body fits there. Else the centre of the nearest cell within `SNAP_M`
+    that is not Forbidden by `classes`; from a floor it must lie within one straight step, from
+    a hole it may lie anywhere.
+    """
+    arrays, body = footing.arrays, footing.body
+    own = cell_near(arrays, x, y, z)
+    if own >= 0 and abs(arrays.floors[own] - z) > FLOOR_M:
+        own = -1
+    floor, highest = z, FLOOR_M
+    if own >= 0:
+        floor, highest = float(arrays.floors[own]), body.step_on_m + HAIR_M
+        cx = arrays.x0 + (arrays.places[own, 2] + 0.5) * arrays.cell_m
+        cy = arrays.y0 + (arrays.places[own, 1] + 0.5) * arrays.cell_m
+        if classes[own] != FORBIDDEN and is_clear(footing, own, x, y, cx, cy):
+            return own, x, y
+    best, found, found_x, found_y = np.inf, -1, x, y
+    reach = int(SNAP_M / arrays.cell_m) + 1
+    j = int((y - arrays.y0) / arrays.cell_m)
+    i = int((x - arrays.x0) / arrays.cell_m)
+    for layer in range(arrays.pages.shape[0]):
+        for jj in range(j - reach, j + reach + 1):
+            for ii in range(i - reach, i + reach + 1):
+                cell = cell_index(arrays, layer, jj, ii)
+                if cell < 0 or classes[cell] == FORBIDDEN:
+                    continue
+                cx = arrays.x0 + (ii + 0.5) * arrays.cell_m
+                cy = arrays.y0 + (jj + 0.5) * arrays.cell_m
+                rise = abs(arrays.floors[cell] - floor)
+                away = np.hypot(np.hypot(cx - x, cy - y), rise)
+                if away >= best or np.hypot(cx - x, cy - y) > SNAP_M or rise > highest:
+                    continue
+                if own < 0 or _is_one_step(footing, own, cell, x, y, cx, cy):
+                    best, found, found_x, found_y = away, cell, cx, cy
+    return found, found_x, found_y
+
+
+@kernel
+def _is_one_step(
+    footing: Footing, own: int, cell: int, x: float, y: float, cx: float, cy: float
+) -> bool:
+    """Whether no barrier stops a body on the straight way from a point to a cell's centre."""
+    floors, body = footing.arrays.floors, footing.body
+    lowest = float(min(floors[own], floors[cell]))
+    highest = float(max(floors[own], floors[cell]))
+    for s in range(len(footing.near.barriers)):
+        barrier = footing.near.barriers[s]
+        step = to_raise(barrier, lowest, highest, body.height_m)
+        if step > body.step_on_m + HAIR_M and crosses(barrier, x, y, cx, cy):
+            return False
+    return True

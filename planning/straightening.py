@@ -1,0 +1,68 @@
+"""After the search: straight stretches instead of steps from cell to cell, then headings.
+
+Huang & Li, sec. 4.4.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning import _straightening_kernels as kernels
+from planning._footing import Footing
+from planning._straightening_kernels import Line
+
+_PASSES = 4
+_WORTH = 0.999
+"""A pass that makes the way no shorter than this part of what it was is the last."""
+
+
+def line_of_cells(
+    footing: Footing,
+    cells: NDArray[np.int32],
+    counts: NDArray[np.int32],
+    start: tuple[float, float],
+    goal: tuple[float, float],
+) -> Line:
+    """The way over the centres of cells, from a start in the first to a goal in the last."""
+    arrays = footing.arrays
+    around = np.concatenate([cells[:1], cells, cells[-1:]])
+    xy = np.empty((len(around), 2))
+    xy[:, 0] = arrays.x0 + (arrays.places[around, 2] + 0.5) * arrays.cell_m
+    xy[:, 1] = arrays.y0 + (arrays.places[around, 1] + 0.5) * arrays.cell_m
+    xy[0], xy[-1] = start, goal
+    return Line(xy, around, np.concatenate([counts[:1], counts, counts[-1:]]))
+
+
+def straighten(footing: Footing, line: Line) -> Line:
+    """Make a way shorter by straight stretches that are legal for the body, M included.
+
+    Straight stretches are walked on the floors, from cell to cell, with the body's exact distance
+    to walls. The result has a point in every cell that it crosses, so that it follows the floor
+    up and down. Cost O(points x log points).
+    """
+    length = kernels.length_of(line.xy)
+    for _ in range(_PASSES):
+        room = 3 * len(line.cells) + 8
+        out = Line(
+            np.empty((room, 2)), np.empty(room, dtype=np.int32), np.empty(room, dtype=np.int32)
+        )
+        used = kernels.straighten(footing, line, out)
+        line = Line(out.xy[:used], out.cells[:used], out.counts[:used])
+        before, length = length, kernels.length_of(line.xy)
+        if length >= _WORTH * before:
+            break
+    return line
+
+
+def headings(xy: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Where a body looks that walks a way (N, 2): radians from east, toward north, float64 (N,).
+
+    The tangent at each point, along the line between its neighbours.
+    """
+    if len(xy) < 2:
+        return np.zeros(len(xy))
+    along = np.empty_like(xy)
+    along[1:-1] = xy[2:] - xy[:-2]
+    along[0], along[-1] = xy[1] - xy[0], xy[-1] - xy[-2]
+    return np.arctan2(along[:, 1], along[:, 0])
