@@ -12,7 +12,6 @@ from benchmarks._pairs import (
     Answer,
     Bools,
     Floats,
-    Ints,
     Verdict,
     ground_points,
     last_reached,
@@ -81,12 +80,13 @@ class Comparison:
         }
 
 
-def random_pairs(
-    mesh: tuple[Floats, Ints], planners: tuple[Planner, Planner], count: int, seed: int
-) -> Floats:
-    """Pairs (count, 2, 3) of points that are ground to at least one of two planners."""
+def random_pairs(mesh: Floats, planners: tuple[Planner, Planner], count: int, seed: int) -> Floats:
+    """Pairs (count, 2, 3) of points that are ground to at least one of two planners.
+
+    `mesh` are triangles, float64 (T, 3, 3).
+    """
     random = np.random.default_rng(seed)
-    points = ground_points(*mesh, _CANDIDATES * count, random)
+    points = ground_points(mesh, _CANDIDATES * count, random)
     known = planners[0].stands(points) | planners[1].stands(points)
     return pairs_of(points, known, count, random)
 

@@ -13,10 +13,10 @@ from typing import Any, Final, Self
 
 import numpy as np
 
-from benchmarks._pairs import Answer, Bools, Floats, Ints
+from benchmarks._pairs import Answer, Bools, Floats
 
 RECAST: Final = Path(__file__).parent / "recast"
-REACH_M: Final = (0.5, 0.6)
+REACH_M: Final = (0.5, 1.0)
 """How far from a point its place on the ground may be: horizontally, vertically."""
 _ROUNDING: Final = 1e-6
 
@@ -48,13 +48,18 @@ class NavMeshSettings:
 
 
 class Detour:
-    """A Node.js process with one navigation mesh in it. Points are ours: z up, metres.
+    """A Node.js process with the navigation mesh of a mesh: triangles (T, 3, 3), metres, z up.
 
     `made` tells the milliseconds it took to make, its polygons and its size.
     """
 
-    def __init__(self, vertices: Floats, faces: Ints, settings: NavMeshSettings) -> None:
-        self._mesh, self._settings = (vertices, faces), settings
+    def __init__(self, mesh: Floats, settings: NavMeshSettings) -> None:
+        self._mesh, self._settings = mesh, settings
+        geometry = {
+            "positions": y_up(mesh).ravel().tolist(),
+            "indices": list(range(3 * len(mesh))),
+            "config": settings.config(),
+        }
         self._node = subprocess.Popen(
             [_node(), "detour.mjs"],
             cwd=RECAST,
@@ -62,11 +67,6 @@ class Detour:
             stdout=subprocess.PIPE,
             text=True,
         )
-        geometry = {
-            "positions": y_up(vertices).ravel().tolist(),
-            "indices": faces.ravel().tolist(),
-            "config": settings.config(),
-        }
         try:
             made = self._ask({"build": geometry})
         except RuntimeError:
@@ -87,7 +87,7 @@ class Detour:
     def eased(self) -> Iterator[tuple[str, Detour]]:
         """The same mesh with one rule eased at a time, in a process of its own."""
         for rule, settings in _eased(self._settings):
-            with Detour(*self._mesh, settings) as other:
+            with Detour(self._mesh, settings) as other:
                 yield rule, other
 
     def stands(self, points: Floats) -> Bools:

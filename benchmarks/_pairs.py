@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 STEEPEST_DEG: Final = 45.0
@@ -58,16 +57,19 @@ def verdict(ours: Answer, theirs: Answer) -> Verdict:
     return Verdict.ONLY_THEIRS if theirs.found else Verdict.NEITHER
 
 
-def ground_points(vertices: Floats, faces: Ints, count: int, random: np.random.Generator) -> Floats:
-    """Points (count, 3) spread evenly over what faces up and is not too steep to stand on."""
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
+def ground_points(triangles: Floats, count: int, random: np.random.Generator) -> Floats:
+    """Points (count, 3) spread evenly over what faces up and is not too steep to stand on.
+
+    `triangles` is float64 (T, 3, 3), z up.
+    """
+    a, b, c = (triangles[:, k] for k in range(3))
     normals = np.cross(b - a, c - a)
     doubled = np.linalg.norm(normals, axis=1)
     walkable = normals[:, 2] >= math.cos(math.radians(STEEPEST_DEG)) * doubled
     weights = np.where(walkable, doubled, 0.0)
     if not weights.any():
         raise ValueError("no triangle of the mesh faces up: is another axis up?")
-    chosen = random.choice(len(faces), size=count, p=weights / weights.sum())
+    chosen = random.choice(len(triangles), size=count, p=weights / weights.sum())
     u, v = random.random((2, count, 1))
     u, v = np.where(u + v > 1.0, 1.0 - u, u), np.where(u + v > 1.0, 1.0 - v, v)
     points: Floats = a[chosen] + u * (b - a)[chosen] + v * (c - a)[chosen]

@@ -9,9 +9,8 @@ import pytest
 from benchmarks._comparison import NO_GROUND, UNEXPLAINED, compare, random_pairs
 from benchmarks._pairs import Answer, Verdict
 
-FLOOR = (
-    np.array([[0, 0, 0], [30, 0, 0], [30, 4, 0], [0, 4, 0]], dtype=float),
-    np.array([[0, 1, 2], [0, 2, 3]]),
+FLOOR = np.array(
+    [[[0, 0, 0], [30, 0, 0], [30, 4, 0]], [[0, 0, 0], [30, 4, 0], [0, 4, 0]]], dtype=float
 )
 
 

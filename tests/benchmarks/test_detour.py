@@ -11,25 +11,17 @@ from benchmarks._detour import Detour, NavMeshSettings, missing, y_up, z_up
 SETTINGS = NavMeshSettings(radius_m=0.25, height_m=1.8, climb_m=0.6, cell_m=0.125)
 
 
-def floor(x0: float, x1: float, z: float) -> tuple[np.ndarray, np.ndarray]:
+def floor(x0: float, x1: float, z: float) -> np.ndarray:
     """A floor 4 m deep."""
-    corners = [[x0, 0, z], [x1, 0, z], [x1, 4, z], [x0, 4, z]]
-    return np.array(corners, dtype=float), np.array([[0, 1, 2], [0, 2, 3]])
-
-
-def together(*parts: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    starts = np.cumsum([0, *(len(vertices) for vertices, _ in parts)])
-    faces = [faces + start for (_, faces), start in zip(parts, starts[:-1], strict=True)]
-    return np.concatenate([vertices for vertices, _ in parts]), np.concatenate(faces)
+    a, b, c, d = [x0, 0, z], [x1, 0, z], [x1, 4, z], [x0, 4, z]
+    return np.array([[a, b, c], [a, c, d]], dtype=float)
 
 
 @contextmanager
-def detour(
-    mesh: tuple[np.ndarray, np.ndarray], settings: NavMeshSettings = SETTINGS
-) -> Iterator[Detour]:
+def detour(mesh: np.ndarray, settings: NavMeshSettings = SETTINGS) -> Iterator[Detour]:
     if absent := missing():
         pytest.skip(absent)
-    with Detour(*mesh, settings) as running:
+    with Detour(mesh, settings) as running:
         yield running
 
 
@@ -54,7 +46,7 @@ def test_axes_turn_forth_and_back() -> None:
 
 
 def test_step_is_climbed_by_the_tall_only() -> None:
-    mesh = together(floor(0, 6, 0.0), floor(6, 12, 0.5), floor(14, 20, 0.0))
+    mesh = np.concatenate([floor(0, 6, 0.0), floor(6, 12, 0.5), floor(14, 20, 0.0)])
     pairs = np.array(
         [[[1, 2, 0], [11, 2, 0.5]], [[1, 2, 0], [19, 2, 0]], [[1, 2, 0], [1, 9, 0]]], dtype=float
     )
@@ -72,7 +64,7 @@ def test_step_is_climbed_by_the_tall_only() -> None:
 
 def test_rules_are_eased_one_at_a_time() -> None:
     pair = np.array([[[1, 2, 0], [11, 2, 0.66]]])
-    with detour(together(floor(0, 6, 0.0), floor(6, 12, 0.66))) as refusing:
+    with detour(np.concatenate([floor(0, 6, 0.0), floor(6, 12, 0.66)])) as refusing:
         assert not refusing.ways(pair)[0].found
         assert [rule for rule, other in refusing.eased() if other.ways(pair)[0].found] == ["step"]
         assert not refusing.ways(pair)[0].found
@@ -90,9 +82,6 @@ def test_walkable_ground_lies_where_the_floor_is() -> None:
 
 
 def test_mesh_without_ground_is_told_of() -> None:
-    vertices, faces = floor(0, 6, 0.0)
-    with (
-        pytest.raises(RuntimeError, match="navigation mesh says"),
-        detour((vertices, faces[:, ::-1])),
-    ):
+    from_below = floor(0, 6, 0.0)[:, ::-1]
+    with pytest.raises(RuntimeError, match="navigation mesh says"), detour(from_below):
         pass

@@ -14,8 +14,9 @@ from benchmarks._pairs import (
     verdict,
 )
 
-SQUARE = np.array([[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]], dtype=float)
-UPWARD = np.array([[0, 1, 2], [0, 2, 3]])
+SQUARE = np.array(
+    [[[0, 0, 0], [4, 0, 0], [4, 4, 0]], [[0, 0, 0], [4, 4, 0], [0, 4, 0]]], dtype=float
+)
 
 
 def answer(*points: tuple[float, float, float]) -> Answer:
@@ -23,7 +24,7 @@ def answer(*points: tuple[float, float, float]) -> Answer:
 
 
 def test_points_cover_the_ground_evenly() -> None:
-    points = ground_points(SQUARE, UPWARD, 4000, np.random.default_rng(0))
+    points = ground_points(SQUARE, 4000, np.random.default_rng(0))
     assert points.shape == (4000, 3)
     assert points[:, 2].max() == points[:, 2].min() == 0.0
     quarters = np.histogram2d(points[:, 0], points[:, 1], bins=2, range=[(0, 4), (0, 4)])[0]
@@ -35,15 +36,14 @@ def test_walls_ceilings_and_steep_slopes_are_no_ground() -> None:
     wall = [[9, 0, 0], [9, 4, 0], [9, 4, 4]]
     steep = [[20, 0, 0], [21, 0, 1.2], [20, 4, 0]]
     gentle = [[30, 0, 0], [31, 0, 0.8], [30, 4, 0]]
-    vertices = np.concatenate([SQUARE, wall, steep, gentle])
-    faces = np.array([[0, 2, 1], [4, 5, 6], [7, 8, 9], [10, 11, 12]])
-    points = ground_points(vertices, faces, 50, np.random.default_rng(0))
+    mesh = np.array([SQUARE[0, ::-1].tolist(), wall, steep, gentle])
+    points = ground_points(mesh, 50, np.random.default_rng(0))
     assert points[:, 0].min() >= 30.0
 
 
 def test_mesh_on_its_head_is_told_of() -> None:
     with pytest.raises(ValueError, match="another axis up"):
-        ground_points(SQUARE, UPWARD[:, ::-1], 5, np.random.default_rng(0))
+        ground_points(SQUARE[:, ::-1], 5, np.random.default_rng(0))
 
 
 def test_pairs_join_different_points_of_the_ground() -> None:
