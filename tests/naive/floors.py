@@ -1,0 +1,182 @@
+"""Where a body may go, the long way: every cell against every other and every barrier."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning import Body
+from planning._layered import LayeredArrays
+from planning.stability import Stability
+from tests.naive.geometry import Point, point_segment_distance, segment_distance
+from tests.naive.waves import dijkstra
+
+Barrier = NDArray[np.float64]
+COMPASS = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))
+HAIR = 1e-4
+FLAT_SLOPE = 0.35
+
+
+class Floors:
+    """The floors of a zone and a body, one question at a time."""
+
+    def __init__(self, arrays: LayeredArrays, barriers: Barrier, body: Body) -> None:
+        self.arrays, self.barriers, self.body = arrays, barriers, body
+        self.cells = {
+            tuple(place): cell
+            for cell, place in enumerate(arrays.places.tolist())
+            if math.isfinite(arrays.floors[cell])
+        }
+
+    def floor(self, cell: int) -> float:
+        return float(self.arrays.floors[cell])
+
+    def ceiling(self, cell: int) -> float:
+        return float(self.arrays.ceilings[cell])
+
+    def centre(self, cell: int) -> Point:
+        _, j, i = self.arrays.places[cell].tolist()
+        a = self.arrays
+        return a.x0 + (i + 0.5) * a.cell_m, a.y0 + (j + 0.5) * a.cell_m
+
+    def to_raise(self, barrier: Barrier, *floors: float) -> float:
+        """How high the body must step to get past a barrier."""
+        z0, z1, rise = barrier[4:].tolist()
+        if z0 >= max(floors) + self.body.height_m - HAIR:
+            return 0.0
+        return max(0.0, min(z1 - min(floors), rise))
+
+    def stops_at(self, position: Point, floor: float, step_m: float) -> Iterator[float]:
+        """Distances to barriers that stop whoever can step no higher than that."""
+        for barrier in self.barriers:
+            if self.to_raise(barrier, floor) > step_m + HAIR:
+                yield point_segment_distance(position, tuple(barrier[:2]), tuple(barrier[2:4]))
+
+    def may_step(self, a: int, b: int) -> bool:
+        """Reachability of sec. 4.1 between two linked cells."""
+        low, high = sorted((self.floor(a), self.floor(b)))
+        if high - low > self.body.step_on_m + HAIR:
+            return False
+        if min(self.ceiling(a), self.ceiling(b)) - high < self.body.height_m - HAIR:
+            return False
+        return not any(self._bars(barrier, a, b) for barrier in self.barriers)
+
+    def _bars(self, barrier: Barrier, a: int, b: int) -> bool:
+        step = self.to_raise(barrier, self.floor(a), self.floor(b))
+        if step <= self.body.step_on_m + HAIR:
+            return False
+        way = self.centre(a), self.centre(b)
+        line = tuple(barrier[:2].tolist()), tuple(barrier[2:4].tolist())
+        touched = self.body.radius_m - HAIR
+        away = segment_distance(*way, *line)
+        ends = min(point_segment_distance(p, *line) for p in way)
+        return away < 1e-9 or (
+            step > self.body.leg_length_m + HAIR and away < touched and ends >= touched
+        )
+
+    def steps(self) -> dict[int, dict[int, int]]:
+        """For each cell where each of its links leads that the body may follow."""
+        return {
+            cell: {
+                d: other
+                for d, other in enumerate(self.arrays.links[cell].tolist())
+                if other >= 0 and self.may_step(cell, other)
+            }
+            for cell in self.cells.values()
+        }
+
+    def around(self, cell: int) -> Iterator[tuple[int, int, float]]:
+        """Rows, columns and distances of the centres of other cells that the disc touches."""
+        a = self.arrays
+        _, j, i = a.places[cell].tolist()
+        for jj in range(a.ny):
+            for ii in range(a.nx):
+                gaps = [max(0.0, abs(v) - 0.5) * a.cell_m for v in (jj - j, ii - i)]
+                if (jj, ii) != (j, i) and math.hypot(*gaps) < self.body.radius_m - 1e-6:
+                    yield jj, ii, a.cell_m * math.hypot(jj - j, ii - i)
+
+    def classify(self, cell: int) -> Stability:
+        """The five classes of sec. 4.2."""
+        by_heights = self._by_heights(cell)
+        floor, leg = self.floor(cell), self.body.leg_length_m + HAIR
+        flat = FLAT_SLOPE * self.arrays.cell_m + HAIR
+        found = by_heights
+        for barrier in self.barriers:
+            line = tuple(barrier[:2]), tuple(barrier[2:4])
+            if point_segment_distance(self.centre(cell), *line) >= self.body.radius_m - HAIR:
+                continue
+            step = self.to_raise(barrier, floor)
+            if 0.0 < barrier[6] <= self.body.step_on_m:
+                continue
+            if step > leg:
+                return Stability.FORBIDDEN
+            if step > flat and found == Stability.STABLE:
+                found = Stability.UNSTABLE
+        return found
+
+    def _by_heights(self, cell: int) -> Stability:
+        layer = int(self.arrays.places[cell, 0])
+        floor, ceiling = self.floor(cell), self.ceiling(cell)
+        height, leg = self.body.height_m - HAIR, self.body.leg_length_m + HAIR
+        if ceiling - floor < height:
+            return Stability.FORBIDDEN
+        around = list(self.around(cell))
+        own = [(self.cells.get((layer, j, i)), away) for j, i, away in around]
+        for other, _ in own:
+            if other is None or abs(self.floor(other) - floor) > leg:
+                continue
+            if min(ceiling, self.ceiling(other)) - max(floor, self.floor(other)) < height:
+                return Stability.FORBIDDEN
+        if any(other is None or abs(self.floor(other) - floor) > leg for other, _ in own):
+            for layers, found in (
+                (range(layer + 1, len(self.arrays.pages)), Stability.UP_STAIR),
+                (range(layer), Stability.DOWN_STAIR),
+            ):
+                others = [self.cells.get((m, j, i)) for m in layers for j, i, _ in around]
+                if any(o is not None and abs(self.floor(o) - floor) <= leg for o in others):
+                    return found
+            return Stability.FORBIDDEN
+        if any(
+            other is not None and abs(self.floor(other) - floor) > FLAT_SLOPE * away + HAIR
+            for other, away in own
+        ):
+            return Stability.UNSTABLE
+        return Stability.STABLE
+
+
+def ways_left(
+    steps: dict[int, dict[int, int]], classes: NDArray[np.uint8], goal: int
+) -> dict[int, float]:
+    """Shortest ways to a goal, in cells, over steps between cells that are not Forbidden."""
+    ways: dict[int, dict[int, float]] = {cell: {} for cell in steps}
+    for cell, links in steps.items():
+        for d, other in links.items():
+            if classes[cell] and classes[other]:
+                ways[other][cell] = 99 / 70 if d % 2 else 1.0
+    return dijkstra(ways, goal)
+
+
+def legal_ways(
+    steps: dict[int, dict[int, int]], classes: NDArray[np.uint8], start: int, most: int
+) -> dict[int, float]:
+    """Shortest legal ways from a start, in cells, by trying all states (cell, count)."""
+    ways: dict[tuple[int, int], dict[tuple[int, int], float]] = {}
+    queue = deque([(start, 0)])
+    while queue:
+        state = queue.popleft()
+        if state in ways:
+            continue
+        ways[state] = {}
+        for d, other in steps[state[0]].items():
+            count = 0 if classes[other] == Stability.STABLE else state[1] + 1
+            if classes[other] and count < most:
+                ways[state][other, count] = 99 / 70 if d % 2 else 1.0
+                queue.append((other, count))
+    shortest: dict[int, float] = {}
+    for (cell, _), length in dijkstra(ways, (start, 0)).items():
+        shortest[cell] = min(length, shortest.get(cell, math.inf))
+    return shortest
