@@ -20,6 +20,7 @@ COMMANDS: Final = {
     "serve": Command("server.cli", "run a world for people and actors"),
     "bots": Command("bots.cli", "send people made of code: load, or a recorded crowd"),
     "evaluate": Command("evaluation.cli", "measure actors among recorded people"),
+    "scene": Command("scenery.cli", "check a scene, draw it"),
     "demo": Command("esplanade.demo", "run the demo world with actors and a few visitors"),
 }
 
@@ -66,6 +67,7 @@ def _help() -> str:
         "  esplanade serve --scene my.json --actors 10",
         "  esplanade bots --count 200 --duration 60",
         "  esplanade evaluate zara1.csv --policy esplanade straight",
+        "  esplanade scene check my.json",
         "",
         "`esplanade COMMAND --help` explains a command and all its options.",
     ]

@@ -1,0 +1,1 @@
+"""What makers of scenes need: check a scene, draw it."""

@@ -1,0 +1,74 @@
+"""`esplanade scene`: check a scene, draw it."""
+
+import argparse
+import json
+import sys
+from collections.abc import Callable, Sequence
+from typing import Final
+
+from rich.console import Console
+
+from planning.scene_file import SceneError
+from scenery import inventory, pictures
+from scenery.console import UsageError, open_scene, progress
+from scenery.options import parser
+from scenery.views import layer_views
+
+EXIT_WELL: Final = 0
+EXIT_WRONG: Final = 1
+EXIT_USAGE: Final = 2
+
+
+def run(argv: Sequence[str]) -> int:
+    """Do what the command line says; returns the exit code."""
+    options = parser().parse_args(argv)
+    try:
+        return _COMMANDS[options.command](options)
+    except SceneError as error:
+        print(error, file=sys.stderr)
+        return EXIT_WRONG
+    except UsageError as error:
+        print(f"esplanade scene {options.command}: {error}", file=sys.stderr)
+        return EXIT_USAGE
+
+
+def _check(options: argparse.Namespace) -> int:
+    try:
+        scene = open_scene(options.scene)
+    except SceneError as error:
+        if not options.json:
+            raise
+        print(json.dumps({"faults": error.faults}, indent=1))
+        return EXIT_WRONG
+    found = inventory.take_inventory(scene, options.cell)
+    if options.json:
+        print(json.dumps(found.figures(), indent=1))
+    else:
+        inventory.show(Console(), found)
+        for fault in found.faults:
+            print(f"{options.scene}: {fault}", file=sys.stderr)
+    return EXIT_WRONG if found.faults else EXIT_WELL
+
+
+def _render(options: argparse.Namespace) -> int:
+    pictures.require_matplotlib()
+    scene = open_scene(options.scene)
+    try:
+        options.out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UsageError(f"--out: {error}") from None
+    views = layer_views(scene, options.cell, options.body, options.start, options.goal)
+    files = []
+    with progress() as shown:
+        task = shown.add_task("drawing", total=len(views))
+        for view in views:
+            files += pictures.draw_layer(view, options.out)
+            shown.advance(task)
+    print(*files, sep="\n")
+    return EXIT_WELL
+
+
+_COMMANDS: Final[dict[str, Callable[[argparse.Namespace], int]]] = {
+    "check": _check,
+    "render": _render,
+}

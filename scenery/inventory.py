@@ -1,0 +1,119 @@
+"""What a scene holds: extent, layers, cells, memory, and who gets where in it."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass
+from typing import Any, Final
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from planning import LayeredGrid, Scene
+from scenery.reach import Reach, reach_of
+from scenery.values import PRESETS
+
+_PARTS: Final = ("polygons", "walls", "stairs", "doors", "spawns", "places")
+
+
+@dataclass(frozen=True)
+class Layer:
+    """One layer's cells and heights."""
+
+    cells: int
+    area_m2: float
+    lowest_m: float
+    highest_m: float
+
+
+@dataclass(frozen=True)
+class Inventory:
+    """All that is counted."""
+
+    name: str
+    extent_m: tuple[float, float, float]
+    """West to east, south to north, lowest to highest floor."""
+    cell_m: float
+    layers: tuple[Layer, ...]
+    memory_bytes: int
+    """Of the layered cells and their links."""
+    parts: Mapping[str, int]
+    reach: Mapping[str, Reach]
+    """By the name of the body."""
+
+    @property
+    def cells(self) -> int:
+        """Cells that have a floor, over all layers."""
+        return sum(layer.cells for layer in self.layers)
+
+    @property
+    def unreached(self) -> tuple[str, ...]:
+        """Places that nobody reaches."""
+        return _common(reach.places_missed for reach in self.reach.values())
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """What makes a scene of little use although it is well formed."""
+        blocked = _common(reach.spawns_blocked for reach in self.reach.values())
+        return (
+            *(() if self.cells else ("there is no floor to stand on",)),
+            *(f"{spawn}: nobody can stand there" for spawn in blocked),
+            *(f"place {place!r}: nobody gets there from the spawns" for place in self.unreached),
+        )
+
+    def figures(self) -> dict[str, Any]:
+        """Everything, ready for JSON."""
+        return {**asdict(self), "cells": self.cells, "faults": list(self.faults)}
+
+
+def take_inventory(scene: Scene, cell_m: float) -> Inventory:
+    """Count what a scene holds. Doors are taken to be open: what is behind them can be reached."""
+    opened = tuple(door.model_copy(update={"open": True}) for door in scene.doors)
+    scene = scene.model_copy(update={"doors": opened})
+    grid = LayeredGrid.from_scene(scene, cell_m)
+    surfaces = grid.surfaces
+    layers = []
+    for number in range(surfaces.layer_count):
+        floors = surfaces.floors[surfaces.layers == number]
+        if len(floors):
+            area_m2 = len(floors) * cell_m**2
+            layers.append(Layer(len(floors), area_m2, float(floors.min()), float(floors.max())))
+    x0, y0, x1, y1 = scene.bounds
+    low, high = (float(surfaces.floors.min()), float(surfaces.floors.max())) if layers else (0, 0)
+    return Inventory(
+        scene.name,
+        (x1 - x0, y1 - y0, high - low),
+        cell_m,
+        tuple(layers),
+        sum(part.nbytes for part in grid.layered if isinstance(part, np.ndarray)),
+        {part: len(getattr(scene, part)) for part in _PARTS},
+        {name: reach_of(grid, scene, preset()) for name, preset in PRESETS.items()},
+    )
+
+
+def show(console: Console, found: Inventory) -> None:
+    """Print it for people."""
+    width, depth, height = found.extent_m
+    parts = ", ".join(f"{count} {part}" for part, count in found.parts.items() if count)
+    console.print(f"[bold]{found.name}[/bold]  {width:g} m × {depth:g} m, floors over {height:g} m")
+    console.print(f"{parts}\n", highlight=False)
+    table = Table("layer", *(("cells", "area m²", "floors m")), box=None, pad_edge=False)
+    for number, layer in enumerate(found.layers):
+        heights = f"{layer.lowest_m:.2f} to {layer.highest_m:.2f}"
+        table.add_row(str(number), str(layer.cells), f"{layer.area_m2:.0f}", heights)
+    console.print(table)
+    console.print(
+        f"{found.cells} cells of {found.cell_m:g} m, {found.memory_bytes / 2**20:.1f} MiB\n"
+    )
+    for name, reach in found.reach.items():
+        missed = ", but not " + ", ".join(reach.places_missed) if reach.places_missed else ""
+        console.print(
+            f"{name:<6} can stand in {reach.standing:.1%} of it, and comes from the spawns to "
+            f"{reach.reached:.1%} of that{missed}",
+            soft_wrap=True,
+        )
+
+
+def _common(groups: Iterable[tuple[str, ...]]) -> tuple[str, ...]:
+    """What all of them have, in the order of the first."""
+    first, *others = groups
+    return tuple(name for name in first if all(name in other for other in others))

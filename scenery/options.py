@@ -1,0 +1,97 @@
+"""The options of `esplanade scene`."""
+
+import argparse
+from pathlib import Path
+from typing import Final
+
+from scenery.values import body, number, where
+
+DEFAULT_CELL_M: Final = 0.25
+"""What the server takes."""
+DESCRIPTION: Final = "Check a scene, or draw it floor by floor."
+EPILOG: Final = """\
+examples:
+  esplanade scene check scenes/gallery.json
+  esplanade scene render scenes/gallery.json --body child --out pictures
+  esplanade scene render my.json --from gate --to 12,3,3.5 --out pictures
+
+bodies: adult, child, or a preset with other measures in metres, such as
+child,height=1.1 or radius=0.3,height=1.9,step=0.4,leg=0.9,edge=24 (an adult otherwise;
+edge: how many cells in a row it may stay on an edge)
+
+exit code: 0 all is well, 1 something is wrong with the scene, 2 wrong usage, or a file that
+cannot be read or written
+"""
+
+
+def parser() -> argparse.ArgumentParser:
+    """The commands; the help of the whole shows how each is called."""
+    made = argparse.ArgumentParser(
+        prog="esplanade scene",
+        description=DESCRIPTION,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    commands = made.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    parts = [_check(commands), _render(commands)]
+    usages = "".join(part.format_usage().replace("usage: ", "  ") for part in parts)
+    made.epilog = f"usage of each:\n{usages}\n{EPILOG}"
+    return made
+
+
+_Commands = argparse._SubParsersAction  # noqa: SLF001 - argparse names the type nowhere else
+
+
+def _check(commands: "_Commands[argparse.ArgumentParser]") -> argparse.ArgumentParser:
+    made = commands.add_parser(
+        "check",
+        help="say what is wrong and where, or what the scene holds",
+        description="Say what is wrong with a scene and where, or what it holds: its extent, "
+        "layers, cells, and who gets where from its spawns.",
+        allow_abbrev=False,
+    )
+    made.add_argument("scene", metavar="FILE", type=Path, help="scene, a JSON file")
+    made.add_argument("--json", action="store_true", help="print it as JSON")
+    _add_cell(made)
+    return made
+
+
+def _render(commands: "_Commands[argparse.ArgumentParser]") -> argparse.ArgumentParser:
+    made = commands.add_parser(
+        "render",
+        help="draw every layer: heights, reachability, classes, a path",
+        description="Draw every layer of a scene as a body finds it, as PNG: heights, "
+        "reachability, the five classes, and potential and path between two points.",
+        allow_abbrev=False,
+    )
+    made.add_argument("scene", metavar="FILE", type=Path, help="scene, a JSON file")
+    made.add_argument(
+        "--out", metavar="DIR", type=Path, required=True, help="where the pictures go"
+    )
+    made.add_argument(
+        "--body",
+        metavar="BODY",
+        type=body,
+        default="adult",
+        help="adult, child, or measures in metres [default: adult]",
+    )
+    for option, names in (("from", "start"), ("to", "goal")):
+        made.add_argument(
+            f"--{option}",
+            dest=names,
+            metavar="PLACE|X,Y,Z",
+            type=where,
+            help="a place's name or a point in metres [default: two places far apart]",
+        )
+    _add_cell(made)
+    return made
+
+
+def _add_cell(made: argparse.ArgumentParser) -> None:
+    made.add_argument(
+        "--cell",
+        metavar="M",
+        type=number(0.05, 2.0),
+        default=DEFAULT_CELL_M,
+        help=f"edge of a cell in metres [default: {DEFAULT_CELL_M}]",
+    )

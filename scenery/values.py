@@ -1,0 +1,88 @@
+"""What words on the command line mean: bodies, points, numbers."""
+
+import argparse
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Final
+
+from planning.bodies import Body
+
+PRESETS: Final = {"adult": Body.adult, "child": Body.child}
+_MEASURES: Final = {
+    "radius": "radius_m",
+    "height": "height_m",
+    "step": "step_on_m",
+    "leg": "leg_length_m",
+    "edge": "edge_cells",
+}
+
+Point = tuple[float, float, float]
+"""x, y, z in metres."""
+Where = str | Point
+"""The name of a place, or a point."""
+
+
+def body(text: str) -> Body:
+    """A preset, or measures that differ from it."""
+    first, *others = text.split(",")
+    preset, measures = ("adult", [first, *others]) if "=" in first else (first, others)
+    if preset not in PRESETS:
+        raise argparse.ArgumentTypeError(f"{preset!r} is no body; there are {', '.join(PRESETS)}")
+    changes: dict[str, float | int] = {}
+    for measure in measures:
+        name, _, number = measure.partition("=")
+        if name not in _MEASURES:
+            raise argparse.ArgumentTypeError(
+                f"{name!r} is no measure; there are {', '.join(_MEASURES)}"
+            )
+        try:
+            changes[_MEASURES[name]] = int(number) if name == "edge" else float(number)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"{name}: {number!r} is no number") from None
+    try:
+        return replace(PRESETS[preset](), **changes)  # type: ignore[arg-type]
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def where(text: str) -> Where:
+    """A point if it looks like one, else a name."""
+    return point(text) if text.count(",") == 2 else text
+
+
+def point(text: str) -> Point:
+    """x, y, z in metres."""
+    try:
+        x, y, z = (float(part) for part in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not X,Y,Z in metres") from None
+    if not all(math.isfinite(part) for part in (x, y, z)):
+        raise argparse.ArgumentTypeError(f"{text!r} is not finite")
+    return x, y, z
+
+
+def number(least: float, most: float) -> Callable[[str], float]:
+    """Of a number within limits."""
+
+    def read(text: str) -> float:
+        value = float(text)
+        if not least <= value <= most:
+            raise argparse.ArgumentTypeError(f"must lie between {least:g} and {most:g}")
+        return value
+
+    read.__name__ = "number"
+    return read
+
+
+def whole(least: int, most: int) -> Callable[[str], int]:
+    """Of a whole number within limits."""
+
+    def read(text: str) -> int:
+        value = int(text)
+        if not least <= value <= most:
+            raise argparse.ArgumentTypeError(f"must lie between {least} and {most}")
+        return value
+
+    read.__name__ = "whole number"
+    return read

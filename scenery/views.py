@@ -1,0 +1,163 @@
+"""What a body finds on every layer of a scene, ready to be drawn."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning import LayeredGrid, Scene
+from planning._footing import Footing
+from planning.bodies import Body
+from planning.find_path import LayeredPath, PathStatus, find_path
+from planning.footing import footing_of
+from planning.wavefront import metres, spread_wave
+from scenery.console import UsageError
+from scenery.pictures import LayerView, Mark
+from scenery.reach import cell_near, centres, reached_cells, spawn_cells
+from scenery.values import Point, Where
+
+Floats = NDArray[np.float64]
+
+_NEAR_M = 1.0
+"""An end of the path may lie so far from where the body can stand."""
+_ALONG = np.array([0.05, 0.275, 0.5, 0.725, 0.95])
+"""Where along a barrier it is looked whether it stands on a layer."""
+
+
+def layer_views(
+    scene: Scene, cell_m: float, body: Body, start: Where | None, goal: Where | None
+) -> list[LayerView]:
+    """One view of each layer, with the path from start to goal, or between two places.
+
+    Raises
+    ------
+    UsageError
+        An end of the path is no place, or nobody can stand there.
+    """
+    grid = LayeredGrid.from_scene(scene, cell_m)
+    footing = footing_of(grid, body)
+    reached = reached_cells(footing, spawn_cells(footing, scene))
+    if not reached.any():
+        raise UsageError("nobody of this body comes in: it cannot stand at any spawn")
+    first = _end("--from", scene, start) if start else _entrance(scene, footing, reached)
+    ways = metres(footing, spread_wave(footing, _cell("--from", footing, first)))
+    last = _end("--to", scene, goal) if goal else _farthest(scene, footing, ways)
+    path = find_path(grid, first, last, body=body)
+    distance = metres(footing, spread_wave(footing, _cell("--to", footing, last)))
+    return [
+        LayerView(
+            title=scene.name,
+            number=number,
+            body=_words(body),
+            corner=(footing.arrays.x0, footing.arrays.y0),
+            cell_m=cell_m,
+            floors=_dense(footing, number, footing.arrays.floors, np.nan),
+            reachable=_dense(footing, number, reached, False),
+            classes=_dense(footing, number, footing.classes.astype(np.int8), -1),
+            distance=_dense(footing, number, distance, np.nan),
+            walls=_walls_on(_dense(footing, number, footing.arrays.floors, np.nan), footing, body),
+            marks=_marks(scene, grid, number),
+            way=_way_words(path),
+            path=path.points[:, :2],
+            path_layers=path.layers,
+        )
+        for number in range(grid.surfaces.layer_count)
+    ]
+
+
+def _end(option: str, scene: Scene, where: Where) -> Point:
+    """The point that an end of the path means."""
+    if not isinstance(where, str):
+        return where
+    try:
+        place = scene.place(where)
+    except KeyError as error:
+        raise UsageError(f"{option}: {error.args[0]}") from None
+    return *place.position, place.z_m
+
+
+def _cell(option: str, footing: Footing, point: Point) -> int:
+    cell = cell_near(footing, point, _NEAR_M)
+    if cell < 0:
+        x, y, z = point
+        raise UsageError(f"{option}: this body cannot stand near ({x:g}, {y:g}, {z:g})")
+    return cell
+
+
+def _entrance(scene: Scene, footing: Footing, reached: NDArray[np.bool_]) -> Point:
+    """Where avatars come in, or the first place they get to."""
+    for part in (*scene.spawns, *scene.places):
+        point = (*part.position, part.z_m)
+        cell = cell_near(footing, point, _NEAR_M)
+        if cell >= 0 and reached[cell]:
+            return point
+    return _centre(footing, int(reached.argmax()))
+
+
+def _farthest(scene: Scene, footing: Footing, ways: NDArray[np.float32]) -> Point:
+    """The place with the longest way to it; without places, the cell."""
+    lengths = np.where(np.isfinite(ways), ways, -1.0)
+    points: list[Point] = [(*place.position, place.z_m) for place in scene.places]
+    cells = {point: cell_near(footing, point, _NEAR_M) for point in points}
+    return max(
+        (point for point in points if cells[point] >= 0),
+        key=lambda point: float(lengths[cells[point]]),
+        default=_centre(footing, int(lengths.argmax())),
+    )
+
+
+def _centre(footing: Footing, cell: int) -> Point:
+    x, y, z = (float(value) for value in centres(footing)[cell])
+    return x, y, z
+
+
+def _dense(footing: Footing, layer: int, values: NDArray[Any], nothing: float) -> NDArray[Any]:
+    """A layer's values by row and column, `nothing` where it has no floor."""
+    a = footing.arrays
+    own = (a.places[:, 0] == layer) & np.isfinite(a.floors)
+    dense = np.full((a.ny, a.nx), nothing, dtype=values.dtype)
+    dense[a.places[own, 1], a.places[own, 2]] = values[own]
+    return dense
+
+
+def _walls_on(floors: Floats, footing: Footing, body: Body) -> Floats:
+    """The barriers that stop a body where it stands beside them on one layer, float64 (S, 4)."""
+    rows, a = footing.near.barriers, footing.arrays
+    ends = rows[:, :4].reshape(-1, 2, 2)
+    along = ends[:, 1] - ends[:, 0]
+    normal = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    normal *= 0.5 * a.cell_m / np.maximum(np.hypot(*along.T), 1e-9)[:, None]
+    stops = np.zeros(len(rows), dtype=np.bool_)
+    for share in _ALONG:
+        for side in (-1.0, 1.0):
+            x, y = (ends[:, 0] + share * along + side * normal).T
+            i, j = ((x - a.x0) // a.cell_m).astype(int), ((y - a.y0) // a.cell_m).astype(int)
+            inside = (i >= 0) & (i < a.nx) & (j >= 0) & (j < a.ny)
+            z = np.full(len(rows), np.nan)
+            z[inside] = floors[j[inside], i[inside]]
+            stops |= (rows[:, 4] < z + body.height_m) & (rows[:, 5] > z + body.step_on_m)
+    return rows[stops & (rows[:, 6] > body.step_on_m), :4]
+
+
+def _marks(scene: Scene, grid: LayeredGrid, layer: int) -> tuple[Mark, ...]:
+    """Spawns and places of a layer."""
+    spawns = [(f"spawn {i}", spawn, True) for i, spawn in enumerate(scene.spawns)]
+    places = [(place.name, place, False) for place in scene.places]
+    return tuple(
+        Mark(name, part.position, is_spawn)
+        for name, part, is_spawn in (*spawns, *places)
+        if grid.layer_near(part.position, part.z_m) == layer
+    )
+
+
+def _way_words(path: LayeredPath) -> str:
+    if path.status is PathStatus.FOUND:
+        return f"{path.length_m:.1f} m"
+    return path.status.name.lower().replace("_", " ")
+
+
+def _words(body: Body) -> str:
+    return (
+        f"{body.height_m:g} m tall, radius {body.radius_m:g} m,\n"
+        f"steps {body.step_on_m:g} m, leg {body.leg_length_m:g} m"
+    )

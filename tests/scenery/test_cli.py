@@ -1,0 +1,127 @@
+"""The command: what it prints and writes, exit codes, and what wrong usage is told."""
+
+import json
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from scenery import cli
+from tests.scenery.worlds import LOFT, write
+
+needs_matplotlib = pytest.mark.skipif(find_spec("matplotlib") is None, reason="no matplotlib")
+
+
+def run(*arguments: object) -> int:
+    return cli.run([str(argument) for argument in arguments])
+
+
+def refused(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
+    """What the command says when it does not do it."""
+    try:
+        code: object = run(*arguments)
+    except SystemExit as end:  # how the parser of options refuses
+        code = end.code
+    assert code == cli.EXIT_USAGE
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert "Traceback" not in shown.err
+    return shown.err
+
+
+def test_check_says_what_a_scene_holds(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("check", write(tmp_path, LOFT)) == cli.EXIT_WELL
+    shown = capsys.readouterr()
+    assert "Loft" in shown.out
+    assert "but not den" in shown.out
+    assert shown.err == ""
+
+
+def test_check_says_what_is_wrong_and_where(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    polygons = [*LOFT["polygons"][:3], {**LOFT["polygons"][3], "height_m": -1}]
+    path = write(tmp_path, {**LOFT, "polygons": polygons})
+    assert run("check", path) == cli.EXIT_WRONG
+    shown = capsys.readouterr()
+    assert shown.err == f"{path}: polygons.3.height_m: must be > 0, got -1\n"
+    assert shown.out == ""
+    assert run("check", path, "--json") == cli.EXIT_WRONG
+    faults = json.loads(capsys.readouterr().out)["faults"]
+    assert faults == ["polygons.3.height_m: must be > 0, got -1"]
+
+
+def test_check_names_places_that_nobody_reaches(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write(tmp_path, {**LOFT, "walls": [{"start": [3, 6], "end": [4.5, 6]}]})
+    assert run("check", path) == cli.EXIT_WRONG
+    shown = capsys.readouterr()
+    assert shown.err == f"{path}: place 'den': nobody gets there from the spawns\n"
+    assert "Loft" in shown.out
+
+
+def test_check_gives_figures_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = write(tmp_path, LOFT)
+    assert run("check", path, "--json", "--cell", "0.5") == cli.EXIT_WELL
+    figures = json.loads(capsys.readouterr().out)
+    assert figures["cell_m"] == 0.5
+    assert figures["layers"][1]["cells"] == 8 * 16
+    assert figures["faults"] == []
+
+
+@needs_matplotlib
+def test_render_draws_every_layer(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "made" / "here"
+    arguments = ["--body", "child,height=1.2", "--from", "den", "--to", "10,4,3", "--out", out]
+    assert run("render", write(tmp_path, LOFT), *arguments) == cli.EXIT_WELL
+    files = sorted(file.name for file in out.iterdir())
+    subjects = ("classes", "heights", "path", "reachability")
+    assert files == [f"layer-{n}-{subject}.png" for n in (0, 1) for subject in subjects]
+    shown = capsys.readouterr()
+    assert all(str(out / name) in shown.out for name in files)
+
+
+@needs_matplotlib
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--to", "moon"], "--to: no place named 'moon'"),
+        (["--body", "giant"], "'giant' is no body"),
+        (["--from", "1,2,x"], "is not X,Y,Z"),
+        (["--cell", "9"], "must lie between 0.05 and 2"),
+    ],
+)
+def test_render_refuses_what_it_cannot_draw(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
+) -> None:
+    path = write(tmp_path, LOFT)
+    assert message in refused(capsys, "render", path, "--out", tmp_path / "out", *arguments)
+
+
+def test_a_folder_that_cannot_be_made_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write(tmp_path, LOFT)
+    assert "--out" in refused(capsys, "render", path, "--out", path / "out")
+
+
+@pytest.mark.parametrize("command", ["check", "render"])
+def test_a_file_that_is_not_there_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], command: str
+) -> None:
+    more = ["--out", tmp_path] if command == "render" else []
+    said = refused(capsys, command, tmp_path / "none.json", *more)
+    assert f"esplanade scene {command}: {tmp_path / 'none.json'}: cannot be read" in said
+
+
+def test_the_help_of_the_whole_names_all_options(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        run("--help")
+    shown = capsys.readouterr().out
+    for option in ("--json", "--cell", "--body", "--from", "--to", "--out"):
+        assert option in shown
+
+
+def test_a_command_is_needed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert "COMMAND" in refused(capsys)

@@ -1,0 +1,57 @@
+"""What words on the command line mean."""
+
+import argparse
+
+import pytest
+
+from planning.bodies import Body
+from scenery.values import body, number, point, where, whole
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("adult", Body.adult()),
+        ("child", Body.child()),
+        ("child,height=1.1", Body(0.20, 1.10, 0.30, 0.65, 24)),
+        ("height=1.9,step=0.4,edge=12", Body(0.25, 1.90, 0.40, 0.90, 12)),
+        ("radius=0.3,leg=0.8", Body(0.30, 1.80, 0.60, 0.80, 24)),
+    ],
+)
+def test_a_body_is_a_preset_or_its_measures(text: str, meant: Body) -> None:
+    assert body(text) == meant
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("giant", "'giant' is no body; there are adult, child"),
+        ("adult,width=1", "'width' is no measure; there are radius, height, step, leg, edge"),
+        ("height=tall", "height: 'tall' is no number"),
+        ("edge=2.5", "edge: '2.5' is no number"),
+        ("height=-1", "height_m must lie between"),
+        ("step=1.1", "leg_length_m"),
+    ],
+)
+def test_what_is_no_body_is_refused(text: str, message: str) -> None:
+    with pytest.raises(argparse.ArgumentTypeError, match=message):
+        body(text)
+
+
+def test_two_commas_make_a_point_and_everything_else_is_a_name() -> None:
+    assert where("1,2.5,-3") == (1.0, 2.5, -3.0)
+    assert where("gate, north") == "gate, north"
+
+
+@pytest.mark.parametrize("text", ["1,2", "1,2,x", "1,2,3,4", "1,2,inf", "nan,1,1"])
+def test_what_is_no_point_is_refused(text: str) -> None:
+    with pytest.raises(argparse.ArgumentTypeError):
+        point(text)
+
+
+def test_numbers_keep_to_their_limits() -> None:
+    assert number(0.05, 2.0)("0.25") == 0.25
+    assert whole(0, 8)("8") == 8
+    for read, text in ((number(0.05, 2.0), "3"), (number(0.05, 2.0), "nan"), (whole(0, 8), "9")):
+        with pytest.raises(argparse.ArgumentTypeError, match="must lie between"):
+            read(text)
