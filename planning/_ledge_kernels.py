@@ -3,20 +3,35 @@
 A ledge is written as a barrier: x0, y0, x1, y1, z0, z1, rise.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
+from planning._geometry_kernels import segments_cross
 from planning._jit import inlined, kernel
 from planning._layered import LINK_COLUMNS, LINK_M, LINK_ROWS, LayeredArrays, cell_index
 from planning._surface_kernels import LOWEST_M, SolidArrays, SolidColumns, top_at
 
-LEAST_STEP_M = 0.05
-"""Floors that differ by less are as good as level."""
+LEAST_STEP_M = 0.1
+"""Floors that differ by less are as good as level: everybody steps that high."""
 _BELOW_M = 0.05
 _ABOVE_M = 2.0
+_LINTEL_M = 0.2
+"""More than what a body may lack under a lintel, less than what it steps on top of one."""
 _HIGHEST_M = 2.5
 """Ceilings further above a floor than this hinder nobody."""
 _SAME_M = 1e-4
+
+
+class Sides(NamedTuple):
+    """What is known beside floors: the solids of a scene, the steep faces of a mesh."""
+
+    solids: SolidColumns
+    face_starts: NDArray[np.int64]
+    """(columns + 1,): the faces of each column (CSR)."""
+    faces: NDArray[np.float64]
+    """(R, 6): x0, y0, x1, y1, z0, z1 of the pieces of faces in a column, metres."""
 
 
 @inlined
@@ -44,6 +59,24 @@ def _solid_stops(columns: SolidColumns, c: int, x: float, y: float, floor: float
 
 
 @kernel
+def _face_between(
+    sides: Sides, arrays: LayeredArrays, cell: int, d: int, low: float, high: float
+) -> bool:
+    """Whether one face between a cell and its neighbour reaches from `low` or less to `high`."""
+    j, i = arrays.places[cell, 1], arrays.places[cell, 2]
+    x = arrays.x0 + (i + 0.5) * arrays.cell_m
+    y = arrays.y0 + (j + 0.5) * arrays.cell_m
+    xx, yy = x + LINK_COLUMNS[d] * arrays.cell_m, y + LINK_ROWS[d] * arrays.cell_m
+    own = j * arrays.nx + i
+    for c in (own, own + LINK_ROWS[d] * arrays.nx + LINK_COLUMNS[d]):
+        for f in range(sides.face_starts[c], sides.face_starts[c + 1]):
+            x0, y0, x1, y1, z0, z1 = sides.faces[f]
+            if z0 < low and z1 > high and segments_cross(x, y, xx, yy, x0, y0, x1, y1):
+                return True
+    return False
+
+
+@kernel
 def _carrier(columns: SolidColumns, c: int, x: float, y: float, floor: float) -> int:
     """The solid whose top is that floor; -1: the ground."""
     for m in range(columns.starts[c], columns.starts[c + 1]):
@@ -56,7 +89,7 @@ def _carrier(columns: SolidColumns, c: int, x: float, y: float, floor: float) ->
 @kernel
 def _outline_between(
     solids: SolidArrays, k: int, axis: int, line: tuple[float, float, float, float]
-) -> tuple[float, float, float, float]:
+) -> tuple[bool, tuple[float, float, float, float]]:
     """Where a solid's outline really passes between two cells that differ along an axis.
 
     `line` is their common edge; it is returned as it is where no outline is within half a cell.
@@ -74,9 +107,9 @@ def _outline_between(
                 v = min(max(p[across], q[across]), high)
                 a = p[axis] + (u - p[across]) * slope
                 b = p[axis] + (v - p[across]) * slope
-                return (a, u, b, v) if axis == 0 else (u, a, v, b)
+                return True, ((a, u, b, v) if axis == 0 else (u, a, v, b))
         p = q
-    return line
+    return False, line
 
 
 @kernel
@@ -106,7 +139,9 @@ def _put(
             last[2], last[3] = x1, y1
             return count
     if count < len(out):
-        out[count] = (x0, y0, x1, y1, z0, z1, rise)
+        new = out[count]
+        new[0], new[1], new[2], new[3] = x0, y0, x1, y1
+        new[4], new[5], new[6] = z0, z1, rise
     return count + 1
 
 
@@ -120,10 +155,17 @@ def _passes(arrays: LayeredArrays, cell: int, d: int) -> bool:
     )
 
 
+@inlined
+def _ceiling(arrays: LayeredArrays, cell: int, d: int, floor: float) -> float:
+    """The ceiling over a ledge: of the cell or, if that is the higher one, of its neighbour."""
+    higher = cell
+    if abs(arrays.floors[cell] - floor) > _SAME_M:
+        higher = arrays.links[cell, d]
+    return float(arrays.ceilings[higher])
+
+
 @kernel
-def _ledge(
-    arrays: LayeredArrays, columns: SolidColumns, cell: int, d: int
-) -> tuple[bool, float, float]:
+def _ledge(arrays: LayeredArrays, sides: Sides, cell: int, d: int) -> tuple[bool, float, float]:
     """Whether there is a ledge at a side of a cell that is not level, its floor and its rise."""
     j = arrays.places[cell, 1] + LINK_ROWS[d]
     i = arrays.places[cell, 2] + LINK_COLUMNS[d]
@@ -136,13 +178,16 @@ def _ledge(
         return False, 0.0, 0.0
     x = arrays.x0 + (i + 0.5) * arrays.cell_m
     y = arrays.y0 + (j + 0.5) * arrays.cell_m
-    return not _solid_stops(columns, j * arrays.nx + i, x, y, floor), floor, np.inf
+    stopped = _solid_stops(sides.solids, j * arrays.nx + i, x, y, floor) or _face_between(
+        sides, arrays, cell, d, floor + LOWEST_M, floor + LINK_M
+    )
+    return not stopped, floor, np.inf
 
 
 @kernel
 def _ledge_line(
-    arrays: LayeredArrays, columns: SolidColumns, cell: int, d: int, floor: float
-) -> tuple[float, float, float, float]:
+    arrays: LayeredArrays, sides: Sides, cell: int, d: int, floor: float
+) -> tuple[bool, tuple[float, float, float, float]]:
     """Where a ledge is: on the outline of the solid that carries the floor, if one does."""
     axis = 0 if d in (0, 4) else 1
     j, i = arrays.places[cell, 1], arrays.places[cell, 2]
@@ -152,19 +197,20 @@ def _ledge_line(
     x = arrays.x0 + (i + 0.5) * arrays.cell_m
     y = arrays.y0 + (j + 0.5) * arrays.cell_m
     line = _common_edge(arrays, arrays.places[cell, 1], arrays.places[cell, 2], d)
-    k = _carrier(columns, j * arrays.nx + i, x, y, floor)
-    return line if k < 0 else _outline_between(columns.solids, k, axis, line)
+    k = _carrier(sides.solids, j * arrays.nx + i, x, y, floor)
+    if k < 0:
+        return False, line
+    return _outline_between(sides.solids.solids, k, axis, line)
 
 
 @kernel
-def ledges_towards(
-    arrays: LayeredArrays, columns: SolidColumns, d: int, out: NDArray[np.float64]
-) -> int:
+def ledges_towards(arrays: LayeredArrays, sides: Sides, d: int, out: NDArray[np.float64]) -> int:
     """Ledges of every cell towards its neighbour E (d = 0), N (2), W (4) or S (6).
 
-    Linked cells have one if their floors differ, with the difference as its rise. A cell whose
-    neighbour is not linked has one of its own that nobody passes, unless a solid stops everybody
-    there. Returns how many there are; those beyond the room in `out` are not written.
+    Linked cells have one if their floors differ, with the difference as its rise, but for slopes
+    up to 45 degrees. A cell whose neighbour is not linked has one of its own that nobody passes,
+    unless a solid or a face stops everybody there. Returns how many there are; those beyond the
+    room in `out` are not written.
     """
     count = 0
     by_column = d in (0, 4)
@@ -176,10 +222,16 @@ def ledges_towards(
                 cell = cell_index(arrays, layer, j, i)
                 if cell < 0 or _passes(arrays, cell, d):
                     continue
-                found, floor, rise = _ledge(arrays, columns, cell, d)
-                if found:
-                    line = _ledge_line(arrays, columns, cell, d, floor)
-                    count = _put(out, count, line, (floor - _BELOW_M, floor + _ABOVE_M, rise))
+                found, floor, rise = _ledge(arrays, sides, cell, d)
+                if not found:
+                    continue
+                exact, line = _ledge_line(arrays, sides, cell, d, floor)
+                slope = rise <= 1.001 * arrays.cell_m and not exact
+                middle = floor - 0.5 * rise
+                if not slope or _face_between(sides, arrays, cell, d, middle, middle):
+                    # Nobody above the ceiling is concerned.
+                    top = min(floor + _ABOVE_M, _ceiling(arrays, cell, d, floor))
+                    count = _put(out, count, line, (floor - _BELOW_M, top, rise))
     return count
 
 
@@ -200,10 +252,10 @@ def lintels_between(arrays: LayeredArrays, d: int, out: NDArray[np.float64]) -> 
                 other = arrays.links[cell, d] if cell >= 0 else -1
                 if other < 0:
                     continue
-                low = min(arrays.ceilings[cell], arrays.ceilings[other])
-                high = max(arrays.ceilings[cell], arrays.ceilings[other])
+                above, beside = float(arrays.ceilings[cell]), float(arrays.ceilings[other])
+                low, high = min(above, beside), max(above, beside)
                 floor = max(arrays.floors[cell], arrays.floors[other])
                 if high - low >= LEAST_STEP_M and low < floor + _HIGHEST_M:
                     line = _common_edge(arrays, j, i, d)
-                    count = _put(out, count, line, (low, low + _ABOVE_M, np.inf))
+                    count = _put(out, count, line, (low, low + _LINTEL_M, np.inf))
     return count

@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning._layered import LINK_M, LayeredArrays
-from planning._ledge_kernels import ledges_towards, lintels_between
-from planning._surface_kernels import SolidArrays, SolidColumns
+from planning._ledge_kernels import Sides, ledges_towards, lintels_between
 from planning.scene import Door, Polygon, Scene
 from planning.surfaces import Surfaces, solid_columns
 
@@ -34,30 +33,22 @@ def barriers_of_scene(scene: Scene, surfaces: Surfaces, arrays: LayeredArrays) -
         exact.append((*wall.start, *wall.end, wall.offset_m, top, math.inf))
     exact.extend(row for solid in scene.solids() for row in _outline(solid))
     columns = solid_columns(scene, surfaces.raster)
-    ledges = [_all_rows(ledges_towards, arrays, columns, d) for d in _SIDES]
+    sides = Sides(columns, np.zeros(len(columns.starts), dtype=np.int64), np.empty((0, 6)))
     outlines = np.array(exact, dtype=np.float64).reshape(-1, 7)
-    return np.concatenate([outlines, *ledges])
+    return np.concatenate([outlines, ledges(arrays, sides)])
 
 
-def ledges_of_floors(arrays: LayeredArrays) -> Barriers:
-    """Barriers of floors of which nothing is known but their cells: ledges and lintels."""
-    nothing = SolidArrays(
-        np.empty((0, 2)),
-        np.zeros(1, dtype=np.int64),
-        np.empty(0),
-        np.empty((0, 5)),
-        np.empty(0, dtype=np.bool_),
-        np.empty(0, dtype=np.int16),
-    )
-    starts = np.zeros(arrays.ny * arrays.nx + 1, dtype=np.int32)
-    columns = SolidColumns(nothing, starts, np.empty(0, dtype=np.int32))
-    return np.concatenate(
-        [_all_rows(ledges_towards, arrays, columns, d) for d in _SIDES]
-        + [_all_rows(lintels_between, arrays, d) for d in (0, 2)]
-    )
+def ledges(arrays: LayeredArrays, sides: Sides) -> Barriers:
+    """Barriers where floors end or change their height."""
+    return np.concatenate([written(ledges_towards, arrays, sides, d) for d in _SIDES])
 
 
-def _all_rows(kernel: Callable[..., int], *arguments: object) -> Barriers:
+def lintels(arrays: LayeredArrays) -> Barriers:
+    """Barriers where ceilings change their height; only for what no outline is known of."""
+    return np.concatenate([written(lintels_between, arrays, d) for d in (0, 2)])
+
+
+def written(kernel: Callable[..., int], *arguments: object) -> Barriers:
     """What a kernel writes, with as much room as it turns out to need."""
     out = np.empty((1024, 7))
     count = kernel(*arguments, out)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import NamedTuple
 
 from planning._layered import LayeredArrays
 from planning.barriers import Barriers, barriers_of_scene
 from planning.doors import Doors
+from planning.mesh_file import MeshError, Up, read_triangles
+from planning.meshes import Progress, barriers_of_triangles, surfaces_of_triangles, unheard
 from planning.scene import Scene
 from planning.surfaces import Surfaces, surfaces_of_scene
 
@@ -27,3 +30,26 @@ def floors_of_scene(scene: Scene, cell_m: float = 0.25) -> Floors:
     barriers = barriers_of_scene(scene, surfaces, layered)
     doors = Doors(barriers, {door.name: k for k, door in enumerate(scene.doors)})
     return Floors(surfaces, layered, barriers, doors)
+
+
+def floors_of_mesh(
+    path: str | Path, cell_m: float = 0.25, up: Up = "y", progress: Progress = unheard
+) -> Floors:
+    """The floors of a mesh file; see `read_triangles` and `surfaces_of_triangles`.
+
+    Raises
+    ------
+    MeshError
+        The file is at fault; the message names it and says how.
+    """
+    progress("reading", 0.0)
+    triangles = read_triangles(path, up)
+    try:
+        surfaces = surfaces_of_triangles(triangles, cell_m, progress)
+    except MeshError as error:
+        raise MeshError(f"{Path(path).name}: {error}") from None
+    layered = surfaces.layered()
+    progress("finding barriers", 0.7)
+    barriers = barriers_of_triangles(triangles, surfaces, layered)
+    progress("done", 1.0)
+    return Floors(surfaces, layered, barriers, Doors(barriers, {}))

@@ -1,0 +1,66 @@
+"""Reading meshes: OBJ, glTF and whatever else trimesh reads, checked before anything uses them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.scene import MAX_EXTENT_M
+
+Up = Literal["y", "z"]
+
+
+class MeshError(ValueError):
+    """A file that holds no mesh to walk on; says what is wrong with it."""
+
+
+def read_triangles(path: str | Path, up: Up = "y") -> NDArray[np.float64]:
+    """The triangles of a file, float64 (T, 3, 3), metres, x east, y north, z up.
+
+    All objects of the file are taken, each where its transform puts it. With `up` = "y", as in
+    glTF and most OBJ files, what the file calls (x, y, z) becomes (x, -z, y).
+
+    Raises
+    ------
+    MeshError
+        The file cannot be read, holds no triangles, has corners that are not finite or indices
+        out of range, or measures more than a scene may.
+    """
+    name = Path(path).name
+    if up not in ("y", "z"):
+        raise MeshError(f"{name}: up must be 'y' or 'z', got {up!r}")
+    corners = _load(Path(path))
+    if not len(corners):
+        raise MeshError(f"{name}: it holds no triangles")
+    wrong = np.flatnonzero(~np.isfinite(corners).all(axis=(1, 2)))
+    if len(wrong):
+        raise MeshError(f"{name}: triangle {wrong[0]} has a corner that is not finite")
+    if up == "y":
+        corners = np.stack([corners[..., 0], -corners[..., 2], corners[..., 1]], axis=-1)
+    extent = np.ptp(corners.reshape(-1, 3), axis=0)
+    if extent.max() > MAX_EXTENT_M:
+        x, y, z = extent
+        raise MeshError(
+            f"{name}: it measures {x:.6g} x {y:.6g} m and is {z:.6g} m high; a side may measure "
+            f"{MAX_EXTENT_M:g} m. Is its unit the metre?"
+        )
+    if not (extent[:2] > 0.0).all():
+        raise MeshError(f"{name}: it has no extent on the ground; is {up!r} really up?")
+    return np.ascontiguousarray(corners)
+
+
+def _load(path: Path) -> NDArray[np.float64]:
+    import trimesh  # noqa: PLC0415  (takes a while to import, and few need it)
+
+    if not path.is_file():
+        raise MeshError(f"{path.name}: there is no such file")
+    try:
+        scene = trimesh.load_scene(path, process=False, skip_materials=True)
+        parts = [part for part in scene.dump() if isinstance(part, trimesh.Trimesh)]
+        corners = [np.asarray(part.vertices)[part.faces] for part in parts]
+    except Exception as error:
+        raise MeshError(f"{path.name}: it is not a mesh that can be read: {error}") from error
+    return np.concatenate([np.empty((0, 3, 3)), *corners])
