@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Annotated, Literal, Self
 
 from pydantic import (
@@ -227,6 +228,9 @@ class Scene(_Part):
     doors: tuple[Door, ...] = ()
     spawns: tuple[Spawn, ...] = ()
     places: tuple[Place, ...] = ()
+    mesh: Path | None = None
+    """A building in metres, y up, whose floors take the place of the ground and of all parts. In a
+    file it is named relative to the file."""
 
     @model_validator(mode="after")
     def _fits_together(self) -> Self:
@@ -242,6 +246,10 @@ class Scene(_Part):
             for i, (x, y) in enumerate(points):
                 if not (x0 <= x <= x1 and y0 <= y <= y1):
                     raise ValueError(f"{group}.{i}: ({x:g}, {y:g}) lies outside the bounds")
+        if self.mesh is not None:
+            for group in ("polygons", "walls", "stairs", "doors"):
+                if getattr(self, group):
+                    raise ValueError(f"{group}: a scene of a mesh has none")
         for group, names in (
             ("doors", [door.name for door in self.doors]),
             ("places", [place.name for place in self.places]),

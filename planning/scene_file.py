@@ -51,19 +51,25 @@ class SceneError(ValueError):
 
 
 def read_scene(path: Path) -> Scene:
-    """The scene that a file holds.
+    """The scene that a file holds; its mesh is looked for beside the file.
 
     Raises
     ------
     OSError
         The file cannot be read.
     SceneError
-        It holds no scene.
+        It holds no scene, or names a mesh that is not there.
     """
     try:
-        return Scene.model_validate_json(path.read_bytes())
+        scene = Scene.model_validate_json(path.read_bytes())
     except ValidationError as error:
         raise SceneError(path, scene_faults(error)) from None
+    if scene.mesh is None:
+        return scene
+    mesh = path.parent / scene.mesh
+    if not mesh.is_file():
+        raise SceneError(path, (f"mesh: there is no file {mesh}",))
+    return scene.model_copy(update={"mesh": mesh})
 
 
 def scene_faults(error: ValidationError) -> tuple[str, ...]:

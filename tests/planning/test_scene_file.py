@@ -74,6 +74,19 @@ def test_what_is_no_json_is_told_with_its_line(tmp_path: Path) -> None:
     assert "line 2" in fault
 
 
+def test_a_mesh_lies_beside_the_file(tmp_path: Path) -> None:
+    mesh = tmp_path / "hall.glb"
+    path = write(tmp_path, mesh=mesh.name)
+    assert faults(path) == [f"mesh: there is no file {mesh}"]
+    mesh.touch()
+    assert read_scene(path).mesh == mesh
+
+
+def test_a_scene_of_a_mesh_has_no_parts_of_its_own(tmp_path: Path) -> None:
+    path = write(tmp_path, mesh="hall.glb", walls=[{"start": [1, 1], "end": [2, 2]}])
+    assert faults(path) == ["walls: a scene of a mesh has none"]
+
+
 def test_a_file_that_is_not_there_is_an_error_of_the_system(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         read_scene(tmp_path / "none.json")
