@@ -214,7 +214,7 @@ class Hub:
             radius=world.rules.person_radius_m,
             max_speed=world.rules.person_max_speed_mps,
             origin=world.origin_m,
-            doors={},
+            doors={door.name: door.open for door in world.scene.doors},
             operator=False,
         )
         session.outbox.welcome(self._welcomes.frame(welcome))

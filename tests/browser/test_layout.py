@@ -14,7 +14,10 @@ pytestmark = [pytest.mark.browser, pytest.mark.asyncio(loop_scope="module")]
 SIZES = pytest.mark.parametrize(
     ("width", "height"), [(1280, 720), (390, 844), (360, 640)], ids=["desk", "phone", "small phone"]
 )
-CONTROLS = "#status, #top button, #minimap, #chat-toggle, #stick, #chat-line, #chat-form button"
+CONTROLS = (
+    "#status, #top button, #minimap, #storeys button, "
+    "#chat-toggle, #stick, #chat-line, #chat-form button"
+)
 PANELS = "#people, #plan"
 THUMB_PX = 44.0
 PICTURE_BYTES = 100_000

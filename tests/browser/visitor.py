@@ -23,8 +23,8 @@ document.addEventListener("securitypolicyviolation", (event) => {
 });
 """
 _LOOK: Final = """() => {
-  const { phase, id, avatars, plan, chosenId, frames } = window.esplanade;
-  return { phase, id, avatars, plan, chosenId, frames };
+  const { phase, id, avatars, doors, plan, chosenId, frames } = window.esplanade;
+  return { phase, id, avatars, doors, plan, chosenId, frames };
 }"""
 
 

@@ -1,7 +1,7 @@
 /** `window.esplanade`: what the page knows, read-only, for tests and curious people. See docs/client.md. */
 
 import type { ConnectionState } from "../net/connection";
-import type { Plan } from "../net/messages";
+import type { Doors, Plan } from "../net/messages";
 import type { Avatar } from "../world/world";
 import type { Session } from "./session";
 import type { View } from "./view";
@@ -10,6 +10,7 @@ export interface Inspection {
   readonly phase: ConnectionState["phase"];
   readonly id: number | null;
   readonly avatars: readonly Readonly<Avatar>[];
+  readonly doors: Readonly<Doors> | null;
   readonly plan: Plan | null;
   readonly chosenId: number | null;
   /** Frames drawn since the page was loaded. */
@@ -46,6 +47,9 @@ export function offerInspection(session: Session, view: View): void {
           }),
         ),
       );
+    },
+    get doors() {
+      return structuredClone(session.world?.doors ?? null);
     },
     get plan() {
       return structuredClone(session.world?.plan ?? null);

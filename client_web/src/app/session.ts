@@ -87,13 +87,19 @@ export class Session {
     else this.join.open();
   }
 
-  /** A click on the picture: an actor to look into, or a point to walk to. */
+  /** A click on the picture: an actor to look into, a door to move, or a place to walk to. */
   tap(at: { x: number; y: number }): void {
     if (!this.world) return;
-    const hit = this.view.pick(at, this.world);
+    const hit = this.view.pick(at, this.welcome?.operator ?? false);
     if (!hit) return;
-    if ("ground" in hit) this.walking.walkTo(hit.ground);
+    if ("floor" in hit) this.walking.walkTo(hit.floor);
+    else if ("door" in hit) this.moveDoor(hit.door);
     else if (hit.avatar.kind === "actor") this.choose(hit.avatar.id);
+  }
+
+  private moveDoor(name: string): void {
+    const isOpen = this.world?.doors[name] ?? true;
+    this.connection.send({ type: "set_door", name, open: !isOpen });
   }
 
   private async comeIn(name: string): Promise<void> {
@@ -214,6 +220,7 @@ export class Session {
     this.status.roundTrip(this.connection.clock.roundTripS);
     this.people.update(world.avatars, this.chosenId);
     this.planPanel.update(name, world.plan);
-    this.minimap.update(world.avatars.values(), this.view.camera.yaw, world.plan);
+    const { avatars, own, doors, plan } = world;
+    this.minimap.update(avatars, own, doors, this.view.camera.yaw, plan);
   }
 }

@@ -1,16 +1,21 @@
 /** The picture: everything from render/ put together, one call for each frame. */
 
+import { Cutaway } from "../render/cutaway";
 import { FollowCamera } from "../render/follow";
 import { Figures } from "../render/figures";
 import { drawsInSoftware } from "../render/hardware";
 import { Labels } from "../render/labels";
 import { Marks } from "../render/marks";
-import { Picking, type ScreenPoint } from "../render/picking";
+import { Picking, type Place, type ScreenPoint } from "../render/picking";
 import { Plans } from "../render/plans";
 import { type Choice, QualityControl } from "../render/quality";
 import { Stage } from "../render/stage";
 import { buildTown, type Town } from "../render/town";
 import type { Avatar, World } from "../world/world";
+
+/** Names of people so far above or below are dimmed. */
+const STOREY_M = 1.8;
+const DIMMED = 0.45;
 
 export class View {
   readonly camera: FollowCamera;
@@ -20,6 +25,9 @@ export class View {
   private readonly plans = new Plans();
   private readonly labels: Labels;
   private readonly picking: Picking;
+  private readonly cutaway = new Cutaway();
+  /** Who is drawn in this frame: all but those on floors that are cut away. */
+  private drawn: ReadonlyMap<number, Avatar> = new Map();
   private control: QualityControl;
   private readonly software = drawsInSoftware();
   private town: Town | null = null;
@@ -40,7 +48,7 @@ export class View {
 
   /** The world that is shown from now on. */
   enter(world: World): void {
-    this.town = buildTown(world.scene);
+    this.town = buildTown(world.scene, this.cutaway);
     this.stage.show(this.town, world.scene);
     this.marks.walkTarget(null);
   }
@@ -54,32 +62,51 @@ export class View {
     this.labels.say(avatar, text);
   }
 
-  /** What is at a point of the screen. */
+  /** What is at a point of the screen; doors only for those who may move them. */
   pick(
     at: ScreenPoint,
-    world: World,
-  ): { avatar: Avatar } | { ground: { x: number; y: number } } | null {
-    const avatar = this.picking.avatar(at, world.avatars);
+    doors: boolean,
+  ): { avatar: Avatar } | { door: string } | { floor: Place } | null {
+    const { picking, town, cutaway } = this;
+    if (!town) return null;
+    const avatar = picking.avatar(at, this.drawn);
     if (avatar) return { avatar };
-    const ground = this.picking.ground(at, this.town?.occluders ?? []);
-    return ground && { ground };
+    const door = doors ? picking.door(at, town, cutaway) : null;
+    if (door !== null) return { door };
+    const floor = picking.floor(at, town.occluders, cutaway);
+    return floor && { floor };
   }
 
   frame(world: World, chosenId: number | null, frameS: number): void {
     const { own, avatars } = world;
     const chosen = chosenId === null ? undefined : avatars.get(chosenId)?.pose;
-    if (own) this.camera.update(own.pose.x, own.pose.y, this.town?.occluders ?? [], frameS);
+    if (own && this.town) {
+      const { x, y, z } = own.pose;
+      const hidden = this.camera.update(own.pose, this.town.occluders, this.cutaway, frameS);
+      const covered = world.floors.covered(x, y, z);
+      this.cutaway.update(own.pose, this.stage.camera.position, hidden || covered, frameS);
+    }
     this.town?.lookingFrom(this.camera.reachM);
-    this.figures.update(avatars, frameS);
-    this.marks.update(avatars, own?.pose, chosen, frameS);
-    this.plans.show(world.plan);
+    this.town?.doors.update(world.doors, frameS);
+    this.drawn = new Map([...avatars].filter(([, avatar]) => this.shown(avatar) > 0.5));
+    this.figures.update(this.drawn, frameS);
+    this.marks.update(this.drawn, own?.pose, chosen, frameS);
+    this.plans.show(world.plan, world.floors);
     this.stage.draw();
-    this.labels.update(avatars, this.stage.camera);
+    this.labels.update(avatars, this.stage.camera, (avatar) => {
+      const apart = own !== null && Math.abs(avatar.pose.z - own.pose.z) > STOREY_M;
+      return this.shown(avatar) * (apart ? DIMMED : 1);
+    });
     if (this.control.frame(frameS)) this.applyQuality();
   }
 
   get qualityLevel(): number {
     return this.control.level;
+  }
+
+  /** How much is left of somebody when what is above the own avatar is cut away. */
+  private shown({ own, pose: { x, y, z } }: Avatar): number {
+    return own ? 1 : this.cutaway.shown(x, y, z);
   }
 
   private applyQuality(): void {

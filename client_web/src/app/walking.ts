@@ -4,11 +4,14 @@ import type { ClientMessage } from "../net/messages";
 import { Joystick } from "../input/joystick";
 import { listenToKeys, WalkKeys } from "../input/keyboard";
 import { headingOf, Steering } from "../input/steering";
+import type { Place } from "../render/picking";
 import { byId } from "../ui/dom";
 import type { World } from "../world/world";
 
 /** This near a walk to a point counts as done, metres. */
 const THERE_M = 0.4;
+/** One floor above or below it does not. */
+const STOREY_M = 1.5;
 const TURN_PER_S = 1.8;
 
 export class Walking {
@@ -20,11 +23,11 @@ export class Walking {
   private readonly steering: Steering;
   private world: World | null = null;
   private seq = 0;
-  private target: { x: number; y: number } | null = null;
+  private target: Place | null = null;
 
   constructor(
     private readonly send: (message: ClientMessage) => boolean,
-    private readonly showTarget: (at: { x: number; y: number } | null) => void,
+    private readonly showTarget: (at: Place | null) => void,
   ) {
     listenToKeys(this.keys, window);
     this.steering = new Steering(({ direction, speed }) => {
@@ -46,15 +49,13 @@ export class Walking {
     this.seq = Math.max(this.seq, ack);
   }
 
-  walkTo({ x, y }: { x: number; y: number }): void {
-    const own = this.world?.own;
-    if (!own) return;
+  walkTo(place: Place): void {
+    if (!this.world?.own) return;
     const seq = ++this.seq;
-    const { z } = own.pose;
-    if (!this.send({ type: "walk_to", seq, x, y, z })) return;
+    if (!this.send({ type: "walk_to", seq, ...place })) return;
     this.steering.reset();
-    this.world?.command({ kind: "walk_to", seq, x, y, z });
-    this.setTarget({ x, y });
+    this.world.command({ kind: "walk_to", seq, ...place });
+    this.setTarget(place);
   }
 
   /** The server knows no way to where the walk was to lead. */
@@ -73,14 +74,17 @@ export class Walking {
     const wish = headingOf(this.keys.wish, this.stick.value, cameraYaw, this.world.maxSpeedMps);
     this.steering.update(wish, performance.now());
     const { target } = this;
-    if (target && Math.hypot(own.pose.x - target.x, own.pose.y - target.y) < THERE_M) {
-      this.setTarget(null);
-    }
+    if (target && isThere(own.pose, target)) this.setTarget(null);
   }
 
-  private setTarget(at: { x: number; y: number } | null): void {
+  private setTarget(at: Place | null): void {
     if (at === null && this.target === null) return;
     this.target = at;
     this.showTarget(at);
   }
+}
+
+function isThere(here: Place, target: Place): boolean {
+  const apartM = Math.hypot(here.x - target.x, here.y - target.y);
+  return apartM < THERE_M && Math.abs(here.z - target.z) < STOREY_M;
 }

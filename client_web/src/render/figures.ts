@@ -153,7 +153,7 @@ function place(
 ): void {
   const { hipHeightM, lean, left, right } = stance(walk.phase, walk.paceMps);
   const size = scaleOf(id);
-  root.makeRotationZ(pose.heading).setPosition(pose.x, pose.y, 0);
+  root.makeRotationZ(pose.heading).setPosition(pose.x, pose.y, pose.z);
   root.multiply(turn.makeScale(size, size, size));
 
   jointAt(joint, root, 0, hipHeightM, 0);

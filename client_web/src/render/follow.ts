@@ -1,6 +1,8 @@
 /** The camera that follows the own avatar: turned by dragging, kept out of buildings. */
 
 import { type Mesh, type PerspectiveCamera, Raycaster, Vector3 } from "three";
+import type { Pose } from "../world/motion";
+import { baseOf, type Cutaway } from "./cutaway";
 
 const NEAREST_M = 2;
 const FARTHEST_M = 30;
@@ -41,18 +43,27 @@ export class FollowCamera {
     return Math.min(this.distanceM, this.freeM);
   }
 
-  update(x: number, y: number, occluders: readonly Mesh[], frameS: number): void {
+  /** Follow; says whether something that can be cut away stands between camera and avatar. */
+  update({ x, y, z }: Pose, occluders: readonly Mesh[], cutaway: Cutaway, frameS: number): boolean {
     const part = this.placed ? Math.min(1, FOLLOW_PER_S * frameS) : 1;
     this.aim.x += (x - this.aim.x) * part;
     this.aim.y += (y - this.aim.y) * part;
-    this.aim.z = LOOK_AT_M;
+    this.aim.z += (z + LOOK_AT_M - this.aim.z) * part;
     this.placed = true;
     const flat = Math.cos(this.pitch);
     this.back.set(-Math.cos(this.yaw) * flat, -Math.sin(this.yaw) * flat, Math.sin(this.pitch));
     this.ray.set(this.aim, this.back);
     this.ray.far = this.distanceM + GAP_M;
-    const hit = this.ray.intersectObjects([...occluders], false)[0];
-    const freeM = hit ? Math.max(0.6, hit.distance - GAP_M) : this.distanceM;
+    let freeM = this.distanceM;
+    let hidden = false;
+    for (const hit of this.ray.intersectObjects<Mesh>([...occluders], false)) {
+      if (cutaway.isAbove(baseOf(hit.object.geometry, hit.face?.a ?? 0))) {
+        hidden = true;
+        continue;
+      }
+      freeM = Math.max(0.6, hit.distance - GAP_M);
+      break;
+    }
     // In at once, out slowly, so that a pillar passing by does not make it jerk.
     this.freeM =
       freeM < this.freeM
@@ -60,5 +71,6 @@ export class FollowCamera {
         : this.freeM + (freeM - this.freeM) * Math.min(1, OUT_PER_S * frameS);
     this.camera.position.copy(this.aim).addScaledVector(this.back, this.reachM);
     this.camera.lookAt(this.aim);
+    return hidden;
   }
 }

@@ -9,6 +9,8 @@ const FAR_M = 26;
 const FADE_M = 8;
 const ABOVE_M = 0.22;
 const SPOKEN_MS = 7000;
+/** What is fainter is not shown at all. */
+const FAINT = 0.05;
 
 interface Label {
   element: HTMLElement;
@@ -29,19 +31,25 @@ export class Labels {
     label.spokenUntilMs = performance.now() + SPOKEN_MS;
   }
 
-  update(avatars: ReadonlyMap<number, Avatar>, camera: PerspectiveCamera): void {
+  /** `strength` says how plainly an avatar's label is to be seen, 0 to 1. */
+  update(
+    avatars: ReadonlyMap<number, Avatar>,
+    camera: PerspectiveCamera,
+    strength: (avatar: Avatar) => number,
+  ): void {
     const { clientWidth: width, clientHeight: height } = this.layer;
     const nearest = [...avatars.values()]
       .map((avatar) => ({
         avatar,
-        distanceM: camera.position.distanceTo(this.at.set(avatar.pose.x, avatar.pose.y, 1.7)),
+        distanceM: camera.position.distanceTo(this.head(avatar)),
+        plainly: strength(avatar),
       }))
-      .filter(({ distanceM }) => distanceM < FAR_M)
+      .filter(({ distanceM, plainly }) => distanceM < FAR_M && plainly > FAINT)
       .sort((a, b) => a.distanceM - b.distanceM)
       .slice(0, MOST);
     const seen = new Set<number>();
-    for (const { avatar, distanceM } of nearest) {
-      this.at.set(avatar.pose.x, avatar.pose.y, statureM(avatar.id) + ABOVE_M).project(camera);
+    for (const { avatar, distanceM, plainly } of nearest) {
+      this.head(avatar).project(camera);
       if (this.at.z > 1 || Math.abs(this.at.x) > 1.1 || Math.abs(this.at.y) > 1.1) continue;
       seen.add(avatar.id);
       const { element, spoken, spokenUntilMs } = this.labelOf(avatar);
@@ -49,7 +57,8 @@ export class Labels {
       const y = ((1 - this.at.y) / 2) * height;
       element.hidden = false;
       element.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
-      element.style.opacity = Math.min(1, (FAR_M - distanceM) / FADE_M).toFixed(2);
+      const near = Math.min(1, (FAR_M - distanceM) / FADE_M);
+      element.style.opacity = (near * plainly).toFixed(2);
       element.style.zIndex = String(1000 - Math.round(distanceM * 10));
       spoken.hidden = performance.now() > spokenUntilMs;
     }
@@ -59,6 +68,11 @@ export class Labels {
         this.labels.delete(id);
       } else if (!seen.has(id)) element.hidden = true;
     }
+  }
+
+  /** Where a label hangs. */
+  private head({ id, pose }: Avatar): Vector3 {
+    return this.at.set(pose.x, pose.y, pose.z + statureM(id) + ABOVE_M);
   }
 
   private labelOf(avatar: Avatar): Label {

@@ -1,4 +1,4 @@
-/** Marks on the ground: soft discs under the feet, the own ring, the chosen one's, the goal of a walk. */
+/** Marks on the floor: soft discs under the feet, the own ring, the chosen one's, the goal of a walk. */
 
 import {
   CircleGeometry,
@@ -44,9 +44,9 @@ export class Marks {
   }
 
   /** Where a click sends the own avatar; null when it has arrived or was called off. */
-  walkTarget(at: { x: number; y: number } | null): void {
+  walkTarget(at: { x: number; y: number; z: number } | null): void {
     this.target.visible = at !== null;
-    if (at) this.target.position.set(at.x, at.y, 0.03);
+    if (at) this.target.position.set(at.x, at.y, at.z + 0.03);
     this.targetAgeS = 0;
   }
 
@@ -59,7 +59,7 @@ export class Marks {
     let count = 0;
     for (const { pose } of avatars.values()) {
       if (count === MOST) break;
-      this.feet.setMatrixAt(count++, this.matrix.makeTranslation(pose.x, pose.y, 0.015));
+      this.feet.setMatrixAt(count++, this.matrix.makeTranslation(pose.x, pose.y, pose.z + 0.015));
     }
     this.feet.count = count;
     this.feet.instanceMatrix.needsUpdate = true;
@@ -71,9 +71,9 @@ export class Marks {
   }
 }
 
-function put(mark: Mesh, pose: Pose | undefined, z: number): void {
+function put(mark: Mesh, pose: Pose | undefined, aboveM: number): void {
   mark.visible = pose !== undefined;
-  if (pose) mark.position.set(pose.x, pose.y, z);
+  if (pose) mark.position.set(pose.x, pose.y, pose.z + aboveM);
 }
 
 function ring(inner: number, outer: number, color: ColorRepresentation, opacity: number): Mesh {

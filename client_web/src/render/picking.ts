@@ -1,8 +1,10 @@
-/** What is under a point of the screen: an avatar, or a place on the ground. */
+/** What is under a point of the screen: an avatar, a door, or a place to walk to. */
 
 import { type Mesh, type PerspectiveCamera, Plane, Raycaster, Vector2, Vector3 } from "three";
 import type { Avatar } from "../world/world";
+import { baseOf, type Cutaway } from "./cutaway";
 import { statureM } from "./figures";
+import type { Town } from "./town";
 
 export interface ScreenPoint {
   /** Device-independent: -1…1 to the right and up. */
@@ -10,6 +12,24 @@ export interface ScreenPoint {
   y: number;
 }
 
+/** A place to walk to; z is the height of its floor. */
+export interface Place {
+  x: number;
+  y: number;
+  z: number;
+}
+
+interface Hit {
+  point: Vector3;
+  distance: number;
+  /** Where the piece that is hit begins. */
+  baseM: number;
+  /** Upward part of the face's normal: 1 is level. */
+  slope: number;
+}
+
+/** What slopes more is no floor: 45 degrees. */
+const LEVEL = Math.SQRT1_2;
 const REACH_M = 60;
 /** How far beside a figure one may click, metres in the world plus a part of the screen's height. */
 const BESIDE_M = 0.3;
@@ -31,9 +51,9 @@ export class Picking {
     let best: { avatar: Avatar; distanceM: number } | null = null;
     for (const avatar of avatars.values()) {
       if (avatar.own) continue;
-      const { x, y } = avatar.pose;
-      this.foot.set(x, y, 0);
-      this.head.set(x, y, statureM(avatar.id));
+      const { x, y, z } = avatar.pose;
+      this.foot.set(x, y, z);
+      this.head.set(x, y, z + statureM(avatar.id));
       const besideSq = this.ray.ray.distanceSqToSegment(
         this.foot,
         this.head,
@@ -48,13 +68,38 @@ export class Picking {
     return best?.avatar ?? null;
   }
 
-  /** The point on the ground that is meant, at the foot of what is in the way; null for the sky. */
-  ground(at: ScreenPoint, occluders: readonly Mesh[]): { x: number; y: number } | null {
+  /** The name of the door that is hit, if nothing stands before it. */
+  door(at: ScreenPoint, { doors, occluders }: Town, cutaway: Cutaway): string | null {
     this.aim(at);
-    const hit = this.ray.intersectObjects([...occluders], false)[0];
+    const door = doors.hit(this.ray);
+    if (!door) return null;
+    const before = this.firstSeen(occluders, cutaway);
+    return before && before.distance < door.distanceM ? null : door.name;
+  }
+
+  /**
+   * The place on the floor that is seen there; at the foot of what cannot be stood on. What is cut
+   * away is passed through. Null for the sky.
+   */
+  floor(at: ScreenPoint, occluders: readonly Mesh[], cutaway: Cutaway): Place | null {
+    this.aim(at);
+    const hit = this.firstSeen(occluders, cutaway);
     const point = hit?.point ?? this.ray.ray.intersectPlane(GROUND, this.foot);
     if (!point || point.distanceTo(this.camera.position) > 2 * REACH_M) return null;
-    return { x: point.x, y: point.y };
+    const { x, y } = point;
+    return { x, y, z: hit && hit.slope < LEVEL ? hit.baseM : point.z };
+  }
+
+  private firstSeen(occluders: readonly Mesh[], cutaway: Cutaway): Hit | null {
+    for (const { object, face, point, distance } of this.ray.intersectObjects<Mesh>([
+      ...occluders,
+    ])) {
+      if (!face) continue;
+      const baseM = baseOf(object.geometry, face.a);
+      if (cutaway.shown(point.x, point.y, baseM) < 0.5) continue;
+      return { point, distance, baseM, slope: face.normal.z };
+    }
+    return null;
   }
 
   private aim({ x, y }: ScreenPoint): void {

@@ -15,10 +15,17 @@ import {
   RingGeometry,
 } from "three";
 import type { Plan } from "../net/messages";
+import { STEP_ON_M } from "../world/barriers";
+import type { Floors } from "../world/floors";
 import { ACTOR } from "./palette";
 import { painted } from "./shapes";
 
 const PATH_HALF_M = 0.06;
+/** Above the floor, so that it is not lost in it. */
+const RIBBON_M = 0.045;
+/** Where it rises more from point to point it is laid in pieces. */
+const LEVEL_M = 0.03;
+const PIECE_M = 0.1;
 const MOST_DOTS = 128;
 const MOST_CIRCLES = 512;
 const SOON = new Color("#e2483d");
@@ -41,28 +48,28 @@ export class Plans {
     this.group.visible = false;
   }
 
-  show(plan: Plan | null): void {
+  show(plan: Plan | null, floors: Floors): void {
     if (plan === this.shown) return;
     this.shown = plan;
     this.group.visible = plan !== null;
     if (!plan) return;
     this.path.geometry.dispose();
-    this.path.geometry = ribbon(plan.path);
+    this.path.geometry = ribbon(onFloors(plan.path, floors));
     this.placeDots(plan.path);
     this.placeCircles(plan.people);
     this.flag.visible = plan.goal !== null;
-    if (plan.goal) this.flag.position.set(plan.goal[0], plan.goal[1], 0);
+    if (plan.goal) this.flag.position.set(...plan.goal);
   }
 
   /** One dot for each whole second of the path, and one at its end. */
   private placeDots(path: Plan["path"]): void {
     let count = 0;
     let nextS = 1;
-    path.forEach(([x, y, , seconds], i) => {
+    path.forEach(([x, y, z, seconds], i) => {
       const isLast = i === path.length - 1;
       if ((seconds < nextS && !isLast) || count === MOST_DOTS) return;
       nextS = Math.floor(seconds) + 1;
-      this.dots.setMatrixAt(count++, this.matrix.makeTranslation(x, y, 0.05));
+      this.dots.setMatrixAt(count++, this.matrix.makeTranslation(x, y, z + 0.05));
     });
     this.dots.count = count;
     this.dots.instanceMatrix.needsUpdate = true;
@@ -77,8 +84,8 @@ export class Plans {
         const part = drawn > 1 ? i / (drawn - 1) : 0;
         const circle = circles[Math.round(part * (circles.length - 1))];
         if (!circle) continue;
-        const { x, y, radius } = circle;
-        this.matrix.makeScale(radius, radius, 1).setPosition(x, y, 0.035);
+        const { x, y, z, radius } = circle;
+        this.matrix.makeScale(radius, radius, 1).setPosition(x, y, z + 0.035);
         color.lerpColors(SOON, LATE, part);
         for (const mesh of [this.rims, this.discs]) {
           mesh.setMatrixAt(count, this.matrix);
@@ -95,17 +102,36 @@ export class Plans {
   }
 }
 
+type Spot = readonly [x: number, y: number, z: number];
+
+/** The path in pieces so short that it follows the treads of stairs. */
+function onFloors(path: Plan["path"], floors: Floors): Spot[] {
+  const spots: Spot[] = [];
+  path.forEach(([x, y, z], i) => {
+    const [ax, ay, az] = path[Math.max(0, i - 1)] ?? [x, y, z];
+    const level = Math.abs(z - az) < LEVEL_M;
+    const pieces = level ? 1 : Math.ceil(Math.hypot(x - ax, y - ay) / PIECE_M);
+    for (let k = 1; k <= pieces; k++) {
+      const [px, py] = [ax + ((x - ax) * k) / pieces, ay + ((y - ay) * k) / pieces];
+      const pz = az + ((z - az) * k) / pieces;
+      const floor = floors.at(px, py, pz);
+      spots.push([px, py, floor !== null && Math.abs(floor - pz) < STEP_ON_M ? floor : pz]);
+    }
+  });
+  return spots;
+}
+
 /** A flat band along the path. */
-function ribbon(path: Plan["path"]): BufferGeometry {
+function ribbon(path: readonly Spot[]): BufferGeometry {
   const position: number[] = [];
   const index: number[] = [];
-  path.forEach(([x, y], i) => {
+  path.forEach(([x, y, z], i) => {
     const before = path[Math.max(0, i - 1)] ?? [x, y];
     const after = path[Math.min(path.length - 1, i + 1)] ?? [x, y];
     const [dx, dy] = [after[0] - before[0], after[1] - before[1]];
     const length = Math.hypot(dx, dy) || 1;
     const [sx, sy] = [(-dy / length) * PATH_HALF_M, (dx / length) * PATH_HALF_M];
-    position.push(x + sx, y + sy, 0.045, x - sx, y - sy, 0.045);
+    position.push(x + sx, y + sy, z + RIBBON_M, x - sx, y - sy, z + RIBBON_M);
     if (i > 0) {
       const k = 2 * i;
       index.push(k - 2, k - 1, k, k, k - 1, k + 1);

@@ -46,15 +46,19 @@ export function orientation(ring: Ring): { angle: number; lengthM: number; width
   return { angle, lengthM: span(along), widthM: span(across) };
 }
 
-/** The flat top of a ring at height z. */
-export function cap(ring: Ring, z: number, color: Color): BufferGeometry {
+/** A height, or how it changes over the ground. */
+export type Height = number | ((x: number, y: number) => number);
+
+/** The top of a ring: level at height z, or following it. */
+export function cap(ring: Ring, z: Height, color: Color): BufferGeometry {
+  const heightAt = typeof z === "number" ? () => z : z;
   const points = counterClockwise(ring);
   const corners = points.map(([x, y]) => new Vector2(x, y));
   const geometry = new BufferGeometry();
   geometry.setAttribute(
     "position",
     new Float32BufferAttribute(
-      points.flatMap(([x, y]) => [x, y, z]),
+      points.flatMap(([x, y]) => [x, y, heightAt(x, y)]),
       3,
     ),
   );
@@ -76,26 +80,38 @@ export function cap(ring: Ring, z: number, color: Color): BufferGeometry {
   return painted(geometry.toNonIndexed(), color);
 }
 
+/** A level ring that is seen from below. */
+export function underside(ring: Ring, z: number, color: Color): BufferGeometry {
+  const geometry = cap(ring, z, color);
+  const normal = geometry.getAttribute("normal");
+  for (let i = 0; i < normal.count; i++) normal.setZ(i, -1);
+  return geometry;
+}
+
 /** The sides of a ring; `uv` counts bays along and floors up when their sizes are given, else metres. */
 export function sides(
   ring: Ring,
   z0: number,
-  z1: number,
+  z1: Height,
   color: Color,
   unit: { bayM: number; floorM: number } | null = null,
 ): BufferGeometry {
+  const heightAt = typeof z1 === "number" ? () => z1 : z1;
   const points = counterClockwise(ring);
   const position: number[] = [];
   const normal: number[] = [];
   const uv: number[] = [];
-  const v = unit ? Math.max(1, Math.round((z1 - z0) / unit.floorM)) : z1 - z0;
   points.forEach(([ax, ay], i) => {
     const [bx, by] = points[(i + 1) % points.length] ?? [ax, ay];
     const length = Math.hypot(bx - ax, by - ay);
     const u = unit ? Math.max(1, Math.round(length / unit.bayM)) : length;
     const [nx, ny] = [(by - ay) / length, (ax - bx) / length];
-    position.push(ax, ay, z0, bx, by, z0, bx, by, z1, ax, ay, z0, bx, by, z1, ax, ay, z1);
-    uv.push(0, 0, u, 0, u, v, 0, 0, u, v, 0, v);
+    const [za, zb] = [heightAt(ax, ay), heightAt(bx, by)];
+    position.push(ax, ay, z0, bx, by, z0, bx, by, zb, ax, ay, z0, bx, by, zb, ax, ay, za);
+    const [va, vb] = [za, zb].map((z) =>
+      unit ? Math.max(1, Math.round((z - z0) / unit.floorM)) : z - z0,
+    ) as [number, number];
+    uv.push(0, 0, u, 0, u, vb, 0, 0, u, vb, 0, va);
     for (let k = 0; k < 6; k++) normal.push(nx, ny, 0);
   });
   const geometry = new BufferGeometry();

@@ -10,6 +10,7 @@ const PILLAR_M = 1.3;
 const KIOSK_M = 4;
 const BENCH_M = 0.9;
 const RIM_M = 0.35;
+const SEAM_M = 0.03;
 const WALL_THICK_M = 0.14;
 
 /** Pieces by the material they are drawn with. */
@@ -17,6 +18,8 @@ export interface Pieces {
   plain: BufferGeometry[];
   facade: BufferGeometry[];
   water: BufferGeometry[];
+  /** Tops to walk on, with slabs like those of the ground. */
+  paving: BufferGeometry[];
 }
 
 export function building(polygon: ScenePolygon, index: number, into: Pieces): void {
@@ -74,8 +77,10 @@ function kiosk({ points, height_m, offset_m }: ScenePolygon, index: number): Buf
 
 export function masonry({ points, height_m, offset_m }: ScenePolygon, into: Pieces): void {
   const top = offset_m + height_m;
+  // What stands on a slab reaches into it a little, or light shines through the seam.
+  const foot = Math.max(0, offset_m - SEAM_M);
   into.plain.push(
-    sides(points, offset_m, top - 0.12, STONE),
+    sides(points, foot, top - 0.12, STONE),
     ...prism(drawnIn(points, -0.05), top - 0.12, top, DARK_STONE),
   );
 }
@@ -151,14 +156,19 @@ function rim(
   });
 }
 
-export function thinWall({ start, end, height_m }: SceneWall, into: Pieces): void {
+export function thinWall({ start, end, offset_m, height_m }: SceneWall, into: Pieces): void {
   const length = Math.hypot(end[0] - start[0], end[1] - start[1]);
   const angle = Math.atan2(end[1] - start[1], end[0] - start[0]);
   const middle = [(start[0] + end[0]) / 2, (start[1] + end[1]) / 2] as const;
   const body = new BoxGeometry(length + WALL_THICK_M, WALL_THICK_M, height_m);
-  body.rotateZ(angle).translate(middle[0], middle[1], height_m / 2);
+  body.rotateZ(angle).translate(middle[0], middle[1], offset_m + height_m / 2);
   into.plain.push(
     painted(body.toNonIndexed(), STONE),
-    box([...middle, height_m], [length + 0.2, WALL_THICK_M + 0.08, 0.08], angle, DARK_STONE),
+    box(
+      [...middle, offset_m + height_m],
+      [length + 0.2, WALL_THICK_M + 0.08, 0.08],
+      angle,
+      DARK_STONE,
+    ),
   );
 }

@@ -11,11 +11,14 @@ import {
   PlaneGeometry,
 } from "three";
 import type { SceneData } from "../net/messages";
+import { based, type Cutaway } from "./cutaway";
+import { doorFrame, DoorLeaves } from "./doors";
 import { facadeTexture, pavingTexture } from "./facade";
 import { LeavesMaterial } from "./leaves";
 import { PAVING } from "./palette";
 import { plant } from "./plants";
 import { merged } from "./shapes";
+import { floor, isRailing, railing, stairs } from "./storeys";
 import { basin, building, furniture, masonry, type Pieces, thinWall } from "./structures";
 
 const SLAB_M = 1.5;
@@ -24,43 +27,38 @@ export interface Town {
   readonly group: Group;
   /** What hides the view of the camera. */
   readonly occluders: readonly Mesh[];
+  readonly doors: DoorLeaves;
   /** How far the camera is from the avatar that it follows, metres. */
   lookingFrom(distanceM: number): void;
   dispose(): void;
 }
 
-export function buildTown(scene: SceneData): Town {
-  const pieces: Pieces & { leaves: Pieces["plain"] } = {
-    plain: [],
-    facade: [],
-    water: [],
-    leaves: [],
-  };
-  scene.polygons.forEach((polygon, index) => {
-    if (polygon.kind === "building") building(polygon, index, pieces);
-    else if (polygon.kind === "plant") pieces.leaves.push(...plant(polygon, index));
-    else if (polygon.kind === "furniture") furniture(polygon, pieces);
-    else if (polygon.kind === "water") basin(polygon, pieces);
-    else masonry(polygon, pieces);
-  });
-  scene.walls.forEach((wall) => {
-    thinWall(wall, pieces);
-  });
-
+export function buildTown(scene: SceneData, cutaway: Cutaway): Town {
+  const pieces = piecesOf(scene);
   const facade = new MeshLambertMaterial({ vertexColors: true, map: facadeTexture() });
   // Both sides: the inner face of a basin is seen from within.
   const plain = new MeshLambertMaterial({ vertexColors: true, side: DoubleSide });
   const leaves = new LeavesMaterial();
   const water = new MeshPhongMaterial({ vertexColors: true, shininess: 90, specular: "#bfe3f0" });
-  const solid = [mesh(pieces.facade, facade), mesh(pieces.plain, plain)].filter((m) => m !== null);
+  const paving = new MeshLambertMaterial({ vertexColors: true, map: pavingTexture() });
+  paving.map?.repeat.set(1 / SLAB_M / 2, 1 / SLAB_M / 2);
+  const wood = new MeshLambertMaterial({ vertexColors: true });
+  for (const material of [facade, plain, leaves, water, paving, wood]) cutaway.applyTo(material);
+  const doors = new DoorLeaves(scene.doors, wood);
+  const solid = [
+    mesh(pieces.facade, facade),
+    mesh(pieces.plain, plain),
+    mesh(pieces.paving, paving),
+  ].filter((m) => m !== null);
   const group = new Group();
-  group.add(...ground(scene), ...solid);
+  group.add(...ground(scene), ...solid, doors.group);
   for (const other of [mesh(pieces.leaves, leaves), mesh(pieces.water, water)]) {
     if (other) group.add(other);
   }
   return {
     group,
     occluders: solid,
+    doors,
     lookingFrom(distanceM) {
       leaves.lookingFrom(distanceM);
     },
@@ -74,6 +72,47 @@ export function buildTown(scene: SceneData): Town {
       });
     },
   };
+}
+
+type AllPieces = Pieces & { leaves: Pieces["plain"] };
+
+/** Everything that stands, each piece with the height at which it begins. */
+function piecesOf({ polygons, walls, stairs: flights, doors }: SceneData): AllPieces {
+  const all: AllPieces = { plain: [], facade: [], water: [], paving: [], leaves: [] };
+  const add = (baseM: number, build: (into: AllPieces) => void): void => {
+    const part: AllPieces = { plain: [], facade: [], water: [], paving: [], leaves: [] };
+    build(part);
+    for (const kind of Object.keys(part) as (keyof AllPieces)[]) {
+      all[kind].push(...part[kind].map((geometry) => based(geometry, baseM)));
+    }
+  };
+  polygons.forEach((polygon, index) => {
+    add(polygon.offset_m, (into) => {
+      if (polygon.kind === "plant") into.leaves.push(...plant(polygon, index));
+      else if (polygon.kind === "water") basin(polygon, into);
+      else if (polygon.kind === "floor" || polygon.ramp) floor(polygon, into);
+      else if (polygon.kind === "building") building(polygon, index, into);
+      else if (polygon.kind === "furniture") furniture(polygon, into);
+      else masonry(polygon, into);
+    });
+  });
+  for (const wall of walls) {
+    add(wall.offset_m, (into) => {
+      if (isRailing(wall)) railing(wall, into);
+      else thinWall(wall, into);
+    });
+  }
+  for (const flight of flights) {
+    add(flight.bottom_m, (into) => {
+      stairs(flight, into);
+    });
+  }
+  for (const door of doors) {
+    add(door.offset_m, (into) => {
+      doorFrame(door, into);
+    });
+  }
+  return all;
 }
 
 function mesh(pieces: Pieces["plain"], material: Material): Mesh | null {

@@ -1,20 +1,18 @@
-/** The world from above, north up: what stands, who walks, and what the own camera sees. */
+/** The world from above, north up: one storey, who walks on it, and what the own camera sees. */
 
-import type { Plan, SceneData } from "../net/messages";
+import type { Doors, Plan, SceneData } from "../net/messages";
+import { storeyAt, storeysOf } from "../world/storeys";
 import type { Avatar } from "../world/world";
 import { byId } from "./dom";
+import { drawFloorplan, stands } from "./floorplan";
+import { StoreySwitch } from "./storeyswitch";
 
-const KIND_COLORS = {
-  building: "#8b8173",
-  floor: "#f7f3ea",
-  wall: "#6f675c",
-  furniture: "#b08c63",
-  plant: "#86a667",
-  water: "#6fb3cf",
-} as const;
 const PERSON = "#2563c9";
 const ACTOR = "#0b8279";
 const OWN = "#e08a00";
+const DOOR = "#a4551e";
+/** How strongly those on other storeys are drawn. */
+const ELSEWHERE = 0.25;
 const CONE_M = 14;
 const CONE_HALF = 0.5;
 
@@ -22,33 +20,53 @@ export class Minimap {
   private readonly canvas = byId("minimap", HTMLCanvasElement);
   private readonly still = document.createElement("canvas");
   private scene: SceneData | null = null;
+  private storeys: readonly number[] = [0];
+  private readonly choice = new StoreySwitch(() => {
+    this.layOut();
+  });
   private scale = 1;
   private left = 0;
   private top = 0;
 
-  show(scene: SceneData): void {
-    this.scene = scene;
-    this.layOut();
+  constructor() {
     new ResizeObserver(() => {
       this.layOut();
     }).observe(this.canvas);
   }
 
-  update(avatars: Iterable<Avatar>, cameraYaw: number, plan: Plan | null): void {
+  show(scene: SceneData): void {
+    this.scene = scene;
+    this.storeys = storeysOf(scene);
+    this.choice.offer(this.storeys.length);
+    this.layOut();
+  }
+
+  update(
+    avatars: ReadonlyMap<number, Avatar>,
+    own: Avatar | null,
+    doors: Readonly<Doors>,
+    cameraYaw: number,
+    plan: Plan | null,
+  ): void {
+    if (own) this.choice.follow(storeyAt(this.storeys, own.pose.z));
     const pen = this.canvas.getContext("2d");
     if (!pen || !this.scene) return;
     pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
     pen.drawImage(this.still, 0, 0);
+    this.drawDoors(pen, this.scene, doors);
     if (plan) this.path(pen, plan);
-    let own: Avatar | null = null;
-    for (const avatar of avatars) {
-      if (avatar.own) own = avatar;
-      else if (avatar.kind === "actor") this.diamond(pen, avatar);
+    for (const avatar of avatars.values()) {
+      if (avatar.own) continue;
+      pen.globalAlpha = this.isHere(avatar.pose.z) ? 1 : ELSEWHERE;
+      if (avatar.kind === "actor") this.diamond(pen, avatar);
       else this.dot(pen, avatar, 2.6, PERSON);
     }
-    if (!own) return;
-    this.cone(pen, own, cameraYaw);
-    this.dot(pen, own, 3.6, OWN);
+    if (own) {
+      pen.globalAlpha = this.isHere(own.pose.z) ? 1 : ELSEWHERE;
+      this.cone(pen, own, cameraYaw);
+      this.dot(pen, own, 3.6, OWN);
+    }
+    pen.globalAlpha = 1;
   }
 
   /** Fit the scene into the canvas as large as it is shown, and draw what never moves. */
@@ -63,27 +81,33 @@ export class Minimap {
     this.left = (canvas.width - (x1 - x0) * this.scale) / 2 - x0 * this.scale;
     this.top = (canvas.height - (y1 - y0) * this.scale) / 2 + y1 * this.scale;
     const pen = still.getContext("2d");
-    if (pen) this.drawStill(pen, scene);
+    if (pen) drawFloorplan(pen, scene, this.floorM, (x, y) => this.at(x, y));
   }
 
-  private drawStill(pen: CanvasRenderingContext2D, { bounds, polygons, walls }: SceneData): void {
-    const [x0, y0, x1, y1] = bounds;
-    pen.fillStyle = "#ece6da";
-    pen.fillRect(...this.at(x0, y1), (x1 - x0) * this.scale, (y1 - y0) * this.scale);
-    for (const { points, kind } of polygons) {
-      pen.fillStyle = KIND_COLORS[kind];
-      pen.beginPath();
-      points.forEach(([x, y]) => {
-        pen.lineTo(...this.at(x, y));
-      });
-      pen.fill();
-    }
-    pen.strokeStyle = KIND_COLORS.wall;
-    pen.lineWidth = 1.5;
+  /** Height of the shown storey's floor. */
+  private get floorM(): number {
+    return this.storeys[this.choice.shown] ?? 0;
+  }
+
+  private isHere(z: number): boolean {
+    return storeyAt(this.storeys, z) === this.choice.shown;
+  }
+
+  /** Closed ones across their way, open ones swung aside. */
+  private drawDoors(
+    pen: CanvasRenderingContext2D,
+    { doors }: SceneData,
+    open: Readonly<Doors>,
+  ): void {
+    pen.strokeStyle = DOOR;
+    pen.lineWidth = 1.6 * this.pixel;
     pen.beginPath();
-    for (const { start, end } of walls) {
+    for (const { name, start, end, offset_m, height_m } of doors) {
+      if (!stands(offset_m, offset_m + height_m, this.floorM)) continue;
+      const [dx, dy] = [end[0] - start[0], end[1] - start[1]];
+      const tip = open[name] === false ? end : ([start[0] - dy, start[1] + dx] as const);
       pen.moveTo(...this.at(...start));
-      pen.lineTo(...this.at(...end));
+      pen.lineTo(...this.at(...tip));
     }
     pen.stroke();
   }
@@ -130,11 +154,16 @@ export class Minimap {
   private path(pen: CanvasRenderingContext2D, { path }: Plan): void {
     pen.strokeStyle = ACTOR;
     pen.lineWidth = 1.5 * this.pixel;
-    pen.beginPath();
-    path.forEach(([x, y]) => {
+    path.forEach(([x, y, z], i) => {
+      const before = path[i - 1];
+      if (!before) return;
+      pen.globalAlpha = this.isHere(z) ? 1 : ELSEWHERE;
+      pen.beginPath();
+      pen.moveTo(...this.at(before[0], before[1]));
       pen.lineTo(...this.at(x, y));
+      pen.stroke();
     });
-    pen.stroke();
+    pen.globalAlpha = 1;
   }
 
   private cone(pen: CanvasRenderingContext2D, { pose }: Avatar, yaw: number): void {

@@ -1,0 +1,53 @@
+/** Which storey the map shows: the own avatar's, or for a while another that was chosen. */
+
+import { byId, element } from "./dom";
+
+export class StoreySwitch {
+  /** Counted from the ground, 0. */
+  shown = 0;
+  private own = 0;
+  private readonly row = byId("storeys", HTMLElement);
+  private buttons: HTMLButtonElement[] = [];
+
+  constructor(private readonly changed: () => void) {}
+
+  /** A new world with so many storeys; one alone needs no switch. */
+  offer(count: number): void {
+    this.own = this.shown = 0;
+    this.buttons = Array.from({ length: count }, (_, storey) => this.button(storey));
+    this.row.replaceChildren(...this.buttons);
+    this.row.hidden = count < 2;
+    document.body.classList.toggle("storeys", count > 1);
+    this.press();
+  }
+
+  /** The own avatar is on this storey; when it comes to another, the map goes with it. */
+  follow(storey: number): void {
+    if (storey === this.own) return;
+    this.own = storey;
+    this.choose(storey);
+  }
+
+  private choose(storey: number): void {
+    this.shown = storey;
+    this.press();
+    this.changed();
+  }
+
+  private button(storey: number): HTMLButtonElement {
+    const name = storey === 0 ? "Ground floor" : `Floor ${storey}`;
+    const sign = storey === 0 ? "G" : String(storey);
+    const button = element("button", { type: "button", "aria-label": name, title: name }, sign);
+    button.addEventListener("click", () => {
+      this.choose(storey);
+    });
+    return button;
+  }
+
+  private press(): void {
+    this.buttons.forEach((button, storey) => {
+      button.setAttribute("aria-pressed", String(storey === this.shown));
+      button.classList.toggle("here", storey === this.own);
+    });
+  }
+}
