@@ -6,6 +6,7 @@ import math
 from collections import OrderedDict
 from collections.abc import Callable
 from functools import cached_property
+from pathlib import Path
 from typing import Self
 
 import numpy as np
@@ -17,7 +18,9 @@ from planning._grid_kernels import GridArrays, cell_at, clearance_many
 from planning._layered import LayeredArrays, cell_near
 from planning.barriers import Barriers
 from planning.doors import Doors
-from planning.floors import Floors, floors_of_scene
+from planning.floors import Floors, floors_of_mesh, floors_of_scene
+from planning.mesh_file import Up
+from planning.meshes import Progress, unheard
 from planning.potential import Potential
 from planning.scene import Scene
 from planning.surfaces import Surfaces
@@ -87,10 +90,12 @@ class LayeredGrid:
         Raises
         ------
         ValueError
-            `cell_m` is not between 0.05 and 2 m.
+            `cell_m` is not between 0.05 and 2 m; the scene's mesh is at fault.
         """
         if not 0.05 <= cell_m <= 2.0:
             raise ValueError(f"cell_m must lie between 0.05 and 2 m, got {cell_m}")
+        if scene.mesh is not None:
+            return cls.from_mesh(scene.mesh, cell_m)
         x0, y0, x1, y1 = scene.bounds
         ny = max(1, math.ceil((y1 - y0) / cell_m - 1e-9))
         nx = max(1, math.ceil((x1 - x0) / cell_m - 1e-9))
@@ -107,6 +112,35 @@ class LayeredGrid:
             _index(segments, scene.bounds),
             lambda: floors_of_scene(scene, cell_m),
         )
+
+    @classmethod
+    def from_mesh(
+        cls, path: str | Path, cell_m: float = 0.25, up: Up = "y", progress: Progress = unheard
+    ) -> Self:
+        """Derive the grid of a building: OBJ, glTF, or whatever else trimesh reads.
+
+        Parameters
+        ----------
+        up : "y" or "z"
+            The file's axis that points up. With "y", its (x, y, z) becomes (x, -z, y).
+        progress : what is being done, share of the whole -> None
+
+        Raises
+        ------
+        MeshError
+            The file is at fault; the message names it and says how.
+        """
+        floors = floors_of_mesh(path, cell_m, up, progress)
+        x0, y0, x1, y1 = bounds = floors.surfaces.bounds
+        shape = (floors.surfaces.layer_count, floors.surfaces.ny, floors.surfaces.nx)
+        clearance = np.full(shape, CLEARANCE_CAP_M, dtype=np.float32)
+        for layer, field in enumerate(clearance):
+            lines, ground = floors.met_on(layer)
+            geometry.lower_to_segments(field, lines, x0, y0, cell_m, CLEARANCE_CAP_M)
+            field[~ground] *= -1.0
+        arrays = GridArrays(clearance, x0, y0, x1, y1, float(cell_m))
+        lines = np.ascontiguousarray(floors.barriers[:, :4])
+        return cls(arrays, _index(lines, bounds), lambda: floors)
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
