@@ -1,4 +1,4 @@
-"""Measure what must stay fast: `python -m benchmarks [planning | server | social] [options]`.
+"""Measure what must stay fast: `python -m benchmarks [planning | layered | server | social] [options]`.
 
 Without a name all of them run, one after the other, each as quick as it is by default.
 """
@@ -6,7 +6,7 @@ Without a name all of them run, one after the other, each as quick as it is by d
 import runpy
 import sys
 
-NAMES = ("planning", "server", "social")
+NAMES = ("planning", "layered", "server", "social")
 
 
 def main() -> None:

@@ -153,6 +153,20 @@ def straighten(footing: Footing, line: Line, out: Line) -> int:
 
 
 @kernel
+def recount(footing: Footing, line: Line) -> bool:
+    """Count cells on edges anew, from the first point on; whether M allows the line."""
+    line.counts[0] = 0
+    for k in range(1, len(line.cells)):
+        count = line.counts[k - 1]
+        if line.cells[k] != line.cells[k - 1]:
+            count = 0 if footing.classes[line.cells[k]] == STABLE else count + 1
+        line.counts[k] = count
+        if count >= footing.edge_cells:
+            return False
+    return True
+
+
+@kernel
 def length_of(xy: NDArray[np.float64]) -> float:
     """Length of a way (N, 2) on the ground."""
     length = 0.0

@@ -12,9 +12,9 @@ from planning import _straightening_kernels as kernels
 from planning._footing import Footing
 from planning._straightening_kernels import Line
 
-_PASSES = 4
+_MOST_PASSES = 6
 _WORTH = 0.999
-"""A pass that makes the way no shorter than this part of what it was is the last."""
+"""Two passes that make the way no shorter than this part of what it was are the last."""
 
 
 def line_of_cells(
@@ -38,21 +38,42 @@ def straighten(footing: Footing, line: Line) -> Line:
     """Make a way shorter by straight stretches that are legal for the body, M included.
 
     Straight stretches are walked on the floors, from cell to cell, with the body's exact distance
-    to walls. The result has a point in every cell that it crosses, so that it follows the floor
-    up and down. Cost O(points x log points).
+    to walls; from the start and from the goal in turn, since from a corner one can see less far
+    than toward it. The result has a point in every cell that it crosses, so that it follows the
+    floor up and down. Cost O(points x log points).
     """
-    length = kernels.length_of(line.xy)
-    for _ in range(_PASSES):
-        room = 3 * len(line.cells) + 8
-        out = Line(
-            np.empty((room, 2)), np.empty(room, dtype=np.int32), np.empty(room, dtype=np.int32)
-        )
-        used = kernels.straighten(footing, line, out)
-        line = Line(out.xy[:used], out.cells[:used], out.counts[:used])
-        before, length = length, kernels.length_of(line.xy)
-        if length >= _WORTH * before:
+    length, vain = kernels.length_of(line.xy), 0
+    for turn in range(_MOST_PASSES):
+        shorter = _one_pass(footing, line, turn % 2 == 1)
+        before, length = length, min(length, kernels.length_of(shorter.xy))
+        if length < before or turn == 0:
+            line = shorter
+        vain = 0 if length < _WORTH * before else vain + 1
+        if vain == 2:
             break
     return line
+
+
+def _one_pass(footing: Footing, line: Line, backward: bool) -> Line:
+    """The line straightened from its start, or from its goal; itself where M forbids the latter."""
+    original = line
+    if backward:
+        line = _reversed(line)
+        if not kernels.recount(footing, line):
+            return original
+    room = 3 * len(line.cells) + 8
+    out = Line(np.empty((room, 2)), np.empty(room, dtype=np.int32), np.empty(room, dtype=np.int32))
+    used = kernels.straighten(footing, line, out)
+    line = Line(out.xy[:used], out.cells[:used], out.counts[:used])
+    if backward:
+        line = _reversed(line)
+        if not kernels.recount(footing, line):
+            return original
+    return line
+
+
+def _reversed(line: Line) -> Line:
+    return Line(line.xy[::-1].copy(), line.cells[::-1].copy(), line.counts[::-1].copy())
 
 
 def headings(xy: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 
-import numpy as np
 from hypothesis import strategies as st
 
 from planning import Body, LayeredGrid, LayeredPath, Polygon, Scene, Stairs, Wall
 from planning.footing import find_footing, footing_of
 from tests.naive.floors import Floors
+from tests.naive.geometry import segment_distance
 
 CELL_M = 0.25
 
@@ -102,17 +102,18 @@ def walk_through(path: LayeredPath, grid: LayeredGrid, body: Body) -> None:
         last = cell
     for (px, py, pz), (qx, qy, qz) in pairwise(path.points):
         assert abs(pz - qz) <= body.step_on_m + 1e-3
-        assert math.hypot(qx - px, qy - py) <= 1.5 * a.cell_m
+        assert math.hypot(qx - px, qy - py) <= 2.2 * a.cell_m
         for barrier in grid.barriers:
             line = tuple(barrier[:2]), tuple(barrier[2:4])
             if floors.to_raise(barrier, pz, qz) > body.step_on_m + 1e-3:
                 assert not _meet((px, py), (qx, qy), *line), f"{barrier} is crossed"
-    for (px, py, pz), (qx, qy, _) in pairwise(path.points):
-        for u in np.linspace(0.0, 1.0, 5):
-            at = px + u * (qx - px), py + u * (qy - py)
-            away = min(floors.stops_at(at, pz, body.leg_length_m), default=math.inf)
-            if u == 0.0 or pz == path.points[0, 2]:
-                assert away >= body.radius_m - 2e-3, f"something is {away} m away from {at}"
+    leg = body.leg_length_m + 1e-3
+    for (px, py, pz), (qx, qy, qz) in pairwise(path.points):
+        for barrier in grid.barriers:
+            if min(floors.to_raise(barrier, pz), floors.to_raise(barrier, qz)) > leg:
+                line = tuple(barrier[:2]), tuple(barrier[2:4])
+                away = segment_distance((px, py), (qx, qy), *line)
+                assert away >= body.radius_m - 1e-3, f"{barrier} is only {away} m away"
 
 
 def _meet(a, b, c, d) -> bool:
