@@ -20,7 +20,7 @@ COMMANDS: Final = {
     "serve": Command("server.cli", "run a world for people and actors"),
     "bots": Command("bots.cli", "send people made of code: load, or a recorded crowd"),
     "evaluate": Command("evaluation.cli", "measure actors among recorded people"),
-    "scene": Command("scenery.cli", "check a scene, draw it"),
+    "scene": Command("scenery.cli", "check a scene, draw it, make one of a mesh"),
     "demo": Command("esplanade.demo", "run the demo world with actors and a few visitors"),
 }
 

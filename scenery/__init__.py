@@ -1,1 +1,1 @@
-"""What makers of scenes need: check a scene, draw it."""
+"""What makers of scenes need: check a scene, draw it, make one of a mesh."""

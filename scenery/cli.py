@@ -1,4 +1,4 @@
-"""`esplanade scene`: check a scene, draw it."""
+"""`esplanade scene`: check a scene, draw it, make one of a mesh."""
 
 import argparse
 import json
@@ -11,6 +11,7 @@ from rich.console import Console
 from planning.scene_file import SceneError
 from scenery import inventory, pictures
 from scenery.console import UsageError, open_scene, progress
+from scenery.importing import import_mesh
 from scenery.options import parser
 from scenery.views import layer_views
 
@@ -68,7 +69,30 @@ def _render(options: argparse.Namespace) -> int:
     return EXIT_WELL
 
 
+def _import(options: argparse.Namespace) -> int:
+    if options.out.suffix != ".json":
+        raise UsageError(f"--out: a scene is a .json file, not {options.out.name}")
+    with progress(share=True) as shown:
+        task = shown.add_task("", total=1.0)
+        scene = import_mesh(
+            options.mesh,
+            options.out,
+            options.up,
+            options.scale,
+            options.cell,
+            options.name,
+            options.spawn,
+            options.places,
+            lambda doing, share: shown.update(task, description=doing, completed=share),
+        )
+    print(
+        f"{options.out}: {len(scene.places)} places; run it: esplanade serve --scene {options.out}"
+    )
+    return EXIT_WELL
+
+
 _COMMANDS: Final[dict[str, Callable[[argparse.Namespace], int]]] = {
     "check": _check,
     "render": _render,
+    "import": _import,
 }

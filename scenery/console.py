@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskProgressColumn, TextColumn
 
 from planning import Scene
 from planning.scene_file import read_scene
@@ -29,12 +29,12 @@ def open_scene(path: Path) -> Scene:
         raise UsageError(f"{path}: cannot be read: {error.strerror or error}") from None
 
 
-def progress() -> Progress:
-    """A bar on the error output, gone when all is done."""
+def progress(share: bool = False) -> Progress:
+    """A bar on the error output, gone when all is done; with a share of the whole, or a count."""
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
-        MofNCompleteColumn(),
+        TaskProgressColumn() if share else MofNCompleteColumn(),
         console=Console(stderr=True),
         transient=True,
     )

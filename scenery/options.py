@@ -4,16 +4,17 @@ import argparse
 from pathlib import Path
 from typing import Final
 
-from scenery.values import body, number, where
+from scenery.values import body, number, point, where, whole
 
 DEFAULT_CELL_M: Final = 0.25
 """What the server takes."""
-DESCRIPTION: Final = "Check a scene, or draw it floor by floor."
+DESCRIPTION: Final = "Check a scene, draw it floor by floor, or make one of a building's mesh."
 EPILOG: Final = """\
 examples:
   esplanade scene check scenes/gallery.json
   esplanade scene render scenes/gallery.json --body child --out pictures
   esplanade scene render my.json --from gate --to 12,3,3.5 --out pictures
+  esplanade scene import house.obj --up y --out house.json
 
 bodies: adult, child, or a preset with other measures in metres, such as
 child,height=1.1 or radius=0.3,height=1.9,step=0.4,leg=0.9,edge=24 (an adult otherwise;
@@ -25,7 +26,7 @@ cannot be read or written
 
 
 def parser() -> argparse.ArgumentParser:
-    """The commands; the help of the whole shows how each is called."""
+    """The three commands; the help of the whole shows how each is called."""
     made = argparse.ArgumentParser(
         prog="esplanade scene",
         description=DESCRIPTION,
@@ -33,7 +34,7 @@ def parser() -> argparse.ArgumentParser:
         allow_abbrev=False,
     )
     commands = made.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    parts = [_check(commands), _render(commands)]
+    parts = [_check(commands), _render(commands), _import(commands)]
     usages = "".join(part.format_usage().replace("usage: ", "  ") for part in parts)
     made.epilog = f"usage of each:\n{usages}\n{EPILOG}"
     return made
@@ -83,6 +84,46 @@ def _render(commands: "_Commands[argparse.ArgumentParser]") -> argparse.Argument
             type=where,
             help="a place's name or a point in metres [default: two places far apart]",
         )
+    _add_cell(made)
+    return made
+
+
+def _import(commands: "_Commands[argparse.ArgumentParser]") -> argparse.ArgumentParser:
+    made = commands.add_parser(
+        "import",
+        help="make a scene of a mesh: OBJ, glTF, GLB",
+        description="Make a scene of a mesh. The mesh is kept beside it as SCENE.glb, which the "
+        "scene names: keep the two together.",
+        allow_abbrev=False,
+    )
+    made.add_argument("mesh", metavar="MESH", type=Path, help="OBJ, glTF or GLB")
+    made.add_argument(
+        "--out", metavar="SCENE.json", type=Path, required=True, help="the scene to write"
+    )
+    made.add_argument(
+        "--up", choices=("y", "z"), default="y", help="the mesh's axis that is up [default: y]"
+    )
+    made.add_argument(
+        "--scale",
+        metavar="M",
+        type=number(1e-6, 1e6),
+        default=1.0,
+        help="metres in one unit of the mesh [default: 1]",
+    )
+    made.add_argument("--name", metavar="TEXT", help="name of the scene [default: the mesh's]")
+    made.add_argument(
+        "--spawn",
+        metavar="X,Y,Z",
+        type=point,
+        help="where people come in [default: amid the largest region that an adult can walk]",
+    )
+    made.add_argument(
+        "--places",
+        metavar="N",
+        type=whole(0, 64),
+        default=8,
+        help="places to spread over what can be reached [default: 8]",
+    )
     _add_cell(made)
     return made
 

@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 
 _LONGER_SIDE_IN: Final = 9.0
 _LEGEND_IN: Final = 2.3
-_MARGIN_IN: Final = 0.4
+_MARGIN_IN: Final = 0.45
 _DOTS_AN_INCH: Final = 110
 _NOTHING: Final = "white"
 _WALL: Final = "#202020"
@@ -124,7 +124,7 @@ def _draw(
     axes.set_ylim(bottom, top)
     axes.tick_params(labelsize=7)
     title = f"{view.title}, layer {view.number}: {caption.format(way=view.way)}"
-    axes.set_title(title, fontsize=10, loc="left")
+    axes.set_title(title, fontsize=10, loc="left", pad=14)
     figure.savefig(path)
 
 

@@ -19,6 +19,8 @@ from scenery.values import Point
 
 _OTHER_FLOOR_M = 1.0
 """A floor further above or below than this is not what a point means."""
+_SHELTERED = 4.0
+"""What a cell under a roof counts for."""
 
 
 @dataclass(frozen=True)
@@ -117,7 +119,10 @@ def stands_in(footing: Footing) -> NDArray[np.bool_]:
 
 
 def largest_region(footing: Footing) -> NDArray[np.bool_]:
-    """The most cells that one body can walk between, bool (N,); none if it stands nowhere."""
+    """The most cells that one body can walk between, bool (N,); none if it stands nowhere.
+
+    Cells under a roof count for more, so that the rooms of a building come before its roof.
+    """
     stands, links = stands_in(footing), footing.arrays.links
     steps = (footing.steps[:, None] >> np.arange(8)) & 1 == 1
     steps &= stands[:, None] & stands[links]
@@ -128,5 +133,6 @@ def largest_region(footing: Footing) -> NDArray[np.bool_]:
         shape=(count, count),
     )
     labels = connected_components(graph, directed=False)[1]
-    sizes = np.bincount(labels[stands], minlength=1)
+    worth = np.where(np.isfinite(footing.arrays.ceilings), _SHELTERED, 1.0) * stands
+    sizes = np.bincount(labels, weights=worth, minlength=1)
     return np.asarray(stands & (labels == sizes.argmax()))

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from scenery import cli
-from tests.scenery.worlds import LOFT, write
+from tests.scenery.worlds import LOFT, write, write_building
 
 needs_matplotlib = pytest.mark.skipif(find_spec("matplotlib") is None, reason="no matplotlib")
 
@@ -125,3 +125,21 @@ def test_the_help_of_the_whole_names_all_options(capsys: pytest.CaptureFixture[s
 
 def test_a_command_is_needed(capsys: pytest.CaptureFixture[str]) -> None:
     assert "COMMAND" in refused(capsys)
+
+
+def test_import_makes_a_scene_that_check_accepts(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    target = tmp_path / "house.json"
+    assert run("import", write_building(tmp_path), "--out", target) == cli.EXIT_WELL
+    assert f"esplanade serve --scene {target}" in capsys.readouterr().out
+    assert run("check", target) == cli.EXIT_WELL
+    assert "8 places" in capsys.readouterr().out
+
+
+def test_import_refuses_what_is_no_mesh_and_no_scene(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mesh = write_building(tmp_path)
+    assert "is a .json file" in refused(capsys, "import", mesh, "--out", tmp_path / "a.glb")
+    assert "none.obj" in refused(capsys, "import", tmp_path / "none.obj", "--out", "a.json")

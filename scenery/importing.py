@@ -1,0 +1,146 @@
+"""A world of a mesh: its floors found, a spawn chosen, places spread over what can be reached."""
+
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning import LayeredGrid, Scene
+from planning._footing import Footing
+from planning.bodies import Body
+from planning.footing import footing_of
+from planning.mesh_file import MeshError
+from planning.scene import Bounds, Place, Spawn
+from planning.stability import Stability
+from planning.wavefront import UNREACHED, metres, spread_wave
+from scenery.console import UsageError
+from scenery.meshes import as_glb
+from scenery.reach import cell_near, centres, largest_region
+from scenery.values import Point
+
+_SPAWN_RADIUS_M = 1.0
+_NAME_LENGTH = 64
+
+
+def import_mesh(
+    source: Path,
+    target: Path,
+    up: str,
+    metres_a_unit: float,
+    cell_m: float,
+    name: str | None,
+    spawn: Point | None,
+    places: int,
+    tell: Callable[[str, float], None],
+) -> Scene:
+    """Make a scene of a mesh, and write both: `target`, and the mesh beside it as GLB.
+
+    The scene holds no floors: they are derived from the mesh whenever it is read. `tell` hears
+    what is being done, and which share of the whole is behind.
+
+    Raises
+    ------
+    UsageError
+        The mesh cannot be used, nobody can stand at the spawn, or a file cannot be written.
+    """
+    kept = target.with_suffix(".glb")
+    if kept.resolve() == source.resolve() and (up != "y" or metres_a_unit != 1.0):
+        raise UsageError(f"--out: {kept.name} would be written over the mesh itself")
+    tell(f"reading {source.name}", 0.0)
+    mesh = as_glb(source, up, metres_a_unit)
+    # The floors of the scene are those of the file that is kept, not of the one read.
+    with TemporaryDirectory() as folder:
+        copy = Path(folder) / kept.name
+        copy.write_bytes(mesh)
+        try:
+            grid = LayeredGrid.from_mesh(copy, cell_m, "y", lambda doing, s: tell(doing, _share(s)))
+        except MeshError as error:
+            raise UsageError(f"{error}; --up and --scale say how it is to be read") from None
+    tell("choosing places", _share(1.0))
+    footing = footing_of(grid, Body.adult())
+    start = _spawn_cell(footing, spawn)
+    x, y, z = _rounded(footing, start)
+    scene = Scene(
+        name=(name or source.stem)[:_NAME_LENGTH],
+        bounds=_whole_metres(grid.bounds),
+        mesh=Path(kept.name),
+        spawns=(Spawn(position=(x, y), z_m=z, radius_m=_SPAWN_RADIUS_M),),
+        places=tuple(_places(footing, start, places)),
+    )
+    tell(f"writing {target.name}", 0.95)
+    try:
+        kept.write_bytes(mesh)
+        target.write_text(_lines(scene))
+    except OSError as error:
+        raise UsageError(f"--out: {error}") from None
+    return scene
+
+
+def _share(of_floors: float) -> float:
+    """Finding floors takes most of the time."""
+    return 0.1 + 0.7 * of_floors
+
+
+def _whole_metres(bounds: Bounds) -> Bounds:
+    """Outward, so that cells of another size lie within them too."""
+    x0, y0, x1, y1 = bounds
+    return math.floor(x0), math.floor(y0), math.ceil(x1), math.ceil(y1)
+
+
+def _spawn_cell(footing: Footing, spawn: Point | None) -> int:
+    """The cell that is asked for; else one amid the largest region."""
+    if spawn is not None:
+        cell = cell_near(footing, spawn, _SPAWN_RADIUS_M)
+        if cell < 0:
+            raise UsageError("--spawn: an adult cannot stand there")
+        return cell
+    region = largest_region(footing) & (footing.classes == Stability.STABLE)
+    if not region.any():
+        raise UsageError("an adult can stand nowhere in this mesh; is --up or --scale right?")
+    cells = np.flatnonzero(region)
+    points = centres(footing)[cells]
+    return int(cells[np.linalg.norm(points - points.mean(axis=0), axis=1).argmin()])
+
+
+def _places(footing: Footing, start: int, count: int) -> list[Place]:
+    """Places as far from the spawn and from each other as the ways between them allow."""
+    nearest = _ways(footing, start)
+    made: list[Place] = []
+    for number in range(1, count + 1):
+        cell = int(nearest.argmax())
+        if nearest[cell] <= 0.0:
+            break
+        x, y, z = _rounded(footing, cell)
+        made.append(Place(name=f"place {number}", position=(x, y), z_m=z))
+        nearest = np.minimum(nearest, _ways(footing, cell))
+    return made
+
+
+def _ways(footing: Footing, cell: int) -> NDArray[np.float32]:
+    """The way to each cell in metres; -1 where none leads or nobody stands well."""
+    left = spread_wave(footing, cell)
+    ways = metres(footing, left)
+    ways[(left == UNREACHED) | (footing.classes != Stability.STABLE)] = -1.0
+    return ways
+
+
+def _lines(scene: Scene) -> str:
+    """A scene file with one line for each part, for people to go on with."""
+    fields = scene.model_dump(mode="json", exclude_defaults=True)
+    lines = []
+    for key, value in fields.items():
+        text = json.dumps(value, ensure_ascii=False)
+        if value and isinstance(value, list) and isinstance(value[0], dict):
+            parts = ",\n".join(f"    {json.dumps(part, ensure_ascii=False)}" for part in value)
+            text = f"[\n{parts}\n  ]"
+        lines.append(f"  {json.dumps(key)}: {text}")
+    return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+def _rounded(footing: Footing, cell: int) -> Point:
+    x, y, z = (round(float(value), 3) for value in centres(footing)[cell])
+    return x, y, z

@@ -1,0 +1,121 @@
+"""Worlds of meshes: whatever the file's axes and units, the scene can be read and walked."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from planning import LayeredGrid, Scene
+from planning.bodies import Body
+from planning.find_path import PathStatus, find_path
+from planning.scene_file import read_scene
+from scenery.console import UsageError
+from scenery.importing import import_mesh
+from tests.scenery.worlds import write_building
+
+Told = list[tuple[str, float]]
+
+
+def make(source: Path, target: Path, told: Told | None = None, **changes: Any) -> Scene:
+    options: dict[str, Any] = {
+        "up": "y",
+        "metres_a_unit": 1.0,
+        "cell_m": 0.25,
+        "name": None,
+        "spawn": None,
+        "places": 6,
+        "tell": lambda doing, share: (told if told is not None else []).append((doing, share)),
+    }
+    return import_mesh(source, target, **{**options, **changes})
+
+
+def test_a_mesh_becomes_a_world_of_two_floors(tmp_path: Path) -> None:
+    told: Told = []
+    target = tmp_path / "house.json"
+    make(write_building(tmp_path), target, told, name="House")
+    scene = read_scene(target)
+    assert scene.name == "House"
+    assert scene.mesh == tmp_path / "house.glb"
+    assert scene.bounds == (0.0, 0.0, 10.0, 8.0)
+    assert len(scene.places) == 6
+    assert {round(place.z_m, 1) for place in scene.places} >= {0.0, 2.4}
+    shares = [share for _, share in told]
+    assert shares == sorted(shares)
+    assert shares[-1] < 1.0
+
+
+def test_every_place_can_be_walked_to(tmp_path: Path) -> None:
+    target = tmp_path / "house.json"
+    make(write_building(tmp_path), target)
+    scene = read_scene(target)
+    grid = LayeredGrid.from_scene(scene, 0.25)
+    (spawn,) = scene.spawns
+    for place in scene.places:
+        start, goal = (*spawn.position, spawn.z_m), (*place.position, place.z_m)
+        assert find_path(grid, start, goal, body=Body.adult()).status is PathStatus.FOUND
+
+
+def test_z_up_makes_the_same_world(tmp_path: Path) -> None:
+    worlds = []
+    for up in ("y", "z"):
+        target = tmp_path / f"{up}.json"
+        worlds.append(make(write_building(tmp_path, z_up=up == "z"), target, up=up, name="same"))
+    first, second = (json.loads((tmp_path / f"{up}.json").read_text()) for up in ("y", "z"))
+    assert first.pop("mesh") == "y.glb"
+    assert second.pop("mesh") == "z.glb"
+    assert first == second
+
+
+def test_units_can_be_scaled(tmp_path: Path) -> None:
+    scene = make(write_building(tmp_path), tmp_path / "big.json", metres_a_unit=1.5)
+    assert scene.bounds == (0.0, 0.0, 15.0, 12.0)
+
+
+def test_the_spawn_that_is_asked_for_is_taken(tmp_path: Path) -> None:
+    scene = make(write_building(tmp_path), tmp_path / "a.json", spawn=(9.0, 7.0, 2.4), places=0)
+    assert np.hypot(*np.subtract(scene.spawns[0].position, (9.0, 7.0))) < 0.25
+    assert scene.spawns[0].z_m == pytest.approx(2.4)
+    assert scene.places == ()
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"spawn": (9.0, 7.0, 9.0)}, "--spawn: an adult cannot stand there"),
+        ({"metres_a_unit": 1000.0}, "--up and --scale"),
+    ],
+)
+def test_what_cannot_be_is_refused_and_leaves_nothing(
+    tmp_path: Path, changes: dict[str, Any], message: str
+) -> None:
+    target = tmp_path / "house.json"
+    with pytest.raises(UsageError, match=message):
+        make(write_building(tmp_path), target, **changes)
+    assert not target.exists()
+    assert not target.with_suffix(".glb").exists()
+
+
+@pytest.mark.parametrize("text", ["", "nonsense\n", "v 1 2 3\nf 1 2 9\n"])
+def test_broken_meshes_are_refused(tmp_path: Path, text: str) -> None:
+    source = tmp_path / "broken.obj"
+    source.write_text(text)
+    with pytest.raises(UsageError, match=r"broken|house"):
+        make(source, tmp_path / "house.json")
+
+
+def test_a_mesh_that_is_not_there_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"none\.obj"):
+        make(tmp_path / "none.obj", tmp_path / "house.json")
+
+
+def test_a_mesh_is_not_written_over_by_another_form_of_it(tmp_path: Path) -> None:
+    make(write_building(tmp_path), tmp_path / "house.json")
+    kept = tmp_path / "house.glb"
+    before = kept.read_bytes()
+    with pytest.raises(UsageError, match="written over"):
+        make(kept, tmp_path / "house.json", up="z")
+    assert kept.read_bytes() == before
+    make(kept, tmp_path / "house.json")
+    assert read_scene(tmp_path / "house.json").places
