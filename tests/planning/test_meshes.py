@@ -11,7 +11,7 @@ from planning.floors import floors_of_mesh
 from planning.mesh_file import MeshError, read_triangles
 from planning.meshes import barriers_of_triangles, surfaces_of_triangles
 from tests.naive import surfaces as naive
-from tests.planning.test_surfaces import columns_of, links_of
+from tests.planning.test_surfaces import ODD_M, columns_of, links_of
 from tests.planning.worlds import holds
 
 
@@ -64,7 +64,7 @@ def test_surfaces_are_those_of_the_twin(triangles) -> None:
     if flat(triangles):
         return
     try:
-        surfaces = surfaces_of_triangles(triangles, 0.5)
+        surfaces = surfaces_of_triangles(triangles, 2.0 * ODD_M)
     except MeshError:
         return
     expected = naive.columns_of_triangles(triangles, surfaces.raster)
