@@ -22,6 +22,8 @@ from benchmarks._pairs import (
 )
 
 NO_GROUND: Final = "no ground at an end"
+MOVED: Final = "an end moved elsewhere"
+"""From the places that the other chose for both ends, who refused finds a way too."""
 UNEXPLAINED: Final = "unexplained"
 _CANDIDATES: Final = 4
 _WARM_UP: Final = 50
@@ -33,6 +35,9 @@ class Planner(Protocol):
     @property
     def made(self) -> Mapping[str, float]:
         """What it took to import the mesh."""
+
+    def make(self) -> None:
+        """Import the mesh again."""
 
     def stands(self, points: Floats) -> Bools:
         """Whether there is ground near each of the points (N, 3)."""
@@ -92,8 +97,9 @@ def random_pairs(mesh: Floats, planners: tuple[Planner, Planner], count: int, se
 
 
 def compare(ours: Planner, theirs: Planner, pairs: Floats) -> Comparison:
-    """Ask both, warm, and find out why they disagree."""
+    """Let both import the mesh and answer, warm, and find out why they disagree."""
     for planner in (ours, theirs):
+        planner.make()
         planner.ways(pairs[-_WARM_UP:])
     mine, others = ours.ways(pairs), theirs.ways(pairs)
     refusals = [
@@ -113,7 +119,10 @@ def explained(
     """
     answers = enumerate(zip(refused, found, strict=True))
     numbers = [n for n, (no, yes) in answers if yes.found and not no.found]
-    why = {n: NO_GROUND for n in numbers if not all(refused[n].stands)}
+    moved = [found[n].points[[0, -1]] for n in numbers]
+    again = refusing.ways(np.array(moved)) if moved else []
+    why = {n: MOVED for n, answer in zip(numbers, again, strict=True) if answer.found}
+    why |= {n: NO_GROUND for n in numbers if n not in why and not all(refused[n].stands)}
     if len(why) < len(numbers):
         for rule, eased in refusing.eased():
             left = [n for n in numbers if n not in why]

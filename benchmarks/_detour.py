@@ -18,6 +18,8 @@ from benchmarks._pairs import Answer, Bools, Floats
 RECAST: Final = Path(__file__).parent / "recast"
 REACH_M: Final = (0.5, 1.0)
 """How far from a point its place on the ground may be: horizontally, vertically."""
+LONGEST_EDGE_M: Final = 12.0
+"""Longer borders of the navigation mesh are divided; what its own demonstration does."""
 _ROUNDING: Final = 1e-6
 
 
@@ -43,6 +45,7 @@ class NavMeshSettings:
             "walkableRadius": math.ceil(self.radius_m / self.cell_m - _ROUNDING),
             "walkableHeight": math.ceil(self.height_m / self.cell_height_m - _ROUNDING),
             "walkableClimb": math.floor(self.climb_m / self.cell_height_m + _ROUNDING),
+            "maxEdgeLen": LONGEST_EDGE_M / self.cell_m,
             "minRegionArea": self.smallest_side_m / self.cell_m,
         }
 
@@ -55,11 +58,6 @@ class Detour:
 
     def __init__(self, mesh: Floats, settings: NavMeshSettings) -> None:
         self._mesh, self._settings = mesh, settings
-        geometry = {
-            "positions": y_up(mesh).ravel().tolist(),
-            "indices": list(range(3 * len(mesh))),
-            "config": settings.config(),
-        }
         self._node = subprocess.Popen(
             [_node(), "detour.mjs"],
             cwd=RECAST,
@@ -68,10 +66,19 @@ class Detour:
             text=True,
         )
         try:
-            made = self._ask({"build": geometry})
+            self.make()
         except RuntimeError:
             self._node.communicate()
             raise
+
+    def make(self) -> None:
+        """Make the navigation mesh, or make it again now that all is compiled."""
+        geometry = {
+            "positions": y_up(self._mesh).ravel().tolist(),
+            "indices": list(range(3 * len(self._mesh))),
+            "config": self._settings.config(),
+        }
+        made = self._ask({"build": geometry})
         self.made: dict[str, float] = {
             "ms": made["ms"],
             "polygons": made["polygons"],

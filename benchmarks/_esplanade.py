@@ -25,8 +25,12 @@ class Esplanade:
 
     def __init__(self, path: Path, up: str, cell_m: float, body: Body) -> None:
         self._path, self._up, self._cell_m, self._body = path, up, cell_m, body
+        self.make()
+
+    def make(self) -> None:
+        """Import the mesh, or import it again now that all is compiled."""
         begun = time.perf_counter()
-        self._grid = LayeredGrid.from_mesh(path, cell_m=cell_m, up=up)
+        self._grid = LayeredGrid.from_mesh(self._path, cell_m=self._cell_m, up=self._up)
         arrays = self._grid.layered
         self.made: dict[str, float] = {
             "ms": 1e3 * (time.perf_counter() - begun),

@@ -46,8 +46,8 @@ ROWS: Final = (
     ("memory, KiB", ("import", "KiB"), "{:.0f}"),
     ("  theirs", ("import, theirs", "KiB"), "{:.0f}"),
     ("pairs", ("pairs",), "{:d}"),
-    *((f"way found by {who}", (str(who),), "{:d}") for who in Verdict),
-    ("length, ours / theirs, median", ("length ratio", "p50"), "{:.3f}"),
+    *((f"  a way: {who}", (str(who),), "{:d}") for who in Verdict),
+    ("length / theirs, median", ("length ratio", "p50"), "{:.3f}"),
     ("  p95", ("length ratio", "p95"), "{:.3f}"),
     ("query, median µs", ("us", "p50"), "{:.0f}"),
     ("  p95", ("us", "p95"), "{:.0f}"),
@@ -140,7 +140,7 @@ def list_disagreements(console: Console, found: Comparison) -> None:
             if (refusal.who, refusal.why) == (who, why):
                 start, goal, gap = map(point, (refusal.start, refusal.goal, refusal.gap))
                 line = f"       {refusal.number:4d} {start} to {goal}, gap at {gap}"
-                console.print(line, highlight=False)
+                console.print(line, highlight=False, soft_wrap=True)
 
 
 def point(xyz: Sequence[float]) -> str:
@@ -150,10 +150,10 @@ def point(xyz: Sequence[float]) -> str:
 
 def show(console: Console, figures: dict[str, dict[str, Any]]) -> None:
     """A table with a column for every mesh."""
-    table = Table(box=box.SIMPLE)
-    table.add_column("")
+    table = Table(box=box.SIMPLE, padding=(0, 0, 0, 1))
+    table.add_column("", no_wrap=True)
     for name in figures:
-        table.add_column(name, justify="right")
+        table.add_column(Path(name).stem, justify="right")
     for title, keys, shape in ROWS:
         values: list[Any] = [reduce(getitem, keys, measured) for measured in figures.values()]
         table.add_row(title, *("–" if v is None else shape.format(v) for v in values))

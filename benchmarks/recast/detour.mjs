@@ -46,12 +46,13 @@ function build({ positions, indices, config }) {
   return { ms, polygons: header.polyCount(), bytes: exportNavMesh(navMesh).length };
 }
 
-/** The polygon to stand on near a point, or null; `reach` is horizontally a radius. */
+/** The polygon to stand on near a point, or null; the box alone would let in what only touches it. */
 function place(position, reach) {
   const halfExtents = vector(reach);
   const { nearestRef, nearestPoint } = query.findNearestPoly(position, { halfExtents });
   const away = Math.hypot(nearestPoint.x - position.x, nearestPoint.z - position.z);
-  return nearestRef && away <= reach[0] ? { ref: nearestRef, at: nearestPoint } : null;
+  const isNear = away <= reach[0] && Math.abs(nearestPoint.y - position.y) <= reach[1];
+  return nearestRef && isNear ? { ref: nearestRef, at: nearestPoint } : null;
 }
 
 /** Corners of the way between two places, or none if it would end before the goal. */

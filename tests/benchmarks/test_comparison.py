@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from benchmarks._comparison import NO_GROUND, UNEXPLAINED, compare, random_pairs
+from benchmarks._comparison import MOVED, NO_GROUND, UNEXPLAINED, compare, random_pairs
 from benchmarks._pairs import Answer, Verdict
 
 FLOOR = np.array(
@@ -22,10 +22,14 @@ class Corridor:
     end_m: float = 30.0
     rule: str = "gate"
     eased_to_m: float = np.inf
+    shift_m: float = 0.0
 
     @property
     def made(self) -> dict[str, float]:
         return {}
+
+    def make(self) -> None:
+        pass
 
     def stands(self, points: np.ndarray) -> np.ndarray:
         return points[:, 0] <= self.end_m
@@ -35,7 +39,8 @@ class Corridor:
         for pair in pairs:
             first, last = self.stands(pair).tolist()
             crossed = (pair[:, 0] > self.barrier_m).sum() == 1
-            points = np.empty((0, 3)) if crossed or not (first and last) else pair
+            refuses = crossed or not (first and last)
+            points = np.empty((0, 3)) if refuses else pair + np.array([self.shift_m, 0.0, 0.0])
             answers.append(Answer((first, last), points, 2.0))
         return answers
 
@@ -72,6 +77,13 @@ def test_missing_ground_needs_no_further_reason() -> None:
     (refusal,) = compare(Corridor(end_m=28.0), Corridor(), pairs((1, 29.5))).disagreements
     assert refusal.why == NO_GROUND
     assert refusal.gap == (29.5, 2.0, 0.0)
+
+
+def test_who_finds_a_way_from_the_places_of_the_other_is_told() -> None:
+    asked = pairs((9.5, 19))
+    theirs = replace(Corridor(), shift_m=1.0)
+    (refusal,) = compare(Corridor(barrier_m=10.0), theirs, asked).disagreements
+    assert refusal.why == MOVED
 
 
 def test_figures_tell_of_all_pairs() -> None:
