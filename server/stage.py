@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from planning import Place, Scene, Wall
+from planning.scene_file import SceneError, read_scene, scene_faults
 from recordings import (
     Crowd,
     RecordingError,
@@ -69,7 +70,7 @@ def set_stage(settings: ServerSettings) -> Stage:
     except RecordingError as error:
         raise StageError(str(error)) from None
     except ValidationError as error:
-        raise StageError(_faults(settings.crowd, error)) from None
+        raise StageError(str(SceneError(settings.crowd, scene_faults(error)))) from None
     needed_mps = CATCH_UP * crowd.max_speed_mps
     # Recorded people brush along walls: they are held to their tracks, not to a clearance.
     return Stage(
@@ -84,20 +85,11 @@ def set_stage(settings: ServerSettings) -> Stage:
 
 def _read_scene(path: Path) -> Scene:
     try:
-        return Scene.model_validate_json(path.read_bytes())
+        return read_scene(path)
     except OSError as error:
         raise StageError(f"{path}: cannot be read: {error.strerror or error}") from None
-    except ValidationError as error:
-        raise StageError(_faults(path, error)) from None
-
-
-def _faults(path: Path, error: ValidationError) -> str:
-    lines = []
-    for fault in error.errors(include_url=False, include_input=False):
-        where = ".".join(str(part) for part in fault["loc"])
-        text = fault["msg"].removeprefix("Value error, ")
-        lines.append(f"{path}: {where}: {text}" if where else f"{path}: {text}")
-    return "\n".join(lines)
+    except SceneError as error:
+        raise StageError(str(error)) from None
 
 
 def _scene_around(

@@ -32,7 +32,7 @@ def test_without_a_scene_there_is_one_that_comes_along() -> None:
 @pytest.mark.parametrize(
     ("text", "fault"),
     [
-        ("{", "Invalid JSON"),
+        ("{", "is no JSON"),
         ('{"bounds": [0, 0, 1, "x"]}', "bounds.3: "),
         ('{"bounds": [0, 0, 1, 1], "walls": [{"start": [0, 0], "end": [0, 0]}]}', "walls.0: the"),
         ('{"bounds": [5, 0, 1, 1]}', "bounds: x0 < x1"),
