@@ -47,7 +47,7 @@ class Hub:
         self._guidance = guidance
         self._settings = settings
         self._metrics = metrics
-        self._welcomes = frames.Welcomes(world.scene.model_dump(mode="json"))
+        self._welcomes = frames.Welcomes(world.scene.model_dump(mode="json", exclude={"mesh"}))
         self._seats: Seats[Session] = Seats()
         self._next_ticket = 1
         self._joining: dict[int, tuple[Session, Hello]] = {}

@@ -28,7 +28,7 @@ _BOXES = """(selector) => [...document.querySelectorAll(selector)]
   .filter(({ box }) => box.width > 0)"""
 
 
-async def _visit(browser: Browser, url: str, width: int, height: int) -> Visitor:
+async def visit(browser: Browser, url: str, width: int, height: int) -> Visitor:
     narrow = width < 640
     context = await browser.new_context(
         viewport={"width": width, "height": height}, has_touch=narrow, is_mobile=narrow
@@ -38,7 +38,13 @@ async def _visit(browser: Browser, url: str, width: int, height: int) -> Visitor
     return visitor
 
 
-def _overlapping(boxes: list[dict[str, Any]]) -> Iterator[str]:
+async def boxes_of(visitor: Visitor, selector: str) -> list[dict[str, Any]]:
+    """Names and boxes of what is seen of the page's elements."""
+    boxes: list[dict[str, Any]] = await visitor.page.evaluate(_BOXES, selector)
+    return boxes
+
+
+def overlapping(boxes: list[dict[str, Any]]) -> Iterator[str]:
     for a, b in combinations(boxes, 2):
         one, other = a["box"], b["box"]
         across = min(one["right"], other["right"]) - max(one["left"], other["left"])
@@ -51,10 +57,10 @@ def _overlapping(boxes: list[dict[str, Any]]) -> Iterator[str]:
 async def test_controls_lie_apart_and_within_the_window(
     browser: Browser, url: str, width: int, height: int
 ) -> None:
-    visitor = await _visit(browser, url, width, height)
-    boxes = await visitor.page.evaluate(_BOXES, CONTROLS)
+    visitor = await visit(browser, url, width, height)
+    boxes = await boxes_of(visitor, CONTROLS)
     assert len(boxes) >= 6
-    assert list(_overlapping(boxes)) == []
+    assert list(overlapping(boxes)) == []
     outside = [
         each["name"]
         for each in boxes
@@ -71,23 +77,23 @@ async def test_controls_lie_apart_and_within_the_window(
 async def test_open_panels_cover_no_control(
     browser: Browser, url: str, width: int, height: int
 ) -> None:
-    visitor = await _visit(browser, url, width, height)
+    visitor = await visit(browser, url, width, height)
     for opener in ("#people-open", "#plan-open"):
         await visitor.page.click(opener)
-        boxes = await visitor.page.evaluate(_BOXES, f"{CONTROLS}, {PANELS}")
-        assert list(_overlapping(boxes)) == [], opener
+        boxes = await boxes_of(visitor, f"{CONTROLS}, {PANELS}")
+        assert list(overlapping(boxes)) == [], opener
     await visitor.page.context.close()
 
 
 async def test_thumbs_have_room_on_a_phone(browser: Browser, url: str) -> None:
-    visitor = await _visit(browser, url, 390, 844)
-    boxes = await visitor.page.evaluate(_BOXES, "button")
+    visitor = await visit(browser, url, 390, 844)
+    boxes = await boxes_of(visitor, "button")
     assert [b["name"] for b in boxes if b["box"]["height"] < THUMB_PX] == []
     await visitor.page.context.close()
 
 
 async def test_the_stick_walks_on_a_phone(browser: Browser, url: str) -> None:
-    visitor = await _visit(browser, url, 390, 844)
+    visitor = await visit(browser, url, 390, 844)
     stick = await visitor.page.locator("#stick").bounding_box()
     assert stick is not None
     x, y = stick["x"] + stick["width"] / 2, stick["y"] + stick["height"] / 2
@@ -106,7 +112,7 @@ async def test_the_stick_walks_on_a_phone(browser: Browser, url: str) -> None:
 
 @SIZES
 async def test_a_picture_is_drawn(browser: Browser, url: str, width: int, height: int) -> None:
-    visitor = await _visit(browser, url, width, height)
+    visitor = await visit(browser, url, width, height)
     frames = (await visitor.look())["frames"]
     await visitor.until(lambda view: view["frames"] > frames + 5)
     picture = await visitor.page.screenshot()

@@ -1,6 +1,7 @@
 /** One visit: joins, passes what the server says to the world and the page, and draws the frames. */
 
 import { unpackBlock } from "../net/codec";
+import { fetchTriangles } from "../net/triangles";
 import { Connection, type ConnectionState } from "../net/connection";
 import type { Seats } from "../net/seats";
 import type { ServerMessage, Welcome } from "../net/messages";
@@ -177,6 +178,20 @@ export class Session {
     this.walking.enter(this.world);
     this.minimap.show(welcome.scene);
     this.chosenId = null;
+    if (welcome.scene.mesh !== undefined) void this.build(this.world, welcome.scene.mesh);
+  }
+
+  /** Fetch the mesh that a world is made of; until it is there, its people walk on nothing. */
+  private async build(world: World, address: string): Promise<void> {
+    try {
+      const triangles = await fetchTriangles(address);
+      if (world !== this.world) return;
+      world.built(triangles);
+      this.view.enter(world, triangles);
+      this.minimap.show(world.scene, triangles);
+    } catch (error) {
+      this.chat.note(`The building cannot be shown: ${String(error)}.`);
+    }
   }
 
   private choose(id: number | null): void {

@@ -11,6 +11,7 @@ import { Plans } from "../render/plans";
 import { type Choice, QualityControl } from "../render/quality";
 import { Stage } from "../render/stage";
 import { buildTown, type Town } from "../render/town";
+import type { Triangles } from "../world/mesh";
 import type { Avatar, World } from "../world/world";
 
 /** Names of people so far above or below are dimmed. */
@@ -47,8 +48,8 @@ export class View {
   }
 
   /** The world that is shown from now on. */
-  enter(world: World): void {
-    this.town = buildTown(world.scene, this.cutaway);
+  enter(world: World, mesh: Triangles | null = null): void {
+    this.town = buildTown(world.scene, this.cutaway, mesh);
     this.stage.show(this.town, world.scene);
     this.marks.walkTarget(null);
   }

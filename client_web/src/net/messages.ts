@@ -63,6 +63,8 @@ export interface SceneData {
   walls: SceneWall[];
   stairs: SceneStairs[];
   doors: SceneDoor[];
+  /** Where the triangles are to be had, seen from the page; only of a building that is a mesh. */
+  mesh?: string;
 }
 
 export interface Welcome {

@@ -11,6 +11,7 @@ import {
   PlaneGeometry,
 } from "three";
 import type { SceneData } from "../net/messages";
+import type { Triangles } from "../world/mesh";
 import { based, type Cutaway } from "./cutaway";
 import { doorFrame, DoorLeaves } from "./doors";
 import { facadeTexture, pavingTexture } from "./facade";
@@ -18,6 +19,7 @@ import { LeavesMaterial } from "./leaves";
 import { PAVING } from "./palette";
 import { plant } from "./plants";
 import { merged } from "./shapes";
+import { lowestOf, meshGeometry } from "./meshes";
 import { floor, isRailing, railing, stairs } from "./storeys";
 import { basin, building, furniture, masonry, type Pieces, thinWall } from "./structures";
 
@@ -33,8 +35,10 @@ export interface Town {
   dispose(): void;
 }
 
-export function buildTown(scene: SceneData, cutaway: Cutaway): Town {
+/** `mesh` holds the triangles of a building that comes as a mesh. */
+export function buildTown(scene: SceneData, cutaway: Cutaway, mesh: Triangles | null): Town {
   const pieces = piecesOf(scene);
+  if (mesh) pieces.plain.push(meshGeometry(mesh));
   const facade = new MeshLambertMaterial({ vertexColors: true, map: facadeTexture() });
   // Both sides: the inner face of a basin is seen from within.
   const plain = new MeshLambertMaterial({ vertexColors: true, side: DoubleSide });
@@ -46,13 +50,14 @@ export function buildTown(scene: SceneData, cutaway: Cutaway): Town {
   for (const material of [facade, plain, leaves, water, paving, wood]) cutaway.applyTo(material);
   const doors = new DoorLeaves(scene.doors, wood);
   const solid = [
-    mesh(pieces.facade, facade),
-    mesh(pieces.plain, plain),
-    mesh(pieces.paving, paving),
+    meshOf(pieces.facade, facade),
+    meshOf(pieces.plain, plain),
+    meshOf(pieces.paving, paving),
   ].filter((m) => m !== null);
   const group = new Group();
-  group.add(...ground(scene), ...solid, doors.group);
-  for (const other of [mesh(pieces.leaves, leaves), mesh(pieces.water, water)]) {
+  const lowest = mesh ? lowestOf(mesh) : 0;
+  group.add(...ground(scene, lowest, mesh === null), ...solid, doors.group);
+  for (const other of [meshOf(pieces.leaves, leaves), meshOf(pieces.water, water)]) {
     if (other) group.add(other);
   }
   return {
@@ -115,7 +120,7 @@ function piecesOf({ polygons, walls, stairs: flights, doors }: SceneData): AllPi
   return all;
 }
 
-function mesh(pieces: Pieces["plain"], material: Material): Mesh | null {
+function meshOf(pieces: Pieces["plain"], material: Material): Mesh | null {
   const geometry = merged(pieces);
   if (!geometry) {
     material.dispose();
@@ -126,8 +131,8 @@ function mesh(pieces: Pieces["plain"], material: Material): Mesh | null {
   return made;
 }
 
-/** The paved ground within the bounds, and the land around it. */
-function ground({ bounds: [x0, y0, x1, y1] }: SceneData): Mesh[] {
+/** The paved ground within the bounds, and the land around it, below all that is built. */
+function ground({ bounds: [x0, y0, x1, y1] }: SceneData, lowestM: number, pave: boolean): Mesh[] {
   const [width, depth] = [x1 - x0, y1 - y0];
   const [x, y] = [(x0 + x1) / 2, (y0 + y1) / 2];
   const map = pavingTexture();
@@ -142,6 +147,6 @@ function ground({ bounds: [x0, y0, x1, y1] }: SceneData): Mesh[] {
     new CircleGeometry(Math.hypot(width, depth) / 2 + 300, 40),
     new MeshLambertMaterial({ color: "#a9b48a" }),
   );
-  land.position.set(x, y, -0.05);
-  return [paved, land];
+  land.position.set(x, y, lowestM - 0.05);
+  return pave ? [paved, land] : [land];
 }

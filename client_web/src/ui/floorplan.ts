@@ -1,6 +1,7 @@
 /** One storey from above, drawn once: what stands on it, and what leads up or down. */
 
 import type { SceneData, ScenePolygon, SceneStairs } from "../net/messages";
+import { meshParts, type Triangles } from "../world/mesh";
 import { treadsOf } from "../world/solids";
 
 const COLORS = {
@@ -26,7 +27,7 @@ type ToCanvas = (x: number, y: number) => [number, number];
 /** `floorM` is the height of the storey's floor. */
 export function drawFloorplan(
   pen: CanvasRenderingContext2D,
-  { bounds: [x0, y0, x1, y1], polygons, walls, stairs }: SceneData,
+  { bounds: [x0, y0, x1, y1], polygons, walls, stairs, mesh }: SceneData,
   floorM: number,
   at: ToCanvas,
 ): void {
@@ -42,7 +43,7 @@ export function drawFloorplan(
     [x1, y1],
     [x0, y1],
   ] as const;
-  fill(ground, floorM === 0 ? COLORS.floor : VOID);
+  fill(ground, floorM === 0 && mesh === undefined ? COLORS.floor : VOID);
   for (const part of polygons) {
     if (isSlope(part) && touches(bottomOf(part), topOf(part), floorM)) fill(part.points, SLOPE);
     else if (isFloor(part, floorM)) fill(part.points, COLORS.floor);
@@ -64,6 +65,26 @@ export function drawFloorplan(
     pen.lineTo(...at(...end));
   }
   pen.stroke();
+}
+
+/** All that one can stand on, the lower the darker. */
+export function drawMesh(pen: CanvasRenderingContext2D, mesh: Triangles, at: ToCanvas): void {
+  const floors = meshParts(mesh)
+    .solids.filter(({ carries }) => carries)
+    .map(({ ring, topM }) => ({ ring, topM: Math.max(...ring.map(([x, y]) => topM(x, y))) }))
+    .sort((a, b) => a.topM - b.topM);
+  const lowest = floors.at(0)?.topM ?? 0;
+  const rangeM = Math.max(1, (floors.at(-1)?.topM ?? 0) - lowest);
+  for (const { ring, topM } of floors) {
+    const light = 68 + (26 * (topM - lowest)) / rangeM;
+    pen.fillStyle = pen.strokeStyle = `hsl(40 30% ${light.toFixed(0)}%)`;
+    pen.lineWidth = 0.5;
+    pen.beginPath();
+    for (const [x, y] of ring) pen.lineTo(...at(x, y));
+    pen.closePath();
+    pen.fill();
+    pen.stroke();
+  }
 }
 
 /** Whether what reaches from `bottomM` to `topM` is in the way of those on the floor. */

@@ -1,10 +1,11 @@
 /** The world from above, north up: one storey, who walks on it, and what the own camera sees. */
 
 import type { Doors, Plan, SceneData } from "../net/messages";
+import type { Triangles } from "../world/mesh";
 import { storeyAt, storeysOf } from "../world/storeys";
 import type { Avatar } from "../world/world";
 import { byId } from "./dom";
-import { drawFloorplan, stands } from "./floorplan";
+import { drawFloorplan, drawMesh, stands } from "./floorplan";
 import { StoreySwitch } from "./storeyswitch";
 
 const PERSON = "#2563c9";
@@ -20,6 +21,7 @@ export class Minimap {
   private readonly canvas = byId("minimap", HTMLCanvasElement);
   private readonly still = document.createElement("canvas");
   private scene: SceneData | null = null;
+  private mesh: Triangles | null = null;
   private storeys: readonly number[] = [0];
   private readonly choice = new StoreySwitch(() => {
     this.layOut();
@@ -34,8 +36,10 @@ export class Minimap {
     }).observe(this.canvas);
   }
 
-  show(scene: SceneData): void {
+  /** The map of a scene; `mesh` holds the triangles of a building that comes as one. */
+  show(scene: SceneData, mesh: Triangles | null = null): void {
     this.scene = scene;
+    this.mesh = mesh;
     this.storeys = storeysOf(scene);
     this.choice.offer(this.storeys.length);
     this.layOut();
@@ -81,7 +85,10 @@ export class Minimap {
     this.left = (canvas.width - (x1 - x0) * this.scale) / 2 - x0 * this.scale;
     this.top = (canvas.height - (y1 - y0) * this.scale) / 2 + y1 * this.scale;
     const pen = still.getContext("2d");
-    if (pen) drawFloorplan(pen, scene, this.floorM, (x, y) => this.at(x, y));
+    if (!pen) return;
+    const at = (x: number, y: number): [number, number] => this.at(x, y);
+    drawFloorplan(pen, scene, this.floorM, at);
+    if (this.mesh) drawMesh(pen, this.mesh, at);
   }
 
   /** Height of the shown storey's floor. */

@@ -40,7 +40,7 @@ export function barriersOf(
       door: name,
     })),
     ...floors.solids.flatMap((solid) => [
-      ...sidesOf(solid),
+      ...(solid.sheet ? [] : sidesOf(solid)),
       ...(solid.carries ? ledgesOf(solid, floors) : []),
     ]),
   ];
@@ -50,7 +50,7 @@ function sidesOf({ ring, bottomM, topM }: Solid): Barrier[] {
   return edgesOf(ring).map(([a, b]) => ({
     a,
     b,
-    bottomM,
+    bottomM: Math.min(bottomM(...a), bottomM(...b)),
     topM: Math.max(topM(...a), topM(...b)),
     door: null,
   }));

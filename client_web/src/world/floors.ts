@@ -12,12 +12,16 @@ const SAME_M = 1e-6;
 
 export class Floors {
   readonly solids: readonly Solid[];
-  private readonly bounds: SceneData["bounds"];
+  /** Where the ground is walked on; nowhere in a building that comes as a mesh. */
+  private readonly ground: SceneData["bounds"] | null;
   private readonly buckets = new Buckets<Solid>();
 
-  constructor(scene: Pick<SceneData, "bounds" | "polygons" | "stairs">) {
-    this.bounds = scene.bounds;
-    this.solids = solidsOf(scene);
+  constructor(
+    scene: Pick<SceneData, "bounds" | "polygons" | "stairs" | "mesh">,
+    mesh: readonly Solid[] = [],
+  ) {
+    this.ground = scene.mesh === undefined ? scene.bounds : null;
+    this.solids = [...solidsOf(scene), ...mesh];
     for (const solid of this.solids) {
       const xs = solid.ring.map(([x]) => x);
       const ys = solid.ring.map(([, y]) => y);
@@ -29,13 +33,12 @@ export class Floors {
   at(x: number, y: number, z: number): number | null {
     const column = this.column(x, y);
     const tops = column.filter(({ carries }) => carries).map(({ topM }) => topM(x, y));
-    const [x0, y0, x1, y1] = this.bounds;
-    if (x >= x0 && x <= x1 && y >= y0 && y <= y1) tops.push(0);
+    if (this.ground && isWithin(this.ground, x, y)) tops.push(0);
     let nearest: number | null = null;
     for (const top of tops) {
       if (nearest !== null && Math.abs(top - z) >= Math.abs(nearest - z)) continue;
       const filled = column.some(
-        ({ bottomM, topM }) => bottomM < top + LOWEST_M && topM(x, y) > top + SAME_M,
+        ({ bottomM, topM }) => bottomM(x, y) < top + LOWEST_M && topM(x, y) > top + SAME_M,
       );
       if (!filled) nearest = top;
     }
@@ -44,10 +47,14 @@ export class Floors {
 
   /** Whether somebody with the feet at (x, y, z) has something overhead. */
   covered(x: number, y: number, z: number): boolean {
-    return this.column(x, y).some(({ bottomM }) => bottomM > z + CEILING_M);
+    return this.column(x, y).some(({ bottomM }) => bottomM(x, y) > z + CEILING_M);
   }
 
   private column(x: number, y: number): Solid[] {
     return this.buckets.at(x, y).filter(({ ring }) => isInside(ring, x, y));
   }
+}
+
+function isWithin([x0, y0, x1, y1]: SceneData["bounds"], x: number, y: number): boolean {
+  return x >= x0 && x <= x1 && y >= y0 && y <= y1;
 }

@@ -25,9 +25,10 @@ export class Obstacles {
   constructor(
     scene: Built,
     private readonly floors = new Floors(scene),
+    more: readonly Barrier[] = [],
   ) {
     this.bounds = scene.bounds;
-    for (const barrier of barriersOf(scene, floors)) this.add(barrier);
+    for (const barrier of [...barriersOf(scene, floors), ...more]) this.add(barrier);
   }
 
   /** Where a body gets to that wants to move by (dx, dy). */

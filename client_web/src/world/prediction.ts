@@ -53,7 +53,7 @@ export class Prediction {
 
   constructor(
     start: Pose,
-    private readonly obstacles: Obstacles,
+    public obstacles: Obstacles,
     private readonly radiusM: number,
     private readonly maxSpeedMps: number,
     private readonly tickS: number,

@@ -6,23 +6,27 @@ export type Ring = readonly (readonly [x: number, y: number])[];
 
 export interface Solid {
   readonly ring: Ring;
-  readonly bottomM: number;
+  readonly bottomM: (x: number, y: number) => number;
   /** Whether one can stand on top. */
   readonly carries: boolean;
+  /** Without sides that could be in the way. */
+  readonly sheet: boolean;
   readonly topM: (x: number, y: number) => number;
 }
 
 export function solidsOf({ polygons, stairs }: Pick<SceneData, "polygons" | "stairs">): Solid[] {
   const solids = polygons.map((polygon) => ({
     ring: polygon.points,
-    bottomM: polygon.offset_m,
+    bottomM: () => polygon.offset_m,
+    sheet: false,
     carries: polygon.kind !== "plant" && polygon.kind !== "water",
     topM: topOf(polygon),
   }));
   const treads = stairs.flatMap((flight) =>
     treadsOf(flight).map(({ ring, topM }) => ({
       ring,
-      bottomM: flight.bottom_m,
+      bottomM: () => flight.bottom_m,
+      sheet: false,
       carries: true,
       topM: () => topM,
     })),

@@ -2,6 +2,7 @@
 
 import type { Doors, EntityInfo, EntityRecord, Plan, SceneData, Welcome } from "../net/messages";
 import { Floors } from "./floors";
+import { meshParts, type Triangles } from "./mesh";
 import { Motion, type Pose } from "./motion";
 import { Obstacles } from "./obstacles";
 import { Playout } from "./playout";
@@ -30,12 +31,12 @@ export class World {
   readonly scene: SceneData;
   readonly ownId: number;
   readonly maxSpeedMps: number;
-  readonly floors: Floors;
+  floors: Floors;
   /** The newest plan of the watched actor. */
   plan: Plan | null = null;
   private readonly avatars_ = new Map<number, Followed>();
   private readonly playout: Playout;
-  private readonly obstacles: Obstacles;
+  private obstacles: Obstacles;
   private readonly tickS: number;
   private prediction: Prediction | null = null;
   private heardS: number;
@@ -114,6 +115,14 @@ export class World {
   /** Which doors stand open; false if closed. */
   get doors(): Readonly<Doors> {
     return this.obstacles.doors;
+  }
+
+  /** The triangles of a building that is a mesh have come. */
+  built(triangles: Triangles): void {
+    const { solids, steep } = meshParts(triangles);
+    this.floors = new Floors(this.scene, solids);
+    this.obstacles = new Obstacles(this.scene, this.floors, steep);
+    if (this.prediction) this.prediction.obstacles = this.obstacles;
   }
 
   doorsMoved(doors: Doors): void {

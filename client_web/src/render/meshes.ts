@@ -1,0 +1,33 @@
+/** A building that comes as a mesh: bare triangles, coloured by how steep they are. */
+
+import { BufferAttribute, BufferGeometry, Color } from "three";
+import type { Triangles } from "../world/mesh";
+import { FLOOR, STONE } from "./palette";
+
+/** Every triangle is a piece of its own that begins at its lowest corner. */
+export function meshGeometry(triangles: Triangles): BufferGeometry {
+  const geometry = new BufferGeometry();
+  const corners = triangles.length / 3;
+  geometry.setAttribute("position", new BufferAttribute(triangles, 3));
+  geometry.setAttribute("uv", new BufferAttribute(new Float32Array(corners * 2), 2));
+  geometry.computeVertexNormals();
+  const normal = geometry.getAttribute("normal");
+  const colors = new Float32Array(corners * 3);
+  const bases = new Float32Array(corners);
+  const color = new Color();
+  for (let i = 0; i < corners; i++) {
+    const first = i - (i % 3);
+    color.lerpColors(STONE, FLOOR, Math.max(0, normal.getZ(i)) ** 2).toArray(colors, i * 3);
+    bases[i] = Math.min(...[0, 1, 2].map((k) => triangles[(first + k) * 3 + 2] ?? 0));
+  }
+  geometry.setAttribute("color", new BufferAttribute(colors, 3));
+  geometry.setAttribute("base", new BufferAttribute(bases, 1));
+  return geometry;
+}
+
+/** Height of the lowest corner, metres. */
+export function lowestOf(triangles: Triangles): number {
+  let lowest = Infinity;
+  for (let i = 2; i < triangles.length; i += 3) lowest = Math.min(lowest, triangles[i] ?? lowest);
+  return lowest;
+}
