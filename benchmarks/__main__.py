@@ -1,4 +1,4 @@
-"""Measure what must stay fast: `python -m benchmarks [planning | layered | server | social] [options]`.
+"""Measure what must stay fast: `python -m benchmarks [NAME] [options]`, with a name of `NAMES`.
 
 Without a name all of them run, one after the other, each as quick as it is by default.
 """

@@ -24,7 +24,7 @@ class Line(NamedTuple):
     """(N,): cells on edges in a row."""
 
 
-@kernel
+@inlined
 def is_clear(footing: Footing, cell: int, ax: float, ay: float, bx: float, by: float) -> bool:
     """Whether a body keeps its distance from barriers on a straight way within one cell."""
     near, body = footing.near, footing.body
@@ -164,12 +164,3 @@ def recount(footing: Footing, line: Line) -> bool:
         if count >= footing.edge_cells:
             return False
     return True
-
-
-@kernel
-def length_of(xy: NDArray[np.float64]) -> float:
-    """Length of a way (N, 2) on the ground."""
-    length = 0.0
-    for k in range(1, len(xy)):
-        length += np.hypot(xy[k, 0] - xy[k - 1, 0], xy[k, 1] - xy[k - 1, 1])
-    return length

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning._jit import kernel
+from planning._stability_kernels import FORBIDDEN
 
 STRAIGHT = 70
 DIAGONAL = 99
@@ -26,9 +27,9 @@ def spread(
     Waits for no one but `start`: once it is reached, what is further away is left unreached; -1:
     everything is wanted. Returns the number of cells that are settled.
 
-    Cells are settled in order of their way, so those reached by a straight step leave one queue
-    in that order, those by a diagonal another: Dijkstra without a heap. No cell enters a queue
-    twice.
+    Steps lead both ways, so those out of a cell are those into it. Cells are settled in order of
+    their way, so those reached by a straight step leave one queue in that order, those by a
+    diagonal another: Dijkstra without a heap. No cell enters a queue twice.
     """
     left[:] = UNREACHED
     cells = np.empty((2, len(left)), dtype=np.int32)
@@ -53,18 +54,19 @@ def spread(
         if cell == start:
             break
         for d in range(8):
-            other = links[cell, d]
-            if other < 0 or classes[other] == 0 or not steps[other] >> ((d + 4) & 7) & 1:
+            if not steps[cell] >> d & 1:
                 continue
+            other = links[cell, d]
+            then = way + (DIAGONAL if d & 1 else STRAIGHT)
+            if then >= left[other] or classes[other] == FORBIDDEN:
+                continue
+            left[other] = then
             if d & 1:
-                if way + DIAGONAL < left[other]:
-                    left[other] = way + DIAGONAL
-                    cells[1, tail1] = other
-                    ways[1, tail1] = way + DIAGONAL
-                    tail1 += 1
-            elif way + STRAIGHT < left[other]:
-                left[other] = way + STRAIGHT
+                cells[1, tail1] = other
+                ways[1, tail1] = then
+                tail1 += 1
+            else:
                 cells[0, tail0] = other
-                ways[0, tail0] = way + STRAIGHT
+                ways[0, tail0] = then
                 tail0 += 1
     return settled

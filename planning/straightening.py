@@ -12,10 +12,6 @@ from planning import _straightening_kernels as kernels
 from planning._footing import Footing
 from planning._straightening_kernels import Line
 
-_MOST_PASSES = 6
-_WORTH = 0.999
-"""Two passes that make the way no shorter than this part of what it was are the last."""
-
 
 def line_of_cells(
     footing: Footing,
@@ -38,38 +34,23 @@ def straighten(footing: Footing, line: Line) -> Line:
     """Make a way shorter by straight stretches that are legal for the body, M included.
 
     Straight stretches are walked on the floors, from cell to cell, with the body's exact distance
-    to walls; from the start and from the goal in turn, since from a corner one can see less far
-    than toward it. The result has a point in every cell that it crosses, so that it follows the
-    floor up and down. Cost O(points x log points).
+    to walls; from the start, then from the goal, since from a corner one sees less far along the
+    way than toward it. The result has a point in every cell that it crosses, so that it follows
+    the floor up and down. Cost O(points x log points).
     """
-    length, vain = kernels.length_of(line.xy), 0
-    for turn in range(_MOST_PASSES):
-        shorter = _one_pass(footing, line, turn % 2 == 1)
-        before, length = length, min(length, kernels.length_of(shorter.xy))
-        if length < before or turn == 0:
-            line = shorter
-        vain = 0 if length < _WORTH * before else vain + 1
-        if vain == 2:
-            break
-    return line
+    line = _from_start(footing, line)
+    back = _reversed(line)
+    if not kernels.recount(footing, back):
+        return line
+    shorter = _reversed(_from_start(footing, back))
+    return shorter if kernels.recount(footing, shorter) else line
 
 
-def _one_pass(footing: Footing, line: Line, backward: bool) -> Line:
-    """The line straightened from its start, or from its goal; itself where M forbids the latter."""
-    original = line
-    if backward:
-        line = _reversed(line)
-        if not kernels.recount(footing, line):
-            return original
+def _from_start(footing: Footing, line: Line) -> Line:
     room = 3 * len(line.cells) + 8
     out = Line(np.empty((room, 2)), np.empty(room, dtype=np.int32), np.empty(room, dtype=np.int32))
     used = kernels.straighten(footing, line, out)
-    line = Line(out.xy[:used], out.cells[:used], out.counts[:used])
-    if backward:
-        line = _reversed(line)
-        if not kernels.recount(footing, line):
-            return original
-    return line
+    return Line(out.xy[:used], out.cells[:used], out.counts[:used])
 
 
 def _reversed(line: Line) -> Line:
