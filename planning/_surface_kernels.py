@@ -190,17 +190,23 @@ def surfaces_of_columns(
 
 
 @inlined
+def _apart(floors: NDArray[np.float32], ceilings: NDArray[np.float32], a: int, b: int) -> float:
+    """Difference in height of two neighbouring floors; inf if there is no way between them."""
+    room = min(ceilings[a], ceilings[b]) - max(floors[a], floors[b])
+    return abs(floors[a] - floors[b]) - _SAME_M if room >= LINK_ROOM_M else np.inf
+
+
+@inlined
 def _match(
     floors: NDArray[np.float32], ceilings: NDArray[np.float32], a: int, q0: int, q1: int
 ) -> int:
     """The surface q0 .. q1 that is nearest in height to a, of those that it could be linked to."""
     best = -1
-    away = LINK_M + _SAME_M
+    least = LINK_M
     for q in range(q0, q1):
-        d = abs(floors[q] - floors[a])
-        room = min(ceilings[q], ceilings[a]) - max(floors[q], floors[a])
-        if d < away and room >= LINK_ROOM_M:
-            away = d
+        away = _apart(floors, ceilings, a, q)
+        if away <= least and (best < 0 or away < least):
+            least = away
             best = q
     return best
 
@@ -226,6 +232,12 @@ def link_columns(
                 if jj == ny or ii < 0 or ii == nx:
                     continue
                 q0, q1 = starts[jj * nx + ii], starts[jj * nx + ii + 1]
+                if p1 - p0 == 1 and q1 - q0 == 1:
+                    # One floor beside one floor: nearly all there are.
+                    if _apart(floors, ceilings, p0, q0) <= LINK_M:
+                        links[p0, d] = q0
+                        links[q0, d + 4] = p0
+                    continue
                 for a in range(p0, p1):
                     b = _match(floors, ceilings, a, q0, q1)
                     if b >= 0 and _match(floors, ceilings, b, p0, p1) == a:
@@ -257,8 +269,8 @@ def flood(links: NDArray[np.int32], seeds: NDArray[np.int64], reached: NDArray[n
 @kernel
 def keep_surfaces(
     kept: NDArray[np.bool_], links: NDArray[np.int32], renumbered: NDArray[np.int32]
-) -> None:
-    """Renumber links (S, 8) in place, for rows that are kept; the others' rows mean nothing."""
+) -> int:
+    """Move the links (S, 8) of surfaces that are kept to the front, in place; returns how many."""
     count = 0
     for s in range(len(kept)):
         renumbered[s] = -1
@@ -266,9 +278,11 @@ def keep_surfaces(
             renumbered[s] = count
             count += 1
     for s in range(len(kept)):
-        for d in range(8):
-            if links[s, d] >= 0:
-                links[s, d] = renumbered[links[s, d]]
+        if kept[s]:
+            for d in range(8):
+                t = links[s, d]
+                links[renumbered[s], d] = renumbered[t] if t >= 0 else -1
+    return count
 
 
 @kernel

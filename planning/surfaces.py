@@ -133,8 +133,8 @@ def surfaces_of_scene(scene: Scene, cell_m: float = 0.25) -> Surfaces:
 
     kept = _reached(scene, raster, numbers, floors, links)
     if not kept.all():
-        keep_surfaces(kept, links, np.empty(count, dtype=np.int32))
-        floors, ceilings, links = floors[kept], ceilings[kept], links[kept]
+        links = links[: keep_surfaces(kept, links, np.empty(count, dtype=np.int32))]
+        floors, ceilings = floors[kept], ceilings[kept]
         groups, numbers = groups[kept], numbers[kept]
     rows, cols = np.divmod(numbers, np.int32(raster.nx))
     layers = _layers_of_groups(numbers, groups, links)
