@@ -37,6 +37,25 @@ def test_open_space_is_bounds_and_walls() -> None:
     assert scene.polygons == (block,)
 
 
+def test_stairs_are_solid_treads_of_even_height() -> None:
+    flight = {"start": [1, 5], "end": [4, 5], "width_m": 2, "bottom_m": 1, "top_m": 2.5}
+    scene = read(polygons=[{"points": SQUARE, "height_m": 1}], stairs=[flight | {"steps": 3}])
+    house, *treads = scene.solids()
+    assert house == scene.polygons[0]
+    assert [tread.offset_m for tread in treads] == [1.0] * 3
+    assert [tread.top_at(2.0, 5.0) for tread in treads] == pytest.approx([1.5, 2.0, 2.5])
+    assert set(treads[0].points) == {(1.0, 4.0), (2.0, 4.0), (2.0, 6.0), (1.0, 6.0)}
+    for tread in treads:
+        assert Polygon.model_validate(tread.model_dump()) == tread
+
+
+def test_ramps_rise_from_start_to_end_and_no_further() -> None:
+    ramp = {"start": [1, 0], "end": [3, 0], "start_height_m": 0.5}
+    scene = read(polygons=[{"points": SQUARE, "offset_m": 1, "height_m": 1.5, "ramp": ramp}])
+    tops = [scene.polygons[0].top_at(x, 2.0) for x in (0.0, 1.0, 2.0, 3.0, 4.0)]
+    assert tops == pytest.approx([1.5, 1.5, 2.0, 2.5, 2.5])
+
+
 def test_an_unknown_place_is_answered_with_those_there_are() -> None:
     with pytest.raises(KeyError, match=r"no place named 'moon'; the scene has: gate, stage"):
         read(
@@ -69,6 +88,35 @@ def test_an_unknown_place_is_answered_with_those_there_are() -> None:
         ({"polygons": [{"points": SQUARE, "height_m": 0.0}]}, "height_m"),
         ({"polygons": [{"points": SQUARE, "height_m": 1.0, "kind": "cloud"}]}, "kind"),
         ({"walls": [{"start": [1.0, 1.0], "end": [1.0, 1.0]}]}, "the wall has no length"),
+        (
+            {"stairs": [{"start": [1, 1], "end": [3, 1], "width_m": 1, "top_m": 0.0, "steps": 3}]},
+            "stairs.0.top_m",
+        ),
+        (
+            {
+                "stairs": [
+                    {"start": [1, 1], "end": [3, 1], "width_m": 1, "bottom_m": 2, "top_m": 1}
+                    | {"steps": 3}
+                ]
+            },
+            "the stairs end no higher than they begin",
+        ),
+        (
+            {"doors": [{"name": "a", "start": [1, 1], "end": [1, 1]}]},
+            "the door has no length",
+        ),
+        (
+            {"doors": [{"name": "a", "start": [1, 1], "end": [2, k]} for k in (1, 2)]},
+            "doors.1: the name 'a' is taken",
+        ),
+        (
+            {
+                "polygons": [
+                    {"points": SQUARE, "height_m": 1, "ramp": {"start": [1, 1], "end": [1, 1]}}
+                ]
+            },
+            "the ramp has no length",
+        ),
         ({"spawns": [{"position": [50.0, 1.0]}]}, r"spawns.0: \(50, 1\) lies outside"),
         ({"spawns": [{"position": [5.0, 1.0], "layer": 1}]}, "spawns.0.layer"),
         ({"places": [{"name": "a", "position": [-1.0, 1.0]}]}, "places.0"),
