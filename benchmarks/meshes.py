@@ -7,7 +7,8 @@ Of random pairs of points on the ground: does a way exist here and there, how lo
 does the answer take? Every disagreement is listed with the rule that makes it and the place where
 who refuses gets no further. Both walk for one body: its radius, height and step-on height, and
 nobody stands where it is steeper than 45 degrees. An end is ground if the body has a place within
-0.5 m on the plan and 1 m in height. Exit code 1 if a disagreement stays unexplained.
+0.5 m on the plan and 1 m in height. Times are of the processor, all warm. Exit code 1 if a
+disagreement stays unexplained.
 """
 
 import argparse
