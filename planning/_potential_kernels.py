@@ -54,6 +54,8 @@ def _may_pass(
     _, ny, nx = grid.clearance.shape
     if not (0 <= nj < ny and 0 <= ni < nx) or grid.clearance[layer, nj, ni] < radius:
         return False
+    if j == nj or i == ni:  # also out of a goal's own cell, whose centre need not be free
+        return True
     beside = min(grid.clearance[layer, j, ni], grid.clearance[layer, nj, i])
     return bool(beside >= radius)
 

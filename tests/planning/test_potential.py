@@ -120,6 +120,16 @@ def test_no_corner_is_cut() -> None:
     assert between.distance([(1.5, 2.5)], [0])[0] > 3.0
 
 
+def test_a_way_leads_to_a_goal_that_is_free_in_a_cell_whose_centre_is_not() -> None:
+    grid = open_grid(8.0, [((1.0, 4.15), (7.0, 4.15))])
+    goal = (4.0, 4.41)
+    assert grid.is_free([goal], [0], RADIUS_M)[0]
+    assert not grid.is_free([grid.cell_centre(goal)], [0], RADIUS_M)[0]
+    found = Potential(grid, goal, 0, RADIUS_M).distance([(4.0, 7.0), (4.0, 1.0)], [0, 0])
+    assert found[0] == pytest.approx(2.59, abs=0.05)
+    assert 7.0 < found[1] < 10.0
+
+
 def test_who_stands_beside_a_wall_still_knows_the_way() -> None:
     grid = open_grid(8.0, [((4.0, 0.0), (4.0, 8.0))])
     potential = Potential(grid, (1.0, 4.0), 0, 0.5)
