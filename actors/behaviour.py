@@ -10,10 +10,11 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from planning import LayeredGrid, Place, Scene
+from actors.state import SAME_FLOOR_M
+from planning import LayeredGrid, Scene
 
-Goal = tuple[float, float, int]
-"""x, y in metres and the layer."""
+Goal = tuple[float, float, float]
+"""x, y and the height of the floor, metres."""
 Target = str | Goal
 """A place's name or a point."""
 BehaviourName = Literal["go_to", "wander", "patrol", "guide", "idle"]
@@ -25,7 +26,7 @@ class View:
 
     time_s: float
     position: tuple[float, float]
-    layer: int
+    z_m: float
     arrived: bool
     """The goal given last has been reached."""
     stuck: bool
@@ -39,12 +40,9 @@ class View:
     def resolve(self, target: Target) -> Goal:
         """The point that a target means; KeyError for a place that the scene does not have."""
         if isinstance(target, str):
-            return self.point(self.scene.place(target))
+            place = self.scene.place(target)
+            return place.position[0], place.position[1], place.z_m
         return target
-
-    def point(self, place: Place) -> Goal:
-        """Where a place is."""
-        return (*place.position, self.grid.layer_near(place.position, place.z_m))
 
 
 class Behaviour(ABC):
@@ -113,18 +111,21 @@ class Wander(Behaviour):
     def _choose(self, view: View) -> Goal | None:
         here = np.array(view.position)
         places = [
-            view.point(place)
+            (*place.position, place.z_m)
             for place in view.scene.places
             if math.dist(place.position, view.position) > 1.0
+            or abs(place.z_m - view.z_m) >= SAME_FLOOR_M
         ]
         if places:
             return places[int(view.rng.integers(len(places)))]
         x0, y0, x1, y1 = view.scene.bounds
         for _ in range(32):
             point = view.rng.uniform((x0, y0), (x1, y1))
-            far = float(np.hypot(*(point - here))) > 1.0
-            if far and view.grid.is_free([point], [view.layer], view.radius_m)[0]:
-                return float(point[0]), float(point[1]), view.layer
+            x, y = float(point[0]), float(point[1])
+            z_m = view.grid.floor_at((x, y), view.z_m)
+            far = float(np.hypot(*(point - here))) > 1.0 and abs(z_m - view.z_m) < SAME_FLOOR_M
+            if far and view.grid.is_free([point], [z_m], view.radius_m)[0]:
+                return x, y, z_m
         return None
 
 
@@ -210,7 +211,9 @@ class Guide(Behaviour):
     def update(self, view: View) -> Goal | None:
         """The next stop; None while waiting for followers."""
         away = {
-            who: math.dist(where[:2], view.position) if where[2] == view.layer else math.inf
+            who: math.dist(where[:2], view.position)
+            if abs(where[2] - view.z_m) < SAME_FLOOR_M
+            else math.inf
             for who, where in view.people.items()
         }
         self._followers &= away.keys()

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from actors.behaviour import Behaviour, BehaviourName, Goal, View
 from actors.navigator import Navigator
 from actors.parameters import ActorParameters
-from actors.state import ActorState, Reason
-from planning import LayeredGrid, Scene
+from actors.state import SAME_FLOOR_M, ActorState, Reason
+from planning import LayeredGrid, Polygon, Scene
 
 _EXPLAINED_WITHIN_M = 8.0
 _STUCK_AFTER_S = 3.0
@@ -27,9 +27,9 @@ class Explanation:
     reason: Reason
     goal: Goal | None
     path: NDArray[np.float64]
-    """float64 (K, 4): x, y, layer, seconds from now."""
+    """float64 (K, 4): x, y, z, seconds from now."""
     people: list[NDArray[np.float64]]
-    """For each person near: float64 (K, 4) x, y, layer, radius of the two-sigma circle, m."""
+    """For each person near: float64 (K, 4) x, y, z, radius of the two-sigma circle, m."""
 
 
 @dataclass
@@ -67,7 +67,7 @@ class Cast:
         behaviour: Behaviour,
         parameters: ActorParameters | None = None,
         position: tuple[float, float] | None = None,
-        layer: int = 0,
+        z_m: float = 0.0,
     ) -> ActorState:
         """Put an actor in; without a position it gets a free place, chosen with the seed.
 
@@ -82,12 +82,9 @@ class Cast:
         self._check_targets(behaviour)
         rng = np.random.default_rng([self._seed, *str(actor_id).encode()])
         if position is None:
-            position = self._free_place(parameters.radius_m, layer, rng)
-        self.navigator.add_actor(actor_id, position, None, parameters, layer=layer)
-        start = (float(position[0]), float(position[1]))
-        state = ActorState(
-            start, layer, (0.0, 0.0), 0.0, Reason.WAITING, None, 0.0, np.array([start])
-        )
+            position = self._free_place(parameters, z_m, rng)
+        self.navigator.add_actor(actor_id, position, None, parameters, z_m=z_m)
+        state = self.navigator.state(actor_id)
         self._actors[actor_id] = _Actor(behaviour, parameters, rng, state)
         return state
 
@@ -117,7 +114,7 @@ class Cast:
                 self.navigator.set_goal(
                     actor_id,
                     None if goal is None else goal[:2],
-                    layer=0 if goal is None else goal[2],
+                    z_m=0.0 if goal is None else goal[2],
                 )
                 actor.goal = goal
                 actor.arrived = False
@@ -137,11 +134,15 @@ class Cast:
         self._tick += 1
         return states
 
+    def ways_changed(self) -> None:
+        """The ground has changed, as when a door closes: ways to goals are found anew."""
+        self.navigator.ways_changed()
+
     def explain(self, actor_id: Hashable) -> Explanation:
         """Why an actor does what it does; KeyError when there is none of that id."""
         actor = self._actors[actor_id]
         state = actor.state
-        near = self.navigator.predicted_near(state.position, state.layer, _EXPLAINED_WITHIN_M)
+        near = self.navigator.predicted_near(state.position, state.z_m, _EXPLAINED_WITHIN_M)
         for circles in near:
             circles[:, 3] *= 2.0
         return Explanation(actor.behaviour.name, state.reason, actor.goal, state.path, near)
@@ -149,9 +150,12 @@ class Cast:
     def warm_up(self) -> None:
         """Make ready all that a tick would have to wait for: kernels, and potentials of places.
 
-        Kernels are compiled by running a small zone of their own.
+        Kernels are compiled by running a small zone of their own, which is not all level: on level
+        ground some are not called.
         """
-        scene = Scene.open_space((0.0, 0.0, 6.0, 6.0), walls=[((3.0, 0.0), (3.0, 2.0))])
+        step = Polygon(points=((4.5, 4.5), (5.5, 4.5), (5.5, 5.5), (4.5, 5.5)), height_m=0.3)
+        walls = [((3.0, 0.0), (3.0, 2.0))]
+        scene = Scene.open_space((0.0, 0.0, 6.0, 6.0), walls=walls, polygons=[step])
         navigator = Navigator(scene, self.navigator.tick_s)
         navigator.add_actor("a", (1.0, 1.0), (5.0, 1.0))
         navigator.add_actor("b", (5.0, 1.0), (1.0, 1.0))
@@ -164,8 +168,7 @@ class Cast:
         potential.distance([(1.0, 1.0)], [0])
         navigator.close()
         for place in self.scene.places:
-            layer = self.grid.layer_near(place.position, place.z_m)
-            self.navigator.prepare_goal(place.position, layer, ActorParameters())
+            self.navigator.prepare_goal(place.position, place.z_m, ActorParameters())
 
     def close(self) -> None:
         """End the planning threads."""
@@ -175,7 +178,7 @@ class Cast:
         return View(
             time_s,
             actor.state.position,
-            actor.state.layer,
+            actor.state.z_m,
             actor.arrived,
             actor.no_path_s >= _STUCK_AFTER_S,
             people,
@@ -191,13 +194,38 @@ class Cast:
                 self.scene.place(target)
 
     def _free_place(
-        self, radius_m: float, layer: int, rng: np.random.Generator
+        self, parameters: ActorParameters, z_m: float, rng: np.random.Generator
     ) -> tuple[float, float]:
+        """Somewhere free, on the floor at that height unless that is nowhere to be found."""
         x0, y0, x1, y1 = self.scene.bounds
-        taken = np.array([a.state.position for a in self._actors.values()]).reshape(-1, 2)
+        elsewhere = None
+        here = [a.state for a in self._actors.values() if abs(a.state.z_m - z_m) < SAME_FLOOR_M]
+        taken = np.array([state.position for state in here]).reshape(-1, 2)
         for _ in range(_PLACING_TRIES):
             point = rng.uniform((x0, y0), (x1, y1))
-            crowded = len(taken) and np.hypot(*(taken - point).T).min() < 2.5 * radius_m
-            if not crowded and self.grid.is_free([point], [layer], radius_m + 0.1)[0]:
-                return float(point[0]), float(point[1])
+            place = float(point[0]), float(point[1])
+            crowded = len(taken) and np.hypot(*(taken - point).T).min() < 2.5 * parameters.radius_m
+            if not crowded and self._has_a_way(point, z_m, parameters):
+                if abs(self.grid.floor_at(place, z_m) - z_m) < SAME_FLOOR_M:
+                    return place
+                elsewhere = elsewhere or place
+        if elsewhere is not None:
+            return elsewhere
         raise ValueError(f"no free place for another actor after {_PLACING_TRIES} tries")
+
+    def _has_a_way(
+        self, point: NDArray[np.float64], z_m: float, parameters: ActorParameters
+    ) -> bool:
+        """Whether a body fits there and gets from there to where people come in."""
+        body = parameters.body
+        if not self.grid.is_free([point], [z_m], body.radius_m + 0.1, body)[0]:
+            return False
+        entries = self.scene.spawns or self.scene.places
+        if not entries:
+            return True
+        entry = entries[0]
+        free = self.grid.nearest_free(entry.position, entry.z_m, body.radius_m, body)
+        if free is None:
+            return True
+        potential = self.grid.potential(free, entry.z_m, body.radius_m, body)
+        return bool(np.isfinite(potential.distance([point], [z_m])[0]))

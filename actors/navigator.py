@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from actors.guides import GuidePool
 from actors.parameters import ActorParameters
-from actors.state import ActorState, Reason
+from actors.state import SAME_FLOOR_M, ActorState, Reason
 from planning import (
     PARAMETERS,
     Batch,
@@ -65,7 +65,7 @@ class Navigator:
         self._headings = np.zeros(0)
         self._crowd = _empty_crowd(self.plan.slices + 1)
         self._parameters: dict[Hashable, ActorParameters] = {}
-        self._goals: dict[Hashable, tuple[float, float, int] | None] = {}
+        self._goals: dict[Hashable, tuple[float, float, float] | None] = {}
 
     # --- actors --------------------------------------------------------------------------
 
@@ -76,8 +76,8 @@ class Navigator:
         goal: Point | None = None,
         parameters: ActorParameters | None = None,
         *,
-        layer: int = 0,
-        goal_layer: int | None = None,
+        z_m: float = 0.0,
+        goal_z_m: float | None = None,
         heading: float = 0.0,
     ) -> None:
         """Put an actor into the zone; without a goal it stands and makes way.
@@ -85,14 +85,14 @@ class Navigator:
         Raises
         ------
         ValueError
-            The id is taken, a position is not finite or outside the bounds, or the layer does
-            not exist. Nothing is changed then.
+            The id is taken, or a position is not finite or outside the bounds. Nothing is changed
+            then.
         """
         if actor_id in self._rows:
             raise ValueError(f"there already is an actor {actor_id!r}")
-        self._check_place(position, layer)
+        self._check_place(position, z_m)
         if goal is not None:
-            self._check_place(goal, layer if goal_layer is None else goal_layer)
+            self._check_place(goal, z_m if goal_z_m is None else goal_z_m)
         c = self._crowd
         parameters = parameters or ActorParameters()
         rows = len(self._ids)
@@ -100,7 +100,8 @@ class Navigator:
         self._crowd = Crowd(
             np.concatenate([c.positions, np.array([position], dtype=np.float64)]),
             np.concatenate([c.velocities, np.zeros((1, 2))]),
-            np.append(c.layers, np.int64(layer)),
+            np.append(c.cells, self._cell(position, z_m)),
+            np.append(c.bodies, self._body_row(parameters)),
             np.concatenate([c.goals, np.array([position], dtype=np.float64)]),
             np.append(c.guide_slots, np.int64(-1)),
             np.append(c.parameters, parameters.row()),
@@ -118,7 +119,7 @@ class Navigator:
         self._goals[actor_id] = None
         self._rank()
         if goal is not None:
-            self.set_goal(actor_id, goal, layer=layer if goal_layer is None else goal_layer)
+            self.set_goal(actor_id, goal, z_m=z_m if goal_z_m is None else goal_z_m)
 
     def remove_actor(self, actor_id: Hashable) -> None:
         """Take an actor out; KeyError when there is none of that id."""
@@ -133,20 +134,20 @@ class Navigator:
         self._rows = {who: k for k, who in enumerate(self._ids)}
         self._rank()
 
-    def set_goal(self, actor_id: Hashable, goal: Point | None, *, layer: int = 0) -> None:
+    def set_goal(self, actor_id: Hashable, goal: Point | None, *, z_m: float = 0.0) -> None:
         """Send an actor somewhere, or let it stand (None). A goal inside a wall is moved out."""
         row = self._row(actor_id)
         if goal is not None:
-            self._check_place(goal, layer)
+            self._check_place(goal, z_m)
         c = self._crowd
         old = int(c.guide_slots[row])
         slot = -1
-        target = None if goal is None else (float(goal[0]), float(goal[1]), layer)
+        target = None if goal is None else (float(goal[0]), float(goal[1]), float(z_m))
         if target is not None:
-            radius = self._parameters[actor_id].radius_m
-            free = self.grid.nearest_free(target[:2], layer, radius - _SLACK_M)
+            body = self._parameters[actor_id].body
+            free = self.grid.nearest_free(target[:2], z_m, body.radius_m - _SLACK_M, body)
             if free is not None:
-                slot = self._guides.take(free, layer, radius)
+                slot = self._guides.take(free, z_m, body)
                 c.goals[row] = free
         c.guide_slots[row] = slot
         c.known[row] = c.known[row] and slot == old
@@ -155,11 +156,12 @@ class Navigator:
         self._guides.release(old)
         self._goals[actor_id] = target
 
-    def prepare_goal(self, goal: Point, layer: int, parameters: ActorParameters) -> None:
+    def prepare_goal(self, goal: Point, z_m: float, parameters: ActorParameters) -> None:
         """Work out the potential of a goal before somebody needs it in the middle of a tick."""
-        free = self.grid.nearest_free(goal, layer, parameters.radius_m - _SLACK_M)
+        body = parameters.body
+        free = self.grid.nearest_free(goal, z_m, body.radius_m - _SLACK_M, body)
         if free is not None:
-            self._guides.release(self._guides.take(free, layer, parameters.radius_m))
+            self._guides.release(self._guides.take(free, z_m, body))
 
     def set_parameters(self, actor_id: Hashable, parameters: ActorParameters) -> None:
         """Change an actor's parameters from the next tick on."""
@@ -168,19 +170,30 @@ class Navigator:
         self._parameters[actor_id] = parameters
         self._crowd.parameters[row] = parameters.row()
         goal = self._goals[actor_id]
-        if before.radius_m != parameters.radius_m and goal is not None:
-            self.set_goal(actor_id, goal[:2], layer=goal[2])
+        if before.body != parameters.body:
+            self._crowd.bodies[row] = self._body_row(parameters)
+            if goal is not None:
+                self.set_goal(actor_id, goal[:2], z_m=goal[2])
 
     def place_actor(
         self, actor_id: Hashable, position: Point, velocity: tuple[float, float] = (0.0, 0.0)
     ) -> None:
         """Put an actor where another simulation has it; the path it follows stays."""
         row = self._row(actor_id)
-        self._check_place(position, int(self._crowd.layers[row]))
+        z_m = self._floor(int(self._crowd.cells[row]))
+        self._check_place(position, z_m)
         if not np.isfinite(velocity).all():
             raise ValueError(f"velocity of {actor_id!r} must be finite, got {velocity}")
         self._crowd.positions[row] = position
+        self._crowd.cells[row] = self._cell(position, z_m)
         self._crowd.velocities[row] = velocity
+
+    def ways_changed(self) -> None:
+        """The ground has changed: potentials are derived anew, one a tick, used ones first.
+
+        Until its turn comes an actor may walk up to what has closed; it never walks through.
+        """
+        self._guides.forget()
 
     def parameters(self, actor_id: Hashable) -> ActorParameters:
         """An actor's parameters."""
@@ -189,29 +202,28 @@ class Navigator:
     # --- ticks ---------------------------------------------------------------------------
 
     def observe(self, people: Mapping[Hashable, tuple[float, ...]]) -> None:
-        """Tell where everyone is at this tick: id -> (x, y) or (x, y, layer).
+        """Tell where everyone is at this tick: id -> (x, y) or (x, y, z).
 
         Who is absent has left. Call it once before every `tick`.
 
         Raises
         ------
         ValueError
-            A position is not finite or on a layer that does not exist; nothing is changed then.
+            A position is not finite; nothing is changed then.
         """
-        for who, where in people.items():
-            if len(where) == 3 and where[2] not in range(self.grid.layers):
-                raise ValueError(f"{who!r} is on layer {where[2]}, which does not exist")
         self._history.observe(people)
 
     def tick(self) -> dict[Hashable, ActorState]:
         """Plan and take one step for every actor; id -> state."""
+        self._guides.renew_one()
         c = self._crowd
         self._prediction = self._history.predict(self.grid, self.plan.slices, self.plan.slice_s)
-        decisions, positions = self._batch.tick(
+        decisions, positions, cells = self._batch.tick(
             c, self._guides.arrays, self._prediction, self.tick_s
         )
         c.velocities[:] = (positions - c.positions) / self.tick_s
         c.positions[:] = positions
+        c.cells[:] = cells
         c.followed[decisions.renewed] = decisions.paths[decisions.renewed]
         c.ages[decisions.renewed] = 0
         c.ages[:] += 1
@@ -219,20 +231,37 @@ class Navigator:
         speeds = np.hypot(c.velocities[:, 0], c.velocities[:, 1])
         walking = speeds > 0.1
         self._headings[walking] = np.arctan2(c.velocities[walking, 1], c.velocities[walking, 0])
+        return self._states(decisions.reasons, decisions.paths)
+
+    def state(self, actor_id: Hashable) -> ActorState:
+        """An actor as it stands, before its first tick."""
+        row = self._row(actor_id)
+        here = np.broadcast_to(self._crowd.positions, (1, len(self._ids), 2)).swapaxes(0, 1)
+        reasons = np.full(len(self._ids), Reason.WAITING.value)
+        return self._states(reasons, np.ascontiguousarray(here))[self._ids[row]]
+
+    def _states(
+        self, reasons: NDArray[np.int64], paths: NDArray[np.float64]
+    ) -> dict[Hashable, ActorState]:
+        c = self._crowd
+        ways = self.grid.with_heights(paths, c.cells)
+        layers = np.where(c.cells >= 0, self.grid.layered.places[c.cells, 0], 0)
         rows = zip(
             self._ids,
-            positions.tolist(),
-            c.layers.tolist(),
+            c.positions.tolist(),
+            layers.tolist(),
+            self._floors(c.cells).tolist(),
             c.velocities.tolist(),
             self._headings.tolist(),
-            decisions.reasons.tolist(),
-            decisions.paths,
+            reasons.tolist(),
+            ways,
             strict=True,
         )
         return {
             who: ActorState(
                 (x, y),
                 layer,
+                z,
                 (vx, vy),
                 heading,
                 Reason(reason),
@@ -240,20 +269,19 @@ class Navigator:
                 self.plan.slice_s,
                 way,
             )
-            for who, (x, y), layer, (vx, vy), heading, reason, way in rows
+            for who, (x, y), layer, z, (vx, vy), heading, reason, way in rows
         }
 
     def predicted_near(
-        self, position: Point, layer: int, within_m: float
+        self, position: Point, z_m: float, within_m: float
     ) -> list[NDArray[np.float64]]:
-        """For each person now within that distance: float64 (K, 4) x, y, layer, deviation m."""
+        """For each person now within that distance: float64 (K, 4) x, y, z, deviation m."""
         p: Prediction = self._prediction
         out = []
-        for k, floor in enumerate(p.layers):
+        for k in range(len(p.means)):
             away = np.hypot(*(p.means[k, 0] - np.asarray(position)))
-            if floor == layer and away <= within_m:
-                floors = np.full(len(p.sigmas[k]), floor, dtype=np.float64)
-                out.append(np.column_stack([p.means[k], floors, p.sigmas[k]]))
+            if abs(p.heights[k, 0] - z_m) < SAME_FLOOR_M and away <= within_m:
+                out.append(np.column_stack([p.means[k], p.heights[k], p.sigmas[k]]))
         return out
 
     def close(self) -> None:
@@ -266,12 +294,24 @@ class Navigator:
         except KeyError:
             raise KeyError(f"there is no actor {actor_id!r}") from None
 
-    def _check_place(self, position: Point, layer: int) -> None:
-        self.grid.as_points([position], [layer])
+    def _check_place(self, position: Point, z_m: float) -> None:
+        self.grid.as_points([position], [z_m])
         x0, y0, x1, y1 = self.grid.bounds
         x, y = position
         if not (x0 <= x <= x1 and y0 <= y <= y1):
             raise ValueError(f"({x:g}, {y:g}) lies outside the bounds {self.grid.bounds}")
+
+    def _cell(self, position: Point, z_m: float) -> int:
+        return int(self.grid.on_ground([position], [z_m])[1][0])
+
+    def _floor(self, cell: int) -> float:
+        return float(self.grid.layered.floors[cell]) if cell >= 0 else 0.0
+
+    def _floors(self, cells: NDArray[np.int64]) -> NDArray[np.float64]:
+        return np.where(cells >= 0, self.grid.layered.floors[cells], 0.0).astype(np.float64)
+
+    def _body_row(self, parameters: ActorParameters) -> int:
+        return self.grid.row_of(parameters.body)
 
     def _rank(self) -> None:
         """Order among those with equal ways left: a hash of id and seed, free of ties."""
@@ -294,6 +334,7 @@ def _empty_crowd(slices: int) -> Crowd:
     return Crowd(
         np.zeros((0, 2)),
         np.zeros((0, 2)),
+        np.zeros(0, dtype=np.int64),
         np.zeros(0, dtype=np.int64),
         np.zeros((0, 2)),
         np.zeros(0, dtype=np.int64),

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from planning import PARAMETERS
+from planning import PARAMETERS, Body
 
 
 def _field(unit: str, least: float, most: float, description: str) -> object:
@@ -124,6 +124,35 @@ class ActorParameters(BaseModel):
         int,
         _field("nodes", 10, 20000, "Budget of one search; a smaller one may end before the goal."),
     ] = 100
+    height_m: Annotated[
+        float, _field("m", 0.8, 2.5, "Height of the body; it passes where there is as much room.")
+    ] = 1.8
+    step_on_m: Annotated[
+        float, _field("m", 0.05, 0.8, "Greatest step that the body takes up or down.")
+    ] = 0.6
+    leg_length_m: Annotated[
+        float,
+        _field("m", 0.3, 1.3, "Greatest step that is an edge; what is higher is an obstacle."),
+    ] = 0.9
+    edge_cells: Annotated[
+        int,
+        _field("cells", 2, 1000, "So many cells in a row the body may be at steps and edges."),
+    ] = 64
+
+    @model_validator(mode="after")
+    def _legs_reach(self) -> Self:
+        if self.leg_length_m < self.step_on_m:
+            raise ValueError(
+                f"leg_length_m ({self.leg_length_m}) must not be below step_on_m ({self.step_on_m})"
+            )
+        return self
+
+    @property
+    def body(self) -> Body:
+        """The body, as the ground is seen by it."""
+        return Body(
+            self.radius_m, self.height_m, self.step_on_m, self.leg_length_m, self.edge_cells
+        )
 
     @model_validator(mode="after")
     def _speeds_in_order(self) -> Self:

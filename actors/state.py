@@ -8,6 +8,9 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
+SAME_FLOOR_M = 1.5
+"""Places whose heights differ by less are on one floor."""
+
 
 class Reason(IntEnum):
     """Why an actor does what it does."""
@@ -27,19 +30,21 @@ class ActorState:
 
     position: tuple[float, float]
     layer: int
+    z_m: float
+    """Height of the floor it stands on."""
     velocity: tuple[float, float]
     heading: float
     reason: Reason
-    goal: tuple[float, float, int] | None
+    goal: tuple[float, float, float] | None
     slice_s: float
     way: NDArray[np.float64]
-    """(K, 2): planned positions, `slice_s` apart, the first at the beginning of the tick."""
+    """(K, 3): planned positions and heights, `slice_s` apart, the first at the beginning of the
+    tick."""
 
     @property
     def path(self) -> NDArray[np.float64]:
-        """The plan as float64 (K, 4): x, y, layer, seconds from the beginning of the tick."""
+        """The plan as float64 (K, 4): x, y, z, seconds from the beginning of the tick."""
         out = np.empty((len(self.way), 4))
-        out[:, :2] = self.way
-        out[:, 2] = self.layer
+        out[:, :3] = self.way
         out[:, 3] = np.arange(len(self.way)) * self.slice_s
         return out

@@ -30,6 +30,7 @@ from planning import (
     Potential,
     RiskField,
     Scene,
+    Spawn,
     Wave,
     batch,
 )
@@ -58,13 +59,13 @@ def main(argv: Sequence[str] | None = None) -> None:
         begun = time.perf_counter()
         grid = LayeredGrid.from_scene(scene, cell_m)
         took = 1e3 * (time.perf_counter() - begun)
-        full = float(np.mean(grid.arrays.clearance < 0.0))
+        full = built_part(grid)
         size = f"{SIDE_M:g} m x {SIDE_M:g} m in cells of {cell_m:g} m"
         print(f"{size}, {full:.0%} built: made in {took:.0f} ms")
         print_goals(grid)
         for actors in options.actors:
             for people in options.people:
-                case = Case(actors, people, grid.arrays.clearance.size)
+                case = Case(actors, people, len(grid.surfaces))
                 medians[case] = print_case(grid, case, options.ticks, options.threads)
     print_growth(medians)
 
@@ -82,14 +83,23 @@ def make_scene(random: np.random.Generator) -> Scene:
     buildings: list[Polygon] = []
     scene = Scene.open_space((0.0, 0.0, SIDE_M, SIDE_M))
     grid = LayeredGrid.from_scene(scene, CELL_M)
-    while np.mean(grid.arrays.clearance < 0.0) < BUILT_PART:
+    while built_part(grid) < BUILT_PART:
         x, y = random.uniform(2.0, SIDE_M - 8.0, 2).tolist()
         w, d = random.uniform(2.0, 6.0, 2).tolist()
         ring = ((x, y), (x + w, y), (x + w, y + d), (x, y + d))
         buildings.append(Polygon(points=ring, height_m=6.0))
-        scene = Scene.open_space((0.0, 0.0, SIDE_M, SIDE_M), polygons=buildings)
+        scene = Scene(
+            bounds=(0.0, 0.0, SIDE_M, SIDE_M),
+            polygons=tuple(buildings),
+            spawns=(Spawn(position=(1.0, 1.0)),),
+        )
         grid = LayeredGrid.from_scene(scene, CELL_M)
     return scene
+
+
+def built_part(grid: LayeredGrid) -> float:
+    """Part of the ground that buildings cover."""
+    return 1.0 - len(grid.surfaces) / (grid.layered.nx * grid.layered.ny)
 
 
 def free_points(grid: LayeredGrid, count: int, random: np.random.Generator) -> NDArray[np.float64]:

@@ -56,8 +56,11 @@ class LoadJob:
         hello = Hello(name=f"Visitor {index + 1}", version=VERSION)
 
         async def stay(client: Client) -> None:
-            x0, y0, x1, y1 = client.welcome.scene["bounds"]
-            acts = wander(self.seed, index, (x0, y0, x1, y1), client.welcome.max_speed)
+            scene = client.welcome.scene
+            x0, y0, x1, y1 = scene["bounds"]
+            floors_m = sorted({0.0, *(place["z_m"] for place in scene.get("places", ()))})
+            speed_mps = client.welcome.max_speed
+            acts = wander(self.seed, index, (x0, y0, x1, y1), speed_mps, floors_m)
             await until_first(
                 client.read(), client.keep_pinging(), _walk(client, acts), over.wait()
             )

@@ -2,7 +2,7 @@
 
 import math
 import random
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Final, NamedTuple
 
 from protocol.messages import Move, WalkTo
@@ -27,7 +27,11 @@ class Act(NamedTuple):
 
 
 def wander(
-    seed: int, index: int, bounds: tuple[float, float, float, float], max_speed_mps: float
+    seed: int,
+    index: int,
+    bounds: tuple[float, float, float, float],
+    max_speed_mps: float,
+    floors_m: Sequence[float] = (0.0,),
 ) -> Iterator[Act]:
     """Endless acts of visitor number `index`.
 
@@ -36,6 +40,7 @@ def wander(
     seed, index : the same pair acts the same
     bounds : of the scene, x0, y0, x1, y1, metres
     max_speed_mps : what the server allows
+    floors_m : heights of the floors that walks go to, metres
     """
     rng = random.Random(f"{seed}/{index}")
     x0, y0, x1, y1 = bounds
@@ -43,7 +48,8 @@ def wander(
     direction = rng.uniform(-math.pi, math.pi)
     while True:
         sequence += 1
-        goal = WalkTo(seq=sequence, x=rng.uniform(x0, x1), y=rng.uniform(y0, y1))
+        x, y, z = rng.uniform(x0, x1), rng.uniform(y0, y1), rng.choice(floors_m)
+        goal = WalkTo(seq=sequence, x=x, y=y, z=z)
         yield Act(goal, rng.uniform(*WALK_S))
         speed_mps = min(rng.uniform(*SPEED_MPS), max_speed_mps)
         for _ in range(rng.randint(*STEPS)):

@@ -29,6 +29,9 @@ PARAMETERS = np.dtype(
         ("catch_up", "f8"),
         ("hysteresis_s", "f8"),
         ("max_expansions", "f8"),
+        ("height_m", "f8"),
+        ("step_on_m", "f8"),
+        ("edge_cells", "f8"),
     ]
 )
 """What kernels know of an actor's parameters; one field each, in the units of their names."""
@@ -37,15 +40,18 @@ PARAMETERS = np.dtype(
 class Crowd(NamedTuple):
     """State of A actors; every array has A rows.
 
-    `guide_slots` is the row of the guide pool, -1 without a goal; `known` tells whether `followed`
-    holds a path; `followed` (A, K, 2) begins at the tick that `ages` (A,) ticks ago was.
-    `left_m` is the way that was left a tick ago, nan at first; `behind_s` the time lost since the
-    goal was set and not made up yet. Both are written by who decides.
+    `cells` (A,) are those that they stand in, -1 where nobody can; `bodies` (A,) the rows of their
+    kinds of body in the grid's clearances. `guide_slots` is the row of the guide pool, -1 without
+    a goal; `known` tells whether `followed` holds a path; `followed` (A, K, 2) begins at the tick
+    that `ages` (A,) ticks ago was. `left_m` is the way that was left a tick ago,
+    nan at first; `behind_s` the time lost since the goal was set and not made up yet. Both are
+    written by who decides.
     """
 
     positions: NDArray[np.float64]
     velocities: NDArray[np.float64]
-    layers: NDArray[np.int64]
+    cells: NDArray[np.int64]
+    bodies: NDArray[np.int64]
     goals: NDArray[np.float64]
     guide_slots: NDArray[np.int64]
     parameters: NDArray[np.void]

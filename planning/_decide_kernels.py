@@ -17,6 +17,7 @@ from planning._crowd import (
     Crowd,
     Decisions,
 )
+from planning._grid_kernels import floor_of, follow
 from planning._jit import kernel
 from planning._perturb_kernels import path_cost, stretch_is_legal, update_path
 from planning._potential_kernels import direction_at, potential_at
@@ -29,6 +30,7 @@ from planning._search_kernels import (
     Task,
     Workspace,
     World,
+    metres_left,
     needed_clearance,
     search,
 )
@@ -59,7 +61,6 @@ def keep_account(crowd: Crowd, a: int, left: float, tick_s: float) -> float:
 
 @kernel
 def make_task(
-    world: World,
     guides: NDArray[np.float32],
     crowd: Crowd,
     a: int,
@@ -68,7 +69,7 @@ def make_task(
 ) -> Task:
     """The question that actor a asks this tick. Without a goal or a way to it, it stays around."""
     p = crowd.parameters[a]
-    layer = crowd.layers[a]
+    cell = crowd.cells[a]
     x = crowd.positions[a, 0]
     y = crowd.positions[a, 1]
     gx = crowd.goals[a, 0]
@@ -77,7 +78,7 @@ def make_task(
     hold = slot < 0
     speed = p["speed_mps"]
     if not hold:
-        left = potential_at(world.grid, guides[slot], layer, x, y)
+        left = potential_at(guides[slot], cell, x, y)
         if not np.isfinite(left):
             hold = True
             gx = x
@@ -91,7 +92,8 @@ def make_task(
         gy = y
     return Task(
         a,
-        layer,
+        crowd.bodies[a],
+        cell,
         x,
         y,
         crowd.velocities[a, 0],
@@ -110,6 +112,7 @@ def make_task(
         p["wall_weight"],
         p["hurry_weight"],
         int(p["max_expansions"]),
+        int(p["edge_cells"]),
         hold,
     )
 
@@ -123,8 +126,9 @@ def continue_paths(
     first: int,
     last: int,
     out: NDArray[np.float64],
+    heights: NDArray[np.float64],
 ) -> None:
-    """Followed paths as seen from now, rows first..last of out (A, K, 2).
+    """Followed paths as seen from now, rows first..last of out (A, K, 2), heights (A, K).
 
     A path is read off `ages` ticks after its start, begins where the actor really is, and is
     lengthened at its end down the potential. Who follows none is taken to stand.
@@ -137,8 +141,10 @@ def continue_paths(
         if not crowd.known[a]:
             out[a, :, 0] = px
             out[a, :, 1] = py
+            heights[a] = floor_of(world.grid, crowd.cells[a])
             continue
         path = crowd.followed[a]
+        cell = crowd.cells[a]
         shift = crowd.ages[a] * tick_s / ds
         ox = 0.0
         oy = 0.0
@@ -155,6 +161,7 @@ def continue_paths(
                     guides,
                     crowd,
                     a,
+                    follow(world.grid, cell, path[slices - 1, 0], path[slices - 1, 1]),
                     path[slices - 1, 0],
                     path[slices - 1, 1],
                     (u - (slices - 1)) * ds,
@@ -165,6 +172,10 @@ def continue_paths(
             fade = max(0.0, 1.0 - 0.25 * k)
             out[a, k, 0] = x + fade * ox
             out[a, k, 1] = y + fade * oy
+            if cell >= 0:
+                on = follow(world.grid, cell, out[a, k, 0], out[a, k, 1])
+                cell = on if on >= 0 else cell
+            heights[a, k] = floor_of(world.grid, cell)
 
 
 @kernel
@@ -173,6 +184,7 @@ def _carry_on(
     guides: NDArray[np.float32],
     crowd: Crowd,
     a: int,
+    cell: int,
     x: float,
     y: float,
     seconds: float,
@@ -181,7 +193,7 @@ def _carry_on(
     slot = crowd.guide_slots[a]
     if slot < 0:
         return x, y
-    gx, gy, leg = direction_at(world.grid, guides[slot], crowd.layers[a], x, y)
+    gx, gy, leg = direction_at(world.grid, guides[slot], cell, x, y)
     way = min(leg, crowd.parameters[a]["speed_mps"] * seconds)
     return x + gx * way, y + gy * way
 
@@ -211,9 +223,10 @@ def decide(
     kept = np.empty((slices, 2))
     bent = np.empty((slices, 2))
     trial = np.empty((slices, 2))
+    cells = np.empty(slices, dtype=np.int64)
     for a in turns:
         p = crowd.parameters[a]
-        task = make_task(world, guides, crowd, a, p["goal_tolerance_m"], tick_s)
+        task = make_task(guides, crowd, a, p["goal_tolerance_m"], tick_s)
         slot = crowd.guide_slots[a]
         guide = guides[slot] if slot >= 0 else no_guide
         for m in range(len(moves.speeds)):
@@ -224,7 +237,7 @@ def decide(
         changed = False
         if crowd.known[a]:
             kept[:] = world.reservations.paths[a]
-            cost, changed = _improve(world, guide, task, kept, bent, trial)
+            cost, changed = _improve(world, guide, task, kept, bent, cells, trial)
             bound = cost - p["hysteresis_s"]
         found = search(world, guide, own, task, True, bound, workspace, out.paths[a])
         status = found.status
@@ -245,7 +258,11 @@ def decide(
         wx, wy = limited(task, ux, uy, tick_s)
         out.wishes[a, 0] = wx
         out.wishes[a, 1] = wy
-        out.reasons[a] = _reason(crowd, task, path, status, switched, dodged, world.step_s)
+        away = metres_left(guide, task, task.cell, task.x, task.y)
+        lost = slot >= 0 and not np.isfinite(potential_at(guide, task.cell, task.x, task.y))
+        out.reasons[a] = _reason(
+            crowd, task, away, lost, path, status, switched, dodged, world.step_s
+        )
 
 
 @kernel
@@ -255,6 +272,7 @@ def _improve(
     task: Task,
     path: NDArray[np.float64],
     bent: NDArray[np.float64],
+    cells: NDArray[np.int64],
     trial: NDArray[np.float64],
 ) -> tuple[float, bool]:
     """Perturb a path in place where that is worth it: its cost, inf if illegal, and if it changed.
@@ -262,11 +280,11 @@ def _improve(
     Worth it means less mean risk and less cost, in which time and length are.
     """
     need = needed_clearance(world, task)
-    if not stretch_is_legal(world, guide, task, need, path, 0, len(path) - 1):
+    if not stretch_is_legal(world, guide, task, need, task.cell, path, 0, len(path) - 1):
         return np.inf, False
     cost, risk = path_cost(world, guide, task, path)
     bent[:] = path
-    if update_path(world, guide, task, bent, trial) > 0:
+    if update_path(world, guide, task, bent, cells, trial) > 0:
         bent_cost, bent_risk = path_cost(world, guide, task, bent)
         if bent_risk < risk and bent_cost < cost:
             path[:] = bent
@@ -278,20 +296,20 @@ def _improve(
 def _reason(
     crowd: Crowd,
     task: Task,
+    away: float,
+    lost: bool,
     path: NDArray[np.float64],
     status: int,
     switched: bool,
     dodged: bool,
     step_s: float,
 ) -> int:
-    """Why the actor does what it does."""
-    slot = crowd.guide_slots[task.me]
+    """Why the actor does what it does; `lost` tells that no way leads to its goal."""
     if dodged:
         return GIVING_WAY
-    goal_x, goal_y = crowd.goals[task.me]
-    if slot >= 0 and task.hold and (task.goal_x != goal_x or task.goal_y != goal_y):
+    if lost:
         return BLOCKED
-    if slot < 0:
+    if crowd.guide_slots[task.me] < 0:
         return WAITING
     if task.hold:
         return ARRIVED
@@ -300,7 +318,6 @@ def _reason(
     ramp = 2 * SUB  # from a stand it takes so many slices to get going
     ahead = 2 * ramp
     pace = np.hypot(path[ahead, 0] - path[ramp, 0], path[ahead, 1] - path[ramp, 1]) / (2.0 * step_s)
-    away = np.hypot(task.goal_x - task.x, task.goal_y - task.y)
     standing = np.hypot(task.vx, task.vy) < 0.15 * task.speed_mps
     if standing and pace < 0.15 * task.speed_mps and away > 4.0 * task.speed_mps * step_s:
         return WAITING

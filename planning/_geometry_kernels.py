@@ -1,4 +1,4 @@
-"""Plane geometry on bare arrays: points, segments, and a bucket index of segments."""
+"""Plane geometry on bare arrays: points, segments, and a bucket index of barriers."""
 
 from typing import NamedTuple
 
@@ -9,14 +9,14 @@ from planning._jit import inlined, kernel
 
 
 class SegmentIndex(NamedTuple):
-    """Segments of one layer, listed by square bucket (CSR).
+    """Barriers, listed by square bucket (CSR).
 
-    A bucket lists every segment that passes within `reach_m` of it, so that all segments within
-    `reach_m` of a point are in the point's own bucket.
+    A bucket lists every barrier that passes within `reach_m` of it, so that all within `reach_m`
+    of a point are in the point's own bucket.
     """
 
     segments: NDArray[np.float64]
-    """(S, 4): x0, y0, x1, y1, metres."""
+    """(S, 7): x0, y0, x1, y1, underside, top, rise; metres."""
     starts: NDArray[np.int64]
     """(ny * nx + 1,): where each bucket's list begins."""
     members: NDArray[np.int64]
@@ -27,6 +27,30 @@ class SegmentIndex(NamedTuple):
     reach_m: float
     nx: int
     ny: int
+
+
+class Stance(NamedTuple):
+    """How somebody stands at a place: what decides which barriers stop them."""
+
+    floor_m: float
+    foothold_m: float
+    """Height that its steps count from: of the highest floor that its feet are on."""
+    height_m: float
+    step_on_m: float
+
+
+@inlined
+def stops(index: SegmentIndex, s: int, stance: Stance) -> bool:
+    """Whether a barrier stops who stands like that: it is neither stepped over nor walked under.
+
+    An edge with a drop (`rise`) stops those whose step-on height is less.
+    """
+    segment = index.segments[s]
+    return bool(
+        segment[4] < stance.floor_m + stance.height_m
+        and segment[5] > stance.foothold_m + stance.step_on_m
+        and stance.step_on_m < segment[6]
+    )
 
 
 @kernel
@@ -96,13 +120,17 @@ def bucket_of(index: SegmentIndex, x: float, y: float) -> int:
 
 
 @kernel
-def nearest_segment(index: SegmentIndex, x: float, y: float) -> tuple[float, float, float]:
-    """Distance to the nearest segment of the point's bucket and its closest point; inf if none."""
+def nearest_segment(
+    index: SegmentIndex, stance: Stance, x: float, y: float
+) -> tuple[float, float, float]:
+    """Distance to the nearest barrier of the point's bucket and its closest point; inf if none."""
     best = np.inf
     bx = x
     by = y
     b = bucket_of(index, x, y)
     for k in range(index.starts[b], index.starts[b + 1]):
+        if not stops(index, index.members[k], stance):
+            continue
         s = index.segments[index.members[k]]
         d, cx, cy = point_segment_distance(x, y, s[0], s[1], s[2], s[3])
         if d < best:
@@ -113,13 +141,17 @@ def nearest_segment(index: SegmentIndex, x: float, y: float) -> tuple[float, flo
 
 
 @kernel
-def crosses_any(index: SegmentIndex, ax: float, ay: float, bx: float, by: float) -> bool:
-    """Whether the short way from a to b meets a segment listed in the bucket of a.
+def crosses_any(
+    index: SegmentIndex, stance: Stance, ax: float, ay: float, bx: float, by: float
+) -> bool:
+    """Whether the short way from a to b meets a barrier listed in the bucket of a.
 
     The way must be shorter than the index's reach.
     """
     b = bucket_of(index, ax, ay)
     for k in range(index.starts[b], index.starts[b + 1]):
+        if not stops(index, index.members[k], stance):
+            continue
         s = index.segments[index.members[k]]
         if segments_cross(ax, ay, bx, by, s[0], s[1], s[2], s[3]):
             return True
@@ -134,6 +166,7 @@ def _within(low: float, value: float, high: float) -> float:
 @kernel
 def slide_step(
     index: SegmentIndex,
+    stance: Stance,
     bounds: tuple[float, float, float, float],
     x: float,
     y: float,
@@ -141,16 +174,16 @@ def slide_step(
     dy: float,
     clearance: float,
 ) -> tuple[float, float]:
-    """Move a disc by a short step, pushed out of segments; stays where it is when that fails.
+    """Move a disc by a short step, pushed out of barriers; stays where it is when that fails.
 
-    The bounds count before segments do: a wall that ends at them must not be rounded outside.
+    The bounds count before barriers do: a wall that ends at them must not be rounded outside.
     """
     nx = _within(bounds[0], x + dx, bounds[2])
     ny = _within(bounds[1], y + dy, bounds[3])
-    before = nearest_segment(index, x, y)[0]
+    before = nearest_segment(index, stance, x, y)[0]
     allowed = min(clearance, before) - 1e-9
     for _ in range(4):
-        d, cx, cy = nearest_segment(index, nx, ny)
+        d, cx, cy = nearest_segment(index, stance, nx, ny)
         if d >= allowed:
             break
         if d < 1e-9:
@@ -158,7 +191,9 @@ def slide_step(
         push = (min(clearance, before) - d) / d
         nx = _within(bounds[0], nx + (nx - cx) * push, bounds[2])
         ny = _within(bounds[1], ny + (ny - cy) * push, bounds[3])
-    if nearest_segment(index, nx, ny)[0] < allowed or crosses_any(index, x, y, nx, ny):
+    if nearest_segment(index, stance, nx, ny)[0] < allowed or crosses_any(
+        index, stance, x, y, nx, ny
+    ):
         return x, y
     return nx, ny
 
@@ -166,6 +201,7 @@ def slide_step(
 @kernel
 def slide(
     index: SegmentIndex,
+    stance: Stance,
     bounds: tuple[float, float, float, float],
     x: float,
     y: float,
@@ -173,7 +209,7 @@ def slide(
     dy: float,
     clearance: float,
 ) -> tuple[float, float]:
-    """Move a disc by (dx, dy), sliding along segments and kept inside the bounds.
+    """Move a disc by (dx, dy) on one level, sliding along barriers and kept inside the bounds.
 
     Near walls the way is cut into pieces of half the clearance, so that none is jumped over.
     """
@@ -182,89 +218,47 @@ def slide(
         return x, y
     done = 0.0
     while done < length:
-        room = min(nearest_segment(index, x, y)[0], index.reach_m) - clearance
+        room = min(nearest_segment(index, stance, x, y)[0], index.reach_m) - clearance
         piece = min(length - done, max(room, 0.5 * clearance, 0.02))
         u = piece / length
-        x, y = slide_step(index, bounds, x, y, dx * u, dy * u, clearance)
+        x, y = slide_step(index, stance, bounds, x, y, dx * u, dy * u, clearance)
         done += piece
     return x, y
 
 
 @kernel
-def slide_many(
-    index: SegmentIndex,
-    bounds: tuple[float, float, float, float],
-    positions: NDArray[np.float64],
-    displacements: NDArray[np.float64],
-    clearance: float,
-    out: NDArray[np.float64],
-) -> None:
-    """`slide` for N discs: (N, 2), (N, 2) -> out (N, 2)."""
-    for i in range(len(positions)):
-        out[i, 0], out[i, 1] = slide(
-            index,
-            bounds,
-            positions[i, 0],
-            positions[i, 1],
-            displacements[i, 0],
-            displacements[i, 1],
-            clearance,
-        )
-
-
-@kernel
-def lower_to_segments(
-    field: NDArray[np.float32],
+def list_by_bucket(
     segments: NDArray[np.float64],
-    x0: float,
-    y0: float,
-    cell: float,
+    place: tuple[float, float, float, int, int],
     reach: float,
+    starts: NDArray[np.int64],
+    members: NDArray[np.int64],
 ) -> None:
-    """Lower a field (ny, nx), preset to `reach`, to the distances of cell centres from segments."""
-    ny, nx = field.shape
+    """List the segments within `reach` of each bucket's centre, in order.
+
+    `place` is x0, y0, edge of a bucket, columns, rows. Without room in `members` they are only
+    counted, into starts[1:]; else `starts` tells where each bucket's list begins.
+    """
+    x0, y0, bucket_m, nx, ny = place
+    count = np.zeros(nx * ny, dtype=np.int64)
     for s in range(len(segments)):
-        ax, ay, bx, by = segments[s]
-        i0 = max(0, int((min(ax, bx) - reach - x0) / cell) - 1)
-        i1 = min(nx, int((max(ax, bx) + reach - x0) / cell) + 2)
-        j0 = max(0, int((min(ay, by) - reach - y0) / cell) - 1)
-        j1 = min(ny, int((max(ay, by) + reach - y0) / cell) + 2)
-        for j in range(j0, j1):
-            for i in range(i0, i1):
-                d = point_segment_distance(
-                    x0 + (i + 0.5) * cell, y0 + (j + 0.5) * cell, ax, ay, bx, by
-                )[0]
-                field[j, i] = min(field[j, i], d)
-
-
-@kernel
-def negate_inside(
-    field: NDArray[np.float32],
-    ring: NDArray[np.float64],
-    x0: float,
-    y0: float,
-    cell: float,
-) -> None:
-    """Negate a field of distances (ny, nx) at cell centres inside a closed ring (K, 2)."""
-    ny, nx = field.shape
-    n = len(ring)
-    j0 = max(0, int((ring[:, 1].min() - y0) / cell) - 1)
-    j1 = min(ny, int((ring[:, 1].max() - y0) / cell) + 2)
-    i0 = max(0, int((ring[:, 0].min() - x0) / cell) - 1)
-    i1 = min(nx, int((ring[:, 0].max() - x0) / cell) + 2)
-    for j in range(j0, j1):
-        py = y0 + (j + 0.5) * cell
-        for i in range(i0, i1):
-            px = x0 + (i + 0.5) * cell
-            inside = False
-            b = n - 1
-            for a in range(n):
-                if (ring[a, 1] > py) != (ring[b, 1] > py):
-                    x = (ring[b, 0] - ring[a, 0]) * (py - ring[a, 1]) / (
-                        ring[b, 1] - ring[a, 1]
-                    ) + ring[a, 0]
-                    if px < x:
-                        inside = not inside
-                b = a
-            if inside:
-                field[j, i] = -abs(field[j, i])
+        ax = segments[s, 0]
+        ay = segments[s, 1]
+        bx = segments[s, 2]
+        by = segments[s, 3]
+        i0 = max(0, int((min(ax, bx) - reach - x0) / bucket_m))
+        i1 = min(nx - 1, int((max(ax, bx) + reach - x0) / bucket_m))
+        j0 = max(0, int((min(ay, by) - reach - y0) / bucket_m))
+        j1 = min(ny - 1, int((max(ay, by) + reach - y0) / bucket_m))
+        for j in range(j0, j1 + 1):
+            for i in range(i0, i1 + 1):
+                cx = x0 + (i + 0.5) * bucket_m
+                cy = y0 + (j + 0.5) * bucket_m
+                if point_segment_distance(cx, cy, ax, ay, bx, by)[0] > reach:
+                    continue
+                b = j * nx + i
+                if len(members):
+                    members[starts[b] + count[b]] = s
+                else:
+                    starts[b + 1] += 1
+                count[b] += 1

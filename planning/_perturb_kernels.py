@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from planning._grid_kernels import clearance_at
-from planning._jit import kernel
+from planning._grid_kernels import clearance_at, floor_of, follow, follow_path, length
+from planning._jit import inlined, kernel
 from planning._potential_kernels import Guide, potential_at
 from planning._reservation_kernels import conflict
 from planning._risk_kernels import risk_at
@@ -12,6 +12,7 @@ from planning._search_kernels import (
     SUB,
     Task,
     World,
+    metres_left,
     needed_clearance,
     risk_price,
     time_cost,
@@ -27,17 +28,19 @@ OFFSET_M = 0.2
 """Distance between candidates, metres."""
 
 
-@kernel
+@inlined
 def slice_risk(
-    world: World, task: Task, k: int, ax: float, ay: float, bx: float, by: float
+    world: World, task: Task, k: int, cell: int, ax: float, ay: float, bx: float, by: float
 ) -> float:
-    """Risk at b, slice k, having come from a in one slice."""
+    """Risk at b, in a cell, slice k, having come from a in one slice; none where nobody stands."""
+    if cell < 0:
+        return 0.0
     ds = world.step_s / SUB
     return risk_at(
         world.grid,
         world.fields,
         k,
-        task.layer,
+        cell,
         bx,
         by,
         (bx - ax) / ds,
@@ -48,12 +51,14 @@ def slice_risk(
 
 @kernel
 def average_risk(
-    world: World, task: Task, path: NDArray[np.float64], first: int, last: int
+    world: World, task: Task, cell: int, path: NDArray[np.float64], first: int, last: int
 ) -> float:
-    """Mean risk of the slices first + 1 ... last."""
+    """Mean risk of the slices first + 1 ... last; the path is in `cell` at slice first."""
     total = 0.0
     for k in range(first + 1, last + 1):
-        total += slice_risk(world, task, k, path[k - 1, 0], path[k - 1, 1], path[k, 0], path[k, 1])
+        x, y = path[k]
+        cell = follow(world.grid, cell, x, y)
+        total += slice_risk(world, task, k, cell, path[k - 1, 0], path[k - 1, 1], x, y)
     return total / (last - first)
 
 
@@ -63,24 +68,37 @@ def stretch_is_legal(
     guide: Guide,
     task: Task,
     need: float,
+    cell: int,
     path: NDArray[np.float64],
     first: int,
     last: int,
 ) -> bool:
-    """Free of walls, within the speed limit, clear of certain obstacles, with a way to the goal."""
+    """Free of walls, within the speed limit, clear of certain obstacles, with a way to the goal.
+
+    The path is in `cell` at slice first.
+    """
+    grid = world.grid
     ds = world.step_s / SUB
+    edge_m = 0.0
     for k in range(first, last):
         ax = path[k, 0]
         ay = path[k, 1]
         bx = path[k + 1, 0]
         by = path[k + 1, 1]
-        if np.hypot(bx - ax, by - ay) > task.max_speed_mps * ds + 1e-9:
+        moved = length(bx - ax, by - ay)
+        if moved > task.max_speed_mps * ds + 1e-9:
             return False
-        if clearance_at(world.grid, task.layer, bx, by) < need:
+        feet_m = floor_of(grid, cell)
+        cell = follow(grid, cell, bx, by)
+        if clearance_at(grid, task.body, cell, bx, by) < need:
             return False
-        if not task.hold and not np.isfinite(potential_at(world.grid, guide, task.layer, bx, by)):
+        if not task.hold and not np.isfinite(potential_at(guide, cell, bx, by)):
             return False
-        if conflict(world.reservations, task.me, task.layer, k, ax, ay, bx, by)[0]:
+        if not grid.flat:
+            edge_m = edge_m + moved if grid.edges[task.body, cell] else 0.0
+            if edge_m >= task.edge_cells * grid.layered.cell_m:
+                return False
+        if conflict(world.reservations, task.me, feet_m, k, ax, ay, bx, by)[0]:
             return False
     return True
 
@@ -90,34 +108,38 @@ def path_cost(
     world: World, guide: Guide, task: Task, path: NDArray[np.float64]
 ) -> tuple[float, float]:
     """Cost of a whole path as the search counts it (its length and time among it), mean risk."""
+    grid = world.grid
     ds = world.step_s / SUB
     slices = len(path) - 1
+    cell = task.cell
     vx = task.vx
     vy = task.vy
     cost = 0.0
     risk = 0.0
+    left_m = 0.0
     for k in range(slices):
         ax = path[k, 0]
         ay = path[k, 1]
         bx = path[k + 1, 0]
         by = path[k + 1, 1]
-        moved = np.hypot(bx - ax, by - ay)
+        moved = length(bx - ax, by - ay)
         ux = (bx - ax) / ds
         uy = (by - ay) / ds
-        r = slice_risk(world, task, k + 1, ax, ay, bx, by)
-        soft = conflict(world.reservations, task.me, task.layer, k, ax, ay, bx, by)[1]
+        feet_m = floor_of(grid, cell)
+        cell = follow(grid, cell, bx, by)
+        left_m = metres_left(guide, task, cell, bx, by)
+        r = slice_risk(world, task, k + 1, cell, ax, ay, bx, by)
+        soft = conflict(world.reservations, task.me, feet_m, k, ax, ay, bx, by)[1]
         risk += r
         cost += (
-            time_cost(task, bx, by, moved / ds, ds)
+            time_cost(task, left_m, moved / ds, ds)
             + risk_price(task, (k // SUB) * world.step_s) * ds * (r + soft)
-            + task.turn_weight * np.hypot(ux - vx, uy - vy)
-            + wall_cost(task, clearance_at(world.grid, task.layer, bx, by), ds)
+            + task.turn_weight * length(ux - vx, uy - vy)
+            + wall_cost(task, clearance_at(grid, task.body, cell, bx, by), ds)
         )
         vx = ux
         vy = uy
-    x = path[slices, 0]
-    y = path[slices, 1]
-    cost += way_left(world, guide, task, task.layer, x, y, np.hypot(vx, vy))
+    cost += way_left(task, left_m, length(vx, vy))
     return cost, risk / slices
 
 
@@ -150,6 +172,7 @@ def perturb_path(
     task: Task,
     need: float,
     path: NDArray[np.float64],
+    cells: NDArray[np.int64],
     first: int,
     last: int,
     trial: NDArray[np.float64],
@@ -157,9 +180,11 @@ def perturb_path(
     """Replace a stretch by the first bend that is legal and strictly less risky; fig. 8.
 
     Candidates lie on the normal through the chord's midpoint, nearest first, either side in turn.
-    The printed test accepts equal risk too, with which the recursion need not settle.
+    The printed test accepts equal risk too, with which the recursion need not settle. `cells` (K,)
+    are those that the path is in.
     """
-    risk = average_risk(world, task, path, first, last)
+    begin = cells[first]
+    risk = average_risk(world, task, begin, path, first, last)
     if risk <= 1e-9:
         return False
     cx = path[last, 0] - path[first, 0]
@@ -173,22 +198,23 @@ def perturb_path(
         mx = path[first, 0] + 0.5 * cx - offset * cy / chord
         my = path[first, 1] + 0.5 * cy + offset * cx / chord
         _bend(path, trial, first, middle, last, mx, my)
-        if average_risk(world, task, trial, first, last) < risk - 1e-9 and stretch_is_legal(
-            world, guide, task, need, trial, first, last
+        if average_risk(world, task, begin, trial, first, last) < risk - 1e-9 and stretch_is_legal(
+            world, guide, task, need, begin, trial, first, last
         ):
             path[first : last + 1] = trial[first : last + 1]
+            follow_path(world.grid, path, cells, first, last)
             return True
     return False
 
 
 @kernel
-def _arrival(task: Task, path: NDArray[np.float64]) -> int:
+def _arrival(guide: Guide, task: Task, path: NDArray[np.float64], cells: NDArray[np.int64]) -> int:
     """Slice at which a path arrives at the goal, its last if it does not."""
     last = len(path) - 1
     if not task.hold:
         for k in range(1, last):
-            away = np.hypot(path[k, 0] - task.goal_x, path[k, 1] - task.goal_y)
-            if away <= task.goal_tolerance_m:
+            left_m = metres_left(guide, task, cells[k], path[k, 0], path[k, 1])
+            if left_m <= task.goal_tolerance_m:
                 return k
     return last
 
@@ -199,24 +225,28 @@ def update_path(
     guide: Guide,
     task: Task,
     path: NDArray[np.float64],
+    cells: NDArray[np.int64],
     trial: NDArray[np.float64],
 ) -> int:
     """Fig. 7: perturb the whole path, else its halves, and so on; returns how many bends held.
 
     The recursion is a stack of stretches; the earlier half comes first, as printed. What lies
     after the arrival at the goal is left alone: a bend over it would arrive later and later.
+    `cells` (K,) are filled with those that the path is in.
     """
+    cells[0] = task.cell
+    follow_path(world.grid, path, cells, 0, len(path) - 1)
     need = needed_clearance(world, task)
     stack = np.empty((64, 2), dtype=np.int64)
     stack[0, 0] = 0
-    stack[0, 1] = _arrival(task, path)
+    stack[0, 1] = _arrival(guide, task, path, cells)
     height = 1
     bends = 0
     while height > 0:
         height -= 1
         first = stack[height, 0]
         last = stack[height, 1]
-        if perturb_path(world, guide, task, need, path, first, last, trial):
+        if perturb_path(world, guide, task, need, path, cells, first, last, trial):
             bends += 1
         elif last - first >= SHORTEST_STRETCH:
             middle = (first + last) // 2

@@ -5,20 +5,27 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planning._geometry_kernels import SegmentIndex, slide
+from planning._geometry_kernels import SegmentIndex
+from planning._grid_kernels import GridArrays, surface_at
+from planning._ground_kernels import walk
 from planning._jit import kernel
+
+PERSON_HEIGHT_M = 1.8
+PERSON_STEP_ON_M = 0.6
+"""People are taken to be adults."""
 
 
 class Prediction(NamedTuple):
     """Where people may be, slice by slice; slice 0 is now.
 
-    `means` (P, K, 2) m; `velocities` (P, K, 2) m/s; `sigmas` (P, K) m per axis; `layers` (P,).
+    `means` (P, K, 2) m; `velocities` (P, K, 2) m/s; `sigmas` (P, K) m per axis; `heights` (P, K) m
+    of the feet.
     """
 
     means: NDArray[np.float64]
     velocities: NDArray[np.float64]
     sigmas: NDArray[np.float64]
-    layers: NDArray[np.int64]
+    heights: NDArray[np.float64]
 
 
 @kernel
@@ -77,9 +84,10 @@ def velocities(
 
 @kernel
 def extrapolate(
+    grid: GridArrays,
     index: SegmentIndex,
-    bounds: tuple[float, float, float, float],
     positions: NDArray[np.float64],
+    heights: NDArray[np.float64],
     velocity: NDArray[np.float64],
     slice_s: float,
     sigma_0: float,
@@ -89,18 +97,33 @@ def extrapolate(
 ) -> None:
     """Eqs. (2) and (3): means and deviations of every slice, bent along walls.
 
-    People do not walk through walls: a mean that runs into one slides along it, and its velocity
-    becomes that of the slide.
+    People do not walk through walls or off edges: a mean that runs into one slides along it, and
+    its velocity becomes that of the slide. They leave a layer only where it is joined to another.
     """
     people, slices = prediction.sigmas.shape
     for p in range(people):
         x = positions[p, 0]
         y = positions[p, 1]
+        cell = surface_at(grid, x, y, heights[p])
         vx = velocity[p, 0]
         vy = velocity[p, 1]
         for k in range(slices):
             if k > 0:
-                nx, ny = slide(index, bounds, x, y, vx * slice_s, vy * slice_s, wall_clearance)
+                nx = x
+                ny = y
+                if cell >= 0 or grid.flat:
+                    cell, nx, ny = walk(
+                        grid,
+                        index,
+                        PERSON_HEIGHT_M,
+                        PERSON_STEP_ON_M,
+                        cell,
+                        x,
+                        y,
+                        vx * slice_s,
+                        vy * slice_s,
+                        wall_clearance,
+                    )
                 prediction.velocities[p, k, 0] = (nx - x) / slice_s
                 prediction.velocities[p, k, 1] = (ny - y) / slice_s
                 x = nx
@@ -108,6 +131,8 @@ def extrapolate(
             else:
                 prediction.velocities[p, k, 0] = vx
                 prediction.velocities[p, k, 1] = vy
+            on_ground = cell >= 0 and not grid.flat
+            prediction.heights[p, k] = grid.layered.floors[cell] if on_ground else heights[p]
             prediction.means[p, k, 0] = x
             prediction.means[p, k, 1] = y
             prediction.sigmas[p, k] = sigma_0 + sigma_growth[p] * k * slice_s

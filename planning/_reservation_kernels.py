@@ -7,10 +7,11 @@ from numpy.typing import NDArray
 
 from planning._crowd import Crowd
 from planning._geometry_kernels import closest_approach
-from planning._grid_kernels import GridArrays
 from planning._jit import inlined, kernel
 from planning._potential_kernels import potential_at
 
+OVERLAP_M = 1.8
+"""Whose feet are no further apart in height than that, a grown person's height, may touch."""
 MARGIN_M = 0.03
 """Planned ways keep this much more than the sum of the radii."""
 SOFT = 0.25
@@ -27,12 +28,12 @@ SETTLED_M = 1.0
 class Reservations(NamedTuple):
     """Everyone's planned way and an index of it by bucket, slice by slice.
 
-    `paths` (A, K, 2) m; `layers` (A,); `radii` (A,) m; `ranks` (A,), smaller goes first;
-    `starts` (K, buckets + 1) and `members` (K, A) list the actors of a bucket.
+    `paths` (A, K, 2) m; `heights` (A, K) m of the feet; `radii` (A,) m; `ranks` (A,), smaller goes
+    first; `starts` (K, buckets + 1) and `members` (K, A) list the actors of a bucket.
     """
 
     paths: NDArray[np.float64]
-    layers: NDArray[np.int64]
+    heights: NDArray[np.float64]
     radii: NDArray[np.float64]
     ranks: NDArray[np.int64]
     starts: NDArray[np.int64]
@@ -68,9 +69,7 @@ def index_paths(reservations: Reservations) -> None:
 
 
 @kernel
-def ways_left(
-    grid: GridArrays, guides: NDArray[np.float32], crowd: Crowd, out: NDArray[np.float64]
-) -> None:
+def ways_left(guides: NDArray[np.float32], crowd: Crowd, out: NDArray[np.float64]) -> None:
     """Fill (A,) with the metres that decide who goes first: who has the least way left.
 
     Two do not change their order while one lets the other pass, since only the other gains.
@@ -81,7 +80,7 @@ def ways_left(
         slot = crowd.guide_slots[a]
         if slot >= 0:
             x, y = crowd.positions[a]
-            left = potential_at(grid, guides[slot], crowd.layers[a], x, y)
+            left = potential_at(guides[slot], crowd.cells[a], x, y)
             if left > SETTLED_M:
                 out[a] = left
 
@@ -90,7 +89,7 @@ def ways_left(
 def conflict(
     reservations: Reservations,
     me: int,
-    layer: int,
+    feet_m: float,
     k: int,
     ax: float,
     ay: float,
@@ -100,7 +99,8 @@ def conflict(
     """Meetings while moving from a at slice k to b at slice k + 1.
 
     The first value tells of one that is forbidden, the second adds up what the others weigh.
-    Swapping places is a meeting.
+    Swapping places is a meeting. `feet_m` is the height that I am at; who is on another floor is
+    not met.
     """
     r = reservations
     ci = int((bx - r.x0) / r.bucket_m)
@@ -112,7 +112,7 @@ def conflict(
         row = j * r.nx  # buckets of a row are listed one after the other
         for m in range(r.starts[k + 1, row + i0], r.starts[k + 1, row + i1 + 1]):
             other = r.members[k + 1, m]
-            if other == me or r.layers[other] != layer:
+            if other == me or abs(r.heights[other, k + 1] - feet_m) >= OVERLAP_M:
                 continue
             weight = _meeting(r, me, other, k, ax, ay, bx, by)
             if weight == np.inf:
@@ -125,7 +125,7 @@ def conflict(
 def others_near(
     reservations: Reservations,
     me: int,
-    layer: int,
+    feet_m: float,
     k: int,
     x: float,
     y: float,
@@ -146,7 +146,7 @@ def others_near(
         row = j * r.nx  # buckets of a row are listed one after the other
         for m in range(r.starts[k + 1, row + i0], r.starts[k + 1, row + i1 + 1]):
             o = r.members[k + 1, m]
-            if o == me or r.layers[o] != layer:
+            if o == me or abs(r.heights[o, k + 1] - feet_m) >= OVERLAP_M:
                 continue
             reach = r.radii[me] + r.radii[o] + MARGIN_M + 2.0 * slice_m
             nearest = np.inf

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planning._grid_kernels import GridArrays, cell_at, clearance_at, length
+from planning._grid_kernels import GridArrays, clearance_at, follow, length
 from planning._heap_kernels import heap_pop, heap_push
 from planning._jit import inlined
 from planning._potential_kernels import Guide, direction_at, potential_at
@@ -48,7 +48,10 @@ class Task(NamedTuple):
     """One actor's question: from where, how it moves, what it minds."""
 
     me: int
-    layer: int
+    body: int
+    """Row of the grid's clearances for this kind of body."""
+    cell: int
+    """Where it stands; -1 where nobody can."""
     x: float
     y: float
     vx: float
@@ -67,6 +70,8 @@ class Task(NamedTuple):
     wall_weight: float
     hurry_weight: float
     max_expansions: int
+    edge_cells: int
+    """M of Huang & Li: so many cells in a row it may be at steps and edges."""
     hold: bool
     """Stay where the start is rather than go anywhere: at the goal, or with no way to it."""
 
@@ -90,7 +95,9 @@ class Workspace(NamedTuple):
 
     node_state: NDArray[np.float64]
     """(N, 7): x, y, vx, vy at the node, cost so far, x, y half a step before."""
-    node_layer: NDArray[np.int64]
+    node_cell: NDArray[np.int64]
+    node_edge: NDArray[np.int64]
+    """Cells in a row at steps and edges."""
     node_parent: NDArray[np.int64]
     node_step: NDArray[np.int64]
     heap_keys: NDArray[np.float64]
@@ -141,13 +148,20 @@ def _on_ramp(
 
 
 @inlined
-def time_cost(task: Task, x: float, y: float, speed: float, seconds: float) -> float:
+def metres_left(guide: Guide, task: Task, cell: int, x: float, y: float) -> float:
+    """Metres from a point, in a cell, to the goal; who holds a place goes straight back to it."""
+    if task.hold:
+        return length(x - task.goal_x, y - task.goal_y)
+    return potential_at(guide, cell, x, y)
+
+
+@inlined
+def time_cost(task: Task, left_m: float, speed: float, seconds: float) -> float:
     """Seconds that a stretch is worth: its time, more when faster than preferred, none while
     standing at the goal."""
     if task.hold:
-        away = length(x - task.goal_x, y - task.goal_y)
-        return seconds * (speed / task.speed_mps + 0.5 * min(1.0, away))
-    if speed < 0.2 and length(x - task.goal_x, y - task.goal_y) <= task.goal_tolerance_m:
+        return seconds * (speed / task.speed_mps + 0.5 * min(1.0, left_m))
+    if speed < 0.2 and left_m <= task.goal_tolerance_m:
         return seconds * speed
     over = max(0.0, speed / task.speed_mps - 1.0)
     return seconds * (1.0 + over + task.hurry_weight * over * over)
@@ -160,9 +174,7 @@ def risk_price(task: Task, seconds_ahead: float) -> float:
 
 
 @inlined
-def way_left(
-    world: World, guide: Guide, task: Task, layer: int, x: float, y: float, speed: float
-) -> float:
+def way_left(task: Task, left_m: float, speed: float) -> float:
     """Seconds to the goal at the preferred speed, and what it costs to get to that speed.
 
     Without the latter who is slow would seem as good as who has speed already. About to arrive
@@ -170,10 +182,9 @@ def way_left(
     """
     if task.hold:
         return 0.0
-    left = potential_at(world.grid, guide, layer, x, y)
-    seconds = left / task.speed_mps
+    seconds = left_m / task.speed_mps
     lacking = task.speed_mps - speed
-    if lacking > 0.0 and left > task.speed_mps:
+    if lacking > 0.0 and left_m > task.speed_mps:
         lag = lacking / (2.0 * task.max_acceleration_mps2 * task.speed_mps)
         seconds += lacking * (lag + task.turn_weight)
     return seconds
@@ -201,8 +212,14 @@ def depth_bonus(excess: float, steps: int) -> float:
 @inlined
 def needed_clearance(world: World, task: Task) -> float:
     """The radius; less for who starts closer to a wall than that, so that it can come out."""
-    here = clearance_at(world.grid, task.layer, task.x, task.y)
+    here = clearance_at(world.grid, task.body, task.cell, task.x, task.y)
     return min(task.radius_m, max(0.0, here)) - 1e-6
+
+
+@inlined
+def _cells_between(grid: GridArrays, ax: float, ay: float, bx: float, by: float) -> int:
+    """How many cells further b is than a, along rows or columns."""
+    return int(max(abs(bx - ax), abs(by - ay)) / grid.layered.cell_m + 0.5)
 
 
 @inlined
@@ -249,11 +266,11 @@ def search(
     need = needed_clearance(world, task)
     a_max = task.max_acceleration_mps2
     most_m = task.max_speed_mps * step_s
-    open_m = task.radius_m + WALL_COST_M + most_m + 1.5 * grid.cell_m
+    open_m = task.radius_m + WALL_COST_M + most_m + 1.5 * grid.layered.cell_m
     node = workspace.node_state
     others = workspace.others
     capacity = len(node)
-    layers, ny, nx = grid.clearance.shape
+    cells = len(grid.layered.floors)
     workspace.stamp[0] += 1
     path[:, 0] = task.x
     path[:, 1] = task.y
@@ -262,11 +279,12 @@ def search(
     node[0, 2] = task.vx
     node[0, 3] = task.vy
     node[0, 4] = 0.0
-    workspace.node_layer[0] = task.layer
+    workspace.node_cell[0] = task.cell
+    workspace.node_edge[0] = 0
     workspace.node_parent[0] = -1
     workspace.node_step[0] = 0
     speed = length(task.vx, task.vy)
-    start = way_left(world, guide, task, task.layer, task.x, task.y, speed)
+    start = way_left(task, metres_left(guide, task, task.cell, task.x, task.y), speed)
     if not np.isfinite(start):
         return Outcome(NO_PATH, 0, np.inf)
     bonus = depth_bonus(bound - start, steps)
@@ -282,21 +300,20 @@ def search(
         n = workspace.heap_items[0]
         size = heap_pop(workspace.heap_keys, workspace.heap_items, size)
         step = workspace.node_step[n]
-        layer = workspace.node_layer[n]
+        cell = workspace.node_cell[n]
         x = node[n, 0]
         y = node[n, 1]
         vx = node[n, 2]
         vy = node[n, 3]
         if n > 0 and accumulate:
-            j, i = cell_at(grid, x, y)
-            slot = _slot(workspace, ((step * layers + layer) * ny + j) * nx + i)
+            slot = _slot(workspace, step * cells + cell)
             if slot < 0 or workspace.table_worth[slot] < key + bonus * step - 1e-9:
                 continue
         if step > best_step or (step == best_step and key < best_key):
             best = n
             best_step = step
             best_key = key
-        away = length(x - task.goal_x, y - task.goal_y)
+        away = metres_left(guide, task, cell, x, y)
         at_goal = away <= task.goal_tolerance_m
         if step == steps or (at_goal and not accumulate and not task.hold):
             best = n
@@ -308,7 +325,7 @@ def search(
             status = PARTIAL
             break
         expansions += 1
-        gx, gy, leg = direction_at(grid, guide, layer, x, y)
+        gx, gy, leg = direction_at(grid, guide, cell, x, y)
         if task.hold:
             gx = task.goal_x - x
             gy = task.goal_y - y
@@ -321,9 +338,10 @@ def search(
             gy = 0.0
         price = risk_price(task, step * step_s) * ds
         k = step * SUB
-        near = others_near(reservations, task.me, layer, k, x, y, task.max_speed_mps * ds, others)
+        feet_m = 0.0 if grid.flat else float(grid.layered.floors[cell])
+        near = others_near(reservations, task.me, feet_m, k, x, y, task.max_speed_mps * ds, others)
         # The clearance falls by no more than the way: far from walls no child has to be asked.
-        in_the_open = clearance_at(grid, layer, x, y) >= open_m
+        in_the_open = clearance_at(grid, task.body, cell, x, y) >= open_m
         # What the rest of the way is bound to cost beyond its time, if it is like the path known.
         room_s = bound - bonus * (steps - step - 1) if accumulate else bound
         for m in range(len(moves.speeds) + 1):
@@ -340,24 +358,41 @@ def search(
             ramp = length(dvx, dvy) / a_max
             ex, ey, evx, evy = _on_ramp(x, y, vx, vy, dvx, dvy, ramp, step_s)
             end_speed = length(evx, evy) if accumulate else task.speed_mps
-            left = way_left(world, guide, task, layer, ex, ey, end_speed)
+            if grid.flat:
+                half = -1
+                end = follow(grid, cell, ex, ey)
+            else:
+                hx, hy, hvx, hvy = _on_ramp(x, y, vx, vy, dvx, dvy, ramp, ds)
+                half = follow(grid, cell, hx, hy)
+                end = follow(grid, half, ex, ey)
+            left_m = metres_left(guide, task, end, ex, ey)
+            left = way_left(task, left_m, end_speed)
             cost = (
                 node[n, 4]
-                + time_cost(task, ex, ey, length(ex - x, ey - y) / step_s, step_s)
+                + time_cost(task, left_m, length(ex - x, ey - y) / step_s, step_s)
                 + task.turn_weight * length(evx - vx, evy - vy)
             )
-            if not cost + left < room_s:
+            if not cost + left < room_s or end < 0:
                 continue
-            ej, ei = cell_at(grid, ex, ey)
-            slot = _slot(workspace, (((step + 1) * layers + layer) * ny + ej) * nx + ei)
+            edge = 0
+            if not grid.flat and grid.edges[task.body, end]:
+                edge = workspace.node_edge[n] + _cells_between(grid, x, y, ex, ey)
+                if edge >= task.edge_cells:
+                    continue
+            slot = _slot(workspace, (step + 1) * cells + end)
             if slot < 0:
                 continue
             least = workspace.table_worth[slot] - 1e-12
             if accumulate and cost + left >= least:
                 continue
             hx, hy, hvx, hvy = _on_ramp(x, y, vx, vy, dvx, dvy, ramp, ds)
+            if grid.flat:
+                half = follow(grid, cell, hx, hy)
             if not in_the_open:
-                room = min(clearance_at(grid, layer, hx, hy), clearance_at(grid, layer, ex, ey))
+                room = min(
+                    clearance_at(grid, task.body, half, hx, hy),
+                    clearance_at(grid, task.body, end, ex, ey),
+                )
                 if room < need:
                     continue
                 cost += wall_cost(task, room, step_s)
@@ -372,8 +407,8 @@ def search(
                 if blocked:
                     continue
             risk = price * (
-                risk_at(grid, fields, k + 1, layer, hx, hy, hvx, hvy, task.closing_weight)
-                + risk_at(grid, fields, k + 2, layer, ex, ey, evx, evy, task.closing_weight)
+                risk_at(grid, fields, k + 1, half, hx, hy, hvx, hvy, task.closing_weight)
+                + risk_at(grid, fields, k + 2, end, ex, ey, evx, evy, task.closing_weight)
                 + soft
             )
             if accumulate:
@@ -394,7 +429,8 @@ def search(
             node[count, 4] = cost
             node[count, 5] = hx
             node[count, 6] = hy
-            workspace.node_layer[count] = layer
+            workspace.node_cell[count] = end
+            workspace.node_edge[count] = edge
             workspace.node_parent[count] = n
             workspace.node_step[count] = step + 1
             size = heap_push(workspace.heap_keys, workspace.heap_items, size, key, count)

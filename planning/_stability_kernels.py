@@ -11,7 +11,7 @@ from planning._barrier_kernels import (
     to_raise,
 )
 from planning._jit import inlined, kernel
-from planning._layered import TILE, LayeredArrays, cell_index
+from planning._layered import LINK_ROOM_M, TILE, LayeredArrays, cell_index
 from planning._reachability_kernels import Box
 
 FORBIDDEN, STABLE, UNSTABLE, UP_STAIR, DOWN_STAIR = range(5)
@@ -146,6 +146,8 @@ def _class_by_heights(
         difference = abs(other - floor)
         if np.isnan(other) or difference > leg:
             is_obstacle = True
+        elif min(ceilings[b, a], ceilings[v, u]) - max(other, floor) < LINK_ROOM_M:
+            is_obstacle = True  # a floor above or below another, such as that under a ramp
         elif min(ceilings[b, a], ceilings[v, u]) - max(other, floor) < room:
             return FORBIDDEN
         elif difference > edges[k]:

@@ -4,10 +4,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning._crowd import GIVING_WAY, WAITING, Crowd, Decisions
-from planning._geometry_kernels import SegmentIndex, closest_approach, slide
-from planning._grid_kernels import clearance_at
+from planning._geometry_kernels import SegmentIndex, closest_approach
+from planning._grid_kernels import clearance_at, floor_of, follow
+from planning._ground_kernels import walk
 from planning._jit import kernel
 from planning._prediction_kernels import Prediction
+from planning._reservation_kernels import OVERLAP_M
 from planning._search_kernels import Task, World, advance, needed_clearance
 
 
@@ -48,12 +50,13 @@ NEAR_M = 4.0
 
 
 @kernel
-def _people_near(prediction: Prediction, task: Task, near: NDArray[np.int64]) -> int:
+def _people_near(world: World, prediction: Prediction, task: Task, near: NDArray[np.int64]) -> int:
     """List the people near an actor into `near`; returns how many they are."""
     count = 0
-    for p in range(len(prediction.layers)):
+    feet_m = floor_of(world.grid, task.cell)
+    for p in range(len(prediction.means)):
         if (
-            prediction.layers[p] == task.layer
+            abs(prediction.heights[p, 0] - feet_m) < OVERLAP_M
             and abs(prediction.means[p, 0, 0] - task.x) <= NEAR_M
             and abs(prediction.means[p, 0, 1] - task.y) <= NEAR_M
         ):
@@ -103,9 +106,12 @@ def _gap(
     a = task.max_acceleration_mps2
     hx, hy, hvx, hvy = advance(task.x, task.y, task.vx, task.vy, ux, uy, a, half)
     ex, ey, _, _ = advance(hx, hy, hvx, hvy, ux, uy, a, half)
+    grid = world.grid
+    half_cell = follow(grid, task.cell, hx, hy)
+    end = follow(grid, half_cell, ex, ey)
     if (
-        clearance_at(world.grid, task.layer, hx, hy) < need
-        or clearance_at(world.grid, task.layer, ex, ey) < need
+        clearance_at(grid, task.body, half_cell, hx, hy) < need
+        or clearance_at(grid, task.body, end, ex, ey) < need
     ):
         return -1.0
     return min(
@@ -128,8 +134,8 @@ def last_check(
     Ways out are stopping and sixteen directions at two speeds; the third value tells that one was
     taken. Costs O(people) once and O(people near) for each way out.
     """
-    listed = np.empty(len(prediction.layers), dtype=np.int64)
-    near = listed[: _people_near(prediction, task, listed)]
+    listed = np.empty(len(prediction.means), dtype=np.int64)
+    near = listed[: _people_near(world, prediction, task, listed)]
     need = needed_clearance(world, task)
     gap = _gap(world, prediction, near, task, need, ux, uy)
     if gap >= contact_m:
@@ -160,12 +166,12 @@ def last_check(
 def resolve(
     world: World,
     index: SegmentIndex,
-    bounds: tuple[float, float, float, float],
     crowd: Crowd,
     order: NDArray[np.int64],
     tick_s: float,
     decisions: Decisions,
     new_positions: NDArray[np.float64],
+    new_cells: NDArray[np.int64],
 ) -> None:
     """Take the steps in rank order so that no two actors touch.
 
@@ -174,13 +180,14 @@ def resolve(
     """
     moved = np.zeros(len(order), dtype=np.bool_)
     new_positions[:] = crowd.positions
+    new_cells[:] = crowd.cells
     for n in range(len(order)):
         a = order[n]
         x = crowd.positions[a, 0]
         y = crowd.positions[a, 1]
         need = min(
             crowd.parameters[a]["radius_m"],
-            max(0.0, clearance_at(world.grid, crowd.layers[a], x, y)),
+            max(0.0, clearance_at(world.grid, crowd.bodies[a], crowd.cells[a], x, y)),
         )
         moved[a] = True
         wx = decisions.wishes[a, 0]
@@ -189,10 +196,22 @@ def resolve(
             continue
         for trial in range(7):
             vx, vy = _alternative(wx, wy, trial)
-            ex, ey = slide(index, bounds, x, y, vx * tick_s, vy * tick_s, need - 1e-6)
+            cell, ex, ey = walk(
+                world.grid,
+                index,
+                crowd.parameters[a]["height_m"],
+                crowd.parameters[a]["step_on_m"],
+                crowd.cells[a],
+                x,
+                y,
+                vx * tick_s,
+                vy * tick_s,
+                need - 1e-6,
+            )
             if trial == 6 or not _touches(world, crowd, moved, new_positions, a, ex, ey):
                 new_positions[a, 0] = ex
                 new_positions[a, 1] = ey
+                new_cells[a] = cell
                 if trial > 0:
                     stands = np.hypot(ex - x, ey - y) < 0.15 * tick_s
                     decisions.reasons[a] = WAITING if stands else GIVING_WAY
@@ -234,7 +253,7 @@ def _touches(
             b = j * r.nx + i
             for m in range(r.starts[0, b], r.starts[0, b + 1]):
                 o = r.members[0, m]
-                if o == a or crowd.layers[o] != crowd.layers[a]:
+                if o == a or abs(r.heights[o, 0] - r.heights[a, 0]) >= OVERLAP_M:
                     continue
                 rx = x - crowd.positions[o, 0]
                 ry = y - crowd.positions[o, 1]

@@ -64,8 +64,8 @@ def _door_row(door: Door) -> tuple[float, ...]:
 
 
 def _outline(solid: Polygon) -> Iterator[tuple[float, ...]]:
-    """The edges of a solid, up to its top; of what carries nobody, higher than anyone steps."""
-    extra = 0.0 if solid.carries else LINK_M
+    """The edges of a solid, up to its top; of what nobody climbs, higher than anyone steps."""
+    least = 0.0 if solid.carries else solid.offset_m + LINK_M
     for a, b in itertools.pairwise((*solid.points, solid.points[0])):
         low, high = solid.top_at(*a), solid.top_at(*b)
         pieces = max(1, math.ceil(abs(high - low) / _PIECE_RISE_M - 1e-9))
@@ -73,5 +73,5 @@ def _outline(solid: Polygon) -> Iterator[tuple[float, ...]]:
             u, v = k / pieces, (k + 1) / pieces
             start = (a[0] + u * (b[0] - a[0]), a[1] + u * (b[1] - a[1]))
             end = (a[0] + v * (b[0] - a[0]), a[1] + v * (b[1] - a[1]))
-            top = max(solid.top_at(*start), solid.top_at(*end)) + extra
+            top = max(solid.top_at(*start), solid.top_at(*end), least)
             yield (*start, *end, solid.offset_m, top, math.inf)

@@ -61,7 +61,7 @@ class Batch:
         self.plan = plan
         self.field = RiskField(grid, risk, plan.slices, spread)
         self._moves = compass_moves()
-        self._no_guide = np.full((*grid.arrays.clearance.shape, 3), np.inf, dtype=np.float32)
+        self._no_guide = np.full((len(grid.layered.floors), 3), np.inf, dtype=np.float32)
         self._pool = ThreadPoolExecutor(plan.threads, thread_name_prefix="planning")
         self._budget = 0
         self._workspaces: list[Workspace] = []
@@ -91,19 +91,19 @@ class Batch:
         guides: NDArray[np.float32],
         prediction: Prediction,
         tick_s: float,
-    ) -> tuple[Decisions, NDArray[np.float64]]:
+    ) -> tuple[Decisions, NDArray[np.float64], NDArray[np.int64]]:
         """Decide for everyone and take the step.
 
         Parameters
         ----------
         crowd : state of A actors after the finished tick
-        guides : float32 (G, L, ny, nx, 3), the potentials that `crowd.guide_slots` points into
+        guides : float32 (G, N, 3), the potentials that `crowd.guide_slots` points into
         prediction : people's future, as many slices as the plan has
         tick_s : length of the tick, seconds
 
         Returns
         -------
-        The decisions, and float64 (A, 2) positions after the tick.
+        The decisions, and float64 (A, 2) positions and int64 (A,) cells after the tick.
         """
         actors = len(crowd.positions)
         threads = min(self.plan.threads, 1 + actors // _WORTH_A_THREAD)
@@ -117,10 +117,11 @@ class Batch:
             np.zeros(actors, dtype=np.bool_),
         )
         new_positions = np.empty((actors, 2))
+        new_cells = np.empty(actors, dtype=np.int64)
         if not actors:
-            return decisions, new_positions
+            return decisions, new_positions, new_cells
         left_m = np.empty(actors)
-        ways_left(self.grid.arrays, guides, crowd, left_m)
+        ways_left(guides, crowd, left_m)
         order = np.lexsort((crowd.ranks, left_m))
         crowd = crowd._replace(ranks=np.argsort(order))
         seekers = np.column_stack([crowd.positions, crowd.parameters["max_speed_mps"]])
@@ -128,17 +129,18 @@ class Batch:
             prediction, lambda work: self._on_threads(work, threads), seekers, self.plan.slice_s
         )
         paths = np.empty((actors, slices, 2))
+        heights = np.zeros((actors, slices))
         reservations = make_reservations(
             self.grid,
             paths,
-            crowd.layers,
+            heights,
             crowd.parameters["radius_m"].copy(),
             crowd.ranks,
             float(crowd.parameters["max_speed_mps"].max()) * max(tick_s, self.plan.slice_s),
         )
         world = World(self.grid.arrays, self.field.fields, reservations, self.plan.step_s)
         workspaces = self._workspaces_for(int(crowd.parameters["max_expansions"].max()))
-        continue_paths(world, guides, crowd, tick_s, 0, actors, paths)
+        continue_paths(world, guides, crowd, tick_s, 0, actors, paths, heights)
         index_paths(reservations)
         turns = _by_neighbourhood(crowd)
 
@@ -160,14 +162,14 @@ class Batch:
         resolve(
             world,
             self.grid.index,
-            self.grid.bounds,
             crowd,
             order,
             tick_s,
             decisions,
             new_positions,
+            new_cells,
         )
-        return decisions, new_positions
+        return decisions, new_positions, new_cells
 
 
 def _by_neighbourhood(crowd: Crowd) -> NDArray[np.int64]:
@@ -177,4 +179,4 @@ def _by_neighbourhood(crowd: Crowd) -> NDArray[np.int64]:
     result does not depend on the order.
     """
     i, j = (crowd.positions / _NEIGHBOURHOOD_M).astype(np.int64).T
-    return np.lexsort((np.where(i % 2, -j, j), i, crowd.layers))
+    return np.lexsort((np.where(i % 2, -j, j), i))

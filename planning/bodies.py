@@ -35,7 +35,7 @@ class Body:
     """Greatest difference in height that it steps up or down."""
     leg_length_m: float = 0.90
     """Greatest difference in height that is an edge; what is above it is an obstacle."""
-    edge_cells: int = 24
+    edge_cells: int = 64
     """M: fewer cells than these in a row may lie on edges."""
 
     def __post_init__(self) -> None:

@@ -5,12 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from planning._layered import LayeredArrays
 from planning.barriers import Barriers, barriers_of_scene
-from planning.bodies import Body
 from planning.doors import Doors
 from planning.mesh_file import MeshError, Up, read_triangles
 from planning.meshes import Progress, barriers_of_triangles, surfaces_of_triangles, unheard
@@ -25,31 +21,6 @@ class Floors(NamedTuple):
     layered: LayeredArrays
     barriers: Barriers
     doors: Doors
-
-    def met_on(self, layer: int) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-        """What an adult meets on one layer, and where that has a floor.
-
-        Returns
-        -------
-        float64 (K, 4) lines x0, y0, x1, y1 in metres, and bool (ny, nx).
-        """
-        s, body = self.surfaces, Body.adult()
-        own = s.layers == layer
-        heights = np.full((s.ny, s.nx), np.nan)
-        heights[s.rows[own], s.columns[own]] = s.floors[own]
-        a, b = self.barriers[:, 0:2], self.barriers[:, 2:4]
-        ways = b - a
-        lengths = np.maximum(np.hypot(*ways.T), 1e-9)[:, None]
-        aside = ways[:, ::-1] * (0.6, -0.6) * s.cell_m / lengths
-        met = np.zeros(len(a), dtype=np.bool_)
-        for beside in ((a + b) / 2 + aside, (a + b) / 2 - aside):
-            columns, rows = np.floor((beside - s.bounds[:2]) / s.cell_m).astype(np.int64).T
-            floors = heights[rows.clip(0, s.ny - 1), columns.clip(0, s.nx - 1)]
-            met |= (self.barriers[:, 4] < floors + body.height_m) & (
-                self.barriers[:, 5] > floors + body.step_on_m
-            )
-        met &= self.barriers[:, 6] > body.step_on_m
-        return np.ascontiguousarray(self.barriers[met, :4]), ~np.isnan(heights)
 
 
 def floors_of_scene(scene: Scene, cell_m: float = 0.25) -> Floors:

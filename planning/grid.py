@@ -1,11 +1,9 @@
-"""The ground of a zone as a grid of cells: where a disc may stand and how it slides along walls."""
+"""The ground of a zone: where a body may stand, how it walks, and the ways to goals."""
 
 from __future__ import annotations
 
 import math
 from collections import OrderedDict
-from collections.abc import Callable
-from functools import cached_property
 from pathlib import Path
 from typing import Self
 
@@ -13,16 +11,21 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from planning import _geometry_kernels as geometry
+from planning import _grid_kernels as kernels
 from planning._geometry_kernels import SegmentIndex
-from planning._grid_kernels import GridArrays, cell_at, clearance_many
-from planning._layered import LayeredArrays, cell_near
+from planning._grid_kernels import GridArrays
+from planning._ground_kernels import lower_to_barriers, walk_many
+from planning._layered import LayeredArrays
 from planning.barriers import Barriers
+from planning.bodies import Body
 from planning.doors import Doors
 from planning.floors import Floors, floors_of_mesh, floors_of_scene
+from planning.footing import footing_of
 from planning.mesh_file import Up
 from planning.meshes import Progress, unheard
 from planning.potential import Potential
 from planning.scene import Scene
+from planning.stability import Stability
 from planning.surfaces import Surfaces
 
 CLEARANCE_CAP_M = 3.0
@@ -31,87 +34,48 @@ _BUCKET_M = 1.0
 _BUCKET_REACH_M = 1.5
 _POTENTIALS_BYTES = 256 * 2**20
 
-Segments = NDArray[np.float64]
-
-
-def scene_segments(scene: Scene) -> Segments:
-    """Every wall and polygon edge of a scene, float64 (S, 4): x0, y0, x1, y1."""
-    rows = [(*wall.start, *wall.end) for wall in scene.walls]
-    for polygon in scene.polygons:
-        ring = polygon.points
-        rows.extend((*a, *b) for a, b in zip(ring, ring[1:] + ring[:1], strict=True))
-    return np.array(rows, dtype=np.float64).reshape(-1, 4)
-
-
-def _index(segments: Segments, bounds: tuple[float, float, float, float]) -> SegmentIndex:
-    x0, y0, x1, y1 = bounds
-    nx = max(1, math.ceil((x1 - x0) / _BUCKET_M))
-    ny = max(1, math.ceil((y1 - y0) / _BUCKET_M))
-    lists: list[list[int]] = [[] for _ in range(nx * ny)]
-    reach = _BUCKET_REACH_M + _BUCKET_M * math.sqrt(0.5)
-    for s, (ax, ay, bx, by) in enumerate(segments):
-        i0 = max(0, int((min(ax, bx) - reach - x0) / _BUCKET_M))
-        i1 = min(nx - 1, int((max(ax, bx) + reach - x0) / _BUCKET_M))
-        j0 = max(0, int((min(ay, by) - reach - y0) / _BUCKET_M))
-        j1 = min(ny - 1, int((max(ay, by) + reach - y0) / _BUCKET_M))
-        for j in range(j0, j1 + 1):
-            for i in range(i0, i1 + 1):
-                cx, cy = x0 + (i + 0.5) * _BUCKET_M, y0 + (j + 0.5) * _BUCKET_M
-                if geometry.point_segment_distance(cx, cy, ax, ay, bx, by)[0] <= reach:
-                    lists[j * nx + i].append(s)
-    starts = np.zeros(nx * ny + 1, dtype=np.int64)
-    starts[1:] = np.cumsum([len(members) for members in lists])
-    members = np.array([s for bucket in lists for s in bucket], dtype=np.int64)
-    return SegmentIndex(segments, starts, members, x0, y0, _BUCKET_M, _BUCKET_REACH_M, nx, ny)
+ADULT = Body.adult()
+_EDGES = (Stability.UNSTABLE, Stability.UP_STAIR, Stability.DOWN_STAIR)
 
 
 class LayeredGrid:
-    """Cells of one zone, layer by layer, with the distance from each to the nearest obstacle.
+    """Cells of one zone, layer by layer, and what stops bodies from going where they like.
 
-    A disc of radius r may stand where the clearance is at least r: that set is the complement of
-    its C-obstacles. Memory is 4 bytes a cell and layer; each cached potential 12 bytes more.
+    Places are given by x, y and a height: the standing surface nearest in height is meant. A disc
+    of radius r may stand where the clearance of its kind of body is at least r: that set is the
+    complement of its C-obstacles. Memory is some 60 bytes a cell, 5 more for each kind of body;
+    each cached potential 12 bytes more.
     """
 
-    def __init__(
-        self,
-        arrays: GridArrays,
-        index: SegmentIndex,
-        derive_floors: Callable[[], Floors],
-    ) -> None:
-        self.arrays = arrays
-        self.index = index
-        self._derive_floors = derive_floors
-        self._potentials: OrderedDict[tuple[float, float, int, float], Potential] = OrderedDict()
+    def __init__(self, floors: Floors) -> None:
+        self.floors = floors
+        layered = floors.layered
+        flat = len(layered.pages) == 1 and not (np.nan_to_num(layered.floors) != 0.0).any()
+        cells = len(layered.floors)
+        self.arrays = GridArrays(
+            layered,
+            np.zeros((0, cells), dtype=np.float32),
+            np.zeros((0, cells), dtype=np.bool_),
+            flat,
+        )
+        self.index = _index(floors.barriers, self.bounds)
+        self.centres = _centres(layered)
+        self._rows: dict[Body, int] = {}
+        self._potentials: OrderedDict[tuple[float, ...], Potential] = OrderedDict()
+        self.row_of(ADULT)
 
     @classmethod
     def from_scene(cls, scene: Scene, cell_m: float = 0.25) -> Self:
-        """Derive the grid of a scene. Cost O(obstacles × cells near them).
+        """Derive the grid of a scene. Cost O(surfaces + obstacles × cells near them).
 
         Raises
         ------
         ValueError
             `cell_m` is not between 0.05 and 2 m; the scene's mesh is at fault.
         """
-        if not 0.05 <= cell_m <= 2.0:
-            raise ValueError(f"cell_m must lie between 0.05 and 2 m, got {cell_m}")
         if scene.mesh is not None:
             return cls.from_mesh(scene.mesh, cell_m)
-        x0, y0, x1, y1 = scene.bounds
-        ny = max(1, math.ceil((y1 - y0) / cell_m - 1e-9))
-        nx = max(1, math.ceil((x1 - x0) / cell_m - 1e-9))
-        segments = scene_segments(scene)
-        clearance = np.full((1, ny, nx), CLEARANCE_CAP_M, dtype=np.float32)
-        for field in clearance:
-            geometry.lower_to_segments(field, segments, x0, y0, cell_m, CLEARANCE_CAP_M)
-            for polygon in scene.polygons:
-                ring = np.array(polygon.points, dtype=np.float64)
-                geometry.negate_inside(field, ring, x0, y0, cell_m)
-        arrays = GridArrays(clearance, float(x0), float(y0), float(x1), float(y1), float(cell_m))
-        return cls(
-            arrays,
-            _index(segments, scene.bounds),
-            lambda: floors_of_scene(scene, cell_m),
-        )
+        return cls(floors_of_scene(scene, cell_m))
 
     @classmethod
     def from_mesh(
@@ -130,178 +94,279 @@ class LayeredGrid:
         MeshError
             The file is at fault; the message names it and says how.
         """
-        floors = floors_of_mesh(path, cell_m, up, progress)
-        x0, y0, x1, y1 = bounds = floors.surfaces.bounds
-        shape = (floors.surfaces.layer_count, floors.surfaces.ny, floors.surfaces.nx)
-        clearance = np.full(shape, CLEARANCE_CAP_M, dtype=np.float32)
-        for layer, field in enumerate(clearance):
-            lines, ground = floors.met_on(layer)
-            geometry.lower_to_segments(field, lines, x0, y0, cell_m, CLEARANCE_CAP_M)
-            field[~ground] *= -1.0
-        arrays = GridArrays(clearance, x0, y0, x1, y1, float(cell_m))
-        lines = np.ascontiguousarray(floors.barriers[:, :4])
-        return cls(arrays, _index(lines, bounds), lambda: floors)
+        return cls(floors_of_mesh(path, cell_m, up, progress))
+
+    def row_of(self, body: Body) -> int:
+        """Row of a kind of body in `arrays.clearance`; derived when it is asked for first."""
+        row = self._rows.get(body)
+        if row is None:
+            a = self.arrays
+            field = np.full(len(a.layered.floors), CLEARANCE_CAP_M, dtype=np.float32)
+            self._lower(field, body, self.bounds)
+            field[np.isnan(a.layered.floors)] *= -1.0
+            row = self._rows[body] = len(a.clearance)
+            self.arrays = a._replace(
+                clearance=np.concatenate([a.clearance, field[None]]),
+                edges=np.concatenate([a.edges, self._edges(body)[None]]),
+            )
+        return row
+
+    def _edges(self, body: Body) -> NDArray[np.bool_]:
+        if self.arrays.flat:
+            return np.zeros(len(self.layered.floors), dtype=np.bool_)
+        return np.isin(footing_of(self, body).classes, _EDGES)
+
+    def _lower(
+        self, field: NDArray[np.float32], body: Body, box: tuple[float, float, float, float]
+    ) -> None:
+        lower_to_barriers(
+            self.arrays,
+            self.index,
+            body.height_m,
+            body.step_on_m,
+            CLEARANCE_CAP_M,
+            box,
+            field,
+        )
+
+    @property
+    def layered(self) -> LayeredArrays:
+        """Floors, ceilings and links of the cells."""
+        return self.floors.layered
+
+    @property
+    def surfaces(self) -> Surfaces:
+        """Where one can stand."""
+        return self.floors.surfaces
+
+    @property
+    def barriers(self) -> Barriers:
+        """What stops bodies, doors included."""
+        return self.floors.barriers
+
+    @property
+    def doors(self) -> Doors:
+        """What of the barriers opens and closes; use `set_door` to do so."""
+        return self.floors.doors
+
+    def set_door(self, name: str, is_open: bool) -> None:
+        """Open or close a door. Only clearances within reach of it are derived again.
+
+        Potentials made before lead through what is closed now: ask for them anew. KeyError when
+        there is no door of that name.
+        """
+        x0, y0, x1, y1 = self.doors.set_open(name, is_open)
+        reach = CLEARANCE_CAP_M
+        box = (x0 - reach, y0 - reach, x1 + reach, y1 + reach)
+        near = ((self.centres >= box[:2]) & (self.centres <= box[2:])).all(axis=1)
+        holes = near & np.isnan(self.layered.floors)
+        for body, row in self._rows.items():
+            field = self.arrays.clearance[row]
+            field[near] = CLEARANCE_CAP_M
+            self._lower(field, body, box)
+            field[holes] *= -1.0
+            self.arrays.edges[row] = self._edges(body)
+        self._potentials.clear()
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
         """x0, y0, x1, y1 in metres."""
-        a = self.arrays
+        a = self.layered
         return a.x0, a.y0, a.x1, a.y1
 
     @property
     def cell_m(self) -> float:
         """Edge of a cell, metres."""
-        return self.arrays.cell_m
+        return self.layered.cell_m
 
     @property
     def layers(self) -> int:
         """Number of layers."""
-        return int(self.arrays.clearance.shape[0])
-
-    @cached_property
-    def _floors(self) -> Floors:
-        return self._derive_floors()
-
-    @property
-    def surfaces(self) -> Surfaces:
-        """Where one can stand."""
-        return self._floors.surfaces
-
-    @property
-    def layered(self) -> LayeredArrays:
-        """The same as tiles of cells."""
-        return self._floors.layered
-
-    @property
-    def barriers(self) -> Barriers:
-        """What stops bodies, doors included."""
-        return self._floors.barriers
-
-    @property
-    def doors(self) -> Doors:
-        """What of the barriers opens and closes."""
-        return self._floors.doors
-
-    def layer_near(self, position: tuple[float, float], z_m: float) -> int:
-        """The layer whose floor is nearest to a height there; 0 where nobody can stand."""
-        cell = cell_near(self.layered, position[0], position[1], z_m)
-        return int(self.layered.places[cell, 0]) if cell >= 0 else 0
-
-    def cell_centre(self, position: tuple[float, float]) -> tuple[float, float]:
-        """Centre of the cell that holds a position."""
-        a = self.arrays
-        j, i = cell_at(a, position[0], position[1])
-        return a.x0 + (i + 0.5) * a.cell_m, a.y0 + (j + 0.5) * a.cell_m
+        return len(self.layered.pages)
 
     def as_points(
-        self, positions: ArrayLike, layers: ArrayLike
-    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-        """Positions as float64 (N, 2) and layers as int64 (N,), checked.
+        self, positions: ArrayLike, heights: ArrayLike
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Positions as float64 (N, 2) and heights as float64 (N,), checked.
 
         Raises
         ------
         ValueError
-            Wrong shapes, positions that are not finite, a layer that does not exist.
+            Wrong shapes, or numbers that are not finite.
         """
         points = np.ascontiguousarray(positions, dtype=np.float64).reshape(-1, 2)
-        floors = np.ascontiguousarray(layers, dtype=np.int64).reshape(-1)
-        if len(points) != len(floors):
-            raise ValueError(f"{len(points)} positions but {len(floors)} layers")
-        if not np.isfinite(points).all():
-            raise ValueError("positions must be finite")
-        if len(floors) and not (floors.min() >= 0 and floors.max() < self.layers):
-            raise ValueError(f"layers must lie in 0..{self.layers - 1}")
-        return points, floors
+        levels = np.ascontiguousarray(heights, dtype=np.float64).reshape(-1)
+        if len(points) != len(levels):
+            raise ValueError(f"{len(points)} positions but {len(levels)} heights")
+        if not (np.isfinite(points).all() and np.isfinite(levels).all()):
+            raise ValueError("positions and heights must be finite")
+        return points, levels
 
-    def clearance(self, positions: ArrayLike, layers: ArrayLike) -> NDArray[np.float64]:
-        """Metres to the nearest obstacle, float64 (N,), -inf outside the bounds."""
-        points, floors = self.as_points(positions, layers)
+    def on_ground(
+        self, positions: ArrayLike, heights: ArrayLike
+    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Positions float64 (N, 2) and the cells int64 (N,) that are stood in there.
+
+        The cell is that of the surface nearest in height, where need be up to two cells aside; -1
+        where nobody can stand.
+        """
+        points, levels = self.as_points(positions, heights)
+        cells = np.empty(len(points), dtype=np.int64)
+        kernels.surfaces_at(self.arrays, points, levels, cells)
+        return points, cells
+
+    def with_heights(
+        self, paths: NDArray[np.float64], cells: NDArray[np.int64]
+    ) -> NDArray[np.float64]:
+        """Heights added to A paths (A, K, 2) that begin in cells (A,): float64 (A, K, 3)."""
+        out = np.zeros((*paths.shape[:2], 3))
+        out[:, :, :2] = paths
+        if not self.arrays.flat:
+            kernels.heights_along(self.arrays, cells, out)
+        return out
+
+    def floor_at(self, position: tuple[float, float], height: float) -> float:
+        """Height of the standing surface there that is nearest in height; `height` if none is."""
+        cell = int(self.on_ground([position], [height])[1][0])
+        return float(self.layered.floors[cell]) if cell >= 0 else height
+
+    def layers_at(self, positions: ArrayLike, heights: ArrayLike) -> NDArray[np.int64]:
+        """`layer_at` for (N, 2), (N,): int64 (N,)."""
+        _, cells = self.on_ground(positions, heights)
+        return np.where(cells >= 0, self.layered.places[cells, 0], 0).astype(np.int64)
+
+    def layer_at(self, position: tuple[float, float], height: float) -> int:
+        """Layer of the standing surface there that is nearest in height; 0 if none is."""
+        return int(self.layers_at([position], [height])[0])
+
+    def clearance(
+        self, positions: ArrayLike, heights: ArrayLike, body: Body = ADULT
+    ) -> NDArray[np.float64]:
+        """Metres to what stops a body, float64 (N,); -inf where it cannot stand."""
+        row = self.row_of(body)
+        points, cells = self.on_ground(positions, heights)
         out = np.empty(len(points))
-        clearance_many(self.arrays, floors, points, out)
+        kernels.clearance_many(self.arrays, row, cells, points, out)
         return out
 
     def is_free(
-        self, positions: ArrayLike, layers: ArrayLike, clearance_m: float
+        self,
+        positions: ArrayLike,
+        heights: ArrayLike,
+        clearance_m: float,
+        body: Body = ADULT,
     ) -> NDArray[np.bool_]:
         """Whether a disc of that radius may stand there, bool (N,)."""
-        return np.asarray(self.clearance(positions, layers) >= clearance_m)
+        return np.asarray(self.clearance(positions, heights, body) >= clearance_m)
 
     def nearest_free(
-        self, position: tuple[float, float], layer: int, clearance_m: float
+        self,
+        position: tuple[float, float],
+        height: float,
+        clearance_m: float,
+        body: Body = ADULT,
     ) -> tuple[float, float] | None:
-        """The position itself when free, else the centre of the nearest free cell, if any.
+        """The position itself when free, else the centre of the nearest free cell on its level.
 
-        Costs O(cells as near as the answer).
+        Levels are told apart by half a body's height; if there is none on this level, on any. A
+        position in the air is one on the floor below, one inside a building is none on its roof.
         """
-        if self.is_free([position], [layer], clearance_m)[0]:
-            return float(position[0]), float(position[1])
-        a = self.arrays
-        x, y = np.clip(position, (a.x0, a.y0), (a.x1, a.y1))
-        row, column = int((y - a.y0) / a.cell_m), int((x - a.x0) / a.cell_m)
-        field = a.clearance[layer]
-        reach = 4
-        while True:
-            j0, i0 = max(0, row - reach), max(0, column - reach)
-            rows, columns = np.nonzero(
-                field[j0 : row + reach + 1, i0 : column + reach + 1] >= clearance_m
-            )
-            centres = np.stack(
-                [a.x0 + (columns + i0 + 0.5) * a.cell_m, a.y0 + (rows + j0 + 0.5) * a.cell_m],
-                axis=1,
-            )
-            centres = centres[(centres <= (a.x1, a.y1)).all(axis=1)]
-            away = np.hypot(*(centres - (x, y)).T)
-            everything = reach >= max(field.shape)
-            if len(away) and (everything or away.min() <= (reach - 1) * a.cell_m):
-                nearest = centres[away.argmin()]
-                return float(nearest[0]), float(nearest[1])
-            if everything:
-                return None
-            reach *= 2
+        a = self.layered
+        level_m = 0.5 * body.height_m
+        free = (self.arrays.clearance[self.row_of(body)] >= clearance_m) & np.isfinite(a.floors)
+        apart = np.abs(a.floors - height)
+        free_here = self.is_free([position], [height], clearance_m, body)[0]
+        for candidates, near_m in ((free & (apart < level_m), level_m), (free, math.inf)):
+            if free_here and self.floor_at(position, height) - height < near_m:
+                return float(position[0]), float(position[1])
+            cells = np.flatnonzero(candidates)
+            if len(cells):
+                away = np.hypot(*(self.centres[cells] - position).T) + apart[cells]
+                x, y = self.centres[cells[away.argmin()]]
+                return float(x), float(y)
+        return None
 
     def walk(
         self,
         positions: ArrayLike,
-        layers: ArrayLike,
+        heights: ArrayLike,
         displacements: ArrayLike,
         clearance_m: float,
-    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-        """Move discs, sliding along walls and kept inside the bounds; no wall is ever crossed.
+        body: Body = ADULT,
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Move bodies, sliding along what stops them; no wall is ever crossed, no ledge left.
 
         Parameters
         ----------
         positions, displacements : float (N, 2), metres
-        layers : int (N,)
+        heights : float (N,), metres
         clearance_m : float, metres
             Distance that a centre keeps from walls, at most 1 m. Who starts closer is let out,
             never further in.
 
         Returns
         -------
-        float64 (N, 2) positions and int64 (N,) layers.
+        float64 (N, 2) positions and float64 (N,) heights of the floor there.
         """
         if not 0.0 <= clearance_m <= 1.0:
             raise ValueError(f"clearance_m must lie between 0 and 1 m, got {clearance_m}")
-        points, floors = self.as_points(positions, layers)
+        points, cells = self.on_ground(positions, heights)
         ways = np.ascontiguousarray(displacements, dtype=np.float64).reshape(-1, 2)
         if ways.shape != points.shape:
             raise ValueError(f"{len(points)} positions but {len(ways)} displacements")
         if not np.isfinite(ways).all():
             raise ValueError("displacements must be finite")
-        out = np.empty_like(points)
-        geometry.slide_many(self.index, self.bounds, points, ways, clearance_m, out)
-        return out, floors.copy()
+        out = points.copy()
+        walk_many(
+            self.arrays,
+            self.index,
+            body.height_m,
+            body.step_on_m,
+            cells,
+            out,
+            ways,
+            clearance_m,
+        )
+        levels = np.where(cells >= 0, self.layered.floors[cells], heights)
+        return out, levels.astype(np.float64)
 
-    def potential(self, goal: tuple[float, float], layer: int, radius_m: float) -> Potential:
+    def potential(
+        self,
+        goal: tuple[float, float],
+        height: float,
+        radius_m: float,
+        body: Body = ADULT,
+    ) -> Potential:
         """The potential of a goal, kept for others that go there (the latest 256 MiB are)."""
-        points, floors = self.as_points([goal], [layer])
-        key = (float(points[0, 0]), float(points[0, 1]), int(floors[0]), float(radius_m))
+        points, cells = self.on_ground([goal], [height])
+        row = self.row_of(body)
+        key = (float(points[0, 0]), float(points[0, 1]), int(cells[0]), float(radius_m), row)
         found = self._potentials.get(key)
         if found is None:
-            found = Potential(self, (key[0], key[1]), key[2], key[3])
+            found = Potential(self, (key[0], key[1]), height, key[3], body=body)
             self._potentials[key] = found
             if len(self._potentials) > max(1, _POTENTIALS_BYTES // found.guide.nbytes):
                 self._potentials.popitem(last=False)
         else:
             self._potentials.move_to_end(key)
         return found
+
+
+def _centres(layered: LayeredArrays) -> NDArray[np.float64]:
+    """Centres of the cells, float64 (N, 2)."""
+    rows_columns = layered.places[:, 1:].astype(np.float64) + 0.5
+    return np.ascontiguousarray(rows_columns[:, ::-1] * layered.cell_m + (layered.x0, layered.y0))
+
+
+def _index(barriers: Barriers, bounds: tuple[float, float, float, float]) -> SegmentIndex:
+    x0, y0, x1, y1 = bounds
+    nx = max(1, math.ceil((x1 - x0) / _BUCKET_M))
+    ny = max(1, math.ceil((y1 - y0) / _BUCKET_M))
+    reach = _BUCKET_REACH_M + _BUCKET_M * math.sqrt(0.5)
+    starts = np.zeros(nx * ny + 1, dtype=np.int64)
+    place = (x0, y0, _BUCKET_M, nx, ny)
+    geometry.list_by_bucket(barriers, place, reach, starts, np.empty(0, dtype=np.int64))
+    starts[1:] = np.cumsum(starts[1:])
+    members = np.empty(starts[-1], dtype=np.int64)
+    geometry.list_by_bucket(barriers, place, reach, starts, members)
+    return SegmentIndex(barriers, starts, members, *place[:3], _BUCKET_REACH_M, nx, ny)

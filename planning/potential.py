@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from planning import _potential_kernels as kernels
+from planning.bodies import Body
 
 if TYPE_CHECKING:
     from planning.grid import LayeredGrid
@@ -30,53 +31,68 @@ class Wave(Enum):
 
 
 class Potential:
-    """Distances and directions to one goal for discs of one radius.
+    """Distances and directions to one goal for discs of one radius and kind of body.
 
     Cost O(cells log cells) once; a look-up is O(1).
+
+    Raises
+    ------
+    ValueError
+        Nobody can stand at the goal, nor within two cells of it.
     """
 
     def __init__(
         self,
         grid: LayeredGrid,
         goal: tuple[float, float],
-        layer: int,
+        height: float,
         radius_m: float,
         wave: Wave = Wave.SIGHT,
+        body: Body | None = None,
     ) -> None:
         self.grid = grid
         self.goal = goal
-        self.layer = layer
+        self.height = height
         self.radius_m = radius_m
-        shape = grid.arrays.clearance.shape
-        self.guide: NDArray[np.float32] = np.empty((*shape, 3), dtype=np.float32)
-        cells = shape[1] * shape[2]
-        x, y = goal if wave is Wave.SIGHT else grid.cell_centre(goal)
-        settled = np.empty(shape, dtype=np.uint8)
+        self.body = body or Body.adult()
+        row = grid.row_of(self.body)
+        cell = int(grid.on_ground([goal], [height])[1][0])
+        if cell < 0:
+            raise ValueError(f"nobody can stand at the goal {goal}, height {height:g} m")
+        cells = len(grid.arrays.layered.floors)
+        self.guide: NDArray[np.float32] = np.empty((cells, 3), dtype=np.float32)
+        x, y = goal if wave is Wave.SIGHT else grid.centres[cell].tolist()
+        settled = np.empty(cells, dtype=np.uint8)
         self.reached_cells = kernels.spread_wave(
             grid.arrays,
+            row,
+            self.body.step_on_m,
             radius_m,
-            layer,
+            cell,
             x,
             y,
             wave.value,
+            grid.centres,
             self.guide,
             settled,
             np.empty(8 * cells + 1, dtype=np.float64),
             np.empty(8 * cells + 1, dtype=np.int64),
         )
         if wave is Wave.SIGHT:
-            kernels.extend_into_obstacles(grid.arrays, self.guide, settled, layer)
+            kernels.extend_into_obstacles(
+                grid.arrays, self.body.step_on_m, grid.centres, self.guide, settled
+            )
 
-    def distance(self, positions: ArrayLike, layers: ArrayLike) -> NDArray[np.float64]:
+    def distance(self, positions: ArrayLike, heights: ArrayLike) -> NDArray[np.float64]:
         """Metres to the goal, float64 (N,), inf where no way leads, for (N, 2) and (N,)."""
-        points, floors = self.grid.as_points(positions, layers)
+        points, cells = self.grid.on_ground(positions, heights)
         out = np.empty(len(points))
-        kernels.distances(self.grid.arrays, self.guide, floors, points, out)
+        kernels.distances(self.guide, cells, points, out)
         return out
 
-    def direction(self, positions: ArrayLike, layers: ArrayLike) -> NDArray[np.float64]:
+    def direction(self, positions: ArrayLike, heights: ArrayLike) -> NDArray[np.float64]:
         """Unit vectors down the potential, float64 (N, 2); zero at the goal or without a way."""
-        points, floors = self.grid.as_points(positions, layers)
+        points, cells = self.grid.on_ground(positions, heights)
         out = np.empty((len(points), 2))
-        kernels.directions(self.grid.arrays, self.guide, floors, points, out)
+        kernels.directions(self.grid.arrays, self.guide, cells, points, out)
         return out

@@ -45,6 +45,10 @@ class PredictionModel:
     """Eq. (1) with the signs as printed. It extrapolates noise on real tracks: reference only."""
 
 
+_LIFT_M = 1.0
+"""Who is suddenly so much higher or lower has been put there: the past before does not count."""
+
+
 def _by_name(who: object) -> tuple[str, str]:
     return type(who).__name__, str(who)
 
@@ -66,7 +70,7 @@ class TrackHistory:
         self._free: list[int] = []
         self._ring = np.zeros((0, self._depth, 2))
         self._count = np.zeros(0, dtype=np.int64)
-        self._layer = np.zeros(0, dtype=np.int64)
+        self._height = np.zeros(0)
         self._newest = -1
         self._order = np.zeros(0, dtype=np.int64)
         self._lag = 2 * self.stride
@@ -90,12 +94,12 @@ class TrackHistory:
         return np.ascontiguousarray(self._ring[self._order, self._newest])
 
     @property
-    def layers(self) -> NDArray[np.int64]:
-        """Layers of everyone present, int64 (P,)."""
-        return self._layer[self._order]
+    def heights(self) -> NDArray[np.float64]:
+        """Heights of everyone's feet, float64 (P,), metres."""
+        return self._height[self._order]
 
     def observe(self, people: Mapping[object, tuple[float, ...]]) -> None:
-        """Add this tick's positions: id -> (x, y) or (x, y, layer). Who is absent has left.
+        """Add this tick's positions: id -> (x, y) or (x, y, z). Who is absent has left.
 
         Raises
         ------
@@ -111,7 +115,7 @@ class TrackHistory:
         broken = np.flatnonzero(~np.isfinite(rows).all(axis=1))
         if len(broken):
             who, place = listed[broken[0]], places[broken[0]]
-            raise ValueError(f"position of {who!r} must be finite (x, y[, layer]), got {place}")
+            raise ValueError(f"position of {who!r} must be finite (x, y[, z]), got {place}")
         for who in [who for who in self._rows if who not in people]:
             self._free.append(self._rows.pop(who))
         for who in listed:
@@ -120,9 +124,9 @@ class TrackHistory:
         self._rows = {who: self._rows[who] for who in listed}
         self._order = np.fromiter(self._rows.values(), dtype=np.int64, count=len(self._rows))
         self._newest = (self._newest + 1) % self._depth
-        moved = self._layer[self._order] != rows[:, 2]
-        self._count[self._order[moved]] = 0
-        self._layer[self._order] = rows[:, 2].astype(np.int64)
+        lifted = np.abs(self._height[self._order] - rows[:, 2]) > _LIFT_M
+        self._count[self._order[lifted]] = 0
+        self._height[self._order] = rows[:, 2]
         self._ring[self._order, self._newest] = rows[:, :2]
         self._count[self._order] = np.minimum(self._count[self._order] + 1, self._depth)
         self._calibrate()
@@ -153,7 +157,7 @@ class TrackHistory:
             grown = max(16, 2 * size)
             self._ring = np.concatenate([self._ring, np.zeros((grown - size, self._depth, 2))])
             self._count = np.concatenate([self._count, np.zeros(grown - size, dtype=np.int64)])
-            self._layer = np.concatenate([self._layer, np.zeros(grown - size, dtype=np.int64)])
+            self._height = np.concatenate([self._height, np.zeros(grown - size)])
             more = np.zeros((grown - size, self._lag, 2))
             self._expected = np.concatenate([self._expected, more])
             self._growth2 = np.concatenate([self._growth2, np.zeros(grown - size)])
@@ -194,12 +198,13 @@ class TrackHistory:
         people = len(self._order)
         shape = (people, slices + 1)
         prediction = Prediction(
-            np.zeros((*shape, 2)), np.zeros((*shape, 2)), np.zeros(shape), self.layers
+            np.zeros((*shape, 2)), np.zeros((*shape, 2)), np.zeros(shape), np.zeros(shape)
         )
         kernels.extrapolate(
+            grid.arrays,
             grid.index,
-            grid.bounds,
             self.positions,
+            self.heights,
             self.velocities(),
             slice_s,
             self.model.sigma_0_m,

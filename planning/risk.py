@@ -113,7 +113,7 @@ class RiskField:
     The bound at zero is taken of the sum, not of each person's term.
 
     Filling costs O(people × slices × cells within reach of one person). Memory is 16 bytes a
-    slice, layer and cell.
+    slice and cell.
     """
 
     def __init__(
@@ -122,9 +122,9 @@ class RiskField:
         self.grid = grid
         self.model = model
         self.tables = radial_tables(model, spread)
-        shape = grid.arrays.clearance.shape
-        self.fields: NDArray[np.float32] = np.zeros((slices + 1, *shape, 4), dtype=np.float32)
-        self._windows = np.full((slices + 1, 16, 5), -1, dtype=np.int64)
+        cells = len(grid.layered.floors)
+        self.fields: NDArray[np.float32] = np.zeros((slices + 1, cells, 4), dtype=np.float32)
+        self._windows = np.full((slices + 1, 16, 4), -1, dtype=np.int64)
 
     def fill(
         self,
@@ -142,9 +142,9 @@ class RiskField:
         Raises
         ------
         ValueError
-            Another number of slices, or a person on a layer that does not exist.
+            Another number of slices.
         """
-        people = len(prediction.layers)
+        people = len(prediction.means)
         places = np.ascontiguousarray(seekers, dtype=np.float64).reshape(-1, 3)
         last_wider = round(self.model.reaction_s / slice_s) if slice_s else len(self.fields)
         if prediction.sigmas.shape[1] != len(self.fields):
@@ -152,9 +152,8 @@ class RiskField:
                 f"the field has {len(self.fields)} slices, the prediction "
                 f"{prediction.sigmas.shape[1]}"
             )
-        self.grid.as_points(prediction.means[:, 0], prediction.layers)
         if people > self._windows.shape[1]:
-            grown = np.full((len(self.fields), 2 * people, 5), -1, dtype=np.int64)
+            grown = np.full((len(self.fields), 2 * people, 4), -1, dtype=np.int64)
             grown[:, : self._windows.shape[1]] = self._windows
             self._windows = grown
 
@@ -181,17 +180,17 @@ class RiskField:
         self,
         slice_index: int,
         positions: ArrayLike,
-        layers: ArrayLike,
+        heights: ArrayLike,
         velocities: ArrayLike,
         closing_weight: float,
     ) -> NDArray[np.float64]:
-        """Risk of N configurations, float64 (N,); positions and velocities (N, 2), layers (N,)."""
+        """Risk of N configurations, float64 (N,); positions and velocities (N, 2), heights (N,)."""
         if slice_index not in range(len(self.fields)):
             raise ValueError(f"slices are 0..{len(self.fields) - 1}, got {slice_index}")
-        points, floors = self.grid.as_points(positions, layers)
+        points, cells = self.grid.on_ground(positions, heights)
         v = np.ascontiguousarray(velocities, dtype=np.float64).reshape(-1, 2)
         out = np.empty(len(points))
         kernels.risk_many(
-            self.grid.arrays, self.fields, slice_index, floors, points, v, closing_weight, out
+            self.grid.arrays, self.fields, slice_index, cells, points, v, closing_weight, out
         )
         return out

@@ -117,7 +117,7 @@ class Polygon(_Part):
     ramp: Ramp | None = None
     """How its top rises; level without."""
     kind: Literal["building", "floor", "wall", "furniture", "plant", "water"] = "building"
-    """What it is drawn as. Plants and water carry nobody."""
+    """What it is drawn as. Buildings and floors can be stood on; nobody climbs the rest."""
     name: Name = ""
 
     def top_at(self, x: float, y: float) -> float:
@@ -134,7 +134,7 @@ class Polygon(_Part):
     @property
     def carries(self) -> bool:
         """Whether one can stand on top."""
-        return self.kind not in ("plant", "water")
+        return self.kind in ("building", "floor")
 
 
 class Wall(_Line):

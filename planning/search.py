@@ -80,6 +80,7 @@ def make_workspace(max_expansions: int, branching: int) -> Workspace:
         np.zeros(nodes, dtype=np.int64),
         np.zeros(nodes, dtype=np.int64),
         np.zeros(nodes, dtype=np.int64),
+        np.zeros(nodes, dtype=np.int64),
         np.zeros(nodes + 1),
         np.zeros(nodes + 1, dtype=np.int64),
         np.zeros(table, dtype=np.int64),
@@ -93,12 +94,12 @@ def make_workspace(max_expansions: int, branching: int) -> Workspace:
 def make_reservations(
     grid: LayeredGrid,
     paths: NDArray[np.float64],
-    layers: NDArray[np.int64],
+    heights: NDArray[np.float64],
     radii_m: NDArray[np.float64],
     ranks: NDArray[np.int64],
     fastest_m: float,
 ) -> Reservations:
-    """Room for the planned ways of A actors, (A, K, 2); `index_paths` fills its index.
+    """Room for the planned ways of A actors, (A, K, 2) and (A, K); `index_paths` fills its index.
 
     `fastest_m` is how far anyone can get from one slice, or tick, to the next: buckets are so
     wide that whoever can be met in two slices is in one of the nine around.
@@ -111,7 +112,7 @@ def make_reservations(
     actors, slices = paths.shape[:2]
     return Reservations(
         paths,
-        layers,
+        heights,
         radii_m,
         ranks,
         np.zeros((slices, nx * ny + 1), dtype=np.int64),
@@ -155,15 +156,15 @@ def uncertain_bfp(
     Raises
     ------
     ValueError
-        The field's number of slices is odd, the step is not positive, or the start is not finite
-        or on a layer that does not exist.
+        The field's number of slices is odd, the step is not positive, or the start is not finite.
     """
     slices = len(field.fields) - 1
     if slices % SUB or slices < SUB:
         raise ValueError(f"the risk field must hold a multiple of {SUB} slices, it holds {slices}")
     if not step_s > 0.0:
         raise ValueError(f"step_s must be positive, got {step_s}")
-    field.grid.as_points([(task.x, task.y)], [task.layer])
+    if not (math.isfinite(task.x) and math.isfinite(task.y)):
+        raise ValueError(f"the start must be finite, got ({task.x}, {task.y})")
     world = World(field.grid.arrays, field.fields, reservations, step_s)
     path = np.zeros((slices + 1, 2))
     workspace = make_workspace(task.max_expansions, len(moves.speeds) + 1)

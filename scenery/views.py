@@ -146,7 +146,7 @@ def _marks(scene: Scene, grid: LayeredGrid, layer: int) -> tuple[Mark, ...]:
     return tuple(
         Mark(name, part.position, is_spawn)
         for name, part, is_spawn in (*spawns, *places)
-        if grid.layer_near(part.position, part.z_m) == layer
+        if grid.layer_at(part.position, part.z_m) == layer
     )
 
 

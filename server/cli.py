@@ -80,7 +80,7 @@ def _help(field: FieldInfo, unit: str) -> str:
     least, most = _bound(field, "ge", "gt"), _bound(field, "le", "lt")
     if least is not None and most is not None:
         facts.append(f"{least:.10g} to {most:.10g}")
-    if field.default not in (None, ""):
+    if str(field.default) not in ("None", ""):
         facts.append(f"default {field.default}")
     text = field.description or ""
     return (f"{text} [{', '.join(facts)}]" if facts else text).replace("%", "%%")

@@ -7,7 +7,7 @@ the defaults here. Each field carries its group, unit and range; `server.cli` ma
 from pathlib import Path
 from typing import Any, Literal, Self
 
-from pydantic import Field, JsonValue, model_validator
+from pydantic import Field, JsonValue, SecretStr, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 ENV_PREFIX = "ESPLANADE_"
@@ -97,6 +97,12 @@ class ServerSettings(BaseSettings):
     drop_seconds: float = _option(
         5.0, LIMITS, "a client that stays slow for this time is dropped", "s", gt=0.0, le=600.0
     )
+
+    operator_key: SecretStr = _option(
+        SecretStr(""), LIMITS,
+        "who says this key may open and close doors; better set in the environment than here; "
+        "empty: nobody",
+    )  # fmt: skip
 
     log_format: Literal["console", "json"] = _option("console", LOGS, "lines for people or JSON")
     log_level: Literal["debug", "info", "warning", "error"] = _option(

@@ -50,7 +50,7 @@ export const twoFloors: SceneData = {
       kind: "floor",
       ramp: { start: [15, 0], end: [15, 10], start_height_m: 0 },
     }),
-    box([2, 10], [3, 16], { kind: "furniture", height_m: 0.4 }),
+    box([2, 10], [3, 16], { kind: "floor", height_m: 0.4 }),
   ],
   walls: [wall([10, 20], [20, 20], { offset_m: 3, height_m: 1.1 })],
   stairs: [{ start: [4.9, 13], end: [10, 13], width_m: 2, bottom_m: 0, top_m: 3, steps: 17 }],

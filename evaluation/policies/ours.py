@@ -74,7 +74,7 @@ class Esplanade(Policy):
             for every in [max(1, round(DRAWN_EVERY_S / self._running.plan.slice_s))]
             for future in self._running.predicted_near(self._state.position, 0, DRAWN_WITHIN_M)
         ]
-        return Thoughts(self._state.way, np.concatenate([np.zeros((0, 3)), *circles]))
+        return Thoughts(self._state.way[:, :2], np.concatenate([np.zeros((0, 3)), *circles]))
 
     @property
     def _running(self) -> Navigator:

@@ -12,7 +12,18 @@ from evaluation.settings import DEFAULTS, SettingError, check
 from evaluation.studies.measures import MEASURES, interval, pooled, resampled
 from evaluation.studies.variants import Tables, Variant
 
-BODY: Final = frozenset({"radius_m", "speed_mps", "max_speed_mps", "goal_tolerance_m"})
+BODY: Final = frozenset(
+    {
+        "radius_m",
+        "speed_mps",
+        "max_speed_mps",
+        "goal_tolerance_m",
+        "height_m",
+        "step_on_m",
+        "leg_length_m",
+        "edge_cells",
+    }
+)
 """Parameters that say what an actor is, not how it behaves."""
 TEMPER: Final = tuple(name for name in ActorParameters.model_fields if name not in BODY)
 EACH_SIDE: Final = 2

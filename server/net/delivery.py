@@ -1,18 +1,16 @@
 """After a tick: everyone is told what they are to know, in one pass that never waits."""
 
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from actors import Explanation
 from protocol import Reason
-from protocol.messages import Census, Circle, Plan
+from protocol.messages import Census, Circle, Doors, Plan
 from server.net import frames
 from server.net.outbox import Outbox
 from server.net.session import Session
-from server.world.floors import heights_at
-from server.world.state import Floats
 from server.world.world import Sight, World
 
 PLANS_PER_SECOND: Final = 5
@@ -28,7 +26,11 @@ class Delivery:
         self._census_period = tick_rate
 
     def deliver(self, sight: Sight, now: float) -> None:
-        """Changes of view first, then snapshots, then what is only for some."""
+        """Doors and changes of view first, then snapshots, then what is only for some."""
+        if sight.doors:
+            doors = frames.message(Doors(doors=sight.doors))
+            for session in self._sessions.values():
+                session.outbox.post(doors)
         self._changes(sight)
         self._snapshots(sight, now)
         self._plans()
@@ -93,17 +95,13 @@ def plan(tick: int, actor: int, explanation: Explanation) -> Plan:
         id=actor,
         reason=Reason(explanation.reason),
         behaviour=explanation.behaviour,
-        goal=None if goal is None else _with_heights(np.array([goal]))[0],
-        path=_with_heights(explanation.path),
+        goal=None if goal is None else tuple(np.round(goal, 3).tolist()),
+        path=np.round(explanation.path, 3).tolist(),
         people=[
-            [Circle(x=x, y=y, z=z, radius=radius) for x, y, z, radius in _with_heights(circles)]
+            [
+                Circle(x=x, y=y, z=z, radius=radius)
+                for x, y, z, radius in np.round(circles, 3).tolist()
+            ]
             for circles in explanation.people
         ],
     )
-
-
-def _with_heights(places: Floats) -> Any:
-    """Rows that begin with x, y and layer, with the floor's height in place of the layer."""
-    placed = places.copy()
-    placed[:, 2] = heights_at(places[:, :2], places[:, 2].astype(np.int64))
-    return np.round(placed, 3).tolist()

@@ -7,7 +7,6 @@ from concurrent.futures import Executor
 import structlog
 
 from protocol.messages import WalkTo
-from server.world.floors import point_at
 from server.world.ways import Way
 from server.world.world import World
 
@@ -50,7 +49,7 @@ class Guidance:
         avatar_id, wish = next(iter(self._wishes.items()))
         loop = asyncio.get_running_loop()
         start = loop.time()
-        goal = point_at(wish.x, wish.y, wish.z)
+        goal = (wish.x, wish.y, wish.z)
         try:
             find = self._world.way_finder(avatar_id, goal)
             way = await loop.run_in_executor(self._thread, find)

@@ -1,21 +1,31 @@
 """Where sessions and the world meet: who sits where, what they want, what they say."""
 
 import asyncio
+import secrets
 from collections.abc import Callable, Iterable
 from typing import Final
 
 import structlog
 
 from protocol import VERSION, ByeCode, CloseCode, ErrorCode, ProtocolError
-from protocol.messages import Bye, Chat, Hello, Move, WalkTo, Welcome
+from protocol.messages import Bye, Chat, Hello, Move, SetDoor, WalkTo, Welcome
 from server.metrics import Metrics
 from server.net import frames
 from server.net.guidance import Guidance
 from server.net.seats import Seat, Seats
 from server.net.session import Session
 from server.settings import ServerSettings
-from server.world.floors import point_at
-from server.world.inputs import Attach, Detach, Follow, Input, Join, Leave, Movement, Steer
+from server.world.inputs import (
+    Attach,
+    Detach,
+    Follow,
+    Input,
+    Join,
+    Leave,
+    MoveDoor,
+    Movement,
+    Steer,
+)
 from server.world.ways import Way
 from server.world.world import Joined, World
 
@@ -53,6 +63,7 @@ class Hub:
         self._joining: dict[int, tuple[Session, Hello]] = {}
         self._comings: list[Attach | Detach | Leave] = []
         self._movements: dict[int, Movement] = {}
+        self._doors: dict[str, MoveDoor] = {}
         metrics.gauge("clients", "People connected", lambda: len(self.sessions))
         metrics.gauge("clients_away", "Avatars that wait for a lost person", self._vacant)
         metrics.gauge("joining", "People at the door", lambda: len(self._joining))
@@ -69,6 +80,7 @@ class Hub:
         ProtocolError
             The world is full.
         """
+        session.is_operator = self._knows_key(hello.operator)
         seat = self._seats.find(hello.resume) if hello.resume else None
         if seat is not None:
             self._resume(seat, session, hello)
@@ -91,7 +103,7 @@ class Hub:
         if isinstance(wish, Move):
             self._want(Steer(avatar_id, wish.seq, wish.direction, wish.speed))
             return
-        straight = self._world.straight_way(avatar_id, point_at(wish.x, wish.y, wish.z))
+        straight = self._world.straight_way(avatar_id, (wish.x, wish.y, wish.z))
         if straight is not None:
             self._want(Follow(avatar_id, wish.seq, straight))
         else:
@@ -132,6 +144,22 @@ class Hub:
             actor_id = None
         session.watching = actor_id
 
+    def set_door(self, session: Session, wish: SetDoor) -> None:
+        """Open or close a door in the next tick, if the session may; the latest wish wins."""
+        if not session.is_operator:
+            fault = ErrorCode.FORBIDDEN, "only operators open and close doors"
+        elif wish.name not in self._world.doors.states():
+            fault = ErrorCode.INVALID, f"set_door: the scene has no door {wish.name!r}"
+        else:
+            self._doors[wish.name] = MoveDoor(wish.name, wish.open)
+            log.info("door", name=wish.name, open=wish.open, id=session.avatar_id)
+            return
+        session.tell(ProtocolError(*fault, None))
+
+    def _knows_key(self, key: str | None) -> bool:
+        known = self._settings.operator_key.get_secret_value()
+        return bool(known and key) and secrets.compare_digest(known.encode(), (key or "").encode())
+
     def depart(self, session: Session, comes_back: bool) -> None:
         """The session has ended; its avatar waits a while if the person may come back."""
         self._joining.pop(session.ticket, None)
@@ -157,10 +185,10 @@ class Hub:
         inputs: list[Input] = [*self._comings]
         for ticket in list(self._joining)[:MAX_JOINS_PER_TICK]:
             hello = self._joining[ticket][1]
-            at = point_at(*hello.at) if hello.at else None
-            inputs.append(Join(ticket, hello.name, at))
+            inputs.append(Join(ticket, hello.name, hello.at))
         inputs.extend(self._movements.values())
-        self._comings, self._movements = [], {}
+        inputs.extend(self._doors.values())
+        self._comings, self._movements, self._doors = [], {}, {}
         return inputs
 
     def welcome(self, inputs: Iterable[Input], joined: Joined) -> None:
@@ -214,8 +242,8 @@ class Hub:
             radius=world.rules.person_radius_m,
             max_speed=world.rules.person_max_speed_mps,
             origin=world.origin_m,
-            doors={door.name: door.open for door in world.scene.doors},
-            operator=False,
+            doors=world.doors.states(),
+            operator=session.is_operator,
         )
         session.outbox.welcome(self._welcomes.frame(welcome))
         self._metrics.joins.labels("resumed" if resumed else "new").inc()

@@ -53,6 +53,7 @@ class Session:
         """The seat's resume token. Never logged."""
         self.name = ""
         self.watching: int | None = None
+        self.is_operator = False
         self._connection = connection
         self._hub = hub
         self._metrics = metrics
@@ -145,8 +146,7 @@ class Session:
             case Watch():
                 self._hub.watch(self, message.id)
             case SetDoor():
-                text = "only operators open and close doors"
-                self.tell(ProtocolError(ErrorCode.FORBIDDEN, text, None))
+                self._hub.set_door(self, message)
             case Hello():
                 raise ProtocolError(ErrorCode.INVALID, "hello comes only once", CloseCode.INVALID)
 

@@ -12,7 +12,7 @@ class Join:
     ticket: int
     name: str
     at: Point | None
-    """Wished place x, y (metres) and layer; None for a spawn point."""
+    """Wished place x, y and height, metres; None for a spawn point."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,5 +55,13 @@ class Follow:
     way: Way
 
 
+@dataclass(frozen=True, slots=True)
+class MoveDoor:
+    """Open or close a door, once nobody stands in its way."""
+
+    name: str
+    is_open: bool
+
+
 Movement = Steer | Follow
-Input = Join | Attach | Detach | Leave | Steer | Follow
+Input = Join | Attach | Detach | Leave | Steer | Follow | MoveDoor

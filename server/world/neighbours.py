@@ -6,8 +6,10 @@ from scipy.spatial import cKDTree
 
 from server.world.state import Floats, Slots, State
 
-LAYER_GAP_M = 10_000.0
-"""Layers lie this far apart in the tree, so that nobody is near through a floor."""
+STOREY_WEIGHT = 3.0
+"""A metre up or down counts so many metres: who is on another floor is seen, but later."""
+OVERLAP_M = 1.8
+"""Whose feet are further apart in height than that cannot touch."""
 
 
 class Neighbours:
@@ -18,7 +20,8 @@ class Neighbours:
         self._slots = state.live()
         self._points = np.empty((state.capacity, 3))
         self._points[:, :2] = state.positions
-        self._points[:, 2] = state.layers * LAYER_GAP_M
+        self._points[:, 2] = state.heights * STOREY_WEIGHT
+        self._heights = state.heights.copy()
         self._tree = cKDTree(self._points[self._slots], balanced_tree=False, compact_nodes=False)
 
     def nearest(self, slots: Slots, count: int, within_m: float) -> tuple[Floats, Slots]:
@@ -35,11 +38,15 @@ class Neighbours:
         return distances, np.append(self._slots, self._capacity)[found]
 
     def within(self, slots: Slots, reach_m: float) -> tuple[Slots, Slots]:
-        """All pairs (avatar of N, other) not further apart than `reach_m`: int (M,), int (M,)."""
-        found = self._tree.query_ball_point(self._points[slots], reach_m, return_sorted=True)
+        """All pairs (avatar of N, other) on one level and not further apart than `reach_m` on the
+        map: int (M,), int (M,)."""
+        radius = float(np.hypot(reach_m, OVERLAP_M * STOREY_WEIGHT))
+        found = self._tree.query_ball_point(self._points[slots], radius, return_sorted=True)
         counts = [len(row) for row in found]
         others = np.fromiter((i for row in found for i in row), dtype=np.int64, count=sum(counts))
         first: npt.NDArray[np.int64] = np.repeat(slots, counts)
         second = self._slots[others]
-        apart = first != second
-        return first[apart], second[apart]
+        apart_m = np.hypot(*(self._points[first, :2] - self._points[second, :2]).T)
+        level = np.abs(self._heights[first] - self._heights[second]) < OVERLAP_M
+        pairs = (first != second) & level & (apart_m <= reach_m)
+        return first[pairs], second[pairs]

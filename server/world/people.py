@@ -63,9 +63,10 @@ class People:
         if not len(moving):
             return
         before, wanted = state.positions[moving], self._velocities[moving]
-        state.positions[moving], state.layers[moving] = self._grid.walk(
-            before, state.layers[moving], wanted * self._tick_s, self._rules.person_clearance_m
+        state.positions[moving], state.heights[moving] = self._grid.walk(
+            before, state.heights[moving], wanted * self._tick_s, self._rules.person_clearance_m
         )
+        state.layers[moving] = self._grid.layers_at(state.positions[moving], state.heights[moving])
         state.headings[moving] = np.arctan2(wanted[:, 1], wanted[:, 0])
         moved_m = state.positions[moving] - before
         state.speeds[moving] = np.hypot(moved_m[:, 0], moved_m[:, 1]) / self._tick_s

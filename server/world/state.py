@@ -60,7 +60,7 @@ class State:
         return np.flatnonzero(self.alive & (self.kinds == kind))
 
     def add(
-        self, kind: int, name: str, position: tuple[float, float], layer: int, radius_m: float
+        self, kind: int, name: str, place: tuple[float, float, float], layer: int, radius_m: float
     ) -> int:
         """The slot of a new avatar.
 
@@ -76,8 +76,8 @@ class State:
         self.ids[slot] = self._next_id
         self.kinds[slot] = kind
         self.layers[slot] = layer
-        self.positions[slot] = self.before[slot] = position
-        self.heights[slot] = 0.0
+        self.positions[slot] = self.before[slot] = place[:2]
+        self.heights[slot] = place[2]
         self.headings[slot] = self.speeds[slot] = 0.0
         self.reasons[slot] = 0
         self.radii[slot] = radius_m

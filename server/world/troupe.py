@@ -38,6 +38,10 @@ class Troupe:
         """The next tick of all actors. Heavy: touches nothing but the cast."""
         return self._cast.tick(people) if len(self._cast) else {}
 
+    def ways_changed(self) -> None:
+        """Something opened or closed: find the ways to goals anew."""
+        self._cast.ways_changed()
+
     def place(self, states: ActorStates) -> None:
         """Move the avatars; whoever is new comes into the world. Without states all stand."""
         if not states:
@@ -51,6 +55,7 @@ class Troupe:
         velocities = np.array([actor.velocity for actor in actors])
         state.positions[slots] = [actor.position for actor in actors]
         state.layers[slots] = [actor.layer for actor in actors]
+        state.heights[slots] = [actor.z_m for actor in actors]
         state.headings[slots] = [actor.heading for actor in actors]
         state.speeds[slots] = np.hypot(velocities[:, 0], velocities[:, 1])
         state.reasons[slots] = [actor.reason for actor in actors]
@@ -61,7 +66,8 @@ class Troupe:
 
     def _add(self, cast_id: Hashable, actor: ActorState) -> None:
         body = self._bodies[cast_id]
-        slot = self._state.add(ACTOR, body.name, actor.position, actor.layer, body.radius_m)
+        place = (*actor.position, actor.z_m)
+        slot = self._state.add(ACTOR, body.name, place, actor.layer, body.radius_m)
         avatar_id = int(self._state.ids[slot])
         self._avatars[cast_id] = avatar_id
         self._cast_ids[avatar_id] = cast_id

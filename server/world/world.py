@@ -9,7 +9,8 @@ import numpy as np
 from actors import Cast, Explanation
 from planning import LayeredGrid, Scene
 from server.world.contacts import Contacts
-from server.world.inputs import Attach, Detach, Follow, Input, Join, Leave, Steer
+from server.world.doors import Doors
+from server.world.inputs import Attach, Detach, Follow, Input, Join, Leave, MoveDoor, Steer
 from server.world.interest import Changes, Interest
 from server.world.neighbours import Neighbours
 from server.world.people import People
@@ -29,6 +30,8 @@ Joined = list[tuple[int, int]]
 class Sight:
     """What the viewers of a tick are to be told, in this order."""
 
+    doors: dict[str, bool]
+    """Doors that opened or closed."""
     changes: Changes
     snapshots: Snapshots
 
@@ -64,6 +67,8 @@ class World:
         self.contacts = Contacts()
         self.times = StageTimes(clock)
         self._grid = grid
+        self.doors = Doors(self.state, grid)
+        self._moved_doors: dict[str, bool] = {}
         self._people = People(self.state, grid, rules, tick_s)
         self._troupe = Troupe(self.state, cast, bodies)
         self._interest = Interest(self.state, rules)
@@ -84,8 +89,13 @@ class World:
             for item in inputs:
                 if isinstance(item, Join):
                     joined.append((item.ticket, self._join(item)))
+                elif isinstance(item, MoveDoor):
+                    self.doors.want(item.name, item.is_open)
                 elif item.id in self.state:
                     self._apply(item, self.state.slot(item.id))
+            self._moved_doors = self.doors.update()
+            if self._moved_doors:
+                self._troupe.ways_changed()
         with self.times.stage("people"):
             self._people.move()
             self._observed = self._observe()
@@ -106,7 +116,7 @@ class World:
             changes = self._interest.update(neighbours, self.tick)
         with self.times.stage("encode"):
             snapshots = self._views.encode(self._interest, self.tick)
-        return Sight(changes, snapshots)
+        return Sight(self._moved_doors, changes, snapshots)
 
     def wrote(self, snapshots: Snapshots, places: list[int]) -> None:
         """The snapshots at these places were sent; the next ones build on them."""
@@ -141,8 +151,6 @@ class World:
 
     def straight_way(self, avatar_id: int, goal: Point) -> Way | None:
         """The straight way from where that avatar is, if nothing stands between; quick."""
-        if goal[2] >= self._grid.layers:
-            return None
         here = self._where(avatar_id)
         return straight_way(self._grid, here, goal, self.rules.person_clearance_m)
 
@@ -178,14 +186,15 @@ class World:
     def _where(self, avatar_id: int) -> Point:
         slot = self.state.slot(avatar_id)
         x, y = self.state.positions[slot].tolist()
-        return x, y, int(self.state.layers[slot])
+        return x, y, float(self.state.heights[slot])
 
     # --- inputs -------------------------------------------------------------------------------
 
     def _join(self, join: Join) -> int:
-        position, layer = self._spawning.place(join.at)
+        place = self._spawning.place(join.at)
+        layer = self._grid.layer_at(place[:2], place[2])
         radius_m = self.rules.person_radius_m
-        slot = self.state.add(PERSON, join.name, position, layer, radius_m)
+        slot = self.state.add(PERSON, join.name, place, layer, radius_m)
         self._people.stop(slot)
         self._attach(slot)
         self.people_seen += 1
@@ -219,7 +228,7 @@ class World:
         places = zip(
             state.positions[people, 0].tolist(),
             state.positions[people, 1].tolist(),
-            state.layers[people].tolist(),
+            state.heights[people].tolist(),
             strict=True,
         )
         return dict(zip(state.ids[people].tolist(), places, strict=True))

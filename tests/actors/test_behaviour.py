@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 
 from actors import GoTo, Guide, Idle, Patrol, View, Wander
-from planning import LayeredGrid, Scene
+from planning import LayeredGrid, Place, Scene
 from tests.actors.worlds import plaza
+from tests.planning.storeys import storeyed
+from tests.planning.worlds import UPPER_M
 
 SCENE = plaza()
 GRID = LayeredGrid.from_scene(SCENE)
-GATE, FOUNTAIN, STAGE = ((*place.position, 0) for place in SCENE.places)
+GATE, FOUNTAIN, STAGE = ((*place.position, place.z_m) for place in SCENE.places)
 
 
 def seeing(
@@ -20,13 +22,14 @@ def seeing(
     position: tuple[float, float] = (6.0, 6.0),
     arrived: bool = False,
     stuck: bool = False,
-    people: Mapping[str, tuple[float, float, int]] | None = None,
+    people: Mapping[str, tuple[float, float, float]] | None = None,
     scene: Scene = SCENE,
     grid: LayeredGrid = GRID,
     seed: int = 0,
+    z_m: float = 0.0,
 ) -> View:
     rng = np.random.default_rng(seed)
-    return View(time_s, position, 0, arrived, stuck, people or {}, scene, grid, 0.25, rng)
+    return View(time_s, position, z_m, arrived, stuck, people or {}, scene, grid, 0.25, rng)
 
 
 def test_idle_wants_nothing() -> None:
@@ -36,7 +39,7 @@ def test_idle_wants_nothing() -> None:
 
 def test_go_to_wants_one_place_or_point() -> None:
     assert GoTo("gate").update(seeing()) == GATE
-    assert GoTo((3.0, 4.0, 0)).update(seeing(arrived=True)) == (3.0, 4.0, 0)
+    assert GoTo((3.0, 4.0, 3.3)).update(seeing(arrived=True)) == (3.0, 4.0, 3.3)
     assert GoTo("gate").targets() == ("gate",)
     with pytest.raises(KeyError, match=r"no place named 'moon'.*gate, fountain, stage"):
         GoTo("moon").update(seeing())
@@ -108,8 +111,8 @@ def test_a_guides_distances_are_in_order() -> None:
         Guide(["gate"], join_m=5.0, lag_m=4.0)
 
 
-def near(distance_m: float, layer: int = 0) -> dict[str, tuple[float, float, int]]:
-    return {"ann": (6.0 + distance_m, 6.0, layer)}
+def near(distance_m: float, z_m: float = 0.0) -> dict[str, tuple[float, float, float]]:
+    return {"ann": (6.0 + distance_m, 6.0, z_m)}
 
 
 def joined() -> Guide:
@@ -156,9 +159,43 @@ def test_a_guide_forgets_who_has_left() -> None:
     assert not guide.waiting
 
 
-def test_a_follower_on_another_layer_is_far_behind() -> None:
+def test_a_follower_on_another_floor_is_far_behind() -> None:
     guide = joined()
-    assert guide.update(seeing(4.0, people=near(1.0, layer=1))) is None
+    assert guide.update(seeing(4.0, people=near(1.0, z_m=3.3))) is None
+    assert guide.update(seeing(5.0, people=near(1.0, z_m=0.2))) == GATE
+
+
+def test_who_is_on_another_floor_does_not_follow() -> None:
+    guide = Guide(["gate"], join_after_s=2.0)
+    for time_s in (0.0, 1.0, 2.0, 3.0):
+        guide.update(seeing(time_s, people=near(1.0, z_m=3.3)))
+    assert guide.followers == frozenset()
+    for time_s in (4.0, 5.0, 6.0):
+        guide.update(seeing(time_s, people=near(1.0, z_m=3.3), z_m=3.3))
+    assert guide.followers == {"ann"}
+
+
+def test_a_place_straight_above_is_somewhere_to_wander_to() -> None:
+    places = tuple(
+        Place(name=name, position=(12.0, 6.0), z_m=z_m)
+        for name, z_m in (("below", 0.0), ("above", UPPER_M))
+    )
+    scene = storeyed().model_copy(update={"places": places})
+    grid = LayeredGrid.from_scene(scene)
+    for here, there in ((0.0, UPPER_M), (UPPER_M, 0.0)):
+        view = seeing(position=(12.0, 6.0), z_m=here, scene=scene, grid=grid)
+        assert Wander().update(view) == (12.0, 6.0, there)
+
+
+def test_wandering_anywhere_keeps_to_the_floor() -> None:
+    scene = storeyed()
+    grid = LayeredGrid.from_scene(scene)
+    for seed in range(12):
+        view = seeing(position=(12.0, 2.0), z_m=UPPER_M, scene=scene, grid=grid, seed=seed)
+        x, y, z_m = Wander().update(view)
+        assert abs(grid.floor_at((x, y), z_m) - UPPER_M) < 1e-3
+        assert x > 8.2
+        assert 0.0 <= y <= 12.0
 
 
 def test_a_guide_leads_on_along_its_tour() -> None:

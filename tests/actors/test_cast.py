@@ -90,8 +90,8 @@ def test_an_explanation_says_what_is_done_and_why(cast) -> None:
     assert told.path.shape[1] == 4
     assert (np.diff(told.path[:, 3]) > 0.0).all()
     assert len(told.people) == 1
-    x, y, layer, radius = told.people[0][0]
-    assert (x, layer) == (pytest.approx(6.0), 0.0)
+    x, y, z_m, radius = told.people[0][0]
+    assert (x, z_m) == (pytest.approx(6.0), 0.0)
     assert y == pytest.approx(5.0 - 1.2 * 0.9, abs=0.01)
     assert radius == pytest.approx(2.0 * 0.05, abs=0.05)
 

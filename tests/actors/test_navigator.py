@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from actors import ActorParameters, Navigator, Reason
-from planning import LayeredGrid, Scene
+from planning import LayeredGrid, Scene, Spawn
 from tests.actors.worlds import BODY, TICK_S, along, block, holds, navigator, run
 
 OPEN = Scene.open_space((0.0, 0.0, 12.0, 12.0))
@@ -34,7 +34,7 @@ def test_others_measure_through_these_names() -> None:
     assert state.position == pytest.approx((2.01, 2.0), abs=0.02)
     assert state.velocity == pytest.approx((0.2, 0.0), abs=0.15)
     assert abs(state.heading) < 1.0
-    assert (state.layer, state.goal) == (0, (4.0, 2.0, 0))
+    assert (state.layer, state.z_m, state.goal) == (0, 0.0, (4.0, 2.0, 0.0))
     assert state.reason is Reason.MOVING
     assert state.path.shape == (nav.plan.slices + 1, 4)
     assert state.path[0] == pytest.approx([2.0, 2.0, 0.0, 0.0])
@@ -77,9 +77,10 @@ def test_a_goal_may_change_and_be_taken_away() -> None:
     nav.close()
 
 
-def test_a_goal_inside_a_building_is_moved_beside_it() -> None:
+@pytest.mark.parametrize("spawns", [(), (Spawn(position=(1.0, 1.0)),)], ids=["roof", "no roof"])
+def test_a_goal_inside_a_building_is_moved_beside_it(spawns) -> None:
     scene = Scene.open_space((0.0, 0.0, 12.0, 12.0), polygons=[block(7.0, 4.0, 9.0, 8.0)])
-    nav = navigator(scene)
+    nav = navigator(scene.model_copy(update={"spawns": spawns}))
     nav.add_actor("a", (2.0, 6.0), (7.4, 6.0), BODY)
     record = run(nav, 6.0)
     nav.close()
@@ -133,7 +134,8 @@ def test_predicted_people_are_those_near_and_their_circles_grow() -> None:
     for k in range(10):
         nav.observe({"near": (5.0 + 0.1 * k, 6.0), "far": (11.0, 11.0)})
         nav.tick()
-    circles = nav.predicted_near((6.0, 6.0), 0, 3.0)
+    circles = nav.predicted_near((6.0, 6.0), 0.0, 3.0)
+    assert nav.predicted_near((6.0, 6.0), 3.3, 3.0) == []
     nav.close()
     assert len(circles) == 1
     assert circles[0].shape == (nav.plan.slices + 1, 4)
@@ -154,17 +156,17 @@ def snapshot(nav):
         (ValueError, lambda nav: nav.add_actor("b", (13.0, 3.0))),
         (ValueError, lambda nav: nav.add_actor("b", (3.0, 3.0), (3.0, math.inf))),
         (ValueError, lambda nav: nav.add_actor("b", (3.0, 3.0), (3.0, -1.0))),
-        (ValueError, lambda nav: nav.add_actor("b", (3.0, 3.0), layer=1)),
-        (ValueError, lambda nav: nav.add_actor("b", (3.0, 3.0), (4.0, 4.0), goal_layer=1)),
+        (ValueError, lambda nav: nav.add_actor("b", (3.0, 3.0), z_m=math.nan)),
+        (ValueError, lambda nav: nav.add_actor("b", (3.0, 3.0), (4.0, 4.0), goal_z_m=math.inf)),
         (ValueError, lambda nav: nav.set_goal("a", (math.nan, 0.0))),
         (ValueError, lambda nav: nav.set_goal("a", (-1.0, 0.0))),
-        (ValueError, lambda nav: nav.set_goal("a", (1.0, 1.0), layer=2)),
+        (ValueError, lambda nav: nav.set_goal("a", (1.0, 1.0), z_m=math.nan)),
         (ValueError, lambda nav: nav.place_actor("a", (99.0, 1.0))),
         (ValueError, lambda nav: nav.place_actor("a", (1.0, 1.0), velocity=(math.nan, 0.0))),
         (ValueError, lambda nav: nav.observe({"p": (math.nan, 1.0)})),
         (ValueError, lambda nav: nav.observe({"q": (1.0, 1.0), "p": (1.0,)})),
-        (ValueError, lambda nav: nav.observe({"p": (1.0, 1.0, 7)})),
-        (ValueError, lambda nav: nav.observe({"p": (1.0, 1.0, -1)})),
+        (ValueError, lambda nav: nav.observe({"p": (1.0, 1.0, math.nan)})),
+        (ValueError, lambda nav: nav.observe({"p": (1.0, 1.0, -math.inf)})),
         (KeyError, lambda nav: nav.set_goal("x", (1.0, 1.0))),
         (KeyError, lambda nav: nav.set_parameters("x", BODY)),
         (KeyError, lambda nav: nav.remove_actor("x")),

@@ -17,7 +17,7 @@ TICK_S = 0.1
 BODY = ActorParameters(radius_m=0.25, speed_mps=1.3, max_speed_mps=1.7, max_acceleration_mps2=2.0)
 
 Point = tuple[float, float]
-Walk = Callable[[float], Point]
+Walk = Callable[[float], tuple[float, ...]]
 
 
 def holds(examples: int) -> settings:
@@ -62,9 +62,10 @@ def along(*corners: Point, speed_mps: float = 1.2) -> Walk:
 
 @dataclass
 class Record:
-    """What happened: per actor positions (T, 2) and reasons, per person positions (T, 2)."""
+    """What happened: per actor positions (T, 2), heights (T,) and reasons; per person (T, 2)."""
 
     positions: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    heights: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     reasons: dict[str, list[Reason]] = field(default_factory=dict)
     people: dict[str, NDArray[np.float64]] = field(default_factory=dict)
 
@@ -94,15 +95,18 @@ def run(nav: Navigator, seconds: float, people: Mapping[str, Walk] | None = None
     """Run a zone and note everything down."""
     record = Record()
     positions: dict[str, list[Point]] = {}
-    seen: dict[str, list[Point]] = {name: [] for name in people or {}}
+    heights: dict[str, list[float]] = {}
+    seen: dict[str, list[tuple[float, ...]]] = {name: [] for name in people or {}}
     for k in range(round(seconds / nav.tick_s)):
         now = {name: walk(k * nav.tick_s) for name, walk in (people or {}).items()}
         nav.observe(now)
         for name, where in now.items():
-            seen[name].append(where)
+            seen[name].append(where[:2])
         for actor, state in nav.tick().items():
             positions.setdefault(str(actor), []).append(state.position)
+            heights.setdefault(str(actor), []).append(state.z_m)
             record.reasons.setdefault(str(actor), []).append(state.reason)
     record.positions = {name: np.array(track) for name, track in positions.items()}
+    record.heights = {name: np.array(levels) for name, levels in heights.items()}
     record.people = {name: np.array(track) for name, track in seen.items()}
     return record

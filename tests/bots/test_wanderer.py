@@ -24,13 +24,14 @@ def test_other_visitors_and_other_seeds_walk_otherwise() -> None:
 
 @given(st.integers(0, 2**32 - 1), st.integers(0, 10_000), st.floats(0.3, 3.0))
 def test_they_stay_in_bounds_and_below_the_limit(seed: int, index: int, limit: float) -> None:
-    acts = list(islice(wander(seed, index, BOUNDS, limit), 60))
+    acts = list(islice(wander(seed, index, BOUNDS, limit, (0.0, 3.5)), 60))
     for number, act in enumerate(acts, start=1):
         assert act.message.seq == number
         assert 0.3 <= act.pause_s <= 12.0
         if isinstance(act.message, WalkTo):
             assert -10.0 <= act.message.x <= 20.0
             assert -5.0 <= act.message.y <= 5.0
+            assert act.message.z in {0.0, 3.5}
         else:
             assert act.message.speed <= limit
             assert -3.2 < act.message.direction < 3.2

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning import Body
-from planning._layered import LayeredArrays
+from planning._layered import LINK_ROOM_M, LayeredArrays
 from planning.stability import Stability
 from tests.naive.geometry import Point, point_segment_distance, segment_distance
 from tests.naive.waves import dijkstra
@@ -126,12 +126,18 @@ class Floors:
             return Stability.FORBIDDEN
         around = list(self.around(cell))
         own = [(self.cells.get((layer, j, i)), away) for j, i, away in around]
-        for other, _ in own:
-            if other is None or abs(self.floor(other) - floor) > leg:
-                continue
-            if min(ceiling, self.ceiling(other)) - max(floor, self.floor(other)) < height:
-                return Stability.FORBIDDEN
-        if any(other is None or abs(self.floor(other) - floor) > leg for other, _ in own):
+
+        def room(other: int) -> float:
+            return min(ceiling, self.ceiling(other)) - max(floor, self.floor(other))
+
+        def blocks(other: int | None) -> bool:
+            return (
+                other is None or abs(self.floor(other) - floor) > leg or room(other) < LINK_ROOM_M
+            )
+
+        if any(not blocks(other) and room(other) < height for other, _ in own):
+            return Stability.FORBIDDEN
+        if any(blocks(other) for other, _ in own):
             for layers, found in (
                 (range(layer + 1, len(self.arrays.pages)), Stability.UP_STAIR),
                 (range(layer), Stability.DOWN_STAIR),

@@ -6,18 +6,24 @@ import math
 
 import numpy as np
 
-from planning._reservation_kernels import EVADING_M, EVADING_SLICES, SOFT, Reservations
+from planning._reservation_kernels import (
+    EVADING_M,
+    EVADING_SLICES,
+    OVERLAP_M,
+    SOFT,
+    Reservations,
+)
 from tests.naive.geometry import Point, closest_approach
 
 
 def conflict(
-    r: Reservations, margin_m: float, me: int, layer: int, k: int, a: Point, b: Point
+    r: Reservations, margin_m: float, me: int, feet_m: float, k: int, a: Point, b: Point
 ) -> tuple[bool, float]:
-    """Whether a move has a forbidden meeting, and what the others weigh together."""
+    """Whether a move has a forbidden meeting, and what the others on that floor weigh together."""
     blocked = False
     soft = 0.0
-    for other in range(len(r.layers)):
-        if other == me or r.layers[other] != layer:
+    for other in range(len(r.paths)):
+        if other == me or abs(r.heights[other, k + 1] - feet_m) >= OVERLAP_M:
             continue
         from_there, to_there = r.paths[other, k], r.paths[other, k + 1]
         nearest = _nearest(a, b, from_there, to_there)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning import Prediction, RiskModel, Spread
+from planning._reservation_kernels import OVERLAP_M
 
 
 def sigma_grid() -> list[tuple[float, float, float]]:
@@ -24,19 +25,19 @@ def risk(
     spread: Spread,
     prediction: Prediction,
     k: int,
-    layer: int,
+    feet_m: float,
     position: NDArray[np.float64],
     velocity: NDArray[np.float64],
     closing_weight: float,
 ) -> float:
     """Mean over each person's likely places of w1 · proximity + w2 · closing speed.
 
-    Every Gaussian of the spread has likely places of its own.
+    Every Gaussian of the spread has likely places of its own. Who is on another floor is no risk.
     """
     near = 0.0
     closing = 0.0
-    for p in range(len(prediction.layers)):
-        if prediction.layers[p] != layer:
+    for p in range(len(prediction.means)):
+        if abs(prediction.heights[p, k] - feet_m) >= OVERLAP_M:
             continue
         likely = [
             (scale * a, scale * b, share * weight)

@@ -41,32 +41,36 @@ class Ground:
         return int(p[1] / self.grid.cell_m), int(p[0] / self.grid.cell_m)
 
     def clearance(self, p: Point) -> float:
-        return float(self.grid.clearance([p], [self.task.layer])[0])
+        return float(self.grid.clearance([p], [0.0])[0])
 
     def needed(self) -> float:
         return min(self.task.radius_m, max(0.0, self.clearance((self.task.x, self.task.y)))) - 1e-6
+
+    def metres_left(self, p: Point) -> float:
+        if self.task.hold:
+            return math.dist(p, (self.task.goal_x, self.task.goal_y))
+        return float(self.potential.distance([p], [0.0])[0])
 
     def seconds_left(self, p: Point, speed: float = math.inf) -> float:
         t = self.task
         if t.hold:
             return 0.0
-        metres = float(self.potential.distance([p], [t.layer])[0])
+        metres = self.metres_left(p)
         lacking = max(0.0, t.speed_mps - speed) if metres > t.speed_mps else 0.0
         accelerating = lacking**2 / (2.0 * t.max_acceleration_mps2 * t.speed_mps)
         return metres / t.speed_mps + accelerating + t.turn_weight * lacking
 
     def risk(self, k: int, p: Point, v: Point) -> float:
-        layers = [self.task.layer]
-        return float(self.field.at(k, [p], layers, [v], self.task.closing_weight)[0])
+        return float(self.field.at(k, [p], [0.0], [v], self.task.closing_weight)[0])
 
     def meeting(self, k: int, a: Point, b: Point) -> tuple[bool, int]:
-        return conflict(self.reservations, MARGIN_M, self.task.me, self.task.layer, k, a, b)
+        return conflict(self.reservations, MARGIN_M, self.task.me, 0.0, k, a, b)
 
     def heading_home(self, p: Point) -> Point:
         if self.task.hold:
             away = (self.task.goal_x - p[0], self.task.goal_y - p[1])
             return away if math.hypot(*away) > 1e-9 else (1.0, 0.0)
-        down = self.potential.direction([p], [self.task.layer])[0]
+        down = self.potential.direction([p], [0.0])[0]
         return (down[0], down[1]) if down.any() else (1.0, 0.0)
 
 
@@ -105,7 +109,7 @@ def search(
         if n and accumulate and best[at] < node.worth - 1e-12:
             continue
         furthest = min(furthest, (-node.step, key, n))
-        home = math.dist(node.place, (task.goal_x, task.goal_y)) <= task.goal_tolerance_m
+        home = ground.metres_left(node.place) <= task.goal_tolerance_m
         if node.step == steps or (home and not accumulate and not task.hold):
             return SearchStatus.FOUND, _trace(nodes, n, steps), expansions
         if expansions == task.max_expansions:
@@ -132,7 +136,7 @@ def search(
 
 def _wishes(ground: Ground, moves: Moves, node: Node) -> list[Point]:
     """Velocities to turn into: the moves, straight on no further than the goal, and staying."""
-    away = math.dist(node.place, (ground.task.goal_x, ground.task.goal_y))
+    away = ground.metres_left(node.place)
     x, y = ground.heading_home(node.place) if moves.relative else (1.0, 0.0)
     ahead = math.atan2(y, x)
     wishes = []
@@ -170,7 +174,7 @@ def _move(
     speed = math.dist(node.place, end) / ground.step_s
     cost = (
         node.cost
-        + time_cost(task, *end, speed, ground.step_s)
+        + time_cost(task, ground.metres_left(tuple(end)), speed, ground.step_s)
         + priced
         + task.turn_weight * math.dist((ux, uy), node.velocity)
         + wall_cost(task, room, ground.step_s)
@@ -196,7 +200,7 @@ def path_cost(ground: Ground, path: NDArray[np.float64]) -> tuple[float, float]:
     for k, (a, b) in enumerate(pairwise(path)):
         risks.append(ground.risk(k + 1, tuple(b), velocities[k + 1]))
         soft = ground.meeting(k, tuple(a), tuple(b))[1]
-        cost += time_cost(task, b[0], b[1], math.dist(a, b) / ds, ds)
+        cost += time_cost(task, ground.metres_left(tuple(b)), math.dist(a, b) / ds, ds)
         cost += risk_price(task, (k // 2) * ground.step_s) * ds * (risks[-1] + soft)
         cost += task.turn_weight * math.dist(velocities[k], velocities[k + 1])
         cost += wall_cost(task, ground.clearance(tuple(b)), ds)
@@ -250,7 +254,6 @@ def update_path(ground: Ground, path: NDArray[np.float64], offsets: int, offset_
         middle = (left + right) // 2
         return update(left, middle) + update(middle, right)
 
-    goal = (ground.task.goal_x, ground.task.goal_y)
     there = [k for k in range(1, len(path) - 1)
-             if math.dist(path[k], goal) <= ground.task.goal_tolerance_m]  # fmt: skip
+             if ground.metres_left(tuple(path[k])) <= ground.task.goal_tolerance_m]  # fmt: skip
     return update(0, there[0] if there and not ground.task.hold else len(path) - 1)

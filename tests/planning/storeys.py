@@ -11,8 +11,12 @@ from planning import Body, LayeredGrid, LayeredPath, Polygon, Scene, Stairs, Wal
 from planning.footing import find_footing, footing_of
 from tests.naive.floors import Floors
 from tests.naive.geometry import segment_distance
+from tests.planning.worlds import UPPER_M
 
 CELL_M = 0.25
+SLAB_FROM = 8.0
+STAIRS_FROM = 2.96
+"""Where along x the upper floor of `storeyed`, and the flight that leads up to it, begin."""
 
 
 def box(x0: float, y0: float, x1: float, y1: float, height_m: float, offset_m: float = 0.0):
@@ -129,4 +133,19 @@ def flight(start, end, width_m, top_m, steps, bottom_m=0.0) -> Stairs:
     """A flight of stairs."""
     return Stairs(
         start=start, end=end, width_m=width_m, bottom_m=bottom_m, top_m=top_m, steps=steps
+    )
+
+
+def storeyed(polygons=(), walls=(), doors=()) -> Scene:
+    """16 m x 12 m of ground, an upper floor over its eastern half, and a flight up to it.
+
+    The flight is 2 m wide about y = 6 and rises eastward.
+    """
+    upper = box(SLAB_FROM, 0.0, 16.0, 12.0, 0.3, offset_m=3.0).model_copy(update={"kind": "floor"})
+    return Scene(
+        bounds=(0.0, 0.0, 16.0, 12.0),
+        polygons=(upper, *polygons),
+        walls=tuple(walls),
+        stairs=(flight((STAIRS_FROM, 6.0), (SLAB_FROM, 6.0), 2.0, UPPER_M, 18),),
+        doors=tuple(doors),
     )

@@ -29,6 +29,9 @@ BODY = {
     "catch_up": 0.0,
     "hysteresis_s": 0.15,
     "max_expansions": float(scaled(150, 30)),
+    "height_m": 1.8,
+    "step_on_m": 0.6,
+    "edge_cells": 24.0,
 }
 
 
@@ -42,6 +45,7 @@ def crowd_of(positions, goals, velocities=None, ranks=None, **changes) -> Crowd:
     return Crowd(
         positions,
         np.zeros((actors, 2)) if velocities is None else np.array(velocities),
+        np.full(actors, -1),
         np.zeros(actors, dtype=np.int64),
         np.array(goals, dtype=np.float64),
         np.arange(actors),
@@ -71,7 +75,8 @@ def batch():
 
 def tick(batch, crowd, people=()):
     prediction = walking([p for p, _ in people], [v for _, v in people])
-    return batch.tick(crowd, guides_of(batch.grid, crowd), prediction, TICK_S)
+    crowd.cells[:] = batch.grid.on_ground(crowd.positions, np.zeros(len(crowd.positions)))[1]
+    return batch.tick(crowd, guides_of(batch.grid, crowd), prediction, TICK_S)[:2]
 
 
 def step(crowd, decisions, positions) -> None:
@@ -259,8 +264,8 @@ def test_an_old_path_is_read_on_and_lengthened(batch) -> None:
 
 def test_an_empty_zone_ticks(batch) -> None:
     crowd = crowd_of(np.zeros((0, 2)), np.zeros((0, 2)))
-    guides = np.zeros((0, *batch.grid.arrays.clearance.shape, 3), dtype=np.float32)
-    decisions, positions = batch.tick(crowd, guides, walking([(4.0, 4.0)], [(1.0, 0.0)]), TICK_S)
+    guides = np.zeros((0, len(batch.grid.layered.floors), 3), dtype=np.float32)
+    decisions, positions, _ = batch.tick(crowd, guides, walking([(4.0, 4.0)], [(1.0, 0.0)]), TICK_S)
     assert positions.shape == (0, 2)
     assert decisions.paths.shape == (0, PLAN.slices + 1, 2)
 

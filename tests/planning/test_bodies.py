@@ -12,8 +12,8 @@ def test_presets_are_those_of_the_paper() -> None:
     adult, child = Body.adult(), Body.child()
     assert (adult.height_m, adult.step_on_m) == (1.80, 0.60)
     assert (child.height_m, child.step_on_m) == (1.30, 0.30)
-    assert (adult.radius_m, adult.leg_length_m, adult.edge_cells) == (0.25, 0.90, 24)
-    assert (child.radius_m, child.leg_length_m, child.edge_cells) == (0.20, 0.65, 24)
+    assert (adult.radius_m, adult.leg_length_m, adult.edge_cells) == (0.25, 0.90, 64)
+    assert (child.radius_m, child.leg_length_m, child.edge_cells) == (0.20, 0.65, 64)
 
 
 def test_equal_bodies_are_one_key() -> None:

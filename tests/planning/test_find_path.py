@@ -2,6 +2,7 @@
 
 import math
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -245,3 +246,26 @@ def test_a_scene_without_any_surface_to_stand_on_blocks_everyone() -> None:
     scene = Scene(bounds=(0.0, 0.0, 4.0, 4.0), polygons=(box(-1.0, -1.0, 5.0, 5.0, 40.0),))
     grid = LayeredGrid.from_scene(scene)
     assert find_path(grid, (2, 2, 0), (1, 1, 0)).status is PathStatus.START_BLOCKED
+
+
+@pytest.mark.parametrize("shift_m", [0.0, 0.05, 0.1, 0.15, 0.2])
+@pytest.mark.parametrize("slope", [0.4, 0.6, 0.9])
+def test_a_thin_ramp_leads_up_where_the_ground_below_it_begins_to_count(
+    tmp_path: Path, slope: float, shift_m: float
+) -> None:
+    foot, top = 5.0 + shift_m, 2.4
+    head = foot + top / slope
+    sheets = [
+        [(0, 0, 0), (20, 0, 0), (20, 6, 0), (0, 6, 0)],
+        [(foot, 2, 0), (head, 2, top), (head, 4, top), (foot, 4, 0)],
+        [(head, 2, top), (head + 4, 2, top), (head + 4, 4, top), (head, 4, top)],
+    ]
+    corners = [corner for sheet in sheets for corner in sheet]
+    faces = [(4 * k + 1, 4 * k + b, 4 * k + c) for k in range(3) for b, c in ((2, 3), (3, 4))]
+    mesh = tmp_path / "ramp.obj"
+    mesh.write_text(
+        "".join(f"v {x} {y} {z}\n" for x, y, z in corners)
+        + "".join(f"f {a} {b} {c}\n" for a, b, c in faces)
+    )
+    grid = LayeredGrid.from_mesh(mesh, up="z")
+    assert find_path(grid, (2.0, 3.0, 0.0), (head + 2.0, 3.0, top)).status is PathStatus.FOUND

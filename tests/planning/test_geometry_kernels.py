@@ -45,7 +45,8 @@ def test_closest_approach(relative, change) -> None:
 @holds(60, 15)
 def test_the_index_finds_the_nearest_segment_within_its_reach(walls, p) -> None:
     grid = open_grid(6.0, walls)
-    found = kernels.nearest_segment(grid.index, *p)[0]
+    stance = kernels.Stance(0.0, 0.0, 1.8, 0.6)
+    found = kernels.nearest_segment(grid.index, stance, *p)[0]
     nearest = min([math.inf, *(naive.point_segment_distance(p, *wall) for wall in walls)])
     if nearest <= grid.index.reach_m:
         assert found == pytest.approx(nearest, abs=1e-9)
@@ -70,8 +71,8 @@ def test_a_walk_never_crosses_a_wall_nor_the_bounds(walls, start, moves, clearan
     assume(all(away > 1e-3 for away in inside_of))
     for move in moves:
         before = position
-        position, layers = grid.walk(before, [0], [move], clearance)
-        assert layers.tolist() == [0]
+        position, heights = grid.walk(before, [0], [move], clearance)
+        assert heights.tolist() == [0.0]
         assert (position >= 0.0).all()
         assert (position <= 5.0).all()
         assert np.hypot(*(position - before)[0]) <= math.hypot(*move) + 2.0 * clearance + 1e-9
@@ -122,24 +123,56 @@ def test_a_closed_room_holds_whoever_is_in_it() -> None:
         positions = rng.uniform(2.3, 5.7, (people, 2))
         for _ in range(scaled(100, 5)):
             ways = rng.normal(0.0, 1.0, (people, 2))
-            positions, _ = grid.walk(positions, np.zeros(people, dtype=int), ways, clearance)
+            positions, _ = grid.walk(positions, np.zeros(people), ways, clearance)
         assert (positions > 2.0).all()
         assert (positions < 6.0).all()
 
 
 @pytest.mark.parametrize(
-    ("positions", "layers", "displacements", "clearance", "message"),
+    ("positions", "heights", "displacements", "clearance", "message"),
     [
         ([(1.0, 1.0)], [0], [(math.nan, 0.0)], 0.2, "displacements must be finite"),
         ([(1.0, 1.0)], [0], [(math.inf, 0.0)], 0.2, "displacements must be finite"),
-        ([(math.nan, 1.0)], [0], [(0.1, 0.0)], 0.2, "positions must be finite"),
-        ([(1.0, 1.0)], [1], [(0.1, 0.0)], 0.2, "layers"),
-        ([(1.0, 1.0)], [0, 0], [(0.1, 0.0)], 0.2, "1 positions but 2 layers"),
+        ([(math.nan, 1.0)], [0], [(0.1, 0.0)], 0.2, "positions and heights must be finite"),
+        ([(1.0, 1.0)], [math.nan], [(0.1, 0.0)], 0.2, "heights must be finite"),
+        ([(1.0, 1.0)], [0, 0], [(0.1, 0.0)], 0.2, "1 positions but 2 heights"),
         ([(1.0, 1.0)], [0], [(0.1, 0.0), (0.0, 0.0)], 0.2, "1 positions but 2 displacements"),
         ([(1.0, 1.0)], [0], [(0.1, 0.0)], -0.1, "clearance_m"),
         ([(1.0, 1.0)], [0], [(0.1, 0.0)], 1.1, "clearance_m"),
     ],
 )
-def test_a_walk_names_what_is_wrong(positions, layers, displacements, clearance, message) -> None:
+def test_a_walk_names_what_is_wrong(positions, heights, displacements, clearance, message) -> None:
     with pytest.raises(ValueError, match=message):
-        open_grid().walk(positions, layers, displacements, clearance)
+        open_grid().walk(positions, heights, displacements, clearance)
+
+
+@given(
+    st.tuples(st.floats(0.0, 5.0), st.floats(0.1, 3.0)),
+    st.sampled_from([0.0, 0.3, 0.5, math.inf]),
+    st.tuples(st.floats(0.0, 5.0), st.floats(1.0, 2.0), st.floats(0.1, 0.8)),
+)
+@example((0.0, 0.6), math.inf, (0.0, 1.8, 0.6))
+@example((1.8, 1.0), math.inf, (0.0, 1.8, 0.6))
+@example((0.0, 2.0), 0.3, (0.0, 1.8, 0.3))
+@holds(200, 60)
+def test_what_stops_whom(barrier, rise, stance) -> None:
+    """Who can step over it, pass under it, or step down where it drops, is not stopped."""
+    underside, height = barrier
+    floor, tall, step = stance
+    row = np.array([[2.0, 0.0, 2.0, 5.0, underside, underside + height, rise]])
+    index = open_grid(5.0).index._replace(segments=row)
+    steps_over = underside + height - floor <= step
+    passes_under = underside - floor >= tall
+    steps_down = rise <= step
+    edge = min(abs(underside + height - floor - step), abs(underside - floor - tall))
+    assume(edge > 1e-9 or stance == (0.0, 1.8, 0.6))
+    free = steps_over or passes_under or steps_down
+    assert kernels.stops(index, 0, kernels.Stance(floor, floor, tall, step)) == (not free)
+
+
+def test_steps_count_from_the_foothold_and_heads_from_the_floor() -> None:
+    row = np.array([[2.0, 0.0, 2.0, 5.0, 0.0, 0.4, math.inf], [3.0, 0.0, 3.0, 5.0, 1.85, 9.0, 9.0]])
+    index = open_grid(5.0).index._replace(segments=row)
+    for foothold, stopped in ((0.0, True), (0.1, False)):
+        assert kernels.stops(index, 0, kernels.Stance(0.0, foothold, 1.8, 0.3)) == stopped
+    assert not kernels.stops(index, 1, kernels.Stance(0.0, 0.1, 1.8, 0.3))

@@ -28,6 +28,10 @@ def test_a_bend_never_makes_an_actor_arrive_later() -> None:
     assert np.array_equal(path[arrival:], before[arrival:])
 
 
+def room(path):
+    return np.empty(len(path), dtype=np.int64), np.empty_like(path)
+
+
 def kernel_view(ground):
     return world_of(ground.grid, ground.field, ground.reservations), ground.potential.guide
 
@@ -54,7 +58,7 @@ def test_perturbation_is_its_twin(start, goal, crowd) -> None:
     ground = ground_of(task(start, goal), people=crowd)
     world, guide = kernel_view(ground)
     ours, theirs = path_between(start, goal), path_between(start, goal)
-    bends = kernels.update_path(world, guide, ground.task, ours, np.empty_like(ours))
+    bends = kernels.update_path(world, guide, ground.task, ours, *room(ours))
     assert bends == naive.update_path(ground, theirs, kernels.OFFSETS, kernels.OFFSET_M)
     assert ours == pytest.approx(theirs, abs=1e-9)
 
@@ -64,11 +68,11 @@ def bent(crowd, path=None, walls=(), others=None, question=None):
     ground = ground_of(question, walls=walls, people=crowd, others=others)
     world, guide = kernel_view(ground)
     path = path_between((1.0, 4.0), (7.0, 4.0)) if path is None else path
-    before = kernels.average_risk(world, ground.task, path, 0, 24)
-    bends = kernels.update_path(world, guide, ground.task, path, np.empty_like(path))
-    after = kernels.average_risk(world, ground.task, path, 0, 24)
+    before = kernels.average_risk(world, ground.task, ground.task.cell, path, 0, 24)
+    bends = kernels.update_path(world, guide, ground.task, path, *room(path))
+    after = kernels.average_risk(world, ground.task, ground.task.cell, path, 0, 24)
     need = needed_clearance(world, ground.task)
-    legal = kernels.stretch_is_legal(world, guide, ground.task, need, path, 0, 24)
+    legal = kernels.stretch_is_legal(world, guide, ground.task, need, ground.task.cell, path, 0, 24)
     return path, bends, before, after, legal
 
 
@@ -133,6 +137,8 @@ def test_what_is_illegal(spoil, why) -> None:
     world, guide = kernel_view(ground)
     path = path_between((1.0, 4.0), (7.0, 4.0))
     need = needed_clearance(world, ground.task)
-    assert kernels.stretch_is_legal(world, guide, ground.task, need, path, 0, 24)
+    assert kernels.stretch_is_legal(world, guide, ground.task, need, ground.task.cell, path, 0, 24)
     spoil(path)
-    assert not kernels.stretch_is_legal(world, guide, ground.task, need, path, 0, 24), why
+    assert not kernels.stretch_is_legal(
+        world, guide, ground.task, need, ground.task.cell, path, 0, 24
+    ), why

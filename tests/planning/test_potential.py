@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from planning import Polygon, Potential, Wave
 from planning._potential_kernels import direction_at, potential_at
 from tests.naive import waves as naive
-from tests.planning.worlds import holds, lines, open_grid, points
+from tests.planning.worlds import as_rows, holds, lines, open_grid, points
 
 RADIUS_M = 0.25
 CELL_M = 0.25
@@ -23,17 +23,17 @@ ROOM = [
 
 
 def centres(grid):
-    """Every cell's centre, row by row, and its layer."""
-    ny, nx = grid.arrays.clearance.shape[1:]
+    """Every cell's centre, row by row, and its height."""
+    ny, nx = grid.layered.ny, grid.layered.nx
     x, y = np.meshgrid((np.arange(nx) + 0.5) * CELL_M, (np.arange(ny) + 0.5) * CELL_M)
-    return np.stack([x.ravel(), y.ravel()], axis=1), np.zeros(nx * ny, dtype=np.int64)
+    return np.stack([x.ravel(), y.ravel()], axis=1), np.zeros(nx * ny)
 
 
 @given(lines(0.0, 6.0, 5), st.tuples(st.integers(0, 23), st.integers(0, 23)))
 @holds(15, 6)
 def test_nf1_is_the_shortest_way_over_cells(walls, goal) -> None:
     grid = open_grid(6.0, walls)
-    free = grid.arrays.clearance[0] >= RADIUS_M
+    free = as_rows(grid, grid.arrays.clearance[0]) >= RADIUS_M
     assume(free[goal])
     place = ((goal[1] + 0.5) * CELL_M, (goal[0] + 0.5) * CELL_M)
     potential = Potential(grid, place, 0, RADIUS_M, Wave.NF1)
@@ -70,13 +70,13 @@ def test_around_one_wall_sight_is_within_three_percent_and_nf1_within_twelve() -
 def test_in_the_open_sight_is_the_straight_way_from_everywhere() -> None:
     grid = open_grid(8.0)
     goal = (3.3, 5.1)
-    positions, layers = centres(grid)
+    positions, heights = centres(grid)
     potential = Potential(grid, goal, 0, RADIUS_M)
-    assert potential.distance(positions, layers) == pytest.approx(
+    assert potential.distance(positions, heights) == pytest.approx(
         np.hypot(*(positions - goal).T), abs=1e-5
     )
-    down = potential.direction(positions, layers)
-    assert (positions + down * potential.distance(positions, layers)[:, None]) == pytest.approx(
+    down = potential.direction(positions, heights)
+    assert (positions + down * potential.distance(positions, heights)[:, None]) == pytest.approx(
         np.broadcast_to(goal, positions.shape), abs=1e-4
     )
     assert potential.direction([goal], [0])[0].tolist() == [0.0, 0.0]
@@ -124,7 +124,8 @@ def test_a_way_leads_to_a_goal_that_is_free_in_a_cell_whose_centre_is_not() -> N
     grid = open_grid(8.0, [((1.0, 4.15), (7.0, 4.15))])
     goal = (4.0, 4.41)
     assert grid.is_free([goal], [0], RADIUS_M)[0]
-    assert not grid.is_free([grid.cell_centre(goal)], [0], RADIUS_M)[0]
+    centre = grid.centres[grid.on_ground([goal], [0])[1][0]]
+    assert not grid.is_free([centre], [0], RADIUS_M)[0]
     found = Potential(grid, goal, 0, RADIUS_M).distance([(4.0, 7.0), (4.0, 1.0)], [0, 0])
     assert found[0] == pytest.approx(2.59, abs=0.05)
     assert 7.0 < found[1] < 10.0
@@ -154,8 +155,9 @@ def test_many_look_ups_are_the_single_one_many_times() -> None:
     potential = Potential(grid, (6.0, 1.0), 0, RADIUS_M)
     rng = np.random.default_rng(3)
     positions = rng.uniform(0.0, 8.0, (20, 2))
-    layers = np.zeros(20, dtype=np.int64)
-    found = potential.distance(positions, layers), potential.direction(positions, layers)
+    heights = np.zeros(20)
+    cells = grid.on_ground(positions, heights)[1]
+    found = potential.distance(positions, heights), potential.direction(positions, heights)
     for k, (x, y) in enumerate(positions):
-        assert found[0][k] == potential_at(grid.arrays, potential.guide, 0, x, y)
-        assert tuple(found[1][k]) == direction_at(grid.arrays, potential.guide, 0, x, y)[:2]
+        assert found[0][k] == potential_at(potential.guide, cells[k], x, y)
+        assert tuple(found[1][k]) == direction_at(grid.arrays, potential.guide, cells[k], x, y)[:2]

@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning import PredictionModel, TrackHistory
+from planning import LayeredGrid, PredictionModel, TrackHistory, Wall
 from planning import _prediction_kernels as kernels
 from tests.naive import prediction as naive
-from tests.planning.worlds import holds, open_grid
+from tests.planning.storeys import SLAB_FROM, STAIRS_FROM, box, grid_of, storeyed
+from tests.planning.worlds import UPPER_M, holds, open_grid
 
 TICK_S = 0.1
 SAMPLE_S = 0.4
@@ -78,7 +79,7 @@ def test_means_and_deviations_follow_eqs_2_and_3() -> None:
         np.array([20.0, 20.0]) + seconds[:, None] * np.array([1.0, -0.5]), abs=1e-6
     )
     assert prediction.sigmas[0] == pytest.approx(0.05 + 0.17 * seconds)
-    assert prediction.layers.tolist() == [0]
+    assert not prediction.heights.any()
 
 
 def test_deviations_follow_how_steadily_somebody_walks() -> None:
@@ -137,13 +138,53 @@ def test_more_people_than_before_keep_their_tracks() -> None:
     assert by_id[20] == pytest.approx([20.0, 0.0])
 
 
-def test_on_another_layer_a_track_begins_anew() -> None:
+def test_on_another_floor_a_track_begins_anew() -> None:
     history = TrackHistory(PredictionModel(), TICK_S)
     for k in range(6):
-        history.observe({"p": (0.1 * k, 0.0, 0)})
-    history.observe({"p": (0.6, 0.0, 1)})
-    assert history.layers.tolist() == [1]
+        history.observe({"p": (0.1 * k, 0.0, 0.0)})
+    history.observe({"p": (0.6, 0.0, 3.3)})
+    assert history.heights.tolist() == [3.3]
     assert history.velocities().tolist() == [[0.0, 0.0]]
+
+
+def test_up_a_flight_of_stairs_a_track_goes_on() -> None:
+    history = TrackHistory(PredictionModel(), TICK_S)
+    for k in range(20):
+        history.observe({"p": (0.1 * k, 0.0, 0.18 * (k // 3))})
+    assert history.velocities()[0] == pytest.approx([1.0, 0.0])
+
+
+def test_each_is_predicted_on_its_own_floor() -> None:
+    """A wall on the ground hinders who walks below it, not who walks above."""
+    wall = Wall(start=(5.0, 0.0), end=(5.0, 8.0), height_m=2.5)
+    grid = grid_of(8.0, [box(0.0, 0.0, 8.0, 8.0, 0.3, offset_m=3.0)], [wall])
+    history = TrackHistory(PredictionModel(), TICK_S)
+    for k in range(10):
+        x = 3.0 + 0.1 * k
+        history.observe({"above": (x, 4.0, 3.3), "below": (x, 4.0, 0.0)})
+    prediction = history.predict(grid, 12, 0.2)
+    above, below = prediction.means[:, :, 0]
+    assert prediction.heights[0] == pytest.approx([3.3] * 13)
+    assert prediction.heights[1] == pytest.approx([0.0] * 13)
+    assert below.max() <= 5.0 - 0.15 + 1e-6
+    assert above[-1] == pytest.approx(3.9 + 12 * 0.2, abs=1e-6)
+
+
+def test_people_are_expected_to_go_up_stairs_and_to_stay_off_ledges() -> None:
+    house = storeyed()
+    grid = LayeredGrid.from_scene(house)
+    history = TrackHistory(PredictionModel(), TICK_S)
+    for k in range(20):
+        x = STAIRS_FROM - 0.5 + 0.13 * k
+        up = (x, 6.0, grid.floor_at((x, 6.0), 0.18 * k))
+        history.observe({"ledge": (10.0 - 0.05 * k, 2.0, UPPER_M), "up": up})
+    prediction = history.predict(grid, 24, 0.2)
+    assert prediction.means[0, :, 0].min() >= SLAB_FROM + 0.15 - 1e-6
+    assert prediction.heights[0] == pytest.approx([UPPER_M] * 25)
+    rises = np.diff(prediction.heights[1])
+    assert (rises >= -1e-6).all()
+    assert rises.max() <= 0.4
+    assert prediction.heights[1, -1] == pytest.approx(UPPER_M, abs=1e-3)
 
 
 def test_the_order_of_listing_does_not_matter() -> None:

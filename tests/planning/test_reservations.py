@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from planning._reservation_kernels import MARGIN_M, SOFT, conflict
+from planning._reservation_kernels import MARGIN_M, OVERLAP_M, SOFT, conflict, others_near
 from tests.naive import reservations as naive
 from tests.planning.worlds import holds, open_grid, reserved
 
@@ -34,15 +34,15 @@ def test_conflicts_are_those_of_looking_at_everyone(seed, actors, fastest) -> No
         paths,
         radii_m=rng.uniform(0.15, 0.5, actors),
         ranks=rng.permutation(actors),
-        layers=rng.integers(0, 2, actors),
+        heights=rng.choice([0.0, 1.0, 3.0], actors),
         fastest_m=0.2 * fastest,
     )
     for me in range(actors):
         a = paths[me, 1]
         angle = rng.uniform(0.0, 2.0 * math.pi)
         b = a + 0.2 * fastest * np.array([math.cos(angle), math.sin(angle)])
-        blocked, soft = conflict(r, me, r.layers[me], 1, *a, *b)
-        expected = naive.conflict(r, MARGIN_M, me, r.layers[me], 1, tuple(a), tuple(b))
+        blocked, soft = conflict(r, me, r.heights[me, 2], 1, *a, *b)
+        expected = naive.conflict(r, MARGIN_M, me, r.heights[me, 2], 1, tuple(a), tuple(b))
         assert blocked == expected[0]
         if not blocked:
             assert soft == expected[1]
@@ -84,10 +84,24 @@ def test_who_has_time_to_get_out_of_the_way_has_to() -> None:
     assert conflict(r, 1, 0, 2, 3.6, 4.1, 3.65, 4.16)[0]
 
 
-def test_another_layer_is_another_world() -> None:
+@pytest.mark.parametrize(
+    ("apart_m", "met"),
+    [(0.0, True), (1.7, True), (OVERLAP_M + 0.01, False), (-1.7, True), (-3.0, False)],
+)
+def test_who_is_above_or_below_is_met_only_where_bodies_overlap(apart_m, met) -> None:
     paths = np.array([straight((3.0, 4.0), (0.0, 0.0)), straight((3.3, 4.0), (0.0, 0.0))])
-    r = reserved(open_grid(8.0), paths, (0.25, 0.25), (1, 0), layers=(0, 1))
-    assert conflict(r, 0, 0, 0, 3.0, 4.0, 3.3, 4.0) == (False, 0.0)
+    r = reserved(open_grid(8.0), paths, (0.25, 0.25), (1, 0), heights=(3.0, 3.0 + apart_m))
+    assert conflict(r, 0, 3.0, 0, 3.0, 4.0, 3.1, 4.0)[0] == met
+    others = np.zeros(4, dtype=np.int64)
+    assert others_near(r, 0, 3.0, 0, 3.0, 4.0, 0.3, others) == met
+
+
+def test_who_comes_down_is_met_from_the_slice_on_in_which_it_is_low_enough() -> None:
+    paths = np.array([straight((3.0, 4.0), (0.0, 0.0)), straight((3.3, 4.0), (0.0, 0.0))])
+    r = reserved(open_grid(8.0), paths, (0.25, 0.25), (1, 0), heights=(0.0, 0.0))
+    r.heights[1] = [3.0, 2.5, 1.0, 0.0]
+    blocked = [conflict(r, 0, 0.0, k, 3.0, 4.0, 3.1, 4.0)[0] for k in range(SLICES)]
+    assert blocked == [False, True, True]
 
 
 @given(st.integers(0, 1000), st.integers(1, 40))

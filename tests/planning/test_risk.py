@@ -5,10 +5,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning import GAUSSIAN, PEOPLE, Prediction, RiskField, RiskModel, Spread
+from planning import GAUSSIAN, PEOPLE, RiskField, RiskModel, Spread
 from planning.risk import radial_tables, sigma_points
 from tests.naive import risk as naive
-from tests.planning.worlds import field_of, holds, open_grid, points, scaled, walking
+from tests.planning.worlds import (
+    UPPER_M,
+    field_of,
+    holds,
+    open_grid,
+    points,
+    scaled,
+    two_floors,
+    walking,
+)
 
 CLOSING_WEIGHT = 0.2
 
@@ -119,15 +128,43 @@ def test_risk_turns_with_the_world(turn) -> None:
     assert risks[0] == pytest.approx(risks[1], abs=1e-4)
 
 
-def test_people_on_another_layer_do_not_matter() -> None:
-    grid = open_grid(8.0)
-    two = np.concatenate([grid.arrays.clearance, grid.arrays.clearance])
-    grid = type(grid)(grid.arrays._replace(clearance=two), grid.index)
+def test_people_on_another_floor_do_not_matter() -> None:
+    grid = two_floors()
     prediction = walking([(4.0, 4.0)], [(0.0, 0.0)])
-    prediction = Prediction(*prediction[:3], np.array([1]))
-    field = field_of(grid, prediction)
-    assert field.at(0, [(4.0, 4.0)], [0], [(0.0, 0.0)], 1.0)[0] == 0.0
-    assert field.at(0, [(4.0, 4.0)], [1], [(0.0, 0.0)], 1.0)[0] > 0.9
+    for feet_m, here_m, there_m in ((0.0, 0.0, UPPER_M), (UPPER_M, UPPER_M, 0.0)):
+        prediction.heights[:] = feet_m
+        field = field_of(grid, prediction)
+        assert field.at(0, [(4.0, 4.0)], [here_m], [(0.0, 0.0)], 1.0)[0] > 0.9
+        assert field.at(0, [(4.0, 4.0)], [there_m], [(0.0, 0.0)], 1.0)[0] == 0.0
+
+
+def test_each_floor_has_the_risk_of_its_own_people() -> None:
+    grid = two_floors()
+    rng = np.random.default_rng(4)
+    where, way = rng.uniform(1.0, 7.0, (6, 2)), rng.normal(0.0, 1.0, (6, 2))
+    both = walking(where, way, slices=6)
+    both.heights[3:] = UPPER_M
+    shared = field_of(grid, both, slices=6)
+    here, v = rng.uniform(0.0, 8.0, (30, 2)), rng.normal(0.0, 1.0, (30, 2))
+    for part, z_m in ((slice(0, 3), 0.0), (slice(3, 6), UPPER_M)):
+        alone = field_of(open_grid(8.0), walking(where[part], way[part], slices=6), slices=6)
+        found = shared.at(4, here, [z_m] * 30, v, CLOSING_WEIGHT)
+        assert found == pytest.approx(alone.at(4, here, [0] * 30, v, CLOSING_WEIGHT), abs=1e-6)
+        assert found.max() > 0.05
+    shared.fill(walking([], [], slices=6))
+    assert not shared.fields.any()
+
+
+def test_who_is_on_the_stairs_counts_where_bodies_overlap() -> None:
+    """Half-way up, the feet are within a body's height of both floors."""
+    grid = two_floors()
+    prediction = walking([(4.0, 4.0)], [(0.0, 0.0)])
+    for feet_m, below, above in ((1.65, True, True), (1.0, True, False), (2.4, False, True)):
+        prediction.heights[:] = feet_m
+        field = field_of(grid, prediction)
+        risks = field.at(0, [(4.0, 4.0)] * 2, [0.0, UPPER_M], [(0.0, 0.0)] * 2, 1.0)
+        assert (risks > 0.9).tolist() == [below, above]
+        assert ((risks == 0.0) == [not below, not above]).all()
 
 
 def test_filling_again_leaves_nothing_of_before() -> None:
@@ -203,8 +240,5 @@ def test_what_does_not_fit_is_refused() -> None:
     field = field_of(open_grid(8.0), walking([(4.0, 4.0)], [(0.0, 0.0)]))
     with pytest.raises(ValueError, match=r"the field has [0-9]+ slices, the prediction 5"):
         field.fill(walking([(4.0, 4.0)], [(0.0, 0.0)], slices=4))
-    astray = Prediction(*walking([(4.0, 4.0)], [(0.0, 0.0)])[:3], np.array([1]))
-    with pytest.raises(ValueError, match="layers"):
-        field.fill(astray)
     with pytest.raises(ValueError, match=r"slices are 0\.\.[0-9]+"):
         field.at(25, [(4.0, 4.0)], [0], [(0.0, 0.0)], 1.0)

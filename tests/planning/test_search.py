@@ -1,6 +1,7 @@
 """Search in CT-space against a plain twin; statuses, budgets and the amount of work."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from tests.planning.worlds import (
     open_grid,
     reserved,
     scaled,
+    standing,
     task,
     walking,
     world_of,
@@ -45,7 +47,7 @@ def ground_of(question, steps=12, walls=(), people=(), others=None):
     potential = grid.potential((question.goal_x, question.goal_y), 0, question.radius_m)
     if others is None:
         others = reserved(grid, np.full((1, 2 * steps + 1, 2), -1e3))
-    return naive.Ground(grid, field, potential, others, question, STEP_S)
+    return naive.Ground(grid, field, potential, others, standing(grid, question), STEP_S)
 
 
 def found(ground, moves=None, form=SearchForm.ACCUMULATED, bound=math.inf):
@@ -186,8 +188,8 @@ def test_a_path_keeps_the_speed_limit_and_the_walls() -> None:
     result = found(ground)
     moved = np.hypot(*np.diff(result.path, axis=0).T)
     assert moved.max() <= 1.7 * STEP_S / 2 + 1e-9
-    layers = np.zeros(len(result.path), dtype=np.int64)
-    assert ground.grid.is_free(result.path, layers, 0.25 - 1e-5).all()
+    heights = np.zeros(len(result.path))
+    assert ground.grid.is_free(result.path, heights, 0.25 - 1e-5).all()
 
 
 @pytest.mark.parametrize("form", list(SearchForm))
@@ -256,5 +258,5 @@ def test_a_search_names_what_is_wrong() -> None:
         uncertain_bfp(odd, *arguments, STEP_S)
     with pytest.raises(ValueError, match="step_s"):
         uncertain_bfp(ground.field, *arguments, 0.0)
-    with pytest.raises(ValueError, match="layers"):
-        found(ground_of(task((1.0, 4.0), (7.0, 4.0), layer=3)))
+    with pytest.raises(ValueError, match="start must be finite"):
+        found(replace(ground, task=ground.task._replace(x=math.nan)))

@@ -8,7 +8,7 @@ import numba
 import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from planning import (
     PEOPLE,
@@ -19,6 +19,7 @@ from planning import (
     RiskField,
     RiskModel,
     Scene,
+    Spawn,
 )
 from planning._reservation_kernels import Reservations, index_paths
 from planning._search_kernels import Task, World
@@ -48,9 +49,32 @@ def open_grid(
     polygons: Sequence[Polygon] = (),
     cell_m: float = 0.25,
 ) -> LayeredGrid:
-    """A square of bare ground."""
+    """A square of bare ground, on whose roofs nobody can stand."""
     scene = Scene.open_space((0.0, 0.0, side_m, side_m), walls=walls, polygons=polygons)
-    return LayeredGrid.from_scene(scene, cell_m)
+    # Roofs that cannot be reached from a spawn are left out.
+    spawns = (Spawn(position=(0.1, 0.1)),)
+    return LayeredGrid.from_scene(scene.model_copy(update={"spawns": spawns}), cell_m)
+
+
+UPPER_M = 3.3
+"""Height of the upper floor of `two_floors`."""
+
+
+def two_floors(side_m: float = 8.0) -> LayeredGrid:
+    """A square of ground and another one above all of it, with no way between them."""
+    ring = ((0.0, 0.0), (side_m, 0.0), (side_m, side_m), (0.0, side_m))
+    slab = Polygon(points=ring, offset_m=3.0, height_m=0.3, kind="floor")
+    return LayeredGrid.from_scene(Scene(bounds=(0.0, 0.0, side_m, side_m), polygons=(slab,)))
+
+
+def as_rows(grid: LayeredGrid, values: NDArray[np.generic], layer: int = 0) -> NDArray[np.generic]:
+    """Values by cell (N,) as rows and columns (ny, nx) of a layer."""
+    a = grid.layered
+    out = np.empty((a.ny, a.nx), dtype=values.dtype)
+    of_layer = (a.places[:, 0] == layer) & (a.places[:, 1] < a.ny) & (a.places[:, 2] < a.nx)
+    assert of_layer.sum() == out.size, "the layer has tiles that nobody can stand in"
+    out[tuple(a.places[of_layer, 1:].T)] = values[of_layer]
+    return out
 
 
 def walking(
@@ -68,7 +92,7 @@ def walking(
     means = start[:, None] + seconds[None, :, None] * v[:, None]
     sigmas = np.broadcast_to(sigma_0_m + growth_mps * seconds, means.shape[:2]).copy()
     each = np.broadcast_to(v[:, None], means.shape).copy()
-    return Prediction(means, each, sigmas, np.zeros(len(start), dtype=np.int64))
+    return Prediction(means, each, sigmas, np.zeros(sigmas.shape))
 
 
 def field_of(grid: LayeredGrid, prediction: Prediction, slices: int = SLICES) -> RiskField:
@@ -83,16 +107,17 @@ def reserved(
     paths: NDArray[np.float64] | None = None,
     radii_m: Sequence[float] = (0.25,),
     ranks: Sequence[int] = (0,),
-    layers: Sequence[int] | None = None,
+    heights: ArrayLike | None = None,
     fastest_m: float = 0.34,
 ) -> Reservations:
     """Reservations of some actors; by default of one that stands far outside everyone's way."""
     if paths is None:
         paths = np.full((1, SLICES + 1, 2), -1e3)
+    levels = np.zeros(len(paths)) if heights is None else heights
     reservations = make_reservations(
         grid,
         paths,
-        np.array(layers if layers is not None else [0] * len(paths), dtype=np.int64),
+        np.repeat(np.array(levels, dtype=np.float64)[:, None], paths.shape[1], axis=1),
         np.array(radii_m, dtype=np.float64),
         np.array(ranks, dtype=np.int64),
         fastest_m,
@@ -115,7 +140,8 @@ def task(
     """The default actor's question; row 0 asks."""
     return Task(
         me=0,
-        layer=0,
+        body=0,
+        cell=-1,
         x=start[0],
         y=start[1],
         vx=velocity[0],
@@ -134,8 +160,15 @@ def task(
         wall_weight=0.3,
         hurry_weight=2.0,
         max_expansions=400,
+        edge_cells=24,
         hold=False,
     )._replace(**changes)
+
+
+def standing(grid: LayeredGrid, question: Task, z_m: float = 0.0) -> Task:
+    """The question as asked from where it stands on a grid."""
+    cells = grid.on_ground([(question.x, question.y)], [z_m])[1]
+    return question._replace(cell=int(cells[0]))
 
 
 def points(low: float, high: float) -> st.SearchStrategy[tuple[float, float]]:

@@ -13,9 +13,9 @@ from scenery.values import body, number, point, where, whole
     [
         ("adult", Body.adult()),
         ("child", Body.child()),
-        ("child,height=1.1", Body(0.20, 1.10, 0.30, 0.65, 24)),
+        ("child,height=1.1", Body(0.20, 1.10, 0.30, 0.65, 64)),
         ("height=1.9,step=0.4,edge=12", Body(0.25, 1.90, 0.40, 0.90, 12)),
-        ("radius=0.3,leg=0.8", Body(0.30, 1.80, 0.60, 0.80, 24)),
+        ("radius=0.3,leg=0.8", Body(0.30, 1.80, 0.60, 0.80, 64)),
     ],
 )
 def test_a_body_is_a_preset_or_its_measures(text: str, meant: Body) -> None:

@@ -45,19 +45,20 @@ class ScriptedCast:
             states[actor_id] = ActorState(
                 position=here,
                 layer=0,
+                z_m=0.0,
                 velocity=(vx, vy),
                 heading=float(np.arctan2(vy, vx)),
                 reason=Reason.MOVING,
                 goal=None,
                 slice_s=0.4,
-                way=np.array([here]),
+                way=np.array([(*here, 0.0)]),
             )
         return states
 
     def explain(self, actor_id: Hashable) -> Explanation:
         x, y = self.positions[actor_id]
         path = np.array([[x, y, 0.0, 0.0], [x + 1.0, y, 0.0, 0.4]])
-        people = [np.array([[px, py, layer, 0.5]]) for px, py, layer in self.observed.values()]
+        people = [np.array([[px, py, pz, 0.5]]) for px, py, pz in self.observed.values()]
         return Explanation("patrol", Reason.MOVING, (x + 1.0, y, 0), path, people)
 
     def as_cast(self) -> Cast:

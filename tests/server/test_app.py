@@ -65,7 +65,9 @@ async def test_a_fault_in_the_world_ends_the_server_instead_of_freezing_it(
 
 
 async def test_a_scene_without_room_is_refused_by_name(tmp_path: Path) -> None:
-    block = Polygon(points=((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)), height_m=2.0)
+    block = Polygon(
+        points=((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)), height_m=2.0, kind="water"
+    )
     scene = Scene.open_space((0.0, 0.0, 4.0, 4.0), polygons=[block], name="stone")
     path = tmp_path / "stone.json"
     path.write_text(scene.model_dump_json())

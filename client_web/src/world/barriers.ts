@@ -19,6 +19,9 @@ export interface Barrier {
 /** A person can step up or down so far. */
 export const STEP_ON_M = 0.6;
 
+/** What nobody climbs, such as furniture, stops people however low it is. */
+const UNCLIMBED_M = 1.2;
+
 const PIECE_M = 0.25;
 /** Floors are looked up this far to both sides of an edge. */
 const ASIDE_M = 0.05;
@@ -46,14 +49,18 @@ export function barriersOf(
   ];
 }
 
-function sidesOf({ ring, bottomM, topM }: Solid): Barrier[] {
-  return edgesOf(ring).map(([a, b]) => ({
-    a,
-    b,
-    bottomM: Math.min(bottomM(...a), bottomM(...b)),
-    topM: Math.max(topM(...a), topM(...b)),
-    door: null,
-  }));
+function sidesOf({ ring, bottomM, topM, carries }: Solid): Barrier[] {
+  return edgesOf(ring).map(([a, b]) => {
+    const foot = Math.min(bottomM(...a), bottomM(...b));
+    const least = carries ? 0 : foot + UNCLIMBED_M;
+    return {
+      a,
+      b,
+      bottomM: foot,
+      topM: Math.max(topM(...a), topM(...b), least),
+      door: null,
+    };
+  });
 }
 
 /** Pieces of a top's edge beyond which there is no floor within a step. */

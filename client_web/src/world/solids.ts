@@ -19,7 +19,7 @@ export function solidsOf({ polygons, stairs }: Pick<SceneData, "polygons" | "sta
     ring: polygon.points,
     bottomM: () => polygon.offset_m,
     sheet: false,
-    carries: polygon.kind !== "plant" && polygon.kind !== "water",
+    carries: polygon.kind === "building" || polygon.kind === "floor",
     topM: topOf(polygon),
   }));
   const treads = stairs.flatMap((flight) =>

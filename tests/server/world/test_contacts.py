@@ -71,7 +71,7 @@ def test_closest_approach_matches_sampling_the_motion() -> None:
     random = np.random.default_rng(4)
     state = State(40)
     for x, y in random.uniform(0.0, 3.0, (40, 2)):
-        state.add(PERSON, "p", (float(x), float(y)), 0, 0.25)
+        state.add(PERSON, "p", (float(x), float(y), 0.0), 0, 0.25)
     state.before[:] = state.positions
     state.positions += random.normal(0.0, 0.8, (40, 2))
     first, second = np.arange(0, 40, 2), np.arange(1, 40, 2)

@@ -4,10 +4,10 @@ from server.world.neighbours import Neighbours
 from server.world.state import PERSON, State
 
 
-def crowd(*places: tuple[float, float, int]) -> State:
+def crowd(*places: tuple[float, float, float]) -> State:
     state = State(len(places) + 2)
-    for x, y, layer in places:
-        state.add(PERSON, "p", (x, y), layer, 0.25)
+    for place in places:
+        state.add(PERSON, "p", place, 0, 0.25)
     return state
 
 
@@ -18,12 +18,12 @@ def test_nearest_are_in_order_and_padded_with_nobody() -> None:
     assert found[0].tolist() == [0, 2, 1, state.capacity]
 
 
-def test_nobody_is_near_through_a_floor() -> None:
-    state = crowd((0.0, 0.0, 0), (0.0, 0.0, 1))
+def test_nobody_is_met_through_a_floor_and_who_is_on_this_one_is_seen_first() -> None:
+    state = crowd((0.0, 0.0, 0.0), (0.0, 0.0, 3.0), (5.0, 0.0, 0.0), (1.0, 0.0, 1.0))
     neighbours = Neighbours(state)
-    first, second = neighbours.within(np.array([0, 1]), 5.0)
-    assert first.tolist() == second.tolist() == []
-    assert neighbours.nearest(np.array([0]), 2, 100.0)[1][0].tolist() == [0, state.capacity]
+    first, second = neighbours.within(np.array([0]), 5.0)
+    assert sorted(zip(first.tolist(), second.tolist(), strict=True)) == [(0, 2), (0, 3)]
+    assert neighbours.nearest(np.array([0]), 4, 100.0)[1][0].tolist() == [0, 3, 2, 1]
 
 
 def test_pairs_within_reach_match_the_obvious_search() -> None:

@@ -14,9 +14,9 @@ def spawning(scene: Scene, seed: int = 1) -> Spawning:
 def test_newcomers_stand_within_a_spawn_point() -> None:
     door = spawning(ROOM)
     for _ in range(50):
-        (x, y), layer = door.place(None)
+        x, y, z = door.place(None)
         assert np.hypot(x - 3.0, y - 3.0) <= 1.0
-        assert layer == 0
+        assert z == 0.0
 
 
 def test_the_same_seed_gives_the_same_places() -> None:
@@ -26,15 +26,19 @@ def test_the_same_seed_gives_the_same_places() -> None:
     assert places != [other.place(None) for _ in range(10)]
 
 
-@pytest.mark.parametrize("at", [(10.0, 5.0, 0), (-50.0, 1e5, 0), (10.0, 5.0, 9)])
-def test_a_wished_place_gives_way_to_walls_bounds_and_layers(at: tuple[float, float, int]) -> None:
-    position, layer = spawning(ROOM).place(at)
-    assert grid_of(ROOM).is_free([position], [layer], 0.25)[0]
-    assert layer == 0
+@pytest.mark.parametrize("at", [(10.0, 5.0, 0.0), (-50.0, 1e5, 0.0), (10.0, 5.0, 9.0)])
+def test_a_wished_place_gives_way_to_walls_bounds_and_floors(
+    at: tuple[float, float, float],
+) -> None:
+    x, y, z = spawning(ROOM).place(at)
+    assert grid_of(ROOM).is_free([(x, y)], [z], 0.25)[0]
+    assert z == 0.0
 
 
 def test_a_scene_without_room_is_refused() -> None:
-    block = Polygon(points=((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)), height_m=2.0)
+    block = Polygon(
+        points=((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)), height_m=2.0, kind="water"
+    )
     scene = Scene.open_space((0.0, 0.0, 4.0, 4.0), polygons=[block], name="stone")
     with pytest.raises(NoRoomError, match="'stone' has no free place"):
         spawning(scene)

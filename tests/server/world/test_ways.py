@@ -53,13 +53,19 @@ def test_a_goal_inside_a_wall_is_moved_to_free_ground() -> None:
     assert y == pytest.approx(5.0, abs=0.3)
 
 
-@pytest.mark.parametrize("goal", [(10.0, 10.0, 0), (3.0, 3.0, 1)])
-def test_closed_rooms_and_missing_layers_are_out_of_reach(goal: Point) -> None:
-    assert find_way(grid_of(COURTYARD), (3.0, 3.0, 0), goal, 0.25) is None
+def test_closed_rooms_are_out_of_reach() -> None:
+    assert find_way(grid_of(COURTYARD), (3.0, 3.0, 0.0), (10.0, 10.0, 0.0), 0.25) is None
+
+
+def test_a_height_that_no_floor_has_means_the_nearest() -> None:
+    way = find_way(grid_of(COURTYARD), (2.0, 3.0, 0.0), (3.0, 3.0, 1.0), 0.25)
+    assert way == ((3.0, 3.0, 0.0),)
 
 
 def test_there_is_no_way_into_a_world_of_stone() -> None:
-    stone = Polygon(points=((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)), height_m=3.0)
+    stone = Polygon(
+        points=((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)), height_m=3.0, kind="water"
+    )
     grid = grid_of(Scene.open_space((0.0, 0.0, 4.0, 4.0), polygons=[stone]))
     assert find_way(grid, (1.0, 1.0, 0), (3.0, 3.0, 0), 0.25) is None
 
@@ -78,6 +84,6 @@ def test_no_leg_of_a_way_meets_a_wall(
     way = find_way(grid, (*free, 0), (*goal, 0), 0.25)
     assert way is not None
     here = np.array([free])
-    for x, y, layer in way:
-        here, _ = grid.walk(here, [layer], np.array([[x, y]]) - here, 0.2)
+    for x, y, z in way:
+        here, _ = grid.walk(here, [z], np.array([[x, y]]) - here, 0.2)
         assert math.dist(here[0], (x, y)) < 0.3

@@ -1,0 +1,53 @@
+"""Doors of the zone: they close only when nobody is in the way."""
+
+import numpy as np
+
+from planning import LayeredGrid
+from server.world.neighbours import OVERLAP_M
+from server.world.state import State
+
+GAP_M = 0.05
+"""Room that a closing leaf leaves to whoever stands beside it."""
+
+
+class Doors:
+    """What operators and scripts want of the doors, and what the doors do."""
+
+    def __init__(self, state: State, grid: LayeredGrid) -> None:
+        self._state = state
+        self._grid = grid
+        self._wanted: dict[str, bool] = {}
+
+    def states(self) -> dict[str, bool]:
+        """Which doors stand open now, by name."""
+        return {name: self._grid.doors.is_open(name) for name in self._grid.doors}
+
+    def want(self, name: str, is_open: bool) -> None:
+        """Open or close a door as soon as that is possible; unknown names are void."""
+        if name in self._grid.doors:
+            self._wanted[name] = is_open
+
+    def update(self) -> dict[str, bool]:
+        """Move the doors that can be moved; returns those that did, and their new state."""
+        moved: dict[str, bool] = {}
+        for name, is_open in list(self._wanted.items()):
+            if is_open == self._grid.doors.is_open(name):
+                del self._wanted[name]
+            elif is_open or not self._in_the_way(name):
+                self._grid.set_door(name, is_open)
+                del self._wanted[name]
+                moved[name] = is_open
+        return moved
+
+    def _in_the_way(self, name: str) -> bool:
+        """Whether the leaf would touch anybody."""
+        state = self._state
+        x0, y0, x1, y1, foot, top, _ = self._grid.barriers[self._grid.doors.rows[name]]
+        slots = state.live()
+        heights = state.heights[slots]
+        level = (heights < top) & (heights > foot - OVERLAP_M)
+        start, leaf = np.array((x0, y0)), np.array((x1 - x0, y1 - y0))
+        places = state.positions[slots] - start
+        along = np.clip(places @ leaf / (leaf @ leaf), 0.0, 1.0)
+        away = np.hypot(*(places - along[:, None] * leaf).T)
+        return bool((level & (away < state.radii[slots] + GAP_M)).any())
