@@ -152,6 +152,7 @@ class LayeredGrid:
     def set_door(self, name: str, is_open: bool) -> None:
         """Open or close a door. Only clearances within reach of it are derived again.
 
+        Who reads `arrays` meanwhile, in another thread, keeps what was before.
         Potentials made before lead through what is closed now: ask for them anew. KeyError when
         there is no door of that name.
         """
@@ -160,12 +161,14 @@ class LayeredGrid:
         box = (x0 - reach, y0 - reach, x1 + reach, y1 + reach)
         near = ((self.centres >= box[:2]) & (self.centres <= box[2:])).all(axis=1)
         holes = near & np.isnan(self.layered.floors)
+        clearance, edges = self.arrays.clearance.copy(), self.arrays.edges.copy()
         for body, row in self._rows.items():
-            field = self.arrays.clearance[row]
+            field = clearance[row]
             field[near] = CLEARANCE_CAP_M
             self._lower(field, body, box)
             field[holes] *= -1.0
-            self.arrays.edges[row] = self._edges(body)
+            edges[row] = self._edges(body)
+        self.arrays = self.arrays._replace(clearance=clearance, edges=edges)
         self._potentials.clear()
 
     @property

@@ -20,6 +20,7 @@ class ScriptedCast:
         self.observed: Mapping[Hashable, Place] = {}
         self.trips = 0
         self.failing = False
+        self.found_anew = 0
 
     def put(
         self,
@@ -54,6 +55,9 @@ class ScriptedCast:
                 way=np.array([(*here, 0.0)]),
             )
         return states
+
+    def ways_changed(self) -> None:
+        self.found_anew += 1
 
     def explain(self, actor_id: Hashable) -> Explanation:
         x, y = self.positions[actor_id]

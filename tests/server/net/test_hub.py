@@ -6,9 +6,20 @@ from pathlib import Path
 
 import pytest
 
-from planning import Wall
+from planning import Door, Wall
 from protocol import VERSION, ByeCode, CloseCode, ErrorCode
-from protocol.messages import Bye, Chat, ChatLine, Error, Hello, SetDoor, Snapshot, WalkTo, Welcome
+from protocol.messages import (
+    Bye,
+    Chat,
+    ChatLine,
+    Doors,
+    Error,
+    Hello,
+    SetDoor,
+    Snapshot,
+    WalkTo,
+    Welcome,
+)
 from tests.server.client import connected, joined
 from tests.server.conftest import Serving
 from tests.server.worlds import ROOM
@@ -89,6 +100,40 @@ async def test_only_operators_move_doors(serving: Serving) -> None:
         await client.send(SetDoor(name="gate", open=False))
         assert (await client.until(Error)).error is ErrorCode.FORBIDDEN
         await client.ticks(2)
+
+
+async def test_an_operator_moves_doors_and_everyone_is_told(
+    serving: Serving, tmp_path: Path
+) -> None:
+    gate = Door(name="gate", start=(10.0, 15.0), end=(10.0, 20.0))
+    scene = tmp_path / "gated.json"
+    scene.write_text(ROOM.model_copy(update={"doors": (gate,)}).model_dump_json())
+    async with (
+        serving(scene=scene, operator_key="sesame") as server,
+        joined(server.port, "Ann") as ann,
+        connected(server.port) as client,
+    ):
+        hello = Hello(name="Olga", version=VERSION, operator="sesame")
+        await client.send(hello)
+        welcome = await client.until(Welcome)
+        assert welcome.operator
+        assert welcome.doors == {"gate": True}
+        await client.send(SetDoor(name="gate", open=False))
+        assert (await client.until(Doors)).doors == {"gate": False}
+        assert (await ann.until(Doors)).doors == {"gate": False}
+        await client.send(SetDoor(name="window", open=False))
+        error = await client.until(Error)
+        assert (error.error, "window" in error.text) == (ErrorCode.INVALID, True)
+
+
+@pytest.mark.parametrize("known", ["", "sesame"])
+@pytest.mark.parametrize("said", [None, "", "sesam", "Sesame"])
+async def test_without_the_right_key_nobody_is_an_operator(
+    serving: Serving, known: str, said: str | None
+) -> None:
+    async with serving(operator_key=known) as server, connected(server.port) as client:
+        await client.send(Hello(name="Ann", version=VERSION, operator=said))
+        assert not (await client.until(Welcome)).operator
 
 
 async def test_chat_is_heard_by_those_who_see_the_speaker(serving: Serving) -> None:
