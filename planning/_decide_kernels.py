@@ -22,19 +22,9 @@ from planning._jit import kernel
 from planning._perturb_kernels import path_cost, stretch_is_legal, update_path
 from planning._potential_kernels import direction_at, potential_at
 from planning._prediction_kernels import Prediction
-from planning._search_kernels import (
-    FOUND,
-    NO_PATH,
-    SUB,
-    Moves,
-    Task,
-    Workspace,
-    World,
-    metres_left,
-    needed_clearance,
-    search,
-)
+from planning._search_kernels import FOUND, NO_PATH, Moves, Workspace, search
 from planning._step_kernels import control_toward, last_check, limited
+from planning._task_kernels import SUB, Task, World, metres_left, needed_clearance
 
 MOST_BEHIND_S = 5.0
 """More lost time than this is not made up."""

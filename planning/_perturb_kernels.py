@@ -8,7 +8,7 @@ from planning._jit import inlined, kernel
 from planning._potential_kernels import Guide, potential_at
 from planning._reservation_kernels import conflict
 from planning._risk_kernels import risk_at
-from planning._search_kernels import (
+from planning._task_kernels import (
     SUB,
     Task,
     World,

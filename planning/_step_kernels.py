@@ -10,7 +10,7 @@ from planning._ground_kernels import walk
 from planning._jit import kernel
 from planning._prediction_kernels import Prediction
 from planning._reservation_kernels import OVERLAP_M
-from planning._search_kernels import Task, World, advance, needed_clearance
+from planning._task_kernels import Task, World, advance, needed_clearance
 
 
 @kernel

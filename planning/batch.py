@@ -13,8 +13,9 @@ from planning._crowd import Crowd, Decisions
 from planning._decide_kernels import continue_paths, decide
 from planning._prediction_kernels import Prediction
 from planning._reservation_kernels import index_paths, ways_left
-from planning._search_kernels import SUB, Workspace, World
+from planning._search_kernels import Workspace
 from planning._step_kernels import resolve
+from planning._task_kernels import SUB, World
 from planning.grid import LayeredGrid
 from planning.risk import RiskField, RiskModel
 from planning.search import compass_moves, make_reservations, make_workspace

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from planning import _search_kernels as kernels
 from planning._reservation_kernels import MARGIN_M, Reservations
-from planning._search_kernels import SUB, Moves, Task, Workspace, World
+from planning._search_kernels import Moves, Workspace
+from planning._task_kernels import SUB, Task, World
 from planning.grid import LayeredGrid
 from planning.potential import Potential
 from planning.risk import RiskField

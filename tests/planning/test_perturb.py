@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planning import _perturb_kernels as kernels
-from planning._search_kernels import needed_clearance
+from planning._task_kernels import needed_clearance
 from tests.naive import search as naive
 from tests.planning.test_search import ground_of, people
 from tests.planning.worlds import holds, open_grid, reserved, task, world_of

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from planning import SearchForm, SearchStatus, uncertain_bfp
 from planning._perturb_kernels import path_cost
-from planning._search_kernels import Moves, advance
+from planning._search_kernels import Moves
+from planning._task_kernels import advance
 from planning.search import compass_moves, lattice_moves
 from tests.naive import search as naive
 from tests.planning.worlds import (

@@ -22,7 +22,7 @@ from planning import (
     Spawn,
 )
 from planning._reservation_kernels import Reservations, index_paths
-from planning._search_kernels import Task, World
+from planning._task_kernels import Task, World
 from planning.search import make_reservations
 
 COMPILED = not numba.config.DISABLE_JIT
