@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import OrderedDict
+from dataclasses import replace
 from pathlib import Path
 from typing import Self
 
@@ -33,6 +34,7 @@ CLEARANCE_CAP_M = 3.0
 _BUCKET_M = 1.0
 _BUCKET_REACH_M = 1.5
 _POTENTIALS_BYTES = 256 * 2**20
+_RADIUS_STEP_M = 0.05
 
 ADULT = Body.adult()
 _EDGES = (Stability.UNSTABLE, Stability.UP_STAIR, Stability.DOWN_STAIR)
@@ -97,7 +99,13 @@ class LayeredGrid:
         return cls(floors_of_mesh(path, cell_m, up, progress))
 
     def row_of(self, body: Body) -> int:
-        """Row of a kind of body in `arrays.clearance`; derived when it is asked for first."""
+        """Row of a kind of body in `arrays.clearance`; derived when it is asked for first.
+
+        Bodies that differ by less than 5 cm in radius, or only in how long they may stay on edges,
+        share a row: clearances are the same, edges those of the widest.
+        """
+        steps = math.ceil(body.radius_m / _RADIUS_STEP_M - 1e-9)
+        body = replace(body, radius_m=steps * _RADIUS_STEP_M, edge_cells=ADULT.edge_cells)
         row = self._rows.get(body)
         if row is None:
             a = self.arrays

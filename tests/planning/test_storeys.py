@@ -1,6 +1,7 @@
 """The ground over several floors: walking, ways to goals, and doors."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -327,3 +328,12 @@ def test_a_way_through_a_closed_door_leads_around_it() -> None:
     grid.set_door("gate", True)
     again = grid.potential(goal, 0.0, 0.25)
     assert again.distance([start], [0.0])[0] == pytest.approx(4.0, abs=0.01)
+
+
+def test_bodies_that_hardly_differ_share_what_is_known_of_the_ground() -> None:
+    grid = LayeredGrid.from_scene(storeyed())
+    rows = {grid.row_of(replace(ADULT, radius_m=0.21 + 0.001 * k)) for k in range(40)}
+    assert rows == {grid.row_of(ADULT)}
+    assert grid.row_of(replace(ADULT, edge_cells=9)) == grid.row_of(ADULT)
+    assert grid.row_of(replace(ADULT, step_on_m=0.3)) != grid.row_of(ADULT)
+    assert grid.row_of(replace(ADULT, radius_m=0.4)) != grid.row_of(ADULT)
