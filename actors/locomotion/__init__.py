@@ -1,0 +1,1 @@
+"""Walking with real steps: gait, footprints, inverse kinematics and keyframes."""
