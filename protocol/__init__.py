@@ -5,6 +5,7 @@ from protocol.codec import (
     decode_server,
     encode,
     encode_snapshot,
+    encode_steps,
     peek_snapshot,
 )
 from protocol.codes import (
@@ -33,5 +34,6 @@ __all__ = [
     "decode_server",
     "encode",
     "encode_snapshot",
+    "encode_steps",
     "peek_snapshot",
 ]

@@ -6,7 +6,7 @@ the browser and `tests/protocol/test_codes.py` holds the two together.
 
 from enum import IntEnum, StrEnum
 
-VERSION = 2
+VERSION = 3
 """Version of the protocol. Both sides must speak the same one."""
 
 MAX_CLIENT_FRAME_BYTES = 2048
@@ -45,6 +45,8 @@ class ServerCode(IntEnum):
     PLAN = 73
     CENSUS = 74
     DOORS = 75
+    STEPS = 76
+    POINT = 77
 
 
 class Kind(StrEnum):

@@ -37,6 +37,8 @@ def _one_visible_line(text: str) -> str:
 
 
 Metres = Annotated[float, Field(ge=-100_000.0, le=100_000.0, allow_inf_nan=False)]
+Place = tuple[float, float, float]
+"""x, y, z."""
 Layer = Annotated[int, Field(ge=0, le=255)]
 Token = Annotated[str, Field(max_length=MAX_TOKEN_CHARS)]
 EntityId = Annotated[int, Field(ge=0, le=0xFFFF_FFFF)]
@@ -175,6 +177,11 @@ class Entity(BaseModel):
     z: float
     heading: float
     radius: float
+    leg_m: float
+    """Length of a leg from hip to ankle."""
+    stature_m: float
+    points_at: Place | None
+    """What an actor that explains points at."""
 
 
 class Enter(FromServer):
@@ -260,7 +267,7 @@ class Plan(FromServer):
     id: EntityId
     reason: Reason
     behaviour: Literal["go_to", "wander", "patrol", "guide", "idle"]
-    goal: tuple[float, float, float] | None
+    goal: Place | None
     path: list[tuple[float, float, float, float]]
     """Points (x, y, z, seconds from now)."""
     people: list[list[Circle]]
@@ -282,6 +289,35 @@ class Doors(FromServer):
     doors: dict[str, bool]
 
 
+class StepBlock(FromServer):
+    """Steps of those near by. `block` holds packed records, see `protocol.steps`."""
+
+    code = ServerCode.STEPS
+    tick: int
+    block: bytes
+
+
+class Point(FromServer):
+    """An actor in view points at something from now on, or at nothing any more (None)."""
+
+    code = ServerCode.POINT
+    id: EntityId
+    target: Place | None
+
+
 ServerMessage = (
-    Welcome | Enter | Leave | Snapshot | Chat | Notice | Error | Bye | Pong | Plan | Census | Doors
+    Welcome
+    | Enter
+    | Leave
+    | Snapshot
+    | Chat
+    | Notice
+    | Error
+    | Bye
+    | Pong
+    | Plan
+    | Census
+    | Doors
+    | StepBlock
+    | Point
 )

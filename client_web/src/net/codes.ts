@@ -1,6 +1,6 @@
 /** The numbers and names on the wire; the same table as `protocol/codes.py`. */
 
-export const VERSION = 2;
+export const VERSION = 3;
 
 export const MAX_NAME_CHARS = 32;
 export const MAX_CHAT_CHARS = 300;
@@ -28,6 +28,8 @@ export const ServerCode = {
   PLAN: 73,
   CENSUS: 74,
   DOORS: 75,
+  STEPS: 76,
+  POINT: 77,
 } as const;
 
 export const Reason = {
