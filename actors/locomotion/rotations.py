@@ -25,7 +25,8 @@ _STRAIGHT_RAD: Final = 1e-6
 def normalise(q: ArrayLike) -> Floats:
     """The unit quaternions of float64 (..., 4) along the same directions."""
     values = np.asarray(q, dtype=np.float64)
-    return values / np.linalg.norm(values, axis=-1, keepdims=True)
+    unit: Floats = values / np.linalg.norm(values, axis=-1, keepdims=True)
+    return unit
 
 
 def multiply(a: ArrayLike, b: ArrayLike) -> Floats:
@@ -54,7 +55,8 @@ def rotate(q: ArrayLike, vectors: ArrayLike) -> Floats:
     given = np.asarray(vectors, dtype=np.float64)
     axis = turned[..., 1:]
     twice = 2.0 * np.cross(axis, given)
-    return given + turned[..., :1] * twice + np.cross(axis, twice)
+    moved: Floats = given + turned[..., :1] * twice + np.cross(axis, twice)
+    return moved
 
 
 def about(axis: ArrayLike, angle_rad: ArrayLike) -> Floats:
@@ -69,7 +71,8 @@ def angle_between(a: ArrayLike, b: ArrayLike) -> Floats:
     """Angles (...) of the shortest rotations from a to b, in [0, pi] radians."""
     relative = multiply(inverse(a), b)
     sine = np.linalg.norm(relative[..., 1:], axis=-1)
-    return 2.0 * np.arctan2(sine, np.abs(relative[..., 0]))
+    angle: Floats = 2.0 * np.arctan2(sine, np.abs(relative[..., 0]))
+    return angle
 
 
 def slerp(a: ArrayLike, b: ArrayLike, share: ArrayLike) -> Floats:
