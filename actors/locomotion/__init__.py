@@ -1,1 +1,1 @@
-"""Walking with real steps: gait, footprints, inverse kinematics and keyframes."""
+"""Walking with real steps: gait, footprints and inverse kinematics, for many avatars at once."""
