@@ -14,6 +14,9 @@ PERSON: Final = 0
 ACTOR: Final = 1
 KINDS: Final = (Kind.PERSON, Kind.ACTOR)
 
+LEG_M: Final = 0.9
+STATURE_M: Final = 1.72
+
 
 class WorldFullError(RuntimeError):
     """Every slot is taken."""
@@ -40,6 +43,8 @@ class State:
         self.speeds = np.zeros(capacity)
         self.reasons = np.zeros(capacity, dtype=np.uint8)
         self.radii = np.zeros(capacity)
+        self.legs_m = np.zeros(capacity)
+        self.statures_m = np.zeros(capacity)
         self.names = [""] * capacity
         self._slots: dict[int, int] = {}
         self._free = list(range(capacity - 1, -1, -1))
@@ -81,6 +86,7 @@ class State:
         self.headings[slot] = self.speeds[slot] = 0.0
         self.reasons[slot] = 0
         self.radii[slot] = radius_m
+        self.legs_m[slot], self.statures_m[slot] = LEG_M, STATURE_M
         self.names[slot] = name
         self._slots[self._next_id] = slot
         self._next_id += 1

@@ -147,6 +147,9 @@ class World:
             "z": float(state.heights[slot]),
             "heading": float(state.headings[slot]),
             "radius": float(state.radii[slot]),
+            "leg_m": float(state.legs_m[slot]),
+            "stature_m": float(state.statures_m[slot]),
+            "points_at": None,
         }
 
     def straight_way(self, avatar_id: int, goal: Point) -> Way | None:
