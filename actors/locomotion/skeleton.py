@@ -15,6 +15,12 @@ FOOT = 0.2
 """From the heel, which lies under the ankle joint, to the toe."""
 
 HIP_HALF_WIDTH = 0.178
+TRACK_HALF_WIDTH = 0.1
+"""Hip joints and footprints of a body that takes real steps, to either side.
+
+Table 1 (above) has legs in planes of their own, wide apart; people walk on a narrower track.
+"""
+
 HIP_DEPTH = 0.178
 """How far the line through both hip joints lies below the origin."""
 
