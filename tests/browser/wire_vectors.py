@@ -21,6 +21,7 @@ from protocol import (
     ServerCode,
     encode,
     encode_snapshot,
+    encode_steps,
 )
 from protocol.codes import MAX_CHAT_CHARS, MAX_NAME_CHARS
 from protocol.messages import (
@@ -41,6 +42,7 @@ from protocol.messages import (
     Notice,
     Ping,
     Plan,
+    Point,
     Pong,
     SetDoor,
     WalkTo,
@@ -48,6 +50,8 @@ from protocol.messages import (
     Welcome,
 )
 from protocol.snapshot import pack_records
+from protocol.steps import Footprints, Steps, pack_steps, unpack_steps
+from tests.protocol.steps import made_up_steps
 
 FIXTURE: Final = Path(__file__).parents[2] / "client_web" / "tests" / "fixtures" / "wire.json"
 
@@ -95,6 +99,9 @@ FROM_SERVER: Final[tuple[FromServer, ...]] = (
                 z=3.5,
                 heading=0.5,
                 radius=0.25,
+                leg_m=0.875,
+                stature_m=1.75,
+                points_at=(4.5, -2.0, 1.25),
             )
         ],
     ),
@@ -115,6 +122,8 @@ FROM_SERVER: Final[tuple[FromServer, ...]] = (
     ),
     Census(people=3, actors=10),
     Doors(doors={"Gate": False}),
+    Point(id=8, target=(4.5, -2.0, 1.25)),
+    Point(id=8, target=None),
 )
 
 
@@ -131,6 +140,7 @@ def vectors() -> dict[str, Any]:
         "client": [_vector(message) for message in FROM_CLIENT],
         "server": [_vector(message) for message in FROM_SERVER],
         "snapshot": _snapshot(),
+        "steps": _steps(),
     }
 
 
@@ -190,6 +200,50 @@ def _snapshot() -> dict[str, Any]:
             },
         ],
     }
+
+
+def _steps() -> dict[str, Any]:
+    records = pack_steps(made_up_steps(5))
+    steps = unpack_steps(records)
+    return {
+        "tick": 4000000000,
+        "frame": encode_steps(4000000000, records.tobytes()).hex(),
+        "records": [_step(steps, row) for row in range(len(records))],
+    }
+
+
+def _step(steps: Steps, row: int) -> dict[str, Any]:
+    """A step as the client has it: the keys against their footprints, one flat list."""
+    keys = steps.keys
+    numbers = np.concatenate(
+        [
+            keys.roots_m[row] - steps.standing.positions_m[row],
+            keys.pelvises[row],
+            keys.ankles_m[row] - steps.landing.positions_m[row],
+            keys.swing_pitches_rad[row, :, None],
+            keys.standing_pitches_rad[row, :, None],
+            keys.swing_headings_rad[row, :, None] - steps.landing.headings_rad[row],
+            keys.chests[row],
+            keys.arms_rad[row],
+        ],
+        axis=1,
+    )
+    return {
+        "id": int(steps.ids[row]),
+        "rightStands": bool(steps.on_right[row]),
+        "continues": bool(steps.re_aimed[row]),
+        "tick": int(steps.begin_ticks[row]),
+        "ticks": int(steps.durations_ticks[row]),
+        "standing": _footprint(steps.standing, row),
+        "landing": _footprint(steps.landing, row),
+        "lift": float(steps.lifts[row]),
+        "keys": np.round(numbers.ravel(), 12).tolist(),
+    }
+
+
+def _footprint(footprints: Footprints, row: int) -> dict[str, float]:
+    x, y, z = footprints.positions_m[row].tolist()
+    return {"x": x, "y": y, "z": z, "heading": float(footprints.headings_rad[row])}
 
 
 if __name__ == "__main__":

@@ -24,9 +24,11 @@ from protocol.messages import (
     Notice,
     Ping,
     Plan,
+    Point,
     Pong,
     SetDoor,
     Snapshot,
+    StepBlock,
     WalkTo,
     Watch,
     Welcome,
@@ -38,6 +40,7 @@ metres = st.floats(-100_000, 100_000, allow_nan=False)
 floats = st.floats(allow_nan=False, allow_infinity=False)
 texts = st.text(st.characters(codec="utf-8"), max_size=80)
 bounds = st.tuples(floats, floats)
+places = st.tuples(floats, floats, floats)
 tokens = st.text(st.characters(codec="utf-8"), max_size=MAX_TOKEN_CHARS)
 doors = st.dictionaries(texts, st.booleans(), max_size=3)
 
@@ -84,6 +87,9 @@ entities = st.builds(
     z=floats,
     heading=floats,
     radius=floats,
+    leg_m=floats,
+    stature_m=floats,
+    points_at=st.none() | places,
 )
 circles = st.builds(Circle, x=floats, y=floats, z=floats, radius=floats)
 
@@ -119,10 +125,12 @@ server_messages: st.SearchStrategy[FromServer] = st.one_of(
         id=u32,
         reason=st.sampled_from(Reason),
         behaviour=st.sampled_from(["go_to", "wander", "patrol", "guide", "idle"]),
-        goal=st.none() | st.tuples(floats, floats, floats),
+        goal=st.none() | places,
         path=st.lists(st.tuples(floats, floats, floats, floats), max_size=4),
         people=st.lists(st.lists(circles, max_size=3), max_size=3),
     ),
     st.builds(Census, people=u32, actors=u32),
     st.builds(Doors, doors=doors),
+    st.builds(StepBlock, tick=u32, block=st.binary(max_size=500)),
+    st.builds(Point, id=u32, target=st.none() | places),
 )

@@ -17,9 +17,16 @@ from protocol import (
     decode_server,
     encode,
     encode_snapshot,
+    encode_steps,
     peek_snapshot,
 )
-from protocol.codec import CLIENT_MESSAGES, MAX_BLOCK_BYTES, SERVER_MESSAGES, SNAPSHOT_HEAD_BYTES
+from protocol.codec import (
+    CLIENT_MESSAGES,
+    MAX_BLOCK_BYTES,
+    SERVER_MESSAGES,
+    SNAPSHOT_HEAD_BYTES,
+    STEPS_HEAD_BYTES,
+)
 from protocol.codes import MAX_CLIENT_FRAME_BYTES, ClientCode
 from protocol.messages import FromClient, FromServer, Hello, Snapshot
 from tests.protocol.messages import client_messages, server_messages
@@ -37,7 +44,8 @@ def test_a_server_message_comes_back_as_it_was(message: FromServer) -> None:
 
 def test_every_code_has_a_model() -> None:
     assert {int(code) for code in ClientCode} == set(CLIENT_MESSAGES)
-    assert {int(code) for code in ServerCode} == set(SERVER_MESSAGES) | {int(ServerCode.SNAPSHOT)}
+    flat = {int(ServerCode.SNAPSHOT), int(ServerCode.STEPS)}
+    assert {int(code) for code in ServerCode} == set(SERVER_MESSAGES) | flat
 
 
 # --- hostile frames -----------------------------------------------------------------------------
@@ -72,7 +80,7 @@ trees: st.SearchStrategy[Any] = st.recursive(
     lambda inner: st.lists(inner, max_size=5) | st.dictionaries(keys, inner, max_size=5),
     max_leaves=12,
 )
-codes = st.sampled_from([*CLIENT_MESSAGES, *SERVER_MESSAGES, int(ServerCode.SNAPSHOT)])
+codes = st.sampled_from([*CLIENT_MESSAGES, *map(int, ServerCode)])
 
 
 @given(trees)
@@ -153,7 +161,7 @@ def test_the_longest_messages_fit_a_frame() -> None:
     assert decode_client(frame) is not None
 
 
-# --- snapshots ----------------------------------------------------------------------------------
+# --- flat messages ------------------------------------------------------------------------------
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(0, 2**32 - 1), st.binary(max_size=400))
@@ -163,6 +171,14 @@ def test_a_snapshot_is_plain_msgpack_with_a_fixed_head(tick: int, ack: int, bloc
     assert msgpack.unpackb(frame) == [67, tick, ack, block]
     assert peek_snapshot(frame) == (tick, ack)
     assert struct.unpack_from(">H", frame, 13) == (len(block),)
+
+
+@given(st.integers(0, 2**32 - 1), st.binary(max_size=500))
+def test_steps_are_plain_msgpack_with_a_fixed_head(tick: int, block: bytes) -> None:
+    frame = encode_steps(tick, block)
+    assert len(frame) == STEPS_HEAD_BYTES + len(block)
+    assert msgpack.unpackb(frame) == [76, tick, block]
+    assert struct.unpack_from(">H", frame, 8) == (len(block),)
 
 
 @given(server_messages.filter(lambda message: not isinstance(message, Snapshot)))
@@ -179,3 +195,6 @@ def test_a_block_has_a_limit() -> None:
     assert len(encode_snapshot(1, 1, bytes(MAX_BLOCK_BYTES))) == MAX_BLOCK_BYTES + 15
     with pytest.raises(ValueError, match="at most 65535 bytes"):
         encode_snapshot(1, 1, bytes(MAX_BLOCK_BYTES + 1))
+    assert len(encode_steps(1, bytes(MAX_BLOCK_BYTES))) == MAX_BLOCK_BYTES + 10
+    with pytest.raises(ValueError, match="at most 65535 bytes"):
+        encode_steps(1, bytes(MAX_BLOCK_BYTES + 1))

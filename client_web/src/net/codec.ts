@@ -1,7 +1,11 @@
-/** Messages to frames and back: `[code, fields]`, and the flat snapshot `[67, tick, ack, block]`. */
+/**
+ * Messages to frames and back: `[code, fields]`, and flat ones, the snapshot
+ * `[67, tick, ack, block]` and steps `[76, tick, block]`.
+ */
 
 import { decode, encode as pack } from "@msgpack/msgpack";
 import { ClientCode, ServerCode, VERSION } from "./codes";
+import { WireError } from "./errors";
 import type { ClientMessage, EntityRecord, Point, ServerMessage } from "./messages";
 
 const CLIENT_CODES: Record<ClientMessage["type"], number> = {
@@ -26,14 +30,13 @@ const SERVER_TYPES = new Map<unknown, ServerMessage["type"]>([
   [ServerCode.PLAN, "plan"],
   [ServerCode.CENSUS, "census"],
   [ServerCode.DOORS, "doors"],
+  [ServerCode.POINT, "point"],
 ]);
 
 const RECORD_BYTES = 14;
 const POSITION_M = 0.01;
 const HEADING_RAD = (2 * Math.PI) / 256;
 const SPEED_MPS = 0.02;
-
-export class WireError extends Error {}
 
 export function encodeClient(message: ClientMessage): Uint8Array<ArrayBuffer> {
   const { type, ...fields } = message;
@@ -56,6 +59,13 @@ export function decodeServer(frame: ArrayBuffer | Uint8Array): ServerMessage | n
       throw new WireError("a snapshot is [67, tick, ack, block]");
     }
     return { type: "snapshot", tick, ack, block };
+  }
+  if (code === ServerCode.STEPS) {
+    const [tick, block] = rest;
+    if (typeof tick !== "number" || !(block instanceof Uint8Array)) {
+      throw new WireError("steps are [76, tick, block]");
+    }
+    return { type: "steps", tick, block };
   }
   const type = SERVER_TYPES.get(code);
   if (type === undefined) return null;

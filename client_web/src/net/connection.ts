@@ -4,7 +4,8 @@ import { backoffMs } from "./backoff";
 import { ServerClock } from "./clock";
 import { closing, type Closing } from "./closing";
 import { CloseCode } from "./codes";
-import { decodeServer, encodeClient, WireError } from "./codec";
+import { decodeServer, encodeClient } from "./codec";
+import { WireError } from "./errors";
 import type { ClientMessage, ServerMessage, Welcome } from "./messages";
 
 export type ConnectionState =

@@ -6,6 +6,7 @@
 import type { Kind } from "./codes";
 
 export type Point = [x: number, y: number];
+export type Place = [x: number, y: number, z: number];
 
 export type ClientMessage =
   | { type: "hello"; name: string; resume: string | null; operator: string | null }
@@ -96,6 +97,11 @@ export interface EntityInfo {
   z: number;
   heading: number;
   radius: number;
+  /** Length of a leg from hip to ankle. */
+  leg_m: number;
+  stature_m: number;
+  /** What an actor that explains points at. */
+  points_at: Place | null;
 }
 
 /** One avatar's record in a snapshot, in world coordinates. */
@@ -130,7 +136,7 @@ export interface Plan {
   id: number;
   reason: number;
   behaviour: string;
-  goal: [x: number, y: number, z: number] | null;
+  goal: Place | null;
   /** Points (x, y, z, seconds from now). */
   path: [x: number, y: number, z: number, seconds: number][];
   people: PlanCircle[][];
@@ -155,4 +161,8 @@ export type ServerMessage =
   | { type: "bye"; reason: string; text: string }
   | { type: "pong"; nonce: number; server_time: number }
   | { type: "census"; people: number; actors: number }
-  | { type: "doors"; doors: Doors };
+  | { type: "doors"; doors: Doors }
+  /** Records of steps, see `unpackSteps`. */
+  | { type: "steps"; tick: number; block: Uint8Array }
+  /** An actor in view points at something from now on, or at nothing any more. */
+  | { type: "point"; id: number; target: Place | null };

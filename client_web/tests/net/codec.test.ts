@@ -1,8 +1,10 @@
 import { decode } from "@msgpack/msgpack";
 import { describe, expect, it } from "vitest";
 import * as codes from "../../src/net/codes";
-import { decodeServer, encodeClient, unpackBlock, WireError } from "../../src/net/codec";
+import { decodeServer, encodeClient, unpackBlock } from "../../src/net/codec";
+import { WireError } from "../../src/net/errors";
 import type { ClientMessage, Point } from "../../src/net/messages";
+import { unpackSteps } from "../../src/net/steps";
 import wire from "../fixtures/wire.json";
 
 const bytes = (hex: string): Uint8Array =>
@@ -54,6 +56,14 @@ describe("decodeServer", () => {
     });
   });
 
+  it("reads steps", () => {
+    const { tick, frame, records } = wire.steps;
+    const message = decodeServer(bytes(frame));
+    expect(message).toMatchObject({ type: "steps", tick });
+    if (message?.type !== "steps") return;
+    expect(unpackSteps(message.block)).toHaveLength(records.length);
+  });
+
   it("passes over message codes that it does not know", () => {
     expect(decodeServer(Uint8Array.of(0x92, 0x7f, 0x80))).toBeNull();
   });
@@ -63,6 +73,7 @@ describe("decodeServer", () => {
     ["no array", Uint8Array.of(0x80)],
     ["no map of fields", Uint8Array.of(0x92, codes.ServerCode.CHAT, 0x01)],
     ["a snapshot without a block", Uint8Array.of(0x93, codes.ServerCode.SNAPSHOT, 1, 2)],
+    ["steps without a block", Uint8Array.of(0x92, codes.ServerCode.STEPS, 1)],
   ])("refuses %s", (_what, frame) => {
     expect(() => decodeServer(frame)).toThrow(WireError);
   });

@@ -1,5 +1,5 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import { ClientCode, CloseCode, ServerCode } from "../../src/net/codes";
+import { ClientCode, CloseCode, ServerCode, VERSION } from "../../src/net/codes";
 import { Connection, type ConnectionState } from "../../src/net/connection";
 import type { ServerMessage } from "../../src/net/messages";
 import { FakeSocket, WELCOME } from "./sockets";
@@ -43,7 +43,7 @@ function comeIn(): void {
 describe("joining", () => {
   it("greets as soon as the socket is open and is live with the welcome", () => {
     comeIn();
-    const hello = { name: "Ann", version: 2, resume: null, at: null, operator: null };
+    const hello = { name: "Ann", version: VERSION, resume: null, at: null, operator: null };
     expect(newest().received[0]).toEqual([ClientCode.HELLO, hello]);
     expect(phases()).toEqual(["connecting", "live"]);
     expect(messages.map(({ type }) => type)).toEqual(["welcome"]);

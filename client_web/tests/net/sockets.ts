@@ -1,6 +1,7 @@
 /** A server that lives in the test: sockets whose other end the test holds. */
 
 import { decode, encode } from "@msgpack/msgpack";
+import { VERSION } from "../../src/net/codes";
 import type { Socket } from "../../src/net/connection";
 import type { Welcome } from "../../src/net/messages";
 
@@ -46,7 +47,7 @@ export const WebSocketState = { CONNECTING: 0, OPEN: 1, CLOSED: 3 } as const;
 
 export const WELCOME: Welcome = {
   type: "welcome",
-  version: 2,
+  version: VERSION,
   id: 7,
   name: "Ann",
   resume: "token-1",

@@ -13,6 +13,9 @@ const info = (id: number, kind: EntityInfo["kind"] = "actor"): EntityInfo => ({
   z: 0,
   heading: 0,
   radius: 0.25,
+  leg_m: 0.9,
+  stature_m: 1.72,
+  points_at: null,
 });
 const record = (id: number, x: number): EntityRecord => ({
   id,

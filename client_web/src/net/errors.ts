@@ -1,0 +1,2 @@
+/** The server sent what cannot be read. */
+export class WireError extends Error {}

@@ -1,0 +1,171 @@
+"""The packed block of steps: layout, bounds of quantisation, clamping at the edges."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from protocol.steps import (
+    ARM_RAD,
+    FOOT_RAD,
+    FOOTPRINT_M,
+    FOOTPRINT_RAD,
+    KEY,
+    KEY_M,
+    KEYS,
+    STEP,
+    Floats,
+    Footprints,
+    Keys,
+    Steps,
+    pack_steps,
+    step_records,
+    unpack_steps,
+)
+from tests.protocol.steps import made_up_steps
+
+LEGS_M = 0.3e-3
+LEGS_RAD = np.radians(0.05)
+TRUNK_RAD = np.radians(1.0)
+
+
+def turned_rad(one: Floats, other: Floats) -> Floats:
+    """Angle between rotations, whatever the signs of their quaternions."""
+    apart = np.minimum(np.linalg.norm(one - other, axis=-1), np.linalg.norm(one + other, axis=-1))
+    angles: Floats = 4.0 * np.arcsin(apart / 2.0)
+    return angles
+
+
+def off(one: Floats, other: Floats) -> float:
+    return float(np.abs(one - other).max())
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_what_comes_back_is_as_near_as_a_pose_needs(seed: int) -> None:
+    steps = made_up_steps(8, seed)
+    read = unpack_steps(step_records(pack_steps(steps).tobytes()))
+    for name in ("ids", "on_right", "re_aimed", "begin_ticks", "durations_ticks"):
+        np.testing.assert_array_equal(getattr(read, name), getattr(steps, name))
+    assert off(read.lifts, steps.lifts) <= 0.5 / 255 + 1e-9
+    for before, after in ((steps.standing, read.standing), (steps.landing, read.landing)):
+        assert off(after.positions_m, before.positions_m) <= FOOTPRINT_M / 2 + 1e-9
+        turned = np.angle(np.exp(1j * (after.headings_rad - before.headings_rad)))
+        assert np.abs(turned).max() <= FOOTPRINT_RAD / 2 + 1e-9
+    keys, known = read.keys, steps.keys
+    assert off(keys.roots_m, known.roots_m) <= KEY_M / 2 + 1e-9 < LEGS_M
+    assert off(keys.ankles_m, known.ankles_m) <= KEY_M / 2 + 1e-9 < LEGS_M
+    assert off(keys.swing_pitches_rad, known.swing_pitches_rad) <= FOOT_RAD / 2 + 1e-9 < LEGS_RAD
+    assert off(keys.standing_pitches_rad, known.standing_pitches_rad) <= FOOT_RAD / 2 + 1e-9
+    turned = np.angle(np.exp(1j * (keys.swing_headings_rad - known.swing_headings_rad)))
+    assert np.abs(turned).max() <= FOOT_RAD / 2 + 1e-9
+    assert turned_rad(keys.pelvises, known.pelvises).max() < np.radians(0.01) < LEGS_RAD
+    assert turned_rad(keys.chests, known.chests).max() < TRUNK_RAD
+    assert off(keys.arms_rad, known.arms_rad) <= ARM_RAD / 2 + 1e-9 < TRUNK_RAD
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_what_was_read_is_packed_to_the_same_bytes(seed: int) -> None:
+    """Who goes on from a record's values changes nothing by packing them again."""
+    records = pack_steps(made_up_steps(4, seed))
+    again = pack_steps(unpack_steps(records))
+    assert again["standing"].tobytes() == records["standing"].tobytes()
+    assert again["landing"].tobytes() == records["landing"].tobytes()
+    for name in KEY.names or ():
+        if name != "pelvis":  # of two components that are nearly the largest, either may be
+            np.testing.assert_array_equal(again["keys"][name], records["keys"][name], name)
+
+
+def test_a_swing_heading_stays_whole_over_the_keys() -> None:
+    """Interpolating between keys must not run the long way around."""
+    steps = made_up_steps(1)
+    headings = np.linspace(np.pi - 0.3, np.pi + 0.3, KEYS)[None]
+    landing = Footprints(steps.landing.positions_m, np.array([-np.pi + 0.3]))
+    keys = replace(steps.keys, swing_headings_rad=headings)
+    read = unpack_steps(pack_steps(replace(steps, landing=landing, keys=keys)))
+    np.testing.assert_allclose(np.diff(read.keys.swing_headings_rad), 0.12, atol=FOOT_RAD)
+
+
+def test_what_lies_outside_is_clamped_to_the_edge() -> None:
+    steps = made_up_steps(2)
+    far = np.zeros((2, KEYS, 3)) + np.array([1e3, -1e3])[:, None, None]
+    keys = replace(
+        steps.keys,
+        roots_m=far,
+        ankles_m=far,
+        arms_rad=np.full((2, KEYS, 4), -9.0),
+        standing_pitches_rad=np.full((2, KEYS), 9.0),
+    )
+    wide = replace(steps, keys=keys, lifts=np.array([-1.0, 2.0]), durations_ticks=np.full(2, 300))
+    records = pack_steps(wide)
+    assert set(records["keys"]["root"].ravel().tolist()) == {32767, -32767}
+    assert set(records["keys"]["ankle"].ravel().tolist()) == {32767, -32767}
+    assert set(records["keys"]["arms"].ravel().tolist()) == {-127}
+    assert set(records["keys"]["standing_pitch"].ravel().tolist()) == {32767}
+    assert records["lift"].tolist() == [0, 255]
+    assert records["ticks"].tolist() == [255, 255]
+
+
+def test_the_layout_byte_by_byte() -> None:
+    upright = np.broadcast_to([1.0, 0.0, 0.0, 0.0], (1, KEYS, 4))
+    angles = np.zeros((1, KEYS))
+    steps = Steps(
+        ids=np.array([0x01020304]),
+        on_right=np.array([True]),
+        re_aimed=np.array([True]),
+        begin_ticks=np.array([0x05060708]),
+        durations_ticks=np.array([9]),
+        standing=Footprints(np.array([[1.0, -1.0, 0.25]]), np.array([np.pi / 2])),
+        landing=Footprints(np.array([[1.5, -1.0, 0.25]]), np.array([-np.pi / 2])),
+        lifts=np.array([1.0]),
+        keys=Keys(
+            roots_m=np.broadcast_to([1.25, -1.0, 1.125], (1, KEYS, 3)),
+            pelvises=upright,
+            ankles_m=np.broadcast_to([1.0, -1.0, 0.25], (1, KEYS, 3)),
+            swing_pitches_rad=angles + 0.1,
+            standing_pitches_rad=angles - 0.1,
+            swing_headings_rad=angles - np.pi / 2 + 0.01,
+            chests=upright,
+            arms_rad=np.full((1, KEYS, 4), 0.5),
+        ),
+    )
+    block = pack_steps(steps).tobytes()
+    assert len(block) == STEP.itemsize == 225
+    assert block[:39].hex(" ") == (
+        "04 03 02 01 03 08 07 06 05 09 "
+        "e8 03 00 00 18 fc ff ff fa 00 00 00 00 40 "
+        "dc 05 00 00 18 fc ff ff fa 00 00 00 00 c0 ff"
+    )
+    assert block[39:70].hex(" ") == (
+        "c4 09 00 00 2e 22 00 40 00 40 00 40 78 ec 00 00 00 00 e8 03 18 fc 64 00 "
+        "00 00 00 14 14 14 14"
+    )
+    assert block[39:] == block[39:70] * KEYS
+
+
+def test_every_field_has_a_row_for_each_step() -> None:
+    read = unpack_steps(pack_steps(made_up_steps(3)))
+    for part in (read, read.standing, read.landing, read.keys):
+        values = [getattr(part, field.name) for field in fields(part)]
+        assert {len(value) for value in values if isinstance(value, np.ndarray)} == {3}
+
+
+def test_nobody_near_is_an_empty_block() -> None:
+    assert len(step_records(b"")) == 0
+    assert unpack_steps(step_records(b"")).keys.roots_m.shape == (0, KEYS, 3)
+
+
+@pytest.mark.parametrize("length", [1, 224, 226])
+def test_a_block_cut_short_is_refused(length: int) -> None:
+    with pytest.raises(ValueError, match=f"block of {length} bytes of steps is no multiple of 225"):
+        step_records(bytes(length))
+
+
+@given(st.binary(min_size=STEP.itemsize, max_size=STEP.itemsize))
+def test_whatever_the_bytes_the_values_are_finite(block: bytes) -> None:
+    keys = unpack_steps(step_records(block)).keys
+    for field in fields(keys):
+        assert np.isfinite(getattr(keys, field.name)).all(), field.name
+    np.testing.assert_allclose(np.linalg.norm(keys.pelvises, axis=-1), 1.0)
+    np.testing.assert_allclose(np.linalg.norm(keys.chests, axis=-1), 1.0)
