@@ -46,7 +46,8 @@ def multiply(a: ArrayLike, b: ArrayLike) -> Floats:
 
 def inverse(q: ArrayLike) -> Floats:
     """Inverses of unit quaternions, float64 (..., 4)."""
-    return np.asarray(q, dtype=np.float64) * np.array([1.0, -1.0, -1.0, -1.0])
+    conjugate: Floats = np.asarray(q, dtype=np.float64) * np.array([1.0, -1.0, -1.0, -1.0])
+    return conjugate
 
 
 def rotate(q: ArrayLike, vectors: ArrayLike) -> Floats:
