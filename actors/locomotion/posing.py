@@ -31,21 +31,23 @@ from actors.locomotion.motion import (
 from actors.locomotion.rotations import multiply, normalise, rotate
 from actors.locomotion.skeleton import (
     FOOT,
-    FOREARM,
     HEAD_TOP,
     HIP_DEPTH,
-    NECK_HEIGHT,
     SHIN,
-    SHOULDER_HALF_WIDTH,
     THIGH,
-    UPPER_ARM,
+    TRACK_HALF_WIDTH,
 )
 
-HIP_ASIDE: Final = 0.1
-"""Hip joints from the hip centre to either side, in leg lengths. Table 1 has them below the
-shoulders, which suits legs that swing in planes of their own; on real feet that looks broad."""
 REACH: Final = 0.9995
 """A leg is not stretched further: knees that lock straighten with a jerk."""
+
+# Shoulders and arms of measured people (Drillis & Contini), in shares of the trunk's scale: those
+# of the gait's source are broad, high and long.
+SHOULDER_UP: Final = 0.35
+"""Above where the spine bends, along the chest."""
+SHOULDER_ASIDE: Final = 0.215
+UPPER_ARM: Final = 0.345
+FOREARM: Final = 0.27
 ARMS_OUT: Final = 0.12
 """Arms hang so far from the body, radians."""
 STATURE: Final = 1.0 + HIP_DEPTH + HEAD_TOP
@@ -118,7 +120,7 @@ def pose(steps: Steps, u: Floats, build: Build) -> Pose:
     pelvis = key[:, PELVIS]
     ankles, pitches, headings, raised = _feet(steps, u, key, build)
     hips = root[:, None] + rotate(
-        pelvis[:, None], _aside(HIP_ASIDE * build.leg_m, np.zeros_like(build.leg_m))
+        pelvis[:, None], _aside(TRACK_HALF_WIDTH * build.leg_m, np.zeros_like(build.leg_m))
     )
     _raise_heels(hips, ankles, pitches, headings, raised, build)
     root, hips = _lower(root, hips, ankles, build)
@@ -245,7 +247,7 @@ def _upper_body(
     up[:, 2] = size
     lumbar = root + rotate(pelvis, HIP_DEPTH * up)
     shoulders = lumbar[:, None] + rotate(
-        chest[:, None], _aside(SHOULDER_HALF_WIDTH * size, NECK_HEIGHT * size)
+        chest[:, None], _aside(SHOULDER_ASIDE * size, SHOULDER_UP * size)
     )
     flexed = key[:, SHOULDERS]
     upper = rotate(chest[:, None], _arm(flexed))
@@ -254,7 +256,7 @@ def _upper_body(
     hands = elbows + FOREARM * size[:, None, None] * fore
     return (
         lumbar,
-        lumbar + rotate(chest, NECK_HEIGHT * up),
+        lumbar + rotate(chest, SHOULDER_UP * up),
         lumbar + rotate(chest, HEAD_TOP * up),
         shoulders,
         elbows,

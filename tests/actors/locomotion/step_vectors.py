@@ -29,8 +29,8 @@ def vectors() -> dict[str, Any]:
         "skeleton": {
             name: getattr(posing, name)
             for name in (
-                "THIGH", "SHIN", "FOOT", "HIP_ASIDE", "REACH", "HIP_DEPTH", "NECK_HEIGHT",
-                "HEAD_TOP", "SHOULDER_HALF_WIDTH", "UPPER_ARM", "FOREARM", "ARMS_OUT", "STATURE",
+                "THIGH", "SHIN", "FOOT", "TRACK_HALF_WIDTH", "REACH", "HIP_DEPTH", "HEAD_TOP",
+                "SHOULDER_UP", "SHOULDER_ASIDE", "UPPER_ARM", "FOREARM", "ARMS_OUT", "STATURE",
             )
         },
         "settle": motion.SETTLE,
