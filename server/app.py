@@ -12,6 +12,7 @@ from websockets.asyncio.server import Server
 
 from actors import Cast
 from planning import LayeredGrid
+from planning.storey_heights import reached_from, storeys_of
 from server.assets import Assets
 from server.casting import assemble
 from server.metrics import Metrics
@@ -67,7 +68,9 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         A port cannot be had.
     """
     stage = set_stage(settings)
-    assets = assets or Assets.load()
+    assets, mesh = assets or Assets.load(), None
+    if stage.triangles is not None:
+        assets, mesh = assets.with_data("mesh", stage.triangles)
     metrics = Metrics()
     loop = asyncio.get_running_loop()
     ready = False
@@ -75,7 +78,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         thread = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="actors"))
         private = await stack.enter_async_context(private_port(settings, metrics, lambda: ready))
         log.info("compiling; the first start on a machine takes a minute or two")
-        cast, world = await loop.run_in_executor(thread, _build, stage, settings)
+        cast, world, storeys = await loop.run_in_executor(thread, _build, stage, settings)
         stack.callback(cast.close)
         _watch(world, metrics)
 
@@ -89,6 +92,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             settings,
             metrics,
             lambda: schedule.world_time(world.tick, loop.time()),
+            {"storeys": storeys} if mesh is None else {"storeys": storeys, "mesh": mesh},
         )
         delivery = Delivery(world, hub.sessions, settings.tick_rate)
         ticker = Ticker(world, hub, delivery, schedule, metrics, thread)
@@ -106,7 +110,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             await _stop(ticker, ticking, hub)
 
 
-def _build(stage: Stage, settings: ServerSettings) -> tuple[Cast, World]:
+def _build(stage: Stage, settings: ServerSettings) -> tuple[Cast, World, list[float]]:
     grid = LayeredGrid.from_scene(stage.scene)
     tick_s, seed = settings.tick_s, settings.seed
     bodies: dict[Hashable, Body]
@@ -126,7 +130,9 @@ def _build(stage: Stage, settings: ServerSettings) -> tuple[Cast, World]:
     except ValueError as error:
         raise StageError(f"scene {stage.scene.name!r}: {error}") from error
     cast.warm_up()
-    return cast, world
+    starts = [(*spawn.position, spawn.z_m) for spawn in stage.scene.spawns]
+    storeys = storeys_of(grid, reached_from(grid, starts))
+    return cast, world, [round(height, 2) for height in storeys]
 
 
 async def _stop(ticker: Ticker, ticking: "asyncio.Task[None]", hub: Hub) -> None:

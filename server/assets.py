@@ -1,4 +1,4 @@
-"""The built web client, read once at start and served from memory."""
+"""The built web client and what a world adds to it, served from memory."""
 
 import gzip
 import hashlib
@@ -31,6 +31,7 @@ SECURITY_HEADERS: Final = {
 }
 
 _TYPES: Final = {
+    ".bin": "application/octet-stream",
     ".css": "text/css; charset=utf-8",
     ".html": "text/html; charset=utf-8",
     ".js": "text/javascript; charset=utf-8",
@@ -40,9 +41,9 @@ _TYPES: Final = {
     ".webmanifest": "application/manifest+json",
     ".woff2": "font/woff2",
 }
-_COMPRESSED: Final = {".css", ".html", ".js", ".json", ".map", ".svg", ".webmanifest"}
+_COMPRESSED: Final = {".bin", ".css", ".html", ".js", ".json", ".map", ".svg", ".webmanifest"}
 _HASHED_PATH: Final = re.compile(r"/assets/[^/]+-[A-Za-z0-9_-]{8}\.\w+")
-"""Vite puts the content's hash into the names of these files; a changed file is another file."""
+"""These names hold the content's hash, as Vite makes them; a changed file is another file."""
 
 _MISSING_PAGE: Final = """<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><title>Esplanade</title>
@@ -82,6 +83,16 @@ class Assets:
             table[path] = _asset(path, file.read_bytes())
         table["/"] = table["/index.html"]
         return cls(table)
+
+    def with_data(self, name: str, body: bytes) -> tuple["Assets", str]:
+        """Binary data added to the table, and its address as seen from the page.
+
+        The address holds a hash of the data, so that browsers may keep it for ever.
+        """
+        digest = hashlib.sha256(body).hexdigest()[:8]
+        address = f"assets/{name}-{digest}.bin"
+        path = f"/{address}"
+        return Assets({**self._table, path: _asset(path, body)}), address
 
     def answer(self, request: Request) -> Response:
         """The response to a GET."""

@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from planning import Place, Scene, Wall
+from planning.mesh_file import MeshError, read_triangles
 from planning.scene_file import SceneError, read_scene, scene_faults
 from recordings import (
     Crowd,
@@ -30,6 +31,8 @@ DOORWAY_M: Final = 0.5
 """Walls drawn across the way of a recorded person are opened this wide."""
 CATCH_UP: Final = 1.5
 """A replayed person may be this much faster than the recording, to catch up with it."""
+MAX_TRIANGLES: Final = 400_000
+"""Every visitor's browser fetches a mesh whole: this many are 14 MB before compression."""
 
 
 class StageError(ValueError):
@@ -42,6 +45,8 @@ class Stage:
 
     scene: Scene
     rules: Rules
+    triangles: bytes | None = None
+    """Of a building that is a mesh: nine little-endian 32-bit floats each, metres, z up."""
 
 
 def set_stage(settings: ServerSettings) -> Stage:
@@ -61,7 +66,8 @@ def set_stage(settings: ServerSettings) -> Stage:
         view_limit=settings.view_limit,
     )
     if settings.crowd is None:
-        return Stage(_read_scene(settings.scene or DEFAULT_SCENE), rules)
+        scene = _read_scene(settings.scene or DEFAULT_SCENE)
+        return Stage(scene, rules, None if scene.mesh is None else _triangles(scene.mesh))
     try:
         crowd = read_crowd(settings.crowd)
         path = settings.walls or walls_beside(settings.crowd)
@@ -94,6 +100,19 @@ def _read_scene(path: Path) -> Scene:
 
 def _scene_around(
     crowd: Crowd, walls: list[tuple[tuple[float, float], tuple[float, float]]]
+def _triangles(mesh: Path) -> bytes:
+    try:
+        triangles = read_triangles(mesh)
+    except MeshError as error:
+        raise StageError(str(error)) from None
+    if len(triangles) > MAX_TRIANGLES:
+        raise StageError(
+            f"{mesh}: it has {len(triangles)} triangles, but browsers are handed at most "
+            f"{MAX_TRIANGLES}; make a simpler mesh of it"
+        )
+    return triangles.astype("<f4").tobytes()
+
+
 ) -> Scene:
     """Open ground around everyone's ways, with places along its edge to walk between."""
     x0, y0, x1, y1 = crowd.bounds

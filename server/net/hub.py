@@ -2,7 +2,7 @@
 
 import asyncio
 import secrets
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Final
 
 import structlog
@@ -39,7 +39,8 @@ class Hub:
     """All sessions of a zone.
 
     Between two ticks it keeps, for each person, at most one movement (the latest) and what came
-    and went; the number of people bounds both. `drain` hands them to the tick.
+    and went; the number of people bounds both. `drain` hands them to the tick. `derived` is what
+    welcomes say of the scene beside what its file holds.
     """
 
     def __init__(
@@ -49,6 +50,7 @@ class Hub:
         settings: ServerSettings,
         metrics: Metrics,
         server_time: Callable[[], float],
+        derived: Mapping[str, object],
     ) -> None:
         self.server_time = server_time
         self.sessions: dict[int, Session] = {}
@@ -57,7 +59,8 @@ class Hub:
         self._guidance = guidance
         self._settings = settings
         self._metrics = metrics
-        self._welcomes = frames.Welcomes(world.scene.model_dump(mode="json", exclude={"mesh"}))
+        scene = world.scene.model_dump(mode="json", exclude={"mesh"})
+        self._welcomes = frames.Welcomes({**scene, **derived})
         self._seats: Seats[Session] = Seats()
         self._next_ticket = 1
         self._joining: dict[int, tuple[Session, Hello]] = {}

@@ -14,6 +14,7 @@ from server.stage import StageError
 from tests.server.client import connected, joined
 from tests.server.conftest import NO_CLIENT, Serving
 from tests.server.http import get
+from tests.server.worlds import write_mesh_world
 
 
 async def test_a_stopping_server_says_goodbye_to_everyone(serving: Serving) -> None:
@@ -75,3 +76,21 @@ async def test_a_scene_without_room_is_refused_by_name(tmp_path: Path) -> None:
     with pytest.raises(StageError, match="'stone': no free place"):
         async with running(settings, NO_CLIENT):
             pass
+
+
+async def test_a_building_from_a_mesh_is_handed_out(serving: Serving, tmp_path: Path) -> None:
+    path = write_mesh_world(tmp_path)
+    async with serving(scene=path) as server, joined(server.port) as client:
+        assert client.welcome is not None
+        scene = client.welcome.scene
+        assert scene["storeys"] == [0.0, 3.0]
+        answer = await get(server.port, f"/{scene['mesh']}")
+    assert (answer.status, len(answer.body)) == (200, 4 * 36)
+    assert "immutable" in answer.headers["cache-control"]
+
+
+async def test_a_scene_of_polygons_has_storeys_and_no_mesh(serving: Serving) -> None:
+    async with serving() as server, joined(server.port) as client:
+        assert client.welcome is not None
+        assert client.welcome.scene["storeys"] == [0.0]
+        assert "mesh" not in client.welcome.scene

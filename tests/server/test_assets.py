@@ -92,3 +92,16 @@ def test_without_a_client_a_page_says_how_to_build_it(tmp_path: Path) -> None:
     answer = get(Assets.load(tmp_path / "nothing"), "/")
     assert answer.status_code == 200
     assert b"make client" in answer.body
+
+
+def test_data_of_a_world_is_kept_by_browsers_for_ever(assets: Assets) -> None:
+    data = bytes(5000)
+    richer, address = assets.with_data("mesh", data)
+    answer = get(richer, f"/{address}", Accept_Encoding="gzip")
+    assert gzip.decompress(answer.body) == get(richer, f"/{address}").body == data
+    assert "immutable" in answer.headers["Cache-Control"]
+    assert answer.headers["Content-Type"] == "application/octet-stream"
+    again = get(richer, f"/{address}", If_None_Match=answer.headers["ETag"])
+    assert (again.status_code, again.body) == (304, b"")
+    assert get(assets, f"/{address}").status_code == 404
+    assert richer.with_data("mesh", data + b"x")[1] != address

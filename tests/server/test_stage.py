@@ -1,11 +1,14 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from planning import LayeredGrid
+from server import stage as staging
 from server.settings import ServerSettings
 from server.stage import DEFAULT_SCENE, StageError, set_stage
+from tests.server.worlds import write_mesh_world
 
 CROWD = "t,id,x,y\n0,a,0,0\n1,a,4,0\n0,b,2,3\n1,b,2,-3\n"
 
@@ -93,3 +96,27 @@ def test_faults_in_a_crowd_are_named(crowd_file: Path, name: str, text: str, fau
     with pytest.raises(StageError) as caught:
         set_stage(ServerSettings(crowd=crowd_file))
     assert fault in str(caught.value)
+
+
+def test_a_building_from_a_mesh_comes_with_its_triangles(tmp_path: Path) -> None:
+    stage = set_stage(ServerSettings(scene=write_mesh_world(tmp_path)))
+    assert stage.triangles is not None
+    corners = np.frombuffer(stage.triangles, dtype="<f4").reshape(-1, 3, 3)
+    assert len(corners) == 4
+    assert corners.reshape(-1, 3).min(axis=0) == pytest.approx((0.0, -10.0, 0.0))
+    assert corners.reshape(-1, 3).max(axis=0) == pytest.approx((10.0, 0.0, 3.0))
+
+
+def test_a_mesh_of_too_many_triangles_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(staging, "MAX_TRIANGLES", 3)
+    with pytest.raises(StageError, match=r"house\.obj: it has 4 triangles, .* at most 3;"):
+        set_stage(ServerSettings(scene=write_mesh_world(tmp_path)))
+
+
+def test_a_file_that_is_no_mesh_is_refused(tmp_path: Path) -> None:
+    path = write_mesh_world(tmp_path)
+    (tmp_path / "house.obj").write_text("v 0 0 0\n")
+    with pytest.raises(StageError, match=r"house\.obj: it holds no triangles"):
+        set_stage(ServerSettings(scene=path))

@@ -1,8 +1,10 @@
 """Small worlds for tests, without sockets."""
 
+import json
 from collections.abc import Iterable
 from functools import cache
 from itertools import count
+from pathlib import Path
 
 from planning import LayeredGrid, Place, Scene, Spawn, Wall
 from server.world.inputs import Input, Join
@@ -24,7 +26,31 @@ ROOM = Scene(
 
 FIELD = Scene.open_space((0.0, 0.0, 200.0, 200.0))
 
+_MESH = """\
+v 0 0 0
+v 10 0 0
+v 10 0 10
+v 0 0 10
+v 5 3 0
+v 10 3 0
+v 10 3 10
+v 5 3 10
+f 1 4 3 2
+f 5 8 7 6
+"""
+"""y up: a floor of 10 m square, and another over half of it, 3 m higher."""
+
 grid_of = cache(LayeredGrid.from_scene)
+
+
+def write_mesh_world(folder: Path) -> Path:
+    """A scene file of a mesh, which lies beside it; spawns on both floors."""
+    (folder / "house.obj").write_text(_MESH)
+    spawns = [{"position": [2, -5]}, {"position": [8, -5], "z_m": 3}]
+    scene = {"bounds": [0, -10, 10, 0], "mesh": "house.obj", "spawns": spawns}
+    path = folder / "house.json"
+    path.write_text(json.dumps(scene))
+    return path
 
 
 def rules(**changes: float) -> Rules:
@@ -35,6 +61,8 @@ def rules(**changes: float) -> Rules:
         "person_walk_speed_mps": 1.6,
         "view_radius_m": 20.0,
         "view_limit": 50,
+        "steps_radius_m": 10.0,
+        "steps_limit": 20,
     }
     return Rules(**{**values, **changes})  # type: ignore[arg-type]
 

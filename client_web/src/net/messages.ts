@@ -64,6 +64,8 @@ export interface SceneData {
   walls: SceneWall[];
   stairs: SceneStairs[];
   doors: SceneDoor[];
+  /** Heights of the storeys, metres, the lowest first. */
+  storeys: number[];
   /** Where the triangles are to be had, seen from the page; only of a building that is a mesh. */
   mesh?: string;
 }

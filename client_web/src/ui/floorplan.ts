@@ -1,7 +1,7 @@
 /** One storey from above, drawn once: what stands on it, and what leads up or down. */
 
 import type { SceneData, ScenePolygon, SceneStairs } from "../net/messages";
-import { meshParts, type Triangles } from "../world/mesh";
+import type { MeshParts } from "../world/mesh";
 import { treadsOf } from "../world/solids";
 
 const COLORS = {
@@ -14,6 +14,7 @@ const COLORS = {
 } as const;
 /** What one would fall into. */
 const VOID = "#cbc4b6";
+const DEEPER = "#bcb4a5";
 const STEP = "#b9ae9b";
 const SLOPE = "#ddd3c1";
 /** What begins lower than this above a floor stands on it, or in the way. */
@@ -43,7 +44,7 @@ export function drawFloorplan(
     [x1, y1],
     [x0, y1],
   ] as const;
-  fill(ground, floorM === 0 && mesh === undefined ? COLORS.floor : VOID);
+  fill(ground, Math.abs(floorM) < KERB_M && mesh === undefined ? COLORS.floor : VOID);
   for (const part of polygons) {
     if (isSlope(part) && touches(bottomOf(part), topOf(part), floorM)) fill(part.points, SLOPE);
     else if (isFloor(part, floorM)) fill(part.points, COLORS.floor);
@@ -67,24 +68,38 @@ export function drawFloorplan(
   pen.stroke();
 }
 
-/** All that one can stand on, the lower the darker. */
-export function drawMesh(pen: CanvasRenderingContext2D, mesh: Triangles, at: ToCanvas): void {
-  const floors = meshParts(mesh)
-    .solids.filter(({ carries }) => carries)
+/** The same of a building that comes as a mesh; what lies deeper shows through. */
+export function drawMesh(
+  pen: CanvasRenderingContext2D,
+  { solids, steep }: MeshParts,
+  floorM: number,
+  at: ToCanvas,
+): void {
+  const floors = solids
+    .filter(({ carries }) => carries)
     .map(({ ring, topM }) => ({ ring, topM: Math.max(...ring.map(([x, y]) => topM(x, y))) }))
+    .filter(({ topM }) => topM < floorM + HEADROOM_M)
     .sort((a, b) => a.topM - b.topM);
-  const lowest = floors.at(0)?.topM ?? 0;
-  const rangeM = Math.max(1, (floors.at(-1)?.topM ?? 0) - lowest);
+  pen.lineWidth = 0.5;
   for (const { ring, topM } of floors) {
-    const light = 68 + (26 * (topM - lowest)) / rangeM;
-    pen.fillStyle = pen.strokeStyle = `hsl(40 30% ${light.toFixed(0)}%)`;
-    pen.lineWidth = 0.5;
+    const level = Math.abs(topM - floorM) < KERB_M;
+    pen.fillStyle = level ? COLORS.floor : topM < floorM - NEAR_M ? DEEPER : SLOPE;
+    pen.strokeStyle = pen.fillStyle;
     pen.beginPath();
     for (const [x, y] of ring) pen.lineTo(...at(x, y));
     pen.closePath();
     pen.fill();
     pen.stroke();
   }
+  pen.strokeStyle = COLORS.wall;
+  pen.lineWidth = 1;
+  pen.beginPath();
+  for (const { a, b, bottomM, topM } of steep) {
+    if (!stands(bottomM, topM, floorM)) continue;
+    pen.moveTo(...at(...a));
+    pen.lineTo(...at(...b));
+  }
+  pen.stroke();
 }
 
 /** Whether what reaches from `bottomM` to `topM` is in the way of those on the floor. */

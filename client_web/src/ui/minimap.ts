@@ -1,8 +1,8 @@
 /** The world from above, north up: one storey, who walks on it, and what the own camera sees. */
 
 import type { Doors, Plan, SceneData } from "../net/messages";
-import type { Triangles } from "../world/mesh";
-import { storeyAt, storeysOf } from "../world/storeys";
+import { type MeshParts, meshParts, type Triangles } from "../world/mesh";
+import { storeyAt } from "../world/storeys";
 import type { Avatar } from "../world/world";
 import { byId } from "./dom";
 import { drawFloorplan, drawMesh, stands } from "./floorplan";
@@ -21,8 +21,7 @@ export class Minimap {
   private readonly canvas = byId("minimap", HTMLCanvasElement);
   private readonly still = document.createElement("canvas");
   private scene: SceneData | null = null;
-  private mesh: Triangles | null = null;
-  private storeys: readonly number[] = [0];
+  private mesh: MeshParts | null = null;
   private readonly choice = new StoreySwitch(() => {
     this.layOut();
   });
@@ -39,9 +38,8 @@ export class Minimap {
   /** The map of a scene; `mesh` holds the triangles of a building that comes as one. */
   show(scene: SceneData, mesh: Triangles | null = null): void {
     this.scene = scene;
-    this.mesh = mesh;
-    this.storeys = storeysOf(scene);
-    this.choice.offer(this.storeys.length);
+    this.mesh = mesh && meshParts(mesh);
+    this.choice.offer(scene.storeys.length);
     this.layOut();
   }
 
@@ -52,9 +50,9 @@ export class Minimap {
     cameraYaw: number,
     plan: Plan | null,
   ): void {
-    if (own) this.choice.follow(storeyAt(this.storeys, own.pose.z));
     const pen = this.canvas.getContext("2d");
     if (!pen || !this.scene) return;
+    if (own) this.choice.follow(storeyAt(this.scene.storeys, own.pose.z));
     pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
     pen.drawImage(this.still, 0, 0);
     this.drawDoors(pen, this.scene, doors);
@@ -88,16 +86,16 @@ export class Minimap {
     if (!pen) return;
     const at = (x: number, y: number): [number, number] => this.at(x, y);
     drawFloorplan(pen, scene, this.floorM, at);
-    if (this.mesh) drawMesh(pen, this.mesh, at);
+    if (this.mesh) drawMesh(pen, this.mesh, this.floorM, at);
   }
 
   /** Height of the shown storey's floor. */
   private get floorM(): number {
-    return this.storeys[this.choice.shown] ?? 0;
+    return this.scene?.storeys[this.choice.shown] ?? 0;
   }
 
   private isHere(z: number): boolean {
-    return storeyAt(this.storeys, z) === this.choice.shown;
+    return storeyAt(this.scene?.storeys ?? [], z) === this.choice.shown;
   }
 
   /** Closed ones across their way, open ones swung aside. */

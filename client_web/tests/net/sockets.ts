@@ -2,6 +2,7 @@
 
 import { decode, encode } from "@msgpack/msgpack";
 import { VERSION } from "../../src/net/codes";
+import { bare } from "../scenes";
 import type { Socket } from "../../src/net/connection";
 import type { Welcome } from "../../src/net/messages";
 
@@ -52,7 +53,7 @@ export const WELCOME: Welcome = {
   name: "Ann",
   resume: "token-1",
   resumed: false,
-  scene: { name: "bare", bounds: [0, 0, 10, 10], polygons: [], walls: [], stairs: [], doors: [] },
+  scene: { ...bare, bounds: [0, 0, 10, 10] },
   tick: 100,
   tick_rate: 20,
   server_time: 5,

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { Floors } from "../../src/world/floors";
-import { storeyAt, storeysOf } from "../../src/world/storeys";
+import { storeyAt } from "../../src/world/storeys";
 import { bare, box, twoFloors } from "../scenes";
 
 const floors = new Floors(twoFloors);
@@ -45,20 +45,6 @@ describe("being covered", () => {
 });
 
 describe("storeys", () => {
-  it("are the ground and every height with a large slab", () => {
-    expect(storeysOf(twoFloors)).toEqual([0, 3]);
-    expect(storeysOf(bare)).toEqual([0]);
-  });
-
-  it("are no landings", () => {
-    const landing = box([0, 0], [2, 2], { kind: "floor", height_m: 2 });
-    expect(storeysOf({ ...bare, polygons: [landing] })).toEqual([0]);
-  });
-
-  it("are also where stairs lead", () => {
-    expect(storeysOf({ ...twoFloors, polygons: [] })).toEqual([0, 3]);
-  });
-
   it("have everybody on the nearest one", () => {
     expect([-0.2, 1.4, 1.6, 9].map((z) => storeyAt([0, 3, 6], z))).toEqual([0, 0, 1, 2]);
   });

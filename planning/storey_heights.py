@@ -1,0 +1,66 @@
+"""The storeys of a building as people count them: heights with much ground, one above the other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning.bodies import Body
+from planning.footing import footing_of
+from planning.grid import ADULT, LayeredGrid
+from planning.wavefront import UNREACHED, spread_wave
+
+APART_M: Final = 1.8
+"""Floors nearer to each other belong to one storey."""
+LANDING_M2: Final = 6.0
+"""What is smaller is a landing."""
+LEVEL_M: Final = 0.3
+"""Floors of one height, within this."""
+
+
+def storeys_of(grid: LayeredGrid, ground: NDArray[np.bool_]) -> tuple[float, ...]:
+    """Heights of the storeys in metres, the lowest first; at least one.
+
+    Of the `ground`, bool (N,), only cells count that lie above or below others of it: hills have
+    no storeys. A storey's height is the median of its floors.
+    """
+    a = grid.layered
+    cells = np.flatnonzero(ground & np.isfinite(a.floors))
+    floors = a.floors[cells].astype(np.float64)
+    if not len(floors):
+        return (0.0,)
+    columns = a.places[cells, 1].astype(np.int64) * a.nx + a.places[cells, 2]
+    order = np.lexsort((floors, columns))
+    over = (np.diff(columns[order]) == 0) & (np.diff(floors[order]) >= APART_M)
+    stacked = np.zeros(len(cells), dtype=np.bool_)
+    stacked[order[:-1][over]] = stacked[order[1:][over]] = True
+    found: list[float] = []
+    left = np.sort(floors[stacked])
+    while len(left):
+        within = np.searchsorted(left, left + LEVEL_M, side="right") - np.arange(len(left))
+        fullest = int(within.argmax())
+        if within[fullest] * a.cell_m**2 < LANDING_M2:
+            break
+        height = float(np.median(left[fullest : fullest + within[fullest]]))
+        found.append(height)
+        left = left[np.abs(left - height) >= APART_M]
+    return tuple(sorted(found)) or (float(np.median(floors)),)
+
+
+def reached_from(
+    grid: LayeredGrid, starts: Sequence[tuple[float, float, float]], body: Body = ADULT
+) -> NDArray[np.bool_]:
+    """Cells where a body gets to from any of some places x, y, z in metres, bool (N,).
+
+    Without any place to start from, all cells.
+    """
+    footing = footing_of(grid, body)
+    reached = np.full(len(footing.steps), not starts)
+    for x, y, z in starts:
+        cell = int(grid.on_ground([(x, y)], [z])[1][0])
+        if cell >= 0 and not reached[cell]:
+            reached |= spread_wave(footing, cell) != UNREACHED
+    return reached
