@@ -47,6 +47,8 @@ class Traffic:
     bytes_in: int = 0
     messages_out: int = 0
     bytes_out: int = 0
+    steps_out: int = 0
+    step_bytes_out: int = 0
     snapshots_skipped: int = 0
     movements_superseded: int = 0
 
@@ -56,7 +58,9 @@ _TRAFFIC_HELP: Final = {
     "bytes_in": "Bytes of messages from clients",
     "messages_out": "Messages to clients",
     "bytes_out": "Bytes of frames to clients",
-    "snapshots_skipped": "Snapshots left out because a client was slow",
+    "steps_out": "Steps of walkers sent to clients",
+    "step_bytes_out": "Bytes of these steps, without the heads of frames",
+    "snapshots_skipped": "Snapshots left out, and the steps with them, because a client was slow",
     "movements_superseded": "Movements that a later one replaced before a tick took them",
 }
 

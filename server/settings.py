@@ -57,6 +57,14 @@ class ServerSettings(BaseSettings):
     view_limit: int = _option(
         100, PEOPLE, "most others that one person sees, the nearest first", ge=1, le=4000
     )
+    steps_radius_m: float = _option(
+        25.0, PEOPLE, "steps of others are sent within this distance, and 15 % further off to "
+        "whom they have been sent before", "m", ge=1.0, le=1000.0,
+    )  # fmt: skip
+    steps_limit: int = _option(
+        60, PEOPLE, "most others whose steps are sent to one person, the nearest first",
+        ge=0, le=250,
+    )  # fmt: skip
     resume_seconds: float = _option(
         30.0, PEOPLE, "how long a lost connection's avatar stands and waits", "s", ge=0.0, le=3600.0
     )

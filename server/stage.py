@@ -64,6 +64,8 @@ def set_stage(settings: ServerSettings) -> Stage:
         person_walk_speed_mps=settings.person_walk_speed_mps,
         view_radius_m=settings.view_radius_m,
         view_limit=settings.view_limit,
+        steps_radius_m=settings.steps_radius_m,
+        steps_limit=settings.steps_limit,
     )
     if settings.crowd is None:
         scene = _read_scene(settings.scene or DEFAULT_SCENE)
@@ -98,8 +100,6 @@ def _read_scene(path: Path) -> Scene:
         raise StageError(str(error)) from None
 
 
-def _scene_around(
-    crowd: Crowd, walls: list[tuple[tuple[float, float], tuple[float, float]]]
 def _triangles(mesh: Path) -> bytes:
     try:
         triangles = read_triangles(mesh)
@@ -113,6 +113,8 @@ def _triangles(mesh: Path) -> bytes:
     return triangles.astype("<f4").tobytes()
 
 
+def _scene_around(
+    crowd: Crowd, walls: list[tuple[tuple[float, float], tuple[float, float]]]
 ) -> Scene:
     """Open ground around everyone's ways, with places along its edge to walk between."""
     x0, y0, x1, y1 = crowd.bounds

@@ -26,7 +26,7 @@ class Delivery:
         self._census_period = tick_rate
 
     def deliver(self, sight: Sight, now: float) -> None:
-        """Doors and changes of view first, then snapshots, then what is only for some."""
+        """Doors and changes of view first, then steps and snapshots, then what is for some."""
         if sight.doors:
             doors = frames.message(Doors(doors=sight.doors))
             for session in self._sessions.values():
@@ -59,12 +59,18 @@ class Delivery:
         sessions, tick, data = self._sessions, snapshots.tick, snapshots.data
         written: list[int] = []
         begin = 0
-        places = zip(snapshots.viewers, snapshots.ends, snapshots.acks, strict=True)
-        for place, (viewer, end, ack) in enumerate(places):
+        begin_steps = 0
+        places = zip(
+            snapshots.viewers, snapshots.ends, snapshots.acks, sight.steps.ends, strict=True
+        )
+        for place, (viewer, end, ack, end_steps) in enumerate(places):
             session = sessions.get(viewer)
-            if session is not None and session.outbox.snapshot(tick, ack, data[begin:end], now):
+            steps = sight.steps.data[begin_steps:end_steps]
+            if session is not None and session.outbox.snapshot(
+                tick, ack, data[begin:end], steps, now
+            ):
                 written.append(place)
-            begin = end
+            begin, begin_steps = end, end_steps
         self._world.wrote(snapshots, written)
 
     def _plans(self) -> None:

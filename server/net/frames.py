@@ -10,7 +10,7 @@ from typing import Final
 
 import msgpack
 
-from protocol import ServerCode, encode, encode_snapshot
+from protocol import ServerCode, encode, encode_snapshot, encode_steps
 from protocol.messages import FromServer, Welcome
 
 _FINAL_BINARY: Final = 0x82
@@ -30,12 +30,16 @@ def frame(payload: bytes) -> bytes:
 
 
 def message(content: FromServer) -> bytes:
-    """Any message but the welcome and the snapshot."""
+    """Any message but the welcome, the snapshot and steps."""
     return frame(encode(content))
 
 
 def snapshot(tick: int, ack: int, block: memoryview) -> bytes:
     return frame(encode_snapshot(tick, ack, block))
+
+
+def steps(tick: int, block: memoryview) -> bytes:
+    return frame(encode_steps(tick, block))
 
 
 def leave(tick: int, ids: Sequence[int]) -> bytes:

@@ -3,9 +3,9 @@
 Frames are written straight to the transport, past the library's own queue and its awaiting; so
 the state of the connection is checked here, and nothing is ever sent in fragments.
 
-Policy. A client with more than `slow_bytes` unsent is slow: it gets no snapshots (the next one
-supersedes them) and important frames wait in a bounded list. It is dropped when it stays slow for
-`drop_seconds`, when `drop_bytes` lie unsent, or when the list overflows.
+Policy. A client with more than `slow_bytes` unsent is slow: it gets no snapshots and no steps (the
+next ones supersede them) and important frames wait in a bounded list. It is dropped when it stays
+slow for `drop_seconds`, when `drop_bytes` lie unsent, or when the list overflows.
 """
 
 import socket
@@ -19,6 +19,7 @@ from websockets.protocol import State
 from server.metrics import Traffic
 from server.net import frames
 from server.settings import ServerSettings
+from server.world.onlookers import STEP_BYTES
 
 MAX_WAITING_FRAMES: Final = 256
 JOINING_PATIENCE_S: Final = 30.0
@@ -90,8 +91,13 @@ class Outbox:
         self._write(frame)
         return True
 
-    def snapshot(self, tick: int, ack: int, block: memoryview, now: float) -> bool:
-        """Once a tick: send what waits, then a snapshot. False if it was left out."""
+    def snapshot(
+        self, tick: int, ack: int, block: memoryview, steps: memoryview, now: float
+    ) -> bool:
+        """Once a tick: send what waits, then steps if there are any and a snapshot.
+
+        False if they were left out, both together.
+        """
         if not self.open:
             return False
         unsent = self._unsent()
@@ -107,6 +113,10 @@ class Outbox:
         if self._waiting:
             self._traffic.snapshots_skipped += 1
             return False
+        if steps:
+            self._write(frames.steps(tick, steps))
+            self._traffic.steps_out += len(steps) // STEP_BYTES
+            self._traffic.step_bytes_out += len(steps)
         self._write(frames.snapshot(tick, ack, block))
         return True
 

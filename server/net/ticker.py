@@ -35,6 +35,11 @@ class Ticker:
         self._metrics = metrics
         self._thread = thread
         self._stopping = asyncio.Event()
+        metrics.gauge(
+            "walkers_shown",
+            "Walkers whose steps are sent, counted for each viewer",
+            lambda: world.walkers_shown,
+        )
         metrics.total("ticks", "Ticks of the world", lambda: world.tick)
         metrics.total("ticks_late", "Ticks that began late", lambda: schedule.late_ticks)
         metrics.total(

@@ -30,9 +30,10 @@ class Changes:
 class Interest:
     """What each viewer has in view: always itself, and at most `view_limit` others.
 
-    `rows[viewer]` lists the slots in view; unused places hold the capacity, a slot that no
-    avatar ever has. `rows_since` has beside each the tick at which it came into view, and
-    `since[viewer, slot]` the same by slot, 0 for what is not in view.
+    `rows[viewer]` lists the slots in view, when they were looked at the nearest first; unused
+    places hold the capacity, a slot that no avatar ever has. `rows_since` has beside each the tick
+    at which it came into view, and `since[viewer, slot]` the same by slot, 0 for what is not in
+    view.
     """
 
     def __init__(self, state: State, rules: Rules) -> None:
@@ -44,6 +45,8 @@ class Interest:
         self._enter_m = rules.view_radius_m
         self._leave_m = rules.view_radius_m * LEAVE_RATIO
         self.viewing = np.zeros(state.capacity, dtype=np.bool_)
+        self.looked: Slots = np.zeros(0, dtype=np.int64)
+        """Viewers whose turn it was in the latest update."""
         self.rows = np.full((state.capacity, self._columns), self._nobody, dtype=np.int64)
         self.rows_since = np.zeros((state.capacity, self._columns), dtype=np.int32)
         self.since = np.zeros((state.capacity, state.capacity + 1), dtype=np.int32)
@@ -84,6 +87,7 @@ class Interest:
         viewers = self.viewers()
         in_turn = (viewers + tick) % PERIOD_TICKS == 0
         due = viewers[in_turn | self._unseeing[viewers]]
+        self.looked = due
         if len(due):
             self._look(due, neighbours, tick)
             self._unseeing[due] = False

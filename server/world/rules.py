@@ -14,3 +14,6 @@ class Rules:
     person_walk_speed_mps: float
     view_radius_m: float
     view_limit: int
+    steps_radius_m: float
+    """Steps are sent of who is so near, and in view."""
+    steps_limit: int

@@ -36,24 +36,25 @@ class Views:
         # One row more than there are slots: where nobody is, nothing ever changes.
         self._records = np.zeros(state.capacity + 1, dtype=RECORD)
         self._changed = np.zeros(state.capacity + 1, dtype=np.int32)
-        self._written = np.zeros(state.capacity, dtype=np.int32)
+        self.written = np.zeros(state.capacity, dtype=np.int32)
+        """Tick of the snapshot that each viewer was sent last, and of the steps with it."""
         self.acks = np.zeros(state.capacity, dtype=np.int64)
 
     def attach(self, slot: int) -> None:
         """A client that has nothing yet looks through this avatar's eyes."""
-        self._written[slot] = 0
+        self.written[slot] = 0
         self.acks[slot] = 0
 
     def wrote(self, snapshots: Snapshots, places: list[int]) -> None:
         """The snapshots at these places were sent."""
-        self._written[snapshots.slots[places]] = snapshots.tick
+        self.written[snapshots.slots[places]] = snapshots.tick
 
     def encode(self, interest: Interest, tick: int) -> Snapshots:
         """Snapshots for every viewer against what it has; its own avatar is always in it."""
         self._refresh(tick)
         viewers = interest.viewers()
         in_view = interest.rows[viewers]
-        written = self._written[viewers][:, None]
+        written = self.written[viewers][:, None]
         wanted = self._changed.take(in_view) > written
         wanted |= interest.rows_since[viewers] > written
         wanted |= in_view == viewers[:, None]

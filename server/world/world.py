@@ -13,6 +13,7 @@ from server.world.doors import Doors
 from server.world.inputs import Attach, Detach, Follow, Input, Join, Leave, MoveDoor, Steer
 from server.world.interest import Changes, Interest
 from server.world.neighbours import Neighbours
+from server.world.onlookers import LatestSteps, Onlookers, StepBlocks
 from server.world.people import People
 from server.world.rules import Rules
 from server.world.spawning import Spawning
@@ -33,6 +34,8 @@ class Sight:
     doors: dict[str, bool]
     """Doors that opened or closed."""
     changes: Changes
+    steps: StepBlocks
+    """For the viewers of `snapshots`, in their order."""
     snapshots: Snapshots
 
 
@@ -73,6 +76,8 @@ class World:
         self._troupe = Troupe(self.state, cast, bodies)
         self._interest = Interest(self.state, rules)
         self._views = Views(self.state, self.origin_m)
+        self.steps = LatestSteps(self.state.capacity)
+        self._onlookers = Onlookers(self.state, rules)
         self._spawning = Spawning(
             scene, grid, rules.person_clearance_m, np.random.SeedSequence(seed)
         )
@@ -114,12 +119,16 @@ class World:
             self.contacts.update(self.state, neighbours)
         with self.times.stage("interest"):
             changes = self._interest.update(neighbours, self.tick)
+            self._onlookers.update(self._interest, self.tick)
         with self.times.stage("encode"):
+            viewers = self._interest.viewers()
             snapshots = self._views.encode(self._interest, self.tick)
-        return Sight(self._moved_doors, changes, snapshots)
+            written = self._views.written[viewers]
+            steps = self._onlookers.encode(self._interest, self.steps, viewers, written)
+        return Sight(self._moved_doors, changes, steps, snapshots)
 
     def wrote(self, snapshots: Snapshots, places: list[int]) -> None:
-        """The snapshots at these places were sent; the next ones build on them."""
+        """The snapshots at these places were sent, and the steps; the next ones build on them."""
         self._views.wrote(snapshots, places)
 
     # --- questions ----------------------------------------------------------------------------
@@ -161,6 +170,11 @@ class World:
         """A search for a way from where that avatar is now; heavy, and safe in any thread."""
         clearance_m = self.rules.person_clearance_m
         return partial(find_way, self._grid, self._where(avatar_id), goal, clearance_m)
+
+    @property
+    def walkers_shown(self) -> int:
+        """How many walkers all viewers together are shown step by step."""
+        return self._onlookers.shown
 
     def sees(self, viewer_id: int, avatar_id: int) -> bool:
         """Whether that viewer has that avatar in view."""
@@ -205,6 +219,7 @@ class World:
 
     def _attach(self, slot: int) -> None:
         self._interest.attach(slot)
+        self._onlookers.attach(slot)
         self._views.attach(slot)
 
     def _apply(self, item: Attach | Detach | Leave | Steer | Follow, slot: int) -> None:
@@ -220,9 +235,11 @@ class World:
             case Detach():
                 self._people.stop(slot)
                 self._interest.detach(slot)
+                self._onlookers.detach(slot)
             case Leave():
                 self._people.stop(slot)
                 self._interest.remove(slot, item.id)
+                self._onlookers.remove(slot)
                 self.state.remove(item.id)
 
     def _observe(self) -> dict[Hashable, Point]:

@@ -5,24 +5,35 @@ from pathlib import Path
 from types import UnionType
 from typing import Any, get_args, get_origin
 
+import numpy as np
 import pytest
 from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 
 from protocol import VERSION, ByeCode, ErrorCode, Kind, Reason, decode_server, peek_snapshot
 from protocol import codes as table
-from protocol.codec import MAX_BLOCK_BYTES, SNAPSHOT_HEAD_BYTES
+from protocol.codec import MAX_BLOCK_BYTES, SNAPSHOT_HEAD_BYTES, STEPS_HEAD_BYTES
 from protocol.codes import ClientCode, CloseCode, ServerCode
-from protocol.messages import Circle, Entity, FromClient, FromServer, Plan, Snapshot
+from protocol.messages import (
+    Circle,
+    Entity,
+    FromClient,
+    FromServer,
+    Plan,
+    Snapshot,
+    StepBlock,
+)
 from protocol.snapshot import (
     MAX_EXTENT_M,
     RECORD,
+    Floats,
     headings_rad,
     heights_m,
     positions_m,
     speeds_mps,
     unpack_block,
 )
+from protocol.steps import FOOTPRINT, KEY, STEP, step_records, unpack_steps
 
 TEXT = (Path(__file__).resolve().parents[2] / "docs" / "protocol.md").read_text(encoding="utf-8")
 
@@ -153,7 +164,7 @@ def test_limits() -> None:
         "Line of chat": f"{table.MAX_CHAT_CHARS} characters",
         "Resume token, operator key": f"{table.MAX_TOKEN_CHARS} characters",
         "Name of a door": f"{table.MAX_DOOR_CHARS} characters",
-        "A snapshot's block": f"{MAX_BLOCK_BYTES} bytes",
+        "A block of a snapshot or of steps": f"{MAX_BLOCK_BYTES} bytes",
         "Extent of a zone": f"{MAX_EXTENT_M:g} m",
     }
 
@@ -164,22 +175,37 @@ def test_the_servers_defaults() -> None:
         assert float(row["Default"]) == settings.model_fields[row["Setting"]].default, row
 
 
-def test_the_layout_of_a_record() -> None:
-    layout = tables(section("Snapshots"))[1]
-    assert RECORD.names is not None
-    assert RECORD.fields is not None
+@pytest.mark.parametrize(
+    ("title", "place", "record"),
+    [("Snapshots", 1, RECORD), ("Steps", 1, STEP), ("Steps", 2, FOOTPRINT), ("Steps", 3, KEY)],
+)
+def test_the_layout_of_a_record(title: str, place: int, record: np.dtype[np.void]) -> None:
+    layout = tables(section(title))[place]
+    assert record.names is not None
+    assert record.fields is not None
     assert [(int(row["Offset"]), int(row["Bytes"]), row["Field"]) for row in layout] == [
-        (RECORD.fields[name][1], RECORD.fields[name][0].itemsize, name) for name in RECORD.names
+        (record.fields[name][1], record.fields[name][0].itemsize, name) for name in record.names
     ]
+
+
+def test_lengths_in_running_text() -> None:
+    assert f"{STEP.itemsize} bytes each" in section("Steps")
+    assert f"same {STEPS_HEAD_BYTES} bytes" in section("Steps")
     assert f"{RECORD.itemsize} bytes each" in section("Snapshots")
     assert f"same {SNAPSHOT_HEAD_BYTES} bytes" in section("Snapshots")
 
 
-def test_the_worked_example() -> None:
-    text = section("Snapshots")
+def example_of(text: str) -> bytes:
+    """The frame that a section works through."""
     (example,) = re.findall(r"^```hex\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
     frame = bytes.fromhex(example.replace("\n", " "))
     assert f"frame of {len(frame)} bytes" in text
+    return frame
+
+
+def test_the_worked_example_of_a_snapshot() -> None:
+    text = section("Snapshots")
+    frame = example_of(text)
     snapshot = decode_server(frame)
     assert isinstance(snapshot, Snapshot)
     assert peek_snapshot(frame) == (snapshot.tick, snapshot.ack) == (402, 7)
@@ -197,3 +223,35 @@ def test_the_worked_example() -> None:
         for row in range(len(records))
     ]
     assert shown == [list(row.values()) for row in tables(text)[2]]
+
+
+def numbers(values: Floats, digits: int = 2) -> str:
+    return ", ".join(f"{value:.{digits}f}" for value in np.atleast_1d(values))
+
+
+def test_the_worked_example_of_steps() -> None:
+    text = section("Steps")
+    message = decode_server(example_of(text))
+    assert isinstance(message, StepBlock)
+    assert message.tick == 402
+    steps = unpack_steps(step_records(message.block))
+    assert (steps.ids, steps.begin_ticks, steps.durations_ticks) == (12, 402, 11)
+    assert not steps.on_right
+    told = " ".join(text.split())
+    for footprints in (steps.standing, steps.landing):
+        assert f"({numbers(footprints.positions_m[0])})" in told
+    assert f"{np.degrees(steps.landing.headings_rad[0]):.1f}°" in told
+    assert f"for {steps.lifts[0]:.2f} of the step" in told
+    for row in tables(text)[4]:
+        key = int(row["Key"])
+        shown = {
+            "root": numbers(steps.keys.roots_m[0, key]),
+            "pelvis": numbers(steps.keys.pelvises[0, key], 3),
+            "ankle": numbers(steps.keys.ankles_m[0, key]),
+            "swing pitch": numbers(steps.keys.swing_pitches_rad[0, key]),
+            "standing pitch": numbers(steps.keys.standing_pitches_rad[0, key]),
+            "swing heading": numbers(steps.keys.swing_headings_rad[0, key]),
+            "chest": numbers(steps.keys.chests[0, key], 3),
+            "arms": numbers(steps.keys.arms_rad[0, key]),
+        }
+        assert row == {"Key": str(key), **shown}

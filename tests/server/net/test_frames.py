@@ -3,7 +3,7 @@ from websockets.frames import Frame, Opcode
 from websockets.streams import StreamReader
 
 from protocol import VERSION, ByeCode, Kind, decode_server
-from protocol.messages import Bye, Enter, Entity, Leave, Snapshot, Welcome
+from protocol.messages import Bye, Enter, Entity, Leave, Snapshot, StepBlock, Welcome
 from server.net import frames
 from tests.server.worlds import ROOM
 
@@ -34,6 +34,11 @@ def test_a_snapshot_is_what_the_protocol_says() -> None:
     assert decode_server(payload_of(frame)) == Snapshot(tick=7, ack=3, block=bytes(24))
 
 
+def test_steps_are_what_the_protocol_says() -> None:
+    block = memoryview(bytes(225))
+    assert decode_server(payload_of(frames.steps(7, block))) == StepBlock(tick=7, block=bytes(225))
+
+
 def test_hand_packed_messages_are_the_models_messages() -> None:
     entities = [
         Entity(
@@ -46,6 +51,9 @@ def test_hand_packed_messages_are_the_models_messages() -> None:
             z=0.0,
             heading=0.5,
             radius=0.25,
+            leg_m=0.9,
+            stature_m=1.72,
+            points_at=(1.0, 2.0, 3.0) if k % 2 else None,
         )
         for k in range(40)
     ]

@@ -7,10 +7,12 @@ from websockets.asyncio.server import ServerConnection
 from websockets.protocol import State
 
 from protocol import ByeCode, decode_server
-from protocol.messages import Bye, Snapshot
+from protocol.messages import Bye, Snapshot, StepBlock
+from protocol.steps import pack_steps
 from server.metrics import Traffic
 from server.net import frames
 from server.net.outbox import JOINING_PATIENCE_S, MAX_WAITING_FRAMES, Outbox, SlowPolicy
+from tests.protocol.steps import made_up_steps
 from tests.server.client import joined
 from tests.server.conftest import Serving
 from tests.server.net.test_frames import payload_of
@@ -67,7 +69,7 @@ def test_a_client_that_reads_gets_everything_at_once(
     outbox.welcome(b"welcome")
     outbox.post(b"important")
     assert outbox.offer(b"offered")
-    assert outbox.snapshot(4, 2, NOTHING, now=0.0)
+    assert outbox.snapshot(4, 2, NOTHING, NOTHING, now=0.0)
     assert line.frames[:3] == [b"welcome", b"important", b"offered"]
     assert decode_server(payload_of(line.frames[3])) == Snapshot(tick=4, ack=2, block=b"")
     assert traffic.messages_out == 4
@@ -78,7 +80,7 @@ def test_a_slow_client_misses_snapshots_but_nothing_important_and_in_order(
     outbox: Outbox, line: StuffedConnection, traffic: Traffic
 ) -> None:
     line.unsent = 1001
-    assert not outbox.snapshot(1, 0, NOTHING, now=0.0)
+    assert not outbox.snapshot(1, 0, NOTHING, NOTHING, now=0.0)
     assert not outbox.offer(b"offered")
     outbox.post(b"first")
     outbox.post(b"second")
@@ -86,18 +88,36 @@ def test_a_slow_client_misses_snapshots_but_nothing_important_and_in_order(
     line.unsent = 0
     outbox.post(b"third")
     assert line.frames == []
-    assert outbox.snapshot(2, 0, NOTHING, now=0.1)
+    assert outbox.snapshot(2, 0, NOTHING, NOTHING, now=0.1)
     assert line.frames[:3] == [b"first", b"second", b"third"]
     assert traffic.snapshots_skipped == 1
     assert not line.aborted
 
 
+def test_steps_go_out_before_their_snapshot_or_both_are_left_out(
+    outbox: Outbox, line: StuffedConnection, traffic: Traffic
+) -> None:
+    steps = pack_steps(made_up_steps(3)).tobytes()
+    line.unsent = 1001
+    assert not outbox.snapshot(4, 2, NOTHING, memoryview(steps), now=0.0)
+    assert (line.frames, traffic.steps_out) == ([], 0)
+    line.unsent = 0
+    assert outbox.snapshot(5, 2, NOTHING, memoryview(steps), now=0.1)
+    assert [decode_server(payload_of(frame)) for frame in line.frames] == [
+        StepBlock(tick=5, block=steps),
+        Snapshot(tick=5, ack=2, block=b""),
+    ]
+    assert (traffic.steps_out, traffic.step_bytes_out) == (3, len(steps))
+    assert outbox.snapshot(6, 2, NOTHING, NOTHING, now=0.2)
+    assert len(line.frames) == 3
+
+
 def test_a_client_that_stays_slow_is_dropped(outbox: Outbox, line: StuffedConnection) -> None:
     line.unsent = 1001
-    outbox.snapshot(1, 0, NOTHING, now=0.0)
-    outbox.snapshot(2, 0, NOTHING, now=5.0)
+    outbox.snapshot(1, 0, NOTHING, NOTHING, now=0.0)
+    outbox.snapshot(2, 0, NOTHING, NOTHING, now=5.0)
     assert not line.aborted
-    outbox.snapshot(3, 0, NOTHING, now=5.1)
+    outbox.snapshot(3, 0, NOTHING, NOTHING, now=5.1)
     assert line.aborted
     assert outbox.dropped == "seconds"
 
@@ -105,13 +125,13 @@ def test_a_client_that_stays_slow_is_dropped(outbox: Outbox, line: StuffedConnec
 def test_being_slow_now_and_then_is_forgiven(outbox: Outbox, line: StuffedConnection) -> None:
     for second in range(20):
         line.unsent = 1001 if second % 4 else 0
-        outbox.snapshot(second, 0, NOTHING, now=float(second))
+        outbox.snapshot(second, 0, NOTHING, NOTHING, now=float(second))
     assert not line.aborted
 
 
 def test_too_much_unsent_drops_at_once(outbox: Outbox, line: StuffedConnection) -> None:
     line.unsent = 4001
-    outbox.snapshot(1, 0, NOTHING, now=0.0)
+    outbox.snapshot(1, 0, NOTHING, NOTHING, now=0.0)
     assert outbox.dropped == "bytes"
 
 
@@ -133,13 +153,13 @@ def test_the_list_of_what_must_not_be_lost_is_bounded(
 def test_a_large_scene_may_take_its_time(outbox: Outbox, line: StuffedConnection) -> None:
     outbox.welcome(bytes(100_000))
     line.unsent = 101_000
-    outbox.snapshot(1, 0, NOTHING, now=0.0)
-    outbox.snapshot(2, 0, NOTHING, now=JOINING_PATIENCE_S - 1.0)
+    outbox.snapshot(1, 0, NOTHING, NOTHING, now=0.0)
+    outbox.snapshot(2, 0, NOTHING, NOTHING, now=JOINING_PATIENCE_S - 1.0)
     assert not line.aborted
     line.unsent = 0
-    assert outbox.snapshot(3, 0, NOTHING, now=JOINING_PATIENCE_S)
+    assert outbox.snapshot(3, 0, NOTHING, NOTHING, now=JOINING_PATIENCE_S)
     line.unsent = 4001
-    outbox.snapshot(4, 0, NOTHING, now=JOINING_PATIENCE_S + 0.1)
+    outbox.snapshot(4, 0, NOTHING, NOTHING, now=JOINING_PATIENCE_S + 0.1)
     assert line.aborted
 
 
@@ -149,7 +169,7 @@ def test_nothing_is_written_to_a_connection_that_closes(
     line.state = State.CLOSING
     outbox.post(b"important")
     assert not outbox.offer(b"offered")
-    assert not outbox.snapshot(1, 0, NOTHING, now=0.0)
+    assert not outbox.snapshot(1, 0, NOTHING, NOTHING, now=0.0)
     assert line.frames == []
 
 
