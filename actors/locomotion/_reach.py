@@ -1,0 +1,61 @@
+"""What a leg does that is too short: ease up to its length, raise the heel, bring the hip down."""
+
+import numpy as np
+
+from actors.locomotion.skeleton import FOOT, Floats
+
+FULL = 0.9999
+"""Legs are never stretched further: a knee that locks moves with infinite speed."""
+
+_STEEPEST = np.radians(75.0)
+
+
+def eased(distance: Floats, zone: float) -> Floats:
+    """A distance that stays below FULL: as it is up to a zone before, then ever closer."""
+    over = np.maximum(distance - (FULL - zone), 0.0)
+    kept: Floats = np.where(
+        over > 0.0, FULL - zone * np.exp(-np.minimum(over / zone, 700.0)), distance
+    )
+    return kept
+
+
+def drawn_to_hip(hip: Floats, ankle: Floats, zone: float) -> Floats:
+    """Ankles (..., 3) of feet in the air, along the leg into reach."""
+    leg = ankle - hip
+    distance = np.sqrt(np.sum(leg * leg, axis=-1))
+    shrink = eased(distance, zone) / np.maximum(distance, 1e-9)
+    drawn: Floats = hip + leg * shrink[..., None]
+    return drawn
+
+
+def raised_heel(hip: Floats, toe: Floats, heading: Floats, pitch: Floats, zone: float) -> Floats:
+    """Pitch at which a foot that turns about its toe brings the ankle into reach of the hip.
+
+    The ankle moves on a circle about the toe; where its distance from the hip is the eased one is
+    a closed form. Pitches are negative with the heel up, and only ever get more so.
+    """
+    to_hip = hip - toe
+    back = -(np.cos(heading) * to_hip[..., 0] + np.sin(heading) * to_hip[..., 1])
+    up = to_hip[..., 2]
+    square = np.sum(to_hip * to_hip, axis=-1)
+    raised = -pitch
+    distance = np.sqrt(
+        np.maximum(
+            square + FOOT**2 - 2.0 * FOOT * (back * np.cos(raised) + up * np.sin(raised)), 0.0
+        )
+    )
+    wanted = eased(distance, zone)
+    projected = (square + FOOT**2 - wanted**2) / (2.0 * FOOT)
+    nearest = np.arctan2(up, back)
+    spread = np.arccos(np.clip(projected / np.maximum(np.hypot(back, up), 1e-9), -1.0, 1.0))
+    needed = np.minimum(nearest - spread, np.maximum(raised, _STEEPEST))
+    result: Floats = np.where(wanted < distance, -np.maximum(needed, raised), pitch)
+    return result
+
+
+def hip_ceiling(hip: Floats, ankle: Floats, reach: float) -> Floats:
+    """How high a hip may be that an ankle is in reach of, as far aside as both are; (...,)."""
+    aside = hip[..., :2] - ankle[..., :2]
+    level = np.minimum(np.sum(aside * aside, axis=-1), 0.8 * reach**2)
+    ceiling: Floats = ankle[..., 2] + np.sqrt(reach**2 - level)
+    return ceiling

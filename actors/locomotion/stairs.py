@@ -1,0 +1,63 @@
+"""Steps between footprints of different height: where the hips are, and how a foot gets over.
+
+Lengths are shares of the leg's; heights are those of footprints.
+"""
+
+import numpy as np
+
+from actors.locomotion.curves import smooth
+from actors.locomotion.skeleton import FOOT, Floats
+
+CLEARANCE = 0.09
+"""A foot passes so far over the highest of the three footprints."""
+
+_LEVEL_BELOW = 0.08
+_HIGHEST_HEEL = 0.92 * FOOT
+
+
+def unevenness(rise: Floats) -> Floats:
+    """How far a rise calls for stairs rather than the level gait: 0 to 1."""
+    return smooth(np.abs(rise) / _LEVEL_BELOW)
+
+
+def ground_height(rear: Floats, front: Floats) -> Floats:
+    """What stands for level ground when both feet are down.
+
+    Going up, the middle between both feet; going down, a little above the lower one.
+    """
+    rise = front - rear
+    height: Floats = np.where(rise > 0.0, rear + 0.5 * rise, front - 0.15 * rise)
+    return height
+
+
+def heel_height(raised: Floats, ground: Floats, rear: Floats) -> Floats:
+    """Height of the rear heel above its footprint: raised as on the level, more when going up."""
+    return np.minimum(raised + np.maximum(ground - rear, 0.0), _HIGHEST_HEEL)
+
+
+def ground_under_way(before: Floats, after: Floats, u: Floats) -> Floats:
+    """Ground height during a step: going up, the body rises only once over its foot."""
+    late = np.where(after > before, 0.3, 0.0)
+    height: Floats = before + (after - before) * smooth((u - late) / (1.0 - late))
+    return height
+
+
+def swing_over(pinned: Floats, landing: Floats, top: Floats, x: Floats) -> Floats:
+    """Ankle of a foot that goes up first, then over, then down.
+
+    Parameters
+    ----------
+    pinned : float64 (..., 3)
+        Where the ankle would be if the toe stayed on the ground.
+    landing : float64 (..., 3)
+    top : float64 (...,)
+        Height of the highest footprint.
+    x : float64 (...,), in [0, 1]
+        Share of the swing.
+    """
+    over = smooth((x - 0.22) / 0.73)[..., None]
+    level = pinned[..., :2] + (landing[..., :2] - pinned[..., :2]) * over
+    summit = np.maximum(top + CLEARANCE, pinned[..., 2])
+    height = pinned[..., 2] + (summit - pinned[..., 2]) * smooth(x / 0.38)
+    height = height + (landing[..., 2] - height) * smooth((x - 0.6) / 0.4)
+    return np.concatenate([level, height[..., None]], axis=-1)
