@@ -61,7 +61,7 @@ def to_raise(barrier: NDArray[np.float64], lowest: float, highest: float, height
     return float(max(0.0, min(barrier[5] - lowest, barrier[6])))
 
 
-@kernel
+@inlined
 def crosses(barrier: NDArray[np.float64], ax: float, ay: float, bx: float, by: float) -> bool:
     """Whether the way from a to b meets a barrier, touching included."""
     return segments_cross(ax, ay, bx, by, barrier[0], barrier[1], barrier[2], barrier[3])

@@ -40,6 +40,9 @@ class LayeredArrays(NamedTuple):
     If a links to b, then b to a."""
     places: NDArray[np.int32]
     """(N, 3): layer, row, column, also of holes."""
+    plain: NDArray[np.float32]
+    """(N / 64,): least headroom over a tile that is level and without holes, as are all tiles
+    around it on its layer, metres; -1 for other tiles. Most of a building is as plain as that."""
     x0: float
     y0: float
     x1: float
@@ -143,5 +146,37 @@ def lay_cells(
     for s in range(len(layers)):
         for d in range(8):
             t = links[s, d]
-            if t >= 0:
-                arrays.links[cells[s], d] = cells[t]
+            arrays.links[cells[s], d] = cells[t] if t >= 0 else -1
+
+
+@kernel
+def find_plains(arrays: LayeredArrays) -> None:
+    """Write `arrays.plain` when everything else is there."""
+    floors = np.full(len(arrays.plain), np.nan, dtype=np.float32)
+    rooms = np.empty(len(arrays.plain), dtype=np.float32)
+    for tile in range(len(floors)):
+        first = tile * _CELLS
+        floor, ceiling = arrays.floors[first], arrays.ceilings[first]
+        level = True
+        for cell in range(first, first + _CELLS):
+            level &= arrays.floors[cell] == floor
+            ceiling = min(ceiling, arrays.ceilings[cell])
+        if level:
+            floors[tile], rooms[tile] = floor, ceiling - floor
+    layers, tiles_y, tiles_x = arrays.pages.shape
+    for layer in range(layers):
+        for tj in range(tiles_y):
+            for ti in range(tiles_x):
+                page = arrays.pages[layer, tj, ti]
+                if page < 0:
+                    continue
+                tile = page // _CELLS
+                room = rooms[tile]
+                for jj in range(max(0, tj - 1), min(tiles_y, tj + 2)):
+                    for ii in range(max(0, ti - 1), min(tiles_x, ti + 2)):
+                        other = arrays.pages[layer, jj, ii] // _CELLS
+                        if other < 0 or floors[other] != floors[tile]:
+                            room = np.float32(-1.0)
+                        else:
+                            room = min(room, rooms[other])
+                arrays.plain[tile] = room

@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 
 from planning._geometry_kernels import segments_cross
 from planning._jit import inlined, kernel
-from planning._layered import LINK_COLUMNS, LINK_M, LINK_ROWS, LayeredArrays, cell_index
+from planning._layered import LINK_COLUMNS, LINK_M, LINK_ROWS, TILE, LayeredArrays, cell_index
 from planning._surface_kernels import LOWEST_M, SolidArrays, SolidColumns, top_at
 
 LEAST_STEP_M = 0.1
 """Floors that differ by less are as good as level: everybody steps that high."""
+_PIECE_RISE_M = 0.25
+"""The side of a ramp is cut into pieces whose tops rise by no more than this."""
 _BELOW_M = 0.05
 _ABOVE_M = 2.0
 _LINTEL_M = 0.2
@@ -34,6 +36,32 @@ class Sides(NamedTuple):
     """(R, 6): x0, y0, x1, y1, z0, z1 of the pieces of faces in a column, metres."""
 
 
+@kernel
+def outlines(solids: SolidArrays, out: NDArray[np.float64]) -> int:
+    """The sides of solids, up to their tops; of what nobody climbs, higher than anyone steps.
+
+    Returns how many there are; those beyond the room in `out` are not written.
+    """
+    count = 0
+    for k in range(len(solids.bottoms)):
+        least = 0.0 if solids.standable[k] else solids.bottoms[k] + LINK_M
+        first, last = solids.starts[k], solids.starts[k + 1]
+        for a in range(first, last):
+            b = a + 1 if a + 1 < last else first
+            ax, ay = solids.points[a]
+            ux, uy = solids.points[b, 0] - ax, solids.points[b, 1] - ay
+            rise = abs(top_at(solids, k, ax + ux, ay + uy) - top_at(solids, k, ax, ay))
+            pieces = max(1, int(np.ceil(rise / _PIECE_RISE_M - 1e-9)))
+            for piece in range(pieces):
+                u, v = piece / pieces, (piece + 1) / pieces
+                px, py, qx, qy = ax + u * ux, ay + u * uy, ax + v * ux, ay + v * uy
+                top = max(least, top_at(solids, k, px, py), top_at(solids, k, qx, qy))
+                if count < len(out):
+                    out[count] = (px, py, qx, qy, solids.bottoms[k], top, np.inf)
+                count += 1
+    return count
+
+
 @inlined
 def _common_edge(
     arrays: LayeredArrays, j: int, i: int, d: int
@@ -46,7 +74,7 @@ def _common_edge(
     return x - h * abs(dj), y - h * abs(di), x + h * abs(dj), y + h * abs(di)
 
 
-@kernel
+@inlined
 def _solid_stops(columns: SolidColumns, c: int, x: float, y: float, floor: float) -> bool:
     """Whether the side of a solid in a column stops everybody who stands beside it."""
     s = columns.solids
@@ -58,7 +86,7 @@ def _solid_stops(columns: SolidColumns, c: int, x: float, y: float, floor: float
     return False
 
 
-@kernel
+@inlined
 def _face_between(
     sides: Sides, arrays: LayeredArrays, cell: int, d: int, low: float, high: float
 ) -> bool:
@@ -76,7 +104,7 @@ def _face_between(
     return False
 
 
-@kernel
+@inlined
 def _carrier(columns: SolidColumns, c: int, x: float, y: float, floor: float) -> int:
     """The solid whose top is that floor; -1: the ground."""
     for m in range(columns.starts[c], columns.starts[c + 1]):
@@ -86,7 +114,7 @@ def _carrier(columns: SolidColumns, c: int, x: float, y: float, floor: float) ->
     return -1
 
 
-@kernel
+@inlined
 def _outline_between(
     solids: SolidArrays, k: int, axis: int, line: tuple[float, float, float, float]
 ) -> tuple[bool, tuple[float, float, float, float]]:
@@ -112,7 +140,7 @@ def _outline_between(
     return False, line
 
 
-@kernel
+@inlined
 def _put(
     out: NDArray[np.float64],
     count: int,
@@ -164,7 +192,7 @@ def _ceiling(arrays: LayeredArrays, cell: int, d: int, floor: float) -> float:
     return float(arrays.ceilings[higher])
 
 
-@kernel
+@inlined
 def _ledge(arrays: LayeredArrays, sides: Sides, cell: int, d: int) -> tuple[bool, float, float]:
     """Whether there is a ledge at a side of a cell that is not level, its floor and its rise."""
     j = arrays.places[cell, 1] + LINK_ROWS[d]
@@ -184,7 +212,7 @@ def _ledge(arrays: LayeredArrays, sides: Sides, cell: int, d: int) -> tuple[bool
     return not stopped, floor, np.inf
 
 
-@kernel
+@inlined
 def _ledge_line(
     arrays: LayeredArrays, sides: Sides, cell: int, d: int, floor: float
 ) -> tuple[bool, tuple[float, float, float, float]]:
@@ -204,6 +232,34 @@ def _ledge_line(
 
 
 @kernel
+def _cells_along(
+    arrays: LayeredArrays,
+    layer: int,
+    line: int,
+    d: int,
+    headroom: float,
+    cells: NDArray[np.int32],
+) -> int:
+    """The cells of a column (d = 0 or 4) or row of a layer in order, but for tiles that are plain
+    with so much headroom; returns how many are written."""
+    count = 0
+    by_column = d in (0, 4)
+    length = arrays.ny if by_column else arrays.nx
+    for first in range(0, length, TILE):
+        tj, ti = (first // TILE, line // TILE) if by_column else (line // TILE, first // TILE)
+        page = arrays.pages[layer, tj, ti]
+        if page < 0 or arrays.plain[page // (TILE * TILE)] >= headroom:
+            continue
+        for k in range(first, min(length, first + TILE)):
+            j, i = (k, line) if by_column else (line, k)
+            cell = cell_index(arrays, layer, j, i)
+            if cell >= 0:
+                cells[count] = cell
+                count += 1
+    return count
+
+
+@kernel
 def ledges_towards(arrays: LayeredArrays, sides: Sides, d: int, out: NDArray[np.float64]) -> int:
     """Ledges of every cell towards its neighbour E (d = 0), N (2), W (4) or S (6).
 
@@ -213,25 +269,22 @@ def ledges_towards(arrays: LayeredArrays, sides: Sides, d: int, out: NDArray[np.
     room in `out` are not written.
     """
     count = 0
-    by_column = d in (0, 4)
-    lines, length = (arrays.nx, arrays.ny) if by_column else (arrays.ny, arrays.nx)
+    cells = np.empty(max(arrays.ny, arrays.nx), dtype=np.int32)
     for layer in range(arrays.pages.shape[0]):
-        for a in range(lines):
-            for b in range(length):
-                j, i = (b, a) if by_column else (a, b)
-                cell = cell_index(arrays, layer, j, i)
-                if cell < 0 or _passes(arrays, cell, d):
+        for line in range(arrays.nx if d in (0, 4) else arrays.ny):
+            for cell in cells[: _cells_along(arrays, layer, line, d, 0.0, cells)]:
+                if _passes(arrays, cell, d):
                     continue
                 found, floor, rise = _ledge(arrays, sides, cell, d)
                 if not found:
                     continue
-                exact, line = _ledge_line(arrays, sides, cell, d, floor)
+                exact, edge = _ledge_line(arrays, sides, cell, d, floor)
                 slope = rise <= 1.001 * arrays.cell_m and not exact
                 middle = floor - 0.5 * rise
                 if not slope or _face_between(sides, arrays, cell, d, middle, middle):
                     # Nobody above the ceiling is concerned.
                     top = min(floor + _ABOVE_M, _ceiling(arrays, cell, d, floor))
-                    count = _put(out, count, line, (floor - _BELOW_M, top, rise))
+                    count = _put(out, count, edge, (floor - _BELOW_M, top, rise))
     return count
 
 
@@ -242,20 +295,18 @@ def lintels_between(arrays: LayeredArrays, d: int, out: NDArray[np.float64]) -> 
     For the neighbours to the east (d = 0) or north (d = 2), as `ledges_towards`. Only meshes need
     them: of polygons the exact outline is known.
     """
-    outer, inner = (arrays.nx, arrays.ny) if d == 0 else (arrays.ny, arrays.nx)
     count = 0
+    cells = np.empty(max(arrays.ny, arrays.nx), dtype=np.int32)
     for layer in range(arrays.pages.shape[0]):
-        for a in range(outer):
-            for b in range(inner):
-                j, i = (b, a) if d == 0 else (a, b)
-                cell = cell_index(arrays, layer, j, i)
-                other = arrays.links[cell, d] if cell >= 0 else -1
+        for line in range(arrays.nx if d == 0 else arrays.ny):
+            for cell in cells[: _cells_along(arrays, layer, line, d, _HIGHEST_M, cells)]:
+                other = arrays.links[cell, d]
                 if other < 0:
                     continue
                 above, beside = float(arrays.ceilings[cell]), float(arrays.ceilings[other])
                 low, high = min(above, beside), max(above, beside)
                 floor = max(arrays.floors[cell], arrays.floors[other])
                 if high - low >= LEAST_STEP_M and low < floor + _HIGHEST_M:
-                    line = _common_edge(arrays, j, i, d)
-                    count = _put(out, count, line, (low, low + _LINTEL_M, np.inf))
+                    edge = _common_edge(arrays, arrays.places[cell, 1], arrays.places[cell, 2], d)
+                    count = _put(out, count, edge, (low, low + _LINTEL_M, np.inf))
     return count

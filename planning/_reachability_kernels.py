@@ -36,6 +36,7 @@ def _barred_bits(
             highest = max(highest, floors[links[cell, d]])
     x = arrays.x0 + (arrays.places[cell, 2] + 0.5) * cell_m
     y = arrays.y0 + (arrays.places[cell, 1] + 0.5) * cell_m
+    radius = body.radius_m - HAIR_M
     beyond = body.radius_m + 1.5 * cell_m
     barred = 0
     entry = near.first[cell]
@@ -46,16 +47,16 @@ def _barred_bits(
             continue
         along_x, along_y = barrier[2] - barrier[0], barrier[3] - barrier[1]
         side = along_x * (y - barrier[1]) - along_y * (x - barrier[0])
-        has_corner = (
+        may_clip = (
             max(abs(barrier[0] - x), abs(barrier[1] - y)) < beyond
             or max(abs(barrier[2] - x), abs(barrier[3] - y)) < beyond
-        )
+        ) and point_to_segment(x, y, barrier[0], barrier[1], barrier[2], barrier[3]) >= radius
         for d in range(8):
             if not (bits & ~barred) >> d & 1:
                 continue
             dx, dy = LINK_COLUMNS[d] * cell_m, LINK_ROWS[d] * cell_m
             is_across = side * (side + along_x * dy - along_y * dx) <= _TOUCH_M4
-            if not (is_across or has_corner):
+            if not (is_across or may_clip):
                 continue
             other = links[cell, d]
             step = to_raise(
@@ -67,8 +68,9 @@ def _barred_bits(
             if step <= body.step_on_m + HAIR_M:
                 continue
             if (is_across and crosses(barrier, x, y, x + dx, y + dy)) or (
-                step > body.leg_length_m + HAIR_M
-                and _clips_corner(barrier, x, y, x + dx, y + dy, body.radius_m - HAIR_M)
+                may_clip
+                and step > body.leg_length_m + HAIR_M
+                and _clips_corner(barrier, x, y, x + dx, y + dy, radius)
             ):
                 barred |= 1 << d
     return barred
@@ -78,12 +80,12 @@ def _barred_bits(
 def _clips_corner(
     barrier: NDArray[np.float64], ax: float, ay: float, bx: float, by: float, radius: float
 ) -> bool:
-    """Whether a disc touches a barrier on the way from a to b, but at neither end."""
+    """Whether a disc that does not touch a barrier in a or b does so on the way between them."""
     px, py, qx, qy = barrier[0], barrier[1], barrier[2], barrier[3]
     return (
         min(point_to_segment(px, py, ax, ay, bx, by), point_to_segment(qx, qy, ax, ay, bx, by))
         < radius
-        <= min(point_to_segment(ax, ay, px, py, qx, qy), point_to_segment(bx, by, px, py, qx, qy))
+        <= point_to_segment(bx, by, px, py, qx, qy)
     )
 
 
@@ -96,18 +98,25 @@ def step_bits(
     out: NDArray[np.uint8],
 ) -> None:
     """Write for each cell of some tiles the links that a body may follow; bit d is link d."""
+    tiles_y, tiles_x = arrays.pages.shape[1:]
     for layer in range(arrays.pages.shape[0]):
         for tj in range(box[0], box[2]):
             for ti in range(box[1], box[3]):
                 page = arrays.pages[layer, tj, ti]
                 if page < 0:
                     continue
+                is_inner = 0 < tj < tiles_y - 1 and 0 < ti < tiles_x - 1
+                plain = arrays.plain[page // (TILE * TILE)]
+                is_open = is_inner and plain >= body.height_m - HAIR_M
                 for cell in range(page, page + TILE * TILE):
-                    out[cell] = _bits_of(arrays, near, body, cell)
+                    bits = 255 if is_open else _bits_by_heights(arrays, body, cell)
+                    if bits and near.first[cell] >= 0:
+                        bits &= ~_barred_bits(arrays, near, body, cell, bits)
+                    out[cell] = bits
 
 
 @inlined
-def _bits_of(arrays: LayeredArrays, near: NearBarriers, body: Measures, cell: int) -> int:
+def _bits_by_heights(arrays: LayeredArrays, body: Measures, cell: int) -> int:
     floor = arrays.floors[cell]
     if np.isnan(floor):
         return 0
@@ -124,8 +133,6 @@ def _bits_of(arrays: LayeredArrays, near: NearBarriers, body: Measures, cell: in
             and min(arrays.ceilings[other], ceiling) - max(arrays.floors[other], floor) >= room
         ):
             bits |= 1 << d
-    if bits and near.first[cell] >= 0:
-        bits &= ~_barred_bits(arrays, near, body, cell, bits)
     return bits
 
 

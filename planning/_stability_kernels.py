@@ -48,11 +48,11 @@ def classify(
                 page = arrays.pages[layer, tj, ti]
                 if page < 0:
                     continue
-                plain = _gather(arrays, layer, tj * TILE, ti * TILE, reach, floors, ceilings)
-                is_full = (tj + 1) * TILE <= arrays.ny and (ti + 1) * TILE <= arrays.nx
-                if is_full and plain >= body.height_m - HAIR_M:
+                plain = arrays.plain[page // (TILE * TILE)]
+                if reach <= TILE and plain >= body.height_m - HAIR_M:
                     out[page : page + TILE * TILE] = STABLE
                 else:
+                    _gather(arrays, layer, tj * TILE, ti * TILE, reach, floors, ceilings)
                     for k in range(TILE * TILE):
                         out[page + k] = _class_by_heights(
                             arrays, body, layer, page + k, offsets, edges, floors, ceilings, reach
@@ -71,15 +71,9 @@ def _gather(
     reach: int,
     floors: NDArray[np.float32],
     ceilings: NDArray[np.float32],
-) -> float:
-    """Copy a tile and what lies around it; returns the free height if all is one floor, else -1.
-
-    What lies outside the grid is inf: no obstacle. A hole is nan.
-    """
-    lowest = np.float32(np.inf)
-    highest = np.float32(-np.inf)
-    ceiling = np.float32(np.inf)
-    whole = True
+) -> None:
+    """Copy a tile and what lies around it. What lies outside the grid is inf: no obstacle. A
+    hole is nan."""
     tiles_y, tiles_x = arrays.pages.shape[1:]
     side = TILE + 2 * reach
     for tj in range((j0 - reach) // TILE, (j0 + TILE - 1 + reach) // TILE + 1):
@@ -99,20 +93,11 @@ def _gather(
                         floors[v, u] = np.inf
                         ceilings[v, u] = np.inf
                         continue
-                    floor = np.float32(np.nan)
+                    floors[v, u] = np.nan
                     if page >= 0:
                         cell = page + (j - tj * TILE) * TILE + i - ti * TILE
-                        floor = arrays.floors[cell]
+                        floors[v, u] = arrays.floors[cell]
                         ceilings[v, u] = arrays.ceilings[cell]
-                        ceiling = min(ceiling, arrays.ceilings[cell])
-                    floors[v, u] = floor
-                    if np.isnan(floor):
-                        whole = False
-                    lowest = min(lowest, floor)
-                    highest = max(highest, floor)
-    if whole and lowest == highest:
-        return float(ceiling - highest)
-    return -1.0
 
 
 @inlined
@@ -163,7 +148,7 @@ def _class_by_heights(
     return FORBIDDEN
 
 
-@kernel
+@inlined
 def _is_within_leg(
     arrays: LayeredArrays,
     layer: int,

@@ -15,6 +15,8 @@ from planning._layered import LINK_COLUMNS, LINK_M, LINK_ROOM_M, LINK_ROWS
 LOWEST_M = 1.0
 """A surface with less headroom than this is none: nobody is that small."""
 _SAME_M = 1e-4
+_NEAREST_M = 0.5 * LOWEST_M - 0.01
+"""Surfaces that differ by less are nearest to one another: those of a column lie further apart."""
 
 
 class SolidArrays(NamedTuple):
@@ -134,29 +136,34 @@ def surfaces_of_columns(
     columns: SolidColumns,
     ground: bool,
     heights: tuple[NDArray[np.float32], NDArray[np.float32]],
+    places: tuple[NDArray[np.int32], NDArray[np.int32]],
     groups: NDArray[np.int16],
     surface_starts: NDArray[np.int32],
 ) -> int:
-    """The standing surfaces of every column, lowest first -> floors, ceilings, groups.
+    """The standing surfaces of every column, lowest first.
 
+    Writes `heights` (floors, ceilings), `places` (rows, columns) and `groups`.
     Candidates are the ground, at height 0, and the tops that carry; what lies in another solid
     or has too little headroom is dropped. Returns the number of surfaces.
     """
     floors, ceilings = heights
+    rows, cols = places
     solids, starts, members = columns
     used = 0
     for c in range(raster.ny * raster.nx):
         surface_starts[c] = used
+        j, i = c // raster.nx, c % raster.nx
         first, last = starts[c], starts[c + 1]
         if first == last:
             if ground:
                 floors[used] = 0.0
                 ceilings[used] = np.inf
+                rows[used], cols[used] = j, i
                 groups[used] = 0
                 used += 1
             continue
-        x = raster.x0 + (c % raster.nx + 0.5) * raster.cell_m
-        y = raster.y0 + (c // raster.nx + 0.5) * raster.cell_m
+        x = raster.x0 + (i + 0.5) * raster.cell_m
+        y = raster.y0 + (j + 0.5) * raster.cell_m
         for candidate in range(first - 1 if ground else first, last):
             z = 0.0
             group = np.int16(0)
@@ -184,6 +191,7 @@ def surfaces_of_columns(
             floors[k] = z
             ceilings[k] = ceiling
             groups[k] = group
+            rows[used], cols[used] = j, i
             used += 1
     surface_starts[raster.ny * raster.nx] = used
     return used
@@ -211,6 +219,35 @@ def _match(
     return best
 
 
+@inlined
+def _link_level(
+    starts: NDArray[np.int32],
+    floors: NDArray[np.float32],
+    ceilings: NDArray[np.float32],
+    run: tuple[int, int, int],
+    d: int,
+    links: NDArray[np.int32],
+) -> int:
+    """Link a run (first column, its neighbour, columns) as far as it goes on levelly.
+
+    That is nearly all there is: as many surfaces here as there, each beside its like. Returns
+    how many columns were linked.
+    """
+    c, other, count = run
+    shift = starts[other] - starts[c]
+    done = 0
+    while done < count and starts[other + done + 1] - starts[c + done + 1] == shift:
+        done += 1
+    a, end = starts[c], starts[c + done]
+    while a < end and _apart(floors, ceilings, a, a + shift) < _NEAREST_M:
+        links[a, d] = a + shift
+        links[a + shift, d + 4] = a
+        a += 1
+    while starts[c + done] > a:
+        done -= 1
+    return done
+
+
 @kernel
 def link_columns(
     ny: int,
@@ -222,22 +259,19 @@ def link_columns(
 ) -> None:
     """Link surfaces of neighbouring columns that are nearest to one another -> links (S, 8)."""
     for j in range(ny):
-        for i in range(nx):
-            c = j * nx + i
-            p0, p1 = starts[c], starts[c + 1]
-            if p0 == p1:
+        for d in range(4):
+            if j + LINK_ROWS[d] == ny:
                 continue
-            for d in range(4):
-                jj, ii = j + LINK_ROWS[d], i + LINK_COLUMNS[d]
-                if jj == ny or ii < 0 or ii == nx:
-                    continue
-                q0, q1 = starts[jj * nx + ii], starts[jj * nx + ii + 1]
-                if p1 - p0 == 1 and q1 - q0 == 1:
-                    # One floor beside one floor: nearly all there are.
-                    if _apart(floors, ceilings, p0, q0) <= LINK_M:
-                        links[p0, d] = q0
-                        links[q0, d + 4] = p0
-                    continue
+            i, last = max(0, -LINK_COLUMNS[d]), min(nx, nx - LINK_COLUMNS[d])
+            while i < last:
+                c = j * nx + i
+                other = c + LINK_ROWS[d] * nx + LINK_COLUMNS[d]
+                done = _link_level(starts, floors, ceilings, (c, other, last - i), d, links)
+                i += done + 1
+                if i > last:
+                    break
+                p0, p1 = starts[c + done], starts[c + done + 1]
+                q0, q1 = starts[other + done], starts[other + done + 1]
                 for a in range(p0, p1):
                     b = _match(floors, ceilings, a, q0, q1)
                     if b >= 0 and _match(floors, ceilings, b, p0, p1) == a:
@@ -287,6 +321,7 @@ def keep_surfaces(
 
 @kernel
 def relate_groups(
+    rows: NDArray[np.int32],
     columns: NDArray[np.int32],
     groups: NDArray[np.int16],
     links: NDArray[np.int32],
@@ -295,16 +330,18 @@ def relate_groups(
 ) -> None:
     """Which groups (G, G) lie above one another anywhere, and which are linked anywhere.
 
-    Surfaces of one column follow one another; `columns` (S,) are numbers of columns.
+    A group that has any surface is joined to itself. Surfaces of one column follow one another.
     """
     for s in range(len(groups)):
+        group = groups[s]
+        joined[group, group] = True
         t = s + 1
-        while t < len(groups) and columns[t] == columns[s]:
-            overlap[groups[s], groups[t]] = True
-            overlap[groups[t], groups[s]] = True
+        while t < len(groups) and columns[t] == columns[s] and rows[t] == rows[s]:
+            overlap[group, groups[t]] = True
+            overlap[groups[t], group] = True
             t += 1
         for d in range(4):
             t = links[s, d]
-            if t >= 0 and groups[t] != groups[s]:
-                joined[groups[s], groups[t]] = True
-                joined[groups[t], groups[s]] = True
+            if t >= 0 and groups[t] != group:
+                joined[group, groups[t]] = True
+                joined[groups[t], group] = True

@@ -78,9 +78,8 @@ def surfaces_of_triangles(
     if found > MAX_LAYERS:
         raise MeshError(f"{found} layers, but there may be {MAX_LAYERS}")
     rows, cols = np.divmod(numbers, np.int32(raster.nx))
-    return Surfaces(
-        rows, cols, floors, ceilings, layers, links, bounds, cell_m, raster.ny, raster.nx
-    )
+    place = bounds, cell_m, raster.ny, raster.nx
+    return Surfaces(rows, cols, floors, ceilings, layers, links, _no_solids(columns), *place)
 
 
 def barriers_of_triangles(
@@ -88,7 +87,7 @@ def barriers_of_triangles(
 ) -> Barriers:
     """What stops a body on triangles: faces too steep to stand on, ledges and lintels."""
     starts, faces = _faces(triangles, surfaces)
-    sides = Sides(_no_solids(len(starts) - 1), starts, faces)
+    sides = Sides(surfaces.solids, starts, faces)
     exact = np.concatenate([faces, np.full((len(faces), 1), np.inf)], axis=1)
     return np.concatenate([exact, ledges(arrays, sides), lintels(arrays)])
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from planning._layered import TILE, LayeredArrays, lay_cells, lay_pages, lay_places
+from planning._layered import TILE, LayeredArrays, find_plains, lay_cells, lay_pages, lay_places
 from planning._surface_kernels import (
     Raster,
     SolidArrays,
@@ -46,6 +46,8 @@ class Surfaces:
     """(S,): no layer has two surfaces in one column."""
     links: NDArray[np.int32]
     """(S, 8): the surfaces of the neighbouring columns that one can get to; -1: none."""
+    solids: SolidColumns
+    """What carries them and stands on them; nothing where triangles do."""
     bounds: tuple[float, float, float, float]
     """x0, y0, x1, y1 in metres."""
     cell_m: float
@@ -76,6 +78,7 @@ class Surfaces:
             np.full(cells, np.nan, dtype=np.float32),
             np.full((cells, 8), -1, dtype=np.int32),
             np.empty((cells, 3), dtype=np.int32),
+            np.empty(cells // TILE**2, dtype=np.float32),
             *self.bounds,
             self.cell_m,
             self.ny,
@@ -89,6 +92,7 @@ class Surfaces:
             self.links,
             np.empty(len(self), dtype=np.int32),
         )
+        find_plains(arrays)
         return arrays
 
 
@@ -124,23 +128,24 @@ def surfaces_of_scene(scene: Scene, cell_m: float = 0.25) -> Surfaces:
     columns = solid_columns(scene, raster)
     room = raster.ny * raster.nx + len(columns.members)
     floors, ceilings = np.empty(room, dtype=np.float32), np.empty(room, dtype=np.float32)
+    rows, cols = np.empty(room, dtype=np.int32), np.empty(room, dtype=np.int32)
     groups = np.empty(room, dtype=np.int16)
     tops = np.empty_like(columns.starts)
-    count = surfaces_of_columns(raster, columns, True, (floors, ceilings), groups, tops)
-    floors, ceilings, groups = floors[:count].copy(), ceilings[:count].copy(), groups[:count]
-    links = linked(raster, tops, floors, ceilings)
-    numbers = np.repeat(np.arange(raster.ny * raster.nx, dtype=np.int32), np.diff(tops))
-
-    kept = _reached(scene, raster, numbers, floors, links)
-    if not kept.all():
-        links = links[: keep_surfaces(kept, links, np.empty(count, dtype=np.int32))]
-        floors, ceilings = floors[kept], ceilings[kept]
-        groups, numbers = groups[kept], numbers[kept]
-    rows, cols = np.divmod(numbers, np.int32(raster.nx))
-    layers = _layers_of_groups(numbers, groups, links)
-    return Surfaces(
-        rows, cols, floors, ceilings, layers, links, scene.bounds, cell_m, raster.ny, raster.nx
+    count = surfaces_of_columns(
+        raster, columns, True, (floors, ceilings), (rows, cols), groups, tops
     )
+    floors, ceilings, groups = floors[:count], ceilings[:count], groups[:count]
+    rows, cols = rows[:count], cols[:count]
+    links = linked(raster, tops, floors, ceilings)
+
+    if count and (scene.spawns or scene.places):
+        kept = _reached(scene, raster, rows * raster.nx + cols, floors, links)
+        links = links[: keep_surfaces(kept, links, np.empty(count, dtype=np.int32))]
+        floors, ceilings, groups = floors[kept], ceilings[kept], groups[kept]
+        rows, cols = rows[kept], cols[kept]
+    layers = _layers_of_groups(rows, cols, groups, links)
+    place = scene.bounds, cell_m, raster.ny, raster.nx
+    return Surfaces(rows, cols, floors, ceilings, layers, links, columns, *place)
 
 
 def linked(
@@ -204,11 +209,9 @@ def _reached(
     floors: NDArray[np.float32],
     links: NDArray[np.int32],
 ) -> NDArray[np.bool_]:
-    """Which surfaces are linked to a spawn or a place; all where there are none."""
+    """Which surfaces are linked to a spawn or a place."""
     points = [(*spawn.position, spawn.z_m) for spawn in scene.spawns]
     points += [(*place.position, place.z_m) for place in scene.places]
-    if not points or not len(floors):
-        return np.ones(len(floors), dtype=np.bool_)
     reached = np.zeros(len(floors), dtype=np.bool_)
     seeds = []
     for x, y, z in points:
@@ -226,7 +229,10 @@ def _reached(
 
 
 def _layers_of_groups(
-    numbers: NDArray[np.int32], groups: NDArray[np.int16], links: NDArray[np.int32]
+    rows: NDArray[np.int32],
+    columns: NDArray[np.int32],
+    groups: NDArray[np.int16],
+    links: NDArray[np.int32],
 ) -> NDArray[np.int16]:
     """Layers of surfaces by the offsets that they stand on."""
     count = int(groups.max(initial=0)) + 1
@@ -234,9 +240,9 @@ def _layers_of_groups(
         return np.zeros(len(groups), dtype=np.int16)
     overlap = np.zeros((count, count), dtype=np.bool_)
     joined = np.zeros((count, count), dtype=np.bool_)
-    relate_groups(numbers, groups, links, overlap, joined)
+    relate_groups(rows, columns, groups, links, overlap, joined)
     layer_of = np.full(count, -1, dtype=np.int16)
-    for group in np.flatnonzero(np.bincount(groups)):
+    for group in np.flatnonzero(joined.diagonal()):
         free = (
             layer
             for layer in range(layer_of.max() + 1)
