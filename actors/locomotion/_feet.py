@@ -43,7 +43,7 @@ def standing_foot(before: BothDown, after: BothDown, hips: Hips, u: Floats) -> F
     return Foot(ankle_over_toe(footprint, np.minimum(pitch, 0.0)), pitch, footprint[..., 3])
 
 
-def swinging_foot(  # noqa: PLR0913
+def swinging_foot(
     before: BothDown,
     after: BothDown,
     lifted: Floats,
@@ -134,7 +134,7 @@ def _pinned_foot(before: BothDown, lifted: Floats, hips: Hips, u: Floats) -> tup
     return Foot(ankle_over_toe(footprint, pitch), pitch, footprint[..., 3]), angles
 
 
-def _level_swing(  # noqa: PLR0913
+def _level_swing(
     after: BothDown,
     pinned: Foot,
     angles: Floats,

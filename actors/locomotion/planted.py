@@ -41,7 +41,7 @@ class Targets(NamedTuple):
     root: Floats
     """(N, K, 3): the middle between the hip joints."""
     yaw: Floats
-    """(N, K): where the pelvis faces. Its frame (forward, left, up) is Rz(yaw) Ry(lean) Rx(roll)."""
+    """(N, K): where the pelvis faces; its frame forward, left, up is Rz(yaw) Ry(lean) Rx(roll)."""
     lean: Floats
     """(N, K): forward bow."""
     roll: Floats
@@ -130,7 +130,9 @@ def _into_world(found: Targets, falls: Footfalls) -> Targets:
 
     def place(local: Floats) -> Floats:
         level = local[..., :1] * forward + (mirror * local[..., 1])[..., None] * left
-        return falls.standing[:, None, :3] + leg * np.concatenate([level, local[..., 2:]], axis=-1)
+        offset = leg * np.concatenate([level, local[..., 2:]], axis=-1)
+        world: Floats = falls.standing[:, None, :3] + offset
+        return world
 
     def sides(standing_first: Floats) -> Floats:
         return np.where(mirror[..., None] < 0.0, standing_first[..., ::-1], standing_first)

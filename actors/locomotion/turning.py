@@ -117,7 +117,7 @@ def _lowered(root: Floats, rear: Floats, front: Floats, heel: Floats, side: Floa
 
 
 def ankle_over_toe(footprint: Floats, pitch: Floats) -> Floats:
-    """Ankle (..., 3) of a foot that is pitched about its toe, which is where the footprint has it."""
+    """Ankle (..., 3) of a foot that is pitched about its toe, which keeps to the footprint."""
     forward, _ = forward_and_left(footprint[..., 3])
     drawn = FOOT * (1.0 - np.cos(pitch))
     level = footprint[..., :2] + drawn[..., None] * forward
