@@ -2,6 +2,7 @@
 
 import type { ConnectionState } from "../net/connection";
 import type { Doors, Plan } from "../net/messages";
+import type { Foot } from "../world/body";
 import type { Avatar } from "../world/world";
 import type { Session } from "./session";
 import type { View } from "./view";
@@ -9,7 +10,7 @@ import type { View } from "./view";
 export interface Inspection {
   readonly phase: ConnectionState["phase"];
   readonly id: number | null;
-  readonly avatars: readonly Readonly<Avatar>[];
+  readonly avatars: readonly Seen[];
   readonly doors: Readonly<Doors> | null;
   readonly plan: Plan | null;
   readonly chosenId: number | null;
@@ -18,6 +19,20 @@ export interface Inspection {
   readonly qualityLevel: number;
   readonly delayS: number | null;
   readonly correctionM: number | null;
+}
+
+/** An avatar as it is drawn, with the feet it walks on. */
+interface Seen extends Omit<Avatar, "walker"> {
+  readonly feet: { readonly left: Foot; readonly right: Foot };
+  /** The foot that its step stands on; null of those who are drawn without steps. */
+  readonly stands: "left" | "right" | null;
+}
+
+function seen({ id, kind, name, radius, own, pose, walker }: Avatar): Seen {
+  const { left, right } = walker.body;
+  const stands = walker.step && (walker.step.rightStands ? "right" : "left");
+  const feet = { left: left.foot, right: right.foot };
+  return { id, kind, name, radius, own, pose, feet, stands };
 }
 
 declare global {
@@ -35,18 +50,7 @@ export function offerInspection(session: Session, view: View): void {
       return session.world?.ownId ?? null;
     },
     get avatars() {
-      return structuredClone(
-        [...(session.world?.avatars.values() ?? [])].map(
-          ({ id, kind, name, radius, own, pose }) => ({
-            id,
-            kind,
-            name,
-            radius,
-            own,
-            pose,
-          }),
-        ),
-      );
+      return structuredClone([...(session.world?.avatars.values() ?? [])].map(seen));
     },
     get doors() {
       return structuredClone(session.world?.doors ?? null);

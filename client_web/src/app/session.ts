@@ -1,6 +1,7 @@
 /** One visit: joins, passes what the server says to the world and the page, and draws the frames. */
 
 import { unpackBlock } from "../net/codec";
+import { unpackSteps } from "../net/steps";
 import { fetchTriangles } from "../net/triangles";
 import { Connection, type ConnectionState } from "../net/connection";
 import type { Seats } from "../net/seats";
@@ -143,6 +144,9 @@ export class Session {
         world.snapshot(message.tick, message.ack, records, this.serverNowS());
         break;
       }
+      case "steps":
+        world?.steps(unpackSteps(message.block));
+        break;
       case "plan":
         if (world && message.id === this.chosenId && this.planSwitch.open) world.plan = message;
         break;

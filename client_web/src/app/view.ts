@@ -90,7 +90,7 @@ export class View {
     this.town?.lookingFrom(this.camera.reachM);
     this.town?.doors.update(world.doors, frameS);
     this.drawn = new Map([...avatars].filter(([, avatar]) => this.shown(avatar) > 0.5));
-    this.figures.update(this.drawn, frameS);
+    this.figures.update(this.drawn, this.stage.camera);
     this.marks.update(this.drawn, own?.pose, chosen, frameS);
     this.plans.show(world.plan, world.floors);
     this.stage.draw();

@@ -1,8 +1,8 @@
 /** Names and spoken lines above heads, as HTML, for the nearest avatars only. */
 
 import { type PerspectiveCamera, Vector3 } from "three";
+import { crown } from "../world/body";
 import type { Avatar } from "../world/world";
-import { statureM } from "./figures";
 
 const MOST = 24;
 const FAR_M = 26;
@@ -71,8 +71,10 @@ export class Labels {
   }
 
   /** Where a label hangs. */
-  private head({ id, pose }: Avatar): Vector3 {
-    return this.at.set(pose.x, pose.y, pose.z + statureM(id) + ABOVE_M);
+  private head({ walker: { body, build } }: Avatar): Vector3 {
+    crown(body, build, this.at);
+    this.at.z += ABOVE_M;
+    return this.at;
   }
 
   private labelOf(avatar: Avatar): Label {

@@ -33,7 +33,13 @@ const SHIRTS = [
 const TROUSERS = ["#2c3440", "#4a5568", "#6b5b4a", "#26324d", "#55524d", "#7b7264"];
 const SKINS = ["#f1c9a5", "#e0ac80", "#c68a5e", "#9a643f", "#6f452b"];
 const HAIRS = ["#2b1d14", "#4f3421", "#8a5a2b", "#c79a55", "#6e6a66", "#1a1a1f"];
-const SHOES = new Color("#2a2523");
+const SHOES = ["#3a2a20", "#26262b", "#e6e2da", "#6d4a2f", "#8c2f2b", "#2f4a63"];
+
+/** Fashions of hair, as parts of figures are named. */
+const HAIRDOS = ["short", "short", "short", "long", "long", "bun"] as const;
+/** How many wear short sleeves, and how many short trousers. */
+const SHORT_SLEEVES = 0.45;
+const SHORT_TROUSERS = 0.15;
 
 export interface Clothing {
   shirt: Color;
@@ -41,16 +47,26 @@ export interface Clothing {
   skin: Color;
   hair: Color;
   shoes: Color;
+  /** From the elbow and from the knee down. */
+  forearm: Color;
+  shin: Color;
+  hairdo: (typeof HAIRDOS)[number];
 }
 
 /** Always the same for the same id. */
 export function clothingOf(id: number): Clothing {
+  const shirt = pick(SHIRTS, id, 1);
+  const trousers = pick(TROUSERS, id, 2);
+  const skin = pick(SKINS, id, 3);
   return {
-    shirt: pick(SHIRTS, id, 1),
-    trousers: pick(TROUSERS, id, 2),
-    skin: pick(SKINS, id, 3),
+    shirt,
+    trousers,
+    skin,
     hair: pick(HAIRS, id, 4),
-    shoes: SHOES,
+    shoes: pick(SHOES, id, 7),
+    forearm: scatter(id, 8) < SHORT_SLEEVES ? skin : shirt,
+    shin: scatter(id, 9) < SHORT_TROUSERS ? skin : trousers,
+    hairdo: HAIRDOS[Math.floor(scatter(id, 10) * HAIRDOS.length)] ?? "short",
   };
 }
 

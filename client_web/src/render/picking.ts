@@ -1,9 +1,9 @@
 /** What is under a point of the screen: an avatar, a door, or a place to walk to. */
 
 import { type Mesh, type PerspectiveCamera, Plane, Raycaster, Vector2, Vector3 } from "three";
+import { crown } from "../world/body";
 import type { Avatar } from "../world/world";
 import { baseOf, type Cutaway } from "./cutaway";
-import { statureM } from "./figures";
 import type { Town } from "./town";
 
 export interface ScreenPoint {
@@ -53,7 +53,7 @@ export class Picking {
       if (avatar.own) continue;
       const { x, y, z } = avatar.pose;
       this.foot.set(x, y, z);
-      this.head.set(x, y, z + statureM(avatar.id));
+      crown(avatar.walker.body, avatar.walker.build, this.head);
       const besideSq = this.ray.ray.distanceSqToSegment(
         this.foot,
         this.head,

@@ -15,7 +15,11 @@ export class Playout {
   private deviation = 0.005;
   private timeS_: number | null = null;
 
-  constructor(private readonly tickS: number) {}
+  /** `cushionS` is kept beyond the deviation of arrivals, and never less than `leastS` at all. */
+  constructor(
+    private readonly cushionS: number,
+    private readonly leastS = LEAST_S,
+  ) {}
 
   /** A snapshot of the tick at `tickTimeS` came in when the server's time was `serverNowS`. */
   arrived(tickTimeS: number, serverNowS: number): void {
@@ -31,8 +35,8 @@ export class Playout {
 
   /** How far the drawn time is to be behind the server's. */
   get delayS(): number {
-    const cushionS = Math.min(MOST_S, this.tickS + DEVIATIONS * this.deviation);
-    return (this.lateness ?? 0) + Math.max(LEAST_S, cushionS);
+    const behindS = Math.min(MOST_S, this.cushionS + DEVIATIONS * this.deviation);
+    return (this.lateness ?? 0) + Math.max(this.leastS, behindS);
   }
 
   /** The drawn time, one frame of `frameS` later. Never runs backwards but for a jump. */

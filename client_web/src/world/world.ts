@@ -7,6 +7,9 @@ import { Motion, type Pose } from "./motion";
 import { Obstacles } from "./obstacles";
 import { Playout } from "./playout";
 import { Prediction, type Command } from "./prediction";
+import type { StepRecord } from "../net/steps";
+import { buildOf } from "./skeleton";
+import { Walker } from "./walker";
 
 /** An avatar in view. `pose` is where it is drawn in this frame. */
 export interface Avatar {
@@ -15,13 +18,13 @@ export interface Avatar {
   readonly name: string;
   readonly radius: number;
   readonly own: boolean;
+  /** How its body is drawn. */
+  readonly walker: Walker;
   pose: Pose;
 }
 
-/** Heights of feet are drawn evened out over this time, so that nobody hops from tread to tread. */
-const LIFT_S = 0.09;
-/** A greater difference in height is no step. */
-const FALL_M = 1.5;
+/** The least time that the own steps are drawn behind their usual arrival. */
+const OWN_LEAST_S = 0.02;
 
 interface Followed extends Avatar {
   readonly motion: Motion;
@@ -36,6 +39,8 @@ export class World {
   plan: Plan | null = null;
   private readonly avatars_ = new Map<number, Followed>();
   private readonly playout: Playout;
+  /** The own steps are drawn as soon as they are there. */
+  private readonly ownPlayout = new Playout(0, OWN_LEAST_S);
   private obstacles: Obstacles;
   private readonly tickS: number;
   private prediction: Prediction | null = null;
@@ -77,6 +82,7 @@ export class World {
       const own = info.id === this.ownId;
       const { x, y, z, layer, heading } = info;
       const pose = { x, y, z, layer, heading, speed: 0, reason: 0 };
+      const walker = new Walker(buildOf(info.leg_m, info.stature_m), pose);
       const motion = new Motion(this.timeOf(tick), pose);
       this.avatars_.set(info.id, {
         id: info.id,
@@ -84,6 +90,7 @@ export class World {
         name: info.name,
         radius: info.radius,
         own,
+        walker,
         pose,
         motion,
       });
@@ -109,7 +116,17 @@ export class World {
       if (id === this.ownId) this.prediction?.reconcile(tick, ack, pose);
     }
     this.playout.arrived(timeS, serverNowS);
+    this.ownPlayout.arrived(timeS, serverNowS);
     this.heardS = timeS;
+  }
+
+  /** Steps that somebody near by begins. */
+  steps(records: readonly StepRecord[]): void {
+    for (const record of records) {
+      const beginS = this.timeOf(record.tick);
+      const endS = this.timeOf(record.tick + record.ticks);
+      this.avatars_.get(record.id)?.walker.add(record, beginS, endS);
+    }
   }
 
   /** Which doors stand open; false if closed. */
@@ -136,13 +153,14 @@ export class World {
   /** Move everybody to where they are drawn `frameS` later. */
   advance(serverNowS: number, frameS: number): void {
     const timeS = this.playout.advance(serverNowS, frameS);
+    const ownS = this.ownPlayout.advance(serverNowS, frameS);
     this.prediction?.advance(frameS);
     for (const avatar of this.avatars_.values()) {
-      const pose =
-        avatar.own && this.prediction
-          ? this.prediction.shown
-          : avatar.motion.at(timeS, this.heardS);
-      avatar.pose = { ...pose, z: lifted(avatar.pose.z, pose.z, frameS) };
+      const { walker, motion, own } = avatar;
+      avatar.pose =
+        own && this.prediction
+          ? walker.advance(ownS, this.prediction.shown, frameS)
+          : walker.advance(timeS, motion.at(timeS, this.heardS), frameS);
     }
   }
 
@@ -153,10 +171,4 @@ export class World {
   private timeOf(tick: number): number {
     return this.welcome.server_time + (tick - this.welcome.tick) * this.tickS;
   }
-}
-
-/** The height on the way from the one that was drawn to the one that is right. */
-function lifted(drawnM: number, rightM: number, frameS: number): number {
-  const off = rightM - drawnM;
-  return Math.abs(off) > FALL_M ? rightM : drawnM + off * (1 - Math.exp(-frameS / LIFT_S));
 }

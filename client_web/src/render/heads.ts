@@ -1,0 +1,132 @@
+/** Heads: a face that shows where it looks, hair in three fashions, and what actors wear. */
+
+import { type BufferGeometry, Color, ConeGeometry, SphereGeometry } from "three";
+import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
+import { type Hoop, loft, oval, type Oval, skin, WHITE } from "./loft";
+import { painted } from "./shapes";
+
+export type HairName = "short" | "long" | "bun";
+
+const PUPIL = new Color("#1d1a18");
+/** As skin is multiplied by them, these are lighter than they look. */
+const EYE = new Color("#fffdfa").multiplyScalar(1.25);
+const BROW = new Color("#6a5244");
+const LIPS = new Color("#c07a70");
+
+/** From the foot of the neck, in shares of the trunk. */
+export function head(corners: number): BufferGeometry {
+  const skull = loft(
+    [
+      { z: 0.321, depth: 0.024, width: 0.022, x: -0.008 },
+      { z: 0.311, depth: 0.058, width: 0.05, x: -0.008 },
+      { z: 0.29, depth: 0.083, width: 0.068, x: -0.006 },
+      { z: 0.25, depth: 0.098, width: 0.08, x: -0.004 },
+      { z: 0.205, depth: 0.098, width: 0.081, x: 0 },
+      { z: 0.165, depth: 0.09, width: 0.075, x: 0.008 },
+      { z: 0.13, depth: 0.078, width: 0.064, x: 0.019 },
+      { z: 0.1, depth: 0.062, width: 0.05, x: 0.031 },
+      { z: 0.082, depth: 0.036, width: 0.032, x: 0.044 },
+    ],
+    corners,
+  );
+  const neck = loft(
+    [
+      { z: 0.15, depth: 0.05, width: 0.049, x: -0.016 },
+      { z: 0.07, depth: 0.05, width: 0.049, x: -0.016 },
+      { z: 0.02, depth: 0.056, width: 0.06, x: -0.018 },
+      { z: -0.02, depth: 0.06, width: 0.075, x: -0.018 },
+    ],
+    corners,
+  );
+  const nose = new ConeGeometry(0.019, 0.058, 5, 1)
+    .rotateY(0.3)
+    .scale(1, 1, 1)
+    .rotateX(Math.PI / 2)
+    .rotateY(0.38)
+    .translate(0.099, 0, 0.187);
+  const eyes = [-1, 1].flatMap((side) => [
+    ball([0.086, side * 0.033, 0.214], [0.012, 0.017, 0.0125], EYE),
+    ball([0.0925, side * 0.0335, 0.214], [0.0075, 0.0085, 0.0095], PUPIL),
+    ball([0.0885, side * 0.034, 0.238], [0.009, 0.022, 0.0055], BROW),
+    ball([-0.004, side * 0.081, 0.2], [0.02, 0.009, 0.03], WHITE),
+  ]);
+  const mouth = ball([0.0895, 0, 0.136], [0.007, 0.025, 0.0065], LIPS);
+  return merge([skull, neck, painted(nose, WHITE), ...eyes, mouth]);
+}
+
+/** Ovals that slope: the front is higher by `slope` for each metre to the front. */
+type Curl = Oval & { slope?: number };
+
+const CROWN: readonly Curl[] = [
+  { z: 0.34, depth: 0.024, width: 0.022, x: -0.012 },
+  { z: 0.33, depth: 0.064, width: 0.056, x: -0.012, slope: 0.05 },
+  { z: 0.306, depth: 0.093, width: 0.079, x: -0.012, slope: 0.12 },
+  { z: 0.27, depth: 0.108, width: 0.091, x: -0.012, slope: 0.2 },
+];
+const SHORT: readonly Curl[] = [
+  ...CROWN,
+  { z: 0.225, depth: 0.108, width: 0.092, x: -0.014, slope: 0.55 },
+  { z: 0.205, depth: 0.1, width: 0.086, x: -0.014, slope: 0.6 },
+];
+const FASHIONS: Record<HairName, readonly Curl[]> = {
+  short: SHORT,
+  bun: SHORT,
+  long: [
+    ...CROWN,
+    { z: 0.225, depth: 0.105, width: 0.098, x: -0.02, slope: 0.5 },
+    { z: 0.16, depth: 0.072, width: 0.103, x: -0.055, slope: 0.35 },
+    { z: 0.08, depth: 0.048, width: 0.1, x: -0.075 },
+    { z: 0.0, depth: 0.034, width: 0.086, x: -0.09 },
+    { z: -0.03, depth: 0.018, width: 0.06, x: -0.095 },
+  ],
+};
+
+export function hair(name: HairName, corners: number): BufferGeometry {
+  const cut = skin(FASHIONS[name].map((curl) => sloped(curl, corners)));
+  if (name !== "bun") return cut;
+  return merge([cut, ball([-0.115, 0, 0.29], [0.042, 0.045, 0.042], WHITE)]);
+}
+
+/** The green cap of actors. */
+export function hat(corners: number): BufferGeometry {
+  const crown = skin(
+    (
+      [
+        { z: 0.362, depth: 0.03, width: 0.028, x: -0.008 },
+        { z: 0.353, depth: 0.07, width: 0.062, x: -0.008, slope: 0.02 },
+        { z: 0.325, depth: 0.1, width: 0.086, x: -0.01, slope: 0.06 },
+        { z: 0.268, depth: 0.116, width: 0.1, x: -0.01, slope: 0.1 },
+        { z: 0.26, depth: 0.1, width: 0.09, x: -0.01, slope: 0.1 },
+      ] satisfies Curl[]
+    ).map((curl) => sloped(curl, corners)),
+  );
+  const peak = skin(
+    (
+      [
+        { z: 0.282, depth: 0.07, width: 0.07, x: 0.085, slope: -0.22 },
+        { z: 0.278, depth: 0.083, width: 0.078, x: 0.09, slope: -0.22 },
+        { z: 0.27, depth: 0.08, width: 0.075, x: 0.09, slope: -0.22 },
+      ] satisfies Curl[]
+    ).map((curl) => sloped(curl, corners)),
+  );
+  return merge([crown, peak]);
+}
+
+function sloped({ slope = 0, ...rest }: Curl, corners: number): Hoop {
+  const { points, color } = oval(rest, corners);
+  return { points: points.map(([x, y, z]) => [x, y, z + slope * x] as const), color };
+}
+
+function ball(
+  [x, y, z]: readonly [number, number, number],
+  [sx, sy, sz]: readonly [number, number, number],
+  color: Color,
+): BufferGeometry {
+  return painted(new SphereGeometry(1, 8, 6).scale(sx, sy, sz).translate(x, y, z), color);
+}
+
+/** One geometry of shapes with and without texture coordinates. */
+function merge(shapes: BufferGeometry[]): BufferGeometry {
+  for (const shape of shapes) shape.deleteAttribute("uv");
+  return mergeGeometries(shapes);
+}

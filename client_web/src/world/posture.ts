@@ -1,0 +1,98 @@
+/**
+ * What is known of a body before its joints are solved: where its trunk and feet are. This is what
+ * steps and the cycle of far figures say, and what is blended when one takes over from the other.
+ */
+
+import { mixAngles } from "./angles";
+import {
+  copy,
+  copyRotation,
+  mix,
+  mixRotations,
+  type Rotation,
+  rotation,
+  type Vector,
+  vector,
+} from "./vectors";
+
+export interface FootPosture {
+  /** The back of the sole, below the ankle. */
+  heel: Vector;
+  /** Radians, toe up is positive. */
+  pitch: number;
+  /** Where the toes point on the ground. */
+  heading: number;
+  /** How far it stands on its toe, 0 to 1: then the heel may be raised for a leg that is short. */
+  raised: number;
+}
+
+/** Radians; positive is forwards. */
+export interface ArmPosture {
+  shoulder: number;
+  elbow: number;
+}
+
+export interface Posture {
+  /** The middle between the hip joints. */
+  root: Vector;
+  pelvis: Rotation;
+  /** Relative to the pelvis. */
+  chest: Rotation;
+  left: FootPosture;
+  right: FootPosture;
+  leftArm: ArmPosture;
+  rightArm: ArmPosture;
+}
+
+export function posture(): Posture {
+  const foot = (): FootPosture => ({ heel: vector(), pitch: 0, heading: 0, raised: 0 });
+  return {
+    root: vector(),
+    pelvis: rotation(),
+    chest: rotation(),
+    left: foot(),
+    right: foot(),
+    leftArm: { shoulder: 0, elbow: 0 },
+    rightArm: { shoulder: 0, elbow: 0 },
+  };
+}
+
+/** On the way from one posture to another; `out` may be one of them. */
+export function mixPostures(from: Posture, to: Posture, part: number, out: Posture): void {
+  mix(from.root, to.root, part, out.root);
+  mixRotations(from.pelvis, to.pelvis, part, out.pelvis);
+  mixRotations(from.chest, to.chest, part, out.chest);
+  mixFeet(from.left, to.left, part, out.left);
+  mixFeet(from.right, to.right, part, out.right);
+  mixArms(from.leftArm, to.leftArm, part, out.leftArm);
+  mixArms(from.rightArm, to.rightArm, part, out.rightArm);
+}
+
+export function copyPosture(from: Posture, out: Posture): void {
+  copy(from.root, out.root);
+  copyRotation(from.pelvis, out.pelvis);
+  copyRotation(from.chest, out.chest);
+  copyFoot(from.left, out.left);
+  copyFoot(from.right, out.right);
+  mixArms(from.leftArm, from.leftArm, 0, out.leftArm);
+  mixArms(from.rightArm, from.rightArm, 0, out.rightArm);
+}
+
+function copyFoot(from: FootPosture, out: FootPosture): void {
+  copy(from.heel, out.heel);
+  out.pitch = from.pitch;
+  out.heading = from.heading;
+  out.raised = from.raised;
+}
+
+function mixFeet(from: FootPosture, to: FootPosture, part: number, out: FootPosture): void {
+  mix(from.heel, to.heel, part, out.heel);
+  out.pitch = from.pitch + (to.pitch - from.pitch) * part;
+  out.heading = mixAngles(from.heading, to.heading, part);
+  out.raised = from.raised + (to.raised - from.raised) * part;
+}
+
+function mixArms(from: ArmPosture, to: ArmPosture, part: number, out: ArmPosture): void {
+  out.shoulder = from.shoulder + (to.shoulder - from.shoulder) * part;
+  out.elbow = from.elbow + (to.elbow - from.elbow) * part;
+}

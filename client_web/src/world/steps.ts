@@ -1,0 +1,180 @@
+/**
+ * The posture of a body in the midst of a step: the twin of `actors/locomotion/motion.py`.
+ *
+ * The standing foot follows from its footprint and its pitch alone, so it cannot slide at any frame
+ * rate; all else goes along curves through the keys of the step.
+ */
+
+import { KEY_NUMBERS, KeyNumber, STEP_KEYS, type StepRecord } from "../net/steps";
+import { heelFromToe } from "./body";
+import type { FootPosture, Posture } from "./posture";
+import { type Build, FOOT } from "./skeleton";
+import { normalise, type Rotation, set, setRotation, type Vector, vector } from "./vectors";
+
+/** Share of a step in which a foot that has left the ground comes over to its curve. */
+const SETTLE = 0.1;
+/** A standing foot whose pitch is so much below level rises on its toe where the leg is short. */
+const EASE_RAD = 0.1;
+
+const key = new Float64Array(KEY_NUMBERS);
+const weights = new Float64Array(STEP_KEYS);
+const offset = vector();
+const level = vector();
+
+/** A step that is ready to be drawn: neighbouring quaternions have the same sign. */
+export interface Step extends StepRecord {
+  /** Where the swing foot's toe is at first, from the landing footprint. */
+  readonly firstToe: Vector;
+}
+
+export function readyToDraw(record: StepRecord, build: Build): Step {
+  const keys = record.keys.slice();
+  for (const at of [KeyNumber.PELVIS, KeyNumber.CHEST]) align(keys, at);
+  const heading = number(keys, KeyNumber.SWING_HEADING) + record.landing.heading;
+  heelFromToe(number(keys, KeyNumber.SWING_PITCH), heading, FOOT * build.legM, offset);
+  return {
+    ...record,
+    keys,
+    firstToe: {
+      x: number(keys, KeyNumber.ANKLE) - offset.x,
+      y: number(keys, KeyNumber.ANKLE + 1) - offset.y,
+      z: number(keys, KeyNumber.ANKLE + 2) - offset.z,
+    },
+  };
+}
+
+/** The posture at share `u` of a step. */
+export function underWay(step: Step, u: number, build: Build, out: Posture): void {
+  const { standing, landing, rightStands, lift } = step;
+  const share = Math.max(0, Math.min(1, u));
+  between(step.keys, share);
+  const at = KeyNumber;
+  set(
+    out.root,
+    standing.x + number(key, at.ROOT),
+    standing.y + number(key, at.ROOT + 1),
+    standing.z + number(key, at.ROOT + 2),
+  );
+  turn(key, at.PELVIS, out.pelvis);
+  turn(key, at.CHEST, out.chest);
+  out.leftArm.shoulder = number(key, at.ARMS);
+  out.rightArm.shoulder = number(key, at.ARMS + 1);
+  out.leftArm.elbow = number(key, at.ARMS + 2);
+  out.rightArm.elbow = number(key, at.ARMS + 3);
+  stand(step, build, rightStands ? out.right : out.left);
+  const swing = rightStands ? out.left : out.right;
+  swing.pitch = number(key, at.SWING_PITCH);
+  swing.heading = landing.heading + number(key, at.SWING_HEADING);
+  set(
+    swing.heel,
+    landing.x + number(key, at.ANKLE),
+    landing.y + number(key, at.ANKLE + 1),
+    landing.z + number(key, at.ANKLE + 2),
+  );
+  swing.raised = lift > 0 ? 1 - smooth((share - lift) / SETTLE) : 0;
+  if (swing.raised > 0) keepOnToe(step, share, build, swing);
+}
+
+/** From 0 to 1 with level ends. */
+export function smooth(share: number): number {
+  const s = Math.max(0, Math.min(1, share));
+  return s * s * (3 - 2 * s);
+}
+
+/** On its heel while the toe is up, else on its toe. */
+function stand({ standing }: Step, { legM }: Build, foot: FootPosture): void {
+  const { heading } = standing;
+  foot.pitch = number(key, KeyNumber.STANDING_PITCH);
+  foot.heading = heading;
+  foot.raised = smooth(-foot.pitch / EASE_RAD);
+  heelFromToe(Math.min(foot.pitch, 0), heading, FOOT * legM, offset);
+  heelFromToe(0, heading, FOOT * legM, level);
+  set(
+    foot.heel,
+    standing.x + offset.x - level.x,
+    standing.y + offset.y - level.y,
+    standing.z + offset.z - level.z,
+  );
+}
+
+/** Until it lifts the swing foot turns on its toe; then what is missing to its curve fades. */
+function keepOnToe(step: Step, share: number, { legM }: Build, foot: FootPosture): void {
+  const { keys, landing, lift } = step;
+  between(keys, Math.min(share, lift));
+  const heading = landing.heading + number(key, KeyNumber.SWING_HEADING);
+  heelFromToe(number(key, KeyNumber.SWING_PITCH), heading, FOOT * legM, offset);
+  foot.heel.x += foot.raised * (step.firstToe.x + offset.x - number(key, KeyNumber.ANKLE));
+  foot.heel.y += foot.raised * (step.firstToe.y + offset.y - number(key, KeyNumber.ANKLE + 1));
+  foot.heel.z += foot.raised * (step.firstToe.z + offset.z - number(key, KeyNumber.ANKLE + 2));
+}
+
+/** What lies between the keys at a share of the step, into `key`; all numbers go along alike. */
+function between(keys: Float64Array, share: number): void {
+  weigh(share);
+  key.fill(0);
+  for (let k = 0; k < STEP_KEYS; k++) {
+    const weight = number(weights, k);
+    if (weight === 0) continue;
+    const row = k * KEY_NUMBERS;
+    for (let i = 0; i < KEY_NUMBERS; i++) key[i] = number(key, i) + weight * number(keys, row + i);
+  }
+}
+
+/** How much each key counts: cubic Hermite curves, parabolas at the ends. */
+function weigh(share: number): void {
+  weights.fill(0);
+  const place = share * (STEP_KEYS - 1);
+  const k = Math.min(Math.floor(place), STEP_KEYS - 2);
+  const s = place - k;
+  const after = smooth(s);
+  add(k, 1 - after);
+  add(k + 1, after);
+  addSlope(k, s * (1 - s) ** 2);
+  addSlope(k + 1, -s * s * (1 - s));
+}
+
+/** The slope at a key, per interval. */
+function addSlope(k: number, weight: number): void {
+  const last = STEP_KEYS - 1;
+  if (k === 0 || k === last) {
+    const inwards = k === 0 ? 1 : -1;
+    add(k, -1.5 * inwards * weight);
+    add(k + inwards, 2 * inwards * weight);
+    add(k + 2 * inwards, -0.5 * inwards * weight);
+  } else {
+    add(k + 1, 0.5 * weight);
+    add(k - 1, -0.5 * weight);
+  }
+}
+
+function add(k: number, weight: number): void {
+  weights[k] = number(weights, k) + weight;
+}
+
+/** Give each quaternion the sign that is nearest to the key before. */
+function align(keys: Float64Array, at: number): void {
+  for (let row = KEY_NUMBERS; row < keys.length; row += KEY_NUMBERS) {
+    let dot = 0;
+    for (let i = at; i < at + 4; i++) {
+      dot += number(keys, row + i) * number(keys, row - KEY_NUMBERS + i);
+    }
+    if (dot >= 0) continue;
+    for (let i = row + at; i < row + at + 4; i++) keys[i] = -number(keys, i);
+  }
+}
+
+function turn(from: Float64Array, at: number, out: Rotation): void {
+  setRotation(
+    out,
+    number(from, at),
+    number(from, at + 1),
+    number(from, at + 2),
+    number(from, at + 3),
+  );
+  normalise(out);
+}
+
+/** An element that is known to be there. */
+function number(from: Float64Array, at: number): number {
+  return from[at] ?? 0;
+}

@@ -1,0 +1,163 @@
+/**
+ * How one avatar's body is drawn over time: by its steps where the server tells them, else carried
+ * along its snapshots with the common cycle. One takes over from the other by fading, never by a jump.
+ */
+
+import type { StepRecord } from "../net/steps";
+import { wrapAngle } from "./angles";
+import { type Body, body, solve } from "./body";
+import { Glide } from "./glide";
+import type { Pose } from "./motion";
+import { mixPostures, type Posture, posture } from "./posture";
+import type { Build } from "./skeleton";
+import { readyToDraw, smooth, type Step, underWay } from "./steps";
+
+/** As many steps are kept: what is drawn lies a little in the past. */
+const MOST_STEPS = 6;
+const FADE_S = 0.3;
+/** A step that comes too late begins late, and its walker hurries by this part to catch up. */
+const HURRY = 0.2;
+/** Later than this it does not wait, but fades. */
+const LATEST_S = 0.4;
+/** Steps say nothing any more when they are over for so long and the walker is elsewhere. */
+const SILENT_S = 0.4;
+const ELSEWHERE_M = 0.35;
+/** This far is no walk: somebody was put somewhere else. */
+const JUMP_M = 1.5;
+
+/** A step and the time at which it begins and ends. */
+interface Timed {
+  readonly step: Step;
+  readonly beginS: number;
+  readonly endS: number;
+  /** It was not known yet when it was to be drawn first. */
+  readonly late: boolean;
+}
+
+export class Walker {
+  readonly body: Body = body();
+  /** What the joints were solved from. */
+  readonly posture: Posture = posture();
+  private readonly steps: Timed[] = [];
+  private readonly glide: Glide;
+  private readonly from: Posture = posture();
+  /** What is drawn; null is the glide. */
+  private drawn: Timed | null = null;
+  /** What it fades from. */
+  private fading: Timed | null = null;
+  private fadeLeftS = 0;
+  /** How much later than it should this walker is drawn. */
+  private lagS = 0;
+  private timeS = -Infinity;
+  private readonly place: Pose;
+
+  constructor(
+    readonly build: Build,
+    start: Pose,
+  ) {
+    this.glide = new Glide(build, start);
+    this.place = { ...start };
+    this.glide.pose(this.posture);
+    solve(this.posture, build, this.body);
+  }
+
+  /** The step that is drawn, with both its footprints; null while no steps are known. */
+  get step(): Step | null {
+    return this.drawn?.step ?? null;
+  }
+
+  /** A step begins at `beginS`; one that was known to begin then or later is void. */
+  add(record: StepRecord, beginS: number, endS: number): void {
+    while ((this.steps.at(-1)?.beginS ?? -Infinity) >= beginS) this.steps.pop();
+    const lateS = this.timeS - beginS;
+    const step = readyToDraw(record, this.build);
+    this.steps.push({ step, beginS, endS, late: lateS > 0 });
+    if (this.steps.length > MOST_STEPS) this.steps.shift();
+    const waited = this.drawn !== null && this.drawn.endS <= beginS + 1e-6;
+    if (lateS > 0 && waited && this.lagS + lateS < LATEST_S) {
+      this.lagS += lateS;
+      this.timeS = beginS;
+    }
+  }
+
+  /** Where it is drawn at `timeS`, given where its snapshots have it; writes the body. */
+  advance(timeS: number, snapshots: Pose, frameS: number): Pose {
+    this.lagS = Math.max(0, this.lagS - HURRY * frameS);
+    this.timeS = timeS - this.lagS;
+    this.glide.advance(snapshots, frameS);
+    this.choose(this.chosen(snapshots));
+    this.show(this.drawn, this.posture);
+    if (this.fadeLeftS > 0) {
+      this.fadeLeftS -= frameS;
+      this.show(this.fading, this.from);
+      const part = smooth(1 - this.fadeLeftS / FADE_S);
+      mixPostures(this.from, this.posture, part, this.posture);
+    }
+    solve(this.posture, this.build, this.body);
+    return this.placed(snapshots);
+  }
+
+  private chosen(snapshots: Pose): Timed | null {
+    let chosen: Timed | null = null;
+    for (const each of this.steps) if (each.beginS <= this.timeS) chosen = each;
+    if (!chosen) return null;
+    const { landing, standing } = chosen.step;
+    const silent = this.timeS > chosen.endS + SILENT_S;
+    const apartM = Math.hypot(
+      (landing.x + standing.x) / 2 - snapshots.x,
+      (landing.y + standing.y) / 2 - snapshots.y,
+    );
+    return silent && apartM > ELSEWHERE_M ? null : chosen;
+  }
+
+  /** Draw something else from now on; steps that join need no fading. */
+  private choose(next: Timed | null): void {
+    const before = this.drawn;
+    if (next === before) return;
+    this.drawn = next;
+    if (before && next && joins(before, next)) return;
+    this.show(next, this.from);
+    const { x, y, z } = this.posture.root;
+    const apartM = Math.hypot(this.from.root.x - x, this.from.root.y - y, this.from.root.z - z);
+    this.fading = before;
+    this.fadeLeftS = apartM < JUMP_M ? FADE_S : 0;
+  }
+
+  private show(what: Timed | null, out: Posture): void {
+    if (!what) {
+      this.glide.pose(out);
+      return;
+    }
+    const { step, beginS, endS } = what;
+    const u = endS > beginS ? (this.timeS - beginS) / (endS - beginS) : 1;
+    underWay(step, u, this.build, out);
+  }
+
+  /** Where labels, camera and map have it: under the middle of the hips, on the feet's height. */
+  private placed(snapshots: Pose): Pose {
+    const { place, drawn, body: drawnBody } = this;
+    place.layer = snapshots.layer;
+    place.speed = snapshots.speed;
+    place.reason = snapshots.reason;
+    if (!drawn) {
+      Object.assign(place, this.glide.place);
+    } else {
+      const { standing, landing } = drawn.step;
+      const length = Math.max(drawn.endS - drawn.beginS, 1e-6);
+      const u = smooth((this.timeS - drawn.beginS) / length);
+      place.z = standing.z + (landing.z - standing.z) * u;
+      place.heading = standing.heading + wrapAngle(landing.heading - standing.heading) * u;
+    }
+    place.x = drawnBody.root.x;
+    place.y = drawnBody.root.y;
+    return place;
+  }
+}
+
+/** Whether the second step goes on where the first ends. */
+function joins(first: Timed, second: Timed): boolean {
+  const { continues, standing } = second.step;
+  if (continues && second.late) return false;
+  const { x, y, z } = continues ? first.step.standing : first.step.landing;
+  return Math.hypot(x - standing.x, y - standing.y, z - standing.z) < 1e-3;
+}
