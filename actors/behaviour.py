@@ -11,7 +11,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from actors.state import SAME_FLOOR_M
-from planning import LayeredGrid, Scene
+from planning import Body, LayeredGrid, Scene
 
 Goal = tuple[float, float, float]
 """x, y and the height of the floor, metres."""
@@ -34,7 +34,7 @@ class View:
     people: Mapping[Hashable, Goal]
     scene: Scene
     grid: LayeredGrid
-    radius_m: float
+    body: Body
     rng: np.random.Generator
 
     def resolve(self, target: Target) -> Goal:
@@ -124,7 +124,7 @@ class Wander(Behaviour):
             x, y = float(point[0]), float(point[1])
             z_m = view.grid.floor_at((x, y), view.z_m)
             far = float(np.hypot(*(point - here))) > 1.0 and abs(z_m - view.z_m) < SAME_FLOOR_M
-            if far and view.grid.is_free([point], [z_m], view.radius_m)[0]:
+            if far and view.grid.is_free([point], [z_m], view.body.radius_m, view.body)[0]:
                 return x, y, z_m
         return None
 

@@ -71,10 +71,12 @@ class Cast:
     ) -> ActorState:
         """Put an actor in; without a position it gets a free place, chosen with the seed.
 
+        At a position where it cannot stand it is put on the nearest ground where it can.
+
         Raises
         ------
         ValueError
-            The id is taken, the position is outside, or no free place was found.
+            The id is taken, the position is outside, or there is no free place.
         KeyError
             The behaviour names a place that the scene does not have.
         """
@@ -83,6 +85,9 @@ class Cast:
         rng = np.random.default_rng([self._seed, *str(actor_id).encode()])
         if position is None:
             position = self._free_place(parameters, z_m, rng)
+        else:
+            self.navigator.check_place(position, z_m)
+            position = self._ground_near(parameters, position, z_m)
         self.navigator.add_actor(actor_id, position, None, parameters, z_m=z_m)
         state = self.navigator.state(actor_id)
         self._actors[actor_id] = _Actor(behaviour, parameters, rng, state)
@@ -184,7 +189,7 @@ class Cast:
             people,
             self.scene,
             self.grid,
-            actor.parameters.radius_m,
+            actor.parameters.body,
             actor.rng,
         )
 
@@ -212,6 +217,18 @@ class Cast:
         if elsewhere is not None:
             return elsewhere
         raise ValueError(f"no free place for another actor after {_PLACING_TRIES} tries")
+
+    def _ground_near(
+        self, parameters: ActorParameters, position: tuple[float, float], z_m: float
+    ) -> tuple[float, float]:
+        """The position itself if the body stands there, be it close to a wall."""
+        body = parameters.body
+        if self.grid.nearest_free(position, z_m, 0.0, body) == position:
+            return position
+        free = self.grid.nearest_free(position, z_m, body.radius_m, body)
+        if free is None:
+            raise ValueError("nobody of that body can stand anywhere in this scene")
+        return free
 
     def _has_a_way(
         self, point: NDArray[np.float64], z_m: float, parameters: ActorParameters

@@ -90,9 +90,9 @@ class Navigator:
         """
         if actor_id in self._rows:
             raise ValueError(f"there already is an actor {actor_id!r}")
-        self._check_place(position, z_m)
+        self.check_place(position, z_m)
         if goal is not None:
-            self._check_place(goal, z_m if goal_z_m is None else goal_z_m)
+            self.check_place(goal, z_m if goal_z_m is None else goal_z_m)
         c = self._crowd
         parameters = parameters or ActorParameters()
         rows = len(self._ids)
@@ -138,7 +138,7 @@ class Navigator:
         """Send an actor somewhere, or let it stand (None). A goal inside a wall is moved out."""
         row = self._row(actor_id)
         if goal is not None:
-            self._check_place(goal, z_m)
+            self.check_place(goal, z_m)
         c = self._crowd
         old = int(c.guide_slots[row])
         slot = -1
@@ -181,7 +181,7 @@ class Navigator:
         """Put an actor where another simulation has it; the path it follows stays."""
         row = self._row(actor_id)
         z_m = self._floor(int(self._crowd.cells[row]))
-        self._check_place(position, z_m)
+        self.check_place(position, z_m)
         if not np.isfinite(velocity).all():
             raise ValueError(f"velocity of {actor_id!r} must be finite, got {velocity}")
         self._crowd.positions[row] = position
@@ -294,7 +294,8 @@ class Navigator:
         except KeyError:
             raise KeyError(f"there is no actor {actor_id!r}") from None
 
-    def _check_place(self, position: Point, z_m: float) -> None:
+    def check_place(self, position: Point, z_m: float) -> None:
+        """ValueError unless an actor may be put there or sent there."""
         self.grid.as_points([position], [z_m])
         x0, y0, x1, y1 = self.grid.bounds
         x, y = position

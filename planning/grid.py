@@ -35,6 +35,8 @@ _BUCKET_M = 1.0
 _BUCKET_REACH_M = 1.5
 _POTENTIALS_BYTES = 256 * 2**20
 _RADIUS_STEP_M = 0.05
+_ROUNDING_M = 1e-4
+"""Heights of cells are 32-bit floats."""
 
 ADULT = Body.adult()
 _EDGES = (Stability.UNSTABLE, Stability.UP_STAIR, Stability.DOWN_STAIR)
@@ -111,13 +113,18 @@ class LayeredGrid:
             a = self.arrays
             field = np.full(len(a.layered.floors), CLEARANCE_CAP_M, dtype=np.float32)
             self._lower(field, body, self.bounds)
-            field[np.isnan(a.layered.floors)] *= -1.0
+            field[self._without_room(body)] *= -1.0
             row = self._rows[body] = len(a.clearance)
             self.arrays = a._replace(
                 clearance=np.concatenate([a.clearance, field[None]]),
                 edges=np.concatenate([a.edges, self._edges(body)[None]]),
             )
         return row
+
+    def _without_room(self, body: Body) -> NDArray[np.bool_]:
+        """Holes, and cells whose ceiling is too low for a body."""
+        room_m = self.layered.ceilings - self.layered.floors
+        return ~(room_m >= body.height_m - _ROUNDING_M)
 
     def _edges(self, body: Body) -> NDArray[np.bool_]:
         if self.arrays.flat:
@@ -168,13 +175,12 @@ class LayeredGrid:
         reach = CLEARANCE_CAP_M
         box = (x0 - reach, y0 - reach, x1 + reach, y1 + reach)
         near = ((self.centres >= box[:2]) & (self.centres <= box[2:])).all(axis=1)
-        holes = near & np.isnan(self.layered.floors)
         clearance, edges = self.arrays.clearance.copy(), self.arrays.edges.copy()
         for body, row in self._rows.items():
             field = clearance[row]
             field[near] = CLEARANCE_CAP_M
             self._lower(field, body, box)
-            field[holes] *= -1.0
+            field[near & self._without_room(body)] *= -1.0
             edges[row] = self._edges(body)
         self.arrays = self.arrays._replace(clearance=clearance, edges=edges)
         self._potentials.clear()
@@ -284,7 +290,8 @@ class LayeredGrid:
         """
         a = self.layered
         level_m = 0.5 * body.height_m
-        free = (self.arrays.clearance[self.row_of(body)] >= clearance_m) & np.isfinite(a.floors)
+        row = self.row_of(body)
+        free = (self.arrays.clearance[row] >= clearance_m) & np.isfinite(a.floors)
         apart = np.abs(a.floors - height)
         free_here = self.is_free([position], [height], clearance_m, body)[0]
         for candidates, near_m in ((free & (apart < level_m), level_m), (free, math.inf)):

@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 
 from actors import GoTo, Guide, Idle, Patrol, View, Wander
-from planning import LayeredGrid, Place, Scene
+from planning import Body, LayeredGrid, Place, Polygon, Scene
 from tests.actors.worlds import plaza
 from tests.planning.storeys import storeyed
 from tests.planning.worlds import UPPER_M
 
 SCENE = plaza()
 GRID = LayeredGrid.from_scene(SCENE)
+ADULT = Body.adult()
 GATE, FOUNTAIN, STAGE = ((*place.position, place.z_m) for place in SCENE.places)
 
 
@@ -27,9 +28,10 @@ def seeing(
     grid: LayeredGrid = GRID,
     seed: int = 0,
     z_m: float = 0.0,
+    body: Body = ADULT,
 ) -> View:
     rng = np.random.default_rng(seed)
-    return View(time_s, position, z_m, arrived, stuck, people or {}, scene, grid, 0.25, rng)
+    return View(time_s, position, z_m, arrived, stuck, people or {}, scene, grid, body, rng)
 
 
 def test_idle_wants_nothing() -> None:
@@ -73,6 +75,23 @@ def test_wander_without_places_goes_anywhere_free() -> None:
     ]
     assert len(set(goals)) == 20
     assert all(math.dist(goal[:2], (6.0, 6.0)) > 1.0 for goal in goals)
+
+
+def test_wandering_anywhere_is_for_the_body_that_wanders() -> None:
+    low = Polygon(
+        points=((4.0, 0.0), (8.0, 0.0), (8.0, 8.0), (4.0, 8.0)), offset_m=1.5, height_m=1.0
+    )
+    scene = Scene(bounds=(0.0, 0.0, 8.0, 8.0), polygons=(low,))
+    grid = LayeredGrid.from_scene(scene)
+    goals = {
+        body: [
+            Wander().update(seeing(position=(2.0, 4.0), scene=scene, grid=grid, seed=k, body=body))
+            for k in range(20)
+        ]
+        for body in (ADULT, Body.child())
+    }
+    assert max(goal[0] for goal in goals[ADULT]) < 4.0
+    assert max(goal[0] for goal in goals[Body.child()]) > 4.5
 
 
 def test_wander_stays_where_there_is_nowhere_else() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from actors import ActorParameters, Cast, GoTo, Guide, Idle, Patrol, Reason, Wander
-from planning import LayeredGrid, Scene
+from planning import LayeredGrid, Polygon, Scene
 from tests.actors.worlds import BODY, along, plaza
 
 SCENE = plaza()
@@ -184,3 +184,37 @@ def test_warming_up_changes_nothing(cast) -> None:
     assert cast.trips == 0
     assert len(cast) == 1
     assert set(cast.tick({})) == {"a"}
+
+
+def test_who_is_put_where_nobody_can_stand_stands_beside_it() -> None:
+    block = Polygon(points=((4.0, 4.0), (8.0, 4.0), (8.0, 8.0), (4.0, 8.0)), height_m=3.0)
+    low = Polygon(
+        points=((9.0, 0.0), (12.0, 0.0), (12.0, 3.0), (9.0, 3.0)), offset_m=1.4, height_m=1.0
+    )
+    scene = Scene(bounds=(0.0, 0.0, 12.0, 12.0), polygons=(block, low))
+    grid = LayeredGrid.from_scene(scene)
+    cast = Cast(grid, scene, tick_s=TICK_S)
+    child = ActorParameters(height_m=1.3, radius_m=0.2, step_on_m=0.3, leg_length_m=0.65)
+    states = {
+        "inside": cast.add("inside", GoTo((2.0, 2.0, 0.0)), BODY, position=(5.0, 6.0)),
+        "adult": cast.add("adult", GoTo((2.0, 8.0, 0.0)), BODY, position=(11.0, 1.0)),
+        "child": cast.add("child", GoTo((2.0, 10.0, 0.0)), child, position=(11.0, 1.0)),
+    }
+    assert states["inside"].position[0] < 4.0
+    assert math.dist(states["inside"].position, (4.0, 6.0)) < 0.6
+    assert states["adult"].position[0] < 9.0 or states["adult"].position[1] > 3.0
+    assert states["child"].position == (11.0, 1.0)
+    play(cast, 20.0)
+    assert cast.trips == 3
+    with pytest.raises(ValueError, match="outside the bounds"):
+        cast.add("far", Idle(), BODY, position=(20.0, 1.0))
+    cast.close()
+
+
+def test_who_fits_nowhere_is_refused() -> None:
+    low = Polygon(
+        points=((0, 0), (4, 0), (4, 4), (0, 4)), offset_m=1.4, height_m=1.0, kind="furniture"
+    )
+    scene = Scene(bounds=(0.0, 0.0, 4.0, 4.0), polygons=(low,))
+    with pytest.raises(ValueError, match="can stand anywhere"):
+        Cast(LayeredGrid.from_scene(scene), scene).add("a", Idle(), BODY, position=(2.0, 2.0))

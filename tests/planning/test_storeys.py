@@ -337,3 +337,15 @@ def test_bodies_that_hardly_differ_share_what_is_known_of_the_ground() -> None:
     assert grid.row_of(replace(ADULT, edge_cells=9)) == grid.row_of(ADULT)
     assert grid.row_of(replace(ADULT, step_on_m=0.3)) != grid.row_of(ADULT)
     assert grid.row_of(replace(ADULT, radius_m=0.4)) != grid.row_of(ADULT)
+
+
+def test_nobody_is_free_where_the_ceiling_is_too_low() -> None:
+    low = box(6.0, 0.0, 12.0, 8.0, 1.0, offset_m=LOW_M)
+    grid = grid_of(12.0, polygons=[low])
+    points, heights = [(3.0, 4.0), (7.0, 4.0), (10.0, 4.0)], [0.0] * 3
+    assert grid.is_free(points, heights, 0.25, ADULT).tolist() == [True, False, False]
+    assert grid.is_free(points, heights, 0.2, CHILD).all()
+    assert grid.nearest_free((10.0, 4.0), 0.0, 0.2, CHILD) == (10.0, 4.0)
+    free = grid.nearest_free((10.0, 4.0), 0.0, 0.25, ADULT)
+    assert free is not None
+    assert free[0] < 6.0
