@@ -1,0 +1,218 @@
+"""Where the next foot comes down and how long that takes, from where a body is going."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actors.locomotion.durations import step_duration_s
+from actors.locomotion.ground import Ground
+from actors.locomotion.motion import Floats
+from actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH
+from actors.locomotion.step_length import RV_LONGEST, double_support, longest_step, planted_length
+from actors.locomotion.strides import wrapped
+
+AHEAD_S: Final = 0.2
+"""Time between the places of a course."""
+AHEAD: Final = 7
+"""How many places a course has."""
+
+WALKING_MPS: Final = 0.3
+"""Who is faster turns to where it goes."""
+CLOSING_S: Final = 0.5
+"""A step that goes nowhere: the other foot is drawn up, or the body turns."""
+SHORTEST_S: Final = 0.2
+LONGEST_S: Final = 0.8
+
+# Lengths in legs.
+_LONGEST: Final = 0.72
+"""Steps that are walked; who is faster takes them in less time."""
+_PAST: Final = 0.56
+"""A body that starts goes no further past its standing foot."""
+_FURTHEST: Final = 0.86
+_FURTHEST_BACK: Final = 0.55
+_FURTHEST_ASIDE: Final = 0.55
+_NEAREST_ASIDE: Final = 1.1 * TRACK_HALF_WIDTH
+"""Feet that pass one another keep so far apart."""
+_RISE_M: Final = 0.22
+"""Stairs are walked tread by tread: a step is so short that it does not climb more."""
+
+_OPENING_RAD: Final = 1.3
+_CLOSING_RAD: Final = 0.6
+"""How far a foot may be turned against the other, outwards and inwards."""
+
+
+class Course(NamedTuple):
+    """Where N bodies are and are going."""
+
+    headings: Floats
+    """(N,), radians from +x: where they face if they stand."""
+    ahead: Floats
+    """(N, AHEAD, 3): places from now on, AHEAD_S apart, metres."""
+
+    def take(self, rows: NDArray[np.int64]) -> Course:
+        return Course(self.headings[rows], self.ahead[rows])
+
+    def at(self, seconds: Floats) -> Floats:
+        """Places (N, 3) after times (N,)."""
+        place = np.clip(seconds / AHEAD_S, 0.0, AHEAD - 1.0)
+        k = np.minimum(place.astype(np.int64), AHEAD - 2)
+        rows = np.arange(len(place))
+        share = (place - k)[:, None]
+        return np.asarray((1.0 - share) * self.ahead[rows, k] + share * self.ahead[rows, k + 1])
+
+    def velocity(self, seconds: Floats) -> Floats:
+        """Velocities (N, 2) about times (N,), metres a second."""
+        half = 0.5 * AHEAD_S
+        moved = self.at(seconds + half) - self.at(np.maximum(seconds - half, 0.0))
+        passed = half + np.minimum(seconds, half)
+        return np.asarray(moved[:, :2] / passed[:, None])
+
+
+class Aim(NamedTuple):
+    """What N steps are to reach."""
+
+    landing: Floats
+    """(N, 4): footprint."""
+    place: Floats
+    """(N, 2): of the body in the end, metres."""
+    heading: Floats
+    """(N,): where the body wants to face, radians."""
+
+
+def wanted_headings(course: Course, velocity: Floats) -> Floats:
+    """Where bodies want to face, (N,): ahead when they walk."""
+    walking = np.hypot(velocity[:, 0], velocity[:, 1]) > WALKING_MPS
+    return np.where(walking, np.arctan2(velocity[:, 1], velocity[:, 0]), course.headings)
+
+
+def durations_s(course: Course, standing: Floats, leg_m: Floats, briskness: Floats) -> Floats:
+    """How long steps of bodies with one foot on footprints (N, 4) take: seconds (N,)."""
+    velocity = course.velocity(np.full(len(leg_m), 2.0 * AHEAD_S))
+    legs_a_second = np.maximum(np.hypot(velocity[:, 0], velocity[:, 1]) / leg_m, 1e-9)
+    # Length x duration of a free walk is fixed: what length goes with a speed.
+    natural = np.sqrt(step_duration_s(np.full_like(leg_m, 0.6)) * 0.6 * legs_a_second)
+    seconds = np.minimum(natural, _LONGEST) / legs_a_second / briskness
+    standing_still = legs_a_second * leg_m < 0.5 * WALKING_MPS
+    seconds = np.where(standing_still, CLOSING_S, np.minimum(seconds, LONGEST_S))
+    return within_reach_s(course, standing, leg_m, seconds)
+
+
+def within_reach_s(course: Course, standing: Floats, leg_m: Floats, seconds: Floats) -> Floats:
+    """Times (N,) cut so that the body does not get too far past its standing foot by then."""
+    place = course.at(seconds)
+    apart = np.hypot(*(place[:, :2] - standing[:, :2]).T)
+    speed = np.maximum(np.hypot(*course.velocity(seconds).T), 0.1)
+    seconds = seconds - np.maximum(apart - _PAST * leg_m, 0.0) / speed
+    rise = np.abs(place[:, 2] - course.ahead[:, 0, 2])
+    steep = np.maximum(rise / _RISE_M, 1.0)
+    return np.asarray(np.maximum(seconds / np.minimum(steep, 1.8), SHORTEST_S))
+
+
+def aim(
+    course: Course,
+    right: NDArray[np.bool_],
+    standing: Floats,
+    leg_m: Floats,
+    step_s: Floats,
+    left_s: Floats,
+    ground: Ground,
+) -> Aim:
+    """Where feet come down that swing while the others stand on footprints (N, 4).
+
+    Parameters
+    ----------
+    course : where the bodies go
+    right : (N,), whether the standing foot is the right one
+    leg_m : (N,)
+    step_s, left_s : (N,), how long the whole step takes, and what is left of it
+    """
+    there = course.at(left_s)
+    velocity = course.velocity(left_s)
+    wanted = wanted_headings(course, velocity)
+    side = np.where(right, 1.0, -1.0)
+    turn = side * wrapped(wanted - standing[:, 3])
+    heading = standing[:, 3] + side * np.clip(turn, -_CLOSING_RAD, _OPENING_RAD)
+
+    place = _no_further(there[:, :2], standing[:, :2], 1.1 * _PAST * leg_m)
+    forward, left = _axes(heading)
+    ahead_mps = np.einsum("nd,nd->n", velocity, forward)
+    aside_mps = np.einsum("nd,nd->n", velocity, left)
+    ahead = np.where(
+        ahead_mps > 0.0,
+        leg_m * _front_of_hips(ahead_mps * step_s / leg_m),
+        0.5 * ahead_mps * step_s,
+    )
+    aside = side * TRACK_HALF_WIDTH * leg_m + 0.5 * aside_mps * step_s
+    under = place + (side * TRACK_HALF_WIDTH * leg_m)[:, None] * left
+    middle = standing[:, 3] + 0.5 * (heading - standing[:, 3])
+
+    foot_m = FOOT * leg_m
+    landing = np.empty((len(leg_m), 4))
+    landing[:, 2], landing[:, 3] = there[:, 2], heading
+    landing[:, :2] = place + ahead[:, None] * forward + aside[:, None] * left
+    landing[:, :2] = _limited(landing[:, :2], standing, middle, side, leg_m)
+    landing, found = ground.settle(landing, foot_m)
+    if not found.all():
+        _retreat(landing, ~found, under, standing, middle, side, leg_m, ground)
+    return Aim(landing, there[:, :2], wanted)
+
+
+def _retreat(
+    landing: Floats,
+    lost: NDArray[np.bool_],
+    under: Floats,
+    standing: Floats,
+    middle: Floats,
+    side: Floats,
+    leg_m: Floats,
+    ground: Ground,
+) -> None:
+    """Feet that found no ground come down under the body, else beside the other foot; in place."""
+    for nearer in (under, standing[:, :2]):
+        rows = np.flatnonzero(lost)
+        tried = landing[rows]
+        tried[:, :2] = _limited(nearer[rows], standing[rows], middle[rows], side[rows], leg_m[rows])
+        tried[:, 2] = standing[rows, 2]
+        landing[rows], found = ground.settle(tried, FOOT * leg_m[rows])
+        lost[rows[found]] = False
+
+
+def _limited(
+    points: Floats, standing: Floats, middle: Floats, side: Floats, leg_m: Floats
+) -> Floats:
+    """Places (N, 2) for feet: on their own side of the standing foot, and within reach."""
+    forward, left = _axes(middle)
+    apart = points - standing[:, :2]
+    ahead = np.clip(
+        np.einsum("nd,nd->n", apart, forward), -_FURTHEST_BACK * leg_m, _FURTHEST * leg_m
+    )
+    aside = np.clip(
+        side * np.einsum("nd,nd->n", apart, left),
+        _NEAREST_ASIDE * leg_m,
+        _FURTHEST_ASIDE * leg_m,
+    )
+    return np.asarray(standing[:, :2] + ahead[:, None] * forward + (side * aside)[:, None] * left)
+
+
+def _no_further(points: Floats, origin: Floats, limit_m: Floats) -> Floats:
+    apart = points - origin
+    distance = np.maximum(np.hypot(apart[:, 0], apart[:, 1]), 1e-9)
+    return np.asarray(origin + apart * (np.minimum(distance, limit_m) / distance)[:, None])
+
+
+def _axes(heading: Floats) -> tuple[Floats, Floats]:
+    forward = np.stack([np.cos(heading), np.sin(heading)], axis=1)
+    return forward, np.stack([-forward[:, 1], forward[:, 0]], axis=1)
+
+
+_VELOCITIES: Final = np.linspace(0.0, RV_LONGEST, 65)
+_POSES: Final = double_support(_VELOCITIES)
+_LENGTHS: Final = planted_length(_POSES)
+
+
+def _front_of_hips(length: Floats) -> Floats:
+    """How far ahead of the hips the heel of a step of some length comes down, legs (N,)."""
+    return np.interp(np.minimum(length, longest_step()), _LENGTHS, _POSES.front_forward)

@@ -1,0 +1,179 @@
+"""Keys of steps between footprints, which go on smoothly from what is drawn now."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actors.locomotion.motion import (
+    ANKLE,
+    CHEST,
+    ELBOWS,
+    KEYS,
+    PELVIS,
+    ROOT,
+    SHOULDERS,
+    STANDING_PITCH,
+    SWING_HEADING,
+    SWING_PITCH,
+    WIDTH,
+    Floats,
+    Steps,
+    smooth,
+    standing_ankles,
+    under_way,
+)
+from actors.locomotion.planted import Footfalls, Targets, step_targets
+from actors.locomotion.rotations import multiply, normalise
+from actors.locomotion.skeleton import FOOT
+
+_SHARES: Final = np.linspace(0.0, 1.0, KEYS)
+_BACK: Final = 0.02
+"""Share of a step over which the speed of what is drawn is taken."""
+
+
+class Drawn(NamedTuple):
+    """What is drawn of N bodies at one moment, in the terms of the steps that they begin."""
+
+    key: Floats
+    """(N, WIDTH)."""
+    speed: Floats
+    """(N, WIDTH): its change in a tick."""
+
+
+def wrapped(angle: Floats) -> Floats:
+    """The same angles within half a turn of 0."""
+    return np.asarray((angle + np.pi) % (2.0 * np.pi) - np.pi)
+
+
+def drawn(old: Steps, tick: int, falls: Footfalls, swapped: NDArray[np.bool_]) -> Drawn:
+    """What is drawn of steps at a tick, as keys of the next ones.
+
+    Swapped are those whose swinging foot has landed and stands now; the others' goes on.
+    """
+    foot_m = FOOT * falls.leg_m
+    share = old.share(tick)
+    now = under_way(old, share, foot_m)
+    before = np.maximum(share - _BACK, 0.0)
+    passed = (share - before) * old.ticks
+    # Who stands, or has stood since a step ended, does not move.
+    moving = (passed > 0.0) & (tick <= old.start + old.ticks)
+    speed = (now - under_way(old, before, foot_m)) / np.where(moving, passed, np.inf)[:, None]
+
+    now[:, ROOT] += old.standing[:, :3] - falls.standing[:, :3]
+    ankles = old.landing[:, :3] + now[:, ANKLE]
+    headings = old.landing[:, 3] + now[:, SWING_HEADING]
+    stood = standing_ankles(old.standing, now[:, STANDING_PITCH], foot_m)
+    ankles = np.where(swapped[:, None], stood, ankles)
+    headings = np.where(swapped, old.standing[:, 3], headings)
+    now[:, ANKLE] = ankles - falls.landing[:, :3]
+    now[:, SWING_HEADING] = wrapped(headings - falls.landing[:, 3])
+    for values in (now, speed):
+        swing, stand = values[:, SWING_PITCH].copy(), values[:, STANDING_PITCH].copy()
+        values[:, SWING_PITCH] = np.where(swapped, stand, swing)
+        values[:, STANDING_PITCH] = np.where(swapped, swing, stand)
+    speed[swapped, ANKLE] = 0.0
+    speed[swapped, SWING_HEADING] = 0.0
+    return Drawn(now, speed)
+
+
+def strides(
+    falls: Footfalls,
+    gone: Floats,
+    now: Drawn,
+    ticks: NDArray[np.int64],
+    place: Floats,
+    room_m: Floats,
+) -> tuple[Floats, Floats]:
+    """Keys of what is left of N steps after the share gone (N,) of them.
+
+    Parameters
+    ----------
+    falls : the steps' footprints
+    gone : (N,), 0 for steps that begin
+    now : what is drawn, which they begin with, in value and speed
+    ticks : (N,), how long they take from now on
+    place : (N, 2), metres: where the hips should be in the end
+    room_m : (N,): how far from between the feet they may be for that
+
+    Returns
+    -------
+    float64 (N, KEYS, WIDTH) keys and (N,) lifts, as in `Steps`.
+    """
+    targets = step_targets(falls, gone[:, None] + (1.0 - gone[:, None]) * _SHARES)
+    keys = _keys(targets, falls)
+    first = now.key.copy()
+    for part in (PELVIS, CHEST):
+        first[np.einsum("nd,nd->n", first[:, part], keys[:, 0, part]) < 0.0, part] *= -1.0
+        # Neighbours of key 0 have its sign.
+    missing = first - keys[:, 0]
+    missing[:, SWING_HEADING] = wrapped(missing[:, SWING_HEADING])
+    aside = place - falls.standing[:, :2] - keys[:, -1, :2]
+    distance = np.maximum(np.hypot(aside[:, 0], aside[:, 1]), 1e-9)
+    aside *= (np.minimum(distance, room_m) / distance)[:, None]
+    share = smooth(_SHARES)
+    keys += (1.0 - share)[None, :, None] * missing[:, None]
+    keys[..., :2] += share[None, :, None] * aside[:, None]
+    keys[:, 0] = first
+    _start_at_speed(keys, now.speed * ticks[:, None], gone > 0.0)
+    for part in (PELVIS, CHEST):
+        keys[..., part] = normalise(keys[..., part])
+    lift = np.clip((targets.lift - gone) / (1.0 - gone), 0.0, 1.0)
+    return keys, lift
+
+
+def standing_keys(falls: Footfalls) -> Floats:
+    """Keys (N, KEYS, WIDTH) of bodies that just stand on two footprints."""
+    still = _keys(step_targets(falls, np.zeros(1)), falls)
+    return np.repeat(still, KEYS, axis=1)
+
+
+def _start_at_speed(keys: Floats, slope: Floats, goes_on: NDArray[np.bool_]) -> None:
+    """Move the second key so that curves leave the first with a slope (N, WIDTH) a step.
+
+    The slope there is that of the parabola through the first three keys. Feet that have just
+    changed parts are left to their paths: one rests on its toe, the other rolls onto its sole.
+    """
+    second = (2.0 * slope / (KEYS - 1) + 3.0 * keys[:, 0] + keys[:, 2]) / 4.0
+    body = np.ones(WIDTH, dtype=np.bool_)
+    body[ANKLE] = False
+    body[[SWING_PITCH, STANDING_PITCH, SWING_HEADING]] = False
+    keys[:, 1] = np.where(body | goes_on[:, None], second, keys[:, 1])
+
+
+def _keys(targets: Targets, falls: Footfalls) -> Floats:
+    """Keys (N, K, WIDTH) of targets."""
+    keys = np.empty((*targets.yaw.shape, WIDTH))
+    keys[..., ROOT] = targets.root - falls.standing[:, None, :3]
+    keys[..., PELVIS] = _turned(targets.yaw, targets.lean, targets.roll)
+    keys[..., ANKLE] = targets.swing_ankle - falls.landing[:, None, :3]
+    keys[..., SWING_PITCH] = targets.swing_pitch
+    keys[..., STANDING_PITCH] = targets.standing_pitch
+    heading = targets.swing_heading - falls.landing[:, None, 3]
+    turns = np.round(heading[:, -1:] / (2.0 * np.pi))
+    keys[..., SWING_HEADING] = heading - 2.0 * np.pi * turns
+    level = np.zeros_like(targets.yaw)
+    # The back makes up for the pelvis' roll, so that shoulders and head stay level.
+    keys[..., CHEST] = multiply(
+        _turned(level, level, -targets.roll), _turned(targets.torsion, level, level)
+    )
+    keys[..., SHOULDERS] = targets.shoulders
+    keys[..., ELBOWS] = targets.elbows
+    return keys
+
+
+def _turned(yaw: Floats, lean: Floats, roll: Floats) -> Floats:
+    """Quaternions of Rz(yaw) Ry(lean) Rx(roll), (..., 4)."""
+    cz, cy, cx = np.cos(0.5 * yaw), np.cos(0.5 * lean), np.cos(0.5 * roll)
+    sz, sy, sx = np.sin(0.5 * yaw), np.sin(0.5 * lean), np.sin(0.5 * roll)
+    return np.stack(
+        (
+            cz * cy * cx + sz * sy * sx,
+            cz * cy * sx - sz * sy * cx,
+            cz * sy * cx + sz * cy * sx,
+            sz * cy * cx - cz * sy * sx,
+        ),
+        axis=-1,
+    )
