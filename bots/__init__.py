@@ -2,7 +2,7 @@
 
 from bots.bot import Bot, connect
 from bots.errors import BotError, Disconnected, Refused, Unreachable
-from bots.events import Event, SnapshotEvent
+from bots.events import Event, SnapshotEvent, StepsEvent
 from bots.view import Avatar
 
 __all__ = [
@@ -13,6 +13,7 @@ __all__ = [
     "Event",
     "Refused",
     "SnapshotEvent",
+    "StepsEvent",
     "Unreachable",
     "connect",
 ]

@@ -10,7 +10,7 @@ from typing import Self
 from bots.clock import ServerClock
 from bots.connection import NO_CLOSE_CODE, OPEN_TIMEOUT_S, Connection
 from bots.errors import Disconnected, Unreachable
-from bots.events import Event, SnapshotEvent
+from bots.events import Event, SnapshotEvent, StepsEvent
 from bots.mailbox import Mailbox
 from bots.view import Avatar, View
 from protocol import VERSION, ProtocolError, decode_server
@@ -24,15 +24,18 @@ from protocol.messages import (
     Leave,
     Move,
     Ping,
+    Point,
     Pong,
     ServerMessage,
     SetDoor,
     Snapshot,
+    StepBlock,
     WalkTo,
     Watch,
     Welcome,
 )
 from protocol.snapshot import unpack_block
+from protocol.steps import step_records
 
 
 class Bot:
@@ -232,10 +235,15 @@ class Bot:
                     self._placed.set()
                 self._mailbox.put(event)
                 return
+            case StepBlock():
+                self._mailbox.put(StepsEvent(message.tick, step_records(message.block)))
+                return
             case Enter():
                 self._view.enter(message)
             case Leave():
                 self._view.leave(message)
+            case Point():
+                self._view.point(message)
             case Doors():
                 self._view.doors.update(message.doors)
             case Pong():

@@ -14,6 +14,7 @@ from bots.clock import ServerClock
 from bots.connection import Connection
 from bots.errors import BotError, Disconnected, Refused
 from bots.tally import Tally
+from bots.walkers import Walkers
 from protocol import ErrorCode, ProtocolError, ServerCode, decode_server, peek_snapshot
 from protocol.codes import CloseCode
 from protocol.messages import Error, FromClient, Hello, Ping, Pong, Welcome
@@ -26,7 +27,8 @@ MAX_UNANSWERED: Final = 60
 """A pong later than this many pings is no longer waited for."""
 
 _CODE_BYTE: Final = 1
-"""Where the message code stands in a frame `[code, fields]`."""
+"""Where the message code stands in a frame."""
+_STEPS: Final = bytes([ServerCode.STEPS])
 _LOOKED_INTO: Final = (bytes([ServerCode.PONG]), bytes([ServerCode.ERROR]))
 
 OnSnapshot = Callable[[int, int, bytes], Awaitable[None]]
@@ -43,6 +45,7 @@ class Client:
         self._nonce = 0
         self._pinged_s: dict[int, float] = {}
         self._last_snapshot_s: float | None = None
+        self._walkers = Walkers(tally, self.welcome.tick_rate)
         self._tick_s = 1.0 / self.welcome.tick_rate
         clock.seed(self.welcome.server_time, time.monotonic())
 
@@ -94,7 +97,10 @@ class Client:
             self._tally.snapshot_age_s.add(max(0.0, age_s))
 
     def _take(self, frame: bytes) -> None:
-        """Of everything but snapshots only pongs and errors are looked into."""
+        """Of everything but snapshots only steps, pongs and errors are looked into."""
+        if frame[_CODE_BYTE : _CODE_BYTE + 1] == _STEPS:
+            self._walkers.take(frame)
+            return
         if frame[_CODE_BYTE : _CODE_BYTE + 1] not in _LOOKED_INTO:
             return
         message = decode_server(frame)

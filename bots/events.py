@@ -2,8 +2,21 @@
 
 from dataclasses import dataclass
 
-from protocol.messages import Bye, Census, Chat, Doors, Enter, Error, Leave, Notice, Plan, Pong
+from protocol.messages import (
+    Bye,
+    Census,
+    Chat,
+    Doors,
+    Enter,
+    Error,
+    Leave,
+    Notice,
+    Plan,
+    Point,
+    Pong,
+)
 from protocol.snapshot import Floats, Records, headings_rad, heights_m, positions_m, speeds_mps
+from protocol.steps import StepRecords, Steps, unpack_steps
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,4 +53,34 @@ class SnapshotEvent:
         return speeds_mps(self.records)
 
 
-Event = SnapshotEvent | Enter | Leave | Chat | Notice | Error | Bye | Pong | Plan | Census | Doors
+@dataclass(frozen=True, eq=False)
+class StepsEvent:
+    """Who of those near begins a step, or has come near in the middle of one.
+
+    `records` is an array of `protocol.steps.STEP`, one row a step.
+    """
+
+    tick: int
+    records: StepRecords
+
+    @property
+    def steps(self) -> Steps:
+        """The same in world coordinates, metres and radians."""
+        return unpack_steps(self.records)
+
+
+Event = (
+    SnapshotEvent
+    | StepsEvent
+    | Enter
+    | Leave
+    | Chat
+    | Notice
+    | Error
+    | Bye
+    | Pong
+    | Plan
+    | Census
+    | Doors
+    | Point
+)

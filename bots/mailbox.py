@@ -4,7 +4,7 @@ import asyncio
 from collections import deque
 from typing import Final
 
-from bots.events import Event, SnapshotEvent
+from bots.events import Event, SnapshotEvent, StepsEvent
 
 CAPACITY: Final = 1024
 """About fifty seconds of snapshots."""
@@ -13,8 +13,8 @@ CAPACITY: Final = 1024
 class Mailbox:
     """A bounded queue of events with one reader.
 
-    When it is full, the oldest snapshot goes; if none waits, the oldest event. `dropped` counts
-    them. A mailbox that was closed still hands out what waits in it.
+    When it is full, the oldest snapshot or steps go; if none wait, the oldest event. `dropped`
+    counts them. A mailbox that was closed still hands out what waits in it.
     """
 
     def __init__(self, capacity: int = CAPACITY) -> None:
@@ -48,7 +48,7 @@ class Mailbox:
     def _drop_one(self) -> None:
         self.dropped += 1
         for index, event in enumerate(self._events):
-            if isinstance(event, SnapshotEvent):
+            if isinstance(event, SnapshotEvent | StepsEvent):
                 del self._events[index]
                 return
         self._events.popleft()

@@ -32,6 +32,12 @@ def figures(tally: Tally) -> dict[str, Any]:
             "bytes_out": tally.bytes_out / seconds if seconds else None,
             "cpu_us": 1e6 * tally.cpu_seconds / seconds if seconds else None,
         },
+        "steps": {
+            "count": tally.steps,
+            "bytes": tally.step_bytes,
+            "walker_seconds": round(tally.walker_seconds, 3),
+            "bytes_per_walker_and_second": _per_walker(tally),
+        },
         "round_trip_ms": _spread(tally.round_trip_s, 1e3),
         "snapshot_age_ms": _spread(tally.snapshot_age_s, 1e3),
         "snapshot_interval_ms": _spread(tally.snapshot_interval_s, 1e3),
@@ -75,11 +81,21 @@ def _counts(tally: Tally) -> Table:
         ("messages out", tally.messages_out),
         ("bytes in", tally.bytes_in),
         ("bytes out", tally.bytes_out),
+        ("steps seen", tally.steps),
+        ("bytes of steps", tally.step_bytes),
     ):
         table.add_row(name, f"{amount:,}", f"{amount * rate:,.1f}")
+    per_walker = _per_walker(tally)
+    if per_walker is not None:
+        table.add_row("bytes of steps a second, for each who walks", "", f"{per_walker:,.1f}")
     cpu_us = 1e6 * tally.cpu_seconds * rate
     table.add_row("processor time of the bots", f"{tally.cpu_seconds:.1f} s", f"{cpu_us:,.0f} µs")
     return table
+
+
+def _per_walker(tally: Tally) -> float | None:
+    """Bytes of steps that a client is sent a second for each whom it sees walk."""
+    return tally.step_bytes / tally.walker_seconds if tally.walker_seconds else None
 
 
 def _spreads(tally: Tally) -> Table:

@@ -27,6 +27,12 @@ class Tally:
     messages_out: int = 0
     bytes_in: int = 0
     bytes_out: int = 0
+    steps: int = 0
+    """Steps of walkers that the clients were sent."""
+    step_bytes: int = 0
+    """Bytes of the messages that these came in."""
+    walker_seconds: float = 0.0
+    """Time for which clients saw somebody walk step by step, summed over walkers and clients."""
     client_seconds: float = 0.0
     """Time in the world, summed over clients."""
     cpu_seconds: float = 0.0

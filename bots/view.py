@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from bots.events import SnapshotEvent
 from protocol import Kind, Reason
-from protocol.messages import Enter, Leave, Welcome
+from protocol.messages import Enter, Entity, Leave, Place, Point, Welcome
 from protocol.snapshot import HEADING_RAD, POSITION_M, SPEED_MPS
 
 
@@ -23,6 +23,10 @@ class Avatar:
     speed: float
     reason: Reason
     radius: float
+    leg_m: float = 0.0
+    """Length of a leg; 0 until it is known."""
+    stature_m: float = 0.0
+    points_at: Place | None = None
 
 
 class View:
@@ -52,24 +56,18 @@ class View:
 
     def enter(self, message: Enter) -> None:
         for entity in message.entities:
-            if entity.id != self._own_id:
-                self.others[entity.id] = Avatar(
-                    entity.id,
-                    entity.kind,
-                    entity.name,
-                    entity.layer,
-                    entity.x,
-                    entity.y,
-                    entity.z,
-                    entity.heading,
-                    0.0,
-                    Reason.NONE,
-                    entity.radius,
-                )
+            if entity.id == self._own_id:
+                self.own.leg_m, self.own.stature_m = entity.leg_m, entity.stature_m
+            else:
+                self.others[entity.id] = _avatar(entity)
 
     def leave(self, message: Leave) -> None:
         for entity_id in message.ids:
             self.others.pop(entity_id, None)
+
+    def point(self, message: Point) -> None:
+        if message.id in self.others:
+            self.others[message.id].points_at = message.target
 
     def snapshot(self, event: SnapshotEvent) -> None:
         self.tick = event.tick
@@ -90,3 +88,23 @@ class View:
             avatar.z = z * POSITION_M
             avatar.heading = heading * HEADING_RAD
             avatar.speed = speed * SPEED_MPS
+
+
+def _avatar(entity: Entity) -> Avatar:
+    """An avatar that comes into view."""
+    return Avatar(
+        id=entity.id,
+        kind=entity.kind,
+        name=entity.name,
+        layer=entity.layer,
+        x=entity.x,
+        y=entity.y,
+        z=entity.z,
+        heading=entity.heading,
+        speed=0.0,
+        reason=Reason.NONE,
+        radius=entity.radius,
+        leg_m=entity.leg_m,
+        stature_m=entity.stature_m,
+        points_at=entity.points_at,
+    )

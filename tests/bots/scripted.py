@@ -142,6 +142,9 @@ class ScriptedServer:
                     z=person.height,
                     heading=0.0,
                     radius=0.25,
+                    leg_m=0.9,
+                    stature_m=1.75,
+                    points_at=None,
                 )
                 for person in people
             ],

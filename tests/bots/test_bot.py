@@ -3,14 +3,29 @@
 import asyncio
 import math
 
+import numpy as np
 import pytest
 from pydantic import ValidationError
 
 import bots
-from bots.events import SnapshotEvent
+from bots.events import SnapshotEvent, StepsEvent
 from protocol import ByeCode, CloseCode, ErrorCode, encode
-from protocol.messages import Bye, Chat, Enter, Error, FromServer, Hello, Move, Notice, Watch
+from protocol.messages import (
+    Bye,
+    Chat,
+    Enter,
+    Error,
+    FromServer,
+    Hello,
+    Move,
+    Notice,
+    Point,
+    StepBlock,
+    Watch,
+)
+from protocol.steps import pack_steps
 from tests.bots.scripted import OPERATOR, scripted_server, until
+from tests.protocol.steps import made_up_steps
 
 
 async def test_a_bot_stands_where_it_wished_to() -> None:
@@ -85,6 +100,37 @@ async def test_events_are_typed_and_in_order() -> None:
                 case _:
                     pytest.fail(f"unexpected {event!r}")
         assert ticks == sorted(set(ticks))
+
+
+async def test_steps_come_as_records_and_in_world_units() -> None:
+    records = pack_steps(made_up_steps(3))
+    async with scripted_server() as server, bots.connect(server.url, name="Ann") as ann:
+        block = StepBlock(tick=9, block=records.tobytes())
+        await server.people[ann.id].socket.send(encode(block))
+        async for event in ann.events():
+            if isinstance(event, StepsEvent):
+                break
+        assert event.tick == 9
+        np.testing.assert_array_equal(event.records, records)
+        landing = event.steps.landing.positions_m
+        np.testing.assert_allclose(landing, records["landing"]["position"] * 1e-3)
+
+
+async def test_it_knows_the_build_of_those_in_view_and_where_they_point() -> None:
+    async with (
+        scripted_server() as server,
+        bots.connect(server.url, name="Ann") as ann,
+        bots.connect(server.url, name="Bob") as bob,
+    ):
+        await until(lambda: bob.id in ann.others)
+        assert (ann.others[bob.id].leg_m, ann.others[bob.id].stature_m) == (0.9, 1.75)
+        assert (ann.avatar.leg_m, ann.avatar.stature_m) == (0.9, 1.75)
+        assert ann.others[bob.id].points_at is None
+        for target in ((1.0, 2.0, 3.0), None):
+            for avatar_id in (999, bob.id):  # of one who is out of view it means nothing
+                point = Point(id=avatar_id, target=target)
+                await server.people[ann.id].socket.send(encode(point))
+            await until(lambda target=target: ann.others[bob.id].points_at == target)
 
 
 async def test_ping_measures_and_sets_the_clock() -> None:

@@ -2,10 +2,11 @@
 
 import asyncio
 
-from bots.events import SnapshotEvent
+from bots.events import SnapshotEvent, StepsEvent
 from bots.mailbox import Mailbox
 from protocol.messages import Notice
 from protocol.snapshot import unpack_block
+from protocol.steps import step_records
 
 
 def snapshot(tick: int) -> SnapshotEvent:
@@ -26,6 +27,14 @@ async def test_events_come_in_order() -> None:
     mailbox.put(Notice(text="a"))
     mailbox.put(snapshot(2))
     assert await drain(mailbox) == [1, "a", 2]
+
+
+async def test_steps_give_way_as_snapshots_do() -> None:
+    mailbox = Mailbox(capacity=2)
+    mailbox.put(Notice(text="a"))
+    mailbox.put(StepsEvent(1, step_records(b"")))
+    mailbox.put(snapshot(2))
+    assert await drain(mailbox) == ["a", 2]
 
 
 async def test_when_full_the_oldest_snapshot_goes() -> None:

@@ -24,6 +24,9 @@ def full() -> Tally:
         messages_out=50,
         bytes_in=123_456,
         bytes_out=789,
+        steps=400,
+        step_bytes=94_000,
+        walker_seconds=200.0,
         client_seconds=50.0,
         cpu_seconds=0.5,
         errors=Counter(flooding=3),
@@ -50,6 +53,7 @@ def test_figures_are_plain_json() -> None:
     assert found["per_client_and_second"]["cpu_us"] == pytest.approx(10_000)
     assert found["round_trip_ms"]["p50"] == pytest.approx(1.0, rel=0.011)
     assert found["round_trip_ms"]["max"] == 50.0
+    assert found["steps"]["bytes_per_walker_and_second"] == 470.0
     assert found["errors"] == {"flooding": 3}
     assert found["replay"]["share_within_0_1_m"] == 0.75
     assert found["replay"]["skipped"] == 2
@@ -59,17 +63,27 @@ def test_nothing_measured_is_none_not_zero() -> None:
     found = figures(Tally())
     assert found["round_trip_ms"]["p50"] is None
     assert found["per_client_and_second"]["bytes_in"] is None
+    assert found["steps"]["bytes_per_walker_and_second"] is None
     assert "replay" not in found
     assert "0 of 0" in text_of(Tally())
 
 
 def test_tables_tell_everything() -> None:
     text = text_of(full())
-    for words in ("9 of 10", "2,469.1", "1,000", "skipped", "75.00 %", "flooding", "50.0 ms"):
+    for words in (
+        "9 of 10",
+        "2,469.1",
+        "1,000",
+        "skipped",
+        "75.00 %",
+        "flooding",
+        "50.0 ms",
+        "470.0",
+    ):
         assert words in text
 
 
 def test_tables_leave_out_what_did_not_happen() -> None:
     text = text_of(Tally(expected=1, joined=1, left=1))
-    for words in ("skipped", "Errors", "recorded way", "round trip"):
+    for words in ("skipped", "Errors", "recorded way", "round trip", "who walks"):
         assert words not in text
