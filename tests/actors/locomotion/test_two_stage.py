@@ -113,8 +113,12 @@ def test_chains_hang_where_the_body_has_its_heels_and_hands():
     rest = np.zeros(10)
     heel = effector(CHAINS["left heel"], rest)[0]
     hand = effector(CHAINS["right hand"], rest)[0]
-    assert np.allclose(heel, (skeleton.HIP_HALF_WIDTH, -1.178 - skeleton.CHEST_HEIGHT, 0.0))
-    assert np.allclose(hand, (-skeleton.SHOULDER_HALF_WIDTH, skeleton.NECK_HEIGHT - 0.693, 0.0))
+    assert np.allclose(
+        heel, (skeleton.HIP_HALF_WIDTH, -1.0 - skeleton.HIP_DEPTH - skeleton.CHEST_HEIGHT, 0.0)
+    )
+    arm = skeleton.UPPER_ARM + skeleton.FOREARM
+    shoulder = -skeleton.SHOULDER_HALF_WIDTH, skeleton.NECK_HEIGHT
+    assert np.allclose(hand, (shoulder[0], shoulder[1] - arm, 0.0))
 
 
 def test_sides_mirror_each_other():
