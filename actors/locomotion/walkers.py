@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Final
 
 import numpy as np
@@ -31,7 +31,7 @@ from actors.locomotion.motion import (
 )
 from actors.locomotion.planted import Footfalls
 from actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH
-from actors.locomotion.strides import Drawn, drawn, standing_keys, strides, wrapped
+from actors.locomotion.strides import drawn, standing_keys, strides, wrapped
 
 Slots = NDArray[np.int64]
 Flags = NDArray[np.bool_]
@@ -68,6 +68,8 @@ class Walkers:
         self._carry = carry
         self.steps = no_steps(capacity)
         """The step of everyone that is under way or was the last, as it is drawn."""
+        self.lost = 0
+        """How often somebody was too far from its feet and stood anew."""
         self.leg_m = np.ones(capacity)
         self._briskness = np.ones(capacity)
         self._lifted = np.zeros((capacity, 4))
@@ -77,14 +79,11 @@ class Walkers:
         self._aimed = np.zeros((capacity, 2))
         self._wanted = np.zeros(capacity)
 
-    def stand(
-        self, slot: int, manner: Manner | None, place: Floats, heading: float, tick: int
-    ) -> None:
-        """Somebody new stands at x, y, z (3,); or, without a manner, who has lost its feet."""
-        if manner is not None:
-            self.leg_m[slot], self._briskness[slot] = manner.leg_m, manner.briskness
-        slots = np.array([slot])
-        self._stand(slots, place[None], np.array([heading]), tick)
+    def join(self, tick: int, slots: Slots, manners: Sequence[Manner], course: Course) -> None:
+        """Somebody new stands in each of N slots, at the beginning of a course."""
+        self.leg_m[slots] = [manner.leg_m for manner in manners]
+        self._briskness[slots] = [manner.briskness for manner in manners]
+        self._stand(tick, slots, course)
 
     def update(self, tick: int, slots: Slots, course: Course) -> None:
         """Begin and re-aim the steps of a tick, of everyone (N,) in turn with their courses."""
@@ -110,9 +109,11 @@ class Walkers:
         up = np.abs(here[:, 2] - self.steps.standing[slots, 2])
         lost = np.flatnonzero((away > JUMP_M) | (up > JUMP_M))
         if len(lost):
-            self._stand(slots[lost], here[lost], course.headings[lost], tick)
+            self._stand(tick, slots[lost], course.take(lost))
+            self.lost += len(lost)
 
-    def _stand(self, slots: Slots, places: Floats, headings: Floats, tick: int) -> None:
+    def _stand(self, tick: int, slots: Slots, course: Course) -> None:
+        places, headings = course.ahead[:, 0], course.headings
         leg_m = self.leg_m[slots]
         aside = (TRACK_HALF_WIDTH * leg_m)[:, None] * np.stack(
             [-np.sin(headings), np.cos(headings)], axis=1
@@ -174,7 +175,7 @@ class Walkers:
         lifted = np.where(swapped[:, None], last.standing, last.landing)
         seconds = durations_s(course, standing, leg_m, self._briskness[slots])
         ticks = np.maximum(np.rint(seconds / self._tick_s), 2.0).astype(np.int64)
-        seconds = ticks * self._tick_s
+        seconds = np.asarray(ticks * self._tick_s)
         aims = aim(course, right, standing, leg_m, seconds, seconds, self._ground)
         falls = Footfalls(right, lifted, standing, aims.landing, leg_m)
         now = drawn(last, tick, falls, swapped)
@@ -203,7 +204,7 @@ class Walkers:
 
     def _re_aim(self, tick: int, slots: Slots, course: Course) -> None:
         steps = self.steps
-        left_s = (steps.start[slots] + steps.ticks[slots] - tick) * self._tick_s
+        left_s: Floats = (steps.start[slots] + steps.ticks[slots] - tick) * self._tick_s
         moved = np.hypot(*(course.at(left_s)[:, :2] - self._aimed[slots]).T)
         wanted = wanted_headings(course, course.velocity(left_s))
         veered = np.abs(wrapped(wanted - self._wanted[slots]))
@@ -213,12 +214,9 @@ class Walkers:
         slots, course, left_s = slots[rows], course.take(rows), left_s[rows]
         last = steps.take(slots)
         leg_m = self.leg_m[slots]
-        left_s = np.maximum(
-            within_reach_s(course, last.standing, leg_m, left_s),
-            np.minimum(left_s, SHORTEST_S),
-        )
+        left_s = within_reach_s(course, last.standing, leg_m, left_s)
         ticks = np.maximum(np.rint(left_s / self._tick_s), 2.0).astype(np.int64)
-        left_s = ticks * self._tick_s
+        left_s = np.asarray(ticks * self._tick_s)
         aims = aim(
             course, last.right, last.standing, leg_m, self._step_s[slots], left_s, self._ground
         )

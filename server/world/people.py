@@ -5,10 +5,11 @@ from typing import Final
 
 import numpy as np
 
+from actors.locomotion.aims import AHEAD, AHEAD_S
 from planning import LayeredGrid
 from server.world.inputs import Follow, Steer
 from server.world.rules import Rules
-from server.world.state import PERSON, State
+from server.world.state import PERSON, Floats, Slots, State
 from server.world.ways import Point
 
 BLOCKED_TICKS: Final = 20
@@ -59,6 +60,8 @@ class People:
         self._head_for_targets()
         people = state.of_kind(PERSON)
         state.speeds[people] = 0.0
+        state.ahead[people, :, :2] = state.positions[people, None]
+        state.ahead[people, :, 2] = state.heights[people, None]
         moving = people[self._velocities[people].any(axis=1)]
         if not len(moving):
             return
@@ -70,7 +73,21 @@ class People:
         state.headings[moving] = np.arctan2(wanted[:, 1], wanted[:, 0])
         moved_m = state.positions[moving] - before
         state.speeds[moving] = np.hypot(moved_m[:, 0], moved_m[:, 1]) / self._tick_s
+        self._look_ahead(moving, moved_m)
         self._pass_targets()
+
+    def _look_ahead(self, moving: Slots, moved_m: Floats) -> None:
+        """Where those who moved so in this tick, (N, 2), get if they go on, to a last target."""
+        state = self._state
+        here = state.positions[moving]
+        way = (AHEAD_S / self._tick_s * moved_m)[:, None] * np.arange(AHEAD)[:, None]
+        left_m = np.hypot(*(self._targets[moving] - here).T)
+        last = [len(self._ways.get(slot, ())) == 1 for slot in moving.tolist()]
+        length = np.maximum(np.hypot(way[..., 0], way[..., 1]), 1e-9)
+        share = np.where(last, left_m, np.inf)[:, None] / length
+        way *= np.minimum(share, 1.0)[..., None]
+        cells = self._grid.on_ground(here, state.heights[moving])[1]
+        state.ahead[moving] = self._grid.with_heights(here[:, None] + way, cells)
 
     def _head_for_targets(self) -> None:
         """Velocities of those who follow a way; the last step to a point ends on it."""

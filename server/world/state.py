@@ -5,6 +5,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from actors.locomotion.aims import AHEAD
 from protocol import Kind
 
 Floats = npt.NDArray[np.float64]
@@ -13,9 +14,6 @@ Slots = npt.NDArray[np.int64]
 PERSON: Final = 0
 ACTOR: Final = 1
 KINDS: Final = (Kind.PERSON, Kind.ACTOR)
-
-LEG_M: Final = 0.9
-STATURE_M: Final = 1.72
 
 
 class WorldFullError(RuntimeError):
@@ -27,7 +25,8 @@ class State:
 
     Arrays are indexed by slot and have a fixed capacity. A slot is used again once its avatar
     is gone; an id never is. `before` holds the positions of the tick before; `heights` are those of
-    the feet above the scene's ground, metres.
+    the feet above the scene's ground, metres; `ahead` is where each is going, as in
+    `actors.locomotion.Course`.
     """
 
     def __init__(self, capacity: int) -> None:
@@ -39,6 +38,7 @@ class State:
         self.positions = np.zeros((capacity, 2))
         self.heights = np.zeros(capacity)
         self.before = np.zeros((capacity, 2))
+        self.ahead = np.zeros((capacity, AHEAD, 3))
         self.headings = np.zeros(capacity)
         self.speeds = np.zeros(capacity)
         self.reasons = np.zeros(capacity, dtype=np.uint8)
@@ -83,10 +83,10 @@ class State:
         self.layers[slot] = layer
         self.positions[slot] = self.before[slot] = place[:2]
         self.heights[slot] = place[2]
+        self.ahead[slot] = place
         self.headings[slot] = self.speeds[slot] = 0.0
         self.reasons[slot] = 0
         self.radii[slot] = radius_m
-        self.legs_m[slot], self.statures_m[slot] = LEG_M, STATURE_M
         self.names[slot] = name
         self._slots[self._next_id] = slot
         self._next_id += 1

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Final
 
-STAGES: Final = ("drain", "people", "actors", "contacts", "interest", "encode")
+STAGES: Final = ("drain", "people", "actors", "contacts", "steps", "interest", "encode")
 """What a world does in a tick, in this order; whoever runs it adds `write` at the end."""
 
 

@@ -1,0 +1,67 @@
+"""Everyone's feet: whoever is in the world walks with real steps after where it is."""
+
+import numpy as np
+import structlog
+
+from actors.locomotion import motion
+from actors.locomotion.aims import Course
+from actors.locomotion.builds import manner_of
+from actors.locomotion.ground import Ground
+from actors.locomotion.walkers import Walkers
+from server.world.onlookers import LatestSteps
+from server.world.state import Slots, State
+from server.world.step_records import from_records, to_records
+
+log = structlog.get_logger(__name__)
+
+
+class Feet:
+    """Begins the steps of a tick, and keeps the latest of everyone as it is sent."""
+
+    def __init__(
+        self, state: State, latest: LatestSteps, ground: Ground, tick_s: float, seed: int
+    ) -> None:
+        self._state = state
+        self._latest = latest
+        self._seed = seed
+        self._tick = 0
+        self._ids = np.zeros(state.capacity, dtype=np.int64)
+        self._walkers = Walkers(state.capacity, ground, tick_s, self._carry)
+        self.begun = 0
+        """Steps so far, those included that only went on otherwise."""
+        self.failures = 0
+        """Ticks in which no step could be found for anyone."""
+
+    @property
+    def lost(self) -> int:
+        """How often somebody was too far from its feet and stood anew."""
+        return self._walkers.lost
+
+    def update(self, tick: int) -> None:
+        """Take in where everyone is and is going; who is new stands."""
+        self._tick = tick
+        state = self._state
+        live = state.live()
+        new = live[self._ids[live] != state.ids[live]]
+        manners = [manner_of(self._seed, avatar) for avatar in state.ids[new].tolist()]
+        state.legs_m[new] = [manner.leg_m for manner in manners]
+        state.statures_m[new] = [manner.stature_m for manner in manners]
+        try:
+            if len(new):
+                self._walkers.join(tick, new, manners, self._course(new))
+                self._ids[new] = state.ids[new]
+            self._walkers.update(tick, live, self._course(live))
+        except Exception:
+            # Everyone stands anew in the next tick; the world goes on meanwhile.
+            log.exception("no steps found", tick=tick)
+            self.failures += 1
+            self._ids[:] = 0
+
+    def _course(self, slots: Slots) -> Course:
+        return Course(self._state.headings[slots], self._state.ahead[slots])
+
+    def _carry(self, steps: motion.Steps, slots: Slots) -> motion.Steps:
+        records = to_records(steps, self._state.ids[slots])
+        self._latest.begin(slots, records, self._tick)
+        self.begun += len(slots)
+        return from_records(records)
