@@ -1,10 +1,12 @@
 /**
- * What is above the own avatar and hides it dissolves: slabs overhead and all that stands on them,
- * around the avatar and on the way from there to the camera.
+ * What hides the own avatar gives way. What is above it dissolves: slabs overhead and all that
+ * stands on them, around the avatar and on the way from there to the camera. Walls on the camera's
+ * side of it are cut down to stubs.
  *
  * Every piece of the town knows the height at which it begins (attribute `base`), so that a tall
- * house on the ground stays whole while the room upstairs goes away as one. Dissolving is
- * leaving out pixels in a fixed pattern, so that nothing needs to be sorted.
+ * house on the ground stays whole while the room upstairs goes away as one; and how much of it is
+ * left above the avatar's feet where it is cut (attribute `stub`). Dissolving is leaving out
+ * pixels in a fixed pattern, so that nothing needs to be sorted.
  */
 
 import { BufferAttribute, type BufferGeometry, type Material, Vector2 } from "three";
@@ -16,6 +18,14 @@ const GOES_M = 2.4;
 const NEAR_M = 22;
 const FAR_M = 30;
 const FADE_S = 0.18;
+/** So far towards the camera walls begin to be cut. */
+const BEFORE_M = { from: 0.05, to: 0.4 };
+/** And so far to both sides of the line from the avatar to the camera. */
+const BESIDE_M = { from: 8, to: 11 };
+/** The cut is as sharp as this. */
+const EDGE_M = 0.04;
+/** `stub` of what is never cut. */
+const WHOLE_M = 1000;
 /** Once gone, it stays away for so long, so that passing a beam does not flicker. */
 const LINGER_S = 0.7;
 
@@ -50,6 +60,21 @@ export class Cutaway {
     return baseM > this.uniforms.cutFeet.value + (STAYS_M + GOES_M) / 2;
   }
 
+  /** How much is left of a piece at a point: 1 all, 0 nothing. */
+  remains({ x, y, z }: Spot, { baseM, stubM }: Cut): number {
+    const { cutFeet, cutFrom, cutTo } = this.uniforms;
+    const [a, b] = [cutFrom.value, cutTo.value];
+    const length = Math.max(Math.hypot(b.x - a.x, b.y - a.y), 1e-6);
+    const [dx, dy] = [(b.x - a.x) / length, (b.y - a.y) / length];
+    const before = (x - a.x) * dx + (y - a.y) * dy;
+    const beside = Math.abs((y - a.y) * dx - (x - a.x) * dy);
+    const cut =
+      smoothstep(BEFORE_M.from, BEFORE_M.to, before) *
+      (1 - smoothstep(BESIDE_M.from, BESIDE_M.to, beside)) *
+      smoothstep(stubM, stubM + EDGE_M, z - cutFeet.value);
+    return this.shown(x, y, baseM) * (1 - cut);
+  }
+
   /** How much is left of what stands at (x, y) and begins at this height: 1 all, 0 nothing. */
   shown(x: number, y: number, baseM: number): number {
     const { cutFeet, cutStrength, cutFrom, cutTo } = this.uniforms;
@@ -70,7 +95,7 @@ export class Cutaway {
       before(shader, renderer);
       Object.assign(shader.uniforms, this.uniforms);
       shader.vertexShader = shader.vertexShader
-        .replace("void main() {", `${VARYINGS}attribute float base;\nvoid main() {`)
+        .replace("void main() {", `${VARYINGS}${ATTRIBUTES}void main() {`)
         .replace("#include <project_vertex>", `#include <project_vertex>\n${PASS_ON}`);
       shader.fragmentShader = shader.fragmentShader.replace(
         "void main() {",
@@ -82,31 +107,57 @@ export class Cutaway {
   }
 }
 
-/** The geometry, whose every corner knows at which height its piece begins. */
-export function based(geometry: BufferGeometry, baseM: number): BufferGeometry {
+/** Where a piece begins, and how much of it is left above the feet where it is cut. */
+export interface Cut {
+  baseM: number;
+  stubM: number;
+}
+
+/** The geometry, whose every corner knows how its piece is cut; without `stubM` it never is. */
+export function based(
+  geometry: BufferGeometry,
+  baseM: number,
+  stubM: number = WHOLE_M,
+): BufferGeometry {
   const count = geometry.getAttribute("position").count;
-  geometry.setAttribute("base", new BufferAttribute(new Float32Array(count).fill(baseM), 1));
+  for (const [name, value] of [
+    ["base", baseM],
+    ["stub", stubM],
+  ] as const) {
+    geometry.setAttribute(name, new BufferAttribute(new Float32Array(count).fill(value), 1));
+  }
   return geometry;
 }
 
-/** At which height the piece of a hit begins. */
-export function baseOf(geometry: BufferGeometry, corner: number): number {
-  return geometry.getAttribute("base").getX(corner);
+/** How the piece that a corner belongs to is cut. */
+export function cutOf(geometry: BufferGeometry, corner: number): Cut {
+  const [base, stub] = [geometry.getAttribute("base"), geometry.getAttribute("stub")];
+  return { baseM: base.getX(corner), stubM: stub.getX(corner) };
 }
+
+/** Whether a piece gives way when it is between camera and avatar. */
+export const givesWay = ({ stubM }: Cut): boolean => stubM < WHOLE_M;
 
 function smoothstep(from: number, to: number, value: number): number {
   const part = Math.max(0, Math.min(1, (value - from) / (to - from)));
   return part * part * (3 - 2 * part);
 }
 
+const glsl = (metres: number): string => metres.toFixed(2);
+
 const VARYINGS = `
-varying float cutBase;
-varying vec2 cutPlace;
+varying vec2 cutPiece;
+varying vec3 cutPlace;
+`;
+
+const ATTRIBUTES = `
+attribute float base;
+attribute float stub;
 `;
 
 const PASS_ON = `
-  cutBase = base;
-  cutPlace = (modelMatrix * vec4(transformed, 1.0)).xy;
+  cutPiece = vec2(base, stub);
+  cutPlace = (modelMatrix * vec4(transformed, 1.0)).xyz;
 `;
 
 const UNIFORMS = `
@@ -120,12 +171,17 @@ const REMAINS = `
 float cutOrder(vec2 cell) { return mod(2.0 * cell.x + 3.0 * cell.y, 4.0); }
 
 float cutShown() {
-  float high = smoothstep(${STAYS_M.toFixed(2)}, ${GOES_M.toFixed(2)}, cutBase - cutFeet);
   vec2 way = cutTo - cutFrom;
-  float part = clamp(dot(cutPlace - cutFrom, way) / max(dot(way, way), 1e-6), 0.0, 1.0);
-  float off = distance(cutPlace, cutFrom + part * way);
-  float near = 1.0 - smoothstep(${NEAR_M.toFixed(2)}, ${FAR_M.toFixed(2)}, off);
-  return 1.0 - cutStrength * high * near;
+  vec2 place = cutPlace.xy - cutFrom;
+  float high = smoothstep(${glsl(STAYS_M)}, ${glsl(GOES_M)}, cutPiece.x - cutFeet);
+  float part = clamp(dot(place, way) / max(dot(way, way), 1e-6), 0.0, 1.0);
+  float near = 1.0 - smoothstep(${glsl(NEAR_M)}, ${glsl(FAR_M)}, distance(place, part * way));
+  vec2 ahead = way / max(length(way), 1e-6);
+  float before = smoothstep(${glsl(BEFORE_M.from)}, ${glsl(BEFORE_M.to)}, dot(place, ahead));
+  float beside = abs(place.y * ahead.x - place.x * ahead.y);
+  float cut = before * (1.0 - smoothstep(${glsl(BESIDE_M.from)}, ${glsl(BESIDE_M.to)}, beside))
+    * smoothstep(cutPiece.y, cutPiece.y + ${glsl(EDGE_M)}, cutPlace.z - cutFeet);
+  return (1.0 - cutStrength * high * near) * (1.0 - cut);
 }
 `;
 

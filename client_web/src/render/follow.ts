@@ -2,7 +2,7 @@
 
 import { type Mesh, type PerspectiveCamera, Raycaster, Vector3 } from "three";
 import type { Pose } from "../world/motion";
-import { baseOf, type Cutaway } from "./cutaway";
+import { type Cutaway, cutOf, givesWay } from "./cutaway";
 
 const NEAREST_M = 2;
 const FARTHEST_M = 30;
@@ -57,10 +57,12 @@ export class FollowCamera {
     let freeM = this.distanceM;
     let hidden = false;
     for (const hit of this.ray.intersectObjects<Mesh>([...occluders], false)) {
-      if (cutaway.isAbove(baseOf(hit.object.geometry, hit.face?.a ?? 0))) {
+      const cut = cutOf(hit.object.geometry, hit.face?.a ?? 0);
+      if (cutaway.isAbove(cut.baseM)) {
         hidden = true;
         continue;
       }
+      if (givesWay(cut)) continue;
       freeM = Math.max(0.6, hit.distance - GAP_M);
       break;
     }

@@ -7,11 +7,9 @@ import { painted } from "./shapes";
 
 export type HairName = "short" | "long" | "bun";
 
-const PUPIL = new Color("#1d1a18");
-/** As skin is multiplied by them, these are lighter than they look. */
-const EYE = new Color("#fffdfa").multiplyScalar(1.25);
-const BROW = new Color("#6a5244");
-const LIPS = new Color("#c07a70");
+const EYE = new Color("#1d1a18");
+const BROW = new Color("#5d4a40");
+const LIPS = new Color("#b8736a");
 
 /** From the foot of the neck, in shares of the trunk. */
 export function head(corners: number): BufferGeometry {
@@ -38,19 +36,16 @@ export function head(corners: number): BufferGeometry {
     ],
     corners,
   );
-  const nose = new ConeGeometry(0.019, 0.058, 5, 1)
-    .rotateY(0.3)
-    .scale(1, 1, 1)
+  const nose = new ConeGeometry(0.02, 0.062, 7, 1)
     .rotateX(Math.PI / 2)
-    .rotateY(0.38)
-    .translate(0.099, 0, 0.187);
+    .rotateY(-0.34)
+    .translate(0.096, 0, 0.19);
   const eyes = [-1, 1].flatMap((side) => [
-    ball([0.086, side * 0.033, 0.214], [0.012, 0.017, 0.0125], EYE),
-    ball([0.0925, side * 0.0335, 0.214], [0.0075, 0.0085, 0.0095], PUPIL),
-    ball([0.0885, side * 0.034, 0.238], [0.009, 0.022, 0.0055], BROW),
+    ball([0.0885, side * 0.034, 0.213], [0.009, 0.0115, 0.0135], EYE),
+    ball([0.086, side * 0.036, 0.238], [0.01, 0.02, 0.0045], BROW),
     ball([-0.004, side * 0.081, 0.2], [0.02, 0.009, 0.03], WHITE),
   ]);
-  const mouth = ball([0.0895, 0, 0.136], [0.007, 0.025, 0.0065], LIPS);
+  const mouth = ball([0.092, 0, 0.138], [0.01, 0.026, 0.0065], LIPS);
   return merge([skull, neck, painted(nose, WHITE), ...eyes, mouth]);
 }
 

@@ -2,7 +2,11 @@
 
 import { BufferAttribute, BufferGeometry, Color } from "three";
 import type { Triangles } from "../world/mesh";
-import { FLOOR, STONE } from "./palette";
+import { FLOOR, PLASTER } from "./palette";
+
+/** What is left of walls, and of what lies level like table tops, above the feet. */
+const STUB_M = { upright: 0.35, level: 1.2 };
+const LEVEL = 0.7;
 
 /** Every triangle is a piece of its own that begins at its lowest corner. */
 export function meshGeometry(triangles: Triangles): BufferGeometry {
@@ -14,14 +18,18 @@ export function meshGeometry(triangles: Triangles): BufferGeometry {
   const normal = geometry.getAttribute("normal");
   const colors = new Float32Array(corners * 3);
   const bases = new Float32Array(corners);
+  const stubs = new Float32Array(corners);
   const color = new Color();
   for (let i = 0; i < corners; i++) {
     const first = i - (i % 3);
-    color.lerpColors(STONE, FLOOR, Math.max(0, normal.getZ(i)) ** 2).toArray(colors, i * 3);
+    const up = normal.getZ(i);
+    color.lerpColors(PLASTER, FLOOR, Math.max(0, up) ** 2).toArray(colors, i * 3);
+    stubs[i] = Math.abs(up) > LEVEL ? STUB_M.level : STUB_M.upright;
     bases[i] = Math.min(...[0, 1, 2].map((k) => triangles[(first + k) * 3 + 2] ?? 0));
   }
   geometry.setAttribute("color", new BufferAttribute(colors, 3));
   geometry.setAttribute("base", new BufferAttribute(bases, 1));
+  geometry.setAttribute("stub", new BufferAttribute(stubs, 1));
   return geometry;
 }
 

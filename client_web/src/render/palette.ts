@@ -6,6 +6,7 @@ export const SKY_TOP = new Color("#5d9bd3");
 export const SKY_LOW = new Color("#dbe9f2");
 export const PAVING = new Color("#cfc6b6");
 export const STONE = new Color("#bdb3a3");
+export const PLASTER = new Color("#e6dccb");
 export const FLOOR = new Color("#dccaa9");
 export const TREAD = new Color("#d3c7b3");
 export const DARK_STONE = new Color("#8d8578");

@@ -8,7 +8,6 @@ import { FOOT, FOREARM, SHIN, THIGH, UPPER_ARM } from "../world/skeleton";
 import { hair, hat, head } from "./heads";
 import { type Hoop, loft, skin, WHITE } from "./loft";
 
-const SOLE = new Color("#5a5048");
 const BELT = new Color("#4a4038");
 const HEM = new Color("#b9b9b9");
 
@@ -52,12 +51,13 @@ function pelvis(corners: number): BufferGeometry {
 function torso(corners: number): BufferGeometry {
   return loft(
     [
-      { z: 0.378, depth: 0.045, width: 0.05, x: -0.018, color: HEM },
-      { z: 0.372, depth: 0.06, width: 0.066, x: -0.018, color: HEM },
-      { z: 0.362, depth: 0.066, width: 0.092, x: -0.014 },
-      { z: 0.347, depth: 0.078, width: 0.143, x: -0.01 },
-      { z: 0.322, depth: 0.092, width: 0.178, x: -0.006, roundness: 0.9 },
-      { z: 0.27, depth: 0.108, width: 0.188, roundness: 0.85 },
+      { z: 0.408, depth: 0.05, width: 0.052, x: -0.02, color: HEM },
+      { z: 0.402, depth: 0.06, width: 0.064, x: -0.02, color: HEM },
+      { z: 0.39, depth: 0.064, width: 0.094, x: -0.018 },
+      { z: 0.374, depth: 0.066, width: 0.15, x: -0.014 },
+      { z: 0.35, depth: 0.068, width: 0.204, x: -0.008, roundness: 0.9 },
+      { z: 0.315, depth: 0.086, width: 0.206, x: -0.004, roundness: 0.88 },
+      { z: 0.27, depth: 0.105, width: 0.194, roundness: 0.85 },
       { z: 0.21, depth: 0.11, width: 0.18, x: 0.004, roundness: 0.85 },
       { z: 0.13, depth: 0.1, width: 0.162, roundness: 0.85 },
       { z: 0.05, depth: 0.097, width: 0.152, roundness: 0.9 },
@@ -72,10 +72,10 @@ function torso(corners: number): BufferGeometry {
 function upperArm(corners: number): BufferGeometry {
   return loft(
     [
-      { z: 0.05, depth: 0.026, width: 0.024 },
-      { z: 0.036, depth: 0.048, width: 0.044 },
-      { z: 0, depth: 0.06, width: 0.055 },
-      { z: -0.07, depth: 0.057, width: 0.052 },
+      { z: 0.034, depth: 0.022, width: 0.02 },
+      { z: 0.024, depth: 0.043, width: 0.038 },
+      { z: -0.006, depth: 0.058, width: 0.051 },
+      { z: -0.07, depth: 0.058, width: 0.052 },
       { z: -0.18, depth: 0.05, width: 0.046 },
       { z: -UPPER_ARM + 0.03, depth: 0.043, width: 0.041 },
       { z: -UPPER_ARM - 0.02, depth: 0.038, width: 0.037 },
@@ -93,8 +93,7 @@ function forearm(corners: number): BufferGeometry {
       { z: -0.03, depth: 0.044, width: 0.042 },
       { z: -0.09, depth: 0.042, width: 0.04 },
       { z: -0.18, depth: 0.034, width: 0.031 },
-      { z: -FOREARM, depth: 0.029, width: 0.025 },
-      { z: -FOREARM - 0.012, depth: 0.027, width: 0.023, color: HEM },
+      { z: -FOREARM - 0.01, depth: 0.028, width: 0.024 },
     ],
     corners,
   );
@@ -176,7 +175,7 @@ function toes(corners: number): BufferGeometry {
   ]);
 }
 
-/** Across a shoe: flat below, with the rim of the sole, and arched above. */
+/** Across a shoe, seen from behind: arched above from right to left, flat below. */
 function slice(
   { x, width, bottom, top }: { x: number; width: number; bottom: number; top: number },
   corners: number,
@@ -185,13 +184,11 @@ function slice(
   const rim = Math.min(bottom + 0.016, (bottom + top) / 2);
   const points = Array.from({ length: arch + 1 }, (_, i) => {
     const angle = (Math.PI * i) / arch;
-    return [x, -width * Math.cos(angle) ** 3 * 0.25 - width * Math.cos(angle) * 0.75, 0] as const;
-  }).map(([px, y], i) => {
-    const angle = (Math.PI * i) / arch;
-    return [px, y, rim + (top - rim) * Math.sin(angle) ** 0.8] as const;
+    const y = -width * (0.75 * Math.cos(angle) + 0.25 * Math.cos(angle) ** 3);
+    return [x, y, rim + (top - rim) * Math.sin(angle) ** 0.8] as const;
   });
   return {
-    points: [...points.toReversed(), [x, -width, bottom], [x, 0, bottom], [x, width, bottom]],
-    color: x < -1 ? SOLE : WHITE,
+    points: [...points, [x, width, bottom], [x, 0, bottom], [x, -width, bottom]],
+    color: WHITE,
   };
 }

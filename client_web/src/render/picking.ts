@@ -3,7 +3,7 @@
 import { type Mesh, type PerspectiveCamera, Plane, Raycaster, Vector2, Vector3 } from "three";
 import { crown } from "../world/body";
 import type { Avatar } from "../world/world";
-import { baseOf, type Cutaway } from "./cutaway";
+import { type Cutaway, cutOf } from "./cutaway";
 import type { Town } from "./town";
 
 export interface ScreenPoint {
@@ -95,9 +95,9 @@ export class Picking {
       ...occluders,
     ])) {
       if (!face) continue;
-      const baseM = baseOf(object.geometry, face.a);
-      if (cutaway.shown(point.x, point.y, baseM) < 0.5) continue;
-      return { point, distance, baseM, slope: face.normal.z };
+      const cut = cutOf(object.geometry, face.a);
+      if (cutaway.remains(point, cut) < 0.5) continue;
+      return { point, distance, baseM: cut.baseM, slope: face.normal.z };
     }
     return null;
   }

@@ -84,11 +84,11 @@ type AllPieces = Pieces & { leaves: Pieces["plain"] };
 /** Everything that stands, each piece with the height at which it begins. */
 function piecesOf({ polygons, walls, stairs: flights, doors }: SceneData): AllPieces {
   const all: AllPieces = { plain: [], facade: [], water: [], paving: [], leaves: [] };
-  const add = (baseM: number, build: (into: AllPieces) => void): void => {
+  const add = (baseM: number, build: (into: AllPieces) => void, stubM?: number): void => {
     const part: AllPieces = { plain: [], facade: [], water: [], paving: [], leaves: [] };
     build(part);
     for (const kind of Object.keys(part) as (keyof AllPieces)[]) {
-      all[kind].push(...part[kind].map((geometry) => based(geometry, baseM)));
+      all[kind].push(...part[kind].map((geometry) => based(geometry, baseM, stubM)));
     }
   };
   polygons.forEach((polygon, index) => {
