@@ -13,8 +13,8 @@ from actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH, Floats, foot_pitc
 from actors.locomotion.step_length import RV_LONGEST, sl_planted
 from actors.locomotion.turning import BothDown, ankle_over_toe, both_down, forward_and_left
 
-_PINNED_ZONE = 0.0006
-_SWING_ZONE = 0.006
+_AT_ENDS = 0.04
+"""Share of a step at its ends in which a foot is where the footprint has it, whatever the leg."""
 
 _TABLE_SIDE = 26
 _SPARE = 0.004
@@ -38,8 +38,8 @@ def standing_foot(before: BothDown, after: BothDown, hips: Hips, u: Floats) -> F
     footprint = np.zeros((*u.shape, 4))
     toe = np.zeros((*u.shape, 3))
     toe[..., 0] = FOOT
-    raised = raised_heel(hips.root + hips.aside, toe, footprint[..., 3], pitch, _PINNED_ZONE)
-    pitch = np.where(pitch > 0.0, pitch, raised)
+    raised = raised_heel(hips.root + hips.aside, toe, footprint[..., 3], pitch)
+    pitch = np.where(pitch > 0.0, pitch, mix(pitch, raised, smooth(u / _AT_ENDS)))
     return Foot(ankle_over_toe(footprint, np.minimum(pitch, 0.0)), pitch, footprint[..., 3])
 
 
@@ -68,9 +68,10 @@ def swinging_foot(
     uneven = stairs.unevenness(top - bottom)
     over = stairs.swing_over(pinned.ankle, landing[..., :3], top, swung)
     ankle = mix(level.ankle, over, uneven[..., None])
-    in_reach = drawn_to_hip(hips.root - hips.aside, ankle, _SWING_ZONE)
+    in_reach = drawn_to_hip(hips.root - hips.aside, ankle)
+    free = smooth(swung / 0.1) * (1.0 - smooth((u - 1.0 + _AT_ENDS) / _AT_ENDS))
     return Foot(
-        mix(ankle, in_reach, smooth(swung / 0.1)[..., None]),
+        mix(ankle, in_reach, free[..., None]),
         mix(level.pitch, mix(pinned.pitch, after.strike, smooth(swung / 0.4)), uneven),
         mix(lifted[..., 3], landing[..., 3], smooth(swung)),
     )
@@ -130,7 +131,7 @@ def _pinned_foot(before: BothDown, lifted: Floats, hips: Hips, u: Floats) -> tup
     footprint = np.broadcast_to(lifted, (*u.shape, 4))
     toe = footprint[..., :3].copy()
     toe[..., :2] += FOOT * forward_and_left(footprint[..., 3])[0]
-    pitch = raised_heel(hips.root - hips.aside, toe, footprint[..., 3], pitch, _PINNED_ZONE)
+    pitch = raised_heel(hips.root - hips.aside, toe, footprint[..., 3], pitch)
     return Foot(ankle_over_toe(footprint, pitch), pitch, footprint[..., 3]), angles
 
 

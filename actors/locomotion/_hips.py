@@ -15,6 +15,9 @@ from actors.locomotion.turning import CROUCH, BothDown, forward_and_left, hips_u
 _CREST = 0.35
 """The wave of the hips starts so far after its trough, as that of Boulic's pelvis does."""
 
+_ASIDE = 0.15
+"""Relative velocity of shifts that are no longer taken for a step ahead."""
+
 
 class Hips(NamedTuple):
     """Body at K shares of N steps."""
@@ -67,8 +70,15 @@ def hips_at(before: BothDown, after: BothDown, u: Floats) -> Hips:
         height=height,
         rv=rv,
         pace=mix(before.pace, after.pace, s),
-        lift=2.0 * support_share(0.5 * (before.pace + after.pace)) - 1.0,
+        lift=_lift(0.5 * (before.rv + after.rv), 0.5 * (before.pace + after.pace)),
     )
+
+
+def _lift(rv: Floats, pace: Floats) -> Floats:
+    """When the toe leaves the ground: earlier when going aside or back, where no toe pushes off."""
+    aside = smooth((pace - rv) / _ASIDE)
+    lift: Floats = (2.0 * support_share(pace) - 1.0) * (1.0 - 0.5 * aside)
+    return lift
 
 
 def _height(before: BothDown, after: BothDown, u: Floats) -> Floats:

@@ -7,28 +7,29 @@ from actors.locomotion.skeleton import FOOT, Floats
 FULL = 0.9999
 """Legs are never stretched further: a knee that locks moves with infinite speed."""
 
+_ZONE = 0.006
+"""Before that they are slowed down over so much."""
+
 _STEEPEST = np.radians(75.0)
 
 
-def eased(distance: Floats, zone: float) -> Floats:
+def eased(distance: Floats) -> Floats:
     """A distance that stays below FULL: as it is up to a zone before, then ever closer."""
-    over = np.maximum(distance - (FULL - zone), 0.0)
-    kept: Floats = np.where(
-        over > 0.0, FULL - zone * np.exp(-np.minimum(over / zone, 700.0)), distance
-    )
+    over = np.maximum(distance - (FULL - _ZONE), 0.0) / _ZONE
+    kept: Floats = np.minimum(distance, FULL - _ZONE * np.exp(-np.minimum(over, 700.0)))
     return kept
 
 
-def drawn_to_hip(hip: Floats, ankle: Floats, zone: float) -> Floats:
+def drawn_to_hip(hip: Floats, ankle: Floats) -> Floats:
     """Ankles (..., 3) of feet in the air, along the leg into reach."""
     leg = ankle - hip
     distance = np.sqrt(np.sum(leg * leg, axis=-1))
-    shrink = eased(distance, zone) / np.maximum(distance, 1e-9)
+    shrink = eased(distance) / np.maximum(distance, 1e-9)
     drawn: Floats = hip + leg * shrink[..., None]
     return drawn
 
 
-def raised_heel(hip: Floats, toe: Floats, heading: Floats, pitch: Floats, zone: float) -> Floats:
+def raised_heel(hip: Floats, toe: Floats, heading: Floats, pitch: Floats) -> Floats:
     """Pitch at which a foot that turns about its toe brings the ankle into reach of the hip.
 
     The ankle moves on a circle about the toe; where its distance from the hip is the eased one is
@@ -44,7 +45,7 @@ def raised_heel(hip: Floats, toe: Floats, heading: Floats, pitch: Floats, zone: 
             square + FOOT**2 - 2.0 * FOOT * (back * np.cos(raised) + up * np.sin(raised)), 0.0
         )
     )
-    wanted = eased(distance, zone)
+    wanted = eased(distance)
     projected = (square + FOOT**2 - wanted**2) / (2.0 * FOOT)
     nearest = np.arctan2(up, back)
     spread = np.arccos(np.clip(projected / np.maximum(np.hypot(back, up), 1e-9), -1.0, 1.0))

@@ -57,7 +57,6 @@ def swing_over(pinned: Floats, landing: Floats, top: Floats, x: Floats) -> Float
     """
     over = smooth((x - 0.22) / 0.73)[..., None]
     level = pinned[..., :2] + (landing[..., :2] - pinned[..., :2]) * over
-    summit = np.maximum(top + CLEARANCE, pinned[..., 2])
-    height = pinned[..., 2] + (summit - pinned[..., 2]) * smooth(x / 0.38)
+    height = pinned[..., 2] + (top + CLEARANCE - pinned[..., 2]) * smooth(x / 0.38)
     height = height + (landing[..., 2] - height) * smooth((x - 0.6) / 0.4)
     return np.concatenate([level, height[..., None]], axis=-1)

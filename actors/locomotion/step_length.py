@@ -77,7 +77,20 @@ def planted_length(pose: DoubleSupport) -> Floats:
 
 def longest_step() -> float:
     """The longest planted step, in leg lengths."""
-    return float(_inverse_table()[0][-1])
+    return float(_table().lengths[-1])
+
+
+def pose_of_length(length: Floats) -> tuple[Floats, DoubleSupport]:
+    """Relative velocity and final pose of planted steps, looked up: right to 1e-5.
+
+    For where exact places follow from footprints anyway.
+    """
+    table = _table()
+    after = np.searchsorted(table.lengths, length).clip(1, _TABLE_POINTS - 1)
+    low, high = table.lengths[after - 1], table.lengths[after]
+    share = (length - low) / (high - low)
+    row = table.rows[after - 1] + share[..., None] * (table.rows[after] - table.rows[after - 1])
+    return row[..., 0], DoubleSupport(*np.moveaxis(row[..., 1:], -1, 0))
 
 
 def solve_relative_velocity(sl: ArrayLike) -> Floats:
@@ -102,26 +115,34 @@ def solve_relative_velocity(sl: ArrayLike) -> Floats:
     of Newton's method with slopes from the table. Lengths grow strictly, so there is one answer.
     """
     sl = np.asarray(sl, dtype=np.float64)
-    lengths, velocities, slopes = _inverse_table()
-    if not np.all((sl >= 0.0) & (sl <= lengths[-1])):
-        raise ValueError(f"step lengths must lie in [0, {lengths[-1]:.4f}] leg lengths")
-    rv: Floats = np.interp(sl, lengths, velocities)
+    table = _table()
+    if not np.all((sl >= 0.0) & (sl <= table.lengths[-1])):
+        raise ValueError(f"step lengths must lie in [0, {table.lengths[-1]:.4f}] leg lengths")
+    velocities = table.rows[:, 0]
+    rv: Floats = np.interp(sl, table.lengths, velocities)
     for _ in range(2):
-        slope = np.interp(rv, velocities, slopes)
+        slope = np.interp(rv, velocities, table.slopes)
         rv = np.clip(rv - (sl_planted(rv) - sl) / slope, 0.0, RV_LONGEST)
     return rv
 
 
+class _Table(NamedTuple):
+    lengths: Floats
+    rows: Floats
+    """(_TABLE_POINTS, 7): relative velocity and the fields of DoubleSupport."""
+    slopes: Floats
+    """Of lengths by relative velocity."""
+
+
 @cache
-def _inverse_table() -> tuple[Floats, Floats, Floats]:
-    """Lengths, velocities and d length / d velocity."""
+def _table() -> _Table:
     velocities = np.linspace(0.0, RV_LONGEST, _TABLE_POINTS)
-    lengths = sl_planted(velocities)
+    pose = double_support(velocities)
     nudge = 1e-6
     low = np.maximum(velocities - nudge, 0.0)
     high = np.minimum(velocities + nudge, RV_LONGEST)
     slopes = (sl_planted(high) - sl_planted(low)) / (high - low)
-    return lengths, velocities, slopes
+    return _Table(planted_length(pose), np.column_stack([velocities, *pose]), slopes)
 
 
 def _velocities(rv: ArrayLike) -> Floats:

@@ -14,10 +14,10 @@ from actors.locomotion import stairs
 from actors.locomotion._reach import hip_ceiling
 from actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH, Floats
 from actors.locomotion.step_length import (
-    double_support,
+    DoubleSupport,
     longest_step,
     planted_length,
-    solve_relative_velocity,
+    pose_of_length,
 )
 
 CROUCH = 0.007
@@ -77,8 +77,8 @@ def both_down(rear: Floats, front: Floats, side: Floats) -> BothDown:
     aside = np.sum(apart * left, axis=-1)
     shifted = aside - 2.0 * side * TRACK_HALF_WIDTH
     walked = np.stack([np.maximum(ahead, 0.0), np.hypot(ahead, shifted)])
-    rv, pace = solve_relative_velocity(np.minimum(walked, longest_step()))
-    pose = double_support(rv)
+    both, poses = pose_of_length(np.minimum(walked, longest_step()))
+    pose = DoubleSupport._make(part[0] for part in poses)
     behind = pose.front_forward + 0.5 * (ahead - planted_length(pose))
     place = front[..., :2] - behind[..., None] * forward - 0.5 * aside[..., None] * left
     speed = np.sign(ahead) * np.minimum(_PACE * np.abs(ahead), _MONOTONE * np.abs(behind))
@@ -90,8 +90,8 @@ def both_down(rear: Floats, front: Floats, side: Floats) -> BothDown:
     )
     even = 1.0 - stairs.unevenness(front[..., 2] - rear[..., 2])
     return BothDown(
-        rv,
-        pace,
+        both[0],
+        both[1],
         place,
         speed[..., None] * forward + (_PACE * shifted)[..., None] * left,
         yaw,
