@@ -10,6 +10,7 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
+from actors.sights import sight_at
 from actors.state import SAME_FLOOR_M
 from planning import Body, LayeredGrid, Scene
 
@@ -57,6 +58,11 @@ class Behaviour(ABC):
     def targets(self) -> Sequence[Target]:
         """Targets that must exist in the scene."""
         return ()
+
+    @property
+    def points_at(self) -> Goal | None:
+        """What an actor that explains something shows to people since the last update."""
+        return None
 
 
 class Idle(Behaviour):
@@ -142,6 +148,11 @@ class Patrol(Behaviour):
         self._next = 0
         self._rest_until: float | None = None
 
+    @property
+    def resting(self) -> bool:
+        """At a stop."""
+        return self._rest_until is not None
+
     def targets(self) -> Sequence[Target]:
         """The stops."""
         return self._stops
@@ -164,6 +175,8 @@ class Patrol(Behaviour):
 
 class Guide(Behaviour):
     """Lead people along a tour; wait for followers who fall behind, then go on.
+
+    At a stop it explains the place to its followers, and points at what stands there.
 
     Whoever stays within `join_m` for `join_after_s` seconds follows. When a follower is further
     than `lag_m` away the guide stands until it has come within `join_m` again, but no longer
@@ -193,6 +206,9 @@ class Guide(Behaviour):
         self._near_since: dict[Hashable, float] = {}
         self._followers: set[Hashable] = set()
         self._waiting_since: float | None = None
+        self._stop: Goal | None = None
+        self._sight: Goal | None = None
+        self._explains = False
 
     @property
     def followers(self) -> frozenset[Hashable]:
@@ -203,6 +219,11 @@ class Guide(Behaviour):
     def waiting(self) -> bool:
         """Standing for a follower who fell behind."""
         return self._waiting_since is not None
+
+    @property
+    def points_at(self) -> Goal | None:
+        """What stands at the stop, while it is explained to somebody."""
+        return self._sight if self._explains else None
 
     def targets(self) -> Sequence[Target]:
         """The stops of the tour."""
@@ -237,6 +258,12 @@ class Guide(Behaviour):
                 behind = set()
             if not behind:
                 self._waiting_since = None
+        self._explains = False
         if self._waiting_since is not None:
             return None
-        return self._tour.update(view)
+        stop = self._tour.update(view)
+        if stop is not None and self._tour.resting and self._followers:
+            self._explains = True
+            if stop != self._stop:
+                self._stop, self._sight = stop, sight_at(view.scene, stop)
+        return stop

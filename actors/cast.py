@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -126,6 +127,9 @@ class Cast:
                 actor.no_path_s = 0.0
         self.navigator.observe(people)
         states = self.navigator.tick()
+        for actor_id, actor in self._actors.items():
+            if actor.behaviour.points_at is not None:
+                states[actor_id] = _pointing(states[actor_id], actor.behaviour.points_at)
         for actor_id, state in states.items():
             actor = self._actors[actor_id]
             actor.state = state
@@ -246,3 +250,9 @@ class Cast:
             return True
         potential = self.grid.potential(free, entry.z_m, body.radius_m, body)
         return bool(np.isfinite(potential.distance([point], [z_m])[0]))
+
+
+def _pointing(state: ActorState, target: Goal) -> ActorState:
+    """The same actor, turned to what it points at."""
+    (x, y), (to_x, to_y, _) = state.position, target
+    return replace(state, points_at=target, heading=math.atan2(to_y - y, to_x - x))

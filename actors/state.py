@@ -40,6 +40,8 @@ class ActorState:
     way: NDArray[np.float64]
     """(K, 3): planned positions and heights, `slice_s` apart, the first at the beginning of the
     tick."""
+    points_at: tuple[float, float, float] | None = None
+    """What it shows to people, if it explains something."""
 
     @property
     def path(self) -> NDArray[np.float64]:

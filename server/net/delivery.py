@@ -7,7 +7,7 @@ import numpy as np
 
 from actors import Explanation
 from protocol import Reason
-from protocol.messages import Census, Circle, Doors, Plan
+from protocol.messages import Census, Circle, Doors, Plan, Point
 from server.net import frames
 from server.net.outbox import Outbox
 from server.net.session import Session
@@ -32,6 +32,7 @@ class Delivery:
             for session in self._sessions.values():
                 session.outbox.post(doors)
         self._changes(sight)
+        self._pointing(sight)
         self._snapshots(sight, now)
         self._plans()
         if self._world.tick % self._census_period == 0:
@@ -53,6 +54,13 @@ class Delivery:
                 if slot not in packed:
                     packed[slot] = frames.entity(self._world.describe(slot))
             outbox.post(frames.enter(tick, [packed[slot] for slot in slots]))
+
+    def _pointing(self, sight: Sight) -> None:
+        for actor, target in sight.pointing.items():
+            frame = frames.message(Point(id=actor, target=target))
+            for viewer in self._world.seen_by(actor):
+                if (outbox := self._outbox(viewer)) is not None:
+                    outbox.post(frame)
 
     def _snapshots(self, sight: Sight, now: float) -> None:
         snapshots = sight.snapshots

@@ -29,6 +29,8 @@ class Troupe:
         self._bodies = bodies
         self._avatars: dict[Hashable, int] = {}
         self._cast_ids: dict[int, Hashable] = {}
+        self.pointing: dict[int, Point] = {}
+        """What actors point at just now, by their avatars' ids."""
 
     @property
     def trips(self) -> int:
@@ -42,11 +44,15 @@ class Troupe:
         """Something opened or closed: find the ways to goals anew."""
         self._cast.ways_changed()
 
-    def place(self, states: ActorStates) -> None:
-        """Move the avatars; whoever is new comes into the world. Without states all stand."""
+    def place(self, states: ActorStates) -> dict[int, Point | None]:
+        """Move the avatars; whoever is new comes into the world. Without states all stand.
+
+        Returns who points at something else than before, by avatars' ids: what at, None for
+        nothing any more.
+        """
         if not states:
             self._state.speeds[self._state.of_kind(ACTOR)] = 0.0
-            return
+            return {}
         for cast_id in [c for c in states if c not in self._avatars]:
             self._add(cast_id, states[cast_id])
         actors = states.values()
@@ -59,10 +65,24 @@ class Troupe:
         state.headings[slots] = [actor.heading for actor in actors]
         state.speeds[slots] = np.hypot(velocities[:, 0], velocities[:, 1])
         state.reasons[slots] = [actor.reason for actor in actors]
+        return self._point(states)
 
     def explain(self, avatar_id: int) -> Explanation:
         """Why this actor does what it does. Not while `plan` runs."""
         return self._cast.explain(self._cast_ids[avatar_id])
+
+    def _point(self, states: ActorStates) -> dict[int, Point | None]:
+        before = self.pointing
+        self.pointing = {
+            self._avatars[cast_id]: actor.points_at
+            for cast_id, actor in states.items()
+            if actor.points_at is not None
+        }
+        return {
+            avatar_id: self.pointing.get(avatar_id)
+            for avatar_id in before | self.pointing
+            if before.get(avatar_id) != self.pointing.get(avatar_id)
+        }
 
     def _add(self, cast_id: Hashable, actor: ActorState) -> None:
         body = self._bodies[cast_id]

@@ -34,6 +34,8 @@ class Sight:
     doors: dict[str, bool]
     """Doors that opened or closed."""
     changes: Changes
+    pointing: dict[int, Point | None]
+    """What actors point at since this tick, by their ids; None for nothing any more."""
     steps: StepBlocks
     """For the viewers of `snapshots`, in their order."""
     snapshots: Snapshots
@@ -114,7 +116,7 @@ class World:
     def finish(self, actors: ActorStates) -> Sight:
         """Move the actors and work out what each viewer is to be told."""
         with self.times.stage("contacts"):
-            self._troupe.place(actors)
+            pointing = self._troupe.place(actors)
             neighbours = Neighbours(self.state)
             self.contacts.update(self.state, neighbours)
         with self.times.stage("interest"):
@@ -125,7 +127,7 @@ class World:
             snapshots = self._views.encode(self._interest, self.tick)
             written = self._views.written[viewers]
             steps = self._onlookers.encode(self._interest, self.steps, viewers, written)
-        return Sight(self._moved_doors, changes, steps, snapshots)
+        return Sight(self._moved_doors, changes, pointing, steps, snapshots)
 
     def wrote(self, snapshots: Snapshots, places: list[int]) -> None:
         """The snapshots at these places were sent, and the steps; the next ones build on them."""
@@ -158,7 +160,7 @@ class World:
             "radius": float(state.radii[slot]),
             "leg_m": float(state.legs_m[slot]),
             "stature_m": float(state.statures_m[slot]),
-            "points_at": None,
+            "points_at": self._troupe.pointing.get(int(state.ids[slot])),
         }
 
     def straight_way(self, avatar_id: int, goal: Point) -> Way | None:

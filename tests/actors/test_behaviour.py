@@ -6,9 +6,9 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from actors import GoTo, Guide, Idle, Patrol, View, Wander
+from actors import Behaviour, GoTo, Guide, Idle, Patrol, View, Wander
 from planning import Body, LayeredGrid, Place, Polygon, Scene
-from tests.actors.worlds import plaza
+from tests.actors.worlds import block, plaza
 from tests.planning.storeys import storeyed
 from tests.planning.worlds import UPPER_M
 
@@ -222,3 +222,39 @@ def test_a_guide_leads_on_along_its_tour() -> None:
     assert guide.targets() == ("gate", "fountain")
     guide.update(seeing(0.0, arrived=True))
     assert guide.update(seeing(1.0, arrived=True)) == FOUNTAIN
+
+
+SIGHTS = SCENE.model_copy(update={"polygons": (block(1.0, 4.0, 3.0, 5.0),)})
+"""The plaza with a stand beside the gate."""
+STAND = (2.0, 4.5, 1.5)
+
+
+def test_a_guide_points_at_what_stands_at_a_stop_while_it_explains() -> None:
+    guide = Guide(["gate", "fountain"], pause_s=5.0, join_after_s=2.0)
+    for time_s in (0.0, 1.0, 2.0):
+        guide.update(seeing(time_s, people=near(2.0), scene=SIGHTS))
+        assert guide.points_at is None
+    for time_s in (3.0, 5.0, 7.9):
+        guide.update(seeing(time_s, arrived=True, people=near(2.0), scene=SIGHTS))
+        assert guide.points_at == STAND
+    assert guide.update(seeing(8.0, arrived=True, people=near(2.0), scene=SIGHTS)) == FOUNTAIN
+    assert guide.points_at is None
+    guide.update(seeing(9.0, arrived=True, people=near(2.0), scene=SIGHTS))
+    assert guide.points_at is None, "nothing stands there"
+
+
+def test_a_guide_explains_nothing_to_nobody_or_to_who_is_left_behind() -> None:
+    guide = Guide(["gate"], pause_s=50.0, join_after_s=2.0)
+    guide.update(seeing(0.0, arrived=True, scene=SIGHTS))
+    assert guide.points_at is None
+    for time_s in (1.0, 3.0):
+        guide.update(seeing(time_s, arrived=True, people=near(2.0), scene=SIGHTS))
+    assert guide.points_at == STAND
+    guide.update(seeing(4.0, arrived=True, people=near(9.0), scene=SIGHTS))
+    assert guide.points_at is None
+
+
+@pytest.mark.parametrize("behaviour", [Idle(), GoTo("gate"), Wander(), Patrol(["gate"])])
+def test_others_do_not_point(behaviour: Behaviour) -> None:
+    behaviour.update(seeing(0.0, arrived=True, people=near(1.0), scene=SIGHTS))
+    assert behaviour.points_at is None

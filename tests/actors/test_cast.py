@@ -7,7 +7,7 @@ import pytest
 
 from actors import ActorParameters, Cast, GoTo, Guide, Idle, Patrol, Reason, Wander
 from planning import LayeredGrid, Polygon, Scene
-from tests.actors.worlds import BODY, along, plaza
+from tests.actors.worlds import BODY, along, block, plaza
 
 SCENE = plaza()
 GRID = LayeredGrid.from_scene(SCENE)
@@ -78,6 +78,20 @@ def test_a_guide_goes_on_when_its_follower_has_left(cast) -> None:
     play(cast, 9.0)
     assert not guide.waiting
     assert cast.trips == 1
+
+
+def test_a_guide_turns_to_what_it_points_at() -> None:
+    scene = plaza().model_copy(update={"polygons": (block(9.0, 4.0, 11.0, 5.0),)})
+    cast = Cast(LayeredGrid.from_scene(scene), scene, tick_s=TICK_S)
+    cast.add("guide", Guide(["fountain"], pause_s=5.0), BODY, position=(8.0, 2.0))
+    states = [state["guide"] for state in play(cast, 6.0, {"ann": along((8.0, 1.0), (9.0, 1.0))})]
+    cast.close()
+    shown = [state for state in states if state.points_at is not None]
+    assert len(shown) >= 10
+    assert {state.points_at for state in shown} == {(10.0, 4.5, 1.5)}
+    x, y = shown[-1].position
+    assert shown[-1].heading == pytest.approx(math.atan2(4.5 - y, 10.0 - x))
+    assert states[0].points_at is None
 
 
 def test_an_explanation_says_what_is_done_and_why(cast) -> None:

@@ -17,6 +17,7 @@ class ScriptedCast:
         self.tick_s = tick_s
         self.positions: dict[Hashable, tuple[float, float]] = {}
         self.velocities: dict[Hashable, tuple[float, float]] = {}
+        self.pointing: dict[Hashable, tuple[float, float, float]] = {}
         self.observed: Mapping[Hashable, Place] = {}
         self.trips = 0
         self.failing = False
@@ -53,6 +54,7 @@ class ScriptedCast:
                 goal=None,
                 slice_s=0.4,
                 way=np.array([(*here, 0.0)]),
+                points_at=self.pointing.get(actor_id),
             )
         return states
 

@@ -1,12 +1,34 @@
+from typing import Any, cast
+
 import numpy as np
+import pytest
+from websockets.asyncio.server import ServerConnection
 
 from actors import Explanation, Reason
 from protocol import Reason as WireReason
 from protocol import decode_server, encode
-from protocol.messages import Census, Error, Plan, Watch
-from server.net.delivery import plan
+from protocol.messages import (
+    Census,
+    Error,
+    Plan,
+    Point,
+    ServerMessage,
+    Snapshot,
+    StepBlock,
+    Watch,
+)
+from protocol.steps import STEP, step_records
+from server.metrics import Traffic
+from server.net.delivery import Delivery, plan
+from server.net.outbox import Outbox, SlowPolicy
+from server.world.interest import PERIOD_TICKS
+from server.world.state import ACTOR
 from tests.server.client import joined
 from tests.server.conftest import Serving
+from tests.server.doubles import ScriptedCast
+from tests.server.net.test_frames import payload_of
+from tests.server.net.test_outbox import StuffedConnection
+from tests.server.worlds import FIELD, TICK_S, Trial
 
 
 def test_an_explanation_becomes_a_plan_to_the_millimetre() -> None:
@@ -58,3 +80,97 @@ async def test_the_census_counts_the_whole_world(serving: Serving) -> None:
         while first.people < 2:
             first = await client.until(Census)
         assert (first.people, first.actors) == (2, 2)
+
+
+class Listener:
+    """A session that only listens; `heard` is what it was sent."""
+
+    def __init__(self) -> None:
+        self.line = StuffedConnection()
+        policy = SlowPolicy(slow_bytes=1000, drop_bytes=4000, drop_seconds=5.0)
+        self.outbox = Outbox(cast(ServerConnection, self.line), policy, Traffic())
+        self.watching = None
+
+    def heard(self) -> list[ServerMessage]:
+        """What came since the last call."""
+        frames, self.line.frames = self.line.frames, []
+        return [decode_server(payload_of(frame)) for frame in frames]
+
+
+def lifts_of(messages: list[ServerMessage]) -> list[int]:
+    """Of all steps in these messages the lift, to know them by."""
+    blocks = [message.block for message in messages if isinstance(message, StepBlock)]
+    return [lift for block in blocks for lift in step_records(block)["lift"].tolist()]
+
+
+@pytest.fixture
+def trial() -> Trial:
+    """One actor and one person, two metres apart."""
+    script = ScriptedCast(TICK_S)
+    script.put("oak", (52.0, 50.0))
+    return Trial(scene=FIELD, cast=script)
+
+
+@pytest.fixture
+def listener() -> Listener:
+    return Listener()
+
+
+@pytest.fixture
+def delivery(trial: Trial, listener: Listener) -> Delivery:
+    (ann,) = trial.join((50.0, 50.0))
+    delivery = Delivery(trial.world, cast(Any, {ann: listener}), tick_rate=20)
+    delivery.deliver(trial.tick(writing=False), now=0.0)
+    listener.heard()
+    return delivery
+
+
+def begin_step(trial: Trial, lift: int) -> None:
+    records = np.zeros(1, dtype=STEP)
+    records["lift"] = lift
+    oak = trial.world.state.of_kind(ACTOR)
+    trial.world.steps.begin(oak, records, trial.world.tick + 1)
+
+
+def test_steps_come_once_and_before_the_snapshot_of_their_tick(
+    trial: Trial, listener: Listener, delivery: Delivery
+) -> None:
+    begin_step(trial, lift=7)
+    delivery.deliver(trial.tick(writing=False), now=0.05)
+    messages = listener.heard()
+    assert [type(message) for message in messages] == [StepBlock, Snapshot]
+    assert lifts_of(messages) == [7]
+    delivery.deliver(trial.tick(writing=False), now=0.1)
+    assert [type(message) for message in listener.heard()] == [Snapshot]
+
+
+def test_after_a_gap_a_slow_client_has_the_latest_step_of_everyone(
+    trial: Trial, listener: Listener, delivery: Delivery
+) -> None:
+    listener.line.unsent = 1001
+    for lift in (1, 2, 3):
+        begin_step(trial, lift)
+        delivery.deliver(trial.tick(writing=False), now=0.05)
+    assert listener.heard() == []
+    listener.line.unsent = 0
+    delivery.deliver(trial.tick(writing=False), now=0.2)
+    assert lifts_of(listener.heard()) == [3]
+    delivery.deliver(trial.tick(writing=False), now=0.25)
+    assert lifts_of(listener.heard()) == []
+
+
+def test_pointing_is_told_to_those_who_see_it(
+    trial: Trial, listener: Listener, delivery: Delivery
+) -> None:
+    oak = int(trial.world.state.ids[trial.world.state.of_kind(ACTOR)][0])
+    trial.cast.pointing["oak"] = (1.0, 2.0, 3.0)
+    delivery.deliver(trial.tick(writing=False), now=0.05)
+    assert Point(id=oak, target=(1.0, 2.0, 3.0)) in listener.heard()
+    trial.cast.pointing = {}
+    trial.cast.put("oak", (150.0, 150.0))
+    for _ in range(PERIOD_TICKS):
+        delivery.deliver(trial.tick(writing=False), now=0.1)
+    listener.heard()
+    trial.cast.pointing["oak"] = (1.0, 2.0, 3.0)
+    delivery.deliver(trial.tick(writing=False), now=0.15)
+    assert [type(message) for message in listener.heard()] == [Snapshot]

@@ -110,3 +110,22 @@ def test_actors_stand_when_there_is_no_plan() -> None:
     trial.world.begin([])
     trial.world.finish({})
     assert trial.world.state.speeds.max() == 0.0
+
+
+def test_what_an_actor_points_at_is_told_when_it_changes_and_to_who_comes() -> None:
+    cast = ScriptedCast(TICK_S)
+    cast.put("oak", (4.0, 3.0))
+    cast.put("elm", (5.0, 3.0))
+    trial = Trial(cast=cast)
+    assert trial.tick().pointing == {}
+    oak, elm = (int(i) for i in trial.world.state.ids[trial.world.state.live()])
+    cast.pointing["oak"] = (1.0, 2.0, 3.0)
+    assert trial.tick().pointing == {oak: (1.0, 2.0, 3.0)}
+    assert trial.tick().pointing == {}
+    slots = trial.world.state.slot(oak), trial.world.state.slot(elm)
+    assert [trial.world.describe(slot)["points_at"] for slot in slots] == [(1.0, 2.0, 3.0), None]
+    cast.pointing = {"oak": (4.0, 2.0, 3.0), "elm": (1.0, 2.0, 3.0)}
+    assert trial.tick().pointing == {oak: (4.0, 2.0, 3.0), elm: (1.0, 2.0, 3.0)}
+    cast.pointing = {}
+    assert trial.tick().pointing == {oak: None, elm: None}
+    assert [trial.world.describe(slot)["points_at"] for slot in slots] == [None, None]
