@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from actors import ActorState, Cast, Explanation
-from server.world.state import ACTOR, State
+from actors.locomotion.aims import AHEAD, AHEAD_S
+from server.world.state import ACTOR, Floats, State
 from server.world.ways import Point
 
 ActorStates = Mapping[Hashable, ActorState]
@@ -23,8 +24,11 @@ class Body:
 class Troupe:
     """Joins the actors of a cast, named by its ids, to avatars in the state."""
 
-    def __init__(self, state: State, cast: Cast, bodies: Mapping[Hashable, Body]) -> None:
+    def __init__(
+        self, state: State, cast: Cast, bodies: Mapping[Hashable, Body], tick_s: float
+    ) -> None:
         self._state = state
+        self._tick_s = tick_s
         self._cast = cast
         self._bodies = bodies
         self._avatars: dict[Hashable, int] = {}
@@ -51,7 +55,7 @@ class Troupe:
         nothing any more.
         """
         if not states:
-            self._state.speeds[self._state.of_kind(ACTOR)] = 0.0
+            self._stop()
             return {}
         for cast_id in [c for c in states if c not in self._avatars]:
             self._add(cast_id, states[cast_id])
@@ -65,11 +69,22 @@ class Troupe:
         state.headings[slots] = [actor.heading for actor in actors]
         state.speeds[slots] = np.hypot(velocities[:, 0], velocities[:, 1])
         state.reasons[slots] = [actor.reason for actor in actors]
+        slice_s = next(iter(actors)).slice_s
+        ways = np.stack([actor.way for actor in actors])
+        places = np.column_stack([state.positions[slots], state.heights[slots]])
+        state.ahead[slots] = course(ways, slice_s, self._tick_s, places)
         return self._point(states)
 
     def explain(self, avatar_id: int) -> Explanation:
         """Why this actor does what it does. Not while `plan` runs."""
         return self._cast.explain(self._cast_ids[avatar_id])
+
+    def _stop(self) -> None:
+        state = self._state
+        actors = state.of_kind(ACTOR)
+        state.speeds[actors] = 0.0
+        state.ahead[actors, :, :2] = state.positions[actors, None]
+        state.ahead[actors, :, 2] = state.heights[actors, None]
 
     def _point(self, states: ActorStates) -> dict[int, Point | None]:
         before = self.pointing
@@ -91,3 +106,18 @@ class Troupe:
         avatar_id = int(self._state.ids[slot])
         self._avatars[cast_id] = avatar_id
         self._cast_ids[avatar_id] = cast_id
+
+
+def course(ways: Floats, slice_s: float, now_s: float, places: Floats) -> Floats:
+    """Where A actors will be from now on: (A, AHEAD, 3).
+
+    Their ways (A, K, 3) were planned for `now_s` ago. They are where limits of speed and of what
+    stands there let them be, (A, 3), and get back to their ways within a second.
+    """
+    times = np.arange(AHEAD) * AHEAD_S
+    at = np.minimum((now_s + times) / slice_s, ways.shape[1] - 1.0)
+    k = np.minimum(at.astype(np.int64), max(ways.shape[1] - 2, 0))
+    share = (at - k)[:, None]
+    planned = (1.0 - share) * ways[:, k] + share * ways[:, np.minimum(k + 1, ways.shape[1] - 1)]
+    fade = np.maximum(1.0 - times, 0.0)[:, None]
+    return np.asarray(planned + fade * (places - planned[:, 0])[:, None])

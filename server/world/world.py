@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 
 from actors import Cast, Explanation
+from actors.locomotion.ground import Ground
 from planning import LayeredGrid, Scene
 from server.world.contacts import Contacts
 from server.world.doors import Doors
@@ -18,6 +19,7 @@ from server.world.people import People
 from server.world.rules import Rules
 from server.world.spawning import Spawning
 from server.world.state import ACTOR, KINDS, PERSON, State
+from server.world.steps import Feet
 from server.world.tick import StageTimes
 from server.world.troupe import ActorStates, Body, Troupe
 from server.world.views import Snapshots, Views
@@ -75,10 +77,11 @@ class World:
         self.doors = Doors(self.state, grid)
         self._moved_doors: dict[str, bool] = {}
         self._people = People(self.state, grid, rules, tick_s)
-        self._troupe = Troupe(self.state, cast, bodies)
+        self._troupe = Troupe(self.state, cast, bodies, tick_s)
         self._interest = Interest(self.state, rules)
         self._views = Views(self.state, self.origin_m)
         self.steps = LatestSteps(self.state.capacity)
+        self.feet = Feet(self.state, self.steps, Ground(scene, grid), tick_s, seed)
         self._onlookers = Onlookers(self.state, rules)
         self._spawning = Spawning(
             scene, grid, rules.person_clearance_m, np.random.SeedSequence(seed)
@@ -119,6 +122,8 @@ class World:
             pointing = self._troupe.place(actors)
             neighbours = Neighbours(self.state)
             self.contacts.update(self.state, neighbours)
+        with self.times.stage("steps"):
+            self.feet.update(self.tick)
         with self.times.stage("interest"):
             changes = self._interest.update(neighbours, self.tick)
             self._onlookers.update(self._interest, self.tick)

@@ -23,6 +23,7 @@ from server.net.delivery import Delivery, plan
 from server.net.outbox import Outbox, SlowPolicy
 from server.world.interest import PERIOD_TICKS
 from server.world.state import ACTOR
+from server.world.steps import Feet
 from tests.server.client import joined
 from tests.server.conftest import Serving
 from tests.server.doubles import ScriptedCast
@@ -104,8 +105,9 @@ def lifts_of(messages: list[ServerMessage]) -> list[int]:
 
 
 @pytest.fixture
-def trial() -> Trial:
-    """One actor and one person, two metres apart."""
+def trial(monkeypatch: pytest.MonkeyPatch) -> Trial:
+    """One actor and one person, two metres apart, who step only when told."""
+    monkeypatch.setattr(Feet, "update", lambda _self, _tick: None)
     script = ScriptedCast(TICK_S)
     script.put("oak", (52.0, 50.0))
     return Trial(scene=FIELD, cast=script)

@@ -1,11 +1,18 @@
 import numpy as np
+import pytest
 
 from protocol.steps import STEP, step_records
 from server.world.inputs import Attach, Detach, Leave
 from server.world.interest import LEAVE_RATIO, PERIOD_TICKS
+from server.world.steps import Feet
 from server.world.world import Sight
 from tests.server.doubles import ScriptedCast
 from tests.server.worlds import FIELD, TICK_S, Trial
+
+
+@pytest.fixture(autouse=True)
+def nobody_steps_unless_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Feet, "update", lambda _self, _tick: None)
 
 
 def begin(trial: Trial, *avatar_ids: int, lift: int = 0) -> None:
