@@ -3,20 +3,26 @@
  * everybody for a moment until their steps are known.
  */
 
+import { cyclePosture, stepAt } from "./cycle";
 import type { Pose } from "./motion";
-import type { Posture } from "./posture";
-import { type Build, HIP_ASIDE } from "./skeleton";
-import { headed, set, setRotation } from "./vectors";
+import type { FootPosture, Posture } from "./posture";
+import type { Build } from "./skeleton";
+import { headed, rotation, set, times, type Vector } from "./vectors";
 
 /** Heights are drawn evened out over this time, so that nobody hops from tread to tread. */
 const LIFT_S = 0.09;
 /** A greater difference in height is no step. */
 const FALL_M = 1.5;
-/** The hips of one who stands, in leg lengths. */
-const STANDING = 0.993;
+const PACE_S = 0.15;
+/** A larger step in one frame is no walking. */
+const JUMP_M = 1;
 
 export class Glide {
+  /** Where the body is, its height evened out. */
   readonly place: Pose;
+  private phase = 0;
+  /** Leg lengths a second. */
+  private pace = 0;
 
   constructor(
     private readonly build: Build,
@@ -25,31 +31,49 @@ export class Glide {
     this.place = { ...start };
   }
 
+  /** Go where the snapshots have it; the phase follows the distance, so that feet hardly slide. */
   advance(snapshots: Pose, frameS: number): void {
-    const z = lifted(this.place.z, snapshots.z, frameS);
-    Object.assign(this.place, snapshots);
-    this.place.z = z;
+    const { place, build } = this;
+    const dx = snapshots.x - place.x;
+    const dy = snapshots.y - place.y;
+    const z = lifted(place.z, snapshots.z, frameS);
+    Object.assign(place, snapshots);
+    place.z = z;
+    const distance = Math.hypot(dx, dy);
+    if (frameS <= 0 || distance > JUMP_M) return;
+    const legs = distance / build.legM;
+    this.pace += (legs / frameS - this.pace) * Math.min(1, frameS / PACE_S);
+    const ahead = dx * Math.cos(place.heading) + dy * Math.sin(place.heading);
+    const cycles = legs / (2 * Math.max(stepAt(this.pace), 0.1));
+    this.phase += ahead < 0 ? -cycles : cycles;
+    this.phase -= Math.floor(this.phase);
   }
 
   pose(out: Posture): void {
     const { x, y, z, heading } = this.place;
+    cyclePosture(this.phase, stepAt(this.pace), out);
+    headed(heading, turn);
+    times(turn, out.pelvis, out.pelvis);
+    this.bring(out.root, x, y, z, heading);
+    this.step(out.left, x, y, z, heading);
+    this.step(out.right, x, y, z, heading);
+  }
+
+  private step(foot: FootPosture, x: number, y: number, z: number, heading: number): void {
+    this.bring(foot.heel, x, y, z, heading);
+    foot.heading = heading;
+  }
+
+  /** From a body of leg length 1 that faces +x over the origin to where it is. */
+  private bring(point: Vector, x: number, y: number, z: number, heading: number): void {
     const { legM } = this.build;
-    set(out.root, x, y, z + STANDING * legM);
-    headed(heading, out.pelvis);
-    setRotation(out.chest, 1, 0, 0, 0);
-    for (const [foot, side] of [
-      [out.left, 1],
-      [out.right, -1],
-    ] as const) {
-      const asideM = side * HIP_ASIDE * legM;
-      set(foot.heel, x - Math.sin(heading) * asideM, y + Math.cos(heading) * asideM, z);
-      foot.pitch = foot.raised = 0;
-      foot.heading = heading;
-    }
-    out.leftArm.shoulder = out.rightArm.shoulder = 0;
-    out.leftArm.elbow = out.rightArm.elbow = 0.15;
+    const c = Math.cos(heading) * legM;
+    const s = Math.sin(heading) * legM;
+    set(point, x + c * point.x - s * point.y, y + s * point.x + c * point.y, z + legM * point.z);
   }
 }
+
+const turn = rotation();
 
 /** The height on the way from the one that was drawn to the one that is right. */
 function lifted(drawnM: number, rightM: number, frameS: number): number {

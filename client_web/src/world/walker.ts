@@ -4,7 +4,7 @@
  */
 
 import type { StepRecord } from "../net/steps";
-import { wrapAngle } from "./angles";
+import { mixAngles } from "./angles";
 import { type Body, body, solve } from "./body";
 import { Glide } from "./glide";
 import type { Pose } from "./motion";
@@ -135,21 +135,18 @@ export class Walker {
 
   /** Where labels, camera and map have it: under the middle of the hips, on the feet's height. */
   private placed(snapshots: Pose): Pose {
-    const { place, drawn, body: drawnBody } = this;
+    const { place, drawn } = this;
+    const { root } = this.body;
     place.layer = snapshots.layer;
     place.speed = snapshots.speed;
     place.reason = snapshots.reason;
-    if (!drawn) {
-      Object.assign(place, this.glide.place);
-    } else {
-      const { standing, landing } = drawn.step;
-      const length = Math.max(drawn.endS - drawn.beginS, 1e-6);
-      const u = smooth((this.timeS - drawn.beginS) / length);
-      place.z = standing.z + (landing.z - standing.z) * u;
-      place.heading = standing.heading + wrapAngle(landing.heading - standing.heading) * u;
-    }
-    place.x = drawnBody.root.x;
-    place.y = drawnBody.root.y;
+    if (!drawn) return Object.assign(place, this.glide.place);
+    const { standing, landing } = drawn.step;
+    const u = smooth((this.timeS - drawn.beginS) / Math.max(drawn.endS - drawn.beginS, 1e-6));
+    place.x = root.x;
+    place.y = root.y;
+    place.z = standing.z + (landing.z - standing.z) * u;
+    place.heading = mixAngles(standing.heading, landing.heading, u);
     return place;
   }
 }
