@@ -72,7 +72,7 @@ def swinging_foot(
     free = smooth(swung / 0.1) * (1.0 - smooth((u - 1.0 + _AT_ENDS) / _AT_ENDS))
     return Foot(
         mix(ankle, in_reach, free[..., None]),
-        mix(level.pitch, mix(pinned.pitch, after.strike, smooth(swung / 0.4)), uneven),
+        mix(level.pitch, mix(pinned.pitch, after.strike, smooth(swung / 0.5)), uneven),
         mix(lifted[..., 3], landing[..., 3], smooth(swung)),
     )
 

@@ -43,7 +43,10 @@ def ground_under_way(before: Floats, after: Floats, u: Floats) -> Floats:
 
 
 def swing_over(pinned: Floats, landing: Floats, top: Floats, x: Floats) -> Floats:
-    """Ankle of a foot that goes up first, then over, then down.
+    """Ankle of a foot that goes up, over and down, and passes every edge between the footprints.
+
+    Going up it is over the next tread before it moves ahead; going down it is past the edge of
+    the tread that the other foot stands on before it sinks.
 
     Parameters
     ----------
@@ -55,8 +58,10 @@ def swing_over(pinned: Floats, landing: Floats, top: Floats, x: Floats) -> Float
     x : float64 (...,), in [0, 1]
         Share of the swing.
     """
-    over = smooth((x - 0.22) / 0.73)[..., None]
+    down = smooth((top - landing[..., 2]) / _LEVEL_BELOW)
+    off, arrived = 0.3 - 0.18 * down, 0.97 - 0.17 * down
+    over = smooth((x - off) / (arrived - off))[..., None]
     level = pinned[..., :2] + (landing[..., :2] - pinned[..., :2]) * over
-    height = pinned[..., 2] + (top + CLEARANCE - pinned[..., 2]) * smooth(x / 0.38)
+    height = pinned[..., 2] + (top + CLEARANCE - pinned[..., 2]) * smooth(x / 0.34)
     height = height + (landing[..., 2] - height) * smooth((x - 0.6) / 0.4)
     return np.concatenate([level, height[..., None]], axis=-1)
