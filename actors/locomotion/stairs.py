@@ -36,9 +36,8 @@ def heel_height(raised: Floats, ground: Floats, rear: Floats) -> Floats:
 
 
 def ground_under_way(before: Floats, after: Floats, u: Floats) -> Floats:
-    """Ground height during a step: going up, the body rises only once over its foot."""
-    late = np.where(after > before, 0.3, 0.0)
-    height: Floats = before + (after - before) * smooth((u - late) / (1.0 - late))
+    """Ground height during a step: the body rises or sinks only once it comes over its foot."""
+    height: Floats = before + (after - before) * smooth((u - 0.3) / 0.7)
     return height
 
 
@@ -59,9 +58,9 @@ def swing_over(pinned: Floats, landing: Floats, top: Floats, x: Floats) -> Float
         Share of the swing.
     """
     down = smooth((top - landing[..., 2]) / _LEVEL_BELOW)
-    off, arrived = 0.3 - 0.18 * down, 0.97 - 0.17 * down
+    off, arrived = 0.3 - 0.2 * down, 0.97 - 0.2 * down
     over = smooth((x - off) / (arrived - off))[..., None]
     level = pinned[..., :2] + (landing[..., :2] - pinned[..., :2]) * over
     height = pinned[..., 2] + (top + CLEARANCE - pinned[..., 2]) * smooth(x / 0.34)
-    height = height + (landing[..., 2] - height) * smooth((x - 0.6) / 0.4)
+    height = height + (landing[..., 2] - height) * smooth((x - 0.55) / 0.45)
     return np.concatenate([level, height[..., None]], axis=-1)

@@ -48,7 +48,7 @@ def test_joints_are_not_hurried(flight):
 def test_knees_bend_as_on_stairs(flight):
     walked, rise = flight
     most = np.degrees(walked.joints[..., 3].max())
-    assert (75.0 < most < 95.0) if rise > 0.0 else (95.0 < most < 118.0)
+    assert (75.0 < most < 95.0) if rise > 0.0 else (95.0 < most < 114.0)
 
 
 FLIGHTS = [
@@ -116,11 +116,10 @@ def test_what_stands_for_level_ground():
     assert stairs.ground_height(rear, front) == pytest.approx((0.1, 0.0, -0.17))
 
 
-def test_the_body_rises_late_and_sinks_at_once():
+def test_the_body_changes_height_late():
     before, after = np.zeros(2), np.array([0.2, -0.2])
-    early = stairs.ground_under_way(before, after, np.array([0.25, 0.25]))
-    assert early[0] == 0.0
-    assert early[1] < -0.02
+    assert stairs.ground_under_way(before, after, np.full(2, 0.3)) == pytest.approx(before)
+    assert stairs.ground_under_way(before, after, np.full(2, 0.65)) == pytest.approx(after / 2)
     assert stairs.ground_under_way(before, after, np.ones(2)) == pytest.approx(after)
 
 
