@@ -147,6 +147,9 @@ export class Session {
       case "steps":
         world?.steps(unpackSteps(message.block));
         break;
+      case "point":
+        world?.point(message.id, message.target);
+        break;
       case "plan":
         if (world && message.id === this.chosenId && this.planSwitch.open) world.plan = message;
         break;

@@ -1,6 +1,6 @@
 /** The joints of a body in the world, from its posture: the twin of `actors/locomotion/posing.py`. */
 
-import type { FootPosture, Posture } from "./posture";
+import type { ArmPosture, FootPosture, Posture } from "./posture";
 import {
   ARMS_OUT,
   type Build,
@@ -121,9 +121,18 @@ export function solve(from: Posture, build: Build, out: Body): void {
   const facing = headingOf(from.pelvis);
   bendKnee(out.left, facing, build);
   bendKnee(out.right, facing, build);
-  trunk(out, build);
-  arm(from.leftArm.shoulder, from.leftArm.elbow, 1, out, out.left.arm, build);
-  arm(from.rightArm.shoulder, from.rightArm.elbow, -1, out, out.right.arm, build);
+  carried(out.root, out.pelvis, 0, 0, LUMBAR_UP * build.trunkM, out.lumbar);
+  hangOnChest(from, build, out);
+}
+
+/** Neck, head and arms where the chest has them. */
+export function hangOnChest(from: Posture, build: Build, out: Body): void {
+  const { lumbar, chest, neck, head } = out;
+  carried(lumbar, chest, 0, 0, SHOULDER_UP * build.trunkM, neck);
+  headed(headingOf(chest), upright);
+  mixRotations(chest, upright, HEAD_UPRIGHT, head);
+  hangArm(from.leftArm, 1, out, out.left.arm, build);
+  hangArm(from.rightArm, -1, out, out.right.arm, build);
 }
 
 /** The top of the head. */
@@ -207,21 +216,13 @@ function bendKnee({ leg, foot: { heading } }: Side, facing: number, { legM }: Bu
   set(axis, fy * lz - fz * ly, fz * lx - fx * lz, fx * ly - fy * lx);
 }
 
-function trunk({ root, pelvis, chest, lumbar, neck, head }: Body, { trunkM }: Build): void {
-  carried(root, pelvis, 0, 0, LUMBAR_UP * trunkM, lumbar);
-  carried(lumbar, chest, 0, 0, SHOULDER_UP * trunkM, neck);
-  headed(headingOf(chest), upright);
-  mixRotations(chest, upright, HEAD_UPRIGHT, head);
-}
-
 const SIDEWAYS = Math.sin(ARMS_OUT);
 const DOWNWARDS = -Math.cos(ARMS_OUT);
 const ORIGIN = vector();
 
 /** An arm that hangs a little outwards and is flexed so; `side` is 1 for the left one. */
-function arm(
-  shoulder: number,
-  elbow: number,
+function hangArm(
+  { shoulder, elbow }: ArmPosture,
   side: number,
   { lumbar, chest }: Body,
   { start, hinge, end, axis }: Limb,

@@ -12,6 +12,8 @@ export const REACH = 0.9995;
 
 /** Shares of the trunk's scale. Where the spine bends, above the middle of the hips. */
 export const LUMBAR_UP = 0.178;
+/** Where the chest bends on the spine, above there. */
+export const CHEST_UP = 0.2;
 /** Shoulders and foot of the neck above there, and the crown of the head. */
 export const SHOULDER_UP = 0.35;
 export const HEAD_UP = 0.674;

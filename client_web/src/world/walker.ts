@@ -4,13 +4,15 @@
  */
 
 import type { StepRecord } from "../net/steps";
-import { mixAngles } from "./angles";
+import { mixAngles, wrapAngle } from "./angles";
 import { type Body, body, solve } from "./body";
 import { Glide } from "./glide";
 import type { Pose } from "./motion";
 import { mixPostures, type Posture, posture } from "./posture";
+import { Pointing } from "./pointing";
 import type { Build } from "./skeleton";
 import { readyToDraw, smooth, type Step, underWay } from "./steps";
+import { headed, headingOf, rotation, times } from "./vectors";
 
 /** As many steps are kept: what is drawn lies a little in the past. */
 const MOST_STEPS = 6;
@@ -24,6 +26,11 @@ const SILENT_S = 0.4;
 const ELSEWHERE_M = 0.35;
 /** This far is no walk: somebody was put somewhere else. */
 const JUMP_M = 1.5;
+/** A head is turned no further against the chest, and takes so long. */
+const LOOK_RAD = 1.1;
+const LOOK_S = 0.12;
+
+const turned = rotation();
 
 /** A step and the time at which it begins and ends. */
 interface Timed {
@@ -38,6 +45,7 @@ export class Walker {
   readonly body: Body = body();
   /** What the joints were solved from. */
   readonly posture: Posture = posture();
+  readonly pointing = new Pointing();
   private readonly steps: Timed[] = [];
   private readonly glide: Glide;
   private readonly from: Posture = posture();
@@ -48,6 +56,8 @@ export class Walker {
   private fadeLeftS = 0;
   /** How much later than it should this walker is drawn. */
   private lagS = 0;
+  /** How far the head is turned against the chest. */
+  private gaze = 0;
   private timeS = -Infinity;
   private readonly place: Pose;
 
@@ -94,7 +104,20 @@ export class Walker {
       mixPostures(this.from, this.posture, part, this.posture);
     }
     solve(this.posture, this.build, this.body);
+    if (this.pointing.active) this.pointing.apply(this.body, this.posture, this.build, frameS);
+    this.look(snapshots.heading, frameS);
     return this.placed(snapshots);
+  }
+
+  /** Turn the head to what is pointed at, else to where the feet will turn. */
+  private look(heading: number, frameS: number): void {
+    const { target } = this.pointing;
+    const { chest, neck, head } = this.body;
+    const wanted = target ? Math.atan2(target.y - neck.y, target.x - neck.x) : heading;
+    const aside = Math.max(-LOOK_RAD, Math.min(LOOK_RAD, wrapAngle(wanted - headingOf(chest))));
+    this.gaze += (aside - this.gaze) * (1 - Math.exp(-frameS / LOOK_S));
+    headed(this.gaze, turned);
+    times(turned, head, head);
   }
 
   private chosen(snapshots: Pose): Timed | null {

@@ -1,6 +1,14 @@
 /** Everything in view as this client knows it: who is here, where they are drawn, and the plans. */
 
-import type { Doors, EntityInfo, EntityRecord, Plan, SceneData, Welcome } from "../net/messages";
+import type {
+  Doors,
+  EntityInfo,
+  EntityRecord,
+  Place,
+  Plan,
+  SceneData,
+  Welcome,
+} from "../net/messages";
 import { Floors } from "./floors";
 import { meshParts, type Triangles } from "./mesh";
 import { Motion, type Pose } from "./motion";
@@ -94,6 +102,7 @@ export class World {
         pose,
         motion,
       });
+      this.point(info.id, info.points_at);
       if (own) this.prediction ??= this.predict(pose, info.radius);
     }
   }
@@ -127,6 +136,14 @@ export class World {
       const endS = this.timeOf(record.tick + record.ticks);
       this.avatars_.get(record.id)?.walker.add(record, beginS, endS);
     }
+  }
+
+  /** What somebody points at from now on; null for nothing. */
+  point(id: number, target: Place | null): void {
+    const walker = this.avatars_.get(id)?.walker;
+    if (!walker) return;
+    const [x, y, z] = target ?? [0, 0, 0];
+    walker.pointing.target = target && { x, y, z };
   }
 
   /** Which doors stand open; false if closed. */
