@@ -26,7 +26,7 @@ KEYS: Final = 6
 """Keys of a step, at the shares 0, 0.2, 0.4, 0.6, 0.8 and 1 of its duration."""
 
 FOOTPRINT = np.dtype([("position", "<i4", 3), ("heading", "<u2")])
-"""14 bytes. Millimetres in the world; 1/65536 turns from +x."""
+"""14 bytes. Tenths of a millimetre in the world; 1/65536 turns from +x."""
 
 KEY = np.dtype(
     [
@@ -59,7 +59,7 @@ STEP = np.dtype(
 STANDS_ON_RIGHT: Final = 1
 RE_AIMED: Final = 2
 
-FOOTPRINT_M: Final = 1e-3
+FOOTPRINT_M: Final = 1e-4
 FOOTPRINT_RAD: Final = 2.0 * np.pi / 65536.0
 KEY_M: Final = 1e-4
 FOOT_RAD: Final = 1e-4

@@ -23,7 +23,7 @@ from protocol.messages import (
     StepBlock,
     Watch,
 )
-from protocol.steps import pack_steps
+from protocol.steps import FOOTPRINT_M, pack_steps
 from tests.bots.scripted import OPERATOR, scripted_server, until
 from tests.protocol.steps import made_up_steps
 
@@ -113,7 +113,7 @@ async def test_steps_come_as_records_and_in_world_units() -> None:
         assert event.tick == 9
         np.testing.assert_array_equal(event.records, records)
         landing = event.steps.landing.positions_m
-        np.testing.assert_allclose(landing, records["landing"]["position"] * 1e-3)
+        np.testing.assert_allclose(landing, records["landing"]["position"] * FOOTPRINT_M)
 
 
 async def test_it_knows_the_build_of_those_in_view_and_where_they_point() -> None:

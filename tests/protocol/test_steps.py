@@ -134,8 +134,8 @@ def test_the_layout_byte_by_byte() -> None:
     assert len(block) == STEP.itemsize == 225
     assert block[:39].hex(" ") == (
         "04 03 02 01 03 08 07 06 05 09 "
-        "e8 03 00 00 18 fc ff ff fa 00 00 00 00 40 "
-        "dc 05 00 00 18 fc ff ff fa 00 00 00 00 c0 ff"
+        "10 27 00 00 f0 d8 ff ff c4 09 00 00 00 40 "
+        "98 3a 00 00 f0 d8 ff ff c4 09 00 00 00 c0 ff"
     )
     assert block[39:70].hex(" ") == (
         "c4 09 00 00 2e 22 00 40 00 40 00 40 78 ec 00 00 00 00 e8 03 18 fc 64 00 "
