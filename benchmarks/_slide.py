@@ -1,0 +1,195 @@
+"""How well feet stand that are drawn from footage, 60 times a second."""
+
+from dataclasses import dataclass, fields
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from actors.locomotion.motion import Steps
+from actors.locomotion.posing import Build, Pose, pose
+from benchmarks._footage import Floats, Seen
+from server.world.step_records import from_records
+
+FRAMES_PER_SECOND: Final = 60
+PHASE: Final = 0.37
+"""Frames are so much of a frame away from ticks, as they are in a browser."""
+
+FLAT_RAD: Final = 1e-3
+"""A foot that is pitched by less lies flat."""
+
+Flags = npt.NDArray[np.bool_]
+Rows = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Findings:
+    """Distances in metres, one number for each observation."""
+
+    slide: Floats
+    """Of a planted foot's contact with the ground, along it, from one frame to the next."""
+    drift: Floats
+    """The furthest that the contact of a foot gets along the ground, while it is planted, from
+    where it lay flat."""
+    jump_feet: Floats
+    """Between what one record draws and what the next one does at the same moment: of the ankle
+    that is further off."""
+    jump_root: Floats
+    landing: Floats
+    """From where the swing foot is at the end of its step to its footprint."""
+    step_m: Floats
+    """Length of the steps of who walks on: half of what a foot covers in one."""
+    travel_m: Floats
+    """What the body covered meanwhile according to snapshots, half of it."""
+    off_body: Floats
+    """From the drawn hips to the place in snapshots, on the map."""
+    frames: Floats
+    """How many frames each was drawn in."""
+
+
+def judge(everyone: list[Seen], tick_rate: int) -> Findings:
+    """Draw everyone from first to last, and look where feet are."""
+    parts = [_judge(seen, tick_rate) for seen in everyone]
+    names = [field.name for field in fields(Findings)]
+    return Findings(**{name: np.concatenate([getattr(p, name) for p in parts]) for name in names})
+
+
+def _judge(seen: Seen, tick_rate: int) -> Findings:
+    steps = from_records(seen.steps)
+    frame = tick_rate / FRAMES_PER_SECOND
+    ticks = np.arange(seen.heard[0] + PHASE * frame, seen.until, frame)
+    rows = np.maximum(np.searchsorted(steps.start, ticks, side="right") - 1, 0)
+    shares = _shares(steps, rows, ticks)
+    drawn = _draw(steps, rows, shares, seen)
+    planted = _planted(steps, rows, shares)
+    anew = np.append(False, (np.diff(rows) > 0) & (steps.ticks[rows[1:]] == 0))
+    jumps = _jumps(steps, seen)
+    step_m, travel_m = _strides(steps, seen)
+    away = drawn.root[:, :2] - seen.place_at(ticks)
+    return Findings(
+        slide=_slides(drawn, planted, anew),
+        drift=_drifts(drawn, planted, anew),
+        jump_feet=jumps[0],
+        jump_root=jumps[1],
+        landing=_landings(steps, seen),
+        step_m=step_m,
+        travel_m=travel_m,
+        off_body=np.hypot(away[:, 0], away[:, 1]),
+        frames=np.array([float(len(ticks))]),
+    )
+
+
+def _shares(steps: Steps, rows: Rows, ticks: Floats) -> Floats:
+    lengths = steps.ticks[rows]
+    gone = np.clip((ticks - steps.start[rows]) / np.maximum(lengths, 1), 0.0, 1.0)
+    return np.where(lengths > 0, gone, 1.0)
+
+
+def _draw(steps: Steps, rows: Rows, shares: Floats, seen: Seen) -> Pose:
+    count = len(rows)
+    build = Build(np.full(count, seen.leg_m), np.full(count, seen.stature_m))
+    return pose(steps.take(rows), shares, build)
+
+
+# --- planted feet -----------------------------------------------------------------------------
+
+
+def _planted(steps: Steps, rows: Rows, shares: Floats) -> Flags:
+    """Which feet are to stand still, (F, 2) left, right: the standing one always; the other one
+    until its toe lifts, and again from the end of its step."""
+    right = steps.right[rows].astype(np.int64)
+    lift = steps.lift[rows]
+    planted = np.ones((len(rows), 2), dtype=np.bool_)
+    swings = ((lift > 0.0) & (shares <= lift)) | (shares >= 1.0)
+    planted[np.arange(len(rows)), 1 - right] = swings
+    return planted
+
+
+def _slides(drawn: Pose, planted: Flags, anew: Flags) -> Floats:
+    """Of the contact between frames in both of which a foot is planted."""
+    heel = np.linalg.norm(np.diff(drawn.ankles[..., :2], axis=0), axis=2)
+    toe = np.linalg.norm(np.diff(drawn.toes[..., :2], axis=0), axis=2)
+    before, after = drawn.pitches[:-1], drawn.pitches[1:]
+    on_heel = (before > FLAT_RAD) & (after > FLAT_RAD)
+    on_toe = (before < -FLAT_RAD) & (after < -FLAT_RAD)
+    flat = (np.abs(before) <= FLAT_RAD) & (np.abs(after) <= FLAT_RAD)
+    # On its way from heel to toe it turns about the one until it lies flat, then about the other.
+    moved = np.minimum(heel, toe)
+    moved = np.where(on_heel, heel, np.where(on_toe, toe, moved))
+    moved = np.where(flat, np.maximum(heel, toe), moved)
+    both = planted[:-1] & planted[1:] & ~anew[1:, None]
+    return np.asarray(moved[both])
+
+
+def _drifts(drawn: Pose, planted: Flags, anew: Flags) -> Floats:
+    """For every time that a foot stands: the furthest of its contact from where it lies flat."""
+    furthest = []
+    for foot in range(2):
+        on = planted[:, foot]
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], on, [False]])) != 0)
+        cuts = np.union1d(edges, np.flatnonzero(anew & on))
+        for first, end in pairwise(cuts.tolist()):
+            if on[first]:
+                furthest.append(_drift(drawn, foot, slice(first, end)))
+    return np.array([drift for drift in furthest if drift is not None])
+
+
+def _drift(drawn: Pose, foot: int, frames: slice) -> float | None:
+    pitch = drawn.pitches[frames, foot]
+    heels, toes = drawn.ankles[frames, foot, :2], drawn.toes[frames, foot, :2]
+    flat = int(np.abs(pitch).argmin())
+    if abs(pitch[flat]) > FLAT_RAD:
+        return None
+    heel = np.linalg.norm(heels - heels[flat], axis=1)
+    toe = np.linalg.norm(toes - toes[flat], axis=1)
+    return float(np.where(pitch >= 0.0, heel, toe).max())
+
+
+# --- from one record to the next --------------------------------------------------------------
+
+
+def _jumps(steps: Steps, seen: Seen) -> tuple[Floats, Floats]:
+    """How far ankles and hips are apart at the moment at which one record follows another."""
+    came_at_once = np.array(seen.heard)[1:] == steps.start[1:]
+    rows = np.flatnonzero(came_at_once & (steps.ticks[1:] > 0))
+    before = _draw(steps, rows, _shares(steps, rows, steps.start[rows + 1]), seen)
+    after = _draw(steps, rows + 1, np.zeros(len(rows)), seen)
+    feet = np.linalg.norm(after.ankles - before.ankles, axis=2).max(axis=1)
+    return feet, np.linalg.norm(after.root - before.root, axis=1)
+
+
+def _landings(steps: Steps, seen: Seen) -> Floats:
+    """How far the swing foot is from its footprint at the ends of steps that are not re-aimed."""
+    whole = np.append(steps.start[1:] >= (steps.start + steps.ticks)[:-1], True)
+    rows = np.flatnonzero(whole & (steps.ticks > 0))
+    ended = _draw(steps, rows, np.ones(len(rows)), seen)
+    foot = 1 - steps.right[rows].astype(np.int64)
+    here = np.arange(len(rows))
+    landing = steps.landing[rows]
+    along = np.stack([np.cos(landing[:, 3]), np.sin(landing[:, 3]), np.zeros(len(rows))], axis=1)
+    foot_m = np.linalg.norm(ended.toes[here, foot] - ended.ankles[here, foot], axis=1)
+    heel = np.linalg.norm(ended.ankles[here, foot] - landing[:, :3], axis=1)
+    toe_place = landing[:, :3] + foot_m[:, None] * along
+    toe = np.linalg.norm(ended.toes[here, foot] - toe_place, axis=1)
+    return np.where(ended.pitches[here, foot] >= 0.0, heel, toe)
+
+
+def _strides(steps: Steps, seen: Seen) -> tuple[Floats, Floats]:
+    """Lengths of steps in the middle of a walk, drawn and travelled.
+
+    Each is half of a stride, which is what one foot covers while the body takes two steps. First
+    and last steps are left out: there feet begin and end beside each other, and the body does not.
+    """
+    starts = np.flatnonzero(~steps.again)
+    lasts = np.append(starts[1:], len(steps.start)) - 1
+    begin, end = steps.start[starts], (steps.start + steps.ticks)[lasts]
+    walks_on = (begin[1:] == end[:-1]) & (steps.right[starts[1:]] != steps.right[starts[:-1]])
+    pairs = 1 + np.flatnonzero(walks_on[:-2] & walks_on[1:-1] & walks_on[2:])
+    if len(pairs) and not seen.places:
+        return np.empty(0), np.empty(0)
+    covered = steps.landing[lasts[pairs + 1], :2] - steps.standing[lasts[pairs], :2]
+    travelled = seen.place_at(end[pairs + 1].astype(float)) - seen.place_at(
+        begin[pairs].astype(float)
+    )
+    return np.hypot(*covered.T) / 2.0, np.hypot(*travelled.T) / 2.0

@@ -1,0 +1,176 @@
+"""What a client sees of real steps: whether feet slide, and what that costs on the wire.
+
+    python -m benchmarks.steps                          20 visitors who wander among 10 actors
+    python -m benchmarks.steps --crowd zara1.csv        a recorded crowd, replayed as it was
+    python -m benchmarks.steps --crowd zara1.csv --seconds 120 --json figures.json
+
+A server is started, a crowd of bots walks about, and one more bot stands in the middle and looks
+on. From what that one is sent, steps and snapshots and nothing else, everyone is drawn 60 times a
+second, and it is measured how far planted feet move, how well one step goes on from the other, and
+how many bytes a second each walker costs.
+"""
+
+import argparse
+import asyncio
+import json
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+import bots
+from benchmarks._footage import Cost, Footage, Seen, cost_of, kinds_of
+from benchmarks._slide import Findings, Floats, judge
+from bots.load import LoadJob
+from bots.replay import ReplayJob
+from bots.tally import Tally
+from recordings import Crowd, Track, read_crowd
+from server import logs
+from server.app import running
+from server.settings import ServerSettings
+
+VISITORS: Final = 20
+JOINING_S: Final = 2.0
+"""The onlooker looks only at who is there after this time."""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    options = parser().parse_args(argv)
+    settings = ServerSettings(
+        crowd=options.crowd,
+        actors=options.actors,
+        host="127.0.0.1",
+        port=0,
+        private_port=0,
+        log_level="error",
+    )
+    logs.configure(settings)
+    crowd = None if options.crowd is None else read_crowd(options.crowd)
+    footage, everyone, seconds = asyncio.run(watch(settings, crowd, options.seconds))
+    findings, cost = judge(everyone, footage.tick_rate), cost_of(footage, everyone, seconds)
+    show(Console(), findings, cost)
+    if options.json is not None:
+        found = figures(findings, cost, kinds_of(everyone))
+        options.json.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    return 0
+
+
+def parser() -> argparse.ArgumentParser:
+    made = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    made.add_argument("--crowd", type=Path, help="recorded crowd (CSV t,id,x,y) to replay")
+    made.add_argument("--seconds", type=float, default=30.0, help="how long to look on")
+    made.add_argument("--actors", type=int, default=10, help="computer-run actors")
+    made.add_argument("--json", type=Path, help="also write the figures here")
+    return made
+
+
+async def watch(
+    settings: ServerSettings, crowd: Crowd | None, seconds: float
+) -> tuple[Footage, list[Seen], float]:
+    """What somebody sees who stands in the middle of a crowd for so many seconds of the world."""
+    async with running(settings) as server:
+        url = f"ws://127.0.0.1:{server.port}"
+        x0, y0, x1, y1 = server.world.scene.bounds
+        middle = ((x0 + x1) / 2.0, (y0 + y1) / 2.0, 0.0)
+        stop = asyncio.Event()
+        job = _crowd(url, crowd, seconds)
+        walking = asyncio.create_task(job.run(Tally(), stop))
+        await asyncio.sleep(JOINING_S)
+        async with bots.connect(url, name="Onlooker", at=middle) as bot:
+            footage = Footage(bot)
+            first = bot.tick
+            async for event in bot.events():
+                footage.take(event)
+                if bot.tick - first >= seconds * footage.tick_rate:
+                    break
+            if bot.dropped_events:
+                raise RuntimeError(f"{bot.dropped_events} events were lost: too busy a machine")
+        stop.set()
+        with suppress(asyncio.CancelledError):
+            await walking
+    return footage, footage.end(), seconds
+
+
+def _crowd(url: str, crowd: Crowd | None, seconds: float) -> LoadJob | ReplayJob:
+    if crowd is None:
+        return LoadJob(url, count=VISITORS, first=0, step=1, seed=0, join_rate=50.0, duration_s=0.0)
+    return ReplayJob(url, busiest(crowd, seconds), speedup=1.0, linger_s=0.0)
+
+
+def busiest(crowd: Crowd, seconds: float) -> tuple[Track, ...]:
+    """Who is there in the stretch of time, so many seconds long, in which most walk."""
+    tracks = [track for track in crowd.tracks if len(track.times) > 1]
+    begins = np.array([track.start_s for track in tracks])
+    ends = np.array([track.end_s for track in tracks])
+    # Replays begin with the first start of a track, so only starts are looked at.
+    crowded = [
+        np.clip(np.minimum(ends, t + seconds) - np.maximum(begins, t), 0.0, None)[begins >= t].sum()
+        for t in begins
+    ]
+    from_s = float(begins[int(np.argmax(crowded))])
+    return tuple(t for t in tracks if from_s <= t.start_s <= from_s + seconds)
+
+
+# --- what it came to --------------------------------------------------------------------------
+
+MILLIMETRES: Final = (
+    ("planted feet, from frame to frame", "slide"),
+    ("planted feet, from where they stand", "drift"),
+    ("swing foot at its landing", "landing"),
+    ("feet, from one record to the next", "jump_feet"),
+    ("hips, from one record to the next", "jump_root"),
+    ("hips from the place in snapshots", "off_body"),
+)
+
+
+def figures(findings: Findings, cost: Cost, kinds: dict[str, int]) -> dict[str, Any]:
+    """Everything, for JSON; distances in millimetres."""
+    return {
+        "frames": int(findings.frames.sum()),
+        "walkers": len(findings.frames),
+        "records": kinds,
+        "mm": {name: spread(getattr(findings, name)) for _, name in MILLIMETRES},
+        "step_length_error_mm": spread(step_errors(findings)),
+        "step_length_mm": spread(findings.step_m),
+        "cost": asdict(cost),
+    }
+
+
+def step_errors(findings: Findings) -> Floats:
+    """By how much steps are longer or shorter than what the body covers meanwhile, metres."""
+    return np.abs(findings.step_m - findings.travel_m)
+
+
+def spread(metres: Floats) -> dict[str, float] | None:
+    """Percentiles and the worst, millimetres."""
+    if not len(metres):
+        return None
+    values = {f"p{p}": float(np.percentile(metres, p)) for p in (50, 99)}
+    values["worst"] = float(metres.max())
+    return {name: 1e3 * value for name, value in values.items()} | {"count": float(len(metres))}
+
+
+def show(console: Console, findings: Findings, cost: Cost) -> None:
+    table = Table("millimetres", "p50", "p99", "worst", "count")
+    rows = [(title, getattr(findings, name)) for title, name in MILLIMETRES]
+    for title, metres in (*rows, ("length of steps against the body's", step_errors(findings))):
+        found = spread(metres)
+        if found is not None:
+            cells = [f"{found[name]:.3f}" for name in ("p50", "p99", "worst")]
+            table.add_row(title, *cells, f"{int(found['count']):,}")
+    console.print(table)
+    console.print(
+        f"{cost.steps:,} steps of {len(findings.frames)} avatars, {cost.visible_at_once:.1f} at a "
+        f"time, {int(findings.frames.sum()):,} frames; {cost.step_bytes:,} bytes: "
+        f"{cost.for_each_visible:.0f} bytes/s for each visible, {cost.for_each_walking:.0f} for "
+        "each who walks"
+    )
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
