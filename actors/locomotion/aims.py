@@ -29,8 +29,12 @@ LONGEST_S: Final = 0.8
 # Lengths in legs.
 _LONGEST: Final = 0.72
 """Steps that are walked; who is faster takes them in less time."""
-_PAST: Final = 0.56
-"""A body that starts goes no further past its standing foot."""
+_PAST: Final = 0.5
+_PAST_AHEAD: Final = 0.1
+"""A step takes the body no further from its standing foot; so much more in the direction of the
+toe, on which the foot can rise."""
+_BEHIND: Final = 0.54
+"""And no further from the landing foot."""
 _FURTHEST: Final = 0.86
 _FURTHEST_BACK: Final = 0.55
 _FURTHEST_ASIDE: Final = 0.55
@@ -77,7 +81,11 @@ class Aim(NamedTuple):
     landing: Floats
     """(N, 4): footprint."""
     place: Floats
-    """(N, 2): of the body in the end, metres."""
+    """(N, 2): of the hips in the end, metres."""
+    body: Floats
+    """(N, 2): of the body then, which hips may not get to."""
+    velocity: Floats
+    """(N, 2): and how fast it goes then, metres a second."""
     heading: Floats
     """(N,): where the body wants to face, radians."""
 
@@ -103,12 +111,19 @@ def durations_s(course: Course, standing: Floats, leg_m: Floats, briskness: Floa
 def within_reach_s(course: Course, standing: Floats, leg_m: Floats, seconds: Floats) -> Floats:
     """Times (N,) cut so that the body does not get too far past its standing foot by then."""
     place = course.at(seconds)
-    apart = np.hypot(*(place[:, :2] - standing[:, :2]).T)
+    distance, limit = _stretched(place[:, :2] - standing[:, :2], standing[:, 3])
     speed = np.maximum(np.hypot(*course.velocity(seconds).T), 0.1)
-    seconds = seconds - np.maximum(apart - _PAST * leg_m, 0.0) / speed
+    seconds = seconds - np.maximum(distance - limit * leg_m, 0.0) / speed
     rise = np.abs(place[:, 2] - course.ahead[:, 0, 2])
     steep = np.maximum(rise / _RISE_M, 1.0)
     return np.asarray(np.maximum(seconds / np.minimum(steep, 1.8), SHORTEST_S))
+
+
+def _stretched(apart: Floats, heading: Floats) -> tuple[Floats, Floats]:
+    """Distances of bodies from feet, (N, 2) apart, and how many legs they may be: (N,), (N,)."""
+    distance = np.hypot(apart[:, 0], apart[:, 1])
+    ahead = np.einsum("nd,nd->n", apart, _axes(heading)[0]) / np.maximum(distance, 1e-9)
+    return distance, _PAST + _PAST_AHEAD * np.maximum(ahead, 0.0)
 
 
 def aim(
@@ -136,7 +151,8 @@ def aim(
     turn = side * wrapped(wanted - standing[:, 3])
     heading = standing[:, 3] + side * np.clip(turn, -_CLOSING_RAD, _OPENING_RAD)
 
-    place = _no_further(there[:, :2], standing[:, :2], 1.1 * _PAST * leg_m)
+    _, limit = _stretched(there[:, :2] - standing[:, :2], standing[:, 3])
+    place = _no_further(there[:, :2], standing[:, :2], 1.1 * limit * leg_m)
     forward, left = _axes(heading)
     ahead_mps = np.einsum("nd,nd->n", velocity, forward)
     aside_mps = np.einsum("nd,nd->n", velocity, left)
@@ -157,7 +173,9 @@ def aim(
     landing, found = ground.settle(landing, foot_m)
     if not found.all():
         _retreat(landing, ~found, under, standing, middle, side, leg_m, ground)
-    return Aim(landing, there[:, :2], wanted)
+    landing[:, :3] = np.round(landing[:, :3], 3)  # as it is told, or feet would land beside it
+    place = _no_further(place, landing[:, :2], _BEHIND * leg_m)
+    return Aim(landing, place, there[:, :2], velocity, wanted)
 
 
 def _retreat(

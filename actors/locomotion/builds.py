@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from actors.locomotion.posing import STATURE
+from actors.locomotion.stance import STATURE
 
 LEG_M: Final = 0.88
 SHORTEST_LEG_M: Final = 0.76

@@ -10,36 +10,10 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from actors.locomotion.motion import (
-    ANKLE,
-    CHEST,
-    ELBOWS,
-    PELVIS,
-    ROOT,
-    SETTLE,
-    SHOULDERS,
-    STANDING_PITCH,
-    SWING_HEADING,
-    SWING_PITCH,
-    Floats,
-    Steps,
-    heel_from_toe,
-    smooth,
-    standing_ankles,
-    under_way,
-)
+from actors.locomotion.motion import CHEST, ELBOWS, PELVIS, SHOULDERS, Floats, Steps, under_way
 from actors.locomotion.rotations import multiply, normalise, rotate
-from actors.locomotion.skeleton import (
-    FOOT,
-    HEAD_TOP,
-    HIP_DEPTH,
-    SHIN,
-    THIGH,
-    TRACK_HALF_WIDTH,
-)
-
-REACH: Final = 0.9995
-"""A leg is not stretched further: knees that lock straighten with a jerk."""
+from actors.locomotion.skeleton import HEAD_TOP, HIP_DEPTH, SHIN, THIGH
+from actors.locomotion.stance import REACH, Build, Legs, both_sides, heels_from_toes, stance
 
 # Shoulders and arms of measured people (Drillis & Contini), in shares of the trunk's scale: those
 # of the gait's source are broad, high and long.
@@ -50,32 +24,6 @@ UPPER_ARM: Final = 0.345
 FOREARM: Final = 0.27
 ARMS_OUT: Final = 0.12
 """Arms hang so far from the body, radians."""
-STATURE: Final = 1.0 + HIP_DEPTH + HEAD_TOP
-"""Of a body whose trunk fits its legs, in leg lengths."""
-
-_STEEPEST_RAD: Final = -1.3
-"""A heel is raised no further on its toe."""
-_EASE_RAD: Final = 0.1
-"""A standing foot whose pitch is so much below level rises on its toe where the leg is short."""
-
-
-class Build(NamedTuple):
-    """Sizes of N bodies, metres."""
-
-    leg_m: Floats
-    """(N,): from hip joint to ankle, the leg straight."""
-    stature_m: Floats
-    """(N,): from the ground to the top of the head."""
-
-    @property
-    def foot_m(self) -> Floats:
-        """(N,): from heel to toe."""
-        return self.leg_m * FOOT
-
-    @property
-    def trunk_m(self) -> Floats:
-        """(N,): what lengths of the trunk and of arms are shares of."""
-        return (self.stature_m - self.leg_m) / (STATURE - 1.0)
 
 
 class Pose(NamedTuple):
@@ -116,95 +64,21 @@ class Pose(NamedTuple):
 def pose(steps: Steps, u: Floats, build: Build) -> Pose:
     """N bodies at shares u (N,) of their steps."""
     key = under_way(steps, u, build.foot_m)
-    root = steps.standing[:, :3] + key[:, ROOT]
+    legs = stance(steps, u, key, build)
     pelvis = key[:, PELVIS]
-    ankles, pitches, headings, raised = _feet(steps, u, key, build)
-    hips = root[:, None] + rotate(
-        pelvis[:, None], _aside(TRACK_HALF_WIDTH * build.leg_m, np.zeros_like(build.leg_m))
-    )
-    _raise_heels(hips, ankles, pitches, headings, raised, build)
-    root, hips = _lower(root, hips, ankles, build)
     chest = multiply(pelvis, key[:, CHEST])
-    knees = _knees(hips, ankles, _facing(pelvis), headings, build)
     return Pose(
-        root,
+        legs.root,
         pelvis,
         chest,
-        hips,
-        knees,
-        ankles,
-        ankles - _heels_from_toes(pitches, headings, build.foot_m),
-        pitches,
-        headings,
-        *_upper_body(root, pelvis, chest, key, build),
+        legs.hips,
+        _knees(legs, _facing(pelvis), build),
+        legs.ankles,
+        legs.ankles - heels_from_toes(legs.pitches, legs.headings, build.foot_m),
+        legs.pitches,
+        legs.headings,
+        *_upper_body(legs.root, pelvis, chest, key, build),
     )
-
-
-def _feet(
-    steps: Steps, u: Floats, key: Floats, build: Build
-) -> tuple[Floats, Floats, Floats, Floats]:
-    """Ankles (N, 2, 3), pitches, headings (N, 2), and how far each stands on its toe (N, 2)."""
-    standing = standing_ankles(steps.standing, key[:, STANDING_PITCH], build.foot_m)
-    swinging = steps.landing[:, :3] + key[:, ANKLE]
-    right = steps.right.astype(np.int64)
-    rows = np.arange(len(right))
-    ankles = np.empty((len(right), 2, 3))
-    ankles[rows, right], ankles[rows, 1 - right] = standing, swinging
-    pitches, headings, raised = (np.empty((len(right), 2)) for _ in range(3))
-    pitches[rows, right], pitches[rows, 1 - right] = key[:, STANDING_PITCH], key[:, SWING_PITCH]
-    headings[rows, right] = steps.standing[:, 3]
-    headings[rows, 1 - right] = steps.landing[:, 3] + key[:, SWING_HEADING]
-    raised[rows, right] = smooth(-key[:, STANDING_PITCH] / _EASE_RAD)
-    on_toe = 1.0 - smooth((u - steps.lift) / SETTLE)
-    raised[rows, 1 - right] = np.where(steps.lift > 0.0, on_toe, 0.0)
-    return ankles, pitches, headings, raised
-
-
-def _heels_from_toes(pitches: Floats, headings: Floats, foot_m: Floats) -> Floats:
-    count = len(pitches)
-    feet = heel_from_toe(pitches.ravel(), headings.ravel(), np.repeat(foot_m, 2))
-    return feet.reshape(count, 2, 3)
-
-
-def _raise_heels(
-    hips: Floats,
-    ankles: Floats,
-    pitches: Floats,
-    headings: Floats,
-    raised: Floats,
-    build: Build,
-) -> None:
-    """Where a leg is too short for a foot on its toe, turn the foot about the toe; in place."""
-    reach = REACH * build.leg_m[:, None]
-    short = (np.linalg.norm(ankles - hips, axis=2) > reach) & (raised > 0.0)
-    if not short.any():
-        return
-    foot = np.broadcast_to(build.foot_m[:, None], short.shape)[short]
-    reach = np.broadcast_to(reach, short.shape)[short]
-    pitch, heading = pitches[short], headings[short]
-    toe = ankles[short] - heel_from_toe(pitch, heading, foot)
-    hip = hips[short] - toe
-    along = hip[:, 0] * np.cos(heading) + hip[:, 1] * np.sin(heading)
-    # The heel is at -foot (cos p, sin p): as far from the hip as the leg reaches.
-    cosine = (reach**2 - np.einsum("nd,nd->n", hip, hip) - foot**2) / (
-        2.0 * foot * np.hypot(along, hip[:, 2])
-    )
-    steeper = np.arctan2(hip[:, 2], along) - np.arccos(np.clip(cosine, -1.0, 1.0))
-    steeper = np.minimum(np.maximum(steeper, _STEEPEST_RAD), pitch)
-    pitch = pitch + raised[short] * (steeper - pitch)
-    pitches[short] = pitch
-    ankles[short] = toe + heel_from_toe(pitch, heading, foot)
-
-
-def _lower(root: Floats, hips: Floats, ankles: Floats, build: Build) -> tuple[Floats, Floats]:
-    """Bring the hips down until both legs reach their feet."""
-    legs = hips - ankles
-    reach = REACH * build.leg_m[:, None]
-    level2 = np.minimum(legs[..., 0] ** 2 + legs[..., 1] ** 2, reach**2)
-    drop = np.maximum(legs[..., 2] - np.sqrt(reach**2 - level2), 0.0).max(axis=1)
-    down = np.zeros_like(root)
-    down[:, 2] = -drop
-    return root + down, hips + down[:, None]
 
 
 def _facing(q: Floats) -> Floats:
@@ -214,28 +88,20 @@ def _facing(q: Floats) -> Floats:
     return normalise(forward)
 
 
-def _knees(hips: Floats, ankles: Floats, facing: Floats, headings: Floats, build: Build) -> Floats:
+def _knees(legs: Legs, facing: Floats, build: Build) -> Floats:
     """Knees (N, 2, 3) by the cosine law, bent forward: midway between pelvis and foot."""
     leg_m = build.leg_m[:, None]
-    line = ankles - hips
+    line = legs.ankles - legs.hips
     distance = np.maximum(np.linalg.norm(line, axis=2), 1e-9 * leg_m)
     line = line / distance[..., None]
     distance = np.minimum(distance, REACH * leg_m)
     along = (distance**2 + (THIGH**2 - SHIN**2) * leg_m**2) / (2.0 * distance)
     aside = np.sqrt(np.maximum((THIGH * leg_m) ** 2 - along**2, 0.0))
     forward = np.zeros_like(line)
-    forward[..., 0] = facing[:, None, 0] + np.cos(headings)
-    forward[..., 1] = facing[:, None, 1] + np.sin(headings)
+    forward[..., 0] = facing[:, None, 0] + np.cos(legs.headings)
+    forward[..., 1] = facing[:, None, 1] + np.sin(legs.headings)
     forward -= np.einsum("nsd,nsd->ns", forward, line)[..., None] * line
-    return np.asarray(hips + along[..., None] * line + aside[..., None] * normalise(forward))
-
-
-def _aside(half_m: Floats, up_m: Floats) -> Floats:
-    """Points to the left and right of N bodies' middle, in their axes: (N, 2, 3)."""
-    out = np.zeros((len(half_m), 2, 3))
-    out[:, 0, 1], out[:, 1, 1] = half_m, -half_m
-    out[:, :, 2] = up_m[:, None]
-    return out
+    return np.asarray(legs.hips + along[..., None] * line + aside[..., None] * normalise(forward))
 
 
 def _upper_body(
@@ -247,7 +113,7 @@ def _upper_body(
     up[:, 2] = size
     lumbar = root + rotate(pelvis, HIP_DEPTH * up)
     shoulders = lumbar[:, None] + rotate(
-        chest[:, None], _aside(SHOULDER_ASIDE * size, SHOULDER_UP * size)
+        chest[:, None], both_sides(SHOULDER_ASIDE * size, SHOULDER_UP * size)
     )
     flexed = key[:, SHOULDERS]
     upper = rotate(chest[:, None], _arm(flexed))

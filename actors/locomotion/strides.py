@@ -22,12 +22,11 @@ from actors.locomotion.motion import (
     Floats,
     Steps,
     smooth,
-    standing_ankles,
     under_way,
 )
 from actors.locomotion.planted import Footfalls, Targets, step_targets
 from actors.locomotion.rotations import multiply, normalise
-from actors.locomotion.skeleton import FOOT
+from actors.locomotion.stance import Build, stance
 
 _SHARES: Final = np.linspace(0.0, 1.0, KEYS)
 _BACK: Final = 0.02
@@ -48,34 +47,37 @@ def wrapped(angle: Floats) -> Floats:
     return np.asarray((angle + np.pi) % (2.0 * np.pi) - np.pi)
 
 
-def drawn(old: Steps, tick: int, falls: Footfalls, swapped: NDArray[np.bool_]) -> Drawn:
+def drawn(
+    old: Steps, tick: int, falls: Footfalls, swapped: NDArray[np.bool_], build: Build
+) -> Drawn:
     """What is drawn of steps at a tick, as keys of the next ones.
 
     Swapped are those whose swinging foot has landed and stands now; the others' goes on.
     """
-    foot_m = FOOT * falls.leg_m
     share = old.share(tick)
-    now = under_way(old, share, foot_m)
+    now = under_way(old, share, build.foot_m)
     before = np.maximum(share - _BACK, 0.0)
     passed = (share - before) * old.ticks
     # Who stands, or has stood since a step ended, does not move.
     moving = (passed > 0.0) & (tick <= old.start + old.ticks)
-    speed = (now - under_way(old, before, foot_m)) / np.where(moving, passed, np.inf)[:, None]
+    speed = now - under_way(old, before, build.foot_m)
+    speed /= np.where(moving, passed, np.inf)[:, None]
 
-    now[:, ROOT] += old.standing[:, :3] - falls.standing[:, :3]
-    ankles = old.landing[:, :3] + now[:, ANKLE]
-    headings = old.landing[:, 3] + now[:, SWING_HEADING]
-    stood = standing_ankles(old.standing, now[:, STANDING_PITCH], foot_m)
-    ankles = np.where(swapped[:, None], stood, ankles)
-    headings = np.where(swapped, old.standing[:, 3], headings)
-    now[:, ANKLE] = ankles - falls.landing[:, :3]
-    now[:, SWING_HEADING] = wrapped(headings - falls.landing[:, 3])
-    for values in (now, speed):
-        swing, stand = values[:, SWING_PITCH].copy(), values[:, STANDING_PITCH].copy()
-        values[:, SWING_PITCH] = np.where(swapped, stand, swing)
-        values[:, STANDING_PITCH] = np.where(swapped, swing, stand)
+    # Feet as they are, which may be raised further than their curves say, and hips lower.
+    legs = stance(old, share, now, build)
+    rows = np.arange(len(share))
+    swing = np.where(falls.right, 0, 1)
+    now[:, ROOT] = legs.root - falls.standing[:, :3]
+    now[:, ANKLE] = legs.ankles[rows, swing] - falls.landing[:, :3]
+    now[:, SWING_PITCH] = legs.pitches[rows, swing]
+    now[:, STANDING_PITCH] = legs.pitches[rows, 1 - swing]
+    now[:, SWING_HEADING] = wrapped(legs.headings[rows, swing] - falls.landing[:, 3])
     speed[swapped, ANKLE] = 0.0
     speed[swapped, SWING_HEADING] = 0.0
+    speed[swapped, SWING_PITCH], speed[swapped, STANDING_PITCH] = (
+        speed[swapped, STANDING_PITCH],
+        speed[swapped, SWING_PITCH],
+    )
     return Drawn(now, speed)
 
 

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actors.locomotion.aims import (
-    SHORTEST_S,
     WALKING_MPS,
     Course,
     aim,
@@ -31,6 +30,7 @@ from actors.locomotion.motion import (
 )
 from actors.locomotion.planted import Footfalls
 from actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH
+from actors.locomotion.stance import Build
 from actors.locomotion.strides import drawn, standing_keys, strides, wrapped
 
 Slots = NDArray[np.int64]
@@ -38,7 +38,7 @@ Flags = NDArray[np.bool_]
 Carry = Callable[[Steps, Slots], Steps]
 """Takes steps that begin to whoever draws them; returns what these get, quantised."""
 
-JUMP_M: Final = 1.0
+JUMP_M: Final = 1.5
 """Who is so far from its feet stands anew there."""
 
 _OFF_M: Final = 0.08
@@ -48,13 +48,17 @@ _SOON_S: Final = 0.3
 _RAISED_RAD: Final = 0.03
 _SETTLED_M: Final = 0.004
 _SETTLE_S: Final = 0.4
-_ROOM: Final = 0.16
+_ROOM: Final = 0.4
 """Hips may be so far from where footprints have them, in legs."""
 
 _MOVED_M: Final = 0.06
 _VEERED_RAD: Final = 0.26
 _LATEST: Final = 0.75
 """A step is re-aimed when its end has moved by more, and not later than this share of it."""
+_LEAPT_M: Final = 0.15
+_LAST: Final = 0.95
+_QUICK_S: Final = 0.3
+"""If it has moved so far, later still; and the foot comes down within that time."""
 _REST_S: Final = 0.15
 """It is left alone for so long before it may be re-aimed again."""
 
@@ -70,18 +74,20 @@ class Walkers:
         """The step of everyone that is under way or was the last, as it is drawn."""
         self.lost = 0
         """How often somebody was too far from its feet and stood anew."""
-        self.leg_m = np.ones(capacity)
+        self._build = Build(np.ones(capacity), np.ones(capacity))
         self._briskness = np.ones(capacity)
         self._lifted = np.zeros((capacity, 4))
         self._step_s = np.zeros(capacity)
         self._gone = np.zeros(capacity)
         """How much of the whole step had gone when its present record began."""
         self._aimed = np.zeros((capacity, 2))
+        self._speed = np.zeros((capacity, 2))
         self._wanted = np.zeros(capacity)
 
     def join(self, tick: int, slots: Slots, manners: Sequence[Manner], course: Course) -> None:
         """Somebody new stands in each of N slots, at the beginning of a course."""
-        self.leg_m[slots] = [manner.leg_m for manner in manners]
+        self._build.leg_m[slots] = [manner.leg_m for manner in manners]
+        self._build.stature_m[slots] = [manner.stature_m for manner in manners]
         self._briskness[slots] = [manner.briskness for manner in manners]
         self._stand(tick, slots, course)
 
@@ -94,9 +100,8 @@ class Walkers:
         idle = np.flatnonzero(at_end)
         if len(idle):
             self._begin(tick, slots[idle], course.take(idle), ends[idle] == tick)
-        since = (tick - steps.start[slots]) * self._tick_s
         share = steps.share(tick)[slots]
-        under_way = np.flatnonzero(~at_end & (share < _LATEST) & (since >= _REST_S))
+        under_way = np.flatnonzero(~at_end & (share < _LAST) & (share > 0.0))
         if len(under_way):
             self._re_aim(tick, slots[under_way], course.take(under_way))
 
@@ -114,7 +119,7 @@ class Walkers:
 
     def _stand(self, tick: int, slots: Slots, course: Course) -> None:
         places, headings = course.ahead[:, 0], course.headings
-        leg_m = self.leg_m[slots]
+        leg_m = self._build.leg_m[slots]
         aside = (TRACK_HALF_WIDTH * leg_m)[:, None] * np.stack(
             [-np.sin(headings), np.cos(headings)], axis=1
         )
@@ -132,7 +137,7 @@ class Walkers:
             np.zeros(len(slots), dtype=np.int64),
             (standing_keys(falls), np.zeros(len(slots))),
         )
-        self._aimed[slots] = places[:, :2]
+        self._aimed[slots], self._speed[slots] = places[:, :2], 0.0
 
     # --- steps that begin ---------------------------------------------------------------------
 
@@ -146,7 +151,7 @@ class Walkers:
         flat = last.keys[slots, -1, STANDING_PITCH] > -_RAISED_RAD
         flat &= last.keys[slots, -1, SWING_PITCH] < _RAISED_RAD
 
-        leg_m, right = self.leg_m[slots], last.right[slots]
+        leg_m, right = self._build.leg_m[slots], last.right[slots]
         there = course.at(soon)[:, :2]
         side = np.where(right, 1.0, -1.0)
         stood = _off(last.standing[slots], there, wanted, -side, leg_m)
@@ -169,7 +174,7 @@ class Walkers:
 
     def _step(self, tick: int, slots: Slots, course: Course, swapped: Flags) -> None:
         last = self.steps.take(slots)
-        leg_m = self.leg_m[slots]
+        leg_m = self._build.leg_m[slots]
         right = last.right ^ swapped
         standing = np.where(swapped[:, None], last.landing, last.standing)
         lifted = np.where(swapped[:, None], last.standing, last.landing)
@@ -178,18 +183,23 @@ class Walkers:
         seconds = np.asarray(ticks * self._tick_s)
         aims = aim(course, right, standing, leg_m, seconds, seconds, self._ground)
         falls = Footfalls(right, lifted, standing, aims.landing, leg_m)
-        now = drawn(last, tick, falls, swapped)
+        now = drawn(last, tick, falls, swapped, self._build.take(slots))
         gone = np.zeros(len(slots))
         keys = strides(falls, gone, now, ticks, aims.place, _ROOM * leg_m)
         self._go(slots, falls, tick, ticks, keys)
         self._step_s[slots] = seconds
-        self._aimed[slots], self._wanted[slots] = aims.place, aims.heading
+        self._aimed[slots], self._speed[slots] = aims.body, aims.velocity
+        self._wanted[slots] = aims.heading
 
     def _settle(self, tick: int, slots: Slots, places: Floats) -> None:
         """Bodies that stand shift their weight to where they are, feet as they are."""
         last = self.steps.take(slots)
-        falls = Footfalls(last.right, last.landing, last.standing, last.landing, self.leg_m[slots])
-        now = drawn(last, tick, falls, np.zeros(len(slots), dtype=np.bool_))
+        falls = Footfalls(
+            last.right, last.landing, last.standing, last.landing, self._build.leg_m[slots]
+        )
+        now = drawn(
+            last, tick, falls, np.zeros(len(slots), dtype=np.bool_), self._build.take(slots)
+        )
         keys = np.repeat(now.key[:, None], last.keys.shape[1], axis=1)
         share = smooth(np.linspace(0.0, 1.0, last.keys.shape[1]))
         shift = places - falls.standing[:, :2] - now.key[:, ROOT][:, :2]
@@ -198,22 +208,29 @@ class Walkers:
         ticks = np.full(len(slots), max(2, round(_SETTLE_S / self._tick_s)))
         self._go(slots, falls, tick, ticks, (keys, np.zeros(len(slots))))
         self._step_s[slots] = ticks * self._tick_s
-        self._aimed[slots] = places
+        self._aimed[slots], self._speed[slots] = places, 0.0
 
     # --- steps under way ----------------------------------------------------------------------
 
     def _re_aim(self, tick: int, slots: Slots, course: Course) -> None:
         steps = self.steps
-        left_s: Floats = (steps.start[slots] + steps.ticks[slots] - tick) * self._tick_s
-        moved = np.hypot(*(course.at(left_s)[:, :2] - self._aimed[slots]).T)
-        wanted = wanted_headings(course, course.velocity(left_s))
-        veered = np.abs(wrapped(wanted - self._wanted[slots]))
-        rows = np.flatnonzero((moved > _MOVED_M) | (veered > _VEERED_RAD))
+        left_s = np.asarray((steps.start[slots] + steps.ticks[slots] - tick) * self._tick_s)
+        velocity = course.velocity(left_s)
+        # Feet land ahead of the body the further, the faster it is.
+        moved = course.at(left_s)[:, :2] - self._aimed[slots]
+        moved += _SOON_S * (velocity - self._speed[slots])
+        moved_m = np.hypot(moved[:, 0], moved[:, 1])
+        veered = np.abs(wrapped(wanted_headings(course, velocity) - self._wanted[slots]))
+        leapt = moved_m > _LEAPT_M
+        rested = (tick - steps.start[slots]) * self._tick_s >= _REST_S
+        may = rested & (steps.share(tick)[slots] < _LATEST)
+        rows = np.flatnonzero(leapt | may & ((moved_m > _MOVED_M) | (veered > _VEERED_RAD)))
         if not len(rows):
             return
         slots, course, left_s = slots[rows], course.take(rows), left_s[rows]
         last = steps.take(slots)
-        leg_m = self.leg_m[slots]
+        leg_m = self._build.leg_m[slots]
+        left_s = np.where(leapt[rows], np.minimum(left_s, _QUICK_S), left_s)
         left_s = within_reach_s(course, last.standing, leg_m, left_s)
         ticks = np.maximum(np.rint(left_s / self._tick_s), 2.0).astype(np.int64)
         left_s = np.asarray(ticks * self._tick_s)
@@ -221,11 +238,14 @@ class Walkers:
             course, last.right, last.standing, leg_m, self._step_s[slots], left_s, self._ground
         )
         falls = Footfalls(last.right, self._lifted[slots], last.standing, aims.landing, leg_m)
-        now = drawn(last, tick, falls, np.zeros(len(slots), dtype=np.bool_))
+        now = drawn(
+            last, tick, falls, np.zeros(len(slots), dtype=np.bool_), self._build.take(slots)
+        )
         gone = self._gone[slots] + (1.0 - self._gone[slots]) * last.share(tick)
         keys = strides(falls, gone, now, ticks, aims.place, _ROOM * leg_m)
         self._go(slots, falls, tick, ticks, keys, gone)
-        self._aimed[slots], self._wanted[slots] = aims.place, aims.heading
+        self._aimed[slots], self._speed[slots] = aims.body, aims.velocity
+        self._wanted[slots] = aims.heading
 
     def _go(
         self,

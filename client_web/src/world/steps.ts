@@ -73,6 +73,7 @@ export function underWay(step: Step, u: number, build: Build, out: Posture): voi
   );
   swing.raised = lift > 0 ? 1 - smooth((share - lift) / SETTLE) : 0;
   if (swing.raised > 0) keepOnToe(step, share, build, swing);
+  swing.raised *= smooth(-swing.pitch / EASE_RAD);
 }
 
 /** From 0 to 1 with level ends. */

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from actors.locomotion import motion, posing
+from actors.locomotion import motion, posing, skeleton, stance
 from actors.locomotion.rotations import from_euler, normalise, to_forward_left_up
 from server.world.step_records import from_records, to_records
 
@@ -27,11 +27,16 @@ def vectors() -> dict[str, Any]:
     known = from_records(records)
     return {
         "skeleton": {
-            name: getattr(posing, name)
-            for name in (
-                "THIGH", "SHIN", "FOOT", "TRACK_HALF_WIDTH", "REACH", "HIP_DEPTH", "HEAD_TOP",
-                "SHOULDER_UP", "SHOULDER_ASIDE", "UPPER_ARM", "FOREARM", "ARMS_OUT", "STATURE",
+            name: getattr(module, name)
+            for module, names in (
+                (skeleton, ("THIGH", "SHIN", "FOOT", "TRACK_HALF_WIDTH", "HIP_DEPTH", "HEAD_TOP")),
+                (stance, ("REACH", "STATURE")),
+                (
+                    posing,
+                    ("SHOULDER_UP", "SHOULDER_ASIDE", "UPPER_ARM", "FOREARM", "ARMS_OUT"),
+                ),
             )
+            for name in names
         },
         "settle": motion.SETTLE,
         "cases": [
@@ -45,7 +50,7 @@ def vectors() -> dict[str, Any]:
             }
             for row in range(len(ids))
         ],
-    }  # fmt: skip
+    }
 
 
 def text() -> str:
@@ -53,20 +58,20 @@ def text() -> str:
     return json.dumps(vectors()).replace('{"record"', '\n{"record"') + "\n"
 
 
-def _pose(steps: motion.Steps, build: posing.Build, row: int, share: float) -> dict[str, Any]:
+def _pose(steps: motion.Steps, build: stance.Build, row: int, share: float) -> dict[str, Any]:
     rows = np.array([row])
-    one = posing.Build(build.leg_m[rows], build.stature_m[rows])
+    one = stance.Build(build.leg_m[rows], build.stature_m[rows])
     joints = posing.pose(steps.take(rows), np.array([share]), one)
     named = {name: np.round(values[0], DIGITS) for name, values in joints._asdict().items()}
     return {"u": share, **{name: values.tolist() for name, values in named.items()}}
 
 
-def _steps() -> tuple[motion.Steps, posing.Build]:
+def _steps() -> tuple[motion.Steps, stance.Build]:
     """Steps of every kind: along, aside, back, up and down, with knees at their limit, standing."""
     random = np.random.default_rng(3)
     count = 12
     steps = motion.no_steps(count)
-    build = posing.Build(random.uniform(0.75, 1.0, count), random.uniform(1.5, 1.9, count))
+    build = stance.Build(random.uniform(0.75, 1.0, count), random.uniform(1.5, 1.9, count))
     heading = random.uniform(-7.0, 7.0, count)
     heading[0] = 0.0
     steps.right[:] = np.arange(count) % 2 == 0
