@@ -173,7 +173,7 @@ def aim(
     landing, found = ground.settle(landing, foot_m)
     if not found.all():
         _retreat(landing, ~found, under, standing, middle, side, leg_m, ground)
-    landing[:, :3] = np.round(landing[:, :3], 3)  # as it is told, or feet would land beside it
+    landing[:, :3] = np.round(landing[:, :3], 4)  # as it is told, or feet would land beside it
     place = _no_further(place, landing[:, :2], _BEHIND * leg_m)
     return Aim(landing, place, there[:, :2], velocity, wanted)
 
