@@ -87,7 +87,6 @@ export class View {
       const covered = world.floors.covered(x, y, z);
       this.cutaway.update(own.pose, this.stage.camera.position, hidden || covered, frameS);
     }
-    this.town?.lookingFrom(this.camera.reachM);
     this.town?.doors.update(world.doors, frameS);
     this.drawn = new Map([...avatars].filter(([, avatar]) => this.shown(avatar) > 0.5));
     this.figures.update(this.drawn, this.stage.camera);

@@ -20,8 +20,9 @@ const FAR_M = 30;
 const FADE_S = 0.18;
 /** So far towards the camera walls begin to be cut. */
 const BEFORE_M = { from: 0.05, to: 0.4 };
-/** And so far to both sides of the line from the avatar to the camera. */
+/** And so far to both sides of the line from the avatar to the camera; crowns of trees as a whole. */
 const BESIDE_M = { from: 8, to: 11 };
+const CROWN_BESIDE_M = { from: 2.2, to: 3.4 };
 /** The cut is as sharp as this. */
 const EDGE_M = 0.04;
 /** `stub` of what is never cut. */
@@ -88,22 +89,26 @@ export class Cutaway {
     return 1 - cutStrength.value * high * (1 - smoothstep(NEAR_M, FAR_M, off));
   }
 
-  /** Let a material of geometries with a `base` take part. */
-  applyTo(material: Material): void {
+  /**
+   * Let a material of geometries that are `based` take part; if they are also `gathered`, each
+   * piece as a whole.
+   */
+  applyTo(material: Material, gathered = false): void {
     const before = material.onBeforeCompile.bind(material);
     material.onBeforeCompile = (shader, renderer) => {
       before(shader, renderer);
       Object.assign(shader.uniforms, this.uniforms);
       shader.vertexShader = shader.vertexShader
         .replace("void main() {", `${VARYINGS}${ATTRIBUTES}void main() {`)
-        .replace("#include <project_vertex>", `#include <project_vertex>\n${PASS_ON}`);
+        .replace("#include <project_vertex>", `#include <project_vertex>\n${passOn(gathered)}`);
       shader.fragmentShader = shader.fragmentShader.replace(
         "void main() {",
-        `${VARYINGS}${UNIFORMS}${REMAINS}void main() {${DISSOLVE}`,
+        `${VARYINGS}${UNIFORMS}${remains(gathered)}void main() {${DISSOLVE}`,
       );
     };
     // Materials that are alike but for this must not share a program.
-    material.customProgramCacheKey = () => `cutaway ${material.constructor.name}`;
+    const key = `cutaway ${material.constructor.name} ${String(gathered)}`;
+    material.customProgramCacheKey = () => key;
   }
 }
 
@@ -126,6 +131,17 @@ export function based(
   ] as const) {
     geometry.setAttribute(name, new BufferAttribute(new Float32Array(count).fill(value), 1));
   }
+  return geometry;
+}
+
+/** The geometry, whose every corner knows the middle of what it belongs to. */
+export function gathered(
+  geometry: BufferGeometry,
+  [x, y]: readonly [number, number],
+): BufferGeometry {
+  const count = geometry.getAttribute("position").count;
+  const middles = Float32Array.from({ length: 2 * count }, (_, i) => (i % 2 === 0 ? x : y));
+  geometry.setAttribute("middle", new BufferAttribute(middles, 2));
   return geometry;
 }
 
@@ -153,11 +169,13 @@ varying vec3 cutPlace;
 const ATTRIBUTES = `
 attribute float base;
 attribute float stub;
+attribute vec2 middle;
 `;
 
-const PASS_ON = `
+const passOn = (gathered: boolean): string => `
   cutPiece = vec2(base, stub);
   cutPlace = (modelMatrix * vec4(transformed, 1.0)).xyz;
+  ${gathered ? "cutPlace.xy = middle;" : ""}
 `;
 
 const UNIFORMS = `
@@ -167,7 +185,9 @@ uniform vec2 cutFrom;
 uniform vec2 cutTo;
 `;
 
-const REMAINS = `
+const remains = (gathered: boolean): string => {
+  const { from, to } = gathered ? CROWN_BESIDE_M : BESIDE_M;
+  return `
 float cutOrder(vec2 cell) { return mod(2.0 * cell.x + 3.0 * cell.y, 4.0); }
 
 float cutShown() {
@@ -179,11 +199,12 @@ float cutShown() {
   vec2 ahead = way / max(length(way), 1e-6);
   float before = smoothstep(${glsl(BEFORE_M.from)}, ${glsl(BEFORE_M.to)}, dot(place, ahead));
   float beside = abs(place.y * ahead.x - place.x * ahead.y);
-  float cut = before * (1.0 - smoothstep(${glsl(BESIDE_M.from)}, ${glsl(BESIDE_M.to)}, beside))
+  float cut = before * (1.0 - smoothstep(${glsl(from)}, ${glsl(to)}, beside))
     * smoothstep(cutPiece.y, cutPiece.y + ${glsl(EDGE_M)}, cutPlace.z - cutFeet);
   return (1.0 - cutStrength * high * near) * (1.0 - cut);
 }
 `;
+};
 
 /** Sixteen thresholds in a square of four by four pixels. */
 const DISSOLVE = `

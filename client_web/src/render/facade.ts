@@ -1,4 +1,4 @@
-/** Patterns painted on small canvases: the bays of a façade and the slabs of the paving. */
+/** Patterns painted on small canvases: the bays of a façade, slabs of paving, boards of wood. */
 
 import { CanvasTexture, RepeatWrapping, SRGBColorSpace } from "three";
 
@@ -39,6 +39,26 @@ export function pavingTexture(): CanvasTexture {
     for (const at of [0, half]) {
       pen.strokeRect(at, -2, half, size + 4);
       pen.strokeRect(-2, at, size + 4, half);
+    }
+  });
+}
+
+/** Boards of wood, each row shifted by half a board. */
+export function boardsTexture(): CanvasTexture {
+  return pattern(256, (pen, size) => {
+    const rows = 8;
+    const shades = ["#ffffff", "#f3ece2", "#f9f3ea", "#ece3d6", "#f6efe5"];
+    const tall = size / rows;
+    for (let row = 0; row < rows; row++) {
+      for (let half = 0; half < 3; half++) {
+        const x = (half - (row % 2) / 2) * (size / 2);
+        pen.fillStyle = shades[(row * 3 + half * 2) % shades.length] ?? "#ffffff";
+        pen.fillRect(x, row * tall, size / 2, tall);
+        pen.fillStyle = "#cdbfa9";
+        pen.fillRect(x, row * tall, 2, tall);
+      }
+      pen.fillStyle = "#cdbfa9";
+      pen.fillRect(0, row * tall, size, 1.5);
     }
   });
 }

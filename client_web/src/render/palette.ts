@@ -87,6 +87,6 @@ export function scatter(id: number, salt: number): number {
   return ((bits ^ (bits >>> 15)) >>> 0) / 0x1_0000_0000;
 }
 
-function pick(from: readonly string[], id: number, salt: number): Color {
+export function pick(from: readonly string[], id: number, salt: number): Color {
   return new Color(from[Math.floor(scatter(id, salt) * from.length)] ?? "#888888");
 }

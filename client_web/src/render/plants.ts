@@ -1,29 +1,41 @@
-/** Plants: a small, tall footprint becomes a tree in its bed, any other a hedge. */
+/** Plants: a small, tall footprint becomes a tree in its bed, any other a hedge in its trough. */
 
 import { type BufferGeometry, IcosahedronGeometry } from "three";
 import type { ScenePolygon } from "../net/messages";
+import { gathered } from "./cutaway";
 import { BARK, DARK_STONE, leavesOf, scatter } from "./palette";
 import { cap, centreOf, column, drawnIn, orientation, painted, prism, sides } from "./shapes";
 
 const TREE_FOOTPRINT_M = 3;
 const TREE_HEIGHT_M = 2.2;
 const BED_M = 0.35;
+/** Radius of a crown, as part of the tree's height. */
+const CROWN = 0.3;
+const trunkM = (heightM: number): number => heightM * (1 - 1.2 * CROWN);
 
-export function plant(polygon: ScenePolygon, index: number): BufferGeometry[] {
-  const { lengthM } = orientation(polygon.points);
-  const isTree = lengthM <= TREE_FOOTPRINT_M && polygon.height_m >= TREE_HEIGHT_M;
-  return isTree ? tree(polygon, index) : hedge(polygon, index);
+export function isTree({ points, height_m }: ScenePolygon): boolean {
+  return orientation(points).lengthM <= TREE_FOOTPRINT_M && height_m >= TREE_HEIGHT_M;
 }
 
-function tree({ points, height_m, offset_m }: ScenePolygon, index: number): BufferGeometry[] {
+/** The bed and the trunk of a tree. */
+export function trunk({ points, height_m, offset_m }: ScenePolygon): BufferGeometry[] {
   const [x, y] = centreOf(points);
-  const crown = height_m * 0.3;
-  const trunkM = height_m - crown * 1.2;
-  const parts = [
+  return [
     ...prism(points, offset_m, offset_m + BED_M, DARK_STONE),
     cap(drawnIn(points, 0.12), offset_m + BED_M + 0.01, BARK),
-    column([x, y, offset_m], { top: 0.1, bottom: 0.17 }, trunkM, BARK),
+    column([x, y, offset_m], { top: 0.1, bottom: 0.17 }, trunkM(height_m), BARK),
   ];
+}
+
+/** The leaves of a tree, about its middle. */
+export function crown(
+  { points, height_m, offset_m }: ScenePolygon,
+  index: number,
+): BufferGeometry[] {
+  const middle = centreOf(points);
+  const [x, y] = middle;
+  const crown = height_m * CROWN;
+  const parts: BufferGeometry[] = [];
   for (let i = 0; i < 5; i++) {
     const around = (i / 4) * 2 * Math.PI + scatter(index, i) * 1.5;
     const out = i === 4 ? 0 : crown * 0.5;
@@ -31,16 +43,19 @@ function tree({ points, height_m, offset_m }: ScenePolygon, index: number): Buff
     const up = i === 4 ? crown * 0.35 : (scatter(index, i + 10) - 0.5) * crown * 0.5;
     parts.push(
       tuft(
-        [x + out * Math.cos(around), y + out * Math.sin(around), offset_m + trunkM + up],
+        [x + out * Math.cos(around), y + out * Math.sin(around), offset_m + trunkM(height_m) + up],
         radius,
         index * 7 + i,
       ),
     );
   }
-  return parts;
+  return parts.map((part) => gathered(part, middle));
 }
 
-function hedge({ points, height_m, offset_m }: ScenePolygon, index: number): BufferGeometry[] {
+export function hedge(
+  { points, height_m, offset_m }: ScenePolygon,
+  index: number,
+): BufferGeometry[] {
   const leaves = leavesOf(index);
   const top = offset_m + height_m;
   const inner = drawnIn(points, 0.12);

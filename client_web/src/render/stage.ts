@@ -28,6 +28,8 @@ const SKY_M = 900;
 const SHADOW_PIXELS = 2048;
 /** The shadow map covers at most this much to every side of the middle. */
 const SHADOW_REACH_M = 45;
+/** What is in shadow is not without sun altogether: walls all around throw light back. */
+const SHADOW = 0.72;
 const SUN = { x: -0.55, y: -0.62, z: 0.95 };
 
 export class Stage {
@@ -55,6 +57,7 @@ export class Stage {
     this.sun.shadow.mapSize.set(SHADOW_PIXELS, SHADOW_PIXELS);
     this.sun.shadow.bias = -0.0006;
     this.sun.shadow.normalBias = 0.03;
+    this.sun.shadow.intensity = SHADOW;
     this.scene.add(
       this.sky,
       this.sun,

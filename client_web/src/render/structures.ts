@@ -1,16 +1,27 @@
-/** Buildings, walls, furniture and basins: what each kind of prism looks like. */
+/** Buildings, walls and basins: what each kind of prism looks like. */
 
 import { BoxGeometry, type BufferGeometry } from "three";
 import type { ScenePolygon, SceneWall } from "../net/messages";
-import { DARK_STONE, facadeOf, IRON, STONE, WATER, WOOD } from "./palette";
-import { box, cap, centreOf, column, drawnIn, orientation, painted, prism, sides } from "./shapes";
+import { DARK_STONE, facadeOf, IRON, PLASTER, STONE, WATER, WOOD } from "./palette";
+import {
+  box,
+  cap,
+  centreOf,
+  column,
+  drawnIn,
+  orientation,
+  painted,
+  prism,
+  sides,
+  underside,
+} from "./shapes";
 
 const BAY_M = 3.2;
 const PILLAR_M = 1.3;
 const KIOSK_M = 4;
-const BENCH_M = 0.9;
 const RIM_M = 0.35;
 const SEAM_M = 0.03;
+const COPING_M = 0.12;
 const WALL_THICK_M = 0.14;
 
 /** Pieces by the material they are drawn with. */
@@ -20,6 +31,8 @@ export interface Pieces {
   water: BufferGeometry[];
   /** Tops to walk on, with slabs like those of the ground. */
   paving: BufferGeometry[];
+  /** The same with boards of wood. */
+  boards: BufferGeometry[];
 }
 
 export function building(polygon: ScenePolygon, index: number, into: Pieces): void {
@@ -75,51 +88,16 @@ function kiosk({ points, height_m, offset_m }: ScenePolygon, index: number): Buf
   ];
 }
 
-export function masonry({ points, height_m, offset_m }: ScenePolygon, into: Pieces): void {
+export function masonry({ points, height_m, offset_m }: ScenePolygon): BufferGeometry[] {
   const top = offset_m + height_m;
   // What stands on a slab reaches into it a little, or light shines through the seam.
   const foot = Math.max(0, offset_m - SEAM_M);
-  into.plain.push(
-    sides(points, foot, top - 0.12, STONE),
-    ...prism(drawnIn(points, -0.05), top - 0.12, top, DARK_STONE),
-  );
-}
-
-export function furniture(polygon: ScenePolygon, into: Pieces): void {
-  const { points, height_m, offset_m } = polygon;
-  if (height_m > BENCH_M) {
-    into.plain.push(...prism(points, offset_m, offset_m + height_m, WOOD));
-    return;
-  }
-  const [x, y] = centreOf(points);
-  const { angle, lengthM, widthM } = orientation(points);
-  const seat = offset_m + height_m;
-  for (const slat of [-1, 0, 1]) {
-    const across = (slat * widthM) / 3;
-    into.plain.push(
-      box(
-        [x - across * Math.sin(angle), y + across * Math.cos(angle), seat - 0.04],
-        [lengthM, widthM * 0.28, 0.08],
-        angle,
-        WOOD,
-      ),
-    );
-  }
-  for (const end of [-1, 1]) {
-    const along = end * (lengthM / 2 - 0.2);
-    into.plain.push(
-      box(
-        [
-          x + along * Math.cos(angle),
-          y + along * Math.sin(angle),
-          offset_m + (height_m - 0.08) / 2,
-        ],
-        [0.1, widthM * 0.85, height_m - 0.08],
-        angle,
-        IRON,
-      ),
-    );
-  }
+  const parts = [
+    sides(points, foot, top - COPING_M, PLASTER),
+    ...prism(drawnIn(points, -0.05), top - COPING_M, top, DARK_STONE),
+  ];
+  if (offset_m > 0) parts.push(underside(points, foot, STONE));
+  return parts;
 }
 
 export function basin({ points, height_m, offset_m }: ScenePolygon, into: Pieces): void {
@@ -156,19 +134,19 @@ function rim(
   });
 }
 
-export function thinWall({ start, end, offset_m, height_m }: SceneWall, into: Pieces): void {
+export function thinWall({ start, end, offset_m, height_m }: SceneWall): BufferGeometry[] {
   const length = Math.hypot(end[0] - start[0], end[1] - start[1]);
   const angle = Math.atan2(end[1] - start[1], end[0] - start[0]);
   const middle = [(start[0] + end[0]) / 2, (start[1] + end[1]) / 2] as const;
   const body = new BoxGeometry(length + WALL_THICK_M, WALL_THICK_M, height_m);
   body.rotateZ(angle).translate(middle[0], middle[1], offset_m + height_m / 2);
-  into.plain.push(
-    painted(body.toNonIndexed(), STONE),
+  return [
+    painted(body.toNonIndexed(), PLASTER),
     box(
       [...middle, offset_m + height_m],
       [length + 0.2, WALL_THICK_M + 0.08, 0.08],
       angle,
       DARK_STONE,
     ),
-  );
+  ];
 }

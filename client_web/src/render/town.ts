@@ -10,28 +10,31 @@ import {
   MeshPhongMaterial,
   PlaneGeometry,
 } from "three";
-import type { SceneData } from "../net/messages";
+import type { SceneData, ScenePolygon } from "../net/messages";
 import type { Triangles } from "../world/mesh";
 import { based, type Cutaway } from "./cutaway";
 import { doorFrame, DoorLeaves } from "./doors";
-import { facadeTexture, pavingTexture } from "./facade";
-import { LeavesMaterial } from "./leaves";
+import { boardsTexture, facadeTexture, pavingTexture } from "./facade";
 import { PAVING } from "./palette";
-import { plant } from "./plants";
+import { crown, hedge, isTree, trunk } from "./plants";
 import { merged } from "./shapes";
 import { lowestOf, meshGeometry } from "./meshes";
-import { floor, isRailing, railing, stairs } from "./storeys";
-import { basin, building, furniture, masonry, type Pieces, thinWall } from "./structures";
+import { furniture, isHung } from "./furniture";
+import { floor, indoors, isRailing, railing, stairs } from "./storeys";
+import { basin, building, masonry, type Pieces, thinWall } from "./structures";
 
 const SLAB_M = 1.5;
+/** The pattern of boards repeats itself after so much. */
+const BOARDS_M = 1.6;
+/** What is left of walls, and of furniture, where they are cut before the own avatar. */
+const WALL_STUB_M = 0.35;
+const TABLE_STUB_M = 1.2;
 
 export interface Town {
   readonly group: Group;
   /** What hides the view of the camera. */
   readonly occluders: readonly Mesh[];
   readonly doors: DoorLeaves;
-  /** How far the camera is from the avatar that it follows, metres. */
-  lookingFrom(distanceM: number): void;
   dispose(): void;
 }
 
@@ -42,17 +45,21 @@ export function buildTown(scene: SceneData, cutaway: Cutaway, mesh: Triangles | 
   const facade = new MeshLambertMaterial({ vertexColors: true, map: facadeTexture() });
   // Both sides: the inner face of a basin is seen from within.
   const plain = new MeshLambertMaterial({ vertexColors: true, side: DoubleSide });
-  const leaves = new LeavesMaterial();
+  const leaves = new MeshLambertMaterial({ vertexColors: true, flatShading: true });
   const water = new MeshPhongMaterial({ vertexColors: true, shininess: 90, specular: "#bfe3f0" });
   const paving = new MeshLambertMaterial({ vertexColors: true, map: pavingTexture() });
   paving.map?.repeat.set(1 / SLAB_M / 2, 1 / SLAB_M / 2);
+  const boards = new MeshLambertMaterial({ vertexColors: true, map: boardsTexture() });
+  boards.map?.repeat.set(1 / BOARDS_M, 1 / BOARDS_M);
   const wood = new MeshLambertMaterial({ vertexColors: true });
-  for (const material of [facade, plain, leaves, water, paving, wood]) cutaway.applyTo(material);
+  for (const material of [facade, plain, water, paving, boards, wood]) cutaway.applyTo(material);
+  cutaway.applyTo(leaves, true);
   const doors = new DoorLeaves(scene.doors, wood);
   const solid = [
     meshOf(pieces.facade, facade),
     meshOf(pieces.plain, plain),
     meshOf(pieces.paving, paving),
+    meshOf(pieces.boards, boards),
   ].filter((m) => m !== null);
   const group = new Group();
   const lowest = mesh ? lowestOf(mesh) : 0;
@@ -64,9 +71,6 @@ export function buildTown(scene: SceneData, cutaway: Cutaway, mesh: Triangles | 
     group,
     occluders: solid,
     doors,
-    lookingFrom(distanceM) {
-      leaves.lookingFrom(distanceM);
-    },
     dispose() {
       group.traverse((part) => {
         if (!(part instanceof Mesh)) return;
@@ -83,29 +87,50 @@ type AllPieces = Pieces & { leaves: Pieces["plain"] };
 
 /** Everything that stands, each piece with the height at which it begins. */
 function piecesOf({ polygons, walls, stairs: flights, doors }: SceneData): AllPieces {
-  const all: AllPieces = { plain: [], facade: [], water: [], paving: [], leaves: [] };
+  const all: AllPieces = { plain: [], facade: [], water: [], paving: [], boards: [], leaves: [] };
   const add = (baseM: number, build: (into: AllPieces) => void, stubM?: number): void => {
-    const part: AllPieces = { plain: [], facade: [], water: [], paving: [], leaves: [] };
+    const part: AllPieces = {
+      plain: [],
+      facade: [],
+      water: [],
+      paving: [],
+      boards: [],
+      leaves: [],
+    };
     build(part);
     for (const kind of Object.keys(part) as (keyof AllPieces)[]) {
       all[kind].push(...part[kind].map((geometry) => based(geometry, baseM, stubM)));
     }
   };
   polygons.forEach((polygon, index) => {
-    add(polygon.offset_m, (into) => {
-      if (polygon.kind === "plant") into.leaves.push(...plant(polygon, index));
-      else if (polygon.kind === "water") basin(polygon, into);
-      else if (polygon.kind === "floor" || polygon.ramp) floor(polygon, into);
-      else if (polygon.kind === "building") building(polygon, index, into);
-      else if (polygon.kind === "furniture") furniture(polygon, into);
-      else masonry(polygon, into);
-    });
+    const { kind, offset_m } = polygon;
+    if (kind === "plant" && isTree(polygon)) {
+      add(offset_m, (into) => into.plain.push(...trunk(polygon)), WALL_STUB_M);
+      add(offset_m, (into) => into.leaves.push(...crown(polygon, index)), 0);
+    } else if (kind === "plant") {
+      add(offset_m, (into) => into.plain.push(...hedge(polygon, index)), TABLE_STUB_M);
+    } else if (kind === "water") {
+      add(offset_m, (into) => {
+        basin(polygon, into);
+      });
+    } else if (kind === "floor" || polygon.ramp) {
+      add(offset_m, (into) => {
+        floor(polygon, into);
+      });
+      add(0, (into) => into.paving.push(...indoors(polygon)));
+    } else if (kind === "building") {
+      add(offset_m, (into) => {
+        building(polygon, index, into);
+      });
+    } else if (kind === "furniture") {
+      add(offset_m, (into) => into.plain.push(...furniture(polygon, index)), stubOf(polygon));
+    } else {
+      add(offset_m, (into) => into.plain.push(...masonry(polygon)), WALL_STUB_M);
+    }
   });
   for (const wall of walls) {
-    add(wall.offset_m, (into) => {
-      if (isRailing(wall)) railing(wall, into);
-      else thinWall(wall, into);
-    });
+    if (isRailing(wall)) add(wall.offset_m, (into) => into.plain.push(...railing(wall)));
+    else add(wall.offset_m, (into) => into.plain.push(...thinWall(wall)), WALL_STUB_M);
   }
   for (const flight of flights) {
     add(flight.bottom_m, (into) => {
@@ -119,6 +144,9 @@ function piecesOf({ polygons, walls, stairs: flights, doors }: SceneData): AllPi
   }
   return all;
 }
+
+const stubOf = (furniture: ScenePolygon): number =>
+  isHung(furniture) ? WALL_STUB_M : TABLE_STUB_M;
 
 function meshOf(pieces: Pieces["plain"], material: Material): Mesh | null {
   const geometry = merged(pieces);
