@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, fields
 from itertools import pairwise
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +18,8 @@ PHASE: Final = 0.37
 
 FLAT_RAD: Final = 1e-3
 """A foot that is pitched by less lies flat."""
+EVEN: Final = 1.15
+"""Speeds of six steps may differ by this factor where somebody walks evenly."""
 
 Flags = npt.NDArray[np.bool_]
 Rows = npt.NDArray[np.int64]
@@ -39,7 +41,7 @@ class Findings:
     landing: Floats
     """From where the swing foot is at the end of its step to its footprint."""
     step_m: Floats
-    """Length of the steps of who walks on: half of what a foot covers in one."""
+    """Length of the steps of who walks evenly: half of what a foot covers in one."""
     travel_m: Floats
     """What the body covered meanwhile according to snapshots, half of it."""
     off_body: Floats
@@ -62,14 +64,14 @@ def _judge(seen: Seen, tick_rate: int) -> Findings:
     rows = np.maximum(np.searchsorted(steps.start, ticks, side="right") - 1, 0)
     shares = _shares(steps, rows, ticks)
     drawn = _draw(steps, rows, shares, seen)
-    planted = _planted(steps, rows, shares)
+    feet = _planted(steps, rows, shares)
     anew = np.append(False, (np.diff(rows) > 0) & (steps.ticks[rows[1:]] == 0))
     jumps = _jumps(steps, seen)
     step_m, travel_m = _strides(steps, seen)
     away = drawn.root[:, :2] - seen.place_at(ticks)
     return Findings(
-        slide=_slides(drawn, planted, anew),
-        drift=_drifts(drawn, planted, anew),
+        slide=_slides(drawn, feet, anew),
+        drift=_drifts(drawn, feet, anew),
         jump_feet=jumps[0],
         jump_root=jumps[1],
         landing=_landings(steps, seen),
@@ -95,47 +97,57 @@ def _draw(steps: Steps, rows: Rows, shares: Floats, seen: Seen) -> Pose:
 # --- planted feet -----------------------------------------------------------------------------
 
 
-def _planted(steps: Steps, rows: Rows, shares: Floats) -> Flags:
-    """Which feet are to stand still, (F, 2) left, right: the standing one always; the other one
-    until its toe lifts, and again from the end of its step."""
-    right = steps.right[rows].astype(np.int64)
+class Planted(NamedTuple):
+    """Which feet are to stay where they are in F frames, (F, 2) left, right."""
+
+    at_all: Flags
+    on_toe: Flags
+    """Of these, which turn on the toe before they lift."""
+
+
+def _planted(steps: Steps, rows: Rows, shares: Floats) -> Planted:
+    """The standing foot is, always; the other one until its toe lifts, and again from the end of
+    its step."""
+    swings = np.arange(len(rows)), 1 - steps.right[rows].astype(np.int64)
     lift = steps.lift[rows]
-    planted = np.ones((len(rows), 2), dtype=np.bool_)
-    swings = ((lift > 0.0) & (shares <= lift)) | (shares >= 1.0)
-    planted[np.arange(len(rows)), 1 - right] = swings
-    return planted
+    at_all = np.ones((len(rows), 2), dtype=np.bool_)
+    on_toe = np.zeros((len(rows), 2), dtype=np.bool_)
+    on_toe[swings] = (lift > 0.0) & (shares <= lift)
+    at_all[swings] = on_toe[swings] | (shares >= 1.0)
+    return Planted(at_all, on_toe)
 
 
-def _slides(drawn: Pose, planted: Flags, anew: Flags) -> Floats:
+def _slides(drawn: Pose, feet: Planted, anew: Flags) -> Floats:
     """Of the contact between frames in both of which a foot is planted."""
     heel = np.linalg.norm(np.diff(drawn.ankles[..., :2], axis=0), axis=2)
     toe = np.linalg.norm(np.diff(drawn.toes[..., :2], axis=0), axis=2)
     before, after = drawn.pitches[:-1], drawn.pitches[1:]
     on_heel = (before > FLAT_RAD) & (after > FLAT_RAD)
     on_toe = (before < -FLAT_RAD) & (after < -FLAT_RAD)
+    turns = feet.on_toe[:-1] | feet.on_toe[1:]
     flat = (np.abs(before) <= FLAT_RAD) & (np.abs(after) <= FLAT_RAD)
     # On its way from heel to toe it turns about the one until it lies flat, then about the other.
     moved = np.minimum(heel, toe)
     moved = np.where(on_heel, heel, np.where(on_toe, toe, moved))
-    moved = np.where(flat, np.maximum(heel, toe), moved)
-    both = planted[:-1] & planted[1:] & ~anew[1:, None]
+    moved = np.where(turns, toe, np.where(flat, np.maximum(heel, toe), moved))
+    both = feet.at_all[:-1] & feet.at_all[1:] & ~anew[1:, None]
     return np.asarray(moved[both])
 
 
-def _drifts(drawn: Pose, planted: Flags, anew: Flags) -> Floats:
+def _drifts(drawn: Pose, feet: Planted, anew: Flags) -> Floats:
     """For every time that a foot stands: the furthest of its contact from where it lies flat."""
     furthest = []
     for foot in range(2):
-        on = planted[:, foot]
+        on = feet.at_all[:, foot]
         edges = np.flatnonzero(np.diff(np.concatenate([[False], on, [False]])) != 0)
         cuts = np.union1d(edges, np.flatnonzero(anew & on))
         for first, end in pairwise(cuts.tolist()):
             if on[first]:
-                furthest.append(_drift(drawn, foot, slice(first, end)))
+                furthest.append(_drift(drawn, feet.on_toe, foot, slice(first, end)))
     return np.array([drift for drift in furthest if drift is not None])
 
 
-def _drift(drawn: Pose, foot: int, frames: slice) -> float | None:
+def _drift(drawn: Pose, on_toe: Flags, foot: int, frames: slice) -> float | None:
     pitch = drawn.pitches[frames, foot]
     heels, toes = drawn.ankles[frames, foot, :2], drawn.toes[frames, foot, :2]
     flat = int(np.abs(pitch).argmin())
@@ -143,7 +155,7 @@ def _drift(drawn: Pose, foot: int, frames: slice) -> float | None:
         return None
     heel = np.linalg.norm(heels - heels[flat], axis=1)
     toe = np.linalg.norm(toes - toes[flat], axis=1)
-    return float(np.where(pitch >= 0.0, heel, toe).max())
+    return float(np.where((pitch < 0.0) | on_toe[frames, foot], toe, heel).max())
 
 
 # --- from one record to the next --------------------------------------------------------------
@@ -176,20 +188,22 @@ def _landings(steps: Steps, seen: Seen) -> Floats:
 
 
 def _strides(steps: Steps, seen: Seen) -> tuple[Floats, Floats]:
-    """Lengths of steps in the middle of a walk, drawn and travelled.
+    """Lengths of steps of who walks on at an even speed, drawn and travelled.
 
-    Each is half of a stride, which is what one foot covers while the body takes two steps. First
-    and last steps are left out: there feet begin and end beside each other, and the body does not.
+    Each is half of a stride, which is what one foot covers while the body takes two steps. Where
+    the body speeds up or slows down feet are to be ahead of it or behind, so that is left out.
     """
     starts = np.flatnonzero(~steps.again)
     lasts = np.append(starts[1:], len(steps.start)) - 1
     begin, end = steps.start[starts], (steps.start + steps.ticks)[lasts]
     walks_on = (begin[1:] == end[:-1]) & (steps.right[starts[1:]] != steps.right[starts[:-1]])
-    pairs = 1 + np.flatnonzero(walks_on[:-2] & walks_on[1:-1] & walks_on[2:])
-    if len(pairs) and not seen.places:
-        return np.empty(0), np.empty(0)
+    travel = seen.place_at(end.astype(float)) - seen.place_at(begin.astype(float))
+    speed = np.hypot(travel[:, 0], travel[:, 1]) / np.maximum(end - begin, 1)
+    pairs = np.arange(3, len(starts) - 2)
+    around = np.stack([speed[pairs + k] for k in range(-3, 3)])
+    even = around.max(axis=0) <= EVEN * around.min(axis=0)
+    even &= np.all([walks_on[pairs + k] for k in range(-3, 2)], axis=0)
+    pairs = pairs[even]
     covered = steps.landing[lasts[pairs + 1], :2] - steps.standing[lasts[pairs], :2]
-    travelled = seen.place_at(end[pairs + 1].astype(float)) - seen.place_at(
-        begin[pairs].astype(float)
-    )
+    travelled = travel[pairs] + travel[pairs + 1]
     return np.hypot(*covered.T) / 2.0, np.hypot(*travelled.T) / 2.0
