@@ -30,9 +30,14 @@ listenToPointer(picture, {
     session.tap(at);
   },
 });
-setUpHelp((choice) => {
-  view.choose(choice);
-});
+setUpHelp(
+  (choice) => {
+    view.choose(choice);
+  },
+  (shown) => {
+    view.footwork.show(shown);
+  },
+);
 // A button that was clicked gives the keys back to walking and talking.
 document.addEventListener("click", (event) => {
   const button = event.target instanceof Element ? event.target.closest("button") : null;

@@ -4,6 +4,7 @@ import { Cutaway } from "../render/cutaway";
 import { FollowCamera } from "../render/follow";
 import { Figures } from "../render/figures";
 import { drawsInSoftware } from "../render/hardware";
+import { Footwork } from "../render/footwork";
 import { Labels } from "../render/labels";
 import { Marks } from "../render/marks";
 import { Picking, type Place, type ScreenPoint } from "../render/picking";
@@ -21,6 +22,7 @@ const DIMMED = 0.45;
 export class View {
   readonly camera: FollowCamera;
   readonly marks: Marks;
+  readonly footwork = new Footwork();
   private readonly stage: Stage;
   private readonly figures = new Figures();
   private readonly plans = new Plans();
@@ -40,7 +42,12 @@ export class View {
     this.labels = new Labels(labelLayer);
     this.picking = new Picking(this.stage.camera);
     this.control = new QualityControl(choice, this.software);
-    this.stage.scene.add(this.figures.group, this.marks.group, this.plans.group);
+    this.stage.scene.add(
+      this.figures.group,
+      this.footwork.group,
+      this.marks.group,
+      this.plans.group,
+    );
     this.applyQuality();
     new ResizeObserver(() => {
       this.stage.resize();
@@ -90,6 +97,7 @@ export class View {
     this.town?.doors.update(world.doors, frameS);
     this.drawn = new Map([...avatars].filter(([, avatar]) => this.shown(avatar) > 0.5));
     this.figures.update(this.drawn, this.stage.camera);
+    this.footwork.update(this.drawn);
     this.marks.update(this.drawn, own?.pose, chosen, frameS);
     this.plans.show(world.plan, world.floors);
     this.stage.draw();

@@ -14,6 +14,9 @@ const COARSE_CORNERS = 6;
 const COARSE_M = 16;
 const FINE_M = 14;
 
+/** What so many wear is remembered, those who have left among them. */
+const MOST_KNOWN = 2000;
+
 type Wardrobe = Record<PartName, Instances>;
 
 export class Figures {
@@ -27,18 +30,16 @@ export class Figures {
 
   /** Draw every avatar with the joints that it has in this frame. */
   update(avatars: ReadonlyMap<number, Avatar>, camera: Camera): void {
+    if (this.clothes.size > MOST_KNOWN) {
+      this.clothes.clear();
+      this.coarsely.clear();
+    }
     for (const part of this.all) part.begin();
     for (const avatar of avatars.values()) {
       const parts = this.isCoarse(avatar, camera) ? this.coarse : this.fine;
       dress(parts, avatar, this.clothesOf(avatar.id));
     }
     for (const part of this.all) part.finish();
-  }
-
-  /** Forget what somebody wears who has left. */
-  forget(id: number): void {
-    this.clothes.delete(id);
-    this.coarsely.delete(id);
   }
 
   castShadows(cast: boolean): void {

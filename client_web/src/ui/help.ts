@@ -1,4 +1,4 @@
-/** The help dialog with the one setting there is: how finely the world is drawn. */
+/** The help dialog with its settings: how finely the world is drawn, and whether its walking is shown. */
 
 import { byId } from "./dom";
 
@@ -11,13 +11,20 @@ export function storedChoice(): DrawingChoice {
   return CHOICES.find((choice) => choice === stored) ?? "automatic";
 }
 
-export function setUpHelp(changed: (choice: DrawingChoice) => void): void {
+export function setUpHelp(
+  changed: (choice: DrawingChoice) => void,
+  footwork: (shown: boolean) => void,
+): void {
   const dialog = byId("help", HTMLDialogElement);
   const drawing = byId("drawing", HTMLSelectElement);
   drawing.value = storedChoice();
   drawing.addEventListener("change", () => {
     localStorage.setItem(CHOICE_KEY, drawing.value);
     changed(storedChoice());
+  });
+  const shown = byId("footwork", HTMLInputElement);
+  shown.addEventListener("change", () => {
+    footwork(shown.checked);
   });
   byId("help-open", HTMLButtonElement).addEventListener("click", () => {
     dialog.showModal();

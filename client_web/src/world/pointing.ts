@@ -93,6 +93,11 @@ export class Pointing {
     return this.target !== null || this.raised > 0;
   }
 
+  /** The hand that points, or last did. */
+  hand(body: Body): Vector {
+    return body[this.side].arm.end;
+  }
+
   /** Move the trunk, the arm and the head of a body whose other joints are solved. */
   apply(body: Body, posture: Posture, build: Build, frameS: number): void {
     copy(body.lumbar, lumbar);
@@ -100,7 +105,7 @@ export class Pointing {
     this.follow(build, frameS);
     const chain = this.chains[this.side];
     const left = this.side === "left";
-    const limb = left ? body.left.arm : body.right.arm;
+    const limb = body[this.side].arm;
     copy(limb.end, this.before);
     this.stretchOut(chain);
     inWorld(goal, build, this.wanted);
