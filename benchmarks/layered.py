@@ -21,7 +21,7 @@ from planning import Body, Door, LayeredGrid, Polygon, Scene, Stairs, Wall
 from planning._footing import Footing
 from planning._layered import LayeredArrays
 from planning.barriers import Barriers, barriers_of_scene
-from planning.find_path import PathStatus, find_way
+from planning.find_path import PathStatus, find_end, find_way
 from planning.footing import find_footing, renew_footing
 from planning.reachability import near_barriers, reachable_steps
 from planning.stability import classify
@@ -109,7 +109,10 @@ def search(footing: Footing, side: int, layers: int) -> float:
     width = side * CELL_M
     start = (0.5 * width, width - 0.6, 0.0)
     goal = (width - 0.6, 0.5 * width + 0.4, STOREY_M * (layers - 1))
-    path = find_way(footing, start, goal)
+    first, last = find_end(footing, start), find_end(footing, goal)
+    if first is None or last is None:
+        raise RuntimeError(f"nobody stands at an end at {side}x{side}x{layers}")
+    path = find_way(footing, first, last)
     if path.status is not PathStatus.FOUND:
         raise RuntimeError(f"no way at {side}x{side}x{layers}: {path.status.name}")
     return path.length_m

@@ -136,17 +136,19 @@ def lay_cells(
     """
     layers, rows, columns = surfaces
     floors, ceilings = heights
+    pages, into = arrays.pages, arrays.links
     for s in range(len(layers)):
         j, i = rows[s], columns[s]
-        first = arrays.pages[layers[s], j >> _SHIFT, i >> _SHIFT]
+        first = pages[layers[s], j >> _SHIFT, i >> _SHIFT]
         cell = first + ((j & (TILE - 1)) << _SHIFT) + (i & (TILE - 1))
         cells[s] = cell
         arrays.floors[cell] = floors[s]
         arrays.ceilings[cell] = ceilings[s]
     for s in range(len(layers)):
+        cell = cells[s]
         for d in range(8):
             t = links[s, d]
-            arrays.links[cells[s], d] = cells[t] if t >= 0 else -1
+            into[cell, d] = cells[t] if t >= 0 else -1
 
 
 @kernel

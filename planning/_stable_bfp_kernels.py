@@ -9,27 +9,29 @@ from planning._jit import kernel
 from planning._stability_kernels import FORBIDDEN, STABLE
 from planning._wavefront_kernels import DIAGONAL, STRAIGHT
 
+ENDLESS = 2**62
+"""Longer than any way."""
+
 
 @kernel
 def search(
-    footing: Footing, left: NDArray[np.int32], start: int, goal: int
+    footing: Footing, left: NDArray[np.int32], start: int, goal: int, longest: int
 ) -> tuple[NDArray[np.int32], NDArray[np.int32], int]:
     """Cells from start to goal, the count on edges in each, and the number of expansions.
 
-    No cells at all: there is no way. A state is a cell and a count. States leave the queue in
-    order of way so far + way left; whoever comes to a cell by a longer way is only let in with a
-    lower count than all before: with any other it can get nowhere that they cannot. So each cell
-    is closed once it was seen with the least count that leads to it.
+    No cells at all: there is no way as short as `longest`. A state is a cell and a count. States
+    leave the queue in order of way so far + way left; whoever comes to a cell by a longer way is
+    only let in with a lower count than all before: with any other it can get nowhere that they
+    cannot. So each cell is closed once it was seen with the least count that leads to it.
     """
     links, steps, classes = footing.arrays.links, footing.steps, footing.classes
-    furthest = left[start]
     least = np.full(len(steps), footing.edge_cells, dtype=np.int16)
     states = np.empty((1024, 4), dtype=np.int32)
     keys = np.empty(1024, dtype=np.float64)
     items = np.empty(1024, dtype=np.int64)
     states[0] = (start, 0, 0, -1)
     made = 1
-    size = heap_push(keys, items, 0, float(furthest), 0)
+    size = heap_push(keys, items, 0, float(left[start]), 0)
     expansions = 0
     while size > 0:
         now = -items[0]
@@ -60,7 +62,9 @@ def search(
             states[made, 1] = then
             states[made, 2] = so_far
             states[made, 3] = now
-            key = float(so_far + min(left[other], furthest))
+            key = float(so_far + left[other])
+            if key > longest:
+                continue
             size = heap_push(keys, items, size, key, -made)
             made += 1
     return np.empty(0, dtype=np.int32), np.empty(0, dtype=np.int32), expansions

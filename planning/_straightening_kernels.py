@@ -55,7 +55,7 @@ def _until(a: float, b: float, cell: int, last: int, origin: float, cell_m: floa
     return (origin + side * cell_m - a) / (b - a) if b != a else 0.0
 
 
-@kernel
+@inlined
 def trace(footing: Footing, line: Line, a: int, b: int, count: int, out: Line, used: int) -> int:
     """Walk straight from point a of a line to point b, of which `count` cells were on edges.
 

@@ -15,8 +15,11 @@ from planning._layered import LINK_COLUMNS, LINK_M, LINK_ROOM_M, LINK_ROWS
 LOWEST_M = 1.0
 """A surface with less headroom than this is none: nobody is that small."""
 _SAME_M = 1e-4
-_NEAREST_M = 0.5 * LOWEST_M - 0.01
+_NEAREST_M = np.float32(0.5 * LOWEST_M - 0.01)
 """Surfaces that differ by less are nearest to one another: those of a column lie further apart."""
+_ROOM_M = np.float32(LINK_ROOM_M)
+_RUN = 64
+"""Columns that are linked at once, if they can be."""
 
 
 class SolidArrays(NamedTuple):
@@ -220,6 +223,25 @@ def _match(
 
 
 @inlined
+def _level_count(
+    floors: NDArray[np.float32], ceilings: NDArray[np.float32], a: int, b: int, count: int
+) -> int:
+    """How many surfaces from a on are nearly level with those from b on, one beside the other."""
+    floors_a, floors_b = floors[a : a + count], floors[b : b + count]
+    ceilings_a, ceilings_b = ceilings[a : a + count], ceilings[b : b + count]
+    apart = 0
+    for k in range(count):  # without a way out, so that it is done for several at once
+        room = min(ceilings_a[k], ceilings_b[k]) - max(floors_a[k], floors_b[k])
+        apart += (abs(floors_a[k] - floors_b[k]) >= _NEAREST_M) | (room < _ROOM_M)
+    if apart == 0:
+        return count
+    level = 0
+    while level < count and _apart(floors, ceilings, a + level, b + level) < _NEAREST_M - _SAME_M:
+        level += 1
+    return level
+
+
+@inlined
 def _link_level(
     starts: NDArray[np.int32],
     floors: NDArray[np.float32],
@@ -234,16 +256,16 @@ def _link_level(
     how many columns were linked.
     """
     c, other, count = run
-    shift = starts[other] - starts[c]
+    a, b = starts[c], starts[other]
     done = 0
-    while done < count and starts[other + done + 1] - starts[c + done + 1] == shift:
+    while done < count and starts[other + done + 1] - b == starts[c + done + 1] - a:
         done += 1
-    a, end = starts[c], starts[c + done]
-    while a < end and _apart(floors, ceilings, a, a + shift) < _NEAREST_M:
-        links[a, d] = a + shift
-        links[a + shift, d + 4] = a
-        a += 1
-    while starts[c + done] > a:
+    level = _level_count(floors, ceilings, a, b, starts[c + done] - a)
+    for k in range(level):
+        links[a + k, d] = b + k
+    for k in range(level):
+        links[b + k, d + 4] = a + k
+    while starts[c + done] > a + level:
         done -= 1
     return done
 
@@ -266,10 +288,12 @@ def link_columns(
             while i < last:
                 c = j * nx + i
                 other = c + LINK_ROWS[d] * nx + LINK_COLUMNS[d]
-                done = _link_level(starts, floors, ceilings, (c, other, last - i), d, links)
-                i += done + 1
-                if i > last:
-                    break
+                run = c, other, min(last - i, _RUN)
+                done = _link_level(starts, floors, ceilings, run, d, links)
+                i += done
+                if done == run[2]:
+                    continue
+                i += 1
                 p0, p1 = starts[c + done], starts[c + done + 1]
                 q0, q1 = starts[other + done], starts[other + done + 1]
                 for a in range(p0, p1):

@@ -3,7 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from planning._jit import kernel
+from planning._footing import Footing
+from planning._jit import inlined, kernel
+from planning._layered import LINK_COLUMNS, LINK_ROWS
 from planning._stability_kernels import FORBIDDEN
 
 STRAIGHT = 70
@@ -11,6 +13,8 @@ DIAGONAL = 99
 """Lengths of steps in units of 1/70 of a cell; 99/70 is the square root of 2 within 0.01 %. Whole
 numbers make equally long ways exactly equal."""
 UNREACHED = np.int32(2**30)
+_BUCKETS = 256
+"""A power of two, more than a step and the estimate of what is left grow together."""
 
 
 @kernel
@@ -19,13 +23,9 @@ def spread(
     steps: NDArray[np.uint8],
     classes: NDArray[np.uint8],
     goal: int,
-    start: int,
     left: NDArray[np.int32],
-) -> int:
+) -> None:
     """Write the shortest ways to a goal over steps between cells that are not Forbidden.
-
-    Waits for no one but `start`: once it is reached, what is further away is left unreached; -1:
-    everything is wanted. Returns the number of cells that are settled.
 
     Steps lead both ways, so those out of a cell are those into it. Cells are settled in order of
     their way, so those reached by a straight step leave one queue in that order, those by a
@@ -38,7 +38,6 @@ def spread(
     ways[0, 0] = 0
     left[goal] = 0
     head0, head1, tail0, tail1 = 0, 0, 1, 0
-    settled = 0
     while head0 < tail0 or head1 < tail1:
         if head1 == tail1 or (head0 < tail0 and ways[0, head0] <= ways[1, head1]):
             cell = cells[0, head0]
@@ -50,9 +49,6 @@ def spread(
             head1 += 1
         if way > left[cell]:
             continue
-        settled += 1
-        if cell == start:
-            break
         for d in range(8):
             if not steps[cell] >> d & 1:
                 continue
@@ -69,4 +65,93 @@ def spread(
                 cells[0, tail0] = other
                 ways[0, tail0] = then
                 tail0 += 1
-    return settled
+
+
+@inlined
+def _at_least(rows: int, columns: int) -> int:
+    """The shortest way over so many rows and columns if nothing is between."""
+    a, b = abs(rows), abs(columns)
+    return STRAIGHT * max(a, b) + (DIAGONAL - STRAIGHT) * min(a, b)
+
+
+@kernel
+def spread_toward(footing: Footing, goal: int, start: int, left: NDArray[np.int32]) -> None:
+    """`spread`, but straight for a start, and no further once it is reached.
+
+    Cells are settled in order of their way plus the least that is left to the start: A*. The
+    sum never falls and grows by less than `_BUCKETS` a step, so cells wait in a ring of lists,
+    the latest first. What is written for cells that are not settled may be too much.
+    """
+    links, places = footing.arrays.links, footing.arrays.places
+    steps, classes = footing.steps, footing.classes
+    left[:] = UNREACHED
+    left[goal] = 0
+    heads = np.full(_BUCKETS, -1, dtype=np.int32)
+    entries = np.empty((1024, 3), dtype=np.int32)
+    row, column = places[start, 1], places[start, 2]
+    total = _at_least(places[goal, 1] - row, places[goal, 2] - column)
+    entries[0] = (goal, 0, -1)
+    heads[total % _BUCKETS] = 0
+    used = 1
+    empty = 0
+    while empty < _BUCKETS:
+        entry = heads[total % _BUCKETS]
+        if entry < 0:
+            total += 1
+            empty += 1
+            continue
+        empty = 0
+        cell, way, heads[total % _BUCKETS] = entries[entry]
+        if cell == start:
+            break
+        if way > left[cell]:
+            continue
+        if used + 8 > len(entries):
+            entries = np.concatenate((entries, np.empty_like(entries)))
+        rows, columns = places[cell, 1] - row, places[cell, 2] - column
+        for d in range(8):
+            if not steps[cell] >> d & 1:
+                continue
+            other = links[cell, d]
+            then = way + (DIAGONAL if d & 1 else STRAIGHT)
+            if then >= left[other] or classes[other] == FORBIDDEN:
+                continue
+            left[other] = then
+            bucket = then + _at_least(rows + LINK_ROWS[d], columns + LINK_COLUMNS[d])
+            bucket %= _BUCKETS
+            entries[used, 0] = other
+            entries[used, 1] = then
+            entries[used, 2] = heads[bucket]
+            heads[bucket] = used
+            used += 1
+
+
+@kernel
+def number_regions(
+    links: NDArray[np.int32],
+    steps: NDArray[np.uint8],
+    classes: NDArray[np.uint8],
+    regions: NDArray[np.int32],
+) -> None:
+    """Number what hangs together by steps between cells that are not Forbidden; -1: Forbidden."""
+    queue = np.empty(len(regions), dtype=np.int32)
+    regions[:] = -1
+    count = 0
+    for seed in range(len(regions)):
+        if regions[seed] >= 0 or classes[seed] == FORBIDDEN:
+            continue
+        regions[seed] = count
+        queue[0] = seed
+        head, tail = 0, 1
+        while head < tail:
+            cell = queue[head]
+            head += 1
+            for d in range(8):
+                if not steps[cell] >> d & 1:
+                    continue
+                other = links[cell, d]
+                if regions[other] < 0 and classes[other] != FORBIDDEN:
+                    regions[other] = count
+                    queue[tail] = other
+                    tail += 1
+        count += 1

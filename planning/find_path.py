@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +14,10 @@ from planning._footing import Footing
 from planning._stability_kernels import FORBIDDEN
 from planning._standing_kernels import stand
 from planning.bodies import Body
-from planning.footing import footing_of
+from planning.footing import footing_of, regions_of
 from planning.stable_bfp import stable_bfp
 from planning.straightening import headings, line_of_cells, straighten
-from planning.wavefront import UNREACHED, spread_wave
+from planning.wavefront import UNREACHED, spread_toward, spread_wave
 
 if TYPE_CHECKING:
     from planning.grid import LayeredGrid
@@ -99,28 +99,57 @@ def find_path(
     """
     body = Body.adult() if body is None else body
     start, goal = _checked("start", start, grid), _checked("goal", goal, grid)
-    return find_way(footing_of(grid, body), start, goal)
-
-
-def find_way(footing: Footing, start: Point3, goal: Point3) -> LayeredPath:
-    """`find_path` on floors that are already known; points must be finite and within bounds."""
-    classes = footing.classes
-    first, x, y = stand(footing, classes, *start)
-    if first < 0:
+    footing = footing_of(grid, body)
+    first, last = find_end(footing, start), find_end(footing, goal)
+    if first is None:
         return _no_path(PathStatus.START_BLOCKED)
-    last, goal_x, goal_y = stand(footing, classes, *goal)
-    if last < 0:
+    if last is None:
         return _no_path(PathStatus.GOAL_BLOCKED)
-    left = spread_wave(footing, last, first)
-    if left[first] == UNREACHED:
-        connected = np.where(left == UNREACHED, np.uint8(FORBIDDEN), classes)
-        first, x, y = stand(footing, connected, *start)
-        if first < 0 or (x, y) == start[:2]:
-            return _no_path(PathStatus.NO_WAY)
-    way = stable_bfp(footing, left, first, last)
+    regions = regions_of(grid, body)
+    if regions[first.cell] != regions[last.cell]:
+        # An end that has to be moved anyway may be moved to where the other is.
+        first = _moved(footing, start, first, regions == regions[last.cell]) or first
+    if regions[first.cell] != regions[last.cell]:
+        last = _moved(footing, goal, last, regions == regions[first.cell]) or last
+    if regions[first.cell] != regions[last.cell]:
+        return _no_path(PathStatus.NO_WAY)
+    return find_way(footing, first, last)
+
+
+class End(NamedTuple):
+    """Where a way begins or ends."""
+
+    cell: int
+    x: float
+    y: float
+
+
+def find_end(footing: Footing, point: Point3, among: NDArray[np.bool_] | None = None) -> End | None:
+    """Where a body stands that is said to be at a point, if need be only `among` some cells (N,).
+
+    None: it fits nowhere near; see `stand`.
+    """
+    classes = footing.classes
+    if among is not None:
+        classes = np.where(among, classes, np.uint8(FORBIDDEN))
+    end = End(*stand(footing, classes, *point))
+    return end if end.cell >= 0 else None
+
+
+def _moved(footing: Footing, point: Point3, end: End, among: NDArray[np.bool_]) -> End | None:
+    """Another end, among some cells; None if the body fits at the point itself, or in none."""
+    return None if (end.x, end.y) == point[:2] else find_end(footing, point, among)
+
+
+def find_way(footing: Footing, first: End, last: End) -> LayeredPath:
+    """The shortest way from end to end that M allows."""
+    left = spread_toward(footing, last.cell, first.cell)
+    way = stable_bfp(footing, left, first.cell, last.cell, detours=False)
+    if not len(way.cells) and left[first.cell] != UNREACHED:
+        way = stable_bfp(footing, spread_wave(footing, last.cell), first.cell, last.cell)
     if not len(way.cells):
         return _no_path(PathStatus.NO_WAY, way.expansions)
-    line = line_of_cells(footing, way.cells, way.counts, (x, y), (goal_x, goal_y))
+    line = line_of_cells(footing, way.cells, way.counts, first[1:], last[1:])
     line = straighten(footing, line)
     points = np.column_stack([line.xy, footing.arrays.floors[line.cells].astype(np.float64)])
     layers = footing.arrays.places[line.cells, 0].astype(np.int64)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import OrderedDict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
@@ -16,9 +17,13 @@ from planning.barriers import Barriers
 from planning.bodies import Body
 from planning.reachability import measures_of, near_barriers, reachable_steps
 from planning.stability import classify
+from planning.wavefront import number_regions
 
 if TYPE_CHECKING:
     from planning.grid import LayeredGrid
+
+MOST_BODIES = 32
+"""Kinds of body that a zone knows the ground for."""
 
 
 def find_footing(arrays: LayeredArrays, barriers: Barriers, body: Body) -> Footing:
@@ -60,28 +65,44 @@ def renew_footing(
 
 @dataclass
 class _Known:
-    """A footing and the barriers' rises that it was derived from."""
+    """A footing, the barriers' rises that it was derived from, and its regions once asked for."""
 
     footing: Footing
     rises: NDArray[np.float64]
+    regions: NDArray[np.int32] | None = None
 
 
-_known: WeakKeyDictionary[LayeredGrid, dict[Body, _Known]] = WeakKeyDictionary()
+_known: WeakKeyDictionary[LayeredGrid, OrderedDict[Body, _Known]] = WeakKeyDictionary()
 
 
 def footing_of(grid: LayeredGrid, body: Body) -> Footing:
     """The floors of a grid for a body: derived when first asked for, and anew around doors that
-    have opened or closed since."""
-    bodies = _known.setdefault(grid, {})
+    have opened or closed since. Of each grid the latest `MOST_BODIES` are kept."""
+    return _known_of(grid, body).footing
+
+
+def regions_of(grid: LayeredGrid, body: Body) -> NDArray[np.int32]:
+    """`number_regions` of the same, kept as long."""
+    known = _known_of(grid, body)
+    if known.regions is None:
+        known.regions = number_regions(known.footing)
+    return known.regions
+
+
+def _known_of(grid: LayeredGrid, body: Body) -> _Known:
+    bodies = _known.setdefault(grid, OrderedDict())
     rises = grid.barriers[:, 6]
     known = bodies.get(body)
     if known is None:
         known = _Known(find_footing(grid.layered, grid.barriers, body), rises.copy())
-        bodies[body] = known
     elif not np.array_equal(rises, known.rises):
         footing, now = known.footing, rises.copy()
         for x0, y0, x1, y1 in grid.barriers[now != known.rises, :4]:
             around = min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)
             footing = renew_footing(footing, body, around)
-        known = bodies[body] = _Known(footing, now)
-    return known.footing
+        known = _Known(footing, now)
+    bodies[body] = known
+    bodies.move_to_end(body)
+    if len(bodies) > MOST_BODIES:
+        bodies.popitem(last=False)
+    return known

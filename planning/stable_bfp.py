@@ -27,8 +27,13 @@ class CellPath:
     expansions: int
 
 
-def stable_bfp(footing: Footing, left: NDArray[np.int32], start: int, goal: int) -> CellPath:
+def stable_bfp(
+    footing: Footing, left: NDArray[np.int32], start: int, goal: int, detours: bool = True
+) -> CellPath:
     """Search the way from one cell to another; `left` is the goal's potential.
+
+    Without `detours` only ways straight down the potential are looked at: no others are shorter,
+    and mostly M allows one of them. That much can be asked of `spread_toward`, too.
 
     Notes
     -----
@@ -38,4 +43,5 @@ def stable_bfp(footing: Footing, left: NDArray[np.int32], start: int, goal: int)
     seen, or could do no more than another that was. Cost O(states log states), in most cases
     O(length of the way).
     """
-    return CellPath(*kernels.search(footing, left, start, goal))
+    longest = kernels.ENDLESS if detours else int(left[start])
+    return CellPath(*kernels.search(footing, left, start, goal, longest))

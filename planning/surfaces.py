@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -179,10 +180,10 @@ def solid_columns(scene: Scene, raster: Raster) -> SolidColumns:
 def _solid_arrays(scene: Scene) -> SolidArrays:
     solids = scene.solids()
     offsets = sorted({0.0, *(solid.offset_m for solid in solids)})
-    rings = [np.array(solid.points, dtype=np.float64) for solid in solids]
+    ends = itertools.accumulate((len(solid.points) for solid in solids), initial=0)
     return SolidArrays(
-        np.concatenate([np.empty((0, 2)), *rings]),
-        np.cumsum([0, *map(len, rings)], dtype=np.int64),
+        np.array([p for solid in solids for p in solid.points], dtype=np.float64).reshape(-1, 2),
+        np.array(list(ends), dtype=np.int64),
         np.array([solid.offset_m for solid in solids], dtype=np.float64),
         np.array([_top(solid) for solid in solids], dtype=np.float64).reshape(-1, 5),
         np.array([solid.carries for solid in solids], dtype=np.bool_),

@@ -16,15 +16,35 @@ from planning._footing import Footing
 UNREACHED = kernels.UNREACHED
 
 
-def spread_wave(footing: Footing, goal: int, start: int = -1) -> NDArray[np.int32]:
+def spread_wave(footing: Footing, goal: int) -> NDArray[np.int32]:
     """The way left from every cell to a goal, int32 (N,), in 1/70 of a cell; `UNREACHED`: no way.
 
-    With a `start`, the wave stops there, and cells further away are not told from those without
-    any way. Cost O(cells reached).
+    Cost O(cells reached).
     """
     left = np.empty(len(footing.steps), dtype=np.int32)
-    kernels.spread(footing.arrays.links, footing.steps, footing.classes, goal, start, left)
+    kernels.spread(footing.arrays.links, footing.steps, footing.classes, goal, left)
     return left
+
+
+def spread_toward(footing: Footing, goal: int, start: int) -> NDArray[np.int32]:
+    """The same for one start: exact there and along a shortest way from it to the goal.
+
+    Elsewhere it is exact, too much or `UNREACHED`. In the open only the way itself is looked at.
+    """
+    left = np.empty(len(footing.steps), dtype=np.int32)
+    kernels.spread_toward(footing, goal, start, left)
+    return left
+
+
+def number_regions(footing: Footing) -> NDArray[np.int32]:
+    """Numbers of the regions that steps hold together, int32 (N,); -1: Forbidden.
+
+    A way leads from cell to cell, as far as M allows, if and only if both are of one region.
+    Cost O(cells).
+    """
+    regions = np.empty(len(footing.steps), dtype=np.int32)
+    kernels.number_regions(footing.arrays.links, footing.steps, footing.classes, regions)
+    return regions
 
 
 def metres(footing: Footing, left: NDArray[np.int32]) -> NDArray[np.float32]:

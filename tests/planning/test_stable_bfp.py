@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from planning import Body
 from planning.stability import Stability
 from planning.stable_bfp import stable_bfp
-from planning.wavefront import spread_wave
+from planning.wavefront import spread_toward, spread_wave
 from tests.naive.floors import Floors, legal_ways
 from tests.planning.storeys import bodies, box, cluttered, footing, grid_of
 from tests.planning.worlds import holds
@@ -48,11 +48,17 @@ def test_it_finds_the_shortest_legal_way_wherever_there_is_one(grid, body, most,
     for start in random.choice(standing, 3):
         legal = legal_ways(steps, feet.classes, int(start), most)
         for goal in random.choice(standing, 6):
-            path = stable_bfp(feet, spread_wave(feet, goal, start), start, goal)
+            path = stable_bfp(feet, spread_wave(feet, goal), start, goal)
             assert bool(len(path.cells)) == (int(goal) in legal)
+            straight = stable_bfp(
+                feet, spread_toward(feet, goal, start), start, goal, detours=False
+            )
             if len(path.cells):
                 check(feet, path)
                 assert way_of(feet, path.cells) == pytest.approx(legal[int(goal)])
+            if len(straight.cells):
+                check(feet, straight)
+                assert way_of(feet, straight.cells) == pytest.approx(legal[int(goal)])
 
 
 def along_a_kerb(length_cells: int) -> tuple[Floors, object, int, int]:
@@ -71,7 +77,7 @@ def along_a_kerb(length_cells: int) -> tuple[Floors, object, int, int]:
 def test_fewer_than_m_cells_in_a_row_may_lie_on_edges(cells, passes) -> None:
     """The kerb is felt one cell before and behind it: 6 + 2 cells are below M = 9, 7 + 2 not."""
     feet, start, goal = along_a_kerb(cells)
-    path = stable_bfp(feet, spread_wave(feet, goal, start), start, goal)
+    path = stable_bfp(feet, spread_wave(feet, goal), start, goal)
     assert bool(len(path.cells)) == passes
     if passes:
         assert path.counts.max() == 8
@@ -79,16 +85,16 @@ def test_fewer_than_m_cells_in_a_row_may_lie_on_edges(cells, passes) -> None:
 
 def test_who_sets_out_on_an_edge_counts_from_there() -> None:
     feet, start, goal = along_a_kerb(12)
-    path = stable_bfp(feet, spread_wave(feet, goal, start), start, goal)
+    path = stable_bfp(feet, spread_wave(feet, goal), start, goal)
     assert not len(path.cells)
     row = feet.arrays.places[start, 1]
     cells = {tuple(place): cell for cell, place in enumerate(feet.arrays.places.tolist())}
     amid = cells[0, int(row), 10]
     assert feet.classes[amid] == Stability.UNSTABLE
-    out = stable_bfp(feet, spread_wave(feet, goal, amid), amid, goal)
+    out = stable_bfp(feet, spread_wave(feet, goal), amid, goal)
     assert out.counts[0] == 0
     assert not len(out.cells) or out.counts.max() < 9
-    back = stable_bfp(feet, spread_wave(feet, start, amid), amid, start)
+    back = stable_bfp(feet, spread_wave(feet, start), amid, start)
     assert len(back.cells)
     check(feet, back)
 
@@ -97,5 +103,5 @@ def test_in_the_open_only_the_way_itself_is_looked_at() -> None:
     feet = footing(grid_of(16.0), Body.adult())
     cells = {tuple(place): cell for cell, place in enumerate(feet.arrays.places.tolist())}
     start, goal = cells[0, 5, 3], cells[0, 40, 60]
-    path = stable_bfp(feet, spread_wave(feet, goal, start), start, goal)
+    path = stable_bfp(feet, spread_wave(feet, goal), start, goal)
     assert path.expansions == len(path.cells) - 1

@@ -29,7 +29,7 @@ def centre(feet, cell):
 
 def found_line(feet, start, goal):
     """The way over cells between two, or None."""
-    path = stable_bfp(feet, spread_wave(feet, goal, start), start, goal)
+    path = stable_bfp(feet, spread_wave(feet, goal), start, goal)
     if not len(path.cells):
         return None
     return line_of_cells(feet, path.cells, path.counts, centre(feet, start), centre(feet, goal))

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planning import Body
-from planning.wavefront import UNREACHED, metres, spread_wave
+from planning.wavefront import UNREACHED, metres, number_regions, spread_toward, spread_wave
 from tests.naive.floors import Floors, ways_left
 from tests.planning.storeys import bodies, box, cluttered, flight, footing, grid_of
 from tests.planning.worlds import holds
@@ -31,16 +31,45 @@ def test_ways_left_are_the_shortest_over_cells(grid, body, pick) -> None:
     assert found == pytest.approx(expected, rel=1e-5)
 
 
-def test_a_wave_that_stops_at_the_start_knows_the_same_up_to_there() -> None:
-    grid = grid_of(6.0, [box(2.0, 0.0, 3.0, 4.0, 2.0)])
-    feet = footing(grid, Body.adult())
-    goal, start = (
-        Floors(grid.layered, grid.barriers, Body.adult()).cells[0, j, 12] for j in (22, 17)
-    )
-    all_of_it, up_to_there = spread_wave(feet, goal), spread_wave(feet, goal, start)
-    near = all_of_it <= all_of_it[start]
-    assert np.array_equal(all_of_it[near], up_to_there[near])
-    assert (up_to_there == UNREACHED).sum() > (all_of_it == UNREACHED).sum()
+@given(cluttered(), bodies, st.integers(0, 10**6))
+@holds(20, 4)
+def test_a_wave_toward_a_start_is_exact_there_and_on_the_way(grid, body, pick) -> None:
+    feet = footing(grid, body)
+    standing = np.flatnonzero(feet.classes)
+    if not len(standing):
+        return
+    random = np.random.default_rng(pick)
+    for goal, start in random.choice(standing, (8, 2)):
+        all_of_it, toward = spread_wave(feet, goal), spread_toward(feet, goal, start)
+        assert (toward >= all_of_it).all()
+        cell = start
+        assert toward[cell] == all_of_it[cell]
+        while cell != goal and toward[cell] != UNREACHED:
+            around = [
+                int(feet.arrays.links[cell, d]) for d in range(8) if feet.steps[cell] >> d & 1
+            ]
+            before, cell = cell, min(around, key=lambda other: int(toward[other]))
+            assert toward[cell] == all_of_it[cell]
+            assert toward[cell] < toward[before]
+
+
+def test_a_wave_toward_a_start_sees_little_else_in_the_open() -> None:
+    feet = footing(grid_of(16.0), Body.adult())
+    cells = {tuple(place): cell for cell, place in enumerate(feet.arrays.places.tolist())}
+    left = spread_toward(feet, cells[0, 5, 3], cells[0, 40, 60])
+    assert (left != UNREACHED).sum() < 8 * 60
+
+
+@given(cluttered(), bodies)
+@holds(20, 4)
+def test_regions_are_what_a_wave_reaches(grid, body) -> None:
+    feet = footing(grid, body)
+    regions = number_regions(feet)
+    assert np.array_equal(regions >= 0, feet.classes > 0)
+    numbers = range(regions.max(initial=-1) + 1)
+    for number in numbers:
+        members = np.flatnonzero(regions == number)
+        assert np.array_equal(np.flatnonzero(spread_wave(feet, members[0]) != UNREACHED), members)
 
 
 def test_the_wave_climbs_stairs_to_the_floor_right_above() -> None:
