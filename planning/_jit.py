@@ -12,19 +12,22 @@ from typing import TypeVar, cast
 import numba
 
 _KEPT_S = 30 * 24 * 3600.0
+_SOURCES = ("planning/_*.py", "actors/locomotion/_*.py", "actors/locomotion/skeleton.py")
+"""Where kernels are, and constants that are compiled into them."""
 
 F = TypeVar("F", bound=Callable[..., object])
 
 
 def _source_digest() -> str:
-    """Digest of every module in this package that holds kernels.
+    """Digest of every module that holds kernels.
 
     numba's own cache looks at the file of the outermost function alone, so an edit of a helper
     in another file would go unnoticed. One digest for all of them makes that impossible.
     """
     bounds_checked = bool(numba.config.BOUNDSCHECK)  # type: ignore[attr-defined]
     digest = hashlib.sha256(f"{numba.__version__} {bounds_checked}".encode())
-    for path in sorted(Path(__file__).parent.glob("_*.py")):
+    root = Path(__file__).parent.parent
+    for path in sorted(path for pattern in _SOURCES for path in root.glob(pattern)):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
 

@@ -16,10 +16,16 @@ from numpy.typing import NDArray
 from actors.locomotion import rotations
 from actors.locomotion.curves import support_share
 from actors.locomotion.limbs import leg_ik
+from actors.locomotion.motion import standing_ankles
 from actors.locomotion.planted import Footfalls, Targets, step_targets
-from actors.locomotion.skeleton import FOOT, SHIN, THIGH, TRACK_HALF_WIDTH, Floats
+from actors.locomotion.skeleton import (
+    FOOT,
+    SHIN,
+    THIGH,
+    TRACK_HALF_WIDTH,
+    Floats,
+)
 from actors.locomotion.step_length import solve_relative_velocity
-from actors.locomotion.turning import ankle_over_toe
 
 KEYS: Final = 8
 
@@ -142,7 +148,9 @@ def walked(step_length: float, phase: Floats) -> tuple[Floats, Legs]:
     ankles, pitches = np.empty((len(phase), 2, 3)), np.empty((len(phase), 2))
     pitches[rows, right] = targets.standing_pitch[:, 0]
     pitches[rows, 1 - right] = targets.swing_pitch[:, 0]
-    ankles[rows, right] = ankle_over_toe(standing, np.minimum(targets.standing_pitch[:, 0], 0.0))
+    ankles[rows, right] = standing_ankles(
+        standing, targets.standing_pitch[:, 0], np.full(len(phase), FOOT)
+    )
     ankles[rows, 1 - right] = targets.swing_ankle[:, 0]
     root = targets.root[:, 0].copy()
     gone = 2.0 * step_length * (phase % 1.0) + _lead(step_length)

@@ -61,3 +61,20 @@ def foot_pitch(angles: Floats) -> Floats:
     """Pitch of the foot against the ground, radians, toe-up positive; angles as in leg_points."""
     pitch: Floats = angles[..., 0] - angles[..., 1] + angles[..., 2]
     return pitch
+
+
+def ankle_over_toe(footprint: Floats, pitch: Floats) -> Floats:
+    """Ankle (..., 3) of a foot that is pitched about its toe, which keeps to the footprint.
+
+    footprint : float64 (..., 4), leg lengths: heel x, y, z on the ground (z up), heading (radians)
+    """
+    heading = footprint[..., 3]
+    drawn = FOOT * (1.0 - np.cos(pitch))
+    return np.stack(
+        [
+            footprint[..., 0] + drawn * np.cos(heading),
+            footprint[..., 1] + drawn * np.sin(heading),
+            footprint[..., 2] - FOOT * np.sin(pitch),
+        ],
+        axis=-1,
+    )

@@ -80,17 +80,10 @@ def longest_step() -> float:
     return float(_table().lengths[-1])
 
 
-def pose_of_length(length: Floats) -> tuple[Floats, DoubleSupport]:
-    """Relative velocity and final pose of planted steps, looked up: right to 1e-5.
-
-    For where exact places follow from footprints anyway.
-    """
+def final_poses() -> tuple[Floats, Floats]:
+    """Table of planted steps: lengths (M,), and (M, 7): velocity, fields of DoubleSupport."""
     table = _table()
-    after = np.searchsorted(table.lengths, length).clip(1, _TABLE_POINTS - 1)
-    low, high = table.lengths[after - 1], table.lengths[after]
-    share = (length - low) / (high - low)
-    row = table.rows[after - 1] + share[..., None] * (table.rows[after] - table.rows[after - 1])
-    return row[..., 0], DoubleSupport(*np.moveaxis(row[..., 1:], -1, 0))
+    return table.lengths, table.rows
 
 
 def solve_relative_velocity(sl: ArrayLike) -> Floats:

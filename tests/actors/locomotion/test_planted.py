@@ -4,6 +4,7 @@ import pytest
 from actors.locomotion.planted import Footfalls, step_targets
 from actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH
 from tests.actors.locomotion import walks
+from tests.naive import planted as naive
 
 WALKS = {
     "0.2": ([0.2] * 6, 2.1),
@@ -168,20 +169,43 @@ def test_shares_may_differ_from_step_to_step():
         assert one_each.root[step, 0] == pytest.approx(all_of_them.root[step, step])
 
 
-def test_anything_that_footprints_may_be_gives_a_step():
-    """Scattered footprints: all is finite, legs reach, and steps join."""
+def scattered(count):
+    """Steps with footprints anywhere that feet may get to, two in five of them uneven."""
     rng = np.random.default_rng(8)
-    count = 2000
     right = rng.random(count) < 0.5
     side = np.where(right, 1.0, -1.0)
 
-    def scattered():
+    def footprints():
         place = rng.uniform((-0.4, -0.15, -0.2, -0.9), (0.65, 0.3, 0.2, 0.9), (count, 4))
         place[:, 1] = side * (place[:, 1] + 2.0 * TRACK_HALF_WIDTH)
         place[:, 2] *= rng.random(count) < 0.4
         return place
 
-    falls = Footfalls(right, scattered(), np.zeros((count, 4)), scattered(), np.ones(count))
+    return Footfalls(right, footprints(), np.zeros((count, 4)), footprints(), np.ones(count))
+
+
+@pytest.mark.parametrize(
+    "falls",
+    [
+        scattered(500),
+        walks.straight([0.0, 0.3, 0.74, 0.2, 0.0]),
+        walks.arc(0.8, 0.5, 4),
+        walks.staircase(0.189, 0.333, 4),
+        walks.staircase(-0.189, 0.333, 4),
+    ],
+    ids=["scattered", "straight", "bend", "up", "down"],
+)
+def test_kernels_say_what_whole_arrays_say(falls):
+    falls = falls._replace(leg_m=np.linspace(0.8, 1.1, len(falls.right)))
+    u = np.linspace(0.0, 1.0, 31)
+    for found, expected in zip(step_targets(falls, u), naive.step_targets(falls, u), strict=True):
+        assert found == pytest.approx(expected, abs=1e-11)
+
+
+def test_anything_that_footprints_may_be_gives_a_step():
+    """All is finite, legs reach, and steps join."""
+    falls = scattered(2000)
+    right = falls.right
     walked = walks.walk(falls, 60)
     assert all(np.all(np.isfinite(values)) for values in walked.targets)
     assert walked.missed.max() < 1e-9
@@ -204,3 +228,11 @@ def test_lengths_beyond_the_longest_step_are_made_by_hips_between_the_feet():
     assert 0.35 < behind < 0.5
     assert np.all(np.isfinite(targets.root))
     assert behind > FOOT
+
+
+def test_what_is_no_number_is_told():
+    falls = walks.straight([0.3])
+    with pytest.raises(ValueError, match="not a finite number"):
+        step_targets(falls._replace(landing=np.full((1, 4), np.nan)), np.zeros(1))
+    with pytest.raises(ValueError, match="longer than 0"):
+        step_targets(falls._replace(leg_m=np.zeros(1)), np.zeros(1))

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from actors.locomotion import stairs
+from actors.locomotion import _stairs_kernels as stairs
 from actors.locomotion.planted import step_targets
 from actors.locomotion.skeleton import FOOT
 from tests.actors.locomotion import walks
@@ -111,23 +111,23 @@ def test_a_ramp_is_walked_as_level_ground():
     assert ramp.root[-1, -1, 2] - ramp.root[0, 0, 2] == pytest.approx(slope * 0.4 * 6, abs=0.005)
 
 
-def test_what_stands_for_level_ground():
-    rear, front = np.zeros(3), np.array([0.2, 0.0, -0.2])
-    assert stairs.ground_height(rear, front) == pytest.approx((0.1, 0.0, -0.17))
+@pytest.mark.parametrize(("front", "height"), [(0.2, 0.1), (0.0, 0.0), (-0.2, -0.17)])
+def test_what_stands_for_level_ground(front, height):
+    assert stairs.ground_height(0.0, front) == pytest.approx(height)
 
 
-def test_the_body_changes_height_late():
-    before, after = np.zeros(2), np.array([0.2, -0.2])
-    assert stairs.ground_under_way(before, after, np.full(2, 0.3)) == pytest.approx(before)
-    assert stairs.ground_under_way(before, after, np.full(2, 0.65)) == pytest.approx(after / 2)
-    assert stairs.ground_under_way(before, after, np.ones(2)) == pytest.approx(after)
+@pytest.mark.parametrize("after", [0.2, -0.2])
+def test_the_body_changes_height_late(after):
+    assert stairs.ground_under_way(0.0, after, 0.3) == 0.0
+    assert stairs.ground_under_way(0.0, after, 0.65) == pytest.approx(after / 2)
+    assert stairs.ground_under_way(0.0, after, 1.0) == pytest.approx(after)
 
 
-def test_how_far_a_rise_counts_as_stairs():
-    assert stairs.unevenness(np.array([0.0, 0.04, -0.04, 0.2])) == pytest.approx((0, 0.5, 0.5, 1))
+@pytest.mark.parametrize(("rise", "share"), [(0.0, 0.0), (0.04, 0.5), (-0.04, 0.5), (0.2, 1.0)])
+def test_how_far_a_rise_counts_as_stairs(rise, share):
+    assert stairs.unevenness(rise) == pytest.approx(share)
 
 
 def test_the_rear_heel_is_never_above_its_toe():
-    heel = stairs.heel_height(np.array([0.02, 0.02]), np.array([0.1, 0.5]), np.zeros(2))
-    assert heel[0] == pytest.approx(0.12)
-    assert heel[1] < FOOT
+    assert stairs.heel_height(0.02, 0.1, 0.0) == pytest.approx(0.12)
+    assert stairs.heel_height(0.02, 0.5, 0.0) < FOOT

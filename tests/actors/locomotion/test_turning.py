@@ -1,9 +1,10 @@
 import numpy as np
 import pytest
 
-from actors.locomotion import turning
+from actors.locomotion import _turning_kernels as turning
 from actors.locomotion.planted import step_targets
 from actors.locomotion.skeleton import TRACK_HALF_WIDTH
+from actors.locomotion.step_length import final_poses
 from tests.actors.locomotion import walks
 
 BENDS = [(0.3, 3.0), (0.3, 1.5), (0.3, 1.0), (0.3, 0.6), (0.5, 3.0), (0.5, 1.5), (0.5, 1.0)]
@@ -75,32 +76,30 @@ def test_the_back_of_a_circle_is_no_border():
     assert np.exp(1j * there.yaw) == pytest.approx(np.exp(1j * here.yaw))
 
 
+POSES = turning.Poses(*final_poses())
+
+
 def test_the_pelvis_comes_down_where_a_leg_is_too_short():
-    wide = np.array([[0.0, TRACK_HALF_WIDTH + 0.5, 0.0, 0.0]])
-    narrow = np.array([[0.0, TRACK_HALF_WIDTH, 0.0, 0.0]])
-    rear = np.array([[0.0, -TRACK_HALF_WIDTH, 0.0, 0.0]])
-    side = np.ones(1)
-    assert turning.both_down(rear, narrow, side).lowered[0] == 0.0
-    lowered = turning.both_down(rear, wide, side)
-    height = 0.993 - lowered.lowered[0]
-    assert np.hypot(0.25, height) == pytest.approx(0.9935)
-    assert lowered.place[0] == pytest.approx((0.0, 0.25))
+    rear = (0.0, -TRACK_HALF_WIDTH, 0.0, 0.0)
+    narrow, wide = (0.0, TRACK_HALF_WIDTH, 0.0, 0.0), (0.0, TRACK_HALF_WIDTH + 0.5, 0.0, 0.0)
+    assert turning.both_down(rear, narrow, 1.0, POSES).lowered == 0.0
+    pose = turning.both_down(rear, wide, 1.0, POSES)
+    assert np.hypot(0.25, 0.993 - pose.lowered) == pytest.approx(0.9935)
+    assert (pose.x, pose.y) == pytest.approx((0.0, 0.25))
 
 
 def test_a_pose_between_straight_footprints_is_that_of_the_curves():
-    rear = np.array([[0.0, -TRACK_HALF_WIDTH, 0.0, 0.0]])
-    front = np.array([[0.5, TRACK_HALF_WIDTH, 0.0, 0.0]])
-    pose = turning.both_down(rear, front, np.ones(1))
-    assert pose.rv[0] == pytest.approx(0.329832, abs=1e-5)
-    assert pose.pace[0] == pytest.approx(pose.rv[0])
-    assert pose.place[0, 1] == pytest.approx(0.0)
-    assert pose.speed[0] == pytest.approx((0.56, 0.0))
-    assert pose.turning[0] == 0.0
+    rear, front = (0.0, -TRACK_HALF_WIDTH, 0.0, 0.0), (0.5, TRACK_HALF_WIDTH, 0.0, 0.0)
+    pose = turning.both_down(rear, front, 1.0, POSES)
+    assert pose.rv == pytest.approx(0.329832, abs=1e-5)
+    assert pose.pace == pytest.approx(pose.rv)
+    assert pose.y == pytest.approx(0.0)
+    assert (pose.speed_x, pose.speed_y) == pytest.approx((0.56, 0.0))
+    assert pose.turning == 0.0
 
 
 def test_cubics_have_the_ends_and_slopes_they_are_given():
-    u = np.array([0.0, 1e-6, 1.0 - 1e-6, 1.0])
-    curve = turning.hermite(u, np.array(1.0), np.array(2.0), np.array(5.0), np.array(-3.0))
-    assert curve[[0, 3]] == pytest.approx((1.0, 5.0))
+    curve = [turning.hermite(u, 1.0, 2.0, 5.0, -3.0) for u in (0.0, 1e-6, 1.0 - 1e-6, 1.0)]
+    assert (curve[0], curve[3]) == pytest.approx((1.0, 5.0))
     assert (curve[1] - curve[0]) / 1e-6 == pytest.approx(2.0, abs=1e-4)
     assert (curve[3] - curve[2]) / 1e-6 == pytest.approx(-3.0, abs=1e-4)

@@ -5,13 +5,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from actors.locomotion import stairs
-from actors.locomotion._hips import Hips, hips_at, mix
-from actors.locomotion._reach import FULL, drawn_to_hip, hip_ceiling, raised_heel
 from actors.locomotion.curves import joint_angles, smooth
-from actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH, Floats, foot_pitch, leg_points
+from actors.locomotion.skeleton import (
+    FOOT,
+    TRACK_HALF_WIDTH,
+    Floats,
+    ankle_over_toe,
+    foot_pitch,
+    leg_points,
+)
 from actors.locomotion.step_length import RV_LONGEST, sl_planted
-from actors.locomotion.turning import BothDown, ankle_over_toe, both_down, forward_and_left
+from tests.naive.planted import stairs
+from tests.naive.planted.hips import Hips, hips_at, mix
+from tests.naive.planted.reach import FULL, drawn_to_hip, hip_ceiling, raised_heel
+from tests.naive.planted.turning import BothDown, both_down, forward_and_left
 
 _AT_ENDS = 0.04
 """Share of a step at its ends in which a foot is where the footprint has it, whatever the leg."""

@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from actors.locomotion import stairs
 from actors.locomotion.curves import pelvis_motion, smooth, support_share
 from actors.locomotion.skeleton import TRACK_HALF_WIDTH, Floats
-from actors.locomotion.turning import CROUCH, BothDown, forward_and_left, hips_under_way
+from tests.naive.planted import stairs
+from tests.naive.planted.turning import CROUCH, BothDown, forward_and_left, hips_under_way
 
 _CREST = 0.35
 """The wave of the hips starts so far after its trough, as that of Boulic's pelvis does."""

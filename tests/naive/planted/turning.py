@@ -10,15 +10,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from actors.locomotion import stairs
-from actors.locomotion._reach import hip_ceiling
-from actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH, Floats
+from actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH, Floats, ankle_over_toe
 from actors.locomotion.step_length import (
     DoubleSupport,
+    final_poses,
     longest_step,
     planted_length,
-    pose_of_length,
 )
+from tests.naive.planted import stairs
+from tests.naive.planted.reach import hip_ceiling
 
 CROUCH = 0.007
 """Hips are so much lower than the curves have them, or knees would lock."""
@@ -57,6 +57,13 @@ class BothDown(NamedTuple):
     """Height of the rear heel above its footprint, the toe on the ground."""
     strike: Floats
     """Pitch of the front foot, radians, toe up."""
+
+
+def pose_of_length(length: Floats) -> tuple[Floats, DoubleSupport]:
+    """Relative velocity and final pose of planted steps, from the table."""
+    lengths, rows = final_poses()
+    columns = [np.interp(length, lengths, column) for column in rows.T]
+    return columns[0], DoubleSupport(*columns[1:])
 
 
 def forward_and_left(yaw: Floats) -> tuple[Floats, Floats]:
@@ -114,15 +121,6 @@ def _lowered(root: Floats, rear: Floats, front: Floats, heel: Floats, side: Floa
         hip_ceiling(root - aside, ankle_over_toe(rear, -np.arcsin(heel / FOOT)), _REACH),
     )
     return np.maximum(root[..., 2] - ceiling, 0.0)
-
-
-def ankle_over_toe(footprint: Floats, pitch: Floats) -> Floats:
-    """Ankle (..., 3) of a foot that is pitched about its toe, which keeps to the footprint."""
-    forward, _ = forward_and_left(footprint[..., 3])
-    drawn = FOOT * (1.0 - np.cos(pitch))
-    level = footprint[..., :2] + drawn[..., None] * forward
-    height = footprint[..., 2] - FOOT * np.sin(pitch)
-    return np.concatenate([level, height[..., None]], axis=-1)
 
 
 def hermite(u: Floats, start: Floats, slope: Floats, end: Floats, end_slope: Floats) -> Floats:
