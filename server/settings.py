@@ -30,7 +30,7 @@ class ServerSettings(BaseSettings):
     model_config = SettingsConfigDict(env_prefix=ENV_PREFIX, frozen=True, extra="forbid")
 
     scene: Path | None = _option(
-        None, WORLD, "scene to run, a JSON file; without one, the plaza that comes along"
+        None, WORLD, "scene to run, a JSON file; without one, the gallery that comes along"
     )
     crowd: Path | None = _option(
         None, WORLD, "fit the scene to this recorded crowd (CSV t,id,x,y) instead of --scene"

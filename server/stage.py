@@ -22,7 +22,7 @@ from recordings import (
 from server.settings import ServerSettings
 from server.world.rules import Rules
 
-DEFAULT_SCENE: Final = Path(__file__).parent.parent / "scenes" / "plaza.json"
+DEFAULT_SCENE: Final = Path(__file__).parent.parent / "scenes" / "gallery.json"
 
 CROWD_MARGIN_M: Final = 2.0
 CROWD_PLACES: Final = 8

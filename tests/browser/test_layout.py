@@ -1,5 +1,6 @@
 """The page on a desk and on a phone: what there is to press lies within reach and apart."""
 
+import base64
 from collections.abc import Iterator
 from itertools import combinations
 from typing import Any
@@ -20,12 +21,31 @@ CONTROLS = (
 )
 PANELS = "#people, #plan"
 THUMB_PX = 44.0
-PICTURE_BYTES = 100_000
-"""An empty picture of any size compresses to a few kilobytes."""
+MOST_OF_ONE_COLOUR = 0.4
+LEAST_COLOURS = 700
+"""Of 32 768 that are told apart. Without the picture the page has fewer than 500."""
 
 _BOXES = """(selector) => [...document.querySelectorAll(selector)]
   .map((e) => ({ name: e.id || e.textContent, box: e.getBoundingClientRect().toJSON() }))
   .filter(({ box }) => box.width > 0)"""
+
+_COLOURS = """async (picture) => {
+  const image = new Image();
+  image.src = `data:image/png;base64,${picture}`;
+  await image.decode();
+  const canvas = document.createElement("canvas");
+  canvas.width = image.width;
+  canvas.height = image.height;
+  const pen = canvas.getContext("2d");
+  pen.drawImage(image, 0, 0);
+  const { data } = pen.getImageData(0, 0, image.width, image.height);
+  const counts = new Map();
+  for (let i = 0; i < data.length; i += 4) {
+    const colour = ((data[i] >> 3) << 10) | ((data[i + 1] >> 3) << 5) | (data[i + 2] >> 3);
+    counts.set(colour, (counts.get(colour) ?? 0) + 1);
+  }
+  return [...counts.values()].map((count) => (4 * count) / data.length);
+}"""
 
 
 async def visit(browser: Browser, url: str, width: int, height: int) -> Visitor:
@@ -42,6 +62,13 @@ async def boxes_of(visitor: Visitor, selector: str) -> list[dict[str, Any]]:
     """Names and boxes of what is seen of the page's elements."""
     boxes: list[dict[str, Any]] = await visitor.page.evaluate(_BOXES, selector)
     return boxes
+
+
+async def shares_of_colours(visitor: Visitor) -> list[float]:
+    """How much of what the page shows each colour takes, for all colours that there are."""
+    picture = base64.b64encode(await visitor.page.screenshot()).decode()
+    shares: list[float] = await visitor.page.evaluate(_COLOURS, picture)
+    return shares
 
 
 def overlapping(boxes: list[dict[str, Any]]) -> Iterator[str]:
@@ -115,7 +142,8 @@ async def test_a_picture_is_drawn(browser: Browser, url: str, width: int, height
     visitor = await visit(browser, url, width, height)
     frames = (await visitor.look())["frames"]
     await visitor.until(lambda view: view["frames"] > frames + 5)
-    picture = await visitor.page.screenshot()
-    assert len(picture) > PICTURE_BYTES
+    shares = await shares_of_colours(visitor)
+    assert len(shares) > LEAST_COLOURS
+    assert max(shares) < MOST_OF_ONE_COLOUR
     assert await visitor.complaints() == []
     await visitor.page.context.close()
