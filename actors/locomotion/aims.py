@@ -24,6 +24,10 @@ WALKING_MPS: Final = 0.3
 CLOSING_S: Final = 0.5
 """A step that goes nowhere: the other foot is drawn up, or the body turns."""
 SHORTEST_S: Final = 0.2
+SHORTEST_UP_S: Final = 0.4
+"""On stairs, up or down."""
+SHORTEST_REST_S: Final = 0.2
+"""Of a step under way that has to end elsewhere."""
 LONGEST_S: Final = 0.8
 
 # Lengths in legs.
@@ -42,6 +46,9 @@ _NEAREST_ASIDE: Final = 1.1 * TRACK_HALF_WIDTH
 """Feet that pass one another keep so far apart."""
 _RISE_M: Final = 0.22
 """Stairs are walked tread by tread: a step is so short that it does not climb more."""
+_UNEVEN_M: Final = 0.12
+_STEEPEST_M: Final = 0.42
+"""No foot is put further up or down."""
 
 _OPENING_RAD: Final = 1.3
 _CLOSING_RAD: Final = 0.6
@@ -105,7 +112,9 @@ def durations_s(course: Course, standing: Floats, leg_m: Floats, briskness: Floa
     seconds = np.minimum(natural, _LONGEST) / legs_a_second / briskness
     standing_still = legs_a_second * leg_m < 0.5 * WALKING_MPS
     seconds = np.where(standing_still, CLOSING_S, np.minimum(seconds, LONGEST_S))
-    return within_reach_s(course, standing, leg_m, seconds)
+    rise = np.abs(course.at(seconds)[:, 2] - standing[:, 2])
+    shortest = np.where(rise > _UNEVEN_M, SHORTEST_UP_S, SHORTEST_S)
+    return np.maximum(within_reach_s(course, standing, leg_m, seconds), shortest)
 
 
 def within_reach_s(course: Course, standing: Floats, leg_m: Floats, seconds: Floats) -> Floats:
@@ -116,7 +125,7 @@ def within_reach_s(course: Course, standing: Floats, leg_m: Floats, seconds: Flo
     seconds = seconds - np.maximum(distance - limit * leg_m, 0.0) / speed
     rise = np.abs(place[:, 2] - course.ahead[:, 0, 2])
     steep = np.maximum(rise / _RISE_M, 1.0)
-    return np.asarray(np.maximum(seconds / np.minimum(steep, 1.8), SHORTEST_S))
+    return np.asarray(np.maximum(seconds / np.minimum(steep, 1.8), SHORTEST_REST_S))
 
 
 def _stretched(apart: Floats, heading: Floats) -> tuple[Floats, Floats]:
@@ -171,6 +180,7 @@ def aim(
     landing[:, :2] = place + ahead[:, None] * forward + aside[:, None] * left
     landing[:, :2] = _limited(landing[:, :2], standing, middle, side, leg_m)
     landing, found = ground.settle(landing, foot_m)
+    found &= np.abs(landing[:, 2] - standing[:, 2]) <= _STEEPEST_M
     if not found.all():
         _retreat(landing, ~found, under, standing, middle, side, leg_m, ground)
     landing[:, :3] = np.round(landing[:, :3], 4)  # as it is told, or feet would land beside it
@@ -195,6 +205,7 @@ def _retreat(
         tried[:, :2] = _limited(nearer[rows], standing[rows], middle[rows], side[rows], leg_m[rows])
         tried[:, 2] = standing[rows, 2]
         landing[rows], found = ground.settle(tried, FOOT * leg_m[rows])
+        found &= np.abs(landing[rows, 2] - standing[rows, 2]) <= _STEEPEST_M
         lost[rows[found]] = False
 
 

@@ -57,7 +57,7 @@ _LATEST: Final = 0.75
 """A step is re-aimed when its end has moved by more, and not later than this share of it."""
 _LEAPT_M: Final = 0.15
 _LAST: Final = 0.95
-_QUICK_S: Final = 0.3
+_QUICK_S: Final = 0.25
 """If it has moved so far, later still; and the foot comes down within that time."""
 _REST_S: Final = 0.15
 """It is left alone for so long before it may be re-aimed again."""
