@@ -21,6 +21,7 @@ COMMANDS: Final = {
     "bots": Command("bots.cli", "send people made of code: load, or a recorded crowd"),
     "evaluate": Command("evaluation.cli", "measure actors among recorded people"),
     "scene": Command("scenery.cli", "check a scene, draw it, make one of a mesh"),
+    "gait": Command("footage.cli", "draw and film how everyone walks"),
     "demo": Command("esplanade.demo", "run the demo world with actors and a few visitors"),
 }
 
@@ -68,6 +69,7 @@ def _help() -> str:
         "  esplanade bots --count 200 --duration 60",
         "  esplanade evaluate zara1.csv --policy esplanade straight",
         "  esplanade scene check my.json",
+        "  esplanade gait render --out pictures",
         "",
         "`esplanade COMMAND --help` explains a command and all its options.",
     ]

@@ -1,0 +1,141 @@
+"""Strips, trails and films of a recorded walk."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from PIL import Image
+
+from footage.camera import Camera, Floats
+from footage.figure import parts_of
+from footage.painting import Canvas
+from footage.recording import Recording
+
+PANELS: Final = 9
+"""Pictures in a row of a strip."""
+
+_PANEL: Final = (170, 270)
+_PANEL_SCALE: Final = 124.0
+_FILM: Final = (340, 290)
+_FILM_SCALE: Final = 122.0
+_COLOURS: Final = 64
+_TRAIL_WIDTH: Final = 1500
+_TRAIL_MARGIN: Final = 70
+_TRAIL_SCALE: Final = 170.0
+_APART_M: Final = 0.62
+"""Bodies of a trail are drawn so far apart."""
+_FOLLOWED_S: Final = 0.8
+"""The camera goes where the body is on average over so long."""
+_SHADOW_M: Final = 0.19
+
+
+def draw_strip(recording: Recording, path: Path) -> None:
+    """Pictures at even times, a row for each of the walk's spans; the camera goes along."""
+    followed = _followed(recording)
+    spans = recording.walk.spans_s
+    strip = Image.new("RGB", (_PANEL[0] * PANELS, _PANEL[1] * len(spans)))
+    for row, span in enumerate(spans):
+        for column, seconds in enumerate(np.linspace(*span, PANELS).tolist()):
+            frame = int(np.argmin(np.abs(recording.times_s - seconds)))
+            canvas = _frame(recording, frame, followed[frame], _PANEL, _PANEL_SCALE)
+            canvas.write(f"{recording.times_s[frame]:.2f} s", (9, _PANEL[1] - 22), 12)
+            strip.paste(canvas.picture(), (column * _PANEL[0], row * _PANEL[1]))
+    _save(strip, path)
+
+
+def draw_trail(recording: Recording, path: Path) -> None:
+    """The whole way in one picture: bodies where they were, and all footprints."""
+    walk, poses = recording.walk, recording.poses
+    frames = _spread_out(recording)
+    points = np.concatenate([poses.head[frames], poses.toes[frames].reshape(-1, 3)])
+    probe = Camera((0.0, 0.0, 0.0), *walk.view, 1.0, (0, 0))
+    seen = probe.seen(points)
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    scale = min(_TRAIL_SCALE, (_TRAIL_WIDTH - 2 * _TRAIL_MARGIN) / float(high[0] - low[0]))
+    width, height = (round(float(span) * scale) + 2 * _TRAIL_MARGIN for span in (high - low)[:2])
+    x, y, z = (0.5 * (low + high) @ probe.axes).tolist()
+    camera = Camera((x, y, z), *walk.view, scale, (width, height))
+    canvas = Canvas(camera)
+    canvas.paint_scene(walk.scene)
+    for footprint in recording.footprints:
+        canvas.paint_footprint(footprint, float(recording.build.leg_m[0]))
+    for frame in frames:
+        _paint_shadow(canvas, recording, frame)
+    nearness = poses.root[frames] @ camera.axes[2]
+    for k in np.argsort(nearness, kind="stable").tolist():
+        canvas.paint_body(parts_of(poses, frames[k]))
+    canvas.write(walk.caption, (14, 10), 16)
+    _save(canvas.picture(), path)
+
+
+def draw_film(recording: Recording, path: Path, advance: Callable[[], None]) -> None:
+    """A GIF of all frames; `advance` is called after each of them."""
+    followed = _followed(recording)
+    pictures = []
+    for frame, seconds in enumerate(recording.times_s.tolist()):
+        canvas = _frame(recording, frame, followed[frame], _FILM, _FILM_SCALE)
+        canvas.write(recording.walk.caption, (12, 8), 14)
+        canvas.write(f"{seconds:.2f} s", (12, _FILM[1] - 26), 14)
+        pictures.append(canvas.picture())
+        advance()
+    # One palette for all frames: colours that change from frame to frame would flicker.
+    palette = pictures[len(pictures) // 2].quantize(_COLOURS)
+    indexed = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
+    frame_s = float(recording.times_s[1] - recording.times_s[0])
+    indexed[0].save(
+        path,
+        save_all=True,
+        append_images=indexed[1:],
+        duration=round(1000.0 * frame_s),
+        loop=0,
+        optimize=True,
+    )
+
+
+def _save(picture: Image.Image, path: Path) -> None:
+    """As PNG; few colours make small files."""
+    picture.quantize(2 * _COLOURS, dither=Image.Dither.NONE).save(path, optimize=True)
+
+
+def _frame(
+    recording: Recording, frame: int, target: Floats, size: tuple[int, int], scale: float
+) -> Canvas:
+    """One frame, the camera on a target (3,)."""
+    walk = recording.walk
+    x, y, z = target.tolist()
+    canvas = Canvas(Camera((x, y, z), *walk.view, scale, size))
+    canvas.paint_scene(walk.scene)
+    for footprint in recording.footprints:
+        if footprint.since_s <= recording.times_s[frame]:
+            canvas.paint_footprint(footprint, float(recording.build.leg_m[0]))
+    _paint_shadow(canvas, recording, frame)
+    canvas.paint_body(parts_of(recording.poses, frame))
+    return canvas
+
+
+def _followed(recording: Recording) -> Floats:
+    """Where the camera looks, (F, 3): bodies sway, cameras should not."""
+    root, times = recording.poses.root, recording.times_s
+    half = max(1, round(0.5 * _FOLLOWED_S / float(times[1] - times[0])))
+    padded = np.pad(root, ((half, half), (0, 0)), mode="edge")
+    window = np.ones(2 * half + 1) / (2 * half + 1)
+    return np.stack([np.convolve(axis, window, mode="valid") for axis in padded.T], axis=1)
+
+
+def _paint_shadow(canvas: Canvas, recording: Recording, frame: int) -> None:
+    """Below the hips, on level ground only."""
+    if not recording.walk.scene.solids():
+        x, y, _ = recording.poses.root[frame].tolist()
+        canvas.paint_shadow(np.array([x, y, 0.0]), _SHADOW_M)
+
+
+def _spread_out(recording: Recording) -> list[int]:
+    """Frames in which the body has come some way since the one before, ends included."""
+    root = recording.poses.root
+    gone = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(root, axis=0), axis=1))))
+    count = max(2, round(float(gone[-1]) / _APART_M) + 1)
+    frames = np.searchsorted(gone, np.linspace(0.0, gone[-1] - 1e-9, count))
+    return sorted(set(map(int, frames)))
