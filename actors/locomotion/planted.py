@@ -9,7 +9,8 @@ from functools import cache
 
 import numpy as np
 
-from actors.locomotion._planted_kernels import fill_clearances, fill_targets
+from actors.locomotion._feet_kernels import fill_clearances
+from actors.locomotion._planted_kernels import fill_targets
 from actors.locomotion._turning_kernels import Poses
 from actors.locomotion.footfalls import Footfalls, Targets, room_for
 from actors.locomotion.skeleton import Floats

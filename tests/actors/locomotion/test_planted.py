@@ -204,9 +204,9 @@ def test_kernels_say_what_whole_arrays_say(falls):
 
 def test_anything_that_footprints_may_be_gives_a_step():
     """All is finite, legs reach, and steps join."""
-    falls = scattered(2000)
+    falls = scattered(1000)
     right = falls.right
-    walked = walks.walk(falls, 60)
+    walked = walks.walk(falls, 40)
     assert all(np.all(np.isfinite(values)) for values in walked.targets)
     assert walked.missed.max() < 1e-9
     assert walks.landing_error(walked) < 1e-9
