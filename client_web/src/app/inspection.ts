@@ -17,6 +17,8 @@ export interface Inspection {
   /** Frames drawn since the page was loaded. */
   readonly frames: number;
   readonly qualityLevel: number;
+  /** Script time a frame, milliseconds: moving everybody, and placing the parts of their figures. */
+  readonly scriptMs: { readonly moving: number; readonly figures: number };
   readonly delayS: number | null;
   readonly correctionM: number | null;
 }
@@ -66,6 +68,9 @@ export function offerInspection(session: Session, view: View): void {
     },
     get qualityLevel() {
       return view.qualityLevel;
+    },
+    get scriptMs() {
+      return { moving: session.moving.ms, figures: view.dressing.ms };
     },
     get delayS() {
       return session.world?.delayS ?? null;

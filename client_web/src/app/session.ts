@@ -15,6 +15,7 @@ import { PeopleList } from "../ui/people";
 import { PlanPanel } from "../ui/plan";
 import { StatusChip } from "../ui/status";
 import { World } from "../world/world";
+import { Cost } from "./cost";
 import type { View } from "./view";
 import { Walking } from "./walking";
 
@@ -26,6 +27,8 @@ export class Session {
   world: World | null = null;
   chosenId: number | null = null;
   frames = 0;
+  /** Of moving everybody and solving their joints. */
+  readonly moving = new Cost();
   readonly connection: Connection;
   private welcome: Welcome | null = null;
   private readonly walking: Walking;
@@ -229,7 +232,9 @@ export class Session {
     const steppedS = Math.min(frameS, LONGEST_FRAME_S);
     this.view.camera.orbit(this.walking.turnPerS * steppedS, 0);
     this.walking.frame(this.view.camera.yaw);
-    world.advance(this.serverNowS(), steppedS);
+    this.moving.of(() => {
+      world.advance(this.serverNowS(), steppedS);
+    });
     this.view.frame(world, this.planSwitch.open ? this.chosenId : null, frameS);
     if (ms - this.panelsMs > PANELS_MS) {
       this.panelsMs = ms;

@@ -14,6 +14,7 @@ import { Stage } from "../render/stage";
 import { buildTown, type Town } from "../render/town";
 import type { Triangles } from "../world/mesh";
 import type { Avatar, World } from "../world/world";
+import { Cost } from "./cost";
 
 /** Names of people so far above or below are dimmed. */
 const STOREY_M = 1.8;
@@ -23,6 +24,8 @@ export class View {
   readonly camera: FollowCamera;
   readonly marks: Marks;
   readonly footwork = new Footwork();
+  /** Of putting every part of every figure in its place. */
+  readonly dressing = new Cost();
   private readonly stage: Stage;
   private readonly figures = new Figures();
   private readonly plans = new Plans();
@@ -56,7 +59,7 @@ export class View {
 
   /** The world that is shown from now on. */
   enter(world: World, mesh: Triangles | null = null): void {
-    this.town = buildTown(world.scene, this.cutaway, mesh);
+    this.town = buildTown(world, this.cutaway, mesh);
     this.stage.show(this.town, world.scene);
     this.marks.walkTarget(null);
   }
@@ -96,7 +99,9 @@ export class View {
     }
     this.town?.doors.update(world.doors, frameS);
     this.drawn = new Map([...avatars].filter(([, avatar]) => this.shown(avatar) > 0.5));
-    this.figures.update(this.drawn, this.stage.camera);
+    this.dressing.of(() => {
+      this.figures.update(this.drawn, this.stage.camera);
+    });
     this.footwork.update(this.drawn);
     this.marks.update(this.drawn, own?.pose, chosen, frameS);
     this.plans.show(world.plan, world.floors);

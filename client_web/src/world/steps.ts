@@ -15,6 +15,13 @@ import { normalise, type Rotation, set, setRotation, type Vector, vector } from 
 const SETTLE = 0.1;
 /** A standing foot whose pitch is so much below level rises on its toe where the leg is short. */
 const EASE_RAD = 0.1;
+const LANDING = [
+  KeyNumber.ANKLE,
+  KeyNumber.ANKLE + 1,
+  KeyNumber.ANKLE + 2,
+  KeyNumber.SWING_PITCH,
+  KeyNumber.SWING_HEADING,
+];
 
 const key = new Float64Array(KEY_NUMBERS);
 const weights = new Float64Array(STEP_KEYS);
@@ -118,6 +125,22 @@ function between(keys: Float64Array, share: number): void {
     if (weight === 0) continue;
     const row = k * KEY_NUMBERS;
     for (let i = 0; i < KEY_NUMBERS; i++) key[i] = number(key, i) + weight * number(keys, row + i);
+  }
+  comeToRest(keys, share);
+}
+
+/** The swing foot lands: its numbers end level, not on the parabola that `weigh` ends with. */
+function comeToRest(keys: Float64Array, share: number): void {
+  const s = share * (STEP_KEYS - 1) - (STEP_KEYS - 2);
+  if (s <= 0) return;
+  const weight = s * s * (1 - s);
+  const row = (STEP_KEYS - 3) * KEY_NUMBERS;
+  for (const i of LANDING) {
+    const slope =
+      0.5 * number(keys, row + i) -
+      2 * number(keys, row + KEY_NUMBERS + i) +
+      1.5 * number(keys, row + 2 * KEY_NUMBERS + i);
+    key[i] = number(key, i) + weight * slope;
   }
 }
 

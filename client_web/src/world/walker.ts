@@ -26,6 +26,7 @@ const SILENT_S = 0.4;
 const ELSEWHERE_M = 0.35;
 /** This far is no walk: somebody was put somewhere else. */
 const JUMP_M = 1.5;
+const SAME_S = 1e-6;
 /** A head is turned no further against the chest, and takes so long. */
 const LOOK_RAD = 1.1;
 const LOOK_S = 0.12;
@@ -37,8 +38,8 @@ interface Timed {
   readonly step: Step;
   readonly beginS: number;
   readonly endS: number;
-  /** It was not known yet when it was to be drawn first. */
-  readonly late: boolean;
+  /** What comes first of it was not known in time. */
+  readonly missed: boolean;
 }
 
 export class Walker {
@@ -80,22 +81,26 @@ export class Walker {
   add(record: StepRecord, beginS: number, endS: number): void {
     while ((this.steps.at(-1)?.beginS ?? -Infinity) >= beginS) this.steps.pop();
     const lateS = this.timeS - beginS;
-    const step = readyToDraw(record, this.build);
-    this.steps.push({ step, beginS, endS, late: lateS > 0 });
-    if (this.steps.length > MOST_STEPS) this.steps.shift();
-    const waited = this.drawn !== null && this.drawn.endS <= beginS + 1e-6;
-    if (lateS > 0 && waited && this.lagS + lateS < LATEST_S) {
+    const waited = this.drawn !== null && this.drawn.endS <= beginS + SAME_S;
+    const waits = lateS > 0 && waited && this.lagS + lateS < LATEST_S;
+    if (waits) {
       this.lagS += lateS;
       this.timeS = beginS;
     }
+    const step = readyToDraw(record, this.build);
+    this.steps.push({ step, beginS, endS, missed: lateS > 0 && !waits });
+    if (this.steps.length > MOST_STEPS) this.steps.shift();
   }
 
   /** Where it is drawn at `timeS`, given where its snapshots have it; writes the body. */
   advance(timeS: number, snapshots: Pose, frameS: number): Pose {
+    const fresh = this.timeS === -Infinity;
     this.lagS = Math.max(0, this.lagS - HURRY * frameS);
     this.timeS = timeS - this.lagS;
     this.glide.advance(snapshots, frameS);
-    this.choose(this.chosen(snapshots));
+    const next = this.chosen(snapshots);
+    if (fresh) this.drawn = next;
+    else this.choose(next);
     this.show(this.drawn, this.posture);
     if (this.fadeLeftS > 0) {
       this.fadeLeftS -= frameS;
@@ -177,7 +182,7 @@ export class Walker {
 /** Whether the second step goes on where the first ends. */
 function joins(first: Timed, second: Timed): boolean {
   const { continues, standing } = second.step;
-  if (continues && second.late) return false;
+  if (second.missed) return false;
   const { x, y, z } = continues ? first.step.standing : first.step.landing;
   return Math.hypot(x - standing.x, y - standing.y, z - standing.z) < 1e-3;
 }
