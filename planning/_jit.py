@@ -12,7 +12,12 @@ from typing import TypeVar, cast
 import numba
 
 _KEPT_S = 30 * 24 * 3600.0
-_SOURCES = ("planning/_*.py", "actors/locomotion/_*.py", "actors/locomotion/skeleton.py")
+_SOURCES = (
+    "planning/_*.py",
+    "actors/locomotion/_*.py",
+    "actors/locomotion/skeleton.py",
+    "actors/locomotion/step_length.py",
+)
 """Where kernels are, and constants that are compiled into them."""
 
 F = TypeVar("F", bound=Callable[..., object])

@@ -4,6 +4,8 @@ import os
 import subprocess
 import sys
 
+import pytest
+
 from planning import _jit
 from planning._jit import kernel
 from tests.planning.worlds import COMPILED
@@ -30,13 +32,22 @@ def test_kernels_with_checked_bounds_are_kept_apart() -> None:
     assert folder(NUMBA_BOUNDSCHECK="1") != plain
 
 
-def test_an_edit_of_any_kernel_leads_to_another_folder(tmp_path, monkeypatch) -> None:
-    (tmp_path / "_one_kernels.py").write_text("a = 1")
-    (tmp_path / "_jit.py").write_text("")
-    monkeypatch.setattr(_jit, "__file__", str(tmp_path / "_jit.py"))
+@pytest.mark.parametrize(
+    "edited",
+    [
+        "planning/_one_kernels.py",
+        "actors/locomotion/_a_kernels.py",
+        "actors/locomotion/skeleton.py",
+    ],
+)
+def test_an_edit_of_any_kernel_leads_to_another_folder(edited, tmp_path, monkeypatch) -> None:
+    for folder in ("planning", "actors/locomotion"):
+        (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / edited).write_text("a = 1")
+    monkeypatch.setattr(_jit, "__file__", str(tmp_path / "planning" / "_jit.py"))
     before = _jit._source_digest()
     assert _jit._source_digest() == before
-    (tmp_path / "_one_kernels.py").write_text("a = 2")
+    (tmp_path / edited).write_text("a = 2")
     assert _jit._source_digest() != before
 
 
