@@ -33,6 +33,9 @@ ARMS: Final = slice(17, 21)
 """Shoulders and elbows together."""
 WIDTH: Final = 21
 
+LANDING: Final = [7, 8, 9, 10, 12]
+"""What comes to rest as the swinging foot lands: its ankle, pitch and heading."""
+
 SETTLE: Final = 0.1
 """Share of a step in which a foot that has left the ground comes over to its curve."""
 
@@ -131,9 +134,13 @@ def between(keys: Floats, u: Floats) -> Floats:
 
     Quaternions follow the same curves, component by component, and are made unit again: keys of
     one step are some degrees apart, where that is as good as going along great circles. Neighbours
-    among the keys must have the same sign (`align`).
+    among the keys must have the same sign (`align`). What moves the swinging foot comes to rest at
+    the end: there its curves are level.
     """
     out = np.einsum("nk,nkd->nd", weights(u), keys)
+    s = np.clip(u * (KEYS - 1) - (KEYS - 2), 0.0, 1.0)
+    slopes = np.einsum("k,nkd->nd", _TANGENTS[-1, -3:], keys[:, -3:, LANDING])
+    out[:, LANDING] += (s * s * (1.0 - s))[:, None] * slopes
     for part in (PELVIS, CHEST):
         out[:, part] /= np.linalg.norm(out[:, part], axis=1, keepdims=True)
     return np.asarray(out)
