@@ -1,0 +1,13 @@
+"""Walks recorded once for all tests."""
+
+from functools import cache
+
+from footage.recording import Recording, record
+from footage.walks import walks
+
+FRAMES_A_SECOND = 20.0
+
+
+@cache
+def filmed(name: str, seed: int = 0) -> Recording:
+    return record(walks()[name], FRAMES_A_SECOND, seed)

@@ -1,0 +1,58 @@
+"""Strips, trails and films are written, in the sizes they should have."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from actors.locomotion.posing import Pose
+from footage.recording import Recording
+from footage.strips import PANELS, draw_film, draw_strip, draw_trail
+from tests.footage.films import filmed
+
+
+def beginning(frames: int) -> Recording:
+    film = filmed("stairs")
+    poses = Pose._make(values[:frames] for values in film.poses)
+    return replace(film, times_s=film.times_s[:frames], poses=poses)
+
+
+def test_strips_have_a_row_for_every_span(tmp_path: Path):
+    film = filmed("stairs")
+    draw_strip(film, tmp_path / "strip.png")
+    with Image.open(tmp_path / "strip.png") as strip:
+        assert strip.width % PANELS == 0
+        assert strip.height % len(film.walk.spans_s) == 0
+        colours = strip.convert("RGB").getcolors(1 << 20)
+    assert colours is not None
+    assert len(colours) > 20
+
+
+def test_panels_of_a_strip_differ(tmp_path: Path):
+    draw_strip(filmed("flat"), tmp_path / "strip.png")
+    with Image.open(tmp_path / "strip.png") as strip:
+        pixels = np.asarray(strip.convert("RGB"), dtype=int)
+    width = pixels.shape[1] // PANELS
+    first, second = pixels[:, :width], pixels[:, width : 2 * width]
+    assert np.mean(np.abs(first - second).max(axis=2) > 40) > 0.01
+
+
+def test_trails_hold_the_whole_way(tmp_path: Path):
+    draw_trail(filmed("flat"), tmp_path / "trail.png")
+    with Image.open(tmp_path / "trail.png") as trail:
+        assert trail.width > 2 * trail.height
+        assert trail.width <= 1500
+
+
+def test_films_have_all_frames_and_tell_of_each(tmp_path: Path):
+    told = []
+    draw_film(beginning(12), tmp_path / "film.gif", lambda: told.append(1))
+    assert len(told) == 12
+    with Image.open(tmp_path / "film.gif") as film:
+        assert film.n_frames > 1
+        shown_ms = 0
+        for frame in range(film.n_frames):
+            film.seek(frame)
+            shown_ms += film.info["duration"]
+    assert shown_ms == 12 * 50
