@@ -126,6 +126,7 @@ export class View {
     const { quality } = this.control;
     this.stage.apply(quality);
     this.figures.castShadows(quality.livingShadows);
+    this.figures.fineUpTo(quality.fineFiguresM);
     this.marks.softShadows(!quality.livingShadows);
   }
 }

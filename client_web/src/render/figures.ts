@@ -8,11 +8,10 @@ import { ACTOR, type Clothing, clothingOf } from "./palette";
 import { type PartName, PARTS } from "./parts";
 
 /** Corners around a limb, of figures near by and far away. */
-const FINE_CORNERS = 14;
+const FINE_CORNERS = 12;
 const COARSE_CORNERS = 6;
-/** From here on figures are coarse; back again a little nearer, so that nobody flickers. */
-const COARSE_M = 16;
-const FINE_M = 14;
+/** Who was coarse is so again until this much nearer, so that nobody flickers. */
+const NEARER = 0.88;
 
 /** What so many wear is remembered, those who have left among them. */
 const MOST_KNOWN = 2000;
@@ -26,6 +25,7 @@ export class Figures {
   private readonly coarse = this.wardrobe(COARSE_CORNERS);
   private readonly all = [...Object.values(this.fine), ...Object.values(this.coarse)];
   private readonly clothes = new Map<number, Clothing>();
+  private fineM = 0;
   private readonly coarsely = new Set<number>();
 
   /** Draw every avatar with the joints that it has in this frame. */
@@ -40,6 +40,11 @@ export class Figures {
       dress(parts, avatar, this.clothesOf(avatar.id));
     }
     for (const part of this.all) part.finish();
+  }
+
+  /** Figures are fine up to this distance. */
+  fineUpTo(metres: number): void {
+    this.fineM = metres;
   }
 
   castShadows(cast: boolean): void {
@@ -57,7 +62,7 @@ export class Figures {
   ): boolean {
     const { x, y, z } = camera.position;
     const distanceM = Math.hypot(root.x - x, root.y - y, root.z - z);
-    const coarse = distanceM > (this.coarsely.has(id) ? FINE_M : COARSE_M);
+    const coarse = distanceM > this.fineM * (this.coarsely.has(id) ? NEARER : 1);
     if (coarse) this.coarsely.add(id);
     else this.coarsely.delete(id);
     return coarse;

@@ -36,16 +36,16 @@ export function head(corners: number): BufferGeometry {
     ],
     corners,
   );
-  const nose = new ConeGeometry(0.02, 0.062, 7, 1)
+  const nose = new ConeGeometry(0.02, 0.062, corners > 8 ? 7 : 4, 1)
     .rotateX(Math.PI / 2)
     .rotateY(-0.34)
     .translate(0.096, 0, 0.19);
   const eyes = [-1, 1].flatMap((side) => [
-    ball([0.0885, side * 0.034, 0.213], [0.009, 0.0115, 0.0135], EYE),
-    ball([0.086, side * 0.036, 0.238], [0.01, 0.02, 0.0045], BROW),
-    ball([-0.004, side * 0.081, 0.2], [0.02, 0.009, 0.03], WHITE),
+    ball(corners, [0.0885, side * 0.034, 0.213], [0.009, 0.0115, 0.0135], EYE),
+    ball(corners, [0.086, side * 0.036, 0.238], [0.01, 0.02, 0.0045], BROW),
+    ball(corners, [-0.004, side * 0.081, 0.2], [0.02, 0.009, 0.03], WHITE),
   ]);
-  const mouth = ball([0.092, 0, 0.138], [0.01, 0.026, 0.0065], LIPS);
+  const mouth = ball(corners, [0.092, 0, 0.138], [0.01, 0.026, 0.0065], LIPS);
   return merge([skull, neck, painted(nose, WHITE), ...eyes, mouth]);
 }
 
@@ -79,7 +79,7 @@ const FASHIONS: Record<HairName, readonly Curl[]> = {
 export function hair(name: HairName, corners: number): BufferGeometry {
   const cut = skin(FASHIONS[name].map((curl) => sloped(curl, corners)));
   if (name !== "bun") return cut;
-  return merge([cut, ball([-0.115, 0, 0.29], [0.042, 0.045, 0.042], WHITE)]);
+  return merge([cut, ball(corners, [-0.115, 0, 0.29], [0.042, 0.045, 0.042], WHITE)]);
 }
 
 /** The green cap of actors. */
@@ -112,12 +112,20 @@ function sloped({ slope = 0, ...rest }: Curl, corners: number): Hoop {
   return { points: points.map(([x, y, z]) => [x, y, z + slope * x] as const), color };
 }
 
+/** Details of a face have this part of a limb's corners. */
+const DETAIL = 0.55;
+
 function ball(
+  corners: number,
   [x, y, z]: readonly [number, number, number],
   [sx, sy, sz]: readonly [number, number, number],
   color: Color,
 ): BufferGeometry {
-  return painted(new SphereGeometry(1, 8, 6).scale(sx, sy, sz).translate(x, y, z), color);
+  const around = Math.max(4, Math.round(corners * DETAIL));
+  return painted(
+    new SphereGeometry(1, around, Math.max(3, around - 2)).scale(sx, sy, sz).translate(x, y, z),
+    color,
+  );
 }
 
 /** One geometry of shapes with and without texture coordinates. */

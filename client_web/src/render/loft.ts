@@ -39,14 +39,19 @@ export function oval(
   return { points, color };
 }
 
+/** Shapes with fewer corners are seen from afar: every second hoop is enough for them. */
+const FEW_CORNERS = 8;
+
 /** The skin over ovals from the top down, closed at both ends. */
 export function loft(ovals: readonly Oval[], corners: number): BufferGeometry {
   return skin(ovals.map((each) => oval(each, corners)));
 }
 
 /** The skin over hoops of equally many points, closed at both ends by their middles. */
-export function skin(hoops: readonly Hoop[]): BufferGeometry {
-  const corners = hoops[0]?.points.length ?? 0;
+export function skin(all: readonly Hoop[]): BufferGeometry {
+  const corners = all[0]?.points.length ?? 0;
+  const hoops =
+    corners < FEW_CORNERS ? all.filter((_, i) => i % 2 === 0 || i === all.length - 1) : all;
   const position: number[] = [];
   const colors: number[] = [];
   for (const { points, color } of [end(hoops[0]), ...hoops, end(hoops.at(-1))]) {

@@ -7,15 +7,17 @@ export interface Quality {
   livingShadows: boolean;
   /** Shadows of what stands still, drawn once. */
   shadows: boolean;
+  /** Figures nearer than this are fine. */
+  fineFiguresM: number;
 }
 
 /** From fine to fast. */
 export const LEVELS: readonly Quality[] = [
-  { pixelRatio: 2, livingShadows: true, shadows: true },
-  { pixelRatio: 1.25, livingShadows: false, shadows: true },
-  { pixelRatio: 1, livingShadows: false, shadows: true },
-  { pixelRatio: 0.75, livingShadows: false, shadows: false },
-  { pixelRatio: 0.5, livingShadows: false, shadows: false },
+  { pixelRatio: 2, livingShadows: true, shadows: true, fineFiguresM: 24 },
+  { pixelRatio: 1.25, livingShadows: false, shadows: true, fineFiguresM: 16 },
+  { pixelRatio: 1, livingShadows: false, shadows: true, fineFiguresM: 14 },
+  { pixelRatio: 0.75, livingShadows: false, shadows: false, fineFiguresM: 9 },
+  { pixelRatio: 0.5, livingShadows: false, shadows: false, fineFiguresM: 6 },
 ];
 
 const SOFTWARE_LEVEL = 3;
