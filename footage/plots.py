@@ -22,6 +22,7 @@ from actors.locomotion.step_length import (
     solve_relative_velocity,
 )
 from footage.recording import record
+from footage.targets import SHARES, random_targets
 from footage.walks import walks
 
 _STYLE: Final[dict[Any, Any]] = {
@@ -243,16 +244,9 @@ def key_poses(path: Path) -> None:
 def reaching(path: Path) -> None:
     chain = two_stage.heel_chain(left=True)
     random = np.random.default_rng(5)
-    with _figure(path, 3) as axes:
-        for axis, (title, full_share) in zip(
-            axes,
-            (("limb is enough", 0.0), ("half and half", 0.5), ("all of the chain", 1.0)),
-            strict=True,
-        ):
-            starts, goals = random.uniform(chain.lows, chain.highs, (2, 1000, len(chain.lows)))
-            by_limb = random.random(1000) >= full_share
-            goals[by_limb, :6] = starts[by_limb, :6]
-            targets = two_stage.effector(chain, goals)
+    with _figure(path, len(SHARES)) as axes:
+        for axis, (title, trunk_share) in zip(axes, SHARES.items(), strict=True):
+            starts, targets = random_targets(chain, trunk_share, 1000, random)
             for found, colour, label in (
                 (two_stage.reach_by_ccd(chain, targets, starts), _GREY, "plain CCD"),
                 (
