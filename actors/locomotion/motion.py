@@ -72,6 +72,10 @@ class Steps(NamedTuple):
         """Some of the steps."""
         return Steps._make(column[rows] for column in self)
 
+    def heads(self, rows: NDArray[np.int64]) -> Steps:
+        """Some of the steps without their keys, which are most of what they weigh."""
+        return Steps._make((*(column[rows] for column in self[:-1]), self.keys[:0]))
+
     def put(self, rows: NDArray[np.int64] | NDArray[np.bool_], steps: Steps) -> None:
         """Write other steps over some of these."""
         for column, new in zip(self, steps, strict=True):

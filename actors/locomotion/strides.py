@@ -7,6 +7,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from actors.locomotion.footfalls import Footfalls, Targets
 from actors.locomotion.motion import (
     ANKLE,
     CHEST,
@@ -24,7 +25,7 @@ from actors.locomotion.motion import (
     smooth,
     under_way,
 )
-from actors.locomotion.planted import Footfalls, Targets, step_targets
+from actors.locomotion.planted import step_targets
 from actors.locomotion.rotations import multiply, normalise
 from actors.locomotion.stance import Build, stance
 
@@ -130,6 +131,15 @@ def standing_keys(falls: Footfalls) -> Floats:
     """Keys (N, KEYS, WIDTH) of bodies that just stand on two footprints."""
     still = _keys(step_targets(falls, np.zeros(1)), falls)
     return np.repeat(still, KEYS, axis=1)
+
+
+def shifted(now: Drawn, falls: Footfalls, places: Floats) -> Floats:
+    """Keys of bodies on both feet whose hips move over places (N, 2) from where they are drawn."""
+    keys = np.repeat(now.key[:, None], KEYS, axis=1)
+    shift = places - falls.standing[:, :2] - now.key[:, :2]
+    keys[..., :2] += smooth(_SHARES)[None, :, None] * shift[:, None]
+    keys[..., ANKLE] = 0.0
+    return keys
 
 
 def _start_at_speed(keys: Floats, slope: Floats, goes_on: NDArray[np.bool_]) -> None:
