@@ -34,6 +34,7 @@ export const bare: SceneData = {
   walls: [],
   stairs: [],
   doors: [],
+  places: [],
   storeys: [0],
 };
 

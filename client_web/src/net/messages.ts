@@ -57,6 +57,13 @@ export interface SceneDoor extends SceneWall {
   name: string;
 }
 
+/** A point with a name; `z_m` says which floor: the nearest. */
+export interface ScenePlace {
+  name: string;
+  position: Point;
+  z_m: number;
+}
+
 export interface SceneData {
   name: string;
   bounds: [x0: number, y0: number, x1: number, y1: number];
@@ -64,6 +71,7 @@ export interface SceneData {
   walls: SceneWall[];
   stairs: SceneStairs[];
   doors: SceneDoor[];
+  places: ScenePlace[];
   /** Heights of the storeys, metres, the lowest first. */
   storeys: number[];
   /** Where the triangles are to be had, seen from the page; only of a building that is a mesh. */

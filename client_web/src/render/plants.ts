@@ -11,7 +11,9 @@ const TREE_HEIGHT_M = 2.2;
 const BED_M = 0.35;
 /** Radius of a crown, as part of the tree's height. */
 const CROWN = 0.3;
-const trunkM = (heightM: number): number => heightM * (1 - 1.2 * CROWN);
+
+/** Where the crown of a tree begins. */
+export const trunkM = (heightM: number): number => heightM * (1 - 1.2 * CROWN);
 
 export function isTree({ points, height_m }: ScenePolygon): boolean {
   return orientation(points).lengthM <= TREE_FOOTPRINT_M && height_m >= TREE_HEIGHT_M;

@@ -11,6 +11,7 @@ import {
   PlaneGeometry,
 } from "three";
 import type { SceneData, ScenePolygon } from "../net/messages";
+import type { Floors } from "../world/floors";
 import type { Triangles } from "../world/mesh";
 import { based, type Cutaway } from "./cutaway";
 import { doorFrame, DoorLeaves } from "./doors";
@@ -19,8 +20,10 @@ import { PAVING } from "./palette";
 import { crown, hedge, isTree, trunk } from "./plants";
 import { merged } from "./shapes";
 import { lowestOf, meshGeometry } from "./meshes";
+import { signs } from "./signs";
 import { furniture, isHung } from "./furniture";
 import { floor, indoors, isRailing, railing, stairs } from "./storeys";
+import { treesAround } from "./surroundings";
 import { basin, building, masonry, type Pieces, thinWall } from "./structures";
 
 const SLAB_M = 1.5;
@@ -39,8 +42,13 @@ export interface Town {
 }
 
 /** `mesh` holds the triangles of a building that comes as a mesh. */
-export function buildTown(scene: SceneData, cutaway: Cutaway, mesh: Triangles | null): Town {
-  const pieces = piecesOf(scene);
+export function buildTown(
+  { scene, floors }: { scene: SceneData; floors: Floors },
+  cutaway: Cutaway,
+  mesh: Triangles | null,
+): Town {
+  const lowest = mesh ? lowestOf(mesh) : 0;
+  const pieces = piecesOf(scene, lowest);
   if (mesh) pieces.plain.push(meshGeometry(mesh));
   const facade = new MeshLambertMaterial({ vertexColors: true, map: facadeTexture() });
   // Both sides: the inner face of a basin is seen from within.
@@ -62,9 +70,9 @@ export function buildTown(scene: SceneData, cutaway: Cutaway, mesh: Triangles | 
     meshOf(pieces.boards, boards),
   ].filter((m) => m !== null);
   const group = new Group();
-  const lowest = mesh ? lowestOf(mesh) : 0;
   group.add(...ground(scene, lowest, mesh === null), ...solid, doors.group);
-  for (const other of [meshOf(pieces.leaves, leaves), meshOf(pieces.water, water)]) {
+  const names = signs(scene, floors, cutaway);
+  for (const other of [meshOf(pieces.leaves, leaves), meshOf(pieces.water, water), names]) {
     if (other) group.add(other);
   }
   return {
@@ -86,7 +94,8 @@ export function buildTown(scene: SceneData, cutaway: Cutaway, mesh: Triangles | 
 type AllPieces = Pieces & { leaves: Pieces["plain"] };
 
 /** Everything that stands, each piece with the height at which it begins. */
-function piecesOf({ polygons, walls, stairs: flights, doors }: SceneData): AllPieces {
+function piecesOf(scene: SceneData, landM: number): AllPieces {
+  const { polygons, walls, stairs: flights, doors } = scene;
   const all: AllPieces = { plain: [], facade: [], water: [], paving: [], boards: [], leaves: [] };
   const add = (baseM: number, build: (into: AllPieces) => void, stubM?: number): void => {
     const part: AllPieces = {
@@ -141,6 +150,10 @@ function piecesOf({ polygons, walls, stairs: flights, doors }: SceneData): AllPi
     add(door.offset_m, (into) => {
       doorFrame(door, into);
     });
+  }
+  for (const tree of treesAround(scene.bounds, landM)) {
+    add(landM, (into) => into.plain.push(tree.trunk), WALL_STUB_M);
+    add(landM, (into) => into.leaves.push(...tree.crown), 0);
   }
   return all;
 }
