@@ -8,7 +8,10 @@ const NEAREST_M = 2;
 const FARTHEST_M = 30;
 const LOWEST = 0.08;
 const HIGHEST = 1.35;
-const LOOK_AT_M = 1.9;
+/** What it looks at, above the feet: the hips from near by, over the head from far away. */
+const LOOK_NEAR_M = 1.0;
+const LOOK_FAR_M = 1.9;
+const FAR_M = 8;
 const FOLLOW_PER_S = 10;
 const OUT_PER_S = 3;
 /** Kept between the camera and the wall behind it. */
@@ -48,7 +51,9 @@ export class FollowCamera {
     const part = this.placed ? Math.min(1, FOLLOW_PER_S * frameS) : 1;
     this.aim.x += (x - this.aim.x) * part;
     this.aim.y += (y - this.aim.y) * part;
-    this.aim.z += (z + LOOK_AT_M - this.aim.z) * part;
+    const far = Math.min(1, (this.distanceM - NEAREST_M) / (FAR_M - NEAREST_M));
+    const lookM = LOOK_NEAR_M + (LOOK_FAR_M - LOOK_NEAR_M) * far;
+    this.aim.z += (z + lookM - this.aim.z) * part;
     this.placed = true;
     const flat = Math.cos(this.pitch);
     this.back.set(-Math.cos(this.yaw) * flat, -Math.sin(this.yaw) * flat, Math.sin(this.pitch));
