@@ -9,13 +9,10 @@ from planning._jit import kernel
 from planning._stability_kernels import FORBIDDEN, STABLE
 from planning._wavefront_kernels import DIAGONAL, STRAIGHT
 
-ENDLESS = 2**62
-"""Longer than any way."""
-
 
 @kernel
 def search(
-    footing: Footing, left: NDArray[np.int32], start: int, goal: int, longest: int
+    footing: Footing, left: NDArray[np.int32], start: int, goal: int, longest: float
 ) -> tuple[NDArray[np.int32], NDArray[np.int32], int]:
     """Cells from start to goal, the count on edges in each, and the number of expansions.
 

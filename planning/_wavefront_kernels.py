@@ -75,8 +75,10 @@ def _at_least(rows: int, columns: int) -> int:
 
 
 @kernel
-def spread_toward(footing: Footing, goal: int, start: int, left: NDArray[np.int32]) -> None:
-    """`spread`, but straight for a start, and no further once it is reached.
+def spread_toward(
+    footing: Footing, goal: int, start: int, longer: float, left: NDArray[np.int32]
+) -> None:
+    """`spread`, but straight for a start, and no further than its way `longer` times over.
 
     Cells are settled in order of their way plus the least that is left to the start: A*. The
     sum never falls and grows by less than `_BUCKETS` a step, so cells wait in a ring of lists,
@@ -93,8 +95,9 @@ def spread_toward(footing: Footing, goal: int, start: int, left: NDArray[np.int3
     entries[0] = (goal, 0, -1)
     heads[total % _BUCKETS] = 0
     used = 1
+    longest = np.inf
     empty = 0
-    while empty < _BUCKETS:
+    while empty < _BUCKETS and total <= longest:
         entry = heads[total % _BUCKETS]
         if entry < 0:
             total += 1
@@ -102,10 +105,12 @@ def spread_toward(footing: Footing, goal: int, start: int, left: NDArray[np.int3
             continue
         empty = 0
         cell, way, heads[total % _BUCKETS] = entries[entry]
-        if cell == start:
-            break
         if way > left[cell]:
             continue
+        if cell == start:
+            if longer <= 1.0:
+                break
+            longest = longer * way
         if used + 8 > len(entries):
             entries = np.concatenate((entries, np.empty_like(entries)))
         rows, columns = places[cell, 1] - row, places[cell, 2] - column

@@ -17,12 +17,15 @@ from planning.bodies import Body
 from planning.footing import footing_of, regions_of
 from planning.stable_bfp import stable_bfp
 from planning.straightening import headings, line_of_cells, straighten
-from planning.wavefront import UNREACHED, spread_toward, spread_wave
+from planning.wavefront import spread_toward
 
 if TYPE_CHECKING:
     from planning.grid import LayeredGrid
 
 Point3 = tuple[float, float, float]
+_LONGER = (1.0, 1.05, 1.2, math.inf)
+"""By how much the way that M allows may be longer than what is shortest without M: mostly it is
+as short, and the less is looked at the better."""
 
 
 class PathStatus(IntEnum):
@@ -142,12 +145,16 @@ def _moved(footing: Footing, point: Point3, end: End, among: NDArray[np.bool_]) 
 
 
 def find_way(footing: Footing, first: End, last: End) -> LayeredPath:
-    """The shortest way from end to end that M allows."""
-    left = spread_toward(footing, last.cell, first.cell)
-    way = stable_bfp(footing, left, first.cell, last.cell, detours=False)
-    if not len(way.cells) and left[first.cell] != UNREACHED:
-        way = stable_bfp(footing, spread_wave(footing, last.cell), first.cell, last.cell)
-    if not len(way.cells):
+    """The shortest way from end to end that M allows.
+
+    Cost O(cells on ways that are no longer): in the open little more than the way itself.
+    """
+    for longer in _LONGER:
+        left = spread_toward(footing, last.cell, first.cell, longer)
+        way = stable_bfp(footing, left, first.cell, last.cell, longer)
+        if len(way.cells):
+            break
+    else:
         return _no_path(PathStatus.NO_WAY, way.expansions)
     line = line_of_cells(footing, way.cells, way.counts, first[1:], last[1:])
     line = straighten(footing, line)

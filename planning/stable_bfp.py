@@ -7,6 +7,7 @@ wherever it stands.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,12 +29,16 @@ class CellPath:
 
 
 def stable_bfp(
-    footing: Footing, left: NDArray[np.int32], start: int, goal: int, detours: bool = True
+    footing: Footing,
+    left: NDArray[np.int32],
+    start: int,
+    goal: int,
+    longer: float = math.inf,
 ) -> CellPath:
     """Search the way from one cell to another; `left` is the goal's potential.
 
-    Without `detours` only ways straight down the potential are looked at: no others are shorter,
-    and mostly M allows one of them. That much can be asked of `spread_toward`, too.
+    With `longer` only ways are looked at that are at most so many times as long as the shortest
+    that there would be without M: as far as `spread_toward` knows the potential.
 
     Notes
     -----
@@ -43,5 +48,4 @@ def stable_bfp(
     seen, or could do no more than another that was. Cost O(states log states), in most cases
     O(length of the way).
     """
-    longest = kernels.ENDLESS if detours else int(left[start])
-    return CellPath(*kernels.search(footing, left, start, goal, longest))
+    return CellPath(*kernels.search(footing, left, start, goal, longer * float(left[start])))

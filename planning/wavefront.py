@@ -26,13 +26,17 @@ def spread_wave(footing: Footing, goal: int) -> NDArray[np.int32]:
     return left
 
 
-def spread_toward(footing: Footing, goal: int, start: int) -> NDArray[np.int32]:
+def spread_toward(
+    footing: Footing, goal: int, start: int, longer: float = 1.0
+) -> NDArray[np.int32]:
     """The same for one start: exact there and along a shortest way from it to the goal.
 
-    Elsewhere it is exact, too much or `UNREACHED`. In the open only the way itself is looked at.
+    With `longer` > 1 it is exact on all ways from the start that are at most so many times as
+    long as the shortest. Elsewhere it is exact, too much or `UNREACHED`. In the open little else
+    than the way itself is looked at.
     """
     left = np.empty(len(footing.steps), dtype=np.int32)
-    kernels.spread_toward(footing, goal, start, left)
+    kernels.spread_toward(footing, goal, start, longer, left)
     return left
 
 

@@ -1,6 +1,7 @@
 """STABLE_BFP against trying every state."""
 
 import dataclasses
+import math
 
 import numpy as np
 import pytest
@@ -50,15 +51,20 @@ def test_it_finds_the_shortest_legal_way_wherever_there_is_one(grid, body, most,
         for goal in random.choice(standing, 6):
             path = stable_bfp(feet, spread_wave(feet, goal), start, goal)
             assert bool(len(path.cells)) == (int(goal) in legal)
-            straight = stable_bfp(
-                feet, spread_toward(feet, goal, start), start, goal, detours=False
-            )
             if len(path.cells):
                 check(feet, path)
                 assert way_of(feet, path.cells) == pytest.approx(legal[int(goal)])
-            if len(straight.cells):
-                check(feet, straight)
-                assert way_of(feet, straight.cells) == pytest.approx(legal[int(goal)])
+                shortest = spread_wave(feet, goal)[start]
+                for longer in (1.0, 1.2, 1.5, math.inf):
+                    left = spread_toward(feet, goal, start, longer)
+                    found = stable_bfp(feet, left, start, goal, longer)
+                    if round(70 * legal[int(goal)]) > longer * shortest:
+                        assert not len(found.cells)
+                    elif longer > 1.0:
+                        assert len(found.cells)
+                    if len(found.cells):
+                        check(feet, found)
+                        assert way_of(feet, found.cells) == pytest.approx(legal[int(goal)])
 
 
 def along_a_kerb(length_cells: int) -> tuple[Floors, object, int, int]:
