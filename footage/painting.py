@@ -22,7 +22,7 @@ SMOOTHING: Final = 3
 """Pictures are painted so many times as large, and then shrunk."""
 SKY: Final = "#eef2f4"
 GROUND: Final = "#d9d3c6"
-GRID: Final = "#c6bfb0"
+GRID: Final = "#bfb7a6"
 TREAD: Final = "#e9e2d3"
 SIDE: Final = "#b9ae9c"
 EDGE: Final = "#8d8373"

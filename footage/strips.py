@@ -21,7 +21,9 @@ _PANEL: Final = (170, 270)
 _PANEL_SCALE: Final = 124.0
 _FILM: Final = (340, 290)
 _FILM_SCALE: Final = 122.0
-_COLOURS: Final = 64
+_COLOURS: Final = 96
+_METHOD: Final = Image.Quantize.MAXCOVERAGE
+"""Footprints are small, and keep their colours."""
 _TRAIL_WIDTH: Final = 1500
 _TRAIL_MARGIN: Final = 70
 _TRAIL_SCALE: Final = 170.0
@@ -43,7 +45,7 @@ def draw_strip(recording: Recording, path: Path) -> None:
             canvas = _frame(recording, frame, followed[frame], _PANEL, _PANEL_SCALE)
             canvas.write(f"{recording.times_s[frame]:.2f} s", (9, _PANEL[1] - 22), 12)
             strip.paste(canvas.picture(), (column * _PANEL[0], row * _PANEL[1]))
-    _save(strip, path)
+    strip.save(path, optimize=True)
 
 
 def draw_trail(recording: Recording, path: Path) -> None:
@@ -68,7 +70,7 @@ def draw_trail(recording: Recording, path: Path) -> None:
     for k in np.argsort(nearness, kind="stable").tolist():
         canvas.paint_body(parts_of(poses, frames[k]))
     canvas.write(walk.caption, (14, 10), 16)
-    _save(canvas.picture(), path)
+    canvas.picture().save(path, optimize=True)
 
 
 def draw_film(recording: Recording, path: Path, advance: Callable[[], None]) -> None:
@@ -82,7 +84,7 @@ def draw_film(recording: Recording, path: Path, advance: Callable[[], None]) -> 
         pictures.append(canvas.picture())
         advance()
     # One palette for all frames: colours that change from frame to frame would flicker.
-    palette = pictures[len(pictures) // 2].quantize(_COLOURS)
+    palette = pictures[len(pictures) // 2].quantize(_COLOURS, _METHOD)
     indexed = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
     frame_s = float(recording.times_s[1] - recording.times_s[0])
     indexed[0].save(
@@ -93,11 +95,6 @@ def draw_film(recording: Recording, path: Path, advance: Callable[[], None]) -> 
         loop=0,
         optimize=True,
     )
-
-
-def _save(picture: Image.Image, path: Path) -> None:
-    """As PNG; few colours make small files."""
-    picture.quantize(2 * _COLOURS, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
 def _frame(
