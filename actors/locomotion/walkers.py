@@ -62,7 +62,15 @@ class Walkers:
         self._stand(tick, slots, course)
 
     def update(self, tick: int, slots: Slots, course: Course) -> None:
-        """Begin and re-aim the steps of a tick, of everyone (N,) in turn with their courses."""
+        """Begin and re-aim the steps of a tick, of everyone (N,) in turn with their courses.
+
+        Raises
+        ------
+        ValueError
+            A course holds something that is not a finite number. Nothing is changed then.
+        """
+        if not (np.isfinite(course.ahead).all() and np.isfinite(course.headings).all()):
+            raise ValueError("courses must be finite")
         self._stand_where_lost(tick, slots, course)
         intent = Intent._make(column[slots] for column in self._intent)
         heads = self.steps.heads(slots)
@@ -120,13 +128,16 @@ class Walkers:
         standing = np.where(due.swapped[:, None], last.landing, last.standing)
         lifted = np.where(due.swapped[:, None], last.standing, last.landing)
         lifted = np.where(due.again[:, None], self._lifted[slots], lifted)
-        gone = self._gone[slots] + (1.0 - self._gone[slots]) * last.share(tick)
+        share = np.minimum(last.share(tick), 0.99)
+        gone = self._gone[slots] + (1.0 - self._gone[slots]) * share
         gone = np.where(due.again, gone, 0.0)
         left_s = np.asarray(due.ticks * self._tick_s)
         aims = aim(course, right, standing, build.leg_m, due.whole_s, left_s, self._ground)
         falls = Footfalls(right, lifted, standing, aims.landing, build.leg_m)
         now = drawn(last, tick, falls, due.swapped, build)
         keys, lift = strides(falls, gone, now, due.ticks, aims.place, _ROOM * build.leg_m)
+        # A foot that is in the air already does not come down again before it lands.
+        lift = np.where(due.again, np.maximum(last.lift - share, 0.0) / (1.0 - share), lift)
         self._go(slots, falls, tick, due.ticks, keys, lift, due.again)
         self._gone[slots] = gone
         self._intent.body[slots], self._intent.velocity[slots] = aims.body, aims.velocity
