@@ -268,14 +268,13 @@ def show_reaching(console: Console, reaching: dict[str, dict[str, Work]]) -> Non
     table = Table(
         box=box.SIMPLE, title=f"reaching, {TARGETS} targets of a heel", title_justify="left"
     )
-    table.add_column("targets", no_wrap=True)
-    table.add_column("way", no_wrap=True)
-    for column in ("reached", "turns", "saved", "sweeps", "trunk", "ms"):
+    table.add_column("", no_wrap=True)
+    for column in ("reached", "turns", "saved", "most sweeps", "trunk", "ms"):
         table.add_column(column, justify="right")
     for kind, ways in reaching.items():
-        for k, (way, work) in enumerate(ways.items()):
+        table.add_row(f"[bold]{kind}")
+        for way, work in ways.items():
             table.add_row(
-                "" if k else kind,
                 way,
                 f"{work.reached_percent:.1f} %",
                 f"{work.turned:.0f}",

@@ -136,7 +136,8 @@ class Canvas:
 
 
 def _middle(solid: Polygon) -> Floats:
-    return np.mean(np.array(solid.points), axis=0)
+    middle: Floats = np.mean(np.array(solid.points), axis=0)
+    return middle
 
 
 def _balls(centres: Floats, radii: Floats) -> Floats:
