@@ -48,7 +48,8 @@ _RISE_M: Final = 0.22
 """Stairs are walked tread by tread: a step is so short that it does not climb more."""
 _UNEVEN_M: Final = 0.12
 _STEEPEST_M: Final = 0.42
-"""No foot is put further up or down."""
+_CLIMB_M: Final = 0.75
+"""No foot is put further up or down ahead; nor, to get where the body has gone, under it."""
 
 _OPENING_RAD: Final = 1.3
 _CLOSING_RAD: Final = 0.6
@@ -171,7 +172,8 @@ def aim(
         0.5 * ahead_mps * step_s,
     )
     aside = side * TRACK_HALF_WIDTH * leg_m + 0.5 * aside_mps * step_s
-    under = place + (side * TRACK_HALF_WIDTH * leg_m)[:, None] * left
+    under = there.copy()
+    under[:, :2] = place + (side * TRACK_HALF_WIDTH * leg_m)[:, None] * left
     middle = standing[:, 3] + 0.5 * (heading - standing[:, 3])
 
     foot_m = FOOT * leg_m
@@ -199,13 +201,13 @@ def _retreat(
     ground: Ground,
 ) -> None:
     """Feet that found no ground come down under the body, else beside the other foot; in place."""
-    for nearer in (under, standing[:, :2]):
+    for nearer in (under, standing[:, :3]):
         rows = np.flatnonzero(lost)
         tried = landing[rows]
-        tried[:, :2] = _limited(nearer[rows], standing[rows], middle[rows], side[rows], leg_m[rows])
-        tried[:, 2] = standing[rows, 2]
+        tried[:, :3] = nearer[rows]
+        tried[:, :2] = _limited(tried[:, :2], standing[rows], middle[rows], side[rows], leg_m[rows])
         landing[rows], found = ground.settle(tried, FOOT * leg_m[rows])
-        found &= np.abs(landing[rows, 2] - standing[rows, 2]) <= _STEEPEST_M
+        found &= np.abs(landing[rows, 2] - standing[rows, 2]) <= _CLIMB_M
         lost[rows[found]] = False
 
 

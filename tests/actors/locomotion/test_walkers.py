@@ -1,3 +1,5 @@
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -66,7 +68,7 @@ def test_an_even_walk_has_even_steps_that_cover_what_the_body_covers() -> None:
         sides = [bool(s.right[0]) for _, s in mine]
         walked = [1.3 * TICK_S * int(s.ticks[0]) for _, s in mine]
         np.testing.assert_allclose(lengths, walked, atol=1.0 * MM)
-        assert all(a != b for a, b in zip(sides, sides[1:], strict=False))
+        assert all(a != b for a, b in pairwise(sides))
     assert len({len(b.slots) for b in parade.begun}) > 1, "not everyone keeps the same step"
     check_continuous(parade)
     check_planted(parade)
