@@ -38,6 +38,25 @@ class Seen:
         """STEP (N,), in the order in which they came."""
         return np.array(self.records, dtype=STEP)
 
+    @property
+    def goes_on(self) -> npt.NDArray[np.bool_]:
+        """Which records go on from the one before, (N,).
+
+        The others come when somebody comes near again, or stands anew after having been moved.
+        """
+        steps = self.steps
+        before, now = steps[:-1], steps[1:]
+        linked = (now["standing"] == before["landing"]) | (now["standing"] == before["standing"])
+        return np.append(False, linked & (now["ticks"] > 0))
+
+    @property
+    def shown_ticks(self) -> int:
+        """For how long it was near: without the time before it came near again."""
+        steps, heard = self.steps, np.array(self.heard)
+        ends = np.minimum(steps["tick"][:-1] + steps["ticks"][:-1].astype(np.int64), heard[1:])
+        away = np.where(self.goes_on[1:], 0, heard[1:] - ends)
+        return int(self.until - heard[0] - away.sum())
+
     def place_at(self, ticks: Floats) -> Floats:
         """Where it was according to snapshots, (N, 2); who is in none stands still."""
         known = np.array(self.places)
@@ -130,7 +149,7 @@ class Cost:
 def cost_of(footage: Footage, everyone: list[Seen], seconds: float) -> Cost:
     visible = walking = 0.0
     for seen in everyone:
-        visible += (seen.until - seen.heard[0]) / footage.tick_rate
+        visible += seen.shown_ticks / footage.tick_rate
         between = np.diff(seen.steps["tick"].astype(np.int64)) / footage.tick_rate
         walking += float(between[(between > 0.0) & (between <= WALKS_ON_S)].sum())
     return Cost(

@@ -65,7 +65,7 @@ def _judge(seen: Seen, tick_rate: int) -> Findings:
     shares = _shares(steps, rows, ticks)
     drawn = _draw(steps, rows, shares, seen)
     feet = _planted(steps, rows, shares)
-    anew = np.append(False, (np.diff(rows) > 0) & (steps.ticks[rows[1:]] == 0))
+    anew = np.append(False, (np.diff(rows) > 0) & ~seen.goes_on[rows[1:]])
     jumps = _jumps(steps, seen)
     step_m, travel_m = _strides(steps, seen)
     away = drawn.root[:, :2] - seen.place_at(ticks)
@@ -163,8 +163,7 @@ def _drift(drawn: Pose, on_toe: Flags, foot: int, frames: slice) -> float | None
 
 def _jumps(steps: Steps, seen: Seen) -> tuple[Floats, Floats]:
     """How far ankles and hips are apart at the moment at which one record follows another."""
-    came_at_once = np.array(seen.heard)[1:] == steps.start[1:]
-    rows = np.flatnonzero(came_at_once & (steps.ticks[1:] > 0))
+    rows = np.flatnonzero(seen.goes_on[1:])
     before = _draw(steps, rows, _shares(steps, rows, steps.start[rows + 1]), seen)
     after = _draw(steps, rows + 1, np.zeros(len(rows)), seen)
     feet = np.linalg.norm(after.ankles - before.ankles, axis=2).max(axis=1)
