@@ -26,15 +26,19 @@ export interface Inspection {
 /** An avatar as it is drawn, with the feet it walks on. */
 interface Seen extends Omit<Avatar, "walker"> {
   readonly feet: { readonly left: Foot; readonly right: Foot };
-  /** The foot that its step stands on; null of those who are drawn without steps. */
-  readonly stands: "left" | "right" | null;
+  /** Which foot its step stands on, and when it began; null while a body is drawn without steps. */
+  readonly step: { readonly stands: "left" | "right"; readonly tick: number } | null;
 }
 
 function seen({ id, kind, name, radius, own, pose, walker }: Avatar): Seen {
   const { left, right } = walker.body;
-  const stands = walker.step && (walker.step.rightStands ? "right" : "left");
+  const drawn = walker.planted ? walker.step : null;
+  const step = drawn && {
+    stands: drawn.rightStands ? ("right" as const) : ("left" as const),
+    tick: drawn.tick,
+  };
   const feet = { left: left.foot, right: right.foot };
-  return { id, kind, name, radius, own, pose, feet, stands };
+  return { id, kind, name, radius, own, pose, feet, step };
 }
 
 declare global {

@@ -27,6 +27,7 @@ const ELSEWHERE_M = 0.35;
 /** This far is no walk: somebody was put somewhere else. */
 const JUMP_M = 1.5;
 const SAME_S = 1e-6;
+const SAME_M = 1e-3;
 /** A head is turned no further against the chest, and takes so long. */
 const LOOK_RAD = 1.1;
 const LOOK_S = 0.12;
@@ -75,6 +76,13 @@ export class Walker {
   /** The step that is drawn, with both its footprints; null while no steps are known. */
   get step(): Step | null {
     return this.drawn?.step ?? null;
+  }
+
+  /** Whether the standing foot is where its step has it, and not on its way there. */
+  get planted(): boolean {
+    const { drawn, fading } = this;
+    if (!drawn) return false;
+    return this.fadeLeftS <= 0 || (fading !== null && apartM(fading, drawn, "standing") < SAME_M);
   }
 
   /** A step begins at `beginS`; one that was known to begin then or later is void. */
@@ -131,11 +139,11 @@ export class Walker {
     if (!chosen) return null;
     const { landing, standing } = chosen.step;
     const silent = this.timeS > chosen.endS + SILENT_S;
-    const apartM = Math.hypot(
+    const awayM = Math.hypot(
       (landing.x + standing.x) / 2 - snapshots.x,
       (landing.y + standing.y) / 2 - snapshots.y,
     );
-    return silent && apartM > ELSEWHERE_M ? null : chosen;
+    return silent && awayM > ELSEWHERE_M ? null : chosen;
   }
 
   /** Draw something else from now on; steps that join need no fading. */
@@ -146,9 +154,9 @@ export class Walker {
     if (before && next && joins(before, next)) return;
     this.show(next, this.from);
     const { x, y, z } = this.posture.root;
-    const apartM = Math.hypot(this.from.root.x - x, this.from.root.y - y, this.from.root.z - z);
+    const leapM = Math.hypot(this.from.root.x - x, this.from.root.y - y, this.from.root.z - z);
     this.fading = before;
-    this.fadeLeftS = apartM < JUMP_M ? FADE_S : 0;
+    this.fadeLeftS = leapM < JUMP_M ? FADE_S : 0;
   }
 
   private show(what: Timed | null, out: Posture): void {
@@ -181,8 +189,13 @@ export class Walker {
 
 /** Whether the second step goes on where the first ends. */
 function joins(first: Timed, second: Timed): boolean {
-  const { continues, standing } = second.step;
   if (second.missed) return false;
-  const { x, y, z } = continues ? first.step.standing : first.step.landing;
-  return Math.hypot(x - standing.x, y - standing.y, z - standing.z) < 1e-3;
+  return apartM(first, second, second.step.continues ? "standing" : "landing") < SAME_M;
+}
+
+/** From one of the first step's footprints to where the second one stands. */
+function apartM({ step }: Timed, next: Timed, foot: "standing" | "landing"): number {
+  const { x, y, z } = step[foot];
+  const { standing } = next.step;
+  return Math.hypot(x - standing.x, y - standing.y, z - standing.z);
 }
