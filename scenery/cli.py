@@ -11,6 +11,7 @@ from rich.console import Console
 from planning.scene_file import SceneError
 from scenery import inventory, pictures
 from scenery.console import UsageError, open_scene, progress
+from scenery.download import local_file
 from scenery.importing import import_mesh
 from scenery.options import parser
 from scenery.views import layer_views
@@ -74,17 +75,22 @@ def _import(options: argparse.Namespace) -> int:
         raise UsageError(f"--out: a scene is a .json file, not {options.out.name}")
     with progress(share=True) as shown:
         task = shown.add_task("", total=1.0)
-        scene = import_mesh(
-            options.mesh,
-            options.out,
-            options.up,
-            options.scale,
-            options.cell,
-            options.name,
-            options.spawn,
-            options.places,
-            lambda doing, share: shown.update(task, description=doing, completed=share),
-        )
+
+        def tell(doing: str, share: float) -> None:
+            shown.update(task, description=doing, completed=share)
+
+        with local_file(options.mesh, tell) as mesh:
+            scene = import_mesh(
+                mesh,
+                options.out,
+                options.up,
+                options.scale,
+                options.cell,
+                options.name,
+                options.spawn,
+                options.places,
+                tell,
+            )
     print(
         f"{options.out}: {len(scene.places)} places; run it: esplanade serve --scene {options.out}"
     )

@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -16,7 +17,9 @@ from planning.footing import footing_of
 from planning.mesh_file import MeshError
 from planning.scene import Bounds, Place, Spawn
 from planning.stability import Stability
+from planning.storey_heights import storeys_of
 from planning.wavefront import UNREACHED, metres, spread_wave
+from scenery.compass import Ground
 from scenery.console import UsageError
 from scenery.meshes import as_glb
 from scenery.reach import cell_near, centres, largest_region
@@ -69,7 +72,7 @@ def import_mesh(
         bounds=_whole_metres(grid.bounds),
         mesh=Path(kept.name),
         spawns=(Spawn(position=(x, y), z_m=z, radius_m=_SPAWN_RADIUS_M),),
-        places=tuple(_places(footing, start, places)),
+        places=tuple(_places(footing, start, _ground(grid, footing, start), places)),
     )
     tell(f"writing {target.name}", 0.95)
     try:
@@ -106,18 +109,27 @@ def _spawn_cell(footing: Footing, spawn: Point | None) -> int:
     return int(cells[np.linalg.norm(points - points.mean(axis=0), axis=1).argmin()])
 
 
-def _places(footing: Footing, start: int, count: int) -> list[Place]:
+def _places(footing: Footing, start: int, ground: Ground, count: int) -> list[Place]:
     """Places as far from the spawn and from each other as the ways between them allow."""
     nearest = _ways(footing, start)
+    names: Counter[str] = Counter()
     made: list[Place] = []
-    for number in range(1, count + 1):
+    for _ in range(count):
         cell = int(nearest.argmax())
         if nearest[cell] <= 0.0:
             break
-        x, y, z = _rounded(footing, cell)
-        made.append(Place(name=f"place {number}", position=(x, y), z_m=z))
+        point = x, y, z = _rounded(footing, cell)
+        name = ground.name_of(point)
+        names[name] += 1
+        again = f" {names[name]}" if names[name] > 1 else ""
+        made.append(Place(name=f"{name}{again}", position=(x, y), z_m=z))
         nearest = np.minimum(nearest, _ways(footing, cell))
     return made
+
+
+def _ground(grid: LayeredGrid, footing: Footing, start: int) -> Ground:
+    reached = spread_wave(footing, start) != UNREACHED
+    return Ground(centres(footing)[reached], storeys_of(grid, reached))
 
 
 def _ways(footing: Footing, cell: int) -> NDArray[np.float32]:

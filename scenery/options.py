@@ -15,6 +15,7 @@ examples:
   esplanade scene render scenes/gallery.json --body child --out pictures
   esplanade scene render my.json --from gate --to 12,3,3.5 --out pictures
   esplanade scene import house.obj --up y --out house.json
+  esplanade scene import https://example.org/hall.glb --out hall.json
 
 bodies: adult, child, or a preset with other measures in metres, such as
 child,height=1.1 or radius=0.3,height=1.9,step=0.4,leg=0.9,edge=24 (an adult otherwise;
@@ -96,7 +97,9 @@ def _import(commands: "_Commands[argparse.ArgumentParser]") -> argparse.Argument
         "scene names: keep the two together.",
         allow_abbrev=False,
     )
-    made.add_argument("mesh", metavar="MESH", type=Path, help="OBJ, glTF or GLB")
+    made.add_argument(
+        "mesh", metavar="MESH", help="OBJ, glTF or GLB: a file, or an address of the web"
+    )
     made.add_argument(
         "--out", metavar="SCENE.json", type=Path, required=True, help="the scene to write"
     )

@@ -94,7 +94,7 @@ def test_wheel_carries_every_package_and_the_scenes(tmp_path: Path) -> None:
         names = wheel.namelist()
     tops = {name.split("/")[0] for name in names if ".dist-info/" not in name}
     assert tops == set(PACKAGES)
-    assert "scenes/gallery.json" in names
+    assert {"scenes/gallery.json", "scenes/pavilion.json", "scenes/pavilion.obj"} <= set(names)
     built = sorted(ROOT.glob("server/client_assets/**/*.*"))
     assert {path.relative_to(ROOT).as_posix() for path in built} <= set(names)
 

@@ -1,0 +1,84 @@
+"""Meshes from the web: fetched whole, or refused with a reason."""
+
+import http.server
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from scenery import cli, download
+from scenery.console import UsageError
+from scenery.download import local_file
+from tests.scenery.worlds import write_building
+
+Told = list[tuple[str, float]]
+
+
+@pytest.fixture
+def site(tmp_path: Path) -> Iterator[str]:
+    """Address of a server that hands out what lies in a folder."""
+
+    class Handler(http.server.SimpleHTTPRequestHandler):
+        def __init__(self, *arguments: object) -> None:
+            super().__init__(*arguments, directory=tmp_path)  # type: ignore[arg-type]
+
+        def log_message(self, *_: object) -> None:
+            pass
+
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+    thread = threading.Thread(target=server.serve_forever)
+    thread.start()
+    yield f"http://127.0.0.1:{server.server_port}"
+    server.shutdown()
+    thread.join()
+    server.server_close()
+
+
+def test_a_path_is_a_path(tmp_path: Path) -> None:
+    with local_file(str(tmp_path / "a.obj"), lambda *_: None) as path:
+        assert path == tmp_path / "a.obj"
+
+
+def test_an_address_is_fetched_and_forgotten(site: str, tmp_path: Path) -> None:
+    (tmp_path / "my house.obj").write_bytes(b"v 0 0 0\n" * 50_000)
+    told: Told = []
+    with local_file(f"{site}/my%20house.obj", lambda *what: told.append(what)) as path:
+        assert path.name == "my house.obj"
+        assert path.read_bytes() == (tmp_path / "my house.obj").read_bytes()
+    assert not path.exists()
+    assert told[-1] == ("fetching my house.obj", 1.0)
+
+
+def test_what_is_too_large_is_refused(
+    site: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(download, "MAX_BYTES", 2**20)
+    (tmp_path / "large.obj").write_bytes(bytes(2**20 + 1))
+    with (
+        pytest.raises(UsageError, match="larger than 1 MiB"),
+        local_file(f"{site}/large.obj", lambda *_: None),
+    ):
+        pass
+
+
+@pytest.mark.parametrize(
+    ("path", "reason"), [("/none.obj", "the server answers 404"), (":1/x.obj", "cannot be fetched")]
+)
+def test_what_is_not_there_is_said(site: str, path: str, reason: str) -> None:
+    address = site + path if path.startswith("/") else f"http://127.0.0.1{path}"
+    with pytest.raises(UsageError, match=reason), local_file(address, lambda *_: None):
+        pass
+
+
+def test_one_command_makes_a_world_of_an_address(
+    site: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    address = f"{site}/{write_building(tmp_path).name}"
+    target = tmp_path / "made" / "house.json"
+    target.parent.mkdir()
+    assert cli.run(["import", address, "--out", str(target)]) == cli.EXIT_WELL
+    assert f"esplanade serve --scene {target}" in capsys.readouterr().out
+    assert cli.run(["check", str(target)]) == cli.EXIT_WELL
+    assert cli.run(["import", f"{site}/no.obj", "--out", str(target)]) == cli.EXIT_USAGE
+    assert "404" in capsys.readouterr().err
