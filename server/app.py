@@ -151,6 +151,10 @@ def _watch(world: World, metrics: Metrics) -> None:
     contacts = world.contacts
     metrics.total("contacts_actor_person", "Actor-person contacts", lambda: contacts.actor_person)
     metrics.total("contacts_actor_actor", "Actor-actor contacts", lambda: contacts.actor_actor)
+    feet = world.feet
+    metrics.total("steps", "Steps that began or were re-aimed", lambda: feet.begun)
+    metrics.total("walkers_lost", "Walkers set back onto their feet", lambda: feet.lost)
+    metrics.total("stepping_failures", "Ticks in which nobody could step", lambda: feet.failures)
 
 
 def _port(server: Server) -> int:

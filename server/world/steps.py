@@ -4,7 +4,7 @@ import numpy as np
 import structlog
 
 from actors.locomotion import motion
-from actors.locomotion.aims import Course
+from actors.locomotion.aims import AHEAD, Course
 from actors.locomotion.builds import manner_of
 from actors.locomotion.ground import Ground
 from actors.locomotion.walkers import Walkers
@@ -26,6 +26,7 @@ class Feet:
         self._seed = seed
         self._tick = 0
         self._ids = np.zeros(state.capacity, dtype=np.int64)
+        _warm_up(ground, tick_s)
         self._walkers = Walkers(state.capacity, ground, tick_s, self._carry)
         self.begun = 0
         """Steps so far, those included that only went on otherwise."""
@@ -65,3 +66,13 @@ class Feet:
         self._latest.begin(slots, records, self._tick)
         self.begun += len(slots)
         return from_records(records)
+
+
+def _warm_up(ground: Ground, tick_s: float) -> None:
+    """Compile what a tick would have to wait for: somebody walks, turns and stops."""
+    one = Walkers(1, ground, tick_s, lambda steps, _: steps)
+    slots, ahead = np.zeros(1, dtype=np.int64), np.zeros((1, AHEAD, 3))
+    one.join(0, slots, [manner_of(0, 0)], Course(np.zeros(1), ahead))
+    ahead[0, :, 0] = np.linspace(0.0, 1.0, AHEAD)
+    for tick in range(1, 12):
+        one.update(tick, slots, Course(np.zeros(1), ahead if tick < 5 else -ahead))
