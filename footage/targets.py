@@ -6,7 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from actors.locomotion._ccd_kernels import LIMB, Hinges
+from actors.locomotion._ccd_kernels import LIMB
+from actors.locomotion._hinge_kernels import Hinges
 from actors.locomotion.two_stage import effector
 from footage.camera import Floats
 

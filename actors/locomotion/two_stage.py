@@ -15,7 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from actors.locomotion import _ccd_kernels as kernels
 from actors.locomotion import skeleton
-from actors.locomotion._ccd_kernels import Effort, Hinges
+from actors.locomotion._ccd_kernels import Effort
+from actors.locomotion._hinge_kernels import Hinges, place_all
 
 Floats = NDArray[np.float64]
 
@@ -152,7 +153,7 @@ def effector(chain: Hinges, angles: ArrayLike) -> Floats:
     """Where the effector is at angles (N, J): float64 (N, 3), in the chain's root frame."""
     poses = np.ascontiguousarray(np.atleast_2d(np.asarray(angles, dtype=np.float64)))
     tips = np.empty((len(poses), 3))
-    kernels.place_all(chain, poses, tips)
+    place_all(chain, poses, tips)
     return tips
 
 
