@@ -1,4 +1,4 @@
-"""Twin of `actors.locomotion._hinge_kernels`: CCD by quaternions, the whole chain anew each time."""
+"""Twin of `actors.locomotion._hinge_kernels`: CCD by quaternions, all of the chain each time."""
 
 import math
 
