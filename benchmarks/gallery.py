@@ -1,0 +1,138 @@
+"""Actors and visitors in the gallery: how many trips, contacts, and is anybody in a wall.
+
+    python -m benchmarks.gallery                                    a minute, 20 actors, 20 bots
+    python -m benchmarks.gallery --actors 50 --bots 50 --seconds 300
+
+The server runs in a process of its own and the visitors in another, over real sockets. One more
+client stands and watches: what it is sent of everybody, in every tick, is held against the shapes
+of the scene file. Exit code 1: somebody was inside of something, or stood on nothing.
+"""
+
+import argparse
+import asyncio
+import json
+import multiprocessing as mp
+import sys
+import tempfile
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import uvloop
+
+import bots
+from benchmarks._whereabouts import Points, clearances, inside, unsupported
+from bots.events import SnapshotEvent
+from planning import Scene
+from planning.scene_file import read_scene
+from server import logs
+from server.app import running
+from server.settings import ServerSettings
+from server.stage import DEFAULT_SCENE
+
+VIEW_M = 200.0
+TOUCHING_M = 0.15
+"""A body's centre is nearer than this to a wall only if it is pressed into it."""
+STEP_M = 0.65
+"""Nobody rises or falls by more between two ticks."""
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--scene", type=Path, default=DEFAULT_SCENE, help="a scene of polygons")
+    parser.add_argument("--actors", type=int, default=20)
+    parser.add_argument("--bots", type=int, default=20)
+    parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--json", type=Path, help="also write the figures here")
+    options = parser.parse_args()
+    scene = read_scene(options.scene)
+    settings = ServerSettings(
+        scene=options.scene, actors=options.actors, seed=options.seed, host="127.0.0.1", port=0,
+        private_port=0, view_radius_m=VIEW_M, view_limit=options.actors + options.bots + 1,
+        log_level="error",
+    )  # fmt: skip
+    here, there = mp.get_context("spawn").Pipe()
+    process = mp.get_context("spawn").Process(target=serve, args=(there, settings), daemon=True)
+    process.start()
+    seen = uvloop.run(watch(here.recv(), options.bots, options.seconds, options.seed))
+    here.send("end")
+    figures = {**here.recv(), **whereabouts(scene, seen)}
+    process.join()
+    for name, value in figures.items():
+        print(f"{name:24} {value:,}" if isinstance(value, int) else f"{name:24} {value:g}")
+    if options.json:
+        options.json.write_text(json.dumps(figures, indent=1))
+    return 1 if figures["inside"] or figures["unsupported"] else 0
+
+
+def serve(parent: Connection, settings: ServerSettings) -> None:
+    """A world, until told to end; reports its summary."""
+
+    async def run() -> None:
+        async with running(settings) as server:
+            parent.send(server.port)
+            await asyncio.to_thread(parent.recv)
+            parent.send(server.summary())
+
+    logs.configure(settings)
+    uvloop.run(run())
+
+
+async def watch(port: int, visitors: int, seconds: float, seed: int) -> Points:
+    """What one client is told of all others: float64 (N, 5) of tick, id, x, y, z."""
+    url = f"ws://127.0.0.1:{port}"
+    with tempfile.TemporaryDirectory() as folder:
+        report = Path(folder, "bots.json")
+        command = ["bots", "--url", url, "--count", str(visitors), "--duration", str(seconds)]
+        crowd = await asyncio.create_subprocess_exec(
+            sys.executable, "-m", "esplanade", *command, "--seed", str(seed), "--json", report,
+            stdout=asyncio.subprocess.DEVNULL,
+        )  # fmt: skip
+        rows: list[Points] = []
+        async with bots.connect(url, name="Watcher") as watcher:
+            reading = asyncio.create_task(_read(watcher, rows))
+            code = await crowd.wait()
+            reading.cancel()
+    if code:
+        raise SystemExit(f"some of the visitors failed: exit code {code}")
+    return np.concatenate(rows)
+
+
+async def _read(watcher: bots.Bot, rows: list[Points]) -> None:
+    async for event in watcher.events():
+        if isinstance(event, SnapshotEvent):
+            records = event.records
+            ticks = np.full(len(records), event.tick)
+            columns = [ticks, records["id"], *event.positions.T, event.heights]
+            rows.append(np.stack(columns, axis=1).astype(np.float64))
+
+
+def whereabouts(scene: Scene, seen: Points) -> dict[str, Any]:
+    """Figures of all that was seen, (N, 5) of tick, id, x, y, z."""
+    seen = seen[np.lexsort((seen[:, 0], seen[:, 1]))]
+    points = seen[:, 2:]
+    following = (np.diff(seen[:, 1]) == 0.0) & (np.diff(seen[:, 0]) == 1.0)
+    moves = np.diff(points, axis=0)[following]
+    heights = points[:, 2]
+    floors = np.unique([spawn.z_m for spawn in scene.spawns])
+    on_floor = [float((np.abs(heights - z) < 0.05).mean()) for z in floors]
+    away = clearances(scene, points)
+    return {
+        "positions": len(points),
+        "avatars": len(np.unique(seen[:, 1])),
+        **{f"share_at_{z:g}_m": share for z, share in zip(floors, on_floor, strict=True)},
+        "share_between": 1.0 - sum(on_floor),
+        "inside": int(inside(scene, points).sum()),
+        "unsupported": int(unsupported(scene, points).sum()),
+        "nearest_m": round(float(away.min()), 3),
+        "pressed_share": float((away < TOUCHING_M).mean()),
+        "longest_move_m": round(float(np.hypot(*moves[:, :2].T).max()), 3),
+        "highest_step_m": round(float(np.abs(moves[:, 2]).max()), 3),
+        "steps_too_high": int((np.abs(moves[:, 2]) > STEP_M).sum()),
+    }
+
+
+if __name__ == "__main__":
+    sys.exit(main())
