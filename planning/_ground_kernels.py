@@ -8,10 +8,10 @@ from planning._geometry_kernels import (
     Stance,
     point_segment_distance,
     slide,
-    stops,
 )
 from planning._grid_kernels import GridArrays, corners, follow
 from planning._jit import inlined, kernel
+from planning._layered import TILE
 
 
 @inlined
@@ -112,37 +112,56 @@ def lower_to_barriers(
 
     Only cells whose centres lie in `box` (x0, y0, x1, y1) are looked at.
     """
-    cell_m = grid.layered.cell_m
-    for s in range(len(index.segments)):
-        ax = index.segments[s, 0]
-        ay = index.segments[s, 1]
-        bx = index.segments[s, 2]
-        by = index.segments[s, 3]
-        i0 = max(0, int((max(box[0], min(ax, bx) - reach) - grid.layered.x0) / cell_m) - 1)
-        i1 = min(
-            grid.layered.nx, int((min(box[2], max(ax, bx) + reach) - grid.layered.x0) / cell_m) + 2
-        )
-        j0 = max(0, int((max(box[1], min(ay, by) - reach) - grid.layered.y0) / cell_m) - 1)
-        j1 = min(
-            grid.layered.ny, int((min(box[3], max(ay, by) + reach) - grid.layered.y0) / cell_m) + 2
-        )
-        for layer in range(len(grid.layered.pages)):
-            for j in range(j0, j1):
-                for i in range(i0, i1):
-                    page = grid.layered.pages[layer, j >> 3, i >> 3]
-                    if page < 0:
-                        continue
-                    cell = page + ((j & 7) << 3) + (i & 7)
-                    floor = 0.0 if grid.flat else float(grid.layered.floors[cell])
-                    stance = Stance(floor, floor, height_m, step_on_m)
-                    if not stops(index, s, stance):
-                        continue
-                    d = point_segment_distance(
-                        grid.layered.x0 + (i + 0.5) * cell_m,
-                        grid.layered.y0 + (j + 0.5) * cell_m,
-                        ax,
-                        ay,
-                        bx,
-                        by,
-                    )[0]
-                    field[cell] = min(field[cell], d)
+    layered, segments = grid.layered, index.segments
+    pages, cell_m = layered.pages, layered.cell_m
+    tile_m = TILE * cell_m
+    body = height_m, step_on_m
+    highest = np.full(len(layered.plain), reach, dtype=np.float32)
+    for s in range(len(segments)):
+        ax, ay, bx, by = segments[s, :4]
+        if step_on_m >= segments[s, 6]:
+            continue
+        i0 = max(0, int((max(box[0], min(ax, bx) - reach) - layered.x0) / cell_m) - 1)
+        i1 = min(layered.nx, int((min(box[2], max(ax, bx) + reach) - layered.x0) / cell_m) + 2)
+        j0 = max(0, int((max(box[1], min(ay, by) - reach) - layered.y0) / cell_m) - 1)
+        j1 = min(layered.ny, int((min(box[3], max(ay, by) + reach) - layered.y0) / cell_m) + 2)
+        for tj in range(j0 // TILE, (j1 - 1) // TILE + 1):
+            for ti in range(i0 // TILE, (i1 - 1) // TILE + 1):
+                x, y = layered.x0 + (ti + 0.5) * tile_m, layered.y0 + (tj + 0.5) * tile_m
+                nearest = point_segment_distance(x, y, ax, ay, bx, by)[0] - 0.71 * tile_m
+                if nearest > reach:
+                    continue
+                rows = max(j0, tj * TILE), min(j1, (tj + 1) * TILE)
+                columns = max(i0, ti * TILE), min(i1, (ti + 1) * TILE)
+                for layer in range(len(pages)):
+                    page = pages[layer, tj, ti]
+                    tile = page // (TILE * TILE)
+                    if page >= 0 and nearest < highest[tile]:
+                        _lower_tile(grid, segments[s], body, page, rows, columns, field)
+                        highest[tile] = field[page : page + TILE * TILE].max()
+
+
+@inlined
+def _lower_tile(
+    grid: GridArrays,
+    segment: NDArray[np.float64],
+    body: tuple[float, float],
+    page: int,
+    rows: tuple[int, int],
+    columns: tuple[int, int],
+    field: NDArray[np.float32],
+) -> None:
+    """`lower_to_barriers` for one barrier and some cells of one tile."""
+    layered = grid.layered
+    height_m, step_on_m = body
+    for j in range(rows[0], rows[1]):
+        for i in range(columns[0], columns[1]):
+            cell = page + (j % TILE) * TILE + i % TILE
+            floor = 0.0 if grid.flat else float(layered.floors[cell])
+            if segment[4] < floor + height_m and segment[5] > floor + step_on_m:
+                x = layered.x0 + (i + 0.5) * layered.cell_m
+                y = layered.y0 + (j + 0.5) * layered.cell_m
+                away = point_segment_distance(x, y, segment[0], segment[1], segment[2], segment[3])[
+                    0
+                ]
+                field[cell] = min(field[cell], away)

@@ -16,6 +16,9 @@ LIMITS = {
 """Least and greatest value of each measure. Cells link surfaces up to 1.2 m apart in height, so
 nobody steps higher."""
 
+MOST_BODIES = 64
+"""Kinds of body that a zone tells apart."""
+
 
 @dataclass(frozen=True)
 class Body:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, eq=False)
 class Doors:
-    """The doors of a zone by name, as rows of its barriers.
+    """The doors of a zone by name, as the first rows of its barriers.
 
     An open door has a rise of 0, so that it stops nobody.
     """

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from planning._footing import Footing
 from planning._layered import TILE, LayeredArrays
 from planning.barriers import Barriers
-from planning.bodies import Body
+from planning.bodies import MOST_BODIES, Body
 from planning.reachability import measures_of, near_barriers, reachable_steps
 from planning.stability import classify
 from planning.wavefront import number_regions
@@ -22,8 +22,8 @@ from planning.wavefront import number_regions
 if TYPE_CHECKING:
     from planning.grid import LayeredGrid
 
-MOST_BODIES = 32
-"""Kinds of body that a zone knows the ground for."""
+_KEPT = 2 * MOST_BODIES
+"""As many bodies as a zone tells apart, and as they really measure."""
 
 
 def find_footing(arrays: LayeredArrays, barriers: Barriers, body: Body) -> Footing:
@@ -65,7 +65,7 @@ def renew_footing(
 
 @dataclass
 class _Known:
-    """A footing, the barriers' rises that it was derived from, and its regions once asked for."""
+    """A footing, the doors' rises that it was derived from, and its regions once asked for."""
 
     footing: Footing
     rises: NDArray[np.float64]
@@ -77,7 +77,7 @@ _known: WeakKeyDictionary[LayeredGrid, OrderedDict[Body, _Known]] = WeakKeyDicti
 
 def footing_of(grid: LayeredGrid, body: Body) -> Footing:
     """The floors of a grid for a body: derived when first asked for, and anew around doors that
-    have opened or closed since. Of each grid the latest `MOST_BODIES` are kept."""
+    have opened or closed since. Of each grid the latest are kept."""
     return _known_of(grid, body).footing
 
 
@@ -91,18 +91,19 @@ def regions_of(grid: LayeredGrid, body: Body) -> NDArray[np.int32]:
 
 def _known_of(grid: LayeredGrid, body: Body) -> _Known:
     bodies = _known.setdefault(grid, OrderedDict())
-    rises = grid.barriers[:, 6]
+    doors = grid.barriers[: len(grid.doors)]
+    rises = doors[:, 6]
     known = bodies.get(body)
     if known is None:
         known = _Known(find_footing(grid.layered, grid.barriers, body), rises.copy())
     elif not np.array_equal(rises, known.rises):
         footing, now = known.footing, rises.copy()
-        for x0, y0, x1, y1 in grid.barriers[now != known.rises, :4]:
+        for x0, y0, x1, y1 in doors[now != known.rises, :4]:
             around = min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)
             footing = renew_footing(footing, body, around)
         known = _Known(footing, now)
     bodies[body] = known
     bodies.move_to_end(body)
-    if len(bodies) > MOST_BODIES:
+    if len(bodies) > _KEPT:
         bodies.popitem(last=False)
     return known

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections import OrderedDict
-from dataclasses import replace
 from pathlib import Path
 from typing import Self
 
@@ -15,10 +14,17 @@ from planning import _geometry_kernels as geometry
 from planning import _grid_kernels as kernels
 from planning._geometry_kernels import SegmentIndex
 from planning._grid_kernels import GridArrays
-from planning._ground_kernels import lower_to_barriers, walk_many
+from planning._ground_kernels import walk_many
 from planning._layered import LayeredArrays
 from planning.barriers import Barriers
-from planning.bodies import Body
+from planning.bodies import MOST_BODIES, Body
+from planning.clearances import (
+    CLEARANCE_CAP_M,
+    cells_within,
+    centres_of,
+    kind_of,
+    write_clearance,
+)
 from planning.doors import Doors
 from planning.floors import Floors, floors_of_mesh, floors_of_scene
 from planning.footing import footing_of
@@ -29,14 +35,9 @@ from planning.scene import Scene
 from planning.stability import Stability
 from planning.surfaces import Surfaces
 
-CLEARANCE_CAP_M = 3.0
-"""Distances to obstacles are kept up to here; further is as good as far."""
 _BUCKET_M = 1.0
 _BUCKET_REACH_M = 1.5
 _POTENTIALS_BYTES = 256 * 2**20
-_RADIUS_STEP_M = 0.05
-_ROUNDING_M = 1e-4
-"""Heights of cells are 32-bit floats."""
 
 ADULT = Body.adult()
 _EDGES = (Stability.UNSTABLE, Stability.UP_STAIR, Stability.DOWN_STAIR)
@@ -63,7 +64,7 @@ class LayeredGrid:
             flat,
         )
         self.index = _index(floors.barriers, self.bounds)
-        self.centres = _centres(layered)
+        self.centres = centres_of(layered)
         self._rows: dict[Body, int] = {}
         self._potentials: OrderedDict[tuple[float, ...], Potential] = OrderedDict()
         self.row_of(ADULT)
@@ -103,46 +104,38 @@ class LayeredGrid:
     def row_of(self, body: Body) -> int:
         """Row of a kind of body in `arrays.clearance`; derived when it is asked for first.
 
-        Bodies that differ by less than 5 cm in radius, or only in how long they may stay on edges,
-        share a row: clearances are the same, edges those of the widest.
+        Bodies that differ by less than 5 cm in radius or height, or only in how long they may stay
+        on edges, share a row: that of the widest and tallest.
+
+        Raises
+        ------
+        ValueError
+            That would be more than `MOST_BODIES` kinds. Whoever walks here has a row, so that
+            none can be given to another.
         """
-        steps = math.ceil(body.radius_m / _RADIUS_STEP_M - 1e-9)
-        body = replace(body, radius_m=steps * _RADIUS_STEP_M, edge_cells=ADULT.edge_cells)
+        body = kind_of(body)
         row = self._rows.get(body)
         if row is None:
+            if len(self._rows) == MOST_BODIES:
+                raise ValueError(
+                    f"the zone knows {MOST_BODIES} kinds of body already, and none like {body}"
+                )
             a = self.arrays
-            field = np.full(len(a.layered.floors), CLEARANCE_CAP_M, dtype=np.float32)
-            self._lower(field, body, self.bounds)
-            field[self._without_room(body)] *= -1.0
+            everywhere = np.arange(len(a.layered.floors))
+            field = np.empty(len(everywhere), dtype=np.float32)
+            write_clearance(a, self.index, body, self.bounds, everywhere, field)
             row = self._rows[body] = len(a.clearance)
             self.arrays = a._replace(
                 clearance=np.concatenate([a.clearance, field[None]]),
-                edges=np.concatenate([a.edges, self._edges(body)[None]]),
+                edges=np.concatenate([a.edges, self._edges(body, everywhere)[None]]),
             )
         return row
 
-    def _without_room(self, body: Body) -> NDArray[np.bool_]:
-        """Holes, and cells whose ceiling is too low for a body."""
-        room_m = self.layered.ceilings - self.layered.floors
-        return ~(room_m >= body.height_m - _ROUNDING_M)
-
-    def _edges(self, body: Body) -> NDArray[np.bool_]:
+    def _edges(self, body: Body, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Of some cells those where a body is on an edge."""
         if self.arrays.flat:
-            return np.zeros(len(self.layered.floors), dtype=np.bool_)
-        return np.isin(footing_of(self, body).classes, _EDGES)
-
-    def _lower(
-        self, field: NDArray[np.float32], body: Body, box: tuple[float, float, float, float]
-    ) -> None:
-        lower_to_barriers(
-            self.arrays,
-            self.index,
-            body.height_m,
-            body.step_on_m,
-            CLEARANCE_CAP_M,
-            box,
-            field,
-        )
+            return np.zeros(len(cells), dtype=np.bool_)
+        return np.isin(footing_of(self, body).classes[cells], _EDGES)
 
     @property
     def layered(self) -> LayeredArrays:
@@ -174,14 +167,11 @@ class LayeredGrid:
         x0, y0, x1, y1 = self.doors.set_open(name, is_open)
         reach = CLEARANCE_CAP_M
         box = (x0 - reach, y0 - reach, x1 + reach, y1 + reach)
-        near = ((self.centres >= box[:2]) & (self.centres <= box[2:])).all(axis=1)
+        near = cells_within(self.layered, self.centres, box)
         clearance, edges = self.arrays.clearance.copy(), self.arrays.edges.copy()
         for body, row in self._rows.items():
-            field = clearance[row]
-            field[near] = CLEARANCE_CAP_M
-            self._lower(field, body, box)
-            field[near & self._without_room(body)] *= -1.0
-            edges[row] = self._edges(body)
+            write_clearance(self.arrays, self.index, body, box, near, clearance[row])
+            edges[row, near] = self._edges(body, near)
         self.arrays = self.arrays._replace(clearance=clearance, edges=edges)
         self._potentials.clear()
 
@@ -368,12 +358,6 @@ class LayeredGrid:
         else:
             self._potentials.move_to_end(key)
         return found
-
-
-def _centres(layered: LayeredArrays) -> NDArray[np.float64]:
-    """Centres of the cells, float64 (N, 2)."""
-    rows_columns = layered.places[:, 1:].astype(np.float64) + 0.5
-    return np.ascontiguousarray(rows_columns[:, ::-1] * layered.cell_m + (layered.x0, layered.y0))
 
 
 def _index(barriers: Barriers, bounds: tuple[float, float, float, float]) -> SegmentIndex:

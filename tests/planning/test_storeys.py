@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from planning import Body, Door, LayeredGrid, Polygon, Potential, Ramp, Scene
-from planning.grid import CLEARANCE_CAP_M
+from planning import Body, Door, LayeredGrid, Polygon, Potential, Ramp, Scene, find_path
+from planning.bodies import MOST_BODIES
+from planning.clearances import CLEARANCE_CAP_M
 from tests.naive.geometry import point_segment_distance
 from tests.planning.storeys import SLAB_FROM, STAIRS_FROM, box, grid_of, storeyed
 from tests.planning.worlds import UPPER_M, scaled
@@ -337,6 +338,19 @@ def test_bodies_that_hardly_differ_share_what_is_known_of_the_ground() -> None:
     assert grid.row_of(replace(ADULT, edge_cells=9)) == grid.row_of(ADULT)
     assert grid.row_of(replace(ADULT, step_on_m=0.3)) != grid.row_of(ADULT)
     assert grid.row_of(replace(ADULT, radius_m=0.4)) != grid.row_of(ADULT)
+    assert grid.row_of(replace(ADULT, height_m=1.76)) == grid.row_of(ADULT)
+    assert grid.row_of(replace(ADULT, height_m=1.75)) != grid.row_of(ADULT)
+
+
+def test_a_zone_tells_only_so_many_kinds_of_body_apart() -> None:
+    grid = grid_of(4.0)
+    kinds = [replace(ADULT, step_on_m=0.005 * k) for k in range(MOST_BODIES - 1)]
+    rows = [grid.row_of(body) for body in kinds]
+    assert len(set(rows)) == len(kinds)
+    with pytest.raises(ValueError, match=rf"knows {MOST_BODIES} kinds of body already"):
+        grid.row_of(replace(ADULT, step_on_m=0.59))
+    assert [grid.row_of(body) for body in kinds] == rows
+    assert find_path(grid, (1.0, 1.0, 0.0), (3.0, 3.0, 0.0), Body(step_on_m=0.59)).length_m > 2.8
 
 
 def test_nobody_is_free_where_the_ceiling_is_too_low() -> None:
