@@ -20,6 +20,7 @@ export interface Inspection {
   /** Script time a frame, milliseconds: moving everybody, and placing the parts of their figures. */
   readonly scriptMs: { readonly moving: number; readonly figures: number };
   readonly delayS: number | null;
+  readonly ownDelayS: number | null;
   readonly correctionM: number | null;
 }
 
@@ -78,6 +79,9 @@ export function offerInspection(session: Session, view: View): void {
     },
     get delayS() {
       return session.world?.delayS ?? null;
+    },
+    get ownDelayS() {
+      return session.world?.ownDelayS ?? null;
     },
     get correctionM() {
       return session.world?.correctionM ?? null;

@@ -33,7 +33,7 @@ export class View {
   private readonly picking: Picking;
   private readonly cutaway = new Cutaway();
   /** Who is drawn in this frame: all but those on floors that are cut away. */
-  private drawn: ReadonlyMap<number, Avatar> = new Map();
+  private readonly drawn = new Map<number, Avatar>();
   private control: QualityControl;
   private readonly software = drawsInSoftware();
   private town: Town | null = null;
@@ -98,7 +98,10 @@ export class View {
       this.cutaway.update(own.pose, this.stage.camera.position, hidden || covered, frameS);
     }
     this.town?.doors.update(world.doors, frameS);
-    this.drawn = new Map([...avatars].filter(([, avatar]) => this.shown(avatar) > 0.5));
+    this.drawn.clear();
+    for (const avatar of avatars.values()) {
+      if (this.shown(avatar) > 0.5) this.drawn.set(avatar.id, avatar);
+    }
     this.dressing.of(() => {
       this.figures.update(this.drawn, this.stage.camera);
     });

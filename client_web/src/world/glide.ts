@@ -4,7 +4,7 @@
  */
 
 import { cyclePosture, stepAt } from "./cycle";
-import type { Pose } from "./motion";
+import { copyPose, type Pose } from "./motion";
 import type { FootPosture, Posture } from "./posture";
 import type { Build } from "./skeleton";
 import { headed, rotation, set, times, type Vector } from "./vectors";
@@ -32,12 +32,12 @@ export class Glide {
   }
 
   /** Go where the snapshots have it; the phase follows the distance, so that feet hardly slide. */
-  advance(snapshots: Pose, frameS: number): void {
+  advance(snapshots: Readonly<Pose>, frameS: number): void {
     const { place, build } = this;
     const dx = snapshots.x - place.x;
     const dy = snapshots.y - place.y;
     const z = lifted(place.z, snapshots.z, frameS);
-    Object.assign(place, snapshots);
+    copyPose(snapshots, place);
     place.z = z;
     const distance = Math.hypot(dx, dy);
     if (frameS <= 0 || distance > JUMP_M) return;

@@ -13,6 +13,16 @@ export interface Pose {
   reason: number;
 }
 
+export function copyPose(from: Readonly<Pose>, out: Pose): void {
+  out.x = from.x;
+  out.y = from.y;
+  out.z = from.z;
+  out.layer = from.layer;
+  out.heading = from.heading;
+  out.speed = from.speed;
+  out.reason = from.reason;
+}
+
 interface Sample extends Pose {
   timeS: number;
 }
@@ -24,8 +34,10 @@ const COAST_S = 0.25;
 
 export class Motion {
   private readonly samples: Sample[] = [];
+  private readonly here: Pose;
 
   constructor(timeS: number, pose: Pose) {
+    this.here = { ...pose };
     this.samples.push({ ...pose, timeS });
   }
 
@@ -49,37 +61,37 @@ export class Motion {
   }
 
   /**
-   * The pose at `timeS`. After the last sample it stays there if `heardS`, the time of the newest
-   * snapshot, says that nothing has changed since, else it coasts for a moment.
+   * The pose at `timeS`, good until the next call. After the last sample it stays there if `heardS`,
+   * the time of the newest snapshot, says that nothing has changed since, else it coasts for a moment.
    */
-  at(timeS: number, heardS: number): Pose {
-    const after = this.samples.findIndex((sample) => sample.timeS > timeS);
-    if (after < 0) return this.beyond(timeS, heardS);
-    const b = this.samples[after];
-    const a = this.samples[after - 1];
-    if (!a || !b) return this.samples[0] ?? this.last;
+  at(timeS: number, heardS: number): Readonly<Pose> {
+    const { samples, here } = this;
+    let after = samples.length;
+    while (after > 0 && (samples[after - 1]?.timeS ?? 0) > timeS) after--;
+    const a = samples[after - 1];
+    const b = samples[after];
+    if (!a) return samples[0] ?? this.last;
+    if (!b) return this.beyond(timeS, heardS);
     const part = (timeS - a.timeS) / (b.timeS - a.timeS);
-    return {
-      x: a.x + (b.x - a.x) * part,
-      y: a.y + (b.y - a.y) * part,
-      z: a.z + (b.z - a.z) * part,
-      layer: part < 0.5 ? a.layer : b.layer,
-      heading: mixAngles(a.heading, b.heading, part),
-      speed: a.speed + (b.speed - a.speed) * part,
-      reason: b.reason,
-    };
+    here.x = a.x + (b.x - a.x) * part;
+    here.y = a.y + (b.y - a.y) * part;
+    here.z = a.z + (b.z - a.z) * part;
+    here.layer = part < 0.5 ? a.layer : b.layer;
+    here.heading = mixAngles(a.heading, b.heading, part);
+    here.speed = a.speed + (b.speed - a.speed) * part;
+    here.reason = b.reason;
+    return here;
   }
 
-  private beyond(timeS: number, heardS: number): Pose {
-    const { last } = this;
+  private beyond(timeS: number, heardS: number): Readonly<Pose> {
+    const { last, here } = this;
     const before = this.samples.at(-2);
     if (!before || heardS > last.timeS) return last;
     const coastS = Math.min(timeS - last.timeS, COAST_S);
     const stepS = last.timeS - before.timeS;
-    return {
-      ...last,
-      x: last.x + ((last.x - before.x) / stepS) * coastS,
-      y: last.y + ((last.y - before.y) / stepS) * coastS,
-    };
+    copyPose(last, here);
+    here.x += ((last.x - before.x) / stepS) * coastS;
+    here.y += ((last.y - before.y) / stepS) * coastS;
+    return here;
   }
 }

@@ -7,7 +7,7 @@ import type { StepRecord } from "../net/steps";
 import { mixAngles, wrapAngle } from "./angles";
 import { type Body, body, solve } from "./body";
 import { Glide } from "./glide";
-import type { Pose } from "./motion";
+import { copyPose, type Pose } from "./motion";
 import { mixPostures, type Posture, posture } from "./posture";
 import { Pointing } from "./pointing";
 import type { Build } from "./skeleton";
@@ -101,7 +101,7 @@ export class Walker {
   }
 
   /** Where it is drawn at `timeS`, given where its snapshots have it; writes the body. */
-  advance(timeS: number, snapshots: Pose, frameS: number): Pose {
+  advance(timeS: number, snapshots: Readonly<Pose>, frameS: number): Pose {
     const fresh = this.timeS === -Infinity;
     this.lagS = Math.max(0, this.lagS - HURRY * frameS);
     this.timeS = timeS - this.lagS;
@@ -133,7 +133,7 @@ export class Walker {
     times(turned, head, head);
   }
 
-  private chosen(snapshots: Pose): Timed | null {
+  private chosen(snapshots: Readonly<Pose>): Timed | null {
     let chosen: Timed | null = null;
     for (const each of this.steps) if (each.beginS <= this.timeS) chosen = each;
     if (!chosen) return null;
@@ -170,13 +170,16 @@ export class Walker {
   }
 
   /** Where labels, camera and map have it: under the middle of the hips, on the feet's height. */
-  private placed(snapshots: Pose): Pose {
+  private placed(snapshots: Readonly<Pose>): Pose {
     const { place, drawn } = this;
     const { root } = this.body;
     place.layer = snapshots.layer;
     place.speed = snapshots.speed;
     place.reason = snapshots.reason;
-    if (!drawn) return Object.assign(place, this.glide.place);
+    if (!drawn) {
+      copyPose(this.glide.place, place);
+      return place;
+    }
     const { standing, landing } = drawn.step;
     const u = smooth((this.timeS - drawn.beginS) / Math.max(drawn.endS - drawn.beginS, 1e-6));
     place.x = root.x;

@@ -85,6 +85,11 @@ export class World {
     return this.playout.delayS;
   }
 
+  /** The same of the own steps. */
+  get ownDelayS(): number {
+    return this.ownPlayout.delayS;
+  }
+
   enter(tick: number, entities: readonly EntityInfo[]): void {
     for (const info of entities) {
       const own = info.id === this.ownId;
