@@ -1,4 +1,4 @@
-"""Take the picture of a lively plaza anew.
+"""Take the picture of the lively gallery anew.
 
 Call it with `python -m tests.browser.picture docs/images/world.png`.
 """
@@ -19,12 +19,12 @@ from server.stage import DEFAULT_SCENE
 from tests.browser.conftest import FLAGS, executable
 from tests.browser.visitor import View, Visitor, own, place_of
 
-ACTORS: Final = 22
-VISITORS: Final = 14
+ACTORS: Final = 30
+VISITORS: Final = 16
 SPREAD_S: Final = 25.0
 """Time for everybody to walk away from where they came in."""
-VIEWPOINT: Final = (31.0, 14.4)
-NEAR_M: Final = 9.0
+VIEWPOINT: Final = (20.0, -7.5)
+NEAR_M: Final = 13.0
 WALKING_MPS: Final = 0.8
 
 
@@ -33,7 +33,7 @@ def take() -> bytes:
     scene = Scene.model_validate_json(DEFAULT_SCENE.read_text(encoding="utf-8"))
     spawn = scene.spawns[0].model_copy(update={"position": VIEWPOINT, "radius_m": 0.5})
     with TemporaryDirectory() as folder:
-        file = Path(folder, "plaza.json")
+        file = Path(folder, DEFAULT_SCENE.name)
         file.write_text(scene.model_copy(update={"spawns": (spawn,)}).model_dump_json())
         return asyncio.run(_run(file))
 
