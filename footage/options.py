@@ -10,10 +10,10 @@ FRAMES_A_SECOND: Final = (10, 20, 25, 50)
 """GIF counts in hundredths of a second."""
 DEFAULT_FRAMES_A_SECOND: Final = 20
 
-DESCRIPTION: Final = (
-    "Show how everyone walks: pictures and films of the steps that the server sends, the cycle of "
-    "figures that are far away, and the plots of docs/walking.md."
-)
+DESCRIPTION: Final = """\
+Show how everyone walks: pictures and films of the steps that the server sends, the
+cycle of figures that are far away, and the plots of docs/walking.md.
+"""
 EPILOG: Final = """\
 examples:
   esplanade gait render --out pictures
