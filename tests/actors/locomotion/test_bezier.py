@@ -11,7 +11,7 @@ SHARES = np.linspace(0.0, 1.0, 1001)
 @pytest.mark.parametrize("count", range(1, 9))
 def test_weights_sum_to_one_and_are_never_negative(count: int):
     weights = bernstein(count, SHARES)
-    assert np.max(np.abs(weights.sum(axis=-1) - 1.0)) < 1e-15 * 4
+    assert np.max(np.abs(weights.sum(axis=-1) - 1.0)) < 1e-15
     assert weights.min() >= 0.0
 
 
