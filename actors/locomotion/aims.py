@@ -51,8 +51,8 @@ _STEEPEST_M: Final = 0.42
 _CLIMB_M: Final = 0.75
 """No foot is put further up or down ahead; nor, to get where the body has gone, under it."""
 
-_OPENING_RAD: Final = 1.3
-_CLOSING_RAD: Final = 0.6
+_OPENING_RAD: Final = 1.6
+_CLOSING_RAD: Final = 1.0
 """How far a foot may be turned against the other, outwards and inwards."""
 
 

@@ -106,6 +106,8 @@ class Parade:
         for number in range(int(self.tick * TICK_S * a_second)):
             tick = number / a_second / TICK_S
             while after is not None and after.tick <= tick:
+                landed = after.slots[drawn.share(after.tick)[after.slots] >= 1.0]
+                stood[landed, 1 - drawn.right[landed].astype(np.int64)] = drawn.landing[landed]
                 drawn.put(after.slots, after.steps)
                 rows = np.arange(len(after.slots))
                 side = after.steps.right.astype(np.int64)
@@ -117,8 +119,8 @@ class Parade:
             body = pose(drawn, share, self.build)
             before, rest = int(tick), tick - int(tick)
             places = (1.0 - rest) * self.places[before] + rest * self.places[before + 1]
-            landed = share >= 1.0
-            stood[landed, 1 - drawn.right[landed]] = drawn.landing[landed]
+            landed = np.flatnonzero(share >= 1.0)
+            stood[landed, 1 - drawn.right[landed].astype(np.int64)] = drawn.landing[landed]
             slide_m = _slide(drawn, share, body, stood, self.build)
             yield Frame(tick, drawn, share, body, places, slide_m)
 

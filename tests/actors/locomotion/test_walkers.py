@@ -26,7 +26,7 @@ def check_continuous(parade: Parade) -> None:
 
 def check_planted(parade: Parade) -> None:
     slide = np.concatenate([frame.slide_m.ravel() for frame in parade.frames()])
-    assert np.nanmax(slide) < 0.2 * MM
+    assert np.nanmax(slide) < 0.3 * MM
 
 
 def keyboard(count: int, seed: int) -> Floats:
