@@ -18,7 +18,7 @@ from planning._crowd import (
     Decisions,
 )
 from planning._grid_kernels import floor_of, follow
-from planning._jit import kernel
+from planning._jit import inlined, kernel
 from planning._perturb_kernels import path_cost, stretch_is_legal, update_path
 from planning._potential_kernels import direction_at, potential_at
 from planning._prediction_kernels import Prediction
@@ -168,7 +168,7 @@ def continue_paths(
             heights[a, k] = floor_of(world.grid, cell)
 
 
-@kernel
+@inlined
 def _carry_on(
     world: World,
     guides: NDArray[np.float32],

@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from planning._crowd import Crowd
 from planning._geometry_kernels import closest_approach
+from planning._grid_kernels import GridArrays
 from planning._jit import inlined, kernel
-from planning._potential_kernels import potential_at
+from planning._potential_kernels import direction_at, potential_at
 
 OVERLAP_M = 1.8
 """Whose feet are no further apart in height than that, a grown person's height, may touch."""
@@ -21,6 +22,20 @@ EVADING_SLICES = 2
 """So soon there may be no time left to get out of somebody's way."""
 EVADING_M = 0.005
 """Who then gains so much room over standing may move, even if they would meet all the same."""
+HELD_UP_PART = 0.3
+"""Who is slower than this part of the preferred speed is held up."""
+MEETING_ROOM_M = 0.8
+"""Room that two who want against each other would like, if one of them is held up."""
+MEETING_ROOM = 0.2
+"""What having none of it weighs, in certain contacts with a person: half of that when they face
+each other, more with the other on the right, nothing with the other on the left. So both keep to
+the right, and two streams form where there was a crowd."""
+QUEUE_ROOM_M = 0.5
+"""Room that two who are held up would like. Coming closer gains a little way once, but costs as
+long as both stay: those who wait leave gaps, through which others come out."""
+QUEUE_ROOM = 0.2
+AGAINST = -0.2
+"""Cosine of the angle between two courses from which on they are against each other."""
 SETTLED_M = 1.0
 """Who is so near the goal lets everyone else pass."""
 
@@ -29,13 +44,17 @@ class Reservations(NamedTuple):
     """Everyone's planned way and an index of it by bucket, slice by slice.
 
     `paths` (A, K, 2) m; `heights` (A, K) m of the feet; `radii` (A,) m; `ranks` (A,), smaller goes
-    first; `starts` (K, buckets + 1) and `members` (K, A) list the actors of a bucket.
+    first; `courses` (A, 2) unit vectors of where they want, zeros for who goes nowhere; `held_up`
+    (A,) tells who gets on badly; `starts` (K, buckets + 1) and `members` (K, A) list the actors of
+    a bucket.
     """
 
     paths: NDArray[np.float64]
     heights: NDArray[np.float64]
     radii: NDArray[np.float64]
     ranks: NDArray[np.int64]
+    courses: NDArray[np.float64]
+    held_up: NDArray[np.bool_]
     starts: NDArray[np.int64]
     members: NDArray[np.int64]
     x0: float
@@ -85,6 +104,62 @@ def ways_left(guides: NDArray[np.float32], crowd: Crowd, out: NDArray[np.float64
                 out[a] = left
 
 
+@kernel
+def find_courses(
+    grid: GridArrays,
+    guides: NDArray[np.float32],
+    crowd: Crowd,
+    left_m: NDArray[np.float64],
+    reservations: Reservations,
+) -> None:
+    """Fill `courses` and `held_up`; `left_m` (A,) is what `ways_left` gave."""
+    r = reservations
+    for a in range(len(left_m)):
+        r.courses[a] = 0.0
+        r.held_up[a] = False
+        if left_m[a] < np.inf:
+            x, y = crowd.positions[a]
+            guide = guides[crowd.guide_slots[a]]
+            r.courses[a, 0], r.courses[a, 1], _ = direction_at(grid, guide, crowd.cells[a], x, y)
+            speed = np.hypot(crowd.velocities[a, 0], crowd.velocities[a, 1])
+            r.held_up[a] = speed < HELD_UP_PART * crowd.parameters[a]["speed_mps"]
+
+
+@inlined
+def _against(r: Reservations, me: int, other: int) -> bool:
+    """Whether the two want against each other."""
+    along = r.courses[me, 0] * r.courses[other, 0] + r.courses[me, 1] * r.courses[other, 1]
+    return bool(along < AGAINST)
+
+
+@inlined
+def room_wanted(r: Reservations, me: int, other: int) -> float:
+    """Metres that I would like to another beyond not touching; none where everyone gets along."""
+    if not (r.held_up[me] or r.held_up[other]):
+        return 0.0
+    if _against(r, me, other):
+        return MEETING_ROOM_M
+    return QUEUE_ROOM_M if r.held_up[me] and r.held_up[other] else 0.0
+
+
+@inlined
+def crowding(r: Reservations, me: int, other: int, k: int, x: float, y: float) -> float:
+    """What being at (x, y) at slice k weighs because it leaves too little room to one other."""
+    room_m = room_wanted(r, me, other)
+    if room_m == 0.0:
+        return 0.0
+    ex = x - r.paths[other, k, 0]
+    ey = y - r.paths[other, k, 1]
+    apart = np.sqrt(ex * ex + ey * ey)
+    lacking = 1.0 - max(0.0, apart - r.radii[me] - r.radii[other] - MARGIN_M) / room_m
+    if lacking <= 0.0:
+        return 0.0
+    if not _against(r, me, other):
+        return float(QUEUE_ROOM * lacking)
+    to_the_right = (r.courses[me, 0] * ey - r.courses[me, 1] * ex) / max(apart, 1e-9)
+    return float(MEETING_ROOM * lacking * max(0.0, 0.5 + to_the_right))
+
+
 @inlined
 def conflict(
     reservations: Reservations,
@@ -98,8 +173,9 @@ def conflict(
 ) -> tuple[bool, float]:
     """Meetings while moving from a at slice k to b at slice k + 1.
 
-    The first value tells of one that is forbidden, the second adds up what the others weigh.
-    Swapping places is a meeting. `feet_m` is the height that I am at; who is on another floor is
+    The first value tells of one that is forbidden, the second adds up what the others weigh, and
+    at the end of a step what is lacking of the room between them. Swapping places is a meeting.
+    `feet_m` is the height that I am at; who is on another floor is
     not met.
     """
     r = reservations
@@ -118,6 +194,8 @@ def conflict(
             if weight == np.inf:
                 return True, 1.0
             soft += weight
+            if k % 2 == 1:  # b is the end of a step
+                soft += crowding(r, me, other, k + 1, bx, by)
     return False, soft
 
 
@@ -131,23 +209,28 @@ def others_near(
     y: float,
     slice_m: float,
     others: NDArray[np.int64],
-) -> int:
+) -> tuple[int, int]:
     """List whom one may meet who leaves (x, y) at slice k, within two slices; how many they are.
 
-    `slice_m` is how far one gets in a slice. `others` takes as many as it has room for.
+    From the end of `others` are listed, backwards, those whom one cannot meet but may crowd: the
+    second number. `slice_m` is how far one gets in a slice. `others` takes as many as it has room
+    for.
     """
     r = reservations
     ci = int((x - r.x0) / r.bucket_m)
     cj = int((y - r.y0) / r.bucket_m)
     i0 = min(r.nx - 1, max(0, ci - 1))
     i1 = min(r.nx - 1, max(0, ci + 1))
-    count = 0
+    met = 0
+    crowded = 0
     for j in range(max(0, cj - 1), min(r.ny, cj + 2)):
         row = j * r.nx  # buckets of a row are listed one after the other
         for m in range(r.starts[k + 1, row + i0], r.starts[k + 1, row + i1 + 1]):
             o = r.members[k + 1, m]
             if o == me or abs(r.heights[o, k + 1] - feet_m) >= OVERLAP_M:
                 continue
+            if met + crowded == len(others):
+                return met, crowded
             reach = r.radii[me] + r.radii[o] + MARGIN_M + 2.0 * slice_m
             nearest = np.inf
             for s in range(2):
@@ -158,17 +241,21 @@ def others_near(
                     r.paths[o, k + s, 1] - r.paths[o, k + s + 1, 1],
                 )
                 nearest = min(nearest, d)
-            if nearest < reach and count < len(others):
-                others[count] = o
-                count += 1
-    return count
+            if nearest < reach:
+                others[met] = o
+                met += 1
+            elif nearest < reach + room_wanted(r, me, o):
+                crowded += 1
+                others[len(others) - crowded] = o
+    return met, crowded
 
 
 @inlined
 def meetings(
     reservations: Reservations,
     others: NDArray[np.int64],
-    count: int,
+    met: int,
+    crowded: int,
     me: int,
     k: int,
     ax: float,
@@ -180,14 +267,16 @@ def meetings(
 ) -> tuple[bool, float]:
     """`conflict` from a at slice k to b and on to c, with those that `others_near` listed."""
     soft = 0.0
-    for n in range(count):
+    for n in range(met):
         o = others[n]
         weight = _meeting(reservations, me, o, k, ax, ay, bx, by) + _meeting(
             reservations, me, o, k + 1, bx, by, cx, cy
         )
         if weight == np.inf:
             return True, 1.0
-        soft += weight
+        soft += weight + crowding(reservations, me, o, k + 2, cx, cy)
+    for n in range(len(others) - crowded, len(others)):
+        soft += crowding(reservations, me, others[n], k + 2, cx, cy)
     return False, soft
 
 

@@ -220,7 +220,8 @@ def search(
         price = risk_price(task, step * step_s) * ds
         k = step * SUB
         feet_m = 0.0 if grid.flat else float(grid.layered.floors[cell])
-        near = others_near(reservations, task.me, feet_m, k, x, y, task.max_speed_mps * ds, others)
+        slice_m = task.max_speed_mps * ds
+        met, crowded = others_near(reservations, task.me, feet_m, k, x, y, slice_m, others)
         # The clearance falls by no more than the way: far from walls no child has to be asked.
         in_the_open = clearance_at(grid, task.body, cell, x, y) >= open_m
         # What the rest of the way is bound to cost beyond its time, if it is like the path known.
@@ -281,9 +282,9 @@ def search(
             if worth >= least:
                 continue
             soft = 0.0
-            if near > 0:
+            if met + crowded > 0:
                 blocked, soft = meetings(
-                    reservations, others, near, task.me, k, x, y, hx, hy, ex, ey
+                    reservations, others, met, crowded, task.me, k, x, y, hx, hy, ex, ey
                 )
                 if blocked:
                     continue

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from planning._crowd import Crowd, Decisions
 from planning._decide_kernels import continue_paths, decide
 from planning._prediction_kernels import Prediction
-from planning._reservation_kernels import index_paths, ways_left
+from planning._reservation_kernels import find_courses, index_paths, ways_left
 from planning._search_kernels import Workspace
 from planning._step_kernels import resolve
 from planning._task_kernels import SUB, World
@@ -143,6 +143,7 @@ class Batch:
         workspaces = self._workspaces_for(int(crowd.parameters["max_expansions"].max()))
         continue_paths(world, guides, crowd, tick_s, 0, actors, paths, heights)
         index_paths(reservations)
+        find_courses(self.grid.arrays, guides, crowd, left_m, reservations)
         turns = _by_neighbourhood(crowd)
 
         def work(k: int, threads: int) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning import _search_kernels as kernels
-from planning._reservation_kernels import MARGIN_M, Reservations
+from planning._reservation_kernels import MARGIN_M, MEETING_ROOM_M, Reservations
 from planning._search_kernels import Moves, Workspace
 from planning._task_kernels import SUB, Task, World
 from planning.grid import LayeredGrid
@@ -102,12 +102,13 @@ def make_reservations(
 ) -> Reservations:
     """Room for the planned ways of A actors, (A, K, 2) and (A, K); `index_paths` fills its index.
 
-    `fastest_m` is how far anyone can get from one slice, or tick, to the next: buckets are so
-    wide that whoever can be met in two slices is in one of the nine around.
+    Nobody has a course yet, nor is held up. `fastest_m` is how far anyone can get from one slice,
+    or tick, to the next: buckets are so wide that whoever can be met in two slices, or would like
+    room, is in one of the nine around.
     """
     x0, y0, x1, y1 = grid.bounds
     widest = float(radii_m.max()) if len(radii_m) else 0.0
-    bucket = 2.0 * widest + 3.0 * fastest_m + MARGIN_M
+    bucket = 2.0 * widest + 3.0 * fastest_m + MARGIN_M + MEETING_ROOM_M
     nx = max(1, math.ceil((x1 - x0) / bucket))
     ny = max(1, math.ceil((y1 - y0) / bucket))
     actors, slices = paths.shape[:2]
@@ -116,6 +117,8 @@ def make_reservations(
         heights,
         radii_m,
         ranks,
+        np.zeros((actors, 2)),
+        np.zeros(actors, dtype=np.bool_),
         np.zeros((slices, nx * ny + 1), dtype=np.int64),
         np.zeros((slices, actors), dtype=np.int64),
         x0,

@@ -245,7 +245,7 @@ def test_the_seed_decides_between_those_with_equal_ways_and_nothing_else() -> No
     def meet(seed: int):
         nav = navigator(GRID, seed=seed)
         nav.add_actor("a", (2.0, 6.0), (10.0, 6.0), BODY)
-        nav.add_actor("b", (10.0, 6.0), (2.0, 6.0), BODY)
+        nav.add_actor("b", (6.0, 2.0), (6.0, 10.0), BODY)
         record = run(nav, 4.0)
         nav.close()
         return record

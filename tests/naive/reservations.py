@@ -7,9 +7,14 @@ import math
 import numpy as np
 
 from planning._reservation_kernels import (
+    AGAINST,
     EVADING_M,
     EVADING_SLICES,
+    MEETING_ROOM,
+    MEETING_ROOM_M,
     OVERLAP_M,
+    QUEUE_ROOM,
+    QUEUE_ROOM_M,
     SOFT,
     Reservations,
 )
@@ -25,6 +30,8 @@ def conflict(
     for other in range(len(r.paths)):
         if other == me or abs(r.heights[other, k + 1] - feet_m) >= OVERLAP_M:
             continue
+        if k % 2:
+            soft += crowding(r, margin_m, me, other, k + 1, b)
         from_there, to_there = r.paths[other, k], r.paths[other, k + 1]
         nearest = _nearest(a, b, from_there, to_there)
         before = math.dist(a, from_there)
@@ -38,6 +45,22 @@ def conflict(
         else:
             soft += SOFT
     return blocked, soft
+
+
+def crowding(r: Reservations, margin_m: float, me: int, other: int, k: int, at: Point) -> float:
+    """What is lacking of the room between two of whom at least one is held up."""
+    away = np.subtract(r.paths[other, k], at)
+    room_m = math.hypot(*away) - r.radii[me] - r.radii[other] - margin_m
+    mine, others = r.courses[me], r.courses[other]
+    if not r.held_up[me] and not r.held_up[other]:
+        return 0.0
+    if mine @ others < AGAINST:
+        lacking = min(1.0, max(0.0, 1.0 - room_m / MEETING_ROOM_M))
+        bearing = math.atan2(away[1], away[0]) - math.atan2(mine[1], mine[0])
+        return MEETING_ROOM * lacking * max(0.0, 0.5 - math.sin(bearing))
+    if r.held_up[me] and r.held_up[other]:
+        return QUEUE_ROOM * min(1.0, max(0.0, 1.0 - room_m / QUEUE_ROOM_M))
+    return 0.0
 
 
 def _nearest(a: Point, b: Point, c: Point, d: Point) -> float:
