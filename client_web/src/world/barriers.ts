@@ -14,6 +14,8 @@ export interface Barrier {
   topM: number;
   /** The door that it is, and that does not stop anybody while it stands open. */
   door: string | null;
+  /** Of an edge to fall from: where its floor is. Who is beyond it already may come back. */
+  inward?: Vec2;
 }
 
 /** A person can step up or down so far. */
@@ -84,7 +86,10 @@ function ledgesOf({ ring, topM }: Solid, floors: Floors): Barrier[] {
       const bottomM = top - LEDGE_BELOW_M;
       const last = ledges.at(-1);
       if (last && last.bottomM === bottomM && same(last.b, at(i))) last.b = at(i + 1);
-      else ledges.push({ a: at(i), b: at(i + 1), bottomM, topM: top + LEDGE_ABOVE_M, door: null });
+      else {
+        const topM = top + LEDGE_ABOVE_M;
+        ledges.push({ a: at(i), b: at(i + 1), bottomM, topM, door: null, inward: [-nx, -ny] });
+      }
     }
     return ledges;
   });

@@ -1,4 +1,7 @@
-/** Where a walking body gets to: it slides along what is in the way, and goes up and down steps. */
+/**
+ * Where a walking body gets to: it slides along what is in the way, goes up and down steps, and
+ * stays where there is nothing to step on.
+ */
 
 import type { Doors, SceneData } from "../net/messages";
 import { type Barrier, barriersOf, STEP_ON_M, type Vec2 } from "./barriers";
@@ -13,6 +16,15 @@ const LARGEST_RADIUS_M = 0.75;
 const HEIGHT_M = 1.8;
 const STEP_M = 0.1;
 const PUSHES = 4;
+/** Floors are looked for so far around: the server's cells reach beyond edges by as much. */
+const CRACK_M = 0.13;
+const NEAR_BY = [
+  [0, 0],
+  [1, 0],
+  [-1, 0],
+  [0, 1],
+  [0, -1],
+] as const;
 
 type Built = Pick<SceneData, "bounds" | "polygons" | "walls" | "stairs" | "doors">;
 
@@ -36,7 +48,11 @@ export class Obstacles {
     const steps = Math.max(1, Math.ceil(Math.hypot(dx, dy) / STEP_M));
     let at = from;
     for (let i = 0; i < steps; i++) {
-      at = this.stand(this.pushOut([at[0] + dx / steps, at[1] + dy / steps, at[2]], radiusM));
+      const next = this.pushOut([at[0] + dx / steps, at[1] + dy / steps, at[2]], radiusM);
+      const foothold = this.foothold(next);
+      // Who is in the air already, as while a building is fetched, is not held there.
+      if (foothold === null && this.foothold(at) !== null) break;
+      at = [next[0], next[1], foothold ?? next[2]];
     }
     return at;
   }
@@ -55,15 +71,18 @@ export class Obstacles {
         return Math.hypot(x - bx, y - by) < radiusM;
       });
       if (meets) return false;
-      [, , z] = this.stand([x, y, z]);
+      z = this.foothold([x, y, z]) ?? z;
     }
     return Math.abs(z - to[2]) <= STEP_ON_M;
   }
 
-  /** On the floor that is a step away at most; where the scene has none, as high as before. */
-  private stand([x, y, z]: Vec3): Vec3 {
-    const floor = this.floors.at(x, y, z);
-    return [x, y, floor !== null && Math.abs(floor - z) <= STEP_ON_M ? floor : z];
+  /** Height of the floor that is a step away at most. */
+  private foothold([x, y, z]: Vec3): number | null {
+    for (const [aside, ahead] of NEAR_BY) {
+      const floor = this.floors.at(x + aside * CRACK_M, y + ahead * CRACK_M, z);
+      if (floor !== null && Math.abs(floor - z) <= STEP_ON_M) return floor;
+    }
+    return null;
   }
 
   private pushOut(wish: Vec3, radiusM: number): Vec3 {
@@ -74,7 +93,7 @@ export class Obstacles {
       for (const barrier of this.near([x, y, z])) {
         const [bx, by] = nearestOn(barrier, [x, y]);
         const distance = Math.hypot(x - bx, y - by);
-        if (distance >= radiusM || distance < 1e-9) continue;
+        if (distance >= radiusM || distance < 1e-9 || isBeyond(barrier, [x - bx, y - by])) continue;
         x = bx + ((x - bx) / distance) * radiusM;
         y = by + ((y - by) / distance) * radiusM;
         moved = true;
@@ -115,6 +134,11 @@ export class Obstacles {
       },
     );
   }
+}
+
+/** Whether somebody so far from an edge is not on its floor. */
+function isBeyond({ inward }: Barrier, [dx, dy]: Vec2): boolean {
+  return inward !== undefined && inward[0] * dx + inward[1] * dy < 0;
 }
 
 function nearestOn({ a, b }: Barrier, [x, y]: Vec2): Vec2 {

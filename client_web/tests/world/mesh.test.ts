@@ -40,6 +40,16 @@ describe("a building from a mesh", () => {
     expect(z).toBeCloseTo(2.85, 1);
   });
 
+  it("lets nobody walk on beyond an edge that the server is less exact about", () => {
+    expect(stroll([15.1, 4, 3], 1, 0, 3)[0]).toBeLessThan(15.2);
+    expect(stroll([15.1, 4, 3], -1, 0, 3)[0]).toBeLessThan(12.2);
+  });
+
+  it("holds nobody in the air while it is being fetched", () => {
+    const nothing = new Obstacles(built, new Floors(built));
+    expect(nothing.walk([5, 5, 2], 0.5, 0, 0.25)).toEqual([expect.closeTo(5.5), 5, 2]);
+  });
+
   it("stops at walls", () => {
     expect(stroll([5, 5, 0], 0, 1, 6)[1]).toBeCloseTo(7.75);
   });
