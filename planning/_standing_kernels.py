@@ -23,12 +23,13 @@ def stand(
     x: float,
     y: float,
     z: float,
+    through: bool,
 ) -> tuple[int, float, float]:
     """The cell where a body stands that is said to be at (x, y, z), and its place; -1: nowhere.
 
     The point itself, if the body fits there. Else the centre of the nearest cell within `SNAP_M`
-    that is not Forbidden by `classes`; from a floor it must lie within one straight step, from
-    a hole it may lie anywhere.
+    that is not Forbidden by `classes`; from a floor it must lie within one straight step, though
+    with `through` that may lead through walls; from a hole it may lie anywhere.
     """
     arrays, body = footing.arrays, footing.body
     own = cell_near(arrays, x, y, z)
@@ -57,7 +58,7 @@ def stand(
                 away = np.hypot(np.hypot(cx - x, cy - y), rise)
                 if away >= best or np.hypot(cx - x, cy - y) > SNAP_M or rise > highest:
                     continue
-                if own < 0 or _is_one_step(footing, own, cell, x, y, cx, cy):
+                if own < 0 or through or _is_one_step(footing, own, cell, x, y, cx, cy):
                     best, found, found_x, found_y = away, cell, cx, cy
     return found, found_x, found_y
 

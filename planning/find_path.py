@@ -86,7 +86,8 @@ def find_path(
     ----------
     start, goal : x, y, z in metres
         z says which floor: the nearest one above or below, within 1 m. Where the body does not
-        fit, it is moved by half a metre at most, but not through a wall.
+        fit, it is moved by half a metre at most; through a wall only if it fits nowhere on this
+        side, as inside a hollow wall.
     body : Body
         An adult if not given.
 
@@ -125,23 +126,33 @@ class End(NamedTuple):
     cell: int
     x: float
     y: float
+    through: bool
+    """Whether the body was moved through a wall, as it fits nowhere on the point's side."""
 
 
-def find_end(footing: Footing, point: Point3, among: NDArray[np.bool_] | None = None) -> End | None:
-    """Where a body stands that is said to be at a point, if need be only `among` some cells (N,).
+def find_end(footing: Footing, point: Point3) -> End | None:
+    """Where a body stands that is said to be at a point; None: it fits nowhere near.
 
-    None: it fits nowhere near; see `stand`.
+    It stays on its side of walls if it fits there; else the point is inside of something.
     """
+    return _stand(footing, point, False) or _stand(footing, point, True)
+
+
+def _stand(
+    footing: Footing, point: Point3, through: bool, among: NDArray[np.bool_] | None = None
+) -> End | None:
     classes = footing.classes
     if among is not None:
         classes = np.where(among, classes, np.uint8(FORBIDDEN))
-    end = End(*stand(footing, classes, *point))
-    return end if end.cell >= 0 else None
+    cell, x, y = stand(footing, classes, *point, through)
+    return End(cell, x, y, through) if cell >= 0 else None
 
 
 def _moved(footing: Footing, point: Point3, end: End, among: NDArray[np.bool_]) -> End | None:
     """Another end, among some cells; None if the body fits at the point itself, or in none."""
-    return None if (end.x, end.y) == point[:2] else find_end(footing, point, among)
+    if (end.x, end.y) == point[:2]:
+        return None
+    return _stand(footing, point, end.through, among)
 
 
 def find_way(footing: Footing, first: End, last: End) -> LayeredPath:
@@ -156,7 +167,7 @@ def find_way(footing: Footing, first: End, last: End) -> LayeredPath:
             break
     else:
         return _no_path(PathStatus.NO_WAY, way.expansions)
-    line = line_of_cells(footing, way.cells, way.counts, first[1:], last[1:])
+    line = line_of_cells(footing, way.cells, way.counts, first[1:3], last[1:3])
     line = straighten(footing, line)
     points = np.column_stack([line.xy, footing.arrays.floors[line.cells].astype(np.float64)])
     layers = footing.arrays.places[line.cells, 0].astype(np.int64)

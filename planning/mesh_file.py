@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import json
 from pathlib import Path
 from typing import Literal
 
@@ -11,6 +13,14 @@ from numpy.typing import NDArray
 from planning.scene import MAX_EXTENT_M
 
 Up = Literal["y", "z"]
+
+FURTHEST_M = 1e6
+"""Greatest coordinate, as in scene files: beyond, positions would no longer be exact."""
+
+_PACKED = frozenset(
+    ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_mesh_quantization")
+)
+"""Extensions of glTF that change where corners are; trimesh knows none of them."""
 
 
 class MeshError(ValueError):
@@ -27,7 +37,7 @@ def read_triangles(path: str | Path, up: Up = "y") -> NDArray[np.float64]:
     ------
     MeshError
         The file cannot be read, holds no triangles, has corners that are not finite or indices
-        out of range, or measures more than a scene may.
+        out of range, measures more than a scene may, or lies too far from its origin.
     """
     name = Path(path).name
     if up not in ("y", "z"):
@@ -47,6 +57,11 @@ def read_triangles(path: str | Path, up: Up = "y") -> NDArray[np.float64]:
             f"{name}: it measures {x:.6g} x {y:.6g} m and is {z:.6g} m high; a side may measure "
             f"{MAX_EXTENT_M:g} m. Is its unit the metre?"
         )
+    if np.abs(corners).max() > FURTHEST_M:
+        raise MeshError(
+            f"{name}: it lies {np.abs(corners).max():.6g} m from its origin; {FURTHEST_M:g} m are "
+            "possible. Move it nearer"
+        )
     if not (extent[:2] > 0.0).all():
         raise MeshError(f"{name}: it has no extent on the ground; is {up!r} really up?")
     return np.ascontiguousarray(corners)
@@ -58,9 +73,41 @@ def _load(path: Path) -> NDArray[np.float64]:
     if not path.is_file():
         raise MeshError(f"{path.name}: there is no such file")
     try:
-        scene = trimesh.load_scene(path, process=False, skip_materials=True)
+        _refuse_packed(path)
+        source: Path | io.StringIO = path
+        kind = None
+        if path.suffix.lower() == ".obj":
+            # Names and comments may be in whatever encoding; what counts is ASCII.
+            source = io.StringIO(path.read_text(encoding="utf-8", errors="replace"))
+            kind = "obj"
+        scene = trimesh.load_scene(source, file_type=kind, process=False, skip_materials=True)
         parts = [part for part in scene.dump() if isinstance(part, trimesh.Trimesh)]
-        corners = [np.asarray(part.vertices)[part.faces] for part in parts]
+        corners = [_corners(np.asarray(part.vertices), np.asarray(part.faces)) for part in parts]
     except Exception as error:
         raise MeshError(f"{path.name}: it is not a mesh that can be read: {error}") from error
     return np.concatenate([np.empty((0, 3, 3)), *corners])
+
+
+def _refuse_packed(path: Path) -> None:
+    match path.suffix.lower():
+        case ".glb":
+            data = path.read_bytes()
+            text = data[20 : 20 + int.from_bytes(data[12:16], "little")]
+        case ".gltf":
+            text = path.read_bytes()
+        case _:
+            return
+    packed = _PACKED.intersection(json.loads(text).get("extensionsRequired", ()))
+    if packed:
+        raise ValueError(f"save it without {', '.join(sorted(packed))}")
+
+
+def _corners(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> NDArray[np.float64]:
+    if not len(faces):
+        return np.empty((0, 3, 3))
+    if faces.ndim != 2 or faces.shape[1] != 3:
+        raise ValueError("a face has fewer than three corners")
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise ValueError(f"a face names a corner that is not there, of {len(vertices)}")
+    corners: NDArray[np.float64] = vertices[faces]
+    return corners

@@ -24,6 +24,8 @@ from planning._surface_kernels import (
 )
 from planning.scene import Polygon, Scene
 
+MAX_COLUMNS = 43_000_000
+"""Columns of a grid: those of the largest scene with cells of 0.1 m."""
 MAX_LAYERS = 255
 """Layers are numbered by one byte on the wire."""
 
@@ -103,13 +105,18 @@ def raster_of(bounds: tuple[float, float, float, float], cell_m: float) -> Raste
     Raises
     ------
     ValueError
-        `cell_m` is not between 0.05 and 2 m.
+        `cell_m` is not between 0.05 and 2 m, or so small that there would be too many columns.
     """
     if not 0.05 <= cell_m <= 2.0:
         raise ValueError(f"cell_m must lie between 0.05 and 2 m, got {cell_m}")
     x0, y0, x1, y1 = bounds
     ny = max(1, math.ceil((y1 - y0) / cell_m - 1e-9))
     nx = max(1, math.ceil((x1 - x0) / cell_m - 1e-9))
+    if ny * nx > MAX_COLUMNS:
+        least = math.sqrt((y1 - y0) * (x1 - x0) / MAX_COLUMNS)
+        raise ValueError(
+            f"cell_m must be {least:.2g} m or more over {x1 - x0:g} x {y1 - y0:g} m, got {cell_m}"
+        )
     return Raster(float(x0), float(y0), float(cell_m), ny, nx)
 
 

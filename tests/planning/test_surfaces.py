@@ -158,3 +158,10 @@ def test_low_passages_are_floors_only_for_someone() -> None:
 def test_cells_have_a_size(cell_m) -> None:
     with pytest.raises(ValueError, match="cell_m must lie between"):
         surfaces_of_scene(Scene(bounds=BOUNDS), cell_m)
+
+
+def test_cells_so_small_that_they_are_too_many_are_refused() -> None:
+    with pytest.raises(
+        ValueError, match=r"cell_m must be 0.098 m or more over 640 x 640 m, got 0.05"
+    ):
+        surfaces_of_scene(Scene(bounds=(0.0, 0.0, 640.0, 640.0)), 0.05)
