@@ -20,7 +20,7 @@ const JUMP_M = 1;
 export class Glide {
   /** Where the body is, its height evened out. */
   readonly place: Pose;
-  private phase = 0;
+  private phase: number;
   /** Leg lengths a second. */
   private pace = 0;
 
@@ -29,6 +29,8 @@ export class Glide {
     start: Pose,
   ) {
     this.place = { ...start };
+    // A crowd does not walk in step.
+    this.phase = Math.abs(7.13 * start.x + 3.71 * start.y) % 1;
   }
 
   /** Go where the snapshots have it; the phase follows the distance, so that feet hardly slide. */

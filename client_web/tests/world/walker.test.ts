@@ -127,7 +127,10 @@ describe("a walker", () => {
   it("takes another way in the midst of a step", () => {
     tell(0);
     drawUntil(0.2);
-    const aimed = stepAlong(0, { continues: true, landing: { x: 0.4, y: 0.2, z: 0, heading: 0.5 } });
+    const aimed = stepAlong(0, {
+      continues: true,
+      landing: { x: 0.4, y: 0.2, z: 0, heading: 0.5 },
+    });
     walker.add(aimed, 0.25, STEP_S);
     drawUntil(STEP_S + 0.1);
     expect(walker.body.right.foot.heel.x).toBeCloseTo(0.4);
