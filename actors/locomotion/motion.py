@@ -7,37 +7,36 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from actors.locomotion import _motion_kernels as kernels
+
 Floats = NDArray[np.float64]
 
-KEYS: Final = 6
+KEYS: Final = kernels.KEYS
 """Keys of a step, evenly spread over it: at 0, 1/5, ... 1."""
+WIDTH: Final = kernels.WIDTH
+"""Numbers of a key."""
+SETTLE: Final = kernels.SETTLE
+"""Share of a step in which a foot that has left the ground comes over to its curve."""
 
 # Columns of a key.
 ROOT: Final = slice(0, 3)
 """Hip centre from the standing footprint, metres, world axes."""
-PELVIS: Final = slice(3, 7)
+PELVIS: Final = slice(kernels.PELVIS, kernels.PELVIS + 4)
 """Quaternion w, x, y, z, from the frame forward, left, up of a body that faces +x."""
-ANKLE: Final = slice(7, 10)
+ANKLE: Final = slice(kernels.ANKLE, kernels.ANKLE + 3)
 """Ankle of the swinging foot from the landing footprint, metres, world axes."""
-SWING_PITCH: Final = 10
+SWING_PITCH: Final = kernels.SWING_PITCH
 """Radians, toe up positive."""
-STANDING_PITCH: Final = 11
-SWING_HEADING: Final = 12
+STANDING_PITCH: Final = kernels.STANDING_PITCH
+SWING_HEADING: Final = kernels.SWING_HEADING
 """Of the swinging foot, from the landing footprint's heading, radians."""
-CHEST: Final = slice(13, 17)
+CHEST: Final = slice(kernels.CHEST, kernels.CHEST + 4)
 """Quaternion relative to the pelvis."""
 SHOULDERS: Final = slice(17, 19)
 """Flexion left, right, radians, arm forward positive."""
 ELBOWS: Final = slice(19, 21)
 ARMS: Final = slice(17, 21)
 """Shoulders and elbows together."""
-WIDTH: Final = 21
-
-LANDING: Final = [7, 8, 9, 10, 12]
-"""What comes to rest as the swinging foot lands: its ankle, pitch and heading."""
-
-SETTLE: Final = 0.1
-"""Share of a step in which a foot that has left the ground comes over to its curve."""
 
 
 class Steps(NamedTuple):
@@ -61,7 +60,7 @@ class Steps(NamedTuple):
     lift: Floats
     """(N,): share of the step until which the other foot's toe stays where key 0 has it."""
     keys: Floats
-    """(N, KEYS, WIDTH)."""
+    """(N, KEYS, WIDTH): at even shares, the first at 0 and the last at 1."""
 
     def share(self, tick: int | float) -> Floats:
         """How far each is at a time in ticks, (N,) in [0, 1]; 1 after its end."""
@@ -102,52 +101,18 @@ def smooth(share: Floats) -> Floats:
     return np.asarray(s * s * (3.0 - 2.0 * s))
 
 
-def _tangents() -> Floats:
-    """Slopes at the keys as weights of the keys, (KEYS, KEYS), per interval.
-
-    Catmull-Rom inside; at the ends that of the parabola through three keys.
-    """
-    slopes = np.zeros((KEYS, KEYS))
-    for k in range(1, KEYS - 1):
-        slopes[k, k + 1], slopes[k, k - 1] = 0.5, -0.5
-    slopes[0, :3] = -1.5, 2.0, -0.5
-    slopes[-1, -3:] = 0.5, -2.0, 1.5
-    return slopes
-
-
-_TANGENTS: Final = _tangents()
-_VALUES: Final = np.eye(KEYS)
-
-
-def weights(u: Floats) -> Floats:
-    """How much each key counts at shares u (N,) of a step: (N, KEYS); cubic Hermite curves."""
-    place = np.clip(u, 0.0, 1.0) * (KEYS - 1)
-    k = np.minimum(place.astype(np.int64), KEYS - 2)
-    s = (place - k)[:, None]
-    after = s * s * (3.0 - 2.0 * s)
-    return np.asarray(
-        (1.0 - after) * _VALUES[k]
-        + after * _VALUES[k + 1]
-        + s * (1.0 - s) ** 2 * _TANGENTS[k]
-        - s * s * (1.0 - s) * _TANGENTS[k + 1]
-    )
-
-
 def between(keys: Floats, u: Floats) -> Floats:
     """Keys (N, KEYS, WIDTH) at shares u (N,): (N, WIDTH).
 
-    Quaternions follow the same curves, component by component, and are made unit again: keys of
-    one step are some degrees apart, where that is as good as going along great circles. Neighbours
-    among the keys must have the same sign (`align`). What moves the swinging foot comes to rest at
-    the end: there its curves are level.
+    All numbers go along cubic curves through the keys with the tangents of Catmull and Rom, at
+    the ends those of the parabola through three keys. Quaternions do so component by component and
+    are made unit again: keys of one step are some degrees apart, where that is as good as going
+    along great circles. Neighbours among the keys must have the same sign (`align`). What moves
+    the swinging foot comes to rest at the end: there its curves are level.
     """
-    out = np.einsum("nk,nkd->nd", weights(u), keys)
-    s = np.clip(u * (KEYS - 1) - (KEYS - 2), 0.0, 1.0)
-    slopes = np.einsum("k,nkd->nd", _TANGENTS[-1, -3:], keys[:, -3:, LANDING])
-    out[:, LANDING] += (s * s * (1.0 - s))[:, None] * slopes
-    for part in (PELVIS, CHEST):
-        out[:, part] /= np.linalg.norm(out[:, part], axis=1, keepdims=True)
-    return np.asarray(out)
+    out = np.empty((len(u), WIDTH))
+    kernels.fill_between(keys, u, out)
+    return out
 
 
 def align(keys: Floats) -> None:
@@ -181,18 +146,6 @@ def under_way(steps: Steps, u: Floats, foot_m: Floats) -> Floats:
     Until it lifts, the swinging foot turns on its toe, which stays where key 0 has it; then what
     is missing to its curve fades.
     """
-    out = between(steps.keys, u)
-    pinned = steps.lift > 0.0
-    if not pinned.any():
-        return out
-    first = steps.keys[pinned, 0]
-    lift, foot_m, heading = steps.lift[pinned], foot_m[pinned], steps.landing[pinned, 3]
-    toe = first[:, ANKLE] - heel_from_toe(
-        first[:, SWING_PITCH], first[:, SWING_HEADING] + heading, foot_m
-    )
-    here = np.minimum(u[pinned], lift)
-    at = between(steps.keys[pinned], here)
-    ankle = toe + heel_from_toe(at[:, SWING_PITCH], at[:, SWING_HEADING] + heading, foot_m)
-    fade = 1.0 - smooth((u[pinned] - lift) / SETTLE)
-    out[pinned, ANKLE] += fade[:, None] * (ankle - at[:, ANKLE])
+    out = np.empty((len(u), WIDTH))
+    kernels.fill_under_way(steps.keys, steps.landing, steps.lift, u, foot_m, out)
     return out

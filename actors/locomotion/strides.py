@@ -7,15 +7,12 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from actors.locomotion._stride_kernels import fill_keys, go_on
 from actors.locomotion.footfalls import Footfalls, Targets
 from actors.locomotion.motion import (
     ANKLE,
-    CHEST,
-    ELBOWS,
     KEYS,
-    PELVIS,
     ROOT,
-    SHOULDERS,
     STANDING_PITCH,
     SWING_HEADING,
     SWING_PITCH,
@@ -26,7 +23,6 @@ from actors.locomotion.motion import (
     under_way,
 )
 from actors.locomotion.planted import step_targets
-from actors.locomotion.rotations import multiply, normalise
 from actors.locomotion.stance import Build, stance
 
 _SHARES: Final = np.linspace(0.0, 1.0, KEYS)
@@ -107,22 +103,10 @@ def strides(
     """
     targets = step_targets(falls, gone[:, None] + (1.0 - gone[:, None]) * _SHARES)
     keys = _keys(targets, falls)
-    first = now.key.copy()
-    for part in (PELVIS, CHEST):
-        first[np.einsum("nd,nd->n", first[:, part], keys[:, 0, part]) < 0.0, part] *= -1.0
-        # Neighbours of key 0 have its sign.
-    missing = first - keys[:, 0]
-    missing[:, SWING_HEADING] = wrapped(missing[:, SWING_HEADING])
     aside = place - falls.standing[:, :2] - keys[:, -1, :2]
     distance = np.maximum(np.hypot(aside[:, 0], aside[:, 1]), 1e-9)
     aside *= (np.minimum(distance, room_m) / distance)[:, None]
-    share = smooth(_SHARES)
-    keys += (1.0 - share)[None, :, None] * missing[:, None]
-    keys[..., :2] += share[None, :, None] * aside[:, None]
-    keys[:, 0] = first
-    _start_at_speed(keys, now.speed * ticks[:, None], gone > 0.0)
-    for part in (PELVIS, CHEST):
-        keys[..., part] = normalise(keys[..., part])
+    go_on(keys, now.key, now.speed, gone > 0.0, ticks, aside)
     lift = np.clip((targets.lift - gone) / (1.0 - gone), 0.0, 1.0)
     return keys, lift
 
@@ -142,50 +126,8 @@ def shifted(now: Drawn, falls: Footfalls, places: Floats) -> Floats:
     return keys
 
 
-def _start_at_speed(keys: Floats, slope: Floats, goes_on: NDArray[np.bool_]) -> None:
-    """Move the second key so that curves leave the first with a slope (N, WIDTH) a step.
-
-    The slope there is that of the parabola through the first three keys. Feet that have just
-    changed parts are left to their paths: one rests on its toe, the other rolls onto its sole.
-    """
-    second = (2.0 * slope / (KEYS - 1) + 3.0 * keys[:, 0] + keys[:, 2]) / 4.0
-    body = np.ones(WIDTH, dtype=np.bool_)
-    body[ANKLE] = False
-    body[[SWING_PITCH, STANDING_PITCH, SWING_HEADING]] = False
-    keys[:, 1] = np.where(body | goes_on[:, None], second, keys[:, 1])
-
-
 def _keys(targets: Targets, falls: Footfalls) -> Floats:
     """Keys (N, K, WIDTH) of targets."""
     keys = np.empty((*targets.yaw.shape, WIDTH))
-    keys[..., ROOT] = targets.root - falls.standing[:, None, :3]
-    keys[..., PELVIS] = _turned(targets.yaw, targets.lean, targets.roll)
-    keys[..., ANKLE] = targets.swing_ankle - falls.landing[:, None, :3]
-    keys[..., SWING_PITCH] = targets.swing_pitch
-    keys[..., STANDING_PITCH] = targets.standing_pitch
-    heading = targets.swing_heading - falls.landing[:, None, 3]
-    turns = np.round(heading[:, -1:] / (2.0 * np.pi))
-    keys[..., SWING_HEADING] = heading - 2.0 * np.pi * turns
-    level = np.zeros_like(targets.yaw)
-    # The back makes up for the pelvis' roll, so that shoulders and head stay level.
-    keys[..., CHEST] = multiply(
-        _turned(level, level, -targets.roll), _turned(targets.torsion, level, level)
-    )
-    keys[..., SHOULDERS] = targets.shoulders
-    keys[..., ELBOWS] = targets.elbows
+    fill_keys(targets, falls, keys)
     return keys
-
-
-def _turned(yaw: Floats, lean: Floats, roll: Floats) -> Floats:
-    """Quaternions of Rz(yaw) Ry(lean) Rx(roll), (..., 4)."""
-    cz, cy, cx = np.cos(0.5 * yaw), np.cos(0.5 * lean), np.cos(0.5 * roll)
-    sz, sy, sx = np.sin(0.5 * yaw), np.sin(0.5 * lean), np.sin(0.5 * roll)
-    return np.stack(
-        (
-            cz * cy * cx + sz * sy * sx,
-            cz * cy * sx - sz * sy * cx,
-            cz * sy * cx + sz * cy * sx,
-            sz * cy * cx - cz * sy * sx,
-        ),
-        axis=-1,
-    )

@@ -21,7 +21,7 @@ DIGITS: Final = 10
 
 def vectors() -> dict[str, Any]:
     """Everything that the fixture holds, as plain JSON values."""
-    steps, build = _steps()
+    steps, build = sample_steps()
     ids = np.arange(len(steps.right)) + 7
     records = to_records(steps, ids)
     known = from_records(records)
@@ -66,7 +66,7 @@ def _pose(steps: motion.Steps, build: stance.Build, row: int, share: float) -> d
     return {"u": share, **{name: values.tolist() for name, values in named.items()}}
 
 
-def _steps() -> tuple[motion.Steps, stance.Build]:
+def sample_steps() -> tuple[motion.Steps, stance.Build]:
     """Steps of every kind: along, aside, back, up and down, with knees at their limit, standing."""
     random = np.random.default_rng(3)
     count = 12
