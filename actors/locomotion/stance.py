@@ -69,7 +69,8 @@ def stance(steps: Steps, u: Floats, key: Floats, build: Build) -> Legs:
         np.empty((count, 2)),
         np.empty((count, 2)),
     )
-    kernels.fill_stances(steps.right, steps.standing, steps.landing, steps.lift, u, key, build.leg_m, *legs)
+    s = steps
+    kernels.fill_stances(s.right, s.standing, s.landing, s.lift, u, key, build.leg_m, *legs)
     return legs
 
 
