@@ -60,6 +60,8 @@ class Reservations(NamedTuple):
     x0: float
     y0: float
     bucket_m: float
+    fastest_m: float
+    """How far anyone gets in a slice."""
     nx: int
     ny: int
 
@@ -182,6 +184,8 @@ def conflict(
     ci = int((bx - r.x0) / r.bucket_m)
     cj = int((by - r.y0) / r.bucket_m)
     soft = 0.0
+    # Who is further away in the end neither was met on the way nor is crowded.
+    far = max(MEETING_ROOM_M, np.sqrt((bx - ax) ** 2 + (by - ay) ** 2) + r.fastest_m)
     i0 = min(r.nx - 1, max(0, ci - 1))
     i1 = min(r.nx - 1, max(0, ci + 1))
     for j in range(max(0, cj - 1), min(r.ny, cj + 2)):
@@ -189,6 +193,11 @@ def conflict(
         for m in range(r.starts[k + 1, row + i0], r.starts[k + 1, row + i1 + 1]):
             other = r.members[k + 1, m]
             if other == me or abs(r.heights[other, k + 1] - feet_m) >= OVERLAP_M:
+                continue
+            dx = bx - r.paths[other, k + 1, 0]
+            dy = by - r.paths[other, k + 1, 1]
+            most = r.radii[me] + r.radii[other] + MARGIN_M + far
+            if dx * dx + dy * dy > most * most:
                 continue
             weight = _meeting(r, me, other, k, ax, ay, bx, by)
             if weight == np.inf:
@@ -232,6 +241,13 @@ def others_near(
             if met + crowded == len(others):
                 return met, crowded
             reach = r.radii[me] + r.radii[o] + MARGIN_M + 2.0 * slice_m
+            room_m = room_wanted(r, me, o)
+            dx = x - r.paths[o, k + 1, 0]
+            dy = y - r.paths[o, k + 1, 1]
+            # Nobody gets further than that from where they are in the middle of the step.
+            most = reach + room_m + r.fastest_m
+            if dx * dx + dy * dy > most * most:
+                continue
             nearest = np.inf
             for s in range(2):
                 d = closest_approach(
@@ -244,7 +260,7 @@ def others_near(
             if nearest < reach:
                 others[met] = o
                 met += 1
-            elif nearest < reach + room_wanted(r, me, o):
+            elif nearest < reach + room_m:
                 crowded += 1
                 others[len(others) - crowded] = o
     return met, crowded

@@ -124,6 +124,7 @@ def make_reservations(
         x0,
         y0,
         bucket,
+        fastest_m,
         nx,
         ny,
     )
