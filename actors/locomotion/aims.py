@@ -7,6 +7,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from actors.locomotion import _course_kernels as kernels
 from actors.locomotion.durations import step_duration_s
 from actors.locomotion.ground import Ground
 from actors.locomotion.motion import Floats
@@ -14,9 +15,9 @@ from actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH
 from actors.locomotion.step_length import RV_LONGEST, double_support, longest_step, planted_length
 from actors.locomotion.strides import wrapped
 
-AHEAD_S: Final = 0.2
+AHEAD_S: Final = kernels.AHEAD_S
 """Time between the places of a course."""
-AHEAD: Final = 7
+AHEAD: Final = kernels.AHEAD
 """How many places a course has."""
 
 WALKING_MPS: Final = 0.3
@@ -69,18 +70,15 @@ class Course(NamedTuple):
 
     def at(self, seconds: Floats) -> Floats:
         """Places (N, 3) after times (N,)."""
-        place = np.clip(seconds / AHEAD_S, 0.0, AHEAD - 1.0)
-        k = np.minimum(place.astype(np.int64), AHEAD - 2)
-        rows = np.arange(len(place))
-        share = (place - k)[:, None]
-        return np.asarray((1.0 - share) * self.ahead[rows, k] + share * self.ahead[rows, k + 1])
+        out = np.empty((len(seconds), 3))
+        kernels.fill_places(self.ahead, seconds, out)
+        return out
 
     def velocity(self, seconds: Floats) -> Floats:
         """Velocities (N, 2) about times (N,), metres a second."""
-        half = 0.5 * AHEAD_S
-        moved = self.at(seconds + half) - self.at(np.maximum(seconds - half, 0.0))
-        passed = half + np.minimum(seconds, half)
-        return np.asarray(moved[:, :2] / passed[:, None])
+        out = np.empty((len(seconds), 2))
+        kernels.fill_velocities(self.ahead, seconds, out)
+        return out
 
 
 class Aim(NamedTuple):
