@@ -48,7 +48,7 @@ def test_treads_are_exact(tread: int) -> None:
     assert height(flight, 0.1, 0.1, y=1.01) == 0.0
 
 
-@pytest.mark.parametrize("shift", np.linspace(0.01, 0.29, 8))
+@pytest.mark.parametrize("shift", np.linspace(0.013, 0.287, 8))
 @pytest.mark.parametrize("heading", [0.0, np.pi])
 def test_feet_come_to_lie_on_one_tread(shift: float, heading: float) -> None:
     flight = ground(stairs=(FLIGHT,))
