@@ -25,6 +25,7 @@ class Feet:
         self._latest = latest
         self._seed = seed
         self._tick = 0
+        self._failed = -1
         self._ids = np.zeros(state.capacity, dtype=np.int64)
         _warm_up(ground, tick_s)
         self._walkers = Walkers(state.capacity, ground, tick_s, self._carry)
@@ -54,7 +55,9 @@ class Feet:
             self._walkers.update(tick, live, self._course(live))
         except Exception:
             # Everyone stands anew in the next tick; the world goes on meanwhile.
-            log.exception("no steps found", tick=tick)
+            if self._failed != tick - 1:
+                log.exception("no steps found", tick=tick)
+            self._failed = tick
             self.failures += 1
             self._ids[:] = 0
 
