@@ -63,7 +63,8 @@ format: $(VENV)/.dev client_web/node_modules/.installed  ## format all sources
 client: $(CLIENT)  ## build the web client
 
 clean:  ## remove what was built, and the virtual environment
-	rm -rf $(VENV) server/client_assets client_web/node_modules build dist
+	rm -rf $(VENV) server/client_assets client_web/node_modules benchmarks/recast/node_modules
+	rm -rf build dist
 	rm -rf .coverage .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from planning import _geometry_kernels as geometry
 from planning import _grid_kernels as kernels
-from planning._geometry_kernels import SegmentIndex
+from planning._geometry_kernels import SegmentIndex, Stance
 from planning._grid_kernels import GridArrays
 from planning._ground_kernels import walk_many
 from planning._layered import LayeredArrays
@@ -275,8 +275,9 @@ class LayeredGrid:
     ) -> tuple[float, float] | None:
         """The position itself when free, else the centre of the nearest free cell on its level.
 
-        Levels are told apart by half a body's height; if there is none on this level, on any. A
-        position in the air is one on the floor below, one inside a building is none on its roof.
+        Within a metre a cell on this side of walls is taken before any beyond. Levels are told
+        apart by half a body's height; if there is none on this level, on any. A position in the
+        air is one on the floor below, one inside a building is none on its roof.
         """
         a = self.layered
         level_m = 0.5 * body.height_m
@@ -290,8 +291,14 @@ class LayeredGrid:
             cells = np.flatnonzero(candidates)
             if len(cells):
                 away = np.hypot(*(self.centres[cells] - position).T) + apart[cells]
-                x, y = self.centres[cells[away.argmin()]]
-                return float(x), float(y)
+                near = cells[away < 1.0][np.argsort(away[away < 1.0], kind="stable")]
+                floor = self.floor_at(position, height)
+                stance = Stance(floor, floor, body.height_m, body.step_on_m)
+                for x, y in self.centres[near].tolist():
+                    if not geometry.crosses_any(self.index, stance, *position, x, y):
+                        return x, y
+                x, y = self.centres[cells[away.argmin()]].tolist()
+                return x, y
         return None
 
     def walk(

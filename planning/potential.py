@@ -8,6 +8,7 @@ shortest at any angle. `Wave.NF1` stays as the reference.
 
 from __future__ import annotations
 
+import math
 from enum import Enum
 from typing import TYPE_CHECKING
 
@@ -19,6 +20,9 @@ from planning.bodies import Body
 
 if TYPE_CHECKING:
     from planning.grid import LayeredGrid
+
+
+_MOVED_M = 0.5
 
 
 class Wave(Enum):
@@ -33,6 +37,8 @@ class Wave(Enum):
 class Potential:
     """Distances and directions to one goal for discs of one radius and kind of body.
 
+    Where the disc does not fit at the goal, they are those to the nearest place where it does, if
+    there is one within half a metre.
     Cost O(cells log cells) once; a look-up is O(1).
 
     Raises
@@ -51,11 +57,14 @@ class Potential:
         body: Body | None = None,
     ) -> None:
         self.grid = grid
-        self.goal = goal
         self.height = height
         self.radius_m = radius_m
         self.body = body or Body.adult()
         row = grid.row_of(self.body)
+        if not grid.is_free([goal], [height], radius_m, self.body)[0]:
+            free = grid.nearest_free(goal, height, radius_m, self.body)
+            goal = free if free and math.dist(goal, free) <= _MOVED_M else goal
+        self.goal = goal
         cell = int(grid.on_ground([goal], [height])[1][0])
         if cell < 0:
             raise ValueError(f"nobody can stand at the goal {goal}, height {height:g} m")

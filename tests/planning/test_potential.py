@@ -131,6 +131,18 @@ def test_a_way_leads_to_a_goal_that_is_free_in_a_cell_whose_centre_is_not() -> N
     assert 7.0 < found[1] < 10.0
 
 
+@pytest.mark.parametrize("shift_m", [0.0, 0.06, 0.12, 0.19])
+@pytest.mark.parametrize("away_m", [0.1, 0.23, 0.24, 0.249, 0.25])
+def test_a_goal_too_near_a_wall_is_that_of_the_nearest_place_that_is_not(away_m, shift_m) -> None:
+    grid = open_grid(8.0, [((4.0 + shift_m, 0.0), (4.0 + shift_m, 8.0))])
+    goal = (4.0 + shift_m - away_m, 4.0)
+    potential = Potential(grid, goal, 0, 0.25)
+    assert grid.is_free([potential.goal], [0], 0.25)[0]
+    assert math.dist(potential.goal, goal) <= 0.5
+    way = math.dist((1.0, 4.0), potential.goal)
+    assert potential.distance([(1.0, 4.0)], [0])[0] == pytest.approx(way, abs=0.01)
+
+
 def test_who_stands_beside_a_wall_still_knows_the_way() -> None:
     grid = open_grid(8.0, [((4.0, 0.0), (4.0, 8.0))])
     potential = Potential(grid, (1.0, 4.0), 0, 0.5)
