@@ -120,7 +120,9 @@ def test_a_bounded_search_is_its_twin(start, goal, crowd, slack) -> None:
 @given(start=spots, goal=ends, crowd=people)
 @holds(15, 2)
 def test_on_the_lattice_too(start, goal, crowd) -> None:
-    question = task(start, goal, max_speed_mps=0.9, max_expansions=60)
+    """From a cell's centre: on an edge, rounding decides which cell a move ends in."""
+    centre = tuple(0.25 * math.floor(4.0 * x) + 0.125 for x in start)
+    question = task(centre, goal, max_speed_mps=0.9, max_expansions=60)
     same_as_twin(
         ground_of(question, 8, WALLS, crowd), lattice_moves(0.25, STEP_S, 0.9), SearchForm.PRINTED
     )
