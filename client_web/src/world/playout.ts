@@ -8,7 +8,12 @@ const DEVIATIONS = 3;
 const WEIGHT = 0.05;
 /** Time is stretched by at most this part to reach its aim, so that nobody seems to jump. */
 const STRETCH = 0.1;
+/** So far ahead of its aim, because the server has fallen behind, it goes at half its pace. */
+const AHEAD_S = 0.25;
+const SLOW = 0.5;
+/** Forwards it jumps this far, backwards only to a server that has begun anew. */
 const JUMP_S = 0.75;
+const BACK_S = 5;
 
 export class Playout {
   private lateness: number | null = null;
@@ -44,10 +49,11 @@ export class Playout {
     const aimS = serverNowS - this.delayS;
     const next = (this.timeS_ ?? aimS) + frameS;
     const off = aimS - next;
+    const slower = off < -AHEAD_S ? SLOW : STRETCH;
     this.timeS_ =
-      Math.abs(off) > JUMP_S
+      off > JUMP_S || off < -BACK_S
         ? aimS
-        : next + Math.max(-STRETCH * frameS, Math.min(STRETCH * frameS, off));
+        : next + Math.max(-slower * frameS, Math.min(STRETCH * frameS, off));
     return this.timeS_;
   }
 }

@@ -38,6 +38,18 @@ describe("Playout", () => {
     }
   });
 
+  it("slows down, and does not run backwards, when the server falls behind", () => {
+    const playout = fed(20, () => 0.02);
+    let before = playout.advance(1, 0.016);
+    for (let i = 0; i < 100; i++) playout.arrived(1 + i * TICK_S, 3 + i * TICK_S);
+    for (let frame = 1; frame < 300; frame++) {
+      const now = playout.advance(1 + frame * 0.016, 0.016);
+      expect(now - before).toBeGreaterThanOrEqual(0.016 * 0.5 - 1e-9);
+      before = now;
+    }
+    expect(before).toBeLessThan(1 + 300 * 0.016 - 1);
+  });
+
   it("jumps after a long pause", () => {
     const playout = fed(20, () => 0.02);
     playout.advance(1, 0.016);
