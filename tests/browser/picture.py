@@ -23,9 +23,11 @@ ACTORS: Final = 30
 VISITORS: Final = 16
 SPREAD_S: Final = 25.0
 """Time for everybody to walk away from where they came in."""
-VIEWPOINT: Final = (20.0, -7.5)
-NEAR_M: Final = 13.0
+VIEWPOINT: Final = (16.5, -7.0)
+NEAR_M: Final = 12.0
 WALKING_MPS: Final = 0.8
+PLANNED: Final = 8
+"""The shortest plan that is worth a picture, points."""
 
 
 def take() -> bytes:
@@ -72,7 +74,7 @@ async def _picture(url: str) -> bytes:
         await visitor.page.keyboard.press("Escape")
         await visitor.page.click("#people-open")
         view = await visitor.look()
-        while view["plan"] is None or view["plan"]["id"] != _actor_ahead(view):
+        while not _shows_a_plan(view):
             view = await visitor.until(lambda view: _actor_ahead(view) is not None)
             await visitor.page.click(f'#people-list [data-id="{_actor_ahead(view)}"]')
             view = await visitor.until(lambda view: view["plan"] is not None)
@@ -80,6 +82,12 @@ async def _picture(url: str) -> bytes:
         picture: bytes = await visitor.page.screenshot()
         await browser.close()
         return picture
+
+
+def _shows_a_plan(view: View) -> bool:
+    """Whether the chosen actor is the one ahead, and on its way."""
+    plan = view["plan"]
+    return bool(plan and plan["id"] == _actor_ahead(view) and len(plan["path"]) > PLANNED)
 
 
 def _actor_ahead(view: View) -> int | None:

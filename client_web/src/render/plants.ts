@@ -12,32 +12,28 @@ const BED_M = 0.35;
 /** Radius of a crown, as part of the tree's height. */
 const CROWN = 0.3;
 
-/** Where the crown of a tree begins. */
-export const trunkM = (heightM: number): number => heightM * (1 - 1.2 * CROWN);
-
 export function isTree({ points, height_m }: ScenePolygon): boolean {
   return orientation(points).lengthM <= TREE_FOOTPRINT_M && height_m >= TREE_HEIGHT_M;
 }
 
-/** The bed and the trunk of a tree. */
-export function trunk({ points, height_m, offset_m }: ScenePolygon): BufferGeometry[] {
-  const [x, y] = centreOf(points);
+/** The stone around a tree's foot. */
+export function bed({ points, offset_m }: ScenePolygon): BufferGeometry[] {
   return [
     ...prism(points, offset_m, offset_m + BED_M, DARK_STONE),
     cap(drawnIn(points, 0.12), offset_m + BED_M + 0.01, BARK),
-    column([x, y, offset_m], { top: 0.1, bottom: 0.17 }, trunkM(height_m), BARK),
   ];
 }
 
-/** The leaves of a tree, about its middle. */
-export function crown(
+/** A trunk and a crown of five balls of leaves, which know the middle of the whole tree. */
+export function tree(
   { points, height_m, offset_m }: ScenePolygon,
   index: number,
 ): BufferGeometry[] {
   const middle = centreOf(points);
   const [x, y] = middle;
   const crown = height_m * CROWN;
-  const parts: BufferGeometry[] = [];
+  const trunkM = height_m - 1.2 * crown;
+  const parts = [column([x, y, offset_m], { top: 0.1, bottom: 0.17 }, trunkM, BARK)];
   for (let i = 0; i < 5; i++) {
     const around = (i / 4) * 2 * Math.PI + scatter(index, i) * 1.5;
     const out = i === 4 ? 0 : crown * 0.5;
@@ -45,7 +41,7 @@ export function crown(
     const up = i === 4 ? crown * 0.35 : (scatter(index, i + 10) - 0.5) * crown * 0.5;
     parts.push(
       tuft(
-        [x + out * Math.cos(around), y + out * Math.sin(around), offset_m + trunkM(height_m) + up],
+        [x + out * Math.cos(around), y + out * Math.sin(around), offset_m + trunkM + up],
         radius,
         index * 7 + i,
       ),

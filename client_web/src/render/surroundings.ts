@@ -2,9 +2,8 @@
 
 import type { BufferGeometry } from "three";
 import type { SceneData, ScenePolygon } from "../net/messages";
-import { BARK, scatter } from "./palette";
-import { crown, trunkM } from "./plants";
-import { column } from "./shapes";
+import { scatter } from "./palette";
+import { tree } from "./plants";
 
 const TREES = 90;
 const NEAREST_M = 4;
@@ -12,14 +11,9 @@ const FARTHEST_M = 75;
 const LEAST_M = 4.5;
 const RANGE_M = 5;
 
-export interface Tree {
-  trunk: BufferGeometry;
-  crown: BufferGeometry[];
-}
-
 /** Trees on the land at height `z`, always the same around the same bounds. */
-export function treesAround([x0, y0, x1, y1]: SceneData["bounds"], z: number): Tree[] {
-  return Array.from({ length: TREES }, (_, i) => {
+export function treesAround([x0, y0, x1, y1]: SceneData["bounds"], z: number): BufferGeometry[] {
+  const trees = Array.from({ length: TREES }, (_, i) => {
     const outM = NEAREST_M + (FARTHEST_M - NEAREST_M) * scatter(i, 90) ** 1.4;
     // Along the edge of the bounds, widened by that much.
     const [width, depth] = [x1 - x0 + 2 * outM, y1 - y0 + 2 * outM];
@@ -31,16 +25,13 @@ export function treesAround([x0, y0, x1, y1]: SceneData["bounds"], z: number): T
             along < 2 * width + depth ? x0 - outM : x1 + outM,
             y0 - outM + ((along - 2 * width) % depth),
           ];
-    return treeAt([x, y, z], LEAST_M + RANGE_M * scatter(i, 92), i);
+    return tree(footprint([x, y, z], LEAST_M + RANGE_M * scatter(i, 92)), 1000 + i);
   });
+  return trees.flat();
 }
 
-function treeAt(
-  [x, y, z]: readonly [number, number, number],
-  heightM: number,
-  index: number,
-): Tree {
-  const footprint: ScenePolygon = {
+function footprint([x, y, z]: readonly [number, number, number], heightM: number): ScenePolygon {
+  return {
     points: [
       [x - 0.5, y - 0.5],
       [x + 0.5, y - 0.5],
@@ -52,9 +43,5 @@ function treeAt(
     kind: "plant",
     name: "",
     ramp: null,
-  };
-  return {
-    trunk: column([x, y, z], { top: 0.12, bottom: 0.24 }, trunkM(heightM), BARK),
-    crown: crown(footprint, 1000 + index),
   };
 }

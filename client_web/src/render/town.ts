@@ -17,7 +17,7 @@ import { based, type Cutaway } from "./cutaway";
 import { doorFrame, DoorLeaves } from "./doors";
 import { boardsTexture, facadeTexture, pavingTexture } from "./facade";
 import { PAVING } from "./palette";
-import { crown, hedge, isTree, trunk } from "./plants";
+import { bed, hedge, isTree, tree } from "./plants";
 import { merged } from "./shapes";
 import { lowestOf, meshGeometry } from "./meshes";
 import { signs } from "./signs";
@@ -114,8 +114,8 @@ function piecesOf(scene: SceneData, landM: number): AllPieces {
   polygons.forEach((polygon, index) => {
     const { kind, offset_m } = polygon;
     if (kind === "plant" && isTree(polygon)) {
-      add(offset_m, (into) => into.plain.push(...trunk(polygon)), WALL_STUB_M);
-      add(offset_m, (into) => into.leaves.push(...crown(polygon, index)), 0);
+      add(offset_m, (into) => into.plain.push(...bed(polygon)));
+      add(offset_m, (into) => into.leaves.push(...tree(polygon, index)), 0);
     } else if (kind === "plant") {
       add(offset_m, (into) => into.plain.push(...hedge(polygon, index)), TABLE_STUB_M);
     } else if (kind === "water") {
@@ -151,10 +151,7 @@ function piecesOf(scene: SceneData, landM: number): AllPieces {
       doorFrame(door, into);
     });
   }
-  for (const tree of treesAround(scene.bounds, landM)) {
-    add(landM, (into) => into.plain.push(tree.trunk), WALL_STUB_M);
-    add(landM, (into) => into.leaves.push(...tree.crown), 0);
-  }
+  add(landM, (into) => into.leaves.push(...treesAround(scene.bounds, landM)), 0);
   return all;
 }
 
