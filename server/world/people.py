@@ -82,7 +82,8 @@ class People:
         here = state.positions[moving]
         way = (AHEAD_S / self._tick_s * moved_m)[:, None] * np.arange(AHEAD)[:, None]
         left_m = np.hypot(*(self._targets[moving] - here).T)
-        last = [len(self._ways.get(slot, ())) == 1 for slot in moving.tolist()]
+        last = self._following[moving]
+        last[last] = [len(self._ways[slot]) == 1 for slot in moving[last].tolist()]
         length = np.maximum(np.hypot(way[..., 0], way[..., 1]), 1e-9)
         share = np.where(last, left_m, np.inf)[:, None] / length
         way *= np.minimum(share, 1.0)[..., None]
