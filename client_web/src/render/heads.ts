@@ -5,7 +5,7 @@ import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 import { type Hoop, loft, oval, type Oval, skin, WHITE } from "./loft";
 import { painted } from "./shapes";
 
-export type HairName = "short" | "long" | "bun";
+type HairName = "short" | "long" | "bun";
 
 const EYE = new Color("#1d1a18");
 const BROW = new Color("#5d4a40");

@@ -4,16 +4,7 @@
  */
 
 import { mixAngles } from "./angles";
-import {
-  copy,
-  copyRotation,
-  mix,
-  mixRotations,
-  type Rotation,
-  rotation,
-  type Vector,
-  vector,
-} from "./vectors";
+import { mix, mixRotations, type Rotation, rotation, type Vector, vector } from "./vectors";
 
 export interface FootPosture {
   /** The back of the sole, below the ankle. */
@@ -66,23 +57,6 @@ export function mixPostures(from: Posture, to: Posture, part: number, out: Postu
   mixFeet(from.right, to.right, part, out.right);
   mixArms(from.leftArm, to.leftArm, part, out.leftArm);
   mixArms(from.rightArm, to.rightArm, part, out.rightArm);
-}
-
-export function copyPosture(from: Posture, out: Posture): void {
-  copy(from.root, out.root);
-  copyRotation(from.pelvis, out.pelvis);
-  copyRotation(from.chest, out.chest);
-  copyFoot(from.left, out.left);
-  copyFoot(from.right, out.right);
-  mixArms(from.leftArm, from.leftArm, 0, out.leftArm);
-  mixArms(from.rightArm, from.rightArm, 0, out.rightArm);
-}
-
-function copyFoot(from: FootPosture, out: FootPosture): void {
-  copy(from.heel, out.heel);
-  out.pitch = from.pitch;
-  out.heading = from.heading;
-  out.raised = from.raised;
 }
 
 function mixFeet(from: FootPosture, to: FootPosture, part: number, out: FootPosture): void {

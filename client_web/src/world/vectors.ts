@@ -40,10 +40,6 @@ export function mix(from: Vector, to: Vector, part: number, out: Vector): void {
   out.z = from.z + (to.z - from.z) * part;
 }
 
-export function cross(a: Vector, b: Vector, out: Vector): void {
-  set(out, a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
-}
-
 export function apart(a: Vector, b: Vector): number {
   return Math.hypot(a.x - b.x, a.y - b.y, a.z - b.z);
 }
