@@ -26,6 +26,10 @@ from actors.locomotion.planted import step_targets
 from actors.locomotion.stance import Build, stance
 
 _SHARES: Final = np.linspace(0.0, 1.0, KEYS)
+_LEVEL: Final = 0.15
+_STEEP: Final = 0.35
+_EARLIER: Final = 0.7
+"""A foot that has been left behind so far below, in legs, lifts by so much earlier."""
 _BACK: Final = 0.02
 """Share of a step over which the speed of what is drawn is taken."""
 
@@ -101,7 +105,7 @@ def strides(
     -------
     float64 (N, KEYS, WIDTH) keys and (N,) lifts, as in `Steps`.
     """
-    targets = step_targets(falls, gone[:, None] + (1.0 - gone[:, None]) * _SHARES)
+    targets = _targets(falls, gone[:, None] + (1.0 - gone[:, None]) * _SHARES)
     keys = _keys(targets, falls)
     aside = place - falls.standing[:, :2] - keys[:, -1, :2]
     distance = np.maximum(np.hypot(aside[:, 0], aside[:, 1]), 1e-9)
@@ -115,6 +119,29 @@ def standing_keys(falls: Footfalls) -> Floats:
     """Keys (N, KEYS, WIDTH) of bodies that just stand on two footprints."""
     still = _keys(step_targets(falls, np.zeros(1)), falls)
     return np.repeat(still, KEYS, axis=1)
+
+
+def _targets(falls: Footfalls, share: Floats) -> Targets:
+    """Targets at shares (N, K), of steps whose foot leaves a lower tread earlier than on the level.
+
+    It would hold the hips down, which then had to jump.
+    """
+    targets = step_targets(falls, share)
+    climbed = (falls.standing[:, 2] - falls.lifted[:, 2]) / falls.leg_m
+    rows = np.flatnonzero(climbed > _LEVEL)
+    if not len(rows):
+        return targets
+    usual = targets.lift[rows, None]
+    lift = usual * (1.0 - _EARLIER * smooth((climbed[rows, None] - _LEVEL) / (_STEEP - _LEVEL)))
+    share = share[rows]
+    swung = usual + (share - lift) * (1.0 - usual) / (1.0 - lift)
+    some = Footfalls._make(column[rows] for column in falls)
+    early = step_targets(some, np.where(share < lift, share * usual / lift, swung))
+    targets.swing_ankle[rows] = early.swing_ankle
+    targets.swing_pitch[rows] = early.swing_pitch
+    targets.swing_heading[rows] = early.swing_heading
+    targets.lift[rows] = lift[:, 0]
+    return targets
 
 
 def shifted(now: Drawn, falls: Footfalls, places: Floats) -> Floats:

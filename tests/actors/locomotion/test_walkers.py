@@ -196,6 +196,8 @@ def test_feet_are_put_on_treads() -> None:
     assert on_stairs > 40
     check_continuous(parade)
     check_planted(parade)
+    hips = np.array([frame.pose.root for frame in parade.frames()])
+    assert np.linalg.norm(np.diff(hips, axis=0), axis=2).max() < 0.07
     for frame in parade.frames():
         air = np.isnan(frame.slide_m)
         flat = parade.ground.height(frame.pose.ankles[air][:, :2], frame.pose.ankles[air][:, 2])
