@@ -29,17 +29,20 @@ interface Seen extends Omit<Avatar, "walker"> {
   readonly feet: { readonly left: Foot; readonly right: Foot };
   /** Which foot its step stands on, and when it began; null while a body is drawn without steps. */
   readonly step: { readonly stands: "left" | "right"; readonly tick: number } | null;
+  /** Whether it points at something. */
+  readonly pointing: boolean;
 }
 
 function seen({ id, kind, name, radius, own, pose, walker }: Avatar): Seen {
   const { left, right } = walker.body;
+  const pointing = walker.pointing.target !== null;
   const drawn = walker.planted ? walker.step : null;
   const step = drawn && {
     stands: drawn.rightStands ? ("right" as const) : ("left" as const),
     tick: drawn.tick,
   };
   const feet = { left: left.foot, right: right.foot };
-  return { id, kind, name, radius, own, pose, feet, step };
+  return { id, kind, name, radius, own, pose, feet, step, pointing };
 }
 
 declare global {
