@@ -130,6 +130,9 @@ def print_door(side: int, layers: int, runs: int) -> None:
         f"one door at {side}x{side}x{layers}: {door_ms:.3f} ms, "
         f"everything for a body: {whole_ms:.2f} ms"
     )
+    live_ms, _ = best_ms(lambda: grid.set_door("gate", not grid.doors.is_open("gate")), runs)
+    anew_ms, _ = best_ms(lambda: LayeredGrid(grid.floors), min(runs, 3))
+    print(f"{'the same in a live grid:':>24s} {live_ms:.3f} ms, all of it: {anew_ms:.2f} ms")
 
 
 def best_ms(work: Callable[[], Result], runs: int) -> tuple[float, Result]:

@@ -93,7 +93,7 @@ def list_barriers(
 
     `first` (N,) must be preset to -1; returns the entries, int32 (E, 2).
     """
-    entries = np.empty((1024, 2), dtype=np.int32)
+    entries = np.empty((64 * len(barriers) + 8, 2), dtype=np.int32)
     used = 0
     layers = arrays.pages.shape[0]
     cell_m = arrays.cell_m

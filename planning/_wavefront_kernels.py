@@ -89,7 +89,7 @@ def spread_toward(
     left[:] = UNREACHED
     left[goal] = 0
     heads = np.full(_BUCKETS, -1, dtype=np.int32)
-    entries = np.empty((1024, 3), dtype=np.int32)
+    entries = np.empty((len(left) + 8, 3), dtype=np.int32)
     row, column = places[start, 1], places[start, 2]
     total = _at_least(places[goal, 1] - row, places[goal, 2] - column)
     entries[0] = (goal, 0, -1)
@@ -114,21 +114,22 @@ def spread_toward(
         if used + 8 > len(entries):
             entries = np.concatenate((entries, np.empty_like(entries)))
         rows, columns = places[cell, 1] - row, places[cell, 2] - column
-        for d in range(8):
-            if not steps[cell] >> d & 1:
-                continue
-            other = links[cell, d]
-            then = way + (DIAGONAL if d & 1 else STRAIGHT)
-            if then >= left[other] or classes[other] == FORBIDDEN:
-                continue
-            left[other] = then
-            bucket = then + _at_least(rows + LINK_ROWS[d], columns + LINK_COLUMNS[d])
-            bucket %= _BUCKETS
-            entries[used, 0] = other
-            entries[used, 1] = then
-            entries[used, 2] = heads[bucket]
-            heads[bucket] = used
-            used += 1
+        for diagonal in range(2):
+            then = way + (DIAGONAL if diagonal else STRAIGHT)
+            for d in range(diagonal, 8, 2):
+                if not steps[cell] >> d & 1:
+                    continue
+                other = links[cell, d]
+                if then >= left[other] or classes[other] == FORBIDDEN:
+                    continue
+                left[other] = then
+                bucket = then + _at_least(rows + LINK_ROWS[d], columns + LINK_COLUMNS[d])
+                bucket %= _BUCKETS
+                entries[used, 0] = other
+                entries[used, 1] = then
+                entries[used, 2] = heads[bucket]
+                heads[bucket] = used
+                used += 1
 
 
 @kernel

@@ -46,9 +46,9 @@ def lintels(arrays: LayeredArrays) -> Barriers:
     return np.concatenate([written(lintels_between, arrays, d) for d in (0, 2)])
 
 
-def written(kernel: Callable[..., int], *arguments: object) -> Barriers:
+def written(kernel: Callable[..., int], *arguments: object, room: int = 1024) -> Barriers:
     """What a kernel writes, with as much room as it turns out to need."""
-    out = np.empty((1024, 7))
+    out = np.empty((room, 7))
     count = kernel(*arguments, out)
     if count > len(out):
         out = np.empty((count, 7))

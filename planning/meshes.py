@@ -26,6 +26,7 @@ Progress = Callable[[str, float], None]
 """Told what is being done, and which share of the whole is behind."""
 
 _BATCH = 4096
+_MOST_ROOM = 2**18
 
 
 def unheard(_doing: str, _share: float) -> None:
@@ -100,7 +101,8 @@ def _faces(
     numbers = surfaces.rows.astype(np.int64) * surfaces.nx + surfaces.columns
     tops = np.zeros(columns + 1, dtype=np.int32)
     np.cumsum(np.bincount(numbers, minlength=columns), out=tops[1:])
-    rows = written(steep_faces, surfaces.raster, triangles, tops, surfaces.floors)
+    room = min(8 * len(triangles), _MOST_ROOM)
+    rows = written(steep_faces, surfaces.raster, triangles, tops, surfaces.floors, room=room)
     where = rows[:, 6].astype(np.int64)
     order = np.argsort(where, kind="stable")
     faces = np.ascontiguousarray(rows[order, :6])

@@ -171,7 +171,7 @@ def linked(
 def solid_columns(scene: Scene, raster: Raster) -> SolidColumns:
     """The solids of a scene, and which of them each column goes through."""
     solids = _solid_arrays(scene)
-    runs = np.empty((256, 4), dtype=np.int32)
+    runs = np.empty((4096, 4), dtype=np.int32)
     while True:
         starts = np.zeros(raster.ny * raster.nx + 1, dtype=np.int32)
         used = runs_of_solids(raster, solids, runs, starts)
