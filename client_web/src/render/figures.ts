@@ -1,6 +1,6 @@
 /** All avatars as articulated figures: one instanced mesh for every part of the body. */
 
-import { type Camera, Group, MeshLambertMaterial } from "three";
+import { type Camera, Frustum, Group, Matrix4, MeshLambertMaterial, Sphere } from "three";
 import type { Side } from "../world/body";
 import type { Avatar } from "../world/world";
 import { Instances } from "./instances";
@@ -16,6 +16,10 @@ const NEARER = 0.88;
 /** What so many wear is remembered, those who have left among them. */
 const MOST_KNOWN = 2000;
 
+/** A figure and what it carries, from its hips; and its shadow on the ground, where that is drawn. */
+const FIGURE_M = 1.3;
+const SHADOW_M = 5;
+
 type Wardrobe = Record<PartName, Instances>;
 
 export class Figures {
@@ -25,17 +29,22 @@ export class Figures {
   private readonly coarse = this.wardrobe(COARSE_CORNERS);
   private readonly all = [...Object.values(this.fine), ...Object.values(this.coarse)];
   private readonly clothes = new Map<number, Clothing>();
+  private readonly view = new Frustum();
+  private readonly projection = new Matrix4();
+  private readonly room = new Sphere();
   private fineM = 0;
   private readonly coarsely = new Set<number>();
 
-  /** Draw every avatar with the joints that it has in this frame. */
+  /** Draw every avatar in the picture with the joints that it has in this frame. */
   update(avatars: ReadonlyMap<number, Avatar>, camera: Camera): void {
     if (this.clothes.size > MOST_KNOWN) {
       this.clothes.clear();
       this.coarsely.clear();
     }
+    this.lookThrough(camera);
     for (const part of this.all) part.begin();
     for (const avatar of avatars.values()) {
+      if (!this.isSeen(avatar)) continue;
       const parts = this.isCoarse(avatar, camera) ? this.coarse : this.fine;
       dress(parts, avatar, this.clothesOf(avatar.id));
     }
@@ -48,7 +57,20 @@ export class Figures {
   }
 
   castShadows(cast: boolean): void {
+    this.room.radius = cast ? SHADOW_M : FIGURE_M;
     for (const { mesh } of this.all) mesh.castShadow = cast;
+  }
+
+  private lookThrough(camera: Camera): void {
+    camera.updateMatrixWorld();
+    this.projection.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
+    this.view.setFromProjectionMatrix(this.projection);
+  }
+
+  private isSeen({ walker: { body } }: Avatar): boolean {
+    const { x, y, z } = body.root;
+    this.room.center.set(x, y, z);
+    return this.view.intersectsSphere(this.room);
   }
 
   private isCoarse(
