@@ -6,7 +6,7 @@ Without a name all of them run, one after the other, each as quick as it is by d
 import runpy
 import sys
 
-NAMES = ("planning", "layered", "server", "social", "walking", "steps", "gallery")
+NAMES = ("planning", "layered", "meshes", "server", "social", "walking", "steps", "gallery")
 
 
 def main() -> None:

@@ -12,6 +12,8 @@ from planning._straightening_kernels import is_clear
 
 SNAP_M = 0.5
 """A body may be moved so far to where it can stand."""
+_INSIDE_M = 1e-3
+"""How far from its border a place is that is surely in a cell."""
 FLOOR_M = 1.0
 """A point belongs to a floor that is no further above or below it."""
 
@@ -27,9 +29,10 @@ def stand(
 ) -> tuple[int, float, float]:
     """The cell where a body stands that is said to be at (x, y, z), and its place; -1: nowhere.
 
-    The point itself, if the body fits there. Else the centre of the nearest cell within `SNAP_M`
-    that is not Forbidden by `classes`; from a floor it must lie within one straight step, though
-    with `through` that may lead through walls; from a hole it may lie anywhere.
+    The point itself, if the body fits there. Else the nearest place within `SNAP_M`: in a cell
+    that is not Forbidden by `classes`, at its side next to the point or in its centre. From a
+    floor it must lie within one straight step, though with `through` that may lead through
+    walls; from a hole it may lie anywhere.
     """
     arrays, body = footing.arrays, footing.body
     own = cell_near(arrays, x, y, z)
@@ -44,6 +47,7 @@ def stand(
             return own, x, y
     best, found, found_x, found_y = np.inf, -1, x, y
     reach = int(SNAP_M / arrays.cell_m) + 1
+    half = 0.5 * arrays.cell_m - _INSIDE_M
     j = int((y - arrays.y0) / arrays.cell_m)
     i = int((x - arrays.x0) / arrays.cell_m)
     for layer in range(arrays.pages.shape[0]):
@@ -52,14 +56,20 @@ def stand(
                 cell = cell_index(arrays, layer, jj, ii)
                 if cell < 0 or classes[cell] == FORBIDDEN:
                     continue
+                rise = abs(arrays.floors[cell] - floor)
+                if rise > highest:
+                    continue
                 cx = arrays.x0 + (ii + 0.5) * arrays.cell_m
                 cy = arrays.y0 + (jj + 0.5) * arrays.cell_m
-                rise = abs(arrays.floors[cell] - floor)
-                away = np.hypot(np.hypot(cx - x, cy - y), rise)
-                if away >= best or np.hypot(cx - x, cy - y) > SNAP_M or rise > highest:
+                qx, qy = min(max(x, cx - half), cx + half), min(max(y, cy - half), cy + half)
+                if not is_clear(footing, cell, qx, qy, cx, cy):
+                    qx, qy = cx, cy
+                aside = np.hypot(qx - x, qy - y)
+                away = np.hypot(aside, rise)
+                if away >= best or aside > SNAP_M:
                     continue
-                if own < 0 or through or _is_one_step(footing, own, cell, x, y, cx, cy):
-                    best, found, found_x, found_y = away, cell, cx, cy
+                if own < 0 or through or _is_one_step(footing, own, cell, x, y, qx, qy):
+                    best, found, found_x, found_y = away, cell, qx, qy
     return found, found_x, found_y
 
 
@@ -67,7 +77,7 @@ def stand(
 def _is_one_step(
     footing: Footing, own: int, cell: int, x: float, y: float, cx: float, cy: float
 ) -> bool:
-    """Whether no barrier stops a body on the straight way from a point to a cell's centre."""
+    """Whether no barrier stops a body on the straight way from a point to another in a cell."""
     floors, body = footing.arrays.floors, footing.body
     lowest = float(min(floors[own], floors[cell]))
     highest = float(max(floors[own], floors[cell]))
