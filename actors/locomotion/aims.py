@@ -25,14 +25,14 @@ WALKING_MPS: Final = 0.3
 CLOSING_S: Final = 0.5
 """A step that goes nowhere: the other foot is drawn up, or the body turns."""
 SHORTEST_S: Final = 0.2
-SHORTEST_UP_S: Final = 0.4
+SHORTEST_UP_S: Final = 0.25
 """On stairs, up or down."""
 SHORTEST_REST_S: Final = 0.2
 """Of a step under way that has to end elsewhere."""
 LONGEST_S: Final = 0.8
 
 # Lengths in legs.
-_LONGEST: Final = 0.72
+_LONGEST: Final = 0.68
 """Steps that are walked; who is faster takes them in less time."""
 _PAST: Final = 0.5
 _PAST_AHEAD: Final = 0.1
@@ -45,12 +45,17 @@ _FURTHEST_BACK: Final = 0.55
 _FURTHEST_ASIDE: Final = 0.55
 _NEAREST_ASIDE: Final = 1.1 * TRACK_HALF_WIDTH
 """Feet that pass one another keep so far apart."""
-_RISE_M: Final = 0.22
-"""Stairs are walked tread by tread: a step is so short that it does not climb more."""
+_RISE_M: Final = 0.15
+"""Stairs are walked tread by tread: who would climb more in a step takes a shorter one,"""
+_HURRY: Final = 2.5
+"""so many times as short at most."""
 _UNEVEN_M: Final = 0.12
-_STEEPEST_M: Final = 0.42
+_TREAD_M: Final = 0.26
+_TWO_TREADS_M: Final = 0.42
 _CLIMB_M: Final = 0.75
-"""No foot is put further up or down ahead; nor, to get where the body has gone, under it."""
+"""How far up or down a foot is put ahead by those who take one tread at a time, and by those who
+are too fast for that; and at most, under a body that has gone there."""
+_HASTY_MPS: Final = 1.6
 
 _OPENING_RAD: Final = 1.6
 _CLOSING_RAD: Final = 1.0
@@ -124,7 +129,7 @@ def within_reach_s(course: Course, standing: Floats, leg_m: Floats, seconds: Flo
     seconds = seconds - np.maximum(distance - limit * leg_m, 0.0) / speed
     rise = np.abs(place[:, 2] - course.ahead[:, 0, 2])
     steep = np.maximum(rise / _RISE_M, 1.0)
-    return np.asarray(np.maximum(seconds / np.minimum(steep, 1.8), SHORTEST_REST_S))
+    return np.asarray(np.maximum(seconds / np.minimum(steep, _HURRY), SHORTEST_REST_S))
 
 
 def _stretched(apart: Floats, heading: Floats) -> tuple[Floats, Floats]:
@@ -180,33 +185,47 @@ def aim(
     landing[:, :2] = place + ahead[:, None] * forward + aside[:, None] * left
     landing[:, :2] = _limited(landing[:, :2], standing, middle, side, leg_m)
     landing, found = ground.settle(landing, foot_m)
-    found &= np.abs(landing[:, 2] - standing[:, 2]) <= _STEEPEST_M
+    hasty = np.hypot(velocity[:, 0], velocity[:, 1]) > _HASTY_MPS
+    climb_m = np.where(hasty, _TWO_TREADS_M, _TREAD_M)
+    far_m = np.full_like(climb_m, _CLIMB_M)
+    found &= np.abs(landing[:, 2] - standing[:, 2]) <= climb_m
     if not found.all():
-        _retreat(landing, ~found, under, standing, middle, side, leg_m, ground)
+        halfway, beside = 0.5 * (landing[:, :3] + under), standing[:, :3].copy()
+        for places in (halfway, under, beside):
+            places[:, :2] = _limited(places[:, :2], standing, middle, side, leg_m)
+        for places, limit_m in (
+            (halfway, climb_m),
+            (under, climb_m),
+            (under, far_m),
+            (beside, far_m),
+        ):
+            found = _put(landing, places, found, standing[:, 2], limit_m, foot_m, ground)
     landing[:, :3] = np.round(landing[:, :3], 4)  # as it is told, or feet would land beside it
     place = _no_further(place, landing[:, :2], _BEHIND * leg_m)
     return Aim(landing, place, there[:, :2], velocity, wanted)
 
 
-def _retreat(
+def _put(
     landing: Floats,
-    lost: NDArray[np.bool_],
-    under: Floats,
-    standing: Floats,
-    middle: Floats,
-    side: Floats,
-    leg_m: Floats,
+    places: Floats,
+    found: NDArray[np.bool_],
+    from_m: Floats,
+    limit_m: Floats,
+    foot_m: Floats,
     ground: Ground,
-) -> None:
-    """Feet that found no ground come down under the body, else beside the other foot; in place."""
-    for nearer in (under, standing[:, :3]):
-        rows = np.flatnonzero(lost)
-        tried = landing[rows]
-        tried[:, :3] = nearer[rows]
-        tried[:, :2] = _limited(tried[:, :2], standing[rows], middle[rows], side[rows], leg_m[rows])
-        landing[rows], found = ground.settle(tried, FOOT * leg_m[rows])
-        found &= np.abs(landing[rows, 2] - standing[rows, 2]) <= _CLIMB_M
-        lost[rows[found]] = False
+) -> NDArray[np.bool_]:
+    """Put feet that have found no ground elsewhere, (N, 3), not too far up or down; in place.
+
+    Returns who has found some now.
+    """
+    rows = np.flatnonzero(~found)
+    tried = landing[rows]
+    tried[:, :3] = places[rows]
+    landing[rows], there = ground.settle(tried, foot_m[rows])
+    there &= np.abs(landing[rows, 2] - from_m[rows]) <= limit_m[rows]
+    now = found.copy()
+    now[rows[there]] = True
+    return now
 
 
 def _limited(

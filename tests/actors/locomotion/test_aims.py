@@ -77,8 +77,9 @@ def test_a_start_is_quick_and_stairs_are_not() -> None:
     start = durations_s(course((1.6, 0.0)), under, LEG, np.ones(1))
     walking = durations_s(course((1.6, 0.0)), standing_on(0.35, -0.09), LEG, np.ones(1))
     assert SHORTEST_S <= start[0] < walking[0]
-    climbing = durations_s(course((0.9, 0.0), rise_mps=0.6), standing_on(0.1, 0.0), LEG, np.ones(1))
-    assert climbing[0] == pytest.approx(SHORTEST_UP_S, abs=0.1)
+    level = durations_s(course((0.9, 0.0)), standing_on(0.1, 0.0), LEG, np.ones(1))
+    up = durations_s(course((0.9, 0.0), rise_mps=0.6), standing_on(0.1, 0.0), LEG, np.ones(1))
+    assert SHORTEST_UP_S <= up[0] < 0.75 * level[0]
 
 
 def test_feet_land_half_a_step_ahead_on_their_own_side() -> None:

@@ -187,6 +187,7 @@ def test_feet_are_put_on_treads() -> None:
     on_stairs = 0
     for begun in parade.begun:
         landing = begun.steps.landing
+        assert np.abs(landing[:, 2] - begun.steps.standing[:, 2]).max() < 0.176, "tread by tread"
         ends = [landing[:, 0], landing[:, 0] + 0.85 * foot_m[begun.slots] * np.cos(landing[:, 3])]
         inside = (ends[0] > 2.0) & (ends[1] < 4.99)
         for end in ends:
