@@ -1,8 +1,5 @@
 """People as they were recorded, walking live: only where they are and how fast is known."""
 
-import os
-from pathlib import Path
-
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -14,15 +11,12 @@ from actors.locomotion.stance import REACH
 from planning import Scene
 from recordings import Crowd, read_crowd
 from tests.actors.locomotion.parade import TICK_S, Parade
+from tests.recordings.data import recorded
 
 SECONDS = 60.0
 PEOPLE = 60
 SETTLED_S = 1.0
 """Recorded people come in at full speed, walkers standing: let them catch up."""
-
-
-def folder() -> Path:
-    return Path(os.environ.get("ESPLANADE_CROWDS", ""))
 
 
 def ways(crowd: Crowd) -> tuple[Floats, NDArray[np.bool_]]:
@@ -42,10 +36,7 @@ def ways(crowd: Crowd) -> tuple[Floats, NDArray[np.bool_]]:
 
 @pytest.mark.parametrize("name", ["eth", "hotel", "zara1", "students3"])
 def test_recorded_people_walk_on_planted_feet(name: str) -> None:
-    path = folder() / f"{name}.csv"
-    if not path.is_file():
-        pytest.skip("no recorded crowds: set ESPLANADE_CROWDS to their folder")
-    places, there = ways(read_crowd(path))
+    places, there = ways(read_crowd(recorded(name)))
     low, high = places.min(axis=(0, 1)) - 3.0, places.max(axis=(0, 1)) + 3.0
     parade = Parade(len(places), Scene.open_space((*low.tolist(), *high.tolist())))
     parade.positions[:, :2] = places[:, 0]
