@@ -7,6 +7,8 @@ import { FLOOR, PLASTER } from "./palette";
 /** What is left of walls, and of what lies level like table tops, above the feet. */
 const STUB_M = { upright: 0.35, level: 1.2 };
 const LEVEL = 0.7;
+/** Walls that face north and south are drawn darker, so that corners show in the shade too. */
+const CORNERS = 0.12;
 
 /** Every triangle is a piece of its own that begins at its lowest corner. */
 export function meshGeometry(triangles: Triangles): BufferGeometry {
@@ -23,7 +25,9 @@ export function meshGeometry(triangles: Triangles): BufferGeometry {
   for (let i = 0; i < corners; i++) {
     const first = i - (i % 3);
     const up = normal.getZ(i);
-    color.lerpColors(PLASTER, FLOOR, Math.max(0, up) ** 2).toArray(colors, i * 3);
+    color.lerpColors(PLASTER, FLOOR, Math.max(0, up) ** 2);
+    color.multiplyScalar(1 - CORNERS * (1 - Math.abs(normal.getX(i))) * (1 - Math.abs(up)));
+    color.toArray(colors, i * 3);
     stubs[i] = Math.abs(up) > LEVEL ? STUB_M.level : STUB_M.upright;
     bases[i] = Math.min(...[0, 1, 2].map((k) => triangles[(first + k) * 3 + 2] ?? 0));
   }
