@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from planning._gap_kernels import find_gaps, put_in
 from planning._layered import LayeredArrays
 from planning._ledge_kernels import Sides
 from planning._mesh_kernels import (
@@ -39,8 +40,9 @@ def surfaces_of_triangles(
     """Where one can stand on triangles (T, 3, 3), x east, y north, z up, metres.
 
     A surface lies where the vertical through a cell's centre meets a face that looks up, no
-    steeper than 45 degrees, and has headroom. Surfaces that links join are grouped from the
-    lowest on; one that lies above another of its layer begins the next.
+    steeper than 45 degrees, and has headroom; also over a gap of one cell between two. Surfaces
+    that links join are grouped from the lowest on; one that lies above another of its layer
+    begins the next.
 
     Raises
     ------
@@ -67,13 +69,14 @@ def surfaces_of_triangles(
     count = surfaces_of_hits(starts, heights, kinds, floors, ceilings, tops)
     if count == 0:
         raise MeshError("nobody can stand anywhere on it; does it look up?")
-    floors, ceilings = floors[:count].copy(), ceilings[:count].copy()
+    hits = starts, heights
+    tops, floors, ceilings = _with_gaps(raster, hits, tops, floors[:count], ceilings[:count])
 
     progress("linking", 0.45)
     links = linked(raster, tops, floors, ceilings)
     progress("grouping", 0.6)
     numbers = np.repeat(np.arange(columns, dtype=np.int32), np.diff(tops))
-    layers = np.empty(count, dtype=np.int16)
+    layers = np.empty(len(floors), dtype=np.int16)
     order = np.argsort(floors, kind="stable")
     found = grow_regions(tops, numbers, floors, links, order, layers)
     if found > MAX_LAYERS:
@@ -81,6 +84,30 @@ def surfaces_of_triangles(
     rows, cols = np.divmod(numbers, np.int32(raster.nx))
     place = bounds, cell_m, raster.ny, raster.nx
     return Surfaces(rows, cols, floors, ceilings, layers, links, _no_solids(columns), *place)
+
+
+def _with_gaps(
+    raster: Raster,
+    hits: tuple[NDArray[np.int64], NDArray[np.float32]],
+    tops: NDArray[np.int32],
+    floors: NDArray[np.float32],
+    ceilings: NDArray[np.float32],
+) -> tuple[NDArray[np.int32], NDArray[np.float32], NDArray[np.float32]]:
+    """Surfaces by column (CSR), floors and ceilings, and those over gaps between them."""
+    columns = np.empty(2 * len(floors), dtype=np.int32)
+    surfaces = np.empty((2 * len(floors), 2), dtype=np.float32)
+    gaps = find_gaps(raster, hits, tops, floors, ceilings, columns, surfaces)
+    new_floors = np.empty(len(floors) + gaps, dtype=np.float32)
+    new_tops, new_ceilings = np.empty_like(tops), np.empty_like(new_floors)
+    put_in(
+        tops,
+        (floors, ceilings),
+        columns[:gaps],
+        surfaces[:gaps],
+        new_tops,
+        (new_floors, new_ceilings),
+    )
+    return new_tops, new_floors, new_ceilings
 
 
 def barriers_of_triangles(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 from tests.naive.geometry import inside
@@ -35,18 +36,39 @@ def columns_of_scene(scene, cell_m: float) -> dict[tuple[int, int], Column]:
 
 def columns_of_triangles(triangles, raster) -> dict[tuple[int, int], Column]:
     """The surfaces over every cell's centre, by a vertical line through all triangles."""
-    found = {}
+    found, hits = {}, {}
     for j in range(raster.ny):
         for i in range(raster.nx):
             x, y = raster.x0 + (i + 0.5) * raster.cell_m, raster.y0 + (j + 0.5) * raster.cell_m
-            hits = sorted(h for t in triangles if (h := _hit(t.tolist(), x, y)) is not None)
+            hits[j, i] = sorted(h for t in triangles if (h := _hit(t.tolist(), x, y)) is not None)
             found[j, i] = []
-            for k, (floor, kind) in enumerate(hits):
-                higher = [z for z, _ in hits[k + 1 :] if z > floor + 0.01]
+            for k, (floor, kind) in enumerate(hits[j, i]):
+                higher = [z for z, _ in hits[j, i][k + 1 :] if z > floor + 0.01]
                 ceiling = min(higher, default=math.inf)
                 if kind == "up" and ceiling - floor >= LOWEST_M:
                     found[j, i].append((floor, ceiling))
-    return found
+    return {cell: _with_gaps(cell, column, found, hits[cell]) for cell, column in found.items()}
+
+
+def _with_gaps(cell, column: Column, found, hits) -> Column:
+    """A column and what lies over gaps in it between level neighbours on either side."""
+    j, i = cell
+    added: Column = []
+    for one, two in (((j, i - 1), (j, i + 1)), ((j - 1, i), (j + 1, i))):
+        for a, b in itertools.product(found.get(one, ()), found.get(two, ())):
+            z = (a[0] + b[0]) / 2
+            ceiling = min([a[1], b[1], *(height for height, _ in hits if height > z)])
+            if (
+                abs(a[0] - b[0]) <= 0.1
+                and ceiling - z >= LOWEST_M
+                and all(abs(height - z) >= LOWEST_M for height, _ in [*hits, *added])
+            ):
+                added.append((z, ceiling))
+    floors = sorted([*column, *added])
+    return [
+        (floor, min([ceiling, *(higher for higher, _ in floors[k + 1 :])]))
+        for k, (floor, ceiling) in enumerate(floors)
+    ]
 
 
 def _hit(triangle, x: float, y: float) -> tuple[float, str] | None:

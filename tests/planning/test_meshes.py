@@ -14,6 +14,9 @@ from tests.naive import surfaces as naive
 from tests.planning.test_surfaces import ODD_M, columns_of, links_of
 from tests.planning.worlds import holds
 
+TOGETHER_M = 0.0101
+"""Faces closer together than this are one."""
+
 
 def block(x0, y0, z0, x1, y1, z1) -> trimesh.Trimesh:
     return trimesh.creation.box(bounds=((x0, y0, z0), (x1, y1, z1)))
@@ -69,10 +72,11 @@ def test_surfaces_are_those_of_the_twin(triangles) -> None:
         return
     expected = naive.columns_of_triangles(triangles, surfaces.raster)
     found = columns_of(surfaces)
-    for cell, column in expected.items():
-        if _close_hits(column):
+    for (j, i), column in expected.items():
+        cross = ((j, i), (j, i - 1), (j, i + 1), (j - 1, i), (j + 1, i))
+        if any(_close_hits(expected.get(cell, [])) for cell in cross):
             continue
-        assert [z for z, _ in found[cell]] == pytest.approx([z for z, _ in column], abs=1e-4)
+        assert [z for z, _ in found[j, i]] == pytest.approx([z for z, _ in column], abs=TOGETHER_M)
     assert links_of(surfaces) == naive.links(found)
     layers = set(zip(surfaces.layers, surfaces.rows, surfaces.columns, strict=True))
     assert len(layers) == len(surfaces)
@@ -132,6 +136,28 @@ def test_a_floor_of_two_faces_is_a_floor_and_what_stands_on_one_buries_it() -> N
     assert set(surfaces_of_triangles(both).floors.tolist()) == {1.0}
     standing = np.asarray(block(0, 0, 1, 4, 4, 3).triangles)
     assert set(surfaces_of_triangles(np.concatenate([plate, standing])).floors.tolist()) == {3.0}
+
+
+@pytest.mark.parametrize("gap_m", [0.05, 0.2, 0.6])
+@pytest.mark.parametrize("across", ["east", "north"])
+@pytest.mark.parametrize("wall", [False, True])
+def test_gaps_between_rooms_are_stepped_across_but_not_through_walls(
+    tmp_path, gap_m, across, wall
+) -> None:
+    """Floors drawn room by room, the gap between them over the centres of cells."""
+    edge = 4.125 - 0.5 * gap_m, 4.125 + 0.5 * gap_m
+    parts = [block(0, 0, -0.2, edge[0], 4, 0), block(edge[1], 0, -0.2, 8, 4, 0)]
+    if wall:
+        parts.append(block(*[edge[0], 0, -0.2], *[edge[1], 4, 2.5]))
+    rooms = trimesh.util.concatenate(parts)
+    if across == "north":
+        rooms.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (0, 0, 1)))
+    grid = LayeredGrid.from_mesh(written(tmp_path, rooms), up="z")
+    ends = [(1.0, 2.0, 0.0), (7.0, 2.0, 0.0)]
+    if across == "north":
+        ends = [(-y, x, z) for x, y, z in ends]
+    status = find_path(grid, *ends).status
+    assert (status is PathStatus.FOUND) == (gap_m < 0.5 and not wall)
 
 
 def test_spirals_take_a_layer_for_each_turn() -> None:
