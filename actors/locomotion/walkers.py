@@ -24,6 +24,8 @@ Carry = Callable[[Steps, Slots], Steps]
 
 JUMP_M: Final = 1.5
 """Who is so far from its feet stands anew there."""
+_MOST_GONE: Final = 0.99
+"""Of a step that is aimed anew again and again some rest is always left."""
 SHIFT_S: Final = 0.4
 """Weight is shifted from foot to foot in that time."""
 _ROOM: Final = 0.4
@@ -128,9 +130,9 @@ class Walkers:
         standing = np.where(due.swapped[:, None], last.landing, last.standing)
         lifted = np.where(due.swapped[:, None], last.standing, last.landing)
         lifted = np.where(due.again[:, None], self._lifted[slots], lifted)
-        share = np.minimum(last.share(tick), 0.99)
+        share = np.minimum(last.share(tick), _MOST_GONE)
         gone = self._gone[slots] + (1.0 - self._gone[slots]) * share
-        gone = np.where(due.again, gone, 0.0)
+        gone = np.where(due.again, np.minimum(gone, _MOST_GONE), 0.0)
         left_s = np.asarray(due.ticks * self._tick_s)
         aims = aim(course, right, standing, build.leg_m, due.whole_s, left_s, self._ground)
         falls = Footfalls(right, lifted, standing, aims.landing, build.leg_m)

@@ -158,6 +158,19 @@ def test_sudden_turns_and_stops_are_drawn_without_a_jump() -> None:
     assert parade.walkers.lost == 0
 
 
+def test_who_changes_its_mind_in_every_tick_still_walks() -> None:
+    """Each re-aim leaves less of a step: rests of rests must not come to nothing."""
+    parade = Parade(16)
+    parade.stand()
+    random = np.random.default_rng(5)
+    for _ in range(200):
+        angle = random.uniform(0.0, 2.0 * np.pi, 16)
+        parade.go(3.0 * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+    assert any(begun.steps.again.any() for begun in parade.begun)
+    assert all(np.isfinite(begun.steps.keys).all() for begun in parade.begun)
+    check_planted(parade)
+
+
 def test_drawn_bodies_stay_near_people_at_a_keyboard() -> None:
     parade = Parade(16)
     parade.stand()
