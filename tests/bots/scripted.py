@@ -106,7 +106,7 @@ class ScriptedServer:
                     await self._hear(person, decode_client(frame))
             finally:
                 self.people.pop(person.id, None)
-                for other in self.people.values():
+                for other in list(self.people.values()):
                     with suppress(ConnectionClosed):
                         await other.socket.send(encode(Leave(tick=self.tick, ids=[person.id])))
 
@@ -168,7 +168,7 @@ class ScriptedServer:
                 await person.socket.send(encode(error))
 
     async def _tell_all(self, message: FromServer) -> None:
-        for person in self.people.values():
+        for person in list(self.people.values()):
             await person.socket.send(encode(message))
 
     async def run_ticks(self) -> None:
