@@ -54,21 +54,13 @@ export class Seats {
     return null;
   }
 
-  /** Remember what a welcome gave. */
+  /** Remember what a welcome gave: at once, for the page may be reloaded before a lock is had. */
   async keep(name: string, token: string): Promise<void> {
-    if (!this.mine) {
-      const seat = {
-        id: crypto.getRandomValues(new Uint32Array(3)).join("-"),
-        name,
-        token,
-        seenMs: 0,
-      };
-      await this.claim(seat);
-      this.mine = seat;
-    }
-    this.mine.name = name;
-    this.mine.token = token;
+    const known = this.mine;
+    const id = known?.id ?? crypto.getRandomValues(new Uint32Array(3)).join("-");
+    this.mine = { id, name, token, seenMs: 0 };
     this.touch();
+    if (!known) await this.claim(this.mine);
   }
 
   /** Say that this page is alive. */

@@ -48,6 +48,13 @@ describe("Seats", () => {
     expect(seat).toMatchObject({ name: "Ann", token: "token" });
   });
 
+  it("gives it again to a tab that was reloaded before it had its lock", async () => {
+    const before = page();
+    void before.seats.keep("Ann", "token");
+    before.kill();
+    expect(await page(before.tab).seats.ofThisTab()).toMatchObject({ token: "token" });
+  });
+
   it("gives the seat of a killed page to a new one of the same name", async () => {
     const killed = page();
     await killed.seats.keep("Ann", "token");
