@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import json
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,7 +67,14 @@ def read_triangles(path: str | Path, up: Up = "y") -> NDArray[np.float64]:
     return np.ascontiguousarray(corners)
 
 
-def _load(path: Path) -> NDArray[np.float64]:
+def open_mesh(path: Path, *, materials: bool = False) -> Any:
+    """A file as trimesh reads it, a scene of all its objects.
+
+    Raises
+    ------
+    MeshError
+        The file cannot be read, or holds nothing.
+    """
     import trimesh  # noqa: PLC0415  (takes a while to import, and few need it)
 
     if not path.is_file():
@@ -75,17 +82,32 @@ def _load(path: Path) -> NDArray[np.float64]:
     try:
         _refuse_packed(path)
         source: Path | io.StringIO = path
-        kind = None
+        beside: dict[str, Any] = {}
         if path.suffix.lower() == ".obj":
             # Names and comments may be in whatever encoding; what counts is ASCII.
             source = io.StringIO(path.read_text(encoding="utf-8", errors="replace"))
-            kind = "obj"
-        scene = trimesh.load_scene(source, file_type=kind, process=False, skip_materials=True)
-        parts = [part for part in scene.dump() if isinstance(part, trimesh.Trimesh)]
+            beside = {"file_type": "obj", "resolver": trimesh.resolvers.FilePathResolver(str(path))}
+        scene = trimesh.load_scene(source, process=False, skip_materials=not materials, **beside)
+    # Readers of a dozen formats raise whatever broken bytes make of them.
+    except Exception as error:
+        raise _unreadable(path, error) from error
+    if not scene.geometry:
+        raise MeshError(f"{path.name}: it holds no triangles")
+    return scene
+
+
+def _load(path: Path) -> NDArray[np.float64]:
+    scene = open_mesh(path)
+    try:
+        parts = [part for part in scene.dump() if hasattr(part, "faces")]
         corners = [_corners(np.asarray(part.vertices), np.asarray(part.faces)) for part in parts]
     except Exception as error:
-        raise MeshError(f"{path.name}: it is not a mesh that can be read: {error}") from error
+        raise _unreadable(path, error) from error
     return np.concatenate([np.empty((0, 3, 3)), *corners])
+
+
+def _unreadable(path: Path, error: Exception) -> MeshError:
+    return MeshError(f"{path.name}: it is not a mesh that can be read: {error}")
 
 
 def _refuse_packed(path: Path) -> None:

@@ -54,7 +54,10 @@ def import_mesh(
     if kept.resolve() == source.resolve() and (up != "y" or metres_a_unit != 1.0):
         raise UsageError(f"--out: {kept.name} would be written over the mesh itself")
     tell(f"reading {source.name}", 0.0)
-    mesh = as_glb(source, up, metres_a_unit)
+    try:
+        mesh = as_glb(source, up, metres_a_unit)
+    except MeshError as error:
+        raise UsageError(str(error)) from None
     # The floors of the scene are those of the file that is kept, not of the one read.
     with TemporaryDirectory() as folder:
         copy = Path(folder) / kept.name

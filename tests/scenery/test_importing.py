@@ -105,6 +105,12 @@ def test_broken_meshes_are_refused(tmp_path: Path, text: str) -> None:
         make(source, tmp_path / "house.json")
 
 
+def test_names_in_a_mesh_may_be_in_any_encoding(tmp_path: Path) -> None:
+    source = tmp_path / "house.obj"
+    source.write_bytes(b"o caf\xe9\n" + write_building(tmp_path).read_bytes())
+    assert make(source, tmp_path / "cafe.json").spawns
+
+
 def test_a_mesh_that_is_not_there_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"none\.obj"):
         make(tmp_path / "none.obj", tmp_path / "house.json")
