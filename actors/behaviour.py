@@ -64,6 +64,11 @@ class Behaviour(ABC):
         """What an actor that explains something shows to people since the last update."""
         return None
 
+    @property
+    def moves_doors(self) -> Mapping[str, bool]:
+        """Doors to open (true) or close from now on, by name, said once when it is to happen."""
+        return {}
+
 
 class Idle(Behaviour):
     """Stand, and make way when somebody comes too close."""

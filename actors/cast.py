@@ -55,6 +55,8 @@ class Cast:
         self.navigator = Navigator(grid, tick_s, seed)
         self.trips = 0
         """Goals reached by all actors so far."""
+        self.doors_wanted: dict[str, bool] = {}
+        """Doors that behaviours wanted moved in the last tick; who was added last prevails."""
         self._tick = 0
         self._seed = seed
         self._actors: dict[Hashable, _Actor] = {}
@@ -114,8 +116,10 @@ class Cast:
     def tick(self, people: Mapping[Hashable, Goal]) -> dict[Hashable, ActorState]:
         """One tick: behaviours choose goals, then everyone plans and steps. id -> state."""
         time_s = self._tick * self.navigator.tick_s
+        self.doors_wanted = {}
         for actor_id, actor in self._actors.items():
             goal = actor.behaviour.update(self._view(actor, people, time_s))
+            self.doors_wanted.update(actor.behaviour.moves_doors)
             if goal != actor.goal:
                 self.navigator.set_goal(
                     actor_id,

@@ -40,6 +40,11 @@ class Troupe:
     def trips(self) -> int:
         return self._cast.trips
 
+    @property
+    def doors_wanted(self) -> Mapping[str, bool]:
+        """Doors that actors wanted moved in the last tick, by name."""
+        return self._cast.doors_wanted
+
     def plan(self, people: Mapping[Hashable, Point]) -> ActorStates:
         """The next tick of all actors. Heavy: touches nothing but the cast."""
         return self._cast.tick(people) if len(self._cast) else {}

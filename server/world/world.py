@@ -120,6 +120,9 @@ class World:
         """Move the actors and work out what each viewer is to be told."""
         with self.times.stage("contacts"):
             pointing = self._troupe.place(actors)
+            if actors:
+                for name, is_open in self._troupe.doors_wanted.items():
+                    self.doors.want(name, is_open)
             neighbours = Neighbours(self.state)
             self.contacts.update(self.state, neighbours)
         with self.times.stage("steps"):

@@ -1,8 +1,11 @@
 """Actors and doors: ways to goals are found anew when one opens or closes."""
 
+from collections.abc import Mapping
+
 import pytest
 
-from actors import ActorParameters, Navigator, Reason
+from actors import ActorParameters, Cast, Navigator, Reason
+from actors.behaviour import Idle, View
 from planning import Door, LayeredGrid, PlanModel, Scene, Wall
 
 BODY = ActorParameters()
@@ -59,3 +62,29 @@ def test_a_goal_known_before_is_derived_anew_for_who_comes_later(navigator) -> N
     track = walk(navigator, 25.0)
     assert track[-1][2] is Reason.ARRIVED
     assert max(y for _, y, _ in track) > 10.0
+
+
+class Keeper(Idle):
+    """Shuts the gate after a second."""
+
+    def __init__(self) -> None:
+        self._moves: dict[str, bool] = {}
+
+    def update(self, view: View) -> None:
+        self._moves = {"gate": False} if view.time_s == 1.0 else {}
+
+    @property
+    def moves_doors(self) -> Mapping[str, bool]:
+        return self._moves
+
+
+def test_a_behaviour_says_once_which_doors_are_to_move() -> None:
+    scene = Scene(bounds=(0.0, 0.0, 12.0, 12.0), walls=BACK_WAY, doors=(GATE,))
+    cast = Cast(LayeredGrid.from_scene(scene), scene, 0.25)
+    cast.add("keeper", Keeper(), position=(3.0, 4.0))
+    wanted = []
+    for _ in range(8):
+        cast.tick({})
+        wanted.append(cast.doors_wanted)
+    cast.close()
+    assert wanted == [{}] * 4 + [{"gate": False}] + [{}] * 3

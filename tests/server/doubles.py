@@ -18,6 +18,7 @@ class ScriptedCast:
         self.positions: dict[Hashable, tuple[float, float]] = {}
         self.velocities: dict[Hashable, tuple[float, float]] = {}
         self.pointing: dict[Hashable, tuple[float, float, float]] = {}
+        self.doors_wanted: dict[str, bool] = {}
         self.observed: Mapping[Hashable, Place] = {}
         self.trips = 0
         self.failing = False

@@ -7,6 +7,7 @@ from planning import Door, LayeredGrid, Scene, Wall
 from server.world.doors import Doors
 from server.world.inputs import MoveDoor, Steer
 from server.world.state import PERSON, State
+from tests.server.doubles import ScriptedCast
 from tests.server.worlds import Trial
 
 GATED = Scene(
@@ -71,6 +72,18 @@ def test_the_world_holds_people_back_at_a_closed_door_and_tells_everyone() -> No
     assert trial.tick(MoveDoor("gate", is_open=True)).doors == {"gate": True}
     trial.ticks(40)
     assert trial.position(ann)[0] > 6.5
+
+
+def test_an_actor_moves_a_door_and_everyone_is_told() -> None:
+    cast = ScriptedCast()
+    cast.put("keeper", (2.0, 2.0))
+    trial = Trial(GATED, cast)
+    cast.doors_wanted = {"gate": False, "no such door": True}
+    assert trial.tick().doors == {}
+    assert trial.tick().doors == {"gate": False}
+    cast.doors_wanted = {}
+    assert trial.tick(MoveDoor("gate", is_open=True)).doors == {"gate": True}
+    assert trial.tick().doors == {}
 
 
 def test_who_reads_the_grid_meanwhile_is_not_disturbed(grid: LayeredGrid) -> None:
