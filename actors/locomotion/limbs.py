@@ -1,15 +1,13 @@
-"""Legs and arms that reach a point, in closed form; and the way back, from angles to points.
+"""Legs that reach a point, in closed form; and the way back, from angles to points.
 
-Frame: forward, left, up of the pelvis (legs) or chest (arms); lengths in shares of the leg's.
+Frame: forward, left, up of the pelvis; lengths in shares of the leg's.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from actors.locomotion.skeleton import FOREARM, SHIN, THIGH, UPPER_ARM, Floats
-
-_TINY = 1e-12
+from actors.locomotion.skeleton import SHIN, THIGH, Floats
 
 
 class LegAngles(NamedTuple):
@@ -80,38 +78,3 @@ def _out_of_plane(angles: LegAngles, ahead: Floats, below: Floats) -> Floats:
         [cos * ahead - sin * aside, sin * ahead + cos * aside, -below * np.cos(angles.abduction)],
         axis=-1,
     )
-
-
-def arm_ik(hand: Floats, elbow_towards: Floats) -> tuple[Floats, Floats, Floats]:
-    """Where the elbow of an arm is whose hand reaches a point.
-
-    Parameters
-    ----------
-    hand, elbow_towards : float64 (..., 3), leg lengths
-        From the shoulder; a direction to which the elbow bends out (down, a little outward).
-
-    Returns
-    -------
-    float64 (..., 3), (...,), (...,): elbow and its flexion (radians), how much the hand misses
-    """
-    distance = np.linalg.norm(hand, axis=-1)
-    along = hand / np.maximum(distance, _TINY)[..., None]
-    along = np.where((distance > _TINY)[..., None], along, (1.0, 0.0, 0.0))
-    reached = np.clip(distance, abs(UPPER_ARM - FOREARM), UPPER_ARM + FOREARM)
-    flexion = knee_of_reach(reached, UPPER_ARM, FOREARM)
-    towards = _perpendicular(elbow_towards, along)
-    share = np.arctan2(FOREARM * np.sin(flexion), UPPER_ARM + FOREARM * np.cos(flexion))
-    elbow = UPPER_ARM * (np.cos(share)[..., None] * along + np.sin(share)[..., None] * towards)
-    return elbow, flexion, np.abs(distance - reached)
-
-
-def _perpendicular(direction: Floats, along: Floats) -> Floats:
-    """The part of a direction across a unit vector, made unit; any such where there is none."""
-    across = direction - np.sum(direction * along, axis=-1, keepdims=True) * along
-    flat = np.abs(along[..., 2:]) < 0.9
-    spare = np.where(flat, (0.0, 0.0, -1.0), (-1.0, 0.0, 0.0))
-    spare = spare - np.sum(spare * along, axis=-1, keepdims=True) * along
-    length = np.linalg.norm(across, axis=-1, keepdims=True)
-    across = np.where(length > 1e-9, across, spare)
-    unit: Floats = across / np.linalg.norm(across, axis=-1, keepdims=True)
-    return unit
