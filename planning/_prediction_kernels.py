@@ -19,13 +19,15 @@ class Prediction(NamedTuple):
     """Where people may be, slice by slice; slice 0 is now.
 
     `means` (P, K, 2) m; `velocities` (P, K, 2) m/s; `sigmas` (P, K) m per axis; `heights` (P, K) m
-    of the feet.
+    of the feet; `newest` (P, 2) m/s, the newest velocity alone: the mean of eq. (1) follows those
+    who turn with a delay.
     """
 
     means: NDArray[np.float64]
     velocities: NDArray[np.float64]
     sigmas: NDArray[np.float64]
     heights: NDArray[np.float64]
+    newest: NDArray[np.float64]
 
 
 @kernel

@@ -78,16 +78,20 @@ def _separation(
 ) -> float:
     """Smallest distance to the people listed while moving evenly from a to b.
 
-    The move begins `since` seconds from now; people walk on at their present velocity.
+    The move begins `since` seconds from now. People walk on as predicted, or at their newest
+    velocity, whichever brings them nearer: whether a change is a turn or noise shows later.
     """
     best = np.inf
     for n in range(len(near)):
         p = near[n]
-        vx = prediction.velocities[p, 0, 0]
-        vy = prediction.velocities[p, 0, 1]
-        rx = ax - prediction.means[p, 0, 0] - vx * since
-        ry = ay - prediction.means[p, 0, 1] - vy * since
-        best = min(best, closest_approach(rx, ry, bx - ax - vx * seconds, by - ay - vy * seconds))
+        for turned in range(2):
+            vx = prediction.newest[p, 0] if turned else prediction.velocities[p, 0, 0]
+            vy = prediction.newest[p, 1] if turned else prediction.velocities[p, 0, 1]
+            rx = ax - prediction.means[p, 0, 0] - vx * since
+            ry = ay - prediction.means[p, 0, 1] - vy * since
+            dx = bx - ax - vx * seconds
+            dy = by - ay - vy * seconds
+            best = min(best, closest_approach(rx, ry, dx, dy))
     return best
 
 

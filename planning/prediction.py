@@ -170,9 +170,19 @@ class TrackHistory:
     def velocities(self) -> NDArray[np.float64]:
         """Predicted velocities, eq. (1), float64 (P, 2), m/s.
 
-        Who has been seen for less than one sample gets the mean velocity so far, zero at first.
+        Who has been seen for less than one sample gets the newest velocity.
         """
         return self._velocities
+
+    def newest_velocities(self) -> NDArray[np.float64]:
+        """Everyone's velocity over the newest sample, v of eq. (1), float64 (P, 2), m/s.
+
+        Who has been seen for less than one sample gets the mean velocity so far, zero at first.
+        """
+        ticks = np.minimum(self._count[self._order] - 1, self.stride)
+        before = self._ring[self._order, (self._newest - ticks) % self._depth]
+        seconds = np.maximum(ticks, 1) * self.sample_s / self.stride
+        return (self.positions - before) / seconds[:, None]
 
     def _predicted_velocities(self) -> NDArray[np.float64]:
         people = len(self._order)
@@ -184,13 +194,8 @@ class TrackHistory:
         count = self._count[self._order]
         known = (count - 1) // self.stride + 1
         kernels.velocities(tracks, known, self.sample_s, self.model.printed, out)
-        short = (known < 2) & (count > 1)
-        if short.any():
-            rows = self._order[short]
-            age = count[short] - 1
-            oldest = self._ring[rows, (self._newest - age) % self._depth]
-            seconds = age * self.sample_s / self.stride
-            out[short] = (self._ring[rows, self._newest] - oldest) / seconds[:, None]
+        short = known < 2
+        out[short] = self.newest_velocities()[short]
         return out
 
     def predict(self, grid: LayeredGrid, slices: int, slice_s: float) -> Prediction:
@@ -198,7 +203,11 @@ class TrackHistory:
         people = len(self._order)
         shape = (people, slices + 1)
         prediction = Prediction(
-            np.zeros((*shape, 2)), np.zeros((*shape, 2)), np.zeros(shape), np.zeros(shape)
+            np.zeros((*shape, 2)),
+            np.zeros((*shape, 2)),
+            np.zeros(shape),
+            np.zeros(shape),
+            self.newest_velocities(),
         )
         kernels.extrapolate(
             grid.arrays,

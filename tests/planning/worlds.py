@@ -92,7 +92,7 @@ def walking(
     means = start[:, None] + seconds[None, :, None] * v[:, None]
     sigmas = np.broadcast_to(sigma_0_m + growth_mps * seconds, means.shape[:2]).copy()
     each = np.broadcast_to(v[:, None], means.shape).copy()
-    return Prediction(means, each, sigmas, np.zeros(sigmas.shape))
+    return Prediction(means, each, sigmas, np.zeros(sigmas.shape), v.copy())
 
 
 def field_of(grid: LayeredGrid, prediction: Prediction, slices: int = SLICES) -> RiskField:
