@@ -51,7 +51,7 @@ class ActorParameters(BaseModel):
             1.0,
             "Radius of a person plus the room kept at the last check before a step.",
         ),
-    ] = 0.3
+    ] = 0.4
     risk_weight: Annotated[
         float,
         _field(
@@ -109,7 +109,7 @@ class ActorParameters(BaseModel):
             "Part of the preferred speed by which the actor walks faster while it makes up time "
             "that it has lost on its way.",
         ),
-    ] = 0.1
+    ] = 0.2
     hysteresis_s: Annotated[
         float,
         _field(

@@ -182,7 +182,7 @@ class TrackHistory:
         ticks = np.minimum(self._count[self._order] - 1, self.stride)
         before = self._ring[self._order, (self._newest - ticks) % self._depth]
         seconds = np.maximum(ticks, 1) * self.sample_s / self.stride
-        return (self.positions - before) / seconds[:, None]
+        return np.asarray((self.positions - before) / seconds[:, None])
 
     def _predicted_velocities(self) -> NDArray[np.float64]:
         people = len(self._order)
