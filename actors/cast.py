@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -259,4 +259,4 @@ class Cast:
 def _pointing(state: ActorState, target: Goal) -> ActorState:
     """The same actor, turned to what it points at."""
     (x, y), (to_x, to_y, _) = state.position, target
-    return replace(state, points_at=target, heading=math.atan2(to_y - y, to_x - x))
+    return state._replace(points_at=target, heading=math.atan2(to_y - y, to_x - x))

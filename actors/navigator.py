@@ -25,6 +25,7 @@ from planning import (
 
 Point = tuple[float, float]
 
+_REASONS = tuple(Reason)
 _SLACK_M = 0.02
 """A goal may lie so much closer to a wall than the radius."""
 
@@ -264,7 +265,7 @@ class Navigator:
                 z,
                 (vx, vy),
                 heading,
-                Reason(reason),
+                _REASONS[reason],
                 self._goals[who],
                 self.plan.slice_s,
                 way,

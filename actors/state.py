@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,8 +24,7 @@ class Reason(IntEnum):
     ARRIVED = 6
 
 
-@dataclass(frozen=True, slots=True)
-class ActorState:
+class ActorState(NamedTuple):
     """One actor after a tick: metres, metres a second, radians from +x."""
 
     position: tuple[float, float]

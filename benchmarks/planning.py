@@ -11,6 +11,7 @@ At the end it says how medians grow with actors, people and cells, the others at
 """
 
 import argparse
+import gc
 import resource
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -183,6 +184,7 @@ def print_case(grid: LayeredGrid, case: Case, ticks: int, threads: int) -> float
     for k, (x, y) in enumerate(free_points(grid, case.actors, random).tolist()):
         nav.add_actor(f"a{k}", (x, y), another_place())
 
+    gc.freeze()  # as the server does
     watch = Stopwatch()
     rows: list[dict[str, float]] = []
     with ExitStack() as patches:

@@ -26,6 +26,8 @@ OFFSETS = 3
 """Candidates m' on either side of the middle."""
 OFFSET_M = 0.2
 """Distance between candidates, metres."""
+LEAST_RISK = 1e-3
+"""A bend has to lower the mean risk of a stretch by so much."""
 
 
 @inlined
@@ -38,7 +40,7 @@ def slice_risk(
     ds = world.step_s / SUB
     return risk_at(
         world.grid,
-        world.fields,
+        world.risk,
         k,
         cell,
         bx,
@@ -50,16 +52,31 @@ def slice_risk(
 
 
 @kernel
-def average_risk(
-    world: World, task: Task, cell: int, path: NDArray[np.float64], first: int, last: int
-) -> float:
-    """Mean risk of the slices first + 1 ... last; the path is in `cell` at slice first."""
+def risks_along(
+    world: World,
+    task: Task,
+    cell: int,
+    path: NDArray[np.float64],
+    first: int,
+    last: int,
+    most: float,
+    out: NDArray[np.float64],
+) -> bool:
+    """Fill `out` (K,) with the risks of slices first + 1 ... last; False if their sum is not below
+    `most`, beyond which they are not asked.
+
+    The path is in `cell` at slice first.
+    """
     total = 0.0
     for k in range(first + 1, last + 1):
-        x, y = path[k]
+        x = path[k, 0]
+        y = path[k, 1]
         cell = follow(world.grid, cell, x, y)
-        total += slice_risk(world, task, k, cell, path[k - 1, 0], path[k - 1, 1], x, y)
-    return total / (last - first)
+        out[k] = slice_risk(world, task, k, cell, path[k - 1, 0], path[k - 1, 1], x, y)
+        total += out[k]
+        if total >= most:
+            return False
+    return True
 
 
 @kernel
@@ -175,7 +192,9 @@ def perturb_path(
     cells: NDArray[np.int64],
     first: int,
     last: int,
+    risks: NDArray[np.float64],
     trial: NDArray[np.float64],
+    trial_risks: NDArray[np.float64],
 ) -> bool:
     """Replace a stretch by the first bend that is legal and strictly less risky; fig. 8.
 
@@ -184,8 +203,11 @@ def perturb_path(
     are those that the path is in.
     """
     begin = cells[first]
-    risk = average_risk(world, task, begin, path, first, last)
-    if risk <= 1e-9:
+    total = 0.0
+    for k in range(first + 1, last + 1):
+        total += risks[k]
+    least = (last - first) * LEAST_RISK
+    if total <= least:
         return False
     cx = path[last, 0] - path[first, 0]
     cy = path[last, 1] - path[first, 1]
@@ -198,9 +220,10 @@ def perturb_path(
         mx = path[first, 0] + 0.5 * cx - offset * cy / chord
         my = path[first, 1] + 0.5 * cy + offset * cx / chord
         _bend(path, trial, first, middle, last, mx, my)
-        if average_risk(world, task, begin, trial, first, last) < risk - 1e-9 and stretch_is_legal(
-            world, guide, task, need, begin, trial, first, last
-        ):
+        if risks_along(
+            world, task, begin, trial, first, last, total - least, trial_risks
+        ) and stretch_is_legal(world, guide, task, need, begin, trial, first, last):
+            risks[first + 1 : last + 1] = trial_risks[first + 1 : last + 1]
             path[first : last + 1] = trial[first : last + 1]
             follow_path(world.grid, path, cells, first, last)
             return True
@@ -237,6 +260,9 @@ def update_path(
     cells[0] = task.cell
     follow_path(world.grid, path, cells, 0, len(path) - 1)
     need = needed_clearance(world, task)
+    risks = np.empty(len(path))
+    trial_risks = np.empty(len(path))
+    risks_along(world, task, task.cell, path, 0, len(path) - 1, np.inf, risks)
     stack = np.empty((64, 2), dtype=np.int64)
     stack[0, 0] = 0
     stack[0, 1] = _arrival(guide, task, path, cells)
@@ -246,7 +272,9 @@ def update_path(
         height -= 1
         first = stack[height, 0]
         last = stack[height, 1]
-        if perturb_path(world, guide, task, need, path, cells, first, last, trial):
+        if perturb_path(
+            world, guide, task, need, path, cells, first, last, risks, trial, trial_risks
+        ):
             bends += 1
         elif last - first >= SHORTEST_STRETCH:
             middle = (first + last) // 2

@@ -10,7 +10,7 @@ from planning._heap_kernels import heap_pop, heap_push
 from planning._jit import inlined
 from planning._potential_kernels import Guide, direction_at
 from planning._reservation_kernels import meetings, others_near
-from planning._risk_kernels import risk_at
+from planning._risk_kernels import people_near, risk_among
 from planning._task_kernels import (
     SUB,
     WALL_COST_M,
@@ -75,6 +75,9 @@ class Workspace(NamedTuple):
     stamp: NDArray[np.int64]
     others: NDArray[np.int64]
     """Actors near the node that is looked at."""
+    halfway: NDArray[np.int64]
+    ahead: NDArray[np.int64]
+    """People near it in the middle and at the end of its moves."""
 
 
 class Outcome(NamedTuple):
@@ -139,7 +142,7 @@ def search(
     Nodes that cannot end below `bound` are left out.
     """
     grid = world.grid
-    fields = world.fields
+    risk = world.risk
     reservations = world.reservations
     steps = (len(path) - 1) // SUB
     step_s = world.step_s
@@ -222,6 +225,8 @@ def search(
         feet_m = 0.0 if grid.flat else float(grid.layered.floors[cell])
         slice_m = task.max_speed_mps * ds
         met, crowded = others_near(reservations, task.me, feet_m, k, x, y, slice_m, others)
+        halfway = people_near(risk, grid.flat, feet_m, k + 1, x, y, slice_m, workspace.halfway)
+        ahead = people_near(risk, grid.flat, feet_m, k + 2, x, y, 2.0 * slice_m, workspace.ahead)
         # The clearance falls by no more than the way: far from walls no child has to be asked.
         in_the_open = clearance_at(grid, task.body, cell, x, y) >= open_m
         # What the rest of the way is bound to cost beyond its time, if it is like the path known.
@@ -288,19 +293,26 @@ def search(
                 )
                 if blocked:
                     continue
-            risk = price * (
-                risk_at(grid, fields, k + 1, half, hx, hy, hvx, hvy, task.closing_weight)
-                + risk_at(grid, fields, k + 2, end, ex, ey, evx, evy, task.closing_weight)
-                + soft
+            # Risk is never negative: what cannot be worth it any more is not asked further.
+            most = (min(room_s, least) - worth) / price if accumulate else np.inf
+            if soft >= most:
+                continue
+            minded = soft + risk_among(
+                risk, workspace.ahead, ahead, k + 2, ex, ey, evx, evy, task.closing_weight
             )
+            if minded >= most:
+                continue
+            minded += risk_among(
+                risk, workspace.halfway, halfway, k + 1, hx, hy, hvx, hvy, task.closing_weight
+            )
+            if minded >= most:
+                continue
             if accumulate:
-                cost += risk
-                worth += risk
-                if worth >= min(room_s, least):
-                    continue
+                cost += price * minded
+                worth += price * minded
                 key = worth - bonus * (step + 1)
             else:
-                key = left + risk
+                key = left + price * minded
             if count == capacity:
                 continue
             workspace.table_worth[slot] = worth

@@ -8,7 +8,7 @@ from planning._grid_kernels import GridArrays, clearance_at, length
 from planning._jit import inlined
 from planning._potential_kernels import Guide, potential_at
 from planning._reservation_kernels import Reservations
-from planning._risk_kernels import RiskFields
+from planning._risk_kernels import RiskArrays
 
 SUB = 2
 """Slices of the risk field in one step: a move is looked at half-way and at its end."""
@@ -52,7 +52,7 @@ class World(NamedTuple):
     """What all actors of a zone look up."""
 
     grid: GridArrays
-    fields: RiskFields
+    risk: RiskArrays
     reservations: Reservations
     step_s: float
 

@@ -22,6 +22,8 @@ from planning.search import compass_moves, make_reservations, make_workspace
 from planning.spread import GAUSSIAN, Spread
 
 _NEIGHBOURHOOD_M = 4.0
+_PORTION = 32
+"""So many actors are decided for at a time."""
 _WORTH_A_THREAD = 4
 """So many actors keep a thread busy for longer than it takes to hand the work over."""
 
@@ -125,9 +127,12 @@ class Batch:
         ways_left(guides, crowd, left_m)
         order = np.lexsort((crowd.ranks, left_m))
         crowd = crowd._replace(ranks=np.argsort(order))
-        seekers = np.column_stack([crowd.positions, crowd.parameters["max_speed_mps"]])
+        fastest_mps = float(crowd.parameters["max_speed_mps"].max())
         self.field.fill(
-            prediction, lambda work: self._on_threads(work, threads), seekers, self.plan.slice_s
+            prediction,
+            lambda work: self._on_threads(work, threads),
+            self.plan.slice_s,
+            fastest_mps * self.plan.step_s,
         )
         paths = np.empty((actors, slices, 2))
         heights = np.zeros((actors, slices))
@@ -137,28 +142,31 @@ class Batch:
             heights,
             crowd.parameters["radius_m"].copy(),
             crowd.ranks,
-            float(crowd.parameters["max_speed_mps"].max()) * max(tick_s, self.plan.slice_s),
+            fastest_mps * max(tick_s, self.plan.slice_s),
         )
-        world = World(self.grid.arrays, self.field.fields, reservations, self.plan.step_s)
+        world = World(self.grid.arrays, self.field.arrays, reservations, self.plan.step_s)
         workspaces = self._workspaces_for(int(crowd.parameters["max_expansions"].max()))
         continue_paths(world, guides, crowd, tick_s, 0, actors, paths, heights)
         index_paths(reservations)
         find_courses(self.grid.arrays, guides, crowd, left_m, reservations)
         turns = _by_neighbourhood(crowd)
+        # Every thread takes the next portion when it is done with one: none waits for the other.
+        portions = iter(np.array_split(turns, -(-actors // _PORTION)))
 
-        def work(k: int, threads: int) -> None:
-            decide(
-                world,
-                guides,
-                self._no_guide,
-                self._moves,
-                prediction,
-                crowd,
-                tick_s,
-                turns[k * actors // threads : (k + 1) * actors // threads],
-                workspaces[k],
-                decisions,
-            )
+        def work(k: int, _: int) -> None:
+            for portion in portions:
+                decide(
+                    world,
+                    guides,
+                    self._no_guide,
+                    self._moves,
+                    prediction,
+                    crowd,
+                    tick_s,
+                    portion,
+                    workspaces[k],
+                    decisions,
+                )
 
         self._on_threads(work, threads)
         resolve(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -11,14 +12,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from planning import _risk_kernels as kernels
 from planning._prediction_kernels import Prediction
-from planning._risk_kernels import RadialTables
+from planning._risk_kernels import RadialTables, RiskArrays
 from planning.grid import LayeredGrid
 from planning.spread import GAUSSIAN, Spread
 
-_SIGMA_STEP_M = 0.05
+_SIGMA_STEP_M = 0.02
 _SIGMA_MAX_M = 1.5
 _SQUARED_STEP_M2 = 0.04
-_LEAST = 1e-4
+_LEAST = 1e-3
+_BUCKET_M = 2.0
+SLACK_M = 0.8
+"""A step of 0.4 s at 2 m/s."""
 _SIGMA_POINTS = 9
 _SIGMA_SPAN = 2.5
 
@@ -83,22 +87,21 @@ def radial_tables(model: RiskModel, spread: Spread = GAUSSIAN) -> RadialTables:
     here = np.stack([distances, np.zeros_like(distances)], axis=1)
     near = np.zeros((len(sigmas), len(squared)))
     toward = np.zeros_like(near)
-    for scale, share in spread.parts:
-        strayed = scale * sigmas[:, None, None, None] * offsets[None, None]
-        relative = here[None, :, None, :] - strayed
-        length = np.linalg.norm(relative, axis=-1)
-        along = np.divide(relative[..., 0], length, out=np.zeros_like(length), where=length > 1e-9)
-        near += share * (model.near(length) * weights).sum(axis=-1)
-        toward += share * (model.toward(length) * along * weights).sum(axis=-1)
+    for row, sigma in enumerate(sigmas):
+        for scale, share in spread.parts:
+            relative = here[:, None] - scale * sigma * offsets
+            length = np.hypot(relative[..., 0], relative[..., 1])
+            along = relative[..., 0] / np.maximum(length, 1e-9)
+            near[row] += share * model.near(length) @ weights
+            toward[row] += share * (model.toward(length) * along) @ weights
     toward = np.maximum(toward, 0.0)
     matters = (near > _LEAST) | (toward > _LEAST)
     reaches = len(squared) - 2 - np.argmax(matters[:, -2::-1], axis=1)
     toward[:, 1:] /= distances[1:]
     toward[:, 0] = toward[:, 1]
     return RadialTables(
-        near.astype(np.float32),
-        toward.astype(np.float32),
-        reaches.astype(np.int64) + 1,
+        np.stack([near, toward], axis=2).astype(np.float32),
+        np.sqrt((reaches + 1) * _SQUARED_STEP_M2),
         _SIGMA_STEP_M,
         _SQUARED_STEP_M2,
     )
@@ -107,13 +110,12 @@ def radial_tables(model: RiskModel, spread: Spread = GAUSSIAN) -> RadialTables:
 class RiskField:
     """Risk over a zone for every slice of the future, shared by all actors.
 
-    Per slice and cell it keeps sums over people of p, p·n and p·(v_o·n), n pointing from the
-    person; the closing term of eq. (5) for any actor's velocity v_r then is
-    max(0, sum p·(v_o·n) - v_r·(sum p·n)): a look-up costs O(1) however many people there are.
-    The bound at zero is taken of the sum, not of each person's term.
+    It keeps what is predicted of people and an index of it: a look-up asks those who matter where
+    it looks, so that it costs as much as people stand densely there, however many there are. The
+    closing term of eq. (5) for an actor's velocity v_r is max(0, sum p·(v_o·n) - v_r·(sum p·n)),
+    n pointing from the person: the bound at zero is taken of the sum, not of each person's term.
 
-    Filling costs O(people × slices × cells within reach of one person). Memory is 16 bytes a
-    slice and cell.
+    Filling costs O(people × slices).
     """
 
     def __init__(
@@ -121,23 +123,45 @@ class RiskField:
     ) -> None:
         self.grid = grid
         self.model = model
+        self.slices = slices
         self.tables = radial_tables(model, spread)
-        cells = len(grid.layered.floors)
-        self.fields: NDArray[np.float32] = np.zeros((slices + 1, cells, 4), dtype=np.float32)
-        self._windows = np.full((slices + 1, 16, 4), -1, dtype=np.int64)
+        x0, y0, x1, y1 = grid.bounds
+        self._columns = max(1, math.ceil((x1 - x0) / _BUCKET_M))
+        self._rows = max(1, math.ceil((y1 - y0) / _BUCKET_M))
+        self.arrays = self._room_for(0, 0.0)
+
+    def _room_for(self, people: int, slack_m: float) -> RiskArrays:
+        widest = float(self.tables.reaches.max()) + slack_m
+        across = math.ceil(2.0 * widest / _BUCKET_M) + 1
+        most = min(across, self._columns) * min(across, self._rows)
+        x0, y0, _, _ = self.grid.bounds
+        buckets = self._columns * self._rows
+        return RiskArrays(
+            self.tables,
+            np.zeros((self.slices + 1, people, 6)),
+            np.zeros((self.slices + 1, people), dtype=np.int64),
+            np.zeros((self.slices + 1, buckets + 1), dtype=np.int64),
+            np.zeros((self.slices + 1, people * most), dtype=np.int64),
+            x0,
+            y0,
+            _BUCKET_M,
+            slack_m,
+            self._columns,
+            self._rows,
+        )
 
     def fill(
         self,
         prediction: Prediction,
         run: Callable[[Callable[[int, int], None]], None] | None = None,
-        seekers: ArrayLike = (),
         slice_s: float = 0.0,
+        slack_m: float = SLACK_M,
     ) -> None:
         """Replace the field by that of a prediction with as many slices.
 
-        `seekers`, float (S, 3) x, y, greatest speed, are those who will look things up: whom they
-        cannot reach by the time of a slice is left out of it. Without any, everyone is in.
         `run(work)` may call `work(first, step)` for first in range(step) on threads of its own.
+        Searches ask once for everyone who matters within `slack_m` of a node: so far may a step
+        lead. It never gets less.
 
         Raises
         ------
@@ -145,31 +169,17 @@ class RiskField:
             Another number of slices.
         """
         people = len(prediction.means)
-        places = np.ascontiguousarray(seekers, dtype=np.float64).reshape(-1, 3)
-        last_wider = round(self.model.reaction_s / slice_s) if slice_s else len(self.fields)
-        if prediction.sigmas.shape[1] != len(self.fields):
+        last_wider = round(self.model.reaction_s / slice_s) if slice_s else self.slices + 1
+        if prediction.sigmas.shape[1] != self.slices + 1:
             raise ValueError(
-                f"the field has {len(self.fields)} slices, the prediction "
+                f"the field has {self.slices + 1} slices, the prediction "
                 f"{prediction.sigmas.shape[1]}"
             )
-        if people > self._windows.shape[1]:
-            grown = np.full((len(self.fields), 2 * people, 4), -1, dtype=np.int64)
-            grown[:, : self._windows.shape[1]] = self._windows
-            self._windows = grown
+        if people > self.arrays.people.shape[1] or slack_m > self.arrays.slack_m:
+            self.arrays = self._room_for(2 * people, max(slack_m, self.arrays.slack_m))
 
         def work(first: int, step: int) -> None:
-            kernels.fill_slices(
-                self.grid.arrays,
-                self.tables,
-                prediction,
-                places,
-                slice_s,
-                last_wider,
-                first,
-                step,
-                self._windows,
-                self.fields,
-            )
+            kernels.index_people(prediction, last_wider, first, step, self.arrays)
 
         if run is None:
             work(0, 1)
@@ -185,12 +195,12 @@ class RiskField:
         closing_weight: float,
     ) -> NDArray[np.float64]:
         """Risk of N configurations, float64 (N,); positions and velocities (N, 2), heights (N,)."""
-        if slice_index not in range(len(self.fields)):
-            raise ValueError(f"slices are 0..{len(self.fields) - 1}, got {slice_index}")
+        if slice_index not in range(self.slices + 1):
+            raise ValueError(f"slices are 0..{self.slices}, got {slice_index}")
         points, cells = self.grid.on_ground(positions, heights)
         v = np.ascontiguousarray(velocities, dtype=np.float64).reshape(-1, 2)
         out = np.empty(len(points))
         kernels.risk_many(
-            self.grid.arrays, self.fields, slice_index, cells, points, v, closing_weight, out
+            self.grid.arrays, self.arrays, slice_index, cells, points, v, closing_weight, out
         )
         return out

@@ -19,6 +19,8 @@ from planning.risk import RiskField
 
 _MOST_NEAR = 64
 """Room for the actors near a node; so many discs do not fit around it."""
+_MOST_PEOPLE = 256
+"""Room for the people who matter near a node. Beyond that it is risky enough."""
 
 
 class SearchStatus(IntEnum):
@@ -89,6 +91,8 @@ def make_workspace(max_expansions: int, branching: int) -> Workspace:
         np.zeros(table, dtype=np.int64),
         np.zeros(1, dtype=np.int64),
         np.zeros(_MOST_NEAR, dtype=np.int64),
+        np.zeros(_MOST_PEOPLE, dtype=np.int64),
+        np.zeros(_MOST_PEOPLE, dtype=np.int64),
     )
 
 
@@ -161,16 +165,22 @@ def uncertain_bfp(
     Raises
     ------
     ValueError
-        The field's number of slices is odd, the step is not positive, or the start is not finite.
+        The field's number of slices is odd, it was filled for shorter steps, the step is not
+        positive, or the start is not finite.
     """
-    slices = len(field.fields) - 1
+    slices = field.slices
     if slices % SUB or slices < SUB:
         raise ValueError(f"the risk field must hold a multiple of {SUB} slices, it holds {slices}")
     if not step_s > 0.0:
         raise ValueError(f"step_s must be positive, got {step_s}")
+    if task.max_speed_mps * step_s > field.arrays.slack_m:
+        raise ValueError(
+            f"a step leads {task.max_speed_mps * step_s:g} m, the risk field was filled for "
+            f"{field.arrays.slack_m:g} m"
+        )
     if not (math.isfinite(task.x) and math.isfinite(task.y)):
         raise ValueError(f"the start must be finite, got ({task.x}, {task.y})")
-    world = World(field.grid.arrays, field.fields, reservations, step_s)
+    world = World(field.grid.arrays, field.arrays, reservations, step_s)
     path = np.zeros((slices + 1, 2))
     workspace = make_workspace(task.max_expansions, len(moves.speeds) + 1)
     outcome = kernels.search(

@@ -1,6 +1,7 @@
 """The server as a process: event loop, signals, and the summary at the end."""
 
 import asyncio
+import gc
 import signal
 
 import structlog
@@ -48,6 +49,8 @@ async def _serve(settings: ServerSettings) -> None:
     async with running(settings) as server:
         for number in (signal.SIGINT, signal.SIGTERM):
             loop.add_signal_handler(number, on_signal, number)
+        gc.collect()
+        gc.freeze()  # the world stays: looking through it for garbage would only hold up ticks
         _announce(settings, server)
         waiting = asyncio.create_task(stop.wait())
         await asyncio.wait([waiting, server.ticking], return_when=asyncio.FIRST_COMPLETED)

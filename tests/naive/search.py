@@ -200,7 +200,13 @@ def path_cost(ground: Ground, path: NDArray[np.float64]) -> tuple[float, float]:
     return cost + left, math.fsum(risks) / len(risks)
 
 
-def update_path(ground: Ground, path: NDArray[np.float64], offsets: int, offset_m: float) -> int:
+def update_path(
+    ground: Ground,
+    path: NDArray[np.float64],
+    offsets: int,
+    offset_m: float,
+    least_risk: float,
+) -> int:
     """Figs. 7 and 8 as the recursion that they are; bends the path up to its arrival in place."""
 
     def average_risk(p: NDArray[np.float64], left: int, right: int) -> float:
@@ -222,7 +228,7 @@ def update_path(ground: Ground, path: NDArray[np.float64], offsets: int, offset_
     def perturb(left: int, right: int) -> NDArray[np.float64] | None:
         risk = average_risk(path, left, right)
         chord = path[right] - path[left]
-        if risk <= 1e-9 or math.hypot(*chord) < 1e-6:
+        if risk <= least_risk or math.hypot(*chord) < 1e-6:
             return None
         normal = np.array([-chord[1], chord[0]]) / math.hypot(*chord)
         middle = (left + right) // 2
@@ -232,7 +238,7 @@ def update_path(ground: Ground, path: NDArray[np.float64], offsets: int, offset_
                 tip = path[left] + 0.5 * chord + side * n * offset_m * normal
                 bend[left : middle + 1] = np.linspace(path[left], tip, middle - left + 1)
                 bend[middle : right + 1] = np.linspace(tip, path[right], right - middle + 1)
-                if average_risk(bend, left, right) < risk - 1e-9 and legal(bend, left, right):
+                if average_risk(bend, left, right) < risk - least_risk and legal(bend, left, right):
                     return bend
         return None
 

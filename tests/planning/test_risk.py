@@ -25,22 +25,18 @@ speeds = st.tuples(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0))
 people = st.lists(st.tuples(points(1.0, 7.0), speeds), min_size=1, max_size=4)
 
 
-def centre(cell: tuple[int, int]) -> np.ndarray:
-    return (np.array(cell[::-1]) + 0.5) * 0.25
-
-
 @pytest.mark.parametrize("spread", [GAUSSIAN, PEOPLE])
-@given(people, st.integers(0, 6), st.tuples(st.integers(0, 31), st.integers(0, 31)), speeds)
+@given(people, st.integers(0, 6), points(0.0, 8.0), speeds)
 @holds(60, 6)
-def test_the_field_is_the_direct_sum_at_centres_of_cells(spread, crowd, k, cell, velocity) -> None:
+def test_the_field_is_the_direct_sum(spread, crowd, k, here, velocity) -> None:
     model = RiskModel()
     prediction = walking([p for p, _ in crowd], [v for _, v in crowd], slices=6)
     field = RiskField(open_grid(8.0), model, 6, spread)
     field.fill(prediction)
-    here = centre(cell)
     found = field.at(k, [here], [0], [velocity], CLOSING_WEIGHT)[0]
-    direct = naive.risk(model, spread, prediction, k, 0, here, np.array(velocity), CLOSING_WEIGHT)
-    # The tables are linear between 5 cm and read along one axis of the grid of sigma points.
+    here, velocity = np.array(here), np.array(velocity)
+    direct = naive.risk(model, spread, prediction, k, 0, here, velocity, CLOSING_WEIGHT)
+    # The tables are linear between distances and read along one axis of the grid of sigma points.
     assert found == pytest.approx(direct, abs=0.05 * len(crowd))
 
 
@@ -51,7 +47,7 @@ def test_on_the_whole_the_field_is_close_to_the_direct_sum() -> None:
     field = field_of(grid, prediction, slices=12)
     errors = []
     for _ in range(scaled(200, 40)):
-        here = centre(tuple(rng.integers(0, 32, 2)))
+        here = rng.uniform(0.0, 8.0, 2)
         v = rng.normal(0.0, 1.0, 2)
         found = field.at(6, [here], [0], [v], CLOSING_WEIGHT)[0]
         direct = naive.risk(field.model, PEOPLE, prediction, 6, 0, here, v, CLOSING_WEIGHT)
@@ -152,7 +148,7 @@ def test_each_floor_has_the_risk_of_its_own_people() -> None:
         assert found == pytest.approx(alone.at(4, here, [0] * 30, v, CLOSING_WEIGHT), abs=1e-6)
         assert found.max() > 0.05
     shared.fill(walking([], [], slices=6))
-    assert not shared.fields.any()
+    assert not shared.at(4, here, [0.0] * 30, v, CLOSING_WEIGHT).any()
 
 
 def test_who_is_on_the_stairs_counts_where_bodies_overlap() -> None:
@@ -169,18 +165,24 @@ def test_who_is_on_the_stairs_counts_where_bodies_overlap() -> None:
 
 def test_filling_again_leaves_nothing_of_before() -> None:
     grid = open_grid(8.0)
+    everywhere = np.stack(np.meshgrid(*[np.arange(0.1, 8.0, 0.25)] * 2), axis=-1).reshape(-1, 2)
+    level = [0.0] * len(everywhere)
     field = field_of(grid, walking(np.full((40, 2), 4.0), np.ones((40, 2)), slices=4), slices=4)
-    assert field.fields.any()
+    assert field.at(4, everywhere, level, 0 * everywhere, 0.0).max() > 10.0
     field.fill(walking([(2.0, 2.0)], [(0.0, 0.0)], slices=4))
     fresh = field_of(grid, walking([(2.0, 2.0)], [(0.0, 0.0)], slices=4), slices=4)
-    assert np.array_equal(field.fields, fresh.fields)
+    for k in range(5):
+        here = (k, everywhere, level, 0 * everywhere, 0.0)
+        assert np.array_equal(field.at(*here), fresh.at(*here))
+        assert field.at(*here).any()
     field.fill(walking([], [], slices=4))
-    assert not field.fields.any()
+    assert not field.at(4, everywhere, level, 0 * everywhere, 0.0).any()
 
 
 def test_people_outside_the_bounds_are_no_trouble() -> None:
     field = field_of(open_grid(8.0), walking([(-50.0, 3.0), (8.3, 4.0)], [(1.0, 0.0)] * 2))
-    assert np.isfinite(field.fields).all()
+    risks = field.at(18, [(0.1, 3.0), (7.9, 4.0)], [0] * 2, [(0.0, 0.0)] * 2, 1.0)
+    assert np.isfinite(risks).all()
     assert field.at(0, [(7.9, 4.0)], [0], [(0.0, 0.0)], 0.0)[0] > 0.1
 
 
@@ -190,7 +192,8 @@ def test_how_work_is_shared_out_does_not_matter() -> None:
     whole = field_of(grid, prediction, slices=5)
     parts = RiskField(grid, RiskModel(), 5, PEOPLE)
     parts.fill(prediction, lambda work: [work(k, 3) for k in (2, 0, 1)])
-    assert np.array_equal(whole.fields, parts.fields)
+    for ours, theirs in zip(whole.arrays[1:5], parts.arrays[1:5], strict=True):
+        assert np.array_equal(ours, theirs)
 
 
 def test_sigma_points_weigh_one_and_centre_on_the_mean() -> None:
@@ -206,19 +209,24 @@ def test_sigma_points_weigh_one_and_centre_on_the_mean() -> None:
 @pytest.mark.parametrize("spread", [GAUSSIAN, PEOPLE, Spread((0.1, 3.0), (0.5, 0.5))])
 def test_tables_are_bounded_and_end_in_nothing(spread) -> None:
     tables = radial_tables(RiskModel(), spread)
-    distances = np.sqrt(np.arange(tables.near.shape[1]) * tables.squared_step_m2)
-    for table in (tables.near, tables.toward * distances):
+    distances = np.sqrt(np.arange(tables.values.shape[1]) * tables.squared_step_m2)
+    near, toward = tables.values[..., 0], tables.values[..., 1]
+    for table in (near, toward * distances):
         assert table.min() >= 0.0
         assert table.max() <= 1.0 + 1e-6
         assert not table[:, -1].any()
+    beyond = distances > tables.reaches[:, None]
+    assert near[beyond].max() < 2e-3
+    assert (toward * distances)[beyond].max() < 2e-3
 
 
 def test_tables_of_a_mixture_are_those_of_its_parts_by_weight() -> None:
     mixed = radial_tables(RiskModel(), Spread((1.0, 2.0), (0.75, 0.25)))
     one = radial_tables(RiskModel())
-    rows, columns = np.arange(len(one.near) // 2), one.near.shape[1]
-    expected = 0.75 * one.near[rows] + 0.25 * one.near[2 * rows]
-    np.testing.assert_allclose(mixed.near[rows, :columns], expected, atol=1e-5)
+    rows, columns = np.arange(len(one.values) // 2), one.values.shape[1]
+    near = one.values[..., 0]
+    expected = 0.75 * near[rows] + 0.25 * near[2 * rows]
+    np.testing.assert_allclose(mixed.values[rows, :columns, 0], expected, atol=1e-5)
 
 
 def test_what_seldom_happens_reaches_further() -> None:

@@ -66,7 +66,7 @@ def found(ground, moves=None, form=SearchForm.ACCUMULATED, bound=math.inf):
 
 def same_as_twin(ground, moves, form, bound=math.inf) -> None:
     ours = found(ground, moves, form, bound)
-    steps = (len(ground.field.fields) - 1) // 2
+    steps = ground.field.slices // 2
     accumulate = form is SearchForm.ACCUMULATED
     status, path, expansions = naive.search(ground, moves, steps, accumulate, bound)
     assert ours.status == status

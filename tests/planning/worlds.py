@@ -128,7 +128,7 @@ def reserved(
 
 def world_of(grid: LayeredGrid, field: RiskField, reservations: Reservations) -> World:
     """What kernels look up."""
-    return World(grid.arrays, field.fields, reservations, STEP_S)
+    return World(grid.arrays, field.arrays, reservations, STEP_S)
 
 
 def task(
