@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable, Mapping
 
 import numpy as np
@@ -21,6 +22,7 @@ from planning import (
     RiskModel,
     Scene,
     TrackHistory,
+    settle,
 )
 
 Point = tuple[float, float]
@@ -222,16 +224,7 @@ class Navigator:
         decisions, positions, cells = self._batch.tick(
             c, self._guides.arrays, self._prediction, self.tick_s
         )
-        c.velocities[:] = (positions - c.positions) / self.tick_s
-        c.positions[:] = positions
-        c.cells[:] = cells
-        c.followed[decisions.renewed] = decisions.paths[decisions.renewed]
-        c.ages[decisions.renewed] = 0
-        c.ages[:] += 1
-        c.known[:] = True
-        speeds = np.hypot(c.velocities[:, 0], c.velocities[:, 1])
-        walking = speeds > 0.1
-        self._headings[walking] = np.arctan2(c.velocities[walking, 1], c.velocities[walking, 0])
+        settle(c, decisions, positions, cells, self.tick_s, self._headings)
         return self._states(decisions.reasons, decisions.paths)
 
     def state(self, actor_id: Hashable) -> ActorState:
@@ -297,9 +290,10 @@ class Navigator:
 
     def check_place(self, position: Point, z_m: float) -> None:
         """ValueError unless an actor may be put there or sent there."""
-        self.grid.as_points([position], [z_m])
         x0, y0, x1, y1 = self.grid.bounds
         x, y = position
+        if not (math.isfinite(x) and math.isfinite(y) and math.isfinite(z_m)):
+            raise ValueError(f"a place must be finite, got ({x}, {y}) at height {z_m}")
         if not (x0 <= x <= x1 and y0 <= y <= y1):
             raise ValueError(f"({x:g}, {y:g}) lies outside the bounds {self.grid.bounds}")
 

@@ -43,6 +43,8 @@ def limited(task: Task, ux: float, uy: float, tick_s: float) -> tuple[float, flo
     return task.vx + dx * most / change, task.vy + dy * most / change
 
 
+LOOKS_AHEAD_MPS = 0.1
+"""Who is slower keeps its heading."""
 LOOK_AHEAD_S = 0.6
 """How far ahead the last check before a step looks, in two halves."""
 NEAR_M = 4.0
@@ -220,6 +222,32 @@ def resolve(
                     stands = np.hypot(ex - x, ey - y) < 0.15 * tick_s
                     decisions.reasons[a] = WAITING if stands else GIVING_WAY
                 break
+
+
+@kernel
+def settle(
+    crowd: Crowd,
+    decisions: Decisions,
+    positions: NDArray[np.float64],
+    cells: NDArray[np.int64],
+    tick_s: float,
+    headings: NDArray[np.float64],
+) -> None:
+    """Take over into `crowd` what a tick has come to; who walks looks where it goes."""
+    for a in range(len(positions)):
+        vx = (positions[a, 0] - crowd.positions[a, 0]) / tick_s
+        vy = (positions[a, 1] - crowd.positions[a, 1]) / tick_s
+        crowd.velocities[a, 0] = vx
+        crowd.velocities[a, 1] = vy
+        crowd.positions[a] = positions[a]
+        crowd.cells[a] = cells[a]
+        if decisions.renewed[a]:
+            crowd.followed[a] = decisions.paths[a]
+            crowd.ages[a] = 0
+        crowd.ages[a] += 1
+        crowd.known[a] = True
+        if np.hypot(vx, vy) > LOOKS_AHEAD_MPS:
+            headings[a] = np.arctan2(vy, vx)
 
 
 @kernel
