@@ -13,6 +13,8 @@ from planning._jit import kernel
 PERSON_HEIGHT_M = 1.8
 PERSON_STEP_ON_M = 0.6
 """People are taken to be adults."""
+LIFT_M = 1.0
+"""Who is suddenly so much higher or lower has been put there: the past before does not count."""
 
 
 class Prediction(NamedTuple):
@@ -28,6 +30,22 @@ class Prediction(NamedTuple):
     sigmas: NDArray[np.float64]
     heights: NDArray[np.float64]
     newest: NDArray[np.float64]
+
+
+class Tracks(NamedTuple):
+    """Everyone's past; each person has a row.
+
+    `positions` (R, D, 2) m is a ring of the last D ticks, of which `counts` (R,) are known;
+    `heights` (R,) m are those of the feet now; `expected` (R, L, 2) m is another, of L ticks:
+    where everyone was expected to be L ticks later; `growths2` (R,) m²/s² are the squares of the
+    growth of the deviations.
+    """
+
+    positions: NDArray[np.float64]
+    counts: NDArray[np.int64]
+    heights: NDArray[np.float64]
+    expected: NDArray[np.float64]
+    growths2: NDArray[np.float64]
 
 
 @kernel
@@ -67,21 +85,64 @@ def printed_velocity(
 
 
 @kernel
-def velocities(
-    tracks: NDArray[np.float64],
-    known: NDArray[np.int64],
-    sample_s: float,
+def note(
+    tracks: Tracks,
+    rows: NDArray[np.int64],
+    places: NDArray[np.float64],
+    tick: int,
+    tick_s: float,
+    stride: int,
+    memory: float,
     printed: bool,
-    out: NDArray[np.float64],
+    velocities: NDArray[np.float64],
+    newest: NDArray[np.float64],
 ) -> None:
-    """Eq. (1) for P people: tracks (P, n + 1, 2), known (P,) -> out (P, 2)."""
-    for p in range(len(tracks)):
-        if printed:
-            vx, vy = printed_velocity(tracks[p], known[p], sample_s)
-        else:
-            vx, vy = mean_velocity(tracks[p], known[p], sample_s)
-        out[p, 0] = vx
-        out[p, 1] = vy
+    """Add where P people are at a tick, places (P, 3), and work out where they are going.
+
+    Fills the predicted velocities of eq. (1), with samples `stride` ticks apart, and the newest
+    ones alone, (P, 2) each. What was expected of everyone `expected` ticks ago is held against
+    where they are now: the square of a person's growth is a running mean of their squared errors
+    per axis over the squared time.
+    """
+    depth = tracks.positions.shape[1]
+    lag = tracks.expected.shape[1]
+    lag_s = lag * tick_s
+    now = tick % depth
+    slot = tick % lag
+    past = np.empty(((depth - 1) // stride + 1, 2))
+    for p in range(len(rows)):
+        row = rows[p]
+        x = places[p, 0]
+        y = places[p, 1]
+        if abs(tracks.heights[row] - places[p, 2]) > LIFT_M:
+            tracks.counts[row] = 0
+        tracks.heights[row] = places[p, 2]
+        tracks.positions[row, now, 0] = x
+        tracks.positions[row, now, 1] = y
+        count = min(tracks.counts[row] + 1, depth)
+        tracks.counts[row] = count
+        ago = min(count - 1, stride)
+        before = tracks.positions[row, (now - ago) % depth]
+        newest[p, 0] = (x - before[0]) / (max(ago, 1) * tick_s)
+        newest[p, 1] = (y - before[1]) / (max(ago, 1) * tick_s)
+        known = (count - 1) // stride + 1
+        vx = newest[p, 0]
+        vy = newest[p, 1]
+        if known > 1:
+            for k in range(known):
+                past[k] = tracks.positions[row, (now - k * stride) % depth]
+            if printed:
+                vx, vy = printed_velocity(past, known, stride * tick_s)
+            else:
+                vx, vy = mean_velocity(past, known, stride * tick_s)
+        velocities[p, 0] = vx
+        velocities[p, 1] = vy
+        expected = tracks.expected[row, slot]
+        if count > lag + stride:
+            missed = (x - expected[0]) ** 2 + (y - expected[1]) ** 2
+            tracks.growths2[row] += memory * (missed / (2.0 * lag_s**2) - tracks.growths2[row])
+        expected[0] = x + vx * lag_s
+        expected[1] = y + vy * lag_s
 
 
 @kernel
