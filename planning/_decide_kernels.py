@@ -17,10 +17,9 @@ from planning._crowd import (
     Crowd,
     Decisions,
 )
-from planning._grid_kernels import floor_of, follow
-from planning._jit import inlined, kernel
+from planning._jit import kernel
 from planning._perturb_kernels import path_cost, stretch_is_legal, update_path
-from planning._potential_kernels import direction_at, potential_at
+from planning._potential_kernels import potential_at
 from planning._prediction_kernels import Prediction
 from planning._search_kernels import FOUND, NO_PATH, Moves, Workspace, search
 from planning._step_kernels import control_toward, last_check, limited
@@ -105,87 +104,6 @@ def make_task(
         int(p["edge_cells"]),
         hold,
     )
-
-
-@kernel
-def continue_paths(
-    world: World,
-    guides: NDArray[np.float32],
-    crowd: Crowd,
-    tick_s: float,
-    first: int,
-    last: int,
-    out: NDArray[np.float64],
-    heights: NDArray[np.float64],
-) -> None:
-    """Followed paths as seen from now, rows first..last of out (A, K, 2), heights (A, K).
-
-    A path is read off `ages` ticks after its start, begins where the actor really is, and is
-    lengthened at its end down the potential. Who follows none is taken to stand.
-    """
-    slices = out.shape[1]
-    ds = world.step_s / SUB
-    for a in range(first, last):
-        px = crowd.positions[a, 0]
-        py = crowd.positions[a, 1]
-        if not crowd.known[a]:
-            out[a, :, 0] = px
-            out[a, :, 1] = py
-            heights[a] = floor_of(world.grid, crowd.cells[a])
-            continue
-        path = crowd.followed[a]
-        cell = crowd.cells[a]
-        shift = crowd.ages[a] * tick_s / ds
-        ox = 0.0
-        oy = 0.0
-        for k in range(slices):
-            u = shift + k
-            i = int(u)
-            if i + 1 < slices:
-                w = u - i
-                x = (1.0 - w) * path[i, 0] + w * path[i + 1, 0]
-                y = (1.0 - w) * path[i, 1] + w * path[i + 1, 1]
-            else:
-                x, y = _carry_on(
-                    world,
-                    guides,
-                    crowd,
-                    a,
-                    follow(world.grid, cell, path[slices - 1, 0], path[slices - 1, 1]),
-                    path[slices - 1, 0],
-                    path[slices - 1, 1],
-                    (u - (slices - 1)) * ds,
-                )
-            if k == 0:
-                ox = px - x
-                oy = py - y
-            fade = max(0.0, 1.0 - 0.25 * k)
-            out[a, k, 0] = x + fade * ox
-            out[a, k, 1] = y + fade * oy
-            if cell >= 0:
-                on = follow(world.grid, cell, out[a, k, 0], out[a, k, 1])
-                cell = on if on >= 0 else cell
-            heights[a, k] = floor_of(world.grid, cell)
-
-
-@inlined
-def _carry_on(
-    world: World,
-    guides: NDArray[np.float32],
-    crowd: Crowd,
-    a: int,
-    cell: int,
-    x: float,
-    y: float,
-    seconds: float,
-) -> tuple[float, float]:
-    """Where an actor gets from the end of its path, straight down the potential."""
-    slot = crowd.guide_slots[a]
-    if slot < 0:
-        return x, y
-    gx, gy, leg = direction_at(world.grid, guides[slot], cell, x, y)
-    way = min(leg, crowd.parameters[a]["speed_mps"] * seconds)
-    return x + gx * way, y + gy * way
 
 
 @kernel

@@ -5,11 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planning._crowd import Crowd
 from planning._geometry_kernels import closest_approach
-from planning._grid_kernels import GridArrays
 from planning._jit import inlined, kernel
-from planning._potential_kernels import direction_at, potential_at
 
 OVERLAP_M = 1.8
 """Whose feet are no further apart in height than that, a grown person's height, may touch."""
@@ -22,8 +19,6 @@ EVADING_SLICES = 2
 """So soon there may be no time left to get out of somebody's way."""
 EVADING_M = 0.005
 """Who then gains so much room over standing may move, even if they would meet all the same."""
-HELD_UP_PART = 0.3
-"""Who is slower than this part of the preferred speed is held up."""
 MEETING_ROOM_M = 0.8
 """Room that two who want against each other would like, if one of them is held up."""
 MEETING_ROOM = 0.2
@@ -36,8 +31,6 @@ long as both stay: those who wait leave gaps, through which others come out."""
 QUEUE_ROOM = 0.2
 AGAINST = -0.2
 """Cosine of the angle between two courses from which on they are against each other."""
-SETTLED_M = 1.0
-"""Who is so near the goal lets everyone else pass."""
 
 
 class Reservations(NamedTuple):
@@ -87,44 +80,6 @@ def index_paths(reservations: Reservations) -> None:
         for b in range(r.nx * r.ny):
             r.starts[k, b] = r.starts[k, b + 1]
         r.starts[k, r.nx * r.ny] = actors
-
-
-@kernel
-def ways_left(guides: NDArray[np.float32], crowd: Crowd, out: NDArray[np.float64]) -> None:
-    """Fill (A,) with the metres that decide who goes first: who has the least way left.
-
-    Two do not change their order while one lets the other pass, since only the other gains.
-    Those who are about there, or have no way to go, have inf.
-    """
-    for a in range(len(out)):
-        out[a] = np.inf
-        slot = crowd.guide_slots[a]
-        if slot >= 0:
-            x, y = crowd.positions[a]
-            left = potential_at(guides[slot], crowd.cells[a], x, y)
-            if left > SETTLED_M:
-                out[a] = left
-
-
-@kernel
-def find_courses(
-    grid: GridArrays,
-    guides: NDArray[np.float32],
-    crowd: Crowd,
-    left_m: NDArray[np.float64],
-    reservations: Reservations,
-) -> None:
-    """Fill `courses` and `held_up`; `left_m` (A,) is what `ways_left` gave."""
-    r = reservations
-    for a in range(len(left_m)):
-        r.courses[a] = 0.0
-        r.held_up[a] = False
-        if left_m[a] < np.inf:
-            x, y = crowd.positions[a]
-            guide = guides[crowd.guide_slots[a]]
-            r.courses[a, 0], r.courses[a, 1], _ = direction_at(grid, guide, crowd.cells[a], x, y)
-            speed = np.hypot(crowd.velocities[a, 0], crowd.velocities[a, 1])
-            r.held_up[a] = speed < HELD_UP_PART * crowd.parameters[a]["speed_mps"]
 
 
 @inlined

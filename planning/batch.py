@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning._crowd import Crowd, Decisions
-from planning._decide_kernels import continue_paths, decide
+from planning._decide_kernels import decide
+from planning._precedence_kernels import prepare
 from planning._prediction_kernels import Prediction
-from planning._reservation_kernels import find_courses, index_paths, ways_left
 from planning._search_kernels import Workspace
 from planning._step_kernels import resolve
 from planning._task_kernels import SUB, World
@@ -21,7 +21,6 @@ from planning.risk import RiskField, RiskModel
 from planning.search import compass_moves, make_reservations, make_workspace
 from planning.spread import GAUSSIAN, Spread
 
-_NEIGHBOURHOOD_M = 4.0
 _PORTION = 32
 """So many actors are decided for at a time."""
 _WORTH_A_THREAD = 4
@@ -123,10 +122,6 @@ class Batch:
         new_cells = np.empty(actors, dtype=np.int64)
         if not actors:
             return decisions, new_positions, new_cells
-        left_m = np.empty(actors)
-        ways_left(guides, crowd, left_m)
-        order = np.lexsort((crowd.ranks, left_m))
-        crowd = crowd._replace(ranks=np.argsort(order))
         fastest_mps = float(crowd.parameters["max_speed_mps"].max())
         self.field.fill(
             prediction,
@@ -134,24 +129,20 @@ class Batch:
             self.plan.slice_s,
             fastest_mps * self.plan.step_s,
         )
-        paths = np.empty((actors, slices, 2))
-        heights = np.zeros((actors, slices))
         reservations = make_reservations(
             self.grid,
-            paths,
-            heights,
+            np.empty((actors, slices, 2)),
+            np.zeros((actors, slices)),
             crowd.parameters["radius_m"].copy(),
-            crowd.ranks,
+            np.empty(actors, dtype=np.int64),
             fastest_mps * max(tick_s, self.plan.slice_s),
         )
         world = World(self.grid.arrays, self.field.arrays, reservations, self.plan.step_s)
         workspaces = self._workspaces_for(int(crowd.parameters["max_expansions"].max()))
-        continue_paths(world, guides, crowd, tick_s, 0, actors, paths, heights)
-        index_paths(reservations)
-        find_courses(self.grid.arrays, guides, crowd, left_m, reservations)
-        turns = _by_neighbourhood(crowd)
+        order = np.empty(actors, dtype=np.int64)
+        prepare(world, guides, crowd, tick_s, order)
         # Every thread takes the next portion when it is done with one: none waits for the other.
-        portions = iter(np.array_split(turns, -(-actors // _PORTION)))
+        portions = iter(np.array_split(np.arange(actors), -(-actors // _PORTION)))
 
         def work(k: int, _: int) -> None:
             for portion in portions:
@@ -180,13 +171,3 @@ class Batch:
             new_cells,
         )
         return decisions, new_positions, new_cells
-
-
-def _by_neighbourhood(crowd: Crowd) -> NDArray[np.int64]:
-    """Actors in an order in which neighbours follow each other.
-
-    They look up much the same part of the fields, which then is in the processor's cache. The
-    result does not depend on the order.
-    """
-    i, j = (crowd.positions / _NEIGHBOURHOOD_M).astype(np.int64).T
-    return np.lexsort((np.where(i % 2, -j, j), i))

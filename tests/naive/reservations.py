@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from planning._precedence_kernels import JAM_ACTORS, JAM_M
 from planning._reservation_kernels import (
     AGAINST,
     EVADING_M,
@@ -67,3 +68,31 @@ def _nearest(a: Point, b: Point, c: Point, d: Point) -> float:
     """Smallest distance of two who go evenly from a to b, and from c to d."""
     before, after = np.subtract(a, c), np.subtract(b, d)
     return closest_approach(tuple(before), tuple(after - before))
+
+
+def jam_order(r: Reservations, left_m: list[float]) -> list[float]:
+    """What decides who goes first, by listing everyone held up.
+
+    Who is in a jam is as far as its middle is away, and less than nothing beyond it.
+    """
+    held_up = [o for o in range(len(left_m)) if r.held_up[o]]
+    if len(held_up) < JAM_ACTORS:
+        return left_m
+    return [_in_jam(r, a, left, held_up) for a, left in enumerate(left_m)]
+
+
+def _in_jam(r: Reservations, me: int, left_m: float, held_up: list[int]) -> float:
+    here, course = r.paths[me, 0], r.courses[me]
+    near = [
+        o
+        for o in held_up
+        if o != me
+        and math.dist(r.paths[o, 0], here) <= JAM_M
+        and abs(r.heights[o, 0] - r.heights[me, 0]) < OVERLAP_M
+    ]
+    against = [r.paths[o, 0] for o in near if course @ r.courses[o] < AGAINST]
+    if left_m == math.inf or len(against) < JAM_ACTORS:
+        return left_m + JAM_M
+    alike = [r.paths[o, 0] for o in near if course @ r.courses[o] > -AGAINST]
+    middle = (np.mean([here, *alike], axis=0) + np.mean(against, axis=0)) / 2.0 - here
+    return math.copysign(math.hypot(*middle), middle @ course)
