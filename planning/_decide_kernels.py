@@ -115,16 +115,17 @@ def decide(
     prediction: Prediction,
     crowd: Crowd,
     tick_s: float,
-    turns: NDArray[np.int64],
+    first: int,
+    last: int,
     workspace: Workspace,
     out: Decisions,
 ) -> None:
     """Perturb the followed path, search anew, keep the better, and wish for a velocity.
 
     The search only looks at what may be better than the followed path by the hysteresis, so that
-    it costs little while that path is good. The actors are those of `turns`; their followed
-    paths, seen from now, are `world.reservations.paths`. The speeds of `moves` are parts of each
-    actor's own.
+    it costs little while that path is good. The actors are first..last; their followed paths,
+    seen from now, are `world.reservations.paths`. The speeds of `moves` are parts of each actor's
+    own.
     """
     slices = out.paths.shape[1]
     speeds = np.empty(len(moves.speeds))
@@ -132,7 +133,7 @@ def decide(
     bent = np.empty((slices, 2))
     trial = np.empty((slices, 2))
     cells = np.empty(slices, dtype=np.int64)
-    for a in turns:
+    for a in range(first, last):
         p = crowd.parameters[a]
         task = make_task(guides, crowd, a, p["goal_tolerance_m"], tick_s)
         slot = crowd.guide_slots[a]

@@ -59,11 +59,18 @@ def _row(risk: RiskArrays, y: float) -> int:
 
 @kernel
 def index_people(
-    prediction: Prediction, last_wider: int, first: int, step: int, risk: RiskArrays
+    prediction: Prediction,
+    last_wider: int,
+    around: tuple[float, float, float, float],
+    first: int,
+    step: int,
+    risk: RiskArrays,
 ) -> None:
     """Fill slices first, first + step, ... (a counting sort for each).
 
-    After slice `last_wider` deviations grow no more.
+    After slice `last_wider` deviations grow no more. Those who will ask are in the box `around`
+    (x0, y0, x1, y1) now, and get `slack_m` further in two slices: whom they cannot come near is
+    left out.
     """
     tables = risk.tables
     people = len(prediction.means)
@@ -87,6 +94,16 @@ def index_people(
             known[4] = prediction.heights[p, k]
             known[5] = tables.reaches[row]
             room = tables.reaches[row] + risk.slack_m
+            far = room + 0.5 * k * risk.slack_m
+            box[p, 0] = 0
+            box[p, 1] = -1
+            if (
+                x + far < around[0]
+                or y + far < around[1]
+                or x - far > around[2]
+                or y - far > around[3]
+            ):
+                continue
             box[p, 0] = _row(risk, y - room)
             box[p, 1] = _row(risk, y + room)
             box[p, 2] = _column(risk, x - room)

@@ -122,12 +122,15 @@ class Batch:
         new_cells = np.empty(actors, dtype=np.int64)
         if not actors:
             return decisions, new_positions, new_cells
+        x0, y0 = crowd.positions.min(axis=0).tolist()
+        x1, y1 = crowd.positions.max(axis=0).tolist()
         fastest_mps = float(crowd.parameters["max_speed_mps"].max())
         self.field.fill(
             prediction,
             lambda work: self._on_threads(work, threads),
             self.plan.slice_s,
             fastest_mps * self.plan.step_s,
+            (x0, y0, x1, y1),
         )
         reservations = make_reservations(
             self.grid,
@@ -142,10 +145,10 @@ class Batch:
         order = np.empty(actors, dtype=np.int64)
         prepare(world, guides, crowd, tick_s, order)
         # Every thread takes the next portion when it is done with one: none waits for the other.
-        portions = iter(np.array_split(np.arange(actors), -(-actors // _PORTION)))
+        portions = iter(range(0, actors, _PORTION))
 
         def work(k: int, _: int) -> None:
-            for portion in portions:
+            for first in portions:
                 decide(
                     world,
                     guides,
@@ -154,7 +157,8 @@ class Batch:
                     prediction,
                     crowd,
                     tick_s,
-                    portion,
+                    first,
+                    min(first + _PORTION, actors),
                     workspaces[k],
                     decisions,
                 )

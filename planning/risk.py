@@ -23,6 +23,7 @@ _LEAST = 1e-3
 _BUCKET_M = 2.0
 SLACK_M = 0.8
 """A step of 0.4 s at 2 m/s."""
+EVERYWHERE = (-math.inf, -math.inf, math.inf, math.inf)
 _SIGMA_POINTS = 9
 _SIGMA_SPAN = 2.5
 
@@ -156,12 +157,14 @@ class RiskField:
         run: Callable[[Callable[[int, int], None]], None] | None = None,
         slice_s: float = 0.0,
         slack_m: float = SLACK_M,
+        around: tuple[float, float, float, float] = EVERYWHERE,
     ) -> None:
         """Replace the field by that of a prediction with as many slices.
 
         `run(work)` may call `work(first, step)` for first in range(step) on threads of its own.
         Searches ask once for everyone who matters within `slack_m` of a node: so far may a step
-        lead. It never gets less.
+        lead. It never gets less. Those who will search are in the box `around` now, (x0, y0, x1,
+        y1) m: whom they cannot come near by the time of a slice is left out.
 
         Raises
         ------
@@ -179,7 +182,7 @@ class RiskField:
             self.arrays = self._room_for(2 * people, max(slack_m, self.arrays.slack_m))
 
         def work(first: int, step: int) -> None:
-            kernels.index_people(prediction, last_wider, first, step, self.arrays)
+            kernels.index_people(prediction, last_wider, around, first, step, self.arrays)
 
         if run is None:
             work(0, 1)

@@ -196,6 +196,26 @@ def test_how_work_is_shared_out_does_not_matter() -> None:
         assert np.array_equal(ours, theirs)
 
 
+@given(people, points(1.0, 7.0), points(1.0, 7.0))
+@holds(40, 6)
+def test_for_those_in_a_box_only_they_are_left_out_whom_nobody_gets_near(crowd, a, b) -> None:
+    grid = open_grid(40.0)
+    shifted = [(x * 5.0, y * 5.0) for (x, y), _ in crowd]
+    prediction = walking(shifted, [v for _, v in crowd], slices=6)
+    whole, part = RiskField(grid, RiskModel(), 6, PEOPLE), RiskField(grid, RiskModel(), 6, PEOPLE)
+    whole.fill(prediction)
+    box = (min(a[0], b[0]), min(a[1], b[1]), max(a[0], b[0]), max(a[1], b[1]))
+    part.fill(prediction, around=box)
+    step_m = whole.arrays.slack_m / 2.0
+    for k in range(7):
+        beyond = k * step_m * np.array([-1.0, -1.0, 1.0, 1.0])
+        x0, y0, x1, y1 = np.clip(np.array(box) + beyond, 0.0, 40.0)
+        here = [(x, y) for x in np.linspace(x0, x1, 7) for y in np.linspace(y0, y1, 7)]
+        asked = (k, here, [0.0] * 49, [(0.5, 0.2)] * 49, CLOSING_WEIGHT)
+        assert np.array_equal(whole.at(*asked), part.at(*asked))
+    assert part.arrays.starts[:, -1].sum() <= whole.arrays.starts[:, -1].sum()
+
+
 def test_sigma_points_weigh_one_and_centre_on_the_mean() -> None:
     offsets, weights = sigma_points()
     assert weights.sum() == pytest.approx(1.0)
