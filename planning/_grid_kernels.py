@@ -39,8 +39,9 @@ def length(x: float, y: float) -> float:
 @inlined
 def row_and_column(grid: GridArrays, x: float, y: float) -> tuple[int, int]:
     """Row and column of the column of cells that holds a point, clamped to the grid."""
-    j = min(grid.layered.ny - 1, max(0, int((y - grid.layered.y0) / grid.layered.cell_m)))
-    i = min(grid.layered.nx - 1, max(0, int((x - grid.layered.x0) / grid.layered.cell_m)))
+    per_m = 1.0 / grid.layered.cell_m  # the same for all: the compiler divides once
+    j = min(grid.layered.ny - 1, max(0, int((y - grid.layered.y0) * per_m)))
+    i = min(grid.layered.nx - 1, max(0, int((x - grid.layered.x0) * per_m)))
     return j, i
 
 
@@ -150,8 +151,9 @@ def corners(grid: GridArrays, cell: int, x: float, y: float) -> tuple[int, int, 
     (beside, above or below, across, u, v) with u, v in [0, 0.5] of a cell from the own centre.
     """
     j, i = row_and_column(grid, x, y)
-    u = (x - grid.layered.x0) / grid.layered.cell_m - (i + 0.5)
-    v = (y - grid.layered.y0) / grid.layered.cell_m - (j + 0.5)
+    per_m = 1.0 / grid.layered.cell_m
+    u = (x - grid.layered.x0) * per_m - (i + 0.5)
+    v = (y - grid.layered.y0) * per_m - (j + 0.5)
     di = 1 if u >= 0.0 else -1
     dj = 1 if v >= 0.0 else -1
     if grid.flat:  # a tile may reach beyond the bounds

@@ -49,12 +49,12 @@ class RiskArrays(NamedTuple):
 
 @inlined
 def _column(risk: RiskArrays, x: float) -> int:
-    return min(risk.nx - 1, max(0, int((x - risk.x0) / risk.bucket_m)))
+    return min(risk.nx - 1, max(0, int((x - risk.x0) * (1.0 / risk.bucket_m))))
 
 
 @inlined
 def _row(risk: RiskArrays, y: float) -> int:
-    return min(risk.ny - 1, max(0, int((y - risk.y0) / risk.bucket_m)))
+    return min(risk.ny - 1, max(0, int((y - risk.y0) * (1.0 / risk.bucket_m))))
 
 
 @kernel
@@ -166,7 +166,7 @@ def _terms(
     squared = rx * rx + ry * ry
     if squared >= known[5] * known[5]:
         return 0.0, 0.0, 0.0, 0.0
-    u = squared / risk.tables.squared_step_m2
+    u = squared * (1.0 / risk.tables.squared_step_m2)
     c = int(u)
     w = u - c
     row = risk.tables.values[risk.rows[k, p]]

@@ -149,6 +149,8 @@ def search(
     ds = step_s / SUB
     need = needed_clearance(world, task)
     a_max = task.max_acceleration_mps2
+    per_a = 1.0 / a_max
+    per_s = 1.0 / step_s
     most_m = task.max_speed_mps * step_s
     open_m = task.radius_m + WALL_COST_M + most_m + 1.5 * grid.layered.cell_m
     node = workspace.node_state
@@ -242,7 +244,7 @@ def search(
                 uy = speed * (gx * moves.sines[m] + gy * moves.cosines[m])
             dvx = ux - vx
             dvy = uy - vy
-            ramp = length(dvx, dvy) / a_max
+            ramp = length(dvx, dvy) * per_a
             ex, ey, evx, evy = on_ramp(x, y, vx, vy, dvx, dvy, ramp, step_s)
             end_speed = length(evx, evy) if accumulate else task.speed_mps
             if grid.flat:
@@ -256,8 +258,8 @@ def search(
             left = way_left(task, left_m, end_speed)
             cost = (
                 node[n, 4]
-                + time_cost(task, left_m, length(ex - x, ey - y) / step_s, step_s)
-                + task.turn_weight * length(evx - vx, evy - vy)
+                + time_cost(task, left_m, length(ex - x, ey - y) * per_s, step_s)
+                + task.turn_weight * a_max * min(ramp, step_s)
             )
             if not cost + left < room_s or end < 0:
                 continue

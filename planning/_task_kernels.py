@@ -102,7 +102,7 @@ def time_cost(task: Task, left_m: float, speed: float, seconds: float) -> float:
         return seconds * (speed / task.speed_mps + 0.5 * min(1.0, left_m))
     if speed < 0.2 and left_m <= task.goal_tolerance_m:
         return seconds * speed
-    over = max(0.0, speed / task.speed_mps - 1.0)
+    over = max(0.0, speed * (1.0 / task.speed_mps) - 1.0)
     return seconds * (1.0 + over + task.hurry_weight * over * over)
 
 
@@ -121,10 +121,10 @@ def way_left(task: Task, left_m: float, speed: float) -> float:
     """
     if task.hold:
         return 0.0
-    seconds = left_m / task.speed_mps
+    seconds = left_m * (1.0 / task.speed_mps)
     lacking = task.speed_mps - speed
     if lacking > 0.0 and left_m > task.speed_mps:
-        lag = lacking / (2.0 * task.max_acceleration_mps2 * task.speed_mps)
+        lag = lacking * (1.0 / (2.0 * task.max_acceleration_mps2 * task.speed_mps))
         seconds += lacking * (lag + task.turn_weight)
     return seconds
 
