@@ -38,6 +38,9 @@ class RiskModel:
     """Beyond contact the proximity term falls to zero over this distance, metres."""
     comfort: float = 0.05
     """Proximity term just outside contact, where contact itself counts 1."""
+    sway_m: float = 0.1
+    """Deviation, per axis, of a body from where it was expected even a moment before:
+    bodies sway, and are no discs. It adds to that of the prediction by squares, metres."""
     reaction_s: float = 1.2
     """Deviations count as they are so far ahead at most, seconds: whoever is to be met later will
     have been seen again before there is need to turn aside."""
@@ -81,7 +84,7 @@ def radial_tables(model: RiskModel, spread: Spread = GAUSSIAN) -> RadialTables:
     """
     offsets, weights = sigma_points()
     sigmas = np.arange(0.0, _SIGMA_MAX_M + _SIGMA_STEP_M / 2, _SIGMA_STEP_M)
-    widest = max(spread.scales) * _SIGMA_MAX_M
+    widest = max(spread.scales) * math.hypot(_SIGMA_MAX_M, model.sway_m)
     reach = model.contact_m + model.influence_m + _SIGMA_SPAN * widest
     squared = np.arange(0.0, reach**2 + 3 * _SQUARED_STEP_M2, _SQUARED_STEP_M2)
     distances = np.sqrt(squared)
@@ -90,7 +93,8 @@ def radial_tables(model: RiskModel, spread: Spread = GAUSSIAN) -> RadialTables:
     toward = np.zeros_like(near)
     for row, sigma in enumerate(sigmas):
         for scale, share in spread.parts:
-            relative = here[:, None] - scale * sigma * offsets
+            strayed = scale * math.hypot(sigma, model.sway_m) * offsets
+            relative = here[:, None] - strayed
             length = np.hypot(relative[..., 0], relative[..., 1])
             along = relative[..., 0] / np.maximum(length, 1e-9)
             near[row] += share * model.near(length) @ weights

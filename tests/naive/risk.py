@@ -45,7 +45,8 @@ def risk(
             for a, b, weight in sigma_grid()
         ]
         for a, b, weight in likely:
-            place = prediction.means[p, k] + prediction.sigmas[p, k] * np.array([a, b])
+            sigma = math.hypot(prediction.sigmas[p, k], model.sway_m)
+            place = prediction.means[p, k] + sigma * np.array([a, b])
             away = position - place
             distance = math.hypot(*away)
             near += weight * float(model.near(distance))
