@@ -53,6 +53,8 @@ class Reservations(NamedTuple):
     x0: float
     y0: float
     bucket_m: float
+    widest_m: float
+    """The greatest radius."""
     fastest_m: float
     """How far anyone gets in a slice."""
     nx: int
@@ -118,6 +120,19 @@ def crowding(r: Reservations, me: int, other: int, k: int, x: float, y: float) -
 
 
 @inlined
+def buckets_within(
+    r: Reservations, x: float, y: float, within_m: float
+) -> tuple[int, int, int, int]:
+    """Rows and columns (j0, j1, i0, i1) of the buckets that may hold somebody within so far."""
+    return (
+        min(r.ny - 1, max(0, int((y - within_m - r.y0) / r.bucket_m))),
+        min(r.ny - 1, max(0, int((y + within_m - r.y0) / r.bucket_m))),
+        min(r.nx - 1, max(0, int((x - within_m - r.x0) / r.bucket_m))),
+        min(r.nx - 1, max(0, int((x + within_m - r.x0) / r.bucket_m))),
+    )
+
+
+@inlined
 def conflict(
     reservations: Reservations,
     me: int,
@@ -136,14 +151,11 @@ def conflict(
     not met.
     """
     r = reservations
-    ci = int((bx - r.x0) / r.bucket_m)
-    cj = int((by - r.y0) / r.bucket_m)
     soft = 0.0
     # Who is further away in the end neither was met on the way nor is crowded.
     far = max(MEETING_ROOM_M, np.sqrt((bx - ax) ** 2 + (by - ay) ** 2) + r.fastest_m)
-    i0 = min(r.nx - 1, max(0, ci - 1))
-    i1 = min(r.nx - 1, max(0, ci + 1))
-    for j in range(max(0, cj - 1), min(r.ny, cj + 2)):
+    j0, j1, i0, i1 = buckets_within(r, bx, by, 2.0 * r.widest_m + MARGIN_M + far)
+    for j in range(j0, j1 + 1):
         row = j * r.nx  # buckets of a row are listed one after the other
         for m in range(r.starts[k + 1, row + i0], r.starts[k + 1, row + i1 + 1]):
             other = r.members[k + 1, m]
@@ -181,13 +193,11 @@ def others_near(
     for.
     """
     r = reservations
-    ci = int((x - r.x0) / r.bucket_m)
-    cj = int((y - r.y0) / r.bucket_m)
-    i0 = min(r.nx - 1, max(0, ci - 1))
-    i1 = min(r.nx - 1, max(0, ci + 1))
+    room_m = MEETING_ROOM_M + r.fastest_m
+    j0, j1, i0, i1 = buckets_within(r, x, y, 2.0 * r.widest_m + MARGIN_M + 2.0 * slice_m + room_m)
     met = 0
     crowded = 0
-    for j in range(max(0, cj - 1), min(r.ny, cj + 2)):
+    for j in range(j0, j1 + 1):
         row = j * r.nx  # buckets of a row are listed one after the other
         for m in range(r.starts[k + 1, row + i0], r.starts[k + 1, row + i1 + 1]):
             o = r.members[k + 1, m]

@@ -9,7 +9,7 @@ from planning._grid_kernels import clearance_at, floor_of, follow
 from planning._ground_kernels import walk
 from planning._jit import kernel
 from planning._prediction_kernels import Prediction
-from planning._reservation_kernels import OVERLAP_M
+from planning._reservation_kernels import OVERLAP_M, buckets_within
 from planning._task_kernels import Task, World, advance, needed_clearance
 
 
@@ -43,6 +43,8 @@ def limited(task: Task, ux: float, uy: float, tick_s: float) -> tuple[float, flo
     return task.vx + dx * most / change, task.vy + dy * most / change
 
 
+APART_M = 0.01
+"""No step brings two actors closer than that."""
 LOOKS_AHEAD_MPS = 0.1
 """Who is slower keeps its heading."""
 LOOK_AHEAD_S = 0.6
@@ -278,24 +280,21 @@ def _touches(
     r = world.reservations
     x = crowd.positions[a, 0]
     y = crowd.positions[a, 1]
-    ci = min(r.nx - 1, max(0, int((x - r.x0) / r.bucket_m)))
-    cj = min(r.ny - 1, max(0, int((y - r.y0) / r.bucket_m)))
-    for j in range(max(0, cj - 1), min(r.ny, cj + 2)):
-        for i in range(max(0, ci - 1), min(r.nx, ci + 2)):
-            b = j * r.nx + i
-            for m in range(r.starts[0, b], r.starts[0, b + 1]):
-                o = r.members[0, m]
-                if o == a or abs(r.heights[o, 0] - r.heights[a, 0]) >= OVERLAP_M:
-                    continue
-                rx = x - crowd.positions[o, 0]
-                ry = y - crowd.positions[o, 1]
-                dx = ex - x
-                dy = ey - y
-                if moved[o]:
-                    dx -= new_positions[o, 0] - crowd.positions[o, 0]
-                    dy -= new_positions[o, 1] - crowd.positions[o, 1]
-                reach = r.radii[a] + r.radii[o] + 0.01
-                d = closest_approach(rx, ry, dx, dy)
-                if d < reach and d < np.hypot(rx, ry) - 1e-9:
-                    return True
+    j0, j1, i0, i1 = buckets_within(r, x, y, 2.0 * (r.widest_m + r.fastest_m) + APART_M)
+    for j in range(j0, j1 + 1):
+        row = j * r.nx  # buckets of a row are listed one after the other
+        for m in range(r.starts[0, row + i0], r.starts[0, row + i1 + 1]):
+            o = r.members[0, m]
+            if o == a or abs(r.heights[o, 0] - r.heights[a, 0]) >= OVERLAP_M:
+                continue
+            rx = x - crowd.positions[o, 0]
+            ry = y - crowd.positions[o, 1]
+            dx = ex - x
+            dy = ey - y
+            if moved[o]:
+                dx -= new_positions[o, 0] - crowd.positions[o, 0]
+                dy -= new_positions[o, 1] - crowd.positions[o, 1]
+            d = closest_approach(rx, ry, dx, dy)
+            if d < r.radii[a] + r.radii[o] + APART_M and d < np.hypot(rx, ry) - 1e-9:
+                return True
     return False

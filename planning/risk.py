@@ -20,7 +20,9 @@ _SIGMA_STEP_M = 0.02
 _SIGMA_MAX_M = 1.5
 _SQUARED_STEP_M2 = 0.04
 _LEAST = 1e-3
-_BUCKET_M = 2.0
+_LEAST_BUCKET_M = 2.0
+_MOST_BUCKETS = 16384
+"""Of larger zones buckets are wider: all are cleared in every tick."""
 SLACK_M = 0.8
 """A step of 0.4 s at 2 m/s."""
 EVERYWHERE = (-math.inf, -math.inf, math.inf, math.inf)
@@ -131,13 +133,14 @@ class RiskField:
         self.slices = slices
         self.tables = radial_tables(model, spread)
         x0, y0, x1, y1 = grid.bounds
-        self._columns = max(1, math.ceil((x1 - x0) / _BUCKET_M))
-        self._rows = max(1, math.ceil((y1 - y0) / _BUCKET_M))
+        self._bucket_m = max(_LEAST_BUCKET_M, math.sqrt((x1 - x0) * (y1 - y0) / _MOST_BUCKETS))
+        self._columns = max(1, math.ceil((x1 - x0) / self._bucket_m))
+        self._rows = max(1, math.ceil((y1 - y0) / self._bucket_m))
         self.arrays = self._room_for(0, 0.0)
 
     def _room_for(self, people: int, slack_m: float) -> RiskArrays:
         widest = float(self.tables.reaches.max()) + slack_m
-        across = math.ceil(2.0 * widest / _BUCKET_M) + 1
+        across = math.ceil(2.0 * widest / self._bucket_m) + 1
         most = min(across, self._columns) * min(across, self._rows)
         x0, y0, _, _ = self.grid.bounds
         buckets = self._columns * self._rows
@@ -149,7 +152,7 @@ class RiskField:
             np.zeros((self.slices + 1, people * most), dtype=np.int64),
             x0,
             y0,
-            _BUCKET_M,
+            self._bucket_m,
             slack_m,
             self._columns,
             self._rows,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning import _search_kernels as kernels
-from planning._reservation_kernels import MARGIN_M, MEETING_ROOM_M, Reservations
+from planning._reservation_kernels import Reservations
 from planning._search_kernels import Moves, Workspace
 from planning._task_kernels import SUB, Task, World
 from planning.grid import LayeredGrid
@@ -19,6 +19,9 @@ from planning.risk import RiskField
 
 _MOST_NEAR = 64
 """Room for the actors near a node; so many discs do not fit around it."""
+_LEAST_BUCKET_M = 1.2
+_BUCKETS_AN_ACTOR = 4
+"""Of many more buckets than that, clearing would cost more than they save."""
 _MOST_PEOPLE = 256
 """Room for the people who matter near a node. Beyond that it is risky enough."""
 
@@ -107,12 +110,12 @@ def make_reservations(
     """Room for the planned ways of A actors, (A, K, 2) and (A, K); `index_paths` fills its index.
 
     Nobody has a course yet, nor is held up. `fastest_m` is how far anyone can get from one slice,
-    or tick, to the next: buckets are so wide that whoever can be met in two slices, or would like
-    room, is in one of the nine around.
+    or tick, to the next.
     """
     x0, y0, x1, y1 = grid.bounds
     widest = float(radii_m.max()) if len(radii_m) else 0.0
-    bucket = 2.0 * widest + 3.0 * fastest_m + MARGIN_M + MEETING_ROOM_M
+    across = math.sqrt((x1 - x0) * (y1 - y0) / (_BUCKETS_AN_ACTOR * max(1, len(paths))))
+    bucket = max(_LEAST_BUCKET_M, across)
     nx = max(1, math.ceil((x1 - x0) / bucket))
     ny = max(1, math.ceil((y1 - y0) / bucket))
     actors, slices = paths.shape[:2]
@@ -128,6 +131,7 @@ def make_reservations(
         x0,
         y0,
         bucket,
+        widest,
         fastest_m,
         nx,
         ny,
