@@ -57,7 +57,7 @@ def _as_places(listed: list[object], given: list[tuple[float, ...]]) -> NDArray[
         places[:, : points.shape[-1]] = points
     except ValueError:  # not all alike, or no numbers
         points = np.empty((0, 0))
-    if points.shape[-1] in (2, 3) and np.isfinite(places).all():
+    if points.ndim == 2 and points.shape[1] in (2, 3) and np.isfinite(places).all():
         return places
     for who, place, row in zip(listed, given, places, strict=True):
         point = tuple(place)

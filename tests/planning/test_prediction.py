@@ -219,3 +219,13 @@ def test_a_bad_position_changes_nothing(where) -> None:
         history.observe({"a": (2.0, 2.0), "b": where})
     assert history.ids == ["a"]
     assert history.positions.tolist() == [[1.0, 1.0]]
+
+
+def test_places_come_with_heights_and_without() -> None:
+    history = TrackHistory(PredictionModel(), TICK_S)
+    history.observe({"a": (1.0, 2.0), "b": (3.0, 4.0, 5.0)})
+    assert history.positions.tolist() == [[1.0, 2.0], [3.0, 4.0]]
+    assert history.heights.tolist() == [0.0, 5.0]
+    with pytest.raises(TypeError):
+        history.observe({"a": 1.0, "b": 2.0})  # type: ignore[dict-item]
+    assert history.positions.tolist() == [[1.0, 2.0], [3.0, 4.0]]
