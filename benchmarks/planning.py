@@ -5,7 +5,7 @@
 
 The world is 64 m x 64 m, a tenth of it buildings. People walk from place to
 place at 1.2 m/s; actors do the same, each to another place whenever it has arrived. Stages: `field`
-fills the risk field, `search` decides for every actor (search and perturbation), `resolve` takes
+indexes people for risk, `search` decides for every actor (search and perturbation), `resolve` takes
 the steps in order of priority, `rest` is all else: observing, prediction, and making states.
 At the end it says how medians grow with actors, people and cells, the others at their most.
 """
@@ -184,6 +184,7 @@ def print_case(grid: LayeredGrid, case: Case, ticks: int, threads: int) -> float
     for k, (x, y) in enumerate(free_points(grid, case.actors, random).tolist()):
         nav.add_actor(f"a{k}", (x, y), another_place())
 
+    gc.collect()
     gc.freeze()  # as the server does
     watch = Stopwatch()
     rows: list[dict[str, float]] = []

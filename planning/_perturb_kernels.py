@@ -196,12 +196,14 @@ def perturb_path(
     trial: NDArray[np.float64],
     trial_risks: NDArray[np.float64],
 ) -> bool:
-    """Replace a stretch by the first bend that is legal and strictly less risky; fig. 8.
+    """Replace a stretch by the first bend that is legal and less risky by `LEAST_RISK`; fig. 8.
 
     Candidates lie on the normal through the chord's midpoint, nearest first, either side in turn.
     The printed test accepts equal risk too, with which the recursion need not settle. `cells` (K,)
     are those that the path is in.
     """
+    if last - first < 2:  # there is nothing between its ends
+        return False
     begin = cells[first]
     total = 0.0
     for k in range(first + 1, last + 1):

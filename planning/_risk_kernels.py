@@ -137,7 +137,8 @@ def people_near(
 ) -> int:
     """List who matters at slice k within so far of a place, at most `slack_m`; how many they are.
 
-    `out` takes as many as it has room for.
+    Who is on the floor at `feet_m` counts, that of the node, wherever its moves lead. `out` takes
+    as many as it has room for.
     """
     count = 0
     b = _row(risk, y) * risk.nx + _column(risk, x)

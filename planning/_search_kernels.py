@@ -225,7 +225,7 @@ def search(
         price = risk_price(task, step * step_s) * ds
         k = step * SUB
         feet_m = 0.0 if grid.flat else float(grid.layered.floors[cell])
-        slice_m = task.max_speed_mps * ds
+        slice_m = max(task.max_speed_mps, length(vx, vy)) * ds
         met, crowded = others_near(reservations, task.me, feet_m, k, x, y, slice_m, others)
         halfway = people_near(risk, grid.flat, feet_m, k + 1, x, y, slice_m, workspace.halfway)
         ahead = people_near(risk, grid.flat, feet_m, k + 2, x, y, 2.0 * slice_m, workspace.ahead)
@@ -296,18 +296,18 @@ def search(
                 if blocked:
                     continue
             # Risk is never negative: what cannot be worth it any more is not asked further.
-            most = (min(room_s, least) - worth) / price if accumulate else np.inf
-            if soft >= most:
+            most = min(room_s, least) - worth if accumulate else np.inf
+            if price * soft >= most:
                 continue
             minded = soft + risk_among(
                 risk, workspace.ahead, ahead, k + 2, ex, ey, evx, evy, task.closing_weight
             )
-            if minded >= most:
+            if price * minded >= most:
                 continue
             minded += risk_among(
                 risk, workspace.halfway, halfway, k + 1, hx, hy, hvx, hvy, task.closing_weight
             )
-            if minded >= most:
+            if price * minded >= most:
                 continue
             if accumulate:
                 cost += price * minded

@@ -45,7 +45,7 @@ def limited(task: Task, ux: float, uy: float, tick_s: float) -> tuple[float, flo
 
 APART_M = 0.01
 """No step brings two actors closer than that."""
-LOOKS_AHEAD_MPS = 0.1
+HEADING_MPS = 0.1
 """Who is slower keeps its heading."""
 LOOK_AHEAD_S = 0.6
 """How far ahead the last check before a step looks, in two halves."""
@@ -248,7 +248,7 @@ def settle(
             crowd.ages[a] = 0
         crowd.ages[a] += 1
         crowd.known[a] = True
-        if np.hypot(vx, vy) > LOOKS_AHEAD_MPS:
+        if np.hypot(vx, vy) > HEADING_MPS:
             headings[a] = np.arctan2(vy, vx)
 
 

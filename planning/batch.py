@@ -22,7 +22,7 @@ from planning.search import compass_moves, make_reservations, make_workspace
 from planning.spread import GAUSSIAN, Spread
 
 _PORTION = 32
-"""So many actors are decided for at a time."""
+"""So many actors are decided for at a time, at most."""
 _WORTH_A_THREAD = 4
 """So many actors keep a thread busy for longer than it takes to hand the work over."""
 
@@ -52,8 +52,8 @@ class PlanModel:
 class Batch:
     """Plans and steps for all actors of a zone at once.
 
-    Cost of a tick: O(people × slices × cells near one person) for the field, O(actors ×
-    expansions × moves) for the searches; both are spread over the threads.
+    Cost of a tick: O(people × slices) for the index of people, O(actors × expansions ×
+    moves × people near) for the searches; both are spread over the threads.
     """
 
     def __init__(
@@ -124,7 +124,9 @@ class Batch:
             return decisions, new_positions, new_cells
         x0, y0 = crowd.positions.min(axis=0).tolist()
         x1, y1 = crowd.positions.max(axis=0).tolist()
-        fastest_mps = float(crowd.parameters["max_speed_mps"].max())
+        # Who is told to be slower from now on still has to brake.
+        speeds = np.hypot(crowd.velocities[:, 0], crowd.velocities[:, 1])
+        fastest_mps = max(float(crowd.parameters["max_speed_mps"].max()), float(speeds.max()))
         self.field.fill(
             prediction,
             lambda work: self._on_threads(work, threads),
@@ -145,7 +147,8 @@ class Batch:
         order = np.empty(actors, dtype=np.int64)
         prepare(world, guides, crowd, tick_s, order)
         # Every thread takes the next portion when it is done with one: none waits for the other.
-        portions = iter(range(0, actors, _PORTION))
+        portion = min(_PORTION, -(-actors // (2 * threads)))
+        portions = iter(range(0, actors, portion))
 
         def work(k: int, _: int) -> None:
             for first in portions:
@@ -158,7 +161,7 @@ class Batch:
                     crowd,
                     tick_s,
                     first,
-                    min(first + _PORTION, actors),
+                    min(first + portion, actors),
                     workspaces[k],
                     decisions,
                 )

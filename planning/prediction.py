@@ -79,7 +79,6 @@ class TrackHistory:
         self.model = model
         self.tick_s = tick_s
         self.stride = max(1, round(model.sample_s / tick_s))
-        self.sample_s = self.stride * tick_s
         self._memory = -math.expm1(-tick_s / model.calibration_s)
         depth = self.stride * model.samples + 1
         self._tracks = Tracks(
@@ -171,16 +170,9 @@ class TrackHistory:
     def velocities(self) -> NDArray[np.float64]:
         """Predicted velocities, eq. (1), float64 (P, 2), m/s.
 
-        Who has been seen for less than one sample gets the newest velocity.
-        """
-        return self._velocities
-
-    def newest_velocities(self) -> NDArray[np.float64]:
-        """Everyone's velocity over the newest sample, v of eq. (1), float64 (P, 2), m/s.
-
         Who has been seen for less than one sample gets the mean velocity so far, zero at first.
         """
-        return self._newest
+        return self._velocities
 
     def predict(self, grid: LayeredGrid, slices: int, slice_s: float) -> Prediction:
         """Everyone's future: `slices` + 1 instants `slice_s` apart, beginning now. Cost O(P K)."""

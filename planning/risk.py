@@ -122,7 +122,7 @@ class RiskField:
     closing term of eq. (5) for an actor's velocity v_r is max(0, sum p·(v_o·n) - v_r·(sum p·n)),
     n pointing from the person: the bound at zero is taken of the sum, not of each person's term.
 
-    Filling costs O(people × slices).
+    To index a prediction costs O(people × slices).
     """
 
     def __init__(
@@ -166,7 +166,7 @@ class RiskField:
         slack_m: float = SLACK_M,
         around: tuple[float, float, float, float] = EVERYWHERE,
     ) -> None:
-        """Replace the field by that of a prediction with as many slices.
+        """Make it the field of a prediction with as many slices.
 
         `run(work)` may call `work(first, step)` for first in range(step) on threads of its own.
         Searches ask once for everyone who matters within `slack_m` of a node: so far may a step

@@ -177,9 +177,10 @@ def uncertain_bfp(
         raise ValueError(f"the risk field must hold a multiple of {SUB} slices, it holds {slices}")
     if not step_s > 0.0:
         raise ValueError(f"step_s must be positive, got {step_s}")
-    if task.max_speed_mps * step_s > field.arrays.slack_m:
+    furthest_m = max(task.max_speed_mps, math.hypot(task.vx, task.vy)) * step_s
+    if furthest_m > field.arrays.slack_m:
         raise ValueError(
-            f"a step leads {task.max_speed_mps * step_s:g} m, the risk field was filled for "
+            f"a step leads {furthest_m:g} m, the risk field was filled for "
             f"{field.arrays.slack_m:g} m"
         )
     if not (math.isfinite(task.x) and math.isfinite(task.y)):

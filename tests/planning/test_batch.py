@@ -193,6 +193,23 @@ def test_fast_wide_actors_see_each_other_in_time(batch) -> None:
     assert math.dist(*positions) >= 1.0
 
 
+def test_who_is_told_to_be_slow_while_it_runs_is_seen_in_time(batch) -> None:
+    """Braking takes a while: steps are longer than the new greatest speed allows.
+
+    The edge of a bucket lies between the two.
+    """
+    crowd = crowd_of(
+        [(2.225, 4.0), (3.425, 4.0)],
+        [(7.0, 4.0), (1.0, 4.0)],
+        velocities=[(4.0, 0.0), (-4.0, 0.0)],
+        max_speed_mps=0.2,
+        speed_mps=0.2,
+        max_acceleration_mps2=0.2,
+    )
+    _, positions = tick(batch, crowd)
+    assert math.dist(*positions) >= 0.5
+
+
 def test_expansions_stay_within_the_budget(batch) -> None:
     crowd = crowd_of([(1.0, 4.0)], [(7.0, 4.0)], max_expansions=10)
     decisions, _ = tick(batch, crowd, [((4.0, 4.0), (-0.5, 0.0)), ((4.0, 4.6), (-0.5, 0.0))])

@@ -100,6 +100,17 @@ def test_a_path_bends_away_from_a_person_and_keeps_its_ends() -> None:
     assert path[:, 1].min() < 3.9
 
 
+def test_a_stretch_without_a_middle_is_left_alone() -> None:
+    """Who arrives in the first slice has nothing that could bend."""
+    start, goal = (4.0, 4.0), (4.25, 4.0)
+    straight = path_between(start, goal)
+    question = task(start, goal)
+    path, bends, before, *_ = bent([((4.3, 4.1), (0.0, 0.0))], straight.copy(), question=question)
+    assert before > kernels.LEAST_RISK
+    assert bends == 0
+    assert np.array_equal(path, straight)
+
+
 def test_a_wall_allows_only_the_other_side() -> None:
     wall = ((2.0, 3.7), (6.0, 3.7))
     path, bends, _, _, legal = bent([((4.0, 4.2), (0.0, 0.0))], walls=[wall])

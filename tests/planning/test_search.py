@@ -136,6 +136,14 @@ def test_and_for_who_stays_where_it_is(goal, crowd, away) -> None:
     same_as_twin(ground_of(question, 5, (), crowd), relative_moves(), SearchForm.ACCUMULATED)
 
 
+@given(goal=ends, crowd=people)
+@holds(5, 1)
+def test_and_for_who_minds_nobody(goal, crowd) -> None:
+    goal = (goal[0] + 0.0137, goal[1] + 0.0071)
+    question = task((1.0137, 4.0071), goal, risk_weight=0.0, max_expansions=40)
+    same_as_twin(ground_of(question, 5, (), crowd), relative_moves(), SearchForm.ACCUMULATED)
+
+
 @given(st.integers(0, 1000))
 @holds(8, 2)
 def test_and_among_certain_obstacles(seed) -> None:
