@@ -13,9 +13,11 @@ from planning._crowd import Crowd, Decisions
 from planning._decide_kernels import decide
 from planning._precedence_kernels import prepare
 from planning._prediction_kernels import Prediction
+from planning._risk_kernels import index_people
 from planning._search_kernels import Workspace
 from planning._step_kernels import resolve
 from planning._task_kernels import SUB, World
+from planning._tick_kernels import plan_and_step
 from planning.grid import LayeredGrid
 from planning.risk import RiskField, RiskModel
 from planning.search import compass_moves, make_reservations, make_workspace
@@ -72,12 +74,9 @@ class Batch:
         """End the threads."""
         self._pool.shutdown()
 
-    def _on_threads(self, work: Callable[[int, int], None], threads: int) -> None:
-        """Call work(k, threads) for every k at once and wait for all; their errors come up here."""
-        if threads == 1:
-            work(0, 1)
-            return
-        for done in [self._pool.submit(work, k, threads) for k in range(threads)]:
+    def _on_threads(self, work: Callable[[int], None], threads: int) -> None:
+        """Call work(k) for every k at once and wait for all; their errors come up here."""
+        for done in [self._pool.submit(work, k) for k in range(threads)]:
             done.result()
 
     def _workspaces_for(self, budget: int) -> list[Workspace]:
@@ -124,16 +123,12 @@ class Batch:
             return decisions, new_positions, new_cells
         x0, y0 = crowd.positions.min(axis=0).tolist()
         x1, y1 = crowd.positions.max(axis=0).tolist()
+        around = (x0, y0, x1, y1)
         # Who is told to be slower from now on still has to brake.
         speeds = np.hypot(crowd.velocities[:, 0], crowd.velocities[:, 1])
         fastest_mps = max(float(crowd.parameters["max_speed_mps"].max()), float(speeds.max()))
-        self.field.fill(
-            prediction,
-            lambda work: self._on_threads(work, threads),
-            self.plan.slice_s,
-            fastest_mps * self.plan.step_s,
-            (x0, y0, x1, y1),
-        )
+        self.field.make_room(prediction, fastest_mps * self.plan.step_s)
+        last_wider = self.field.last_wider(self.plan.slice_s)
         reservations = make_reservations(
             self.grid,
             np.empty((actors, slices, 2)),
@@ -145,12 +140,36 @@ class Batch:
         world = World(self.grid.arrays, self.field.arrays, reservations, self.plan.step_s)
         workspaces = self._workspaces_for(int(crowd.parameters["max_expansions"].max()))
         order = np.empty(actors, dtype=np.int64)
+        if threads == 1:
+            plan_and_step(
+                world,
+                self.grid.index,
+                guides,
+                self._no_guide,
+                self._moves,
+                prediction,
+                last_wider,
+                around,
+                crowd,
+                tick_s,
+                order,
+                workspaces[0],
+                decisions,
+                new_positions,
+                new_cells,
+            )
+            return decisions, new_positions, new_cells
+
+        def index(k: int) -> None:
+            index_people(prediction, last_wider, around, k, threads, world.risk)
+
+        self._on_threads(index, threads)
         prepare(world, guides, crowd, tick_s, order)
         # Every thread takes the next portion when it is done with one: none waits for the other.
         portion = min(_PORTION, -(-actors // (2 * threads)))
         portions = iter(range(0, actors, portion))
 
-        def work(k: int, _: int) -> None:
+        def work(k: int) -> None:
             for first in portions:
                 decide(
                     world,
@@ -167,14 +186,5 @@ class Batch:
                 )
 
         self._on_threads(work, threads)
-        resolve(
-            world,
-            self.grid.index,
-            crowd,
-            order,
-            tick_s,
-            decisions,
-            new_positions,
-            new_cells,
-        )
+        resolve(world, self.grid.index, crowd, order, tick_s, decisions, new_positions, new_cells)
         return decisions, new_positions, new_cells

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -25,7 +24,9 @@ _MOST_BUCKETS = 16384
 """Of larger zones buckets are wider: all are cleared in every tick."""
 SLACK_M = 0.8
 """A step of 0.4 s at 2 m/s."""
-EVERYWHERE = (-math.inf, -math.inf, math.inf, math.inf)
+Box = tuple[float, float, float, float]
+"""x0, y0, x1, y1 in metres."""
+EVERYWHERE: Box = (-math.inf, -math.inf, math.inf, math.inf)
 _SIGMA_POINTS = 9
 _SIGMA_SPAN = 2.5
 
@@ -158,43 +159,49 @@ class RiskField:
             self._rows,
         )
 
+    def make_room(self, prediction: Prediction, slack_m: float) -> None:
+        """Room for the people of a prediction, and for moves that lead so far in a step.
+
+        Raises
+        ------
+        ValueError
+            The prediction has another number of slices.
+        """
+        if prediction.sigmas.shape[1] != self.slices + 1:
+            raise ValueError(
+                f"the field has {self.slices + 1} slices, the prediction "
+                f"{prediction.sigmas.shape[1]}"
+            )
+        people = len(prediction.means)
+        if people > self.arrays.people.shape[1] or slack_m > self.arrays.slack_m:
+            self.arrays = self._room_for(2 * people, max(slack_m, self.arrays.slack_m))
+
+    def last_wider(self, slice_s: float) -> int:
+        """The slice up to which deviations grow, slices being so many seconds apart."""
+        return round(self.model.reaction_s / slice_s)
+
     def fill(
         self,
         prediction: Prediction,
-        run: Callable[[Callable[[int, int], None]], None] | None = None,
         slice_s: float = 0.0,
         slack_m: float = SLACK_M,
-        around: tuple[float, float, float, float] = EVERYWHERE,
+        around: Box = EVERYWHERE,
     ) -> None:
         """Make it the field of a prediction with as many slices.
 
-        `run(work)` may call `work(first, step)` for first in range(step) on threads of its own.
         Searches ask once for everyone who matters within `slack_m` of a node: so far may a step
-        lead. It never gets less. Those who will search are in the box `around` now, (x0, y0, x1,
-        y1) m: whom they cannot come near by the time of a slice is left out.
+        lead. It never gets less. Those who will search are in the box `around` now: whom they
+        cannot come near by the time of a slice is left out. With `slice_s` 0 deviations grow
+        up to the last slice.
 
         Raises
         ------
         ValueError
             Another number of slices.
         """
-        people = len(prediction.means)
-        last_wider = round(self.model.reaction_s / slice_s) if slice_s else self.slices + 1
-        if prediction.sigmas.shape[1] != self.slices + 1:
-            raise ValueError(
-                f"the field has {self.slices + 1} slices, the prediction "
-                f"{prediction.sigmas.shape[1]}"
-            )
-        if people > self.arrays.people.shape[1] or slack_m > self.arrays.slack_m:
-            self.arrays = self._room_for(2 * people, max(slack_m, self.arrays.slack_m))
-
-        def work(first: int, step: int) -> None:
-            kernels.index_people(prediction, last_wider, around, first, step, self.arrays)
-
-        if run is None:
-            work(0, 1)
-        else:
-            run(work)
+        self.make_room(prediction, slack_m)
+        last_wider = self.last_wider(slice_s) if slice_s else self.slices
+        kernels.index_people(prediction, last_wider, around, 0, 1, self.arrays)
 
     def at(
         self,

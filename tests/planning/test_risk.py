@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planning import GAUSSIAN, PEOPLE, RiskField, RiskModel, Spread
-from planning.risk import radial_tables, sigma_points
+from planning._risk_kernels import index_people
+from planning.risk import EVERYWHERE, SLACK_M, radial_tables, sigma_points
 from tests.naive import risk as naive
 from tests.planning.worlds import (
     UPPER_M,
@@ -191,7 +192,9 @@ def test_how_work_is_shared_out_does_not_matter() -> None:
     prediction = walking([(2.0, 2.0), (5.0, 4.0)], [(1.0, 0.0), (0.0, 1.0)], slices=5)
     whole = field_of(grid, prediction, slices=5)
     parts = RiskField(grid, RiskModel(), 5, PEOPLE)
-    parts.fill(prediction, lambda work: [work(k, 3) for k in (2, 0, 1)])
+    parts.make_room(prediction, SLACK_M)
+    for k in (2, 0, 1):
+        index_people(prediction, 5, EVERYWHERE, k, 3, parts.arrays)
     for ours, theirs in zip(whole.arrays[1:5], parts.arrays[1:5], strict=True):
         assert np.array_equal(ours, theirs)
 
