@@ -51,6 +51,11 @@ LOOK_AHEAD_S = 0.6
 """How far ahead the last check before a step looks, in two halves."""
 NEAR_M = 4.0
 """Nobody further away can be met in that time."""
+PERSON_RADIUS_M = 0.3
+"""A grown person's, and a little for swaying."""
+WALKING_INTO_S = 0.3
+"""When somebody is bound to be touched, a metre a second toward them counts like so many metres
+less between the two."""
 
 
 @kernel
@@ -75,6 +80,7 @@ def _separation(
     near: NDArray[np.int64],
     since: float,
     seconds: float,
+    touching_m: float,
     ax: float,
     ay: float,
     bx: float,
@@ -83,7 +89,9 @@ def _separation(
     """Smallest distance to the people listed while moving evenly from a to b.
 
     The move begins `since` seconds from now. People walk on as predicted, or at their newest
-    velocity, whichever brings them nearer: whether a change is a turn or noise shows later.
+    velocity, whichever brings them nearer: whether a change is a turn or noise shows later. Of
+    whom the move brings nearer than `touching_m` the speed toward them is taken off: to be walked
+    into is bad, to walk into somebody is worse.
     """
     best = np.inf
     for n in range(len(near)):
@@ -95,7 +103,12 @@ def _separation(
             ry = ay - prediction.means[p, 0, 1] - vy * since
             dx = bx - ax - vx * seconds
             dy = by - ay - vy * seconds
-            best = min(best, closest_approach(rx, ry, dx, dy))
+            nearest = closest_approach(rx, ry, dx, dy)
+            if nearest < touching_m:
+                apart = max(1e-9, np.sqrt(rx * rx + ry * ry))
+                toward_mps = -(rx * (bx - ax) + ry * (by - ay)) / (apart * seconds)
+                nearest -= WALKING_INTO_S * max(0.0, toward_mps)
+            best = min(best, nearest)
     return best
 
 
@@ -109,8 +122,9 @@ def _gap(
     ux: float,
     uy: float,
 ) -> float:
-    """Smallest distance to people while turning to velocity u; negative where a wall is."""
+    """`_separation` while turning to velocity u; -inf where a wall is."""
     half = 0.5 * LOOK_AHEAD_S
+    touching_m = task.radius_m + PERSON_RADIUS_M
     a = task.max_acceleration_mps2
     hx, hy, hvx, hvy = advance(task.x, task.y, task.vx, task.vy, ux, uy, a, half)
     ex, ey, _, _ = advance(hx, hy, hvx, hvy, ux, uy, a, half)
@@ -121,10 +135,10 @@ def _gap(
         clearance_at(grid, task.body, half_cell, hx, hy) < need
         or clearance_at(grid, task.body, end, ex, ey) < need
     ):
-        return -1.0
+        return -np.inf
     return min(
-        _separation(prediction, near, 0.0, half, task.x, task.y, hx, hy),
-        _separation(prediction, near, half, half, hx, hy, ex, ey),
+        _separation(prediction, near, 0.0, half, touching_m, task.x, task.y, hx, hy),
+        _separation(prediction, near, half, half, touching_m, hx, hy, ex, ey),
     )
 
 
@@ -148,7 +162,7 @@ def last_check(
     gap = _gap(world, prediction, near, task, need, ux, uy)
     if gap >= contact_m:
         return ux, uy, False
-    best = min(gap, contact_m) - 1e-6 if gap >= 0.0 else -np.inf
+    best = min(gap, contact_m) - 1e-6
     bx = ux
     by = uy
     for n in range(33):
@@ -160,7 +174,7 @@ def last_check(
             vx = speed * np.cos(angle)
             vy = speed * np.sin(angle)
         gap = min(_gap(world, prediction, near, task, need, vx, vy), contact_m + 0.1)
-        if gap < 0.0:
+        if gap == -np.inf:
             continue
         score = gap - 0.02 * np.hypot(vx - ux, vy - uy)
         if score > best:

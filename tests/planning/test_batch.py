@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from planning import PARAMETERS, Batch, Crowd, PlanModel, RiskModel
 from planning._crowd import ARRIVED, BLOCKED, GIVING_WAY, WAITING
+from planning._step_kernels import WALKING_INTO_S, _separation
 from tests.planning.worlds import holds, open_grid, scaled, walking
 
 TICK_S = 0.1
@@ -236,6 +237,19 @@ def test_the_last_check_minds_who_has_just_turned(batch) -> None:
     assert turned.reasons[0] == GIVING_WAY
     assert parting.wishes[0] == pytest.approx([1.3, 0.0])
     assert turned.wishes[0, 0] < 1.2
+
+
+def test_to_walk_into_somebody_is_worse_than_to_be_walked_into() -> None:
+    """Both come as close, in the same time; only the actor that moves is to blame for it."""
+    ahead = walking([(4.8, 4.0)], [(0.0, 0.0)])
+    coming = walking([(4.8, 4.0)], [(-1.0, 0.0)])
+    near = np.array([0])
+    going = _separation(ahead, near, 0.0, 0.4, 0.55, 4.0, 4.0, 4.4, 4.0)
+    standing = _separation(coming, near, 0.0, 0.4, 0.55, 4.0, 4.0, 4.0, 4.0)
+    assert standing == pytest.approx(0.4)
+    assert going == pytest.approx(0.4 - WALKING_INTO_S)
+    clear = _separation(ahead, near, 0.0, 0.2, 0.55, 4.0, 4.0, 4.2, 4.0)
+    assert clear == pytest.approx(0.6)
 
 
 def reason_of(batch, crowd, ticks=1, people=()) -> int:
