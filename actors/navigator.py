@@ -13,6 +13,7 @@ from actors.parameters import ActorParameters
 from actors.state import SAME_FLOOR_M, ActorState, Reason
 from planning import (
     PARAMETERS,
+    PASSAGE,
     Batch,
     Crowd,
     LayeredGrid,
@@ -114,6 +115,7 @@ class Navigator:
             np.concatenate([c.followed, np.zeros((1, slices, 2))]),
             np.append(c.left_m, np.nan),
             np.append(c.behind_s, 0.0),
+            np.concatenate([c.passages, np.zeros((1, PASSAGE))]),
         )
         self._ids.append(actor_id)
         self._rows[actor_id] = rows
@@ -156,6 +158,7 @@ class Navigator:
         c.known[row] = c.known[row] and slot == old
         c.left_m[row] = np.nan
         c.behind_s[row] = 0.0
+        c.passages[row] = 0.0
         self._guides.release(old)
         self._goals[actor_id] = target
 
@@ -341,4 +344,5 @@ def _empty_crowd(slices: int) -> Crowd:
         np.zeros((0, slices, 2)),
         np.zeros(0),
         np.zeros(0),
+        np.zeros((0, PASSAGE)),
     )

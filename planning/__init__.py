@@ -4,6 +4,7 @@ Pure mathematics: no sockets, no clock, no random numbers of its own.
 """
 
 from planning._crowd import PARAMETERS, Crowd, Decisions
+from planning._passage_kernels import PASSAGE
 from planning._prediction_kernels import Prediction
 from planning._step_kernels import settle
 from planning.batch import Batch, PlanModel
@@ -20,6 +21,7 @@ from planning.spread import GAUSSIAN, PEOPLE, Spread
 __all__ = [
     "GAUSSIAN",
     "PARAMETERS",
+    "PASSAGE",
     "PEOPLE",
     "Batch",
     "Body",

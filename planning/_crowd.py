@@ -44,7 +44,8 @@ class Crowd(NamedTuple):
     kinds of body in the grid's clearances. `guide_slots` is the row of the guide pool, -1 without
     a goal; `known` tells whether `followed` holds a path; `followed` (A, K, 2) begins at the tick
     that `ages` (A,) ticks ago was. `left_m` is the way that was left a tick ago,
-    nan at first; `behind_s` the time lost since the goal was set and not made up yet. Both are
+    nan at first; `behind_s` the time lost since the goal was set and not made up yet; `passages`
+    (A, PASSAGE) are the narrow places ahead or just come through, zeros for none. All three are
     written by who decides.
     """
 
@@ -61,6 +62,7 @@ class Crowd(NamedTuple):
     followed: NDArray[np.float64]
     left_m: NDArray[np.float64]
     behind_s: NDArray[np.float64]
+    passages: NDArray[np.float64]
 
 
 class Decisions(NamedTuple):

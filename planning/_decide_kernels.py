@@ -18,6 +18,7 @@ from planning._crowd import (
     Decisions,
 )
 from planning._jit import kernel
+from planning._lane_kernels import OPPOSED, lane_of, see_passage
 from planning._perturb_kernels import path_cost, stretch_is_legal, update_path
 from planning._potential_kernels import potential_at
 from planning._prediction_kernels import Prediction
@@ -55,6 +56,7 @@ def make_task(
     a: int,
     max_hold_m: float,
     tick_s: float,
+    contested: bool,
 ) -> Task:
     """The question that actor a asks this tick. Without a goal or a way to it, it stays around."""
     p = crowd.parameters[a]
@@ -102,6 +104,7 @@ def make_task(
         p["hurry_weight"],
         int(p["max_expansions"]),
         int(p["edge_cells"]),
+        lane_of(crowd.passages[a], contested),
         hold,
     )
 
@@ -135,7 +138,8 @@ def decide(
     cells = np.empty(slices, dtype=np.int64)
     for a in range(first, last):
         p = crowd.parameters[a]
-        task = make_task(guides, crowd, a, p["goal_tolerance_m"], tick_s)
+        contested = world.reservations.contested[a]
+        task = make_task(guides, crowd, a, p["goal_tolerance_m"], tick_s, contested)
         slot = crowd.guide_slots[a]
         guide = guides[slot] if slot >= 0 else no_guide
         for m in range(len(moves.speeds)):
@@ -169,6 +173,8 @@ def decide(
         out.wishes[a, 1] = wy
         away = metres_left(guide, task, task.cell, task.x, task.y)
         lost = slot >= 0 and not np.isfinite(potential_at(guide, task.cell, task.x, task.y))
+        if len(crowd.passages) > OPPOSED:
+            see_passage(world.grid, guide, crowd, a, slot >= 0 and not task.hold, tick_s)
         out.reasons[a] = _reason(
             crowd, task, away, lost, path, status, switched, dodged, world.step_s
         )

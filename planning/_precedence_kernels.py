@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from planning._crowd import Crowd
 from planning._grid_kernels import GridArrays, floor_of, follow
 from planning._jit import inlined, kernel
+from planning._lane_kernels import OPPOSED, find_contested, order_at_passages
 from planning._potential_kernels import direction_at, potential_at
 from planning._reservation_kernels import AGAINST, OVERLAP_M, Reservations, index_paths
 from planning._task_kernels import SUB, World
@@ -40,6 +41,9 @@ def prepare(
     ways_left(guides, crowd, left_m)
     find_courses(world.grid, guides, crowd, left_m, r)
     empty_jams(left_m, r)
+    if actors > OPPOSED:
+        find_contested(crowd, r.contested)
+        order_at_passages(crowd, r.contested, left_m)
     by_rank = np.argsort(crowd.ranks, kind="mergesort")
     order[:] = by_rank[np.argsort(left_m[by_rank], kind="mergesort")]
     for n in range(actors):

@@ -38,8 +38,8 @@ class Reservations(NamedTuple):
 
     `paths` (A, K, 2) m; `heights` (A, K) m of the feet; `radii` (A,) m; `ranks` (A,), smaller goes
     first; `courses` (A, 2) unit vectors of where they want, zeros for who goes nowhere; `held_up`
-    (A,) tells who gets on badly; `starts` (K, buckets + 1) and `members` (K, A) list the actors of
-    a bucket.
+    (A,) tells who gets on badly, `contested` (A,) at whose passage many want against them; `starts`
+    (K, buckets + 1) and `members` (K, A) list the actors of a bucket.
     """
 
     paths: NDArray[np.float64]
@@ -48,6 +48,7 @@ class Reservations(NamedTuple):
     ranks: NDArray[np.int64]
     courses: NDArray[np.float64]
     held_up: NDArray[np.bool_]
+    contested: NDArray[np.bool_]
     starts: NDArray[np.int64]
     members: NDArray[np.int64]
     x0: float

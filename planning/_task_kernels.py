@@ -6,6 +6,7 @@ import numpy as np
 
 from planning._grid_kernels import GridArrays, clearance_at, length
 from planning._jit import inlined
+from planning._lane_kernels import Lane, astray
 from planning._potential_kernels import Guide, potential_at
 from planning._reservation_kernels import Reservations
 from planning._risk_kernels import RiskArrays
@@ -44,6 +45,8 @@ class Task(NamedTuple):
     max_expansions: int
     edge_cells: int
     """M of Huang & Li: so many cells in a row it may be at steps and edges."""
+    lane: Lane
+    """Where to keep right on the way."""
     hold: bool
     """Stay where the start is rather than go anywhere: at the goal, or with no way to it."""
 
@@ -88,10 +91,12 @@ def on_ramp(
 
 @inlined
 def metres_left(guide: Guide, task: Task, cell: int, x: float, y: float) -> float:
-    """Metres from a point, in a cell, to the goal; who holds a place goes straight back to it."""
+    """Metres from a point, in a cell, to the goal, and astray; who holds a place goes straight
+    back to it."""
     if task.hold:
         return length(x - task.goal_x, y - task.goal_y)
-    return potential_at(guide, cell, x, y)
+    left_m = potential_at(guide, cell, x, y)
+    return left_m + astray(task.lane, x, y) if task.lane.kept else left_m
 
 
 @inlined

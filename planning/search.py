@@ -126,6 +126,7 @@ def make_reservations(
         ranks,
         np.zeros((actors, 2)),
         np.zeros(actors, dtype=np.bool_),
+        np.zeros(actors, dtype=np.bool_),
         np.zeros((slices, nx * ny + 1), dtype=np.int64),
         np.zeros((slices, actors), dtype=np.int64),
         x0,

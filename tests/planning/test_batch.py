@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning import PARAMETERS, Batch, Crowd, PlanModel, RiskModel
+from planning import PARAMETERS, PASSAGE, Batch, Crowd, PlanModel, RiskModel
 from planning._crowd import ARRIVED, BLOCKED, GIVING_WAY, WAITING
 from planning._step_kernels import WALKING_INTO_S, _separation
 from tests.planning.worlds import holds, open_grid, scaled, walking
@@ -57,6 +57,7 @@ def crowd_of(positions, goals, velocities=None, ranks=None, **changes) -> Crowd:
         np.zeros((actors, PLAN.slices + 1, 2)),
         np.full(actors, np.nan),
         np.zeros(actors),
+        np.zeros((actors, PASSAGE)),
     )
 
 

@@ -21,6 +21,7 @@ from planning import (
     Scene,
     Spawn,
 )
+from planning._lane_kernels import Lane
 from planning._reservation_kernels import Reservations, index_paths
 from planning._task_kernels import Task, World
 from planning.search import make_reservations
@@ -161,6 +162,7 @@ def task(
         hurry_weight=2.0,
         max_expansions=400,
         edge_cells=24,
+        lane=Lane(0.0, 0.0, 1.0, 0.0, 0.0, False),
         hold=False,
     )._replace(**changes)
 

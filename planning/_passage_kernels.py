@@ -1,0 +1,160 @@
+"""Narrow places on the way ahead, found from the ground alone, on bare arrays."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planning._grid_kernels import GridArrays, clearance_at, floor_of, follow, length
+from planning._jit import inlined, kernel
+from planning._potential_kernels import Guide, direction_at
+
+PASSAGE = 7
+"""Numbers of a passage: its middle x, y, the unit vector through it, half the width that middles
+of bodies have in it, the height of its floor, and seconds until it is looked for again."""
+NARROW_M = 2.2
+"""For the middles of bodies a passage is no wider than that."""
+BEFORE_M = 20.0
+"""So far ahead passages are looked for."""
+STRAIGHT = 0.9
+"""Part of the way to a passage that the straight line there has to be: what lies around a corner
+leads nobody to one side of it yet."""
+WALL_PART = 0.8
+"""What leaves less room than this part of the radius is a side of a passage."""
+DEEP_M = 1.0
+"""Of so much of a passage, from where the way comes in, the narrowest place counts."""
+RAYS = 8
+"""Lines along which its width is looked for, before the best is refined."""
+
+
+@inlined
+def _free_way(
+    grid: GridArrays, body: int, cell: int, x: float, y: float, ux: float, uy: float, room_m: float
+) -> float:
+    """How far a point may go that needs so much room; `NARROW_M` at most."""
+    shortest = 0.5 * grid.layered.cell_m
+    way = 0.0
+    while way < NARROW_M:
+        cell = follow(grid, cell, x + way * ux, y + way * uy)
+        room = clearance_at(grid, body, cell, x + way * ux, y + way * uy) - room_m
+        if room < 0.0:
+            return max(0.0, way + max(room, -shortest))
+        way += max(room, shortest) if grid.flat else min(max(room, shortest), 2.0 * shortest)
+    return NARROW_M
+
+
+@inlined
+def _narrowest(
+    grid: GridArrays,
+    body: int,
+    cell: int,
+    x: float,
+    y: float,
+    room_m: float,
+    first: float,
+    apart: float,
+    lines: int,
+) -> tuple[float, float, float]:
+    """Of lines through a point, at angles first, first + apart, ..., the one that is the shortest
+    from side to side: its length, its angle, and how far along it its middle is."""
+    best = np.inf
+    turn = 0.0
+    aside = 0.0
+    for n in range(lines):
+        angle = first + n * apart
+        ux = np.cos(angle)
+        uy = np.sin(angle)
+        ahead = _free_way(grid, body, cell, x, y, ux, uy, room_m)
+        behind = _free_way(grid, body, cell, x, y, -ux, -uy, room_m)
+        if ahead + behind < best:
+            best = ahead + behind
+            turn = angle
+            aside = 0.5 * (ahead - behind)
+    return best, turn, aside
+
+
+@kernel
+def measure_passage(
+    grid: GridArrays,
+    body: int,
+    radius: float,
+    cell: int,
+    x: float,
+    y: float,
+    out: NDArray[np.float64],
+) -> bool:
+    """Whether a point is in a passage; fills all of `out` (PASSAGE,) but the seconds.
+
+    The shortest line through the point from side to side, then the shortest through its middle.
+    """
+    room_m = WALL_PART * radius
+    if clearance_at(grid, body, cell, x, y) < room_m:
+        return False
+    apart = np.pi / RAYS
+    width, turn, aside = _narrowest(grid, body, cell, x, y, room_m, 0.0, apart, RAYS)
+    if width >= NARROW_M:
+        return False
+    x += aside * np.cos(turn)
+    y += aside * np.sin(turn)
+    cell = follow(grid, cell, x, y)
+    width, turn, aside = _narrowest(
+        grid, body, cell, x, y, room_m, turn - 0.5 * apart, 0.25 * apart, 5
+    )
+    out[0] = x + aside * np.cos(turn)
+    out[1] = y + aside * np.sin(turn)
+    out[2] = -np.sin(turn)
+    out[3] = np.cos(turn)
+    out[4] = max(0.0, 0.5 * width - (radius - room_m))
+    out[5] = floor_of(grid, cell)
+    return width < NARROW_M
+
+
+@kernel
+def find_passage(
+    grid: GridArrays,
+    guide: Guide,
+    body: int,
+    radius: float,
+    cell: int,
+    x: float,
+    y: float,
+    out: NDArray[np.float64],
+) -> bool:
+    """Fill `out` with the first passage on the way, if there is one about straight ahead.
+
+    Its unit vector points the way that one goes through it.
+    """
+    wide = 0.5 * NARROW_M + radius
+    start_x = x
+    start_y = y
+    way = 0.0
+    last_dx = 0.0
+    last_dy = 0.0
+    most = BEFORE_M
+    narrowest = np.inf
+    here = np.empty(PASSAGE)
+    while way < most and cell >= 0:
+        dx, dy, leg = direction_at(grid, guide, cell, x, y)
+        room = clearance_at(grid, body, cell, x, y)
+        if room < wide and measure_passage(grid, body, radius, cell, x, y, here):
+            if narrowest == np.inf:
+                if length(x - start_x, y - start_y) < STRAIGHT * way - grid.layered.cell_m:
+                    return False
+                most = way + DEEP_M
+            if here[4] < narrowest:
+                narrowest = here[4]
+                out[:] = here
+                # Ways turn at its corners: both directions together lead through it.
+                if (dx + last_dx) * out[2] + (dy + last_dy) * out[3] < 0.0:
+                    out[2] = -out[2]
+                    out[3] = -out[3]
+        elif narrowest < np.inf:
+            break
+        if leg == 0.0:
+            break
+        last_dx = dx
+        last_dy = dy
+        step = min(leg, max(grid.layered.cell_m, room - wide if grid.flat else 0.0))
+        way += step
+        x += step * dx
+        y += step * dy
+        cell = follow(grid, cell, x, y)
+    return bool(narrowest < np.inf)
