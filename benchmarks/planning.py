@@ -3,10 +3,11 @@
     python -m benchmarks.planning                        100 actors among 0 and 100 people
     python -m benchmarks.planning --actors 100 300 1000 --people 0 100 500 --cell-m 0.25 0.5
 
-The world is 64 m x 64 m, a tenth of it buildings. People walk from place to
-place at 1.2 m/s; actors do the same, each to another place whenever it has arrived. Stages: `field`
-indexes people for risk, `search` decides for every actor (search and perturbation), `resolve` takes
-the steps in order of priority, `rest` is all else: observing, prediction, and making states.
+The world is 64 m x 64 m, a tenth of it buildings. People walk from place to place at 1.2 m/s;
+actors do the same, each to another place whenever it has arrived. Stages: `order` sees followed
+paths from now and tells who goes first, `decide` decides for every actor (perturbation and search),
+`resolve` takes the steps in that order, `rest` is all else: observing, prediction, and making
+states. On one thread the first three are one call, `decide`.
 At the end it says how medians grow with actors, people and cells, the others at their most.
 """
 
@@ -29,7 +30,6 @@ from planning import (
     PlanModel,
     Polygon,
     Potential,
-    RiskField,
     Scene,
     Spawn,
     Wave,
@@ -190,8 +190,8 @@ def print_case(grid: LayeredGrid, case: Case, ticks: int, threads: int) -> float
     rows: list[dict[str, float]] = []
     with ExitStack() as patches:
         for target, attribute, stage in (
-            (RiskField, "fill", "field"),
             (Batch, "tick", "batch"),
+            (batch, "prepare", "order"),
             (batch, "resolve", "resolve"),
         ):
             timed = watch.around(stage, getattr(target, attribute))
@@ -212,11 +212,12 @@ def print_case(grid: LayeredGrid, case: Case, ticks: int, threads: int) -> float
 
 def print_rows(case: Case, rows: list[dict[str, float]]) -> float:
     """One line a case; the median of the whole tick."""
-    spent = {name: 1e3 * np.array([row[name] for row in rows]) for name in rows[0]}
-    spent["search"] = spent["batch"] - spent["field"] - spent["resolve"]
+    names = ("all", "batch", "order", "resolve")
+    spent = {name: 1e3 * np.array([row.get(name, 0.0) for row in rows]) for name in names}
+    spent["decide"] = spent["batch"] - spent["order"] - spent["resolve"]
     spent["rest"] = spent["all"] - spent["batch"]
     parts = "  ".join(
-        f"{name} {np.median(spent[name]):.2f}" for name in ("field", "search", "resolve", "rest")
+        f"{name} {np.median(spent[name]):.2f}" for name in ("order", "decide", "resolve", "rest")
     )
     median = float(np.median(spent["all"]))
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
