@@ -18,7 +18,7 @@ from planning._crowd import (
     Decisions,
 )
 from planning._jit import kernel
-from planning._lane_kernels import OPPOSED, lane_of, see_passage
+from planning._lane_kernels import AFTER_M, OPPOSED, lane_of, see_passage
 from planning._perturb_kernels import path_cost, stretch_is_legal, update_path
 from planning._potential_kernels import potential_at
 from planning._prediction_kernels import Prediction
@@ -58,7 +58,11 @@ def make_task(
     tick_s: float,
     contested: bool,
 ) -> Task:
-    """The question that actor a asks this tick. Without a goal or a way to it, it stays around."""
+    """The question that actor a asks this tick. Without a goal or a way to it, it stays around.
+
+    `contested` is its passage; who is about to arrive keeps to no lane, or could not go to a goal
+    that lies left of it.
+    """
     p = crowd.parameters[a]
     cell = crowd.cells[a]
     x = crowd.positions[a, 0]
@@ -68,6 +72,7 @@ def make_task(
     slot = crowd.guide_slots[a]
     hold = slot < 0
     speed = p["speed_mps"]
+    left = 0.0
     if not hold:
         left = potential_at(guides[slot], cell, x, y)
         if not np.isfinite(left):
@@ -104,7 +109,7 @@ def make_task(
         p["hurry_weight"],
         int(p["max_expansions"]),
         int(p["edge_cells"]),
-        lane_of(crowd.passages[a], contested),
+        lane_of(crowd.passages[a], contested and left > AFTER_M),
         hold,
     )
 

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from planning._decide_kernels import make_task
 from planning._lane_kernels import (
     AFTER_M,
     LEFT_RAD,
@@ -143,3 +144,15 @@ def test_neither_lanes_nor_order_depend_on_the_order_of_actors() -> None:
     once, again = decided(np.arange(40)), decided(rows)
     assert once[:, PASSAGE].any()
     assert (once[rows] == again).all()
+
+
+@pytest.mark.parametrize(("x", "kept"), [(6.0, True), (9.0, False)])
+def test_who_is_about_to_arrive_keeps_to_no_lane(x, kept) -> None:
+    grid = open_grid(16.0)
+    crowd = crowd_of([(x, 8.0)], [(12.0, 8.0)])
+    crowd.guide_slots[:] = 0
+    crowd.cells[:] = grid.on_ground(crowd.positions, [0.0])[1]
+    crowd.passages[0, :3] = (8.0, 8.0, 1.0)
+    guides = grid.potential((12.0, 8.0), 0, 0.25).guide[None]
+    assert make_task(guides, crowd, 0, 0.3, 0.1, True).lane.kept == kept
+    assert not make_task(guides, crowd, 0, 0.3, 0.1, False).lane.kept
