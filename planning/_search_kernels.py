@@ -277,6 +277,8 @@ def search(
             hx, hy, hvx, hvy = on_ramp(x, y, vx, vy, dvx, dvy, ramp, ds)
             if grid.flat:
                 half = follow(grid, cell, hx, hy)
+                if half < 0:  # bounds without a wall do not show in the clearance
+                    continue
             if not in_the_open:
                 room = min(
                     clearance_at(grid, task.body, half, hx, hy),

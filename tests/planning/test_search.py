@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from planning import SearchForm, SearchStatus, uncertain_bfp
@@ -39,6 +39,16 @@ ROOM = [
 def relative_moves(speed=1.3, fastest=1.7) -> Moves:
     table = compass_moves()
     return table._replace(speeds=np.where(table.speeds > 1.0, fastest, table.speeds * speed))
+
+
+def lopsided_moves() -> Moves:
+    """Left turns a little wider than right ones.
+
+    Mirrored moves cost the same where nobody is near; rounding would decide which goes first.
+    """
+    table = relative_moves()
+    turns = np.arctan2(table.sines, table.cosines) * np.where(table.sines > 0.0, 1.01, 1.0)
+    return table._replace(cosines=np.cos(turns), sines=np.sin(turns))
 
 
 def ground_of(question, steps=12, walls=(), people=(), others=None):
@@ -88,7 +98,7 @@ people = st.lists(
 def test_both_forms_are_their_twins(form, start, goal, crowd, walled) -> None:
     question = task(start, goal, max_expansions=40)
     ground = ground_of(question, 5, WALLS if walled else (), crowd)
-    same_as_twin(ground, relative_moves(), form)
+    same_as_twin(ground, lopsided_moves(), form)
 
 
 @given(start=spots, goal=ends, crowd=people, slack=st.floats(-1.0, 1.0))
@@ -110,11 +120,12 @@ def test_a_bound_holds_and_saves_work(start, goal, crowd, slack) -> None:
 
 
 @given(start=spots, goal=ends, crowd=people, slack=st.floats(-0.5, 3.0))
+@example(start=(1.0, 0.8125), goal=(6.0, 0.5), crowd=[((2.0, 1.0), (-1.0, 1.0))], slack=2.0)
 @holds(15, 3)
 def test_a_bounded_search_is_its_twin(start, goal, crowd, slack) -> None:
     ground = ground_of(task(start, goal, max_expansions=40), 5, (), crowd)
     bound = ground.seconds_left(start) + slack
-    same_as_twin(ground, relative_moves(), SearchForm.ACCUMULATED, bound)
+    same_as_twin(ground, lopsided_moves(), SearchForm.ACCUMULATED, bound)
 
 
 @given(start=spots, goal=ends, crowd=people)
@@ -133,7 +144,7 @@ def test_on_the_lattice_too(start, goal, crowd) -> None:
 def test_and_for_who_stays_where_it_is(goal, crowd, away) -> None:
     goal = (goal[0] + 0.0137, goal[1] + 0.0071)  # moves along an edge of cells would be a toss-up
     question = task((goal[0] + away[0], goal[1] + away[1]), goal, max_expansions=40, hold=True)
-    same_as_twin(ground_of(question, 5, (), crowd), relative_moves(), SearchForm.ACCUMULATED)
+    same_as_twin(ground_of(question, 5, (), crowd), lopsided_moves(), SearchForm.ACCUMULATED)
 
 
 @given(goal=ends, crowd=people)
@@ -141,7 +152,7 @@ def test_and_for_who_stays_where_it_is(goal, crowd, away) -> None:
 def test_and_for_who_minds_nobody(goal, crowd) -> None:
     goal = (goal[0] + 0.0137, goal[1] + 0.0071)
     question = task((1.0137, 4.0071), goal, risk_weight=0.0, max_expansions=40)
-    same_as_twin(ground_of(question, 5, (), crowd), relative_moves(), SearchForm.ACCUMULATED)
+    same_as_twin(ground_of(question, 5, (), crowd), lopsided_moves(), SearchForm.ACCUMULATED)
 
 
 @given(st.integers(0, 1000))
@@ -154,7 +165,7 @@ def test_and_among_certain_obstacles(seed) -> None:
     paths = begin[:, None] + 0.2 * np.arange(11)[None, :, None] * velocity[:, None]
     others = reserved(open_grid(8.0), paths, [0.25] * 4, rng.permutation(4))
     question = task(tuple(start), tuple(goal), max_expansions=40)
-    same_as_twin(ground_of(question, 5, others=others), relative_moves(), SearchForm.ACCUMULATED)
+    same_as_twin(ground_of(question, 5, others=others), lopsided_moves(), SearchForm.ACCUMULATED)
 
 
 @given(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0), speeds, st.floats(0.01, 1.0))
