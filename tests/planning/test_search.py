@@ -19,6 +19,7 @@ from tests.planning.worlds import (
     field_of,
     holds,
     open_grid,
+    points,
     reserved,
     scaled,
     standing,
@@ -139,7 +140,7 @@ def test_on_the_lattice_too(start, goal, crowd) -> None:
     )
 
 
-@given(goal=ends, crowd=people, away=st.tuples(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5)))
+@given(goal=ends, crowd=people, away=points(-0.5, 0.5))
 @holds(10, 2)
 def test_and_for_who_stays_where_it_is(goal, crowd, away) -> None:
     goal = (goal[0] + 0.0137, goal[1] + 0.0071)  # moves along an edge of cells would be a toss-up
