@@ -164,7 +164,7 @@ class Cast:
         """Make ready all that a tick would have to wait for: kernels, and potentials of places.
 
         Kernels are compiled by running a small zone of their own, which is not all level: on level
-        ground some are not called.
+        ground some are not called. Few actors and many are planned for by different ones.
         """
         step = Polygon(points=((4.5, 4.5), (5.5, 4.5), (5.5, 5.5), (4.5, 5.5)), height_m=0.3)
         walls = [((3.0, 0.0), (3.0, 2.0))]
@@ -175,6 +175,9 @@ class Cast:
         for k in range(40):
             navigator.observe({"p": (3.0, 5.0 - 0.05 * k)})
             navigator.tick()
+            if k == 30:
+                for n in range(10):
+                    navigator.add_actor(n, (0.5 + 0.5 * n, 3.5), (1.0, 1.0))
         navigator.grid.walk([(1.0, 1.0)], [0], [(0.1, 0.0)], 0.2)
         potential = navigator.grid.potential((5.0, 1.0), 0, 0.25)
         potential.direction([(1.0, 1.0)], [0])

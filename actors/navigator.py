@@ -37,8 +37,9 @@ class Navigator:
     """Takes every actor to its goal among people whose future is not known.
 
     A tick is `observe` (where everyone is now) and `tick` (one step of every actor). Time is
-    tick × `tick_s`; the seed decides nothing but who goes first of two with equal ways left; the
-    order in which actors were added or people are listed never matters.
+    tick × `tick_s`; the seed decides nothing but who goes first of two with equal ways left, and
+    who looks for narrow places when; the order in which actors were added or people are listed
+    never matters.
     """
 
     def __init__(

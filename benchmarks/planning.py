@@ -5,9 +5,9 @@
 
 The world is 64 m x 64 m, a tenth of it buildings. People walk from place to place at 1.2 m/s;
 actors do the same, each to another place whenever it has arrived. Stages: `order` sees followed
-paths from now and tells who goes first, `decide` decides for every actor (perturbation and search),
-`resolve` takes the steps in that order, `rest` is all else: observing, prediction, and making
-states. On one thread the first three are one call, `decide`.
+paths from now and tells who goes first, `decide` indexes people and decides for every actor
+(perturbation and search), `resolve` takes the steps in that order, `rest` is all else: observing,
+prediction, and making states. On one thread the first three are one call, `decide`.
 At the end it says how medians grow with actors, people and cells, the others at their most.
 """
 

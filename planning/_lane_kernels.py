@@ -8,15 +8,29 @@ from numpy.typing import NDArray
 from planning._crowd import Crowd
 from planning._grid_kernels import GridArrays, length
 from planning._jit import inlined, kernel
-from planning._passage_kernels import BEFORE_M, PASSAGE, find_passage
+from planning._passage_kernels import (
+    BEFORE_M,
+    FEET_M,
+    HALF_M,
+    LOOK_IN_S,
+    MIDDLE_X,
+    MIDDLE_Y,
+    PASSAGE,
+    THROUGH_X,
+    THROUGH_Y,
+    find_passage,
+)
 from planning._potential_kernels import Guide
 
 OPPOSED = 8
 """So many who want through a passage against me make me keep right there."""
 SAME_M = 1.0
-"""Two found a passage no further apart than that, along x, along y and in height: it is one."""
+"""Two found passages no further apart than that across and in height,"""
+LONG_M = 6.0
+"""and along the way through: they are the two ends of one."""
 LOOK_S = 1.0
-"""Passages are looked for every so often, or half as often: not by all in the same tick."""
+"""Passages are looked for every so often, or half as often: after the first look not by all in the
+same tick."""
 AFTER_M = 4.0
 """Who has come through a passage keeps right for so far,"""
 PASSED_M = 8.0
@@ -27,7 +41,7 @@ STEEPNESS = 0.8
 """What a metre nearer weighs wholly on the left, in metres; below 1, or who is there would rather
 go away than come nearer."""
 LEFT_RAD = 1.0
-"""Seen from the middle, who is so far to the left of the lane is wholly on the left."""
+"""Seen from where the lane begins, who is so far to the left of it is wholly on the left."""
 
 
 class Lane(NamedTuple):
@@ -45,8 +59,15 @@ class Lane(NamedTuple):
 @inlined
 def lane_of(passage: NDArray[np.float64], kept: bool) -> Lane:
     """The lane through a passage (PASSAGE,)."""
-    shift_m = min(SHIFT_M, 0.5 * passage[4])
-    return Lane(passage[0], passage[1], passage[2], passage[3], shift_m, kept)
+    shift_m = min(SHIFT_M, 0.5 * passage[HALF_M])
+    return Lane(
+        passage[MIDDLE_X],
+        passage[MIDDLE_Y],
+        passage[THROUGH_X],
+        passage[THROUGH_Y],
+        shift_m,
+        kept,
+    )
 
 
 @kernel
@@ -73,14 +94,30 @@ def astray(lane: Lane, x: float, y: float) -> float:
 def _beyond(crowd: Crowd, a: int) -> tuple[bool, float]:
     """Whether an actor has come through its passage, and how far it is from the middle of it."""
     p = crowd.passages[a]
-    dx = crowd.positions[a, 0] - p[0]
-    dy = crowd.positions[a, 1] - p[1]
-    return bool(p[2] * dx + p[3] * dy > 0.0), length(dx, dy)
+    dx = crowd.positions[a, 0] - p[MIDDLE_X]
+    dy = crowd.positions[a, 1] - p[MIDDLE_Y]
+    return bool(p[THROUGH_X] * dx + p[THROUGH_Y] * dy > 0.0), length(dx, dy)
 
 
 @inlined
 def _has_passage(crowd: Crowd, a: int) -> bool:
-    return bool(crowd.passages[a, 2] != 0.0 or crowd.passages[a, 3] != 0.0)
+    p = crowd.passages[a]
+    return bool(p[THROUGH_X] != 0.0 or p[THROUGH_Y] != 0.0)
+
+
+@inlined
+def _opposed(one: NDArray[np.float64], other: NDArray[np.float64]) -> bool:
+    """Whether two passages (PASSAGE,) are the same one, gone through in opposite directions."""
+    ux = one[THROUGH_X]
+    uy = one[THROUGH_Y]
+    dx = other[MIDDLE_X] - one[MIDDLE_X]
+    dy = other[MIDDLE_Y] - one[MIDDLE_Y]
+    return bool(
+        ux * other[THROUGH_X] + uy * other[THROUGH_Y] < 0.0
+        and abs(dx * uy - dy * ux) < SAME_M
+        and abs(dx * ux + dy * uy) < LONG_M
+        and abs(other[FEET_M] - one[FEET_M]) < SAME_M
+    )
 
 
 @kernel
@@ -92,16 +129,16 @@ def see_passage(
     if not going:
         p[:] = 0.0
         return
-    p[6] -= tick_s
+    p[LOOK_IN_S] -= tick_s
     beyond, away = _beyond(crowd, a)
     if beyond and away > PASSED_M:
         p[:] = 0.0
-    elif not beyond and p[6] <= 0.0:
+    elif not beyond and p[LOOK_IN_S] <= 0.0:
         x, y = crowd.positions[a]
         radius = crowd.parameters[a]["radius_m"]
         if not find_passage(grid, guide, crowd.bodies[a], radius, crowd.cells[a], x, y, p):
             p[:] = 0.0
-        p[6] = LOOK_S * (1.0 + crowd.ranks[a] / len(crowd.ranks))
+        p[LOOK_IN_S] = LOOK_S * (1.0 + crowd.ranks[a] / len(crowd.ranks))
 
 
 @kernel
@@ -121,12 +158,7 @@ def find_contested(crowd: Crowd, out: NDArray[np.bool_]) -> None:
         against = 0
         if _has_passage(crowd, a):
             for n in range(count):
-                if (
-                    abs(p[0] - coming[n, 0]) < SAME_M
-                    and abs(p[1] - coming[n, 1]) < SAME_M
-                    and abs(p[5] - coming[n, 5]) < SAME_M
-                    and p[2] * coming[n, 2] + p[3] * coming[n, 3] < 0.0
-                ):
+                if _opposed(p, coming[n]):
                     against += 1
                     if against == OPPOSED:
                         break
@@ -141,12 +173,13 @@ def order_at_passages(
 
     Who has come through goes first, the furthest before all, since nobody else can come in before
     the way out is free; then who has still to come there, the nearest first; then everyone else.
+    Who is about to arrive goes last, as everywhere.
     """
     if not contested.any():
         return
     for a in range(len(left_m)):
-        if contested[a]:
+        if not contested[a]:
+            left_m[a] += 2.0 * BEFORE_M  # further than anybody contested is, even in a jam
+        elif left_m[a] < np.inf:
             beyond, away = _beyond(crowd, a)
             left_m[a] = -away if beyond else away
-        else:
-            left_m[a] += BEFORE_M

@@ -7,11 +7,13 @@ from planning._grid_kernels import GridArrays, clearance_at, floor_of, follow, l
 from planning._jit import inlined, kernel
 from planning._potential_kernels import Guide, direction_at
 
+MIDDLE_X, MIDDLE_Y, THROUGH_X, THROUGH_Y, HALF_M, FEET_M, LOOK_IN_S = range(7)
 PASSAGE = 7
-"""Numbers of a passage: its middle x, y, the unit vector through it, half the width that middles
-of bodies have in it, the height of its floor, and seconds until it is looked for again."""
+"""Numbers of a passage: its middle, the unit vector through it (zeros if there is none), half the
+width that middles of bodies have in it, the height of its floor, and seconds until it is looked for
+again."""
 NARROW_M = 2.2
-"""For the middles of bodies a passage is no wider than that."""
+"""No passage is wider, between where less than `WALL_PART` of the radius is free."""
 BEFORE_M = 20.0
 """So far ahead passages are looked for."""
 STRAIGHT = 0.9
@@ -98,12 +100,12 @@ def measure_passage(
     width, turn, aside = _narrowest(
         grid, body, cell, x, y, room_m, turn - 0.5 * apart, 0.25 * apart, 5
     )
-    out[0] = x + aside * np.cos(turn)
-    out[1] = y + aside * np.sin(turn)
-    out[2] = -np.sin(turn)
-    out[3] = np.cos(turn)
-    out[4] = max(0.0, 0.5 * width - (radius - room_m))
-    out[5] = floor_of(grid, cell)
+    out[MIDDLE_X] = x + aside * np.cos(turn)
+    out[MIDDLE_Y] = y + aside * np.sin(turn)
+    out[THROUGH_X] = -np.sin(turn)
+    out[THROUGH_Y] = np.cos(turn)
+    out[HALF_M] = max(0.0, 0.5 * width - (radius - room_m))
+    out[FEET_M] = floor_of(grid, cell)
     return width < NARROW_M
 
 
@@ -139,13 +141,14 @@ def find_passage(
                 if length(x - start_x, y - start_y) < STRAIGHT * way - grid.layered.cell_m:
                     return False
                 most = way + DEEP_M
-            if here[4] < narrowest:
-                narrowest = here[4]
+            if here[HALF_M] < narrowest:
+                narrowest = here[HALF_M]
                 out[:] = here
                 # Ways turn at its corners: both directions together lead through it.
-                if (dx + last_dx) * out[2] + (dy + last_dy) * out[3] < 0.0:
-                    out[2] = -out[2]
-                    out[3] = -out[3]
+                through = (dx + last_dx) * out[THROUGH_X] + (dy + last_dy) * out[THROUGH_Y]
+                if through < 0.0:
+                    out[THROUGH_X] *= -1.0
+                    out[THROUGH_Y] *= -1.0
         elif narrowest < np.inf:
             break
         if leg == 0.0:

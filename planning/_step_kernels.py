@@ -90,8 +90,8 @@ def _separation(
 
     The move begins `since` seconds from now. People walk on as predicted, or at their newest
     velocity, whichever brings them nearer: whether a change is a turn or noise shows later. Of
-    whom the move brings nearer than `touching_m` the speed toward them is taken off: to be walked
-    into is bad, to walk into somebody is worse.
+    whom the move brings nearer than `touching_m`, `WALKING_INTO_S` of the speed toward them is
+    taken off: to be walked into is bad, to walk into somebody is worse.
     """
     best = np.inf
     for n in range(len(near)):

@@ -91,8 +91,10 @@ def on_ramp(
 
 @inlined
 def metres_left(guide: Guide, task: Task, cell: int, x: float, y: float) -> float:
-    """Metres from a point, in a cell, to the goal, and astray; who holds a place goes straight
-    back to it."""
+    """Metres from a point, in a cell, to the goal, and what being left of a lane is like besides.
+
+    Who holds a place goes straight back to it.
+    """
     if task.hold:
         return length(x - task.goal_x, y - task.goal_y)
     left_m = potential_at(guide, cell, x, y)

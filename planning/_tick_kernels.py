@@ -33,7 +33,7 @@ def plan_and_step(
     new_positions: NDArray[np.float64],
     new_cells: NDArray[np.int64],
 ) -> None:
-    """What the threads of a tick do, one after the other.
+    """What `Batch.tick` does on several threads, one after the other.
 
     To hand a zone's arrays to compiled code takes longer than what it then does for one actor: so
     they are handed over once.

@@ -183,7 +183,6 @@ class RiskField:
     def fill(
         self,
         prediction: Prediction,
-        slice_s: float = 0.0,
         slack_m: float = SLACK_M,
         around: Box = EVERYWHERE,
     ) -> None:
@@ -191,8 +190,7 @@ class RiskField:
 
         Searches ask once for everyone who matters within `slack_m` of a node: so far may a step
         lead. It never gets less. Those who will search are in the box `around` now: whom they
-        cannot come near by the time of a slice is left out. With `slice_s` 0 deviations grow
-        up to the last slice.
+        cannot come near by the time of a slice is left out. Deviations grow up to the last slice.
 
         Raises
         ------
@@ -200,8 +198,7 @@ class RiskField:
             Another number of slices.
         """
         self.make_room(prediction, slack_m)
-        last_wider = self.last_wider(slice_s) if slice_s else self.slices
-        kernels.index_people(prediction, last_wider, around, 0, 1, self.arrays)
+        kernels.index_people(prediction, self.slices, around, 0, 1, self.arrays)
 
     def at(
         self,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from actors import ActorParameters, Cast, GoTo, Guide, Idle, Patrol, Reason, Wander
-from planning import LayeredGrid, Polygon, Scene
+from planning import LayeredGrid, Polygon, Scene, batch
 from tests.actors.worlds import BODY, along, block, plaza
 
 SCENE = plaza()
@@ -198,6 +198,23 @@ def test_warming_up_changes_nothing(cast) -> None:
     assert cast.trips == 0
     assert len(cast) == 1
     assert set(cast.tick({})) == {"a"}
+
+
+def test_warming_up_calls_the_kernels_for_few_actors_and_for_many(cast, monkeypatch) -> None:
+    called = set()
+
+    def watched(name, kernel):
+        def call(*arguments):
+            called.add(name)
+            return kernel(*arguments)
+
+        return call
+
+    names = {"plan_and_step", "index_people", "prepare", "decide", "resolve"}
+    for name in names:
+        monkeypatch.setattr(batch, name, watched(name, getattr(batch, name)))
+    cast.warm_up()
+    assert called == names
 
 
 def test_who_is_put_where_nobody_can_stand_stands_beside_it() -> None:

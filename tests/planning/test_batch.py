@@ -7,7 +7,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning import PARAMETERS, PASSAGE, Batch, Crowd, PlanModel, RiskModel
+from planning import (
+    PARAMETERS,
+    PASSAGE,
+    Batch,
+    Crowd,
+    LayeredGrid,
+    PlanModel,
+    RiskModel,
+    Scene,
+)
 from planning._crowd import ARRIVED, BLOCKED, GIVING_WAY, WAITING
 from planning._step_kernels import WALKING_INTO_S, _separation
 from tests.planning.worlds import holds, open_grid, scaled, walking
@@ -322,3 +331,34 @@ def test_an_error_in_a_thread_comes_up(batch) -> None:
 
     with pytest.raises(RuntimeError, match="no such kernel"):
         batch._on_threads(work, 2)
+
+
+def at_a_doorway(rows, threads):
+    """Nine a side before a doorway in the wall x = 8, all of whom want through, after a while."""
+    walls = (((8.0, 0.1), (8.0, 7.0)), ((8.0, 9.0), (8.0, 15.9)))
+    grid = LayeredGrid.from_scene(Scene.open_space((0.0, 0.0, 16.0, 16.0), walls=walls), 0.25)
+    batch = Batch(grid, PlanModel(threads=threads), RiskModel())
+    west = np.array([(5.0 + 0.7 * (n // 3), 7.0 + 1.0 * (n % 3)) for n in range(9)])
+    places = np.concatenate([west, (16.0, 16.0) - west])
+    goals = np.repeat([(14.0, 8.0), (2.0, 8.0)], 9, axis=0)
+    crowd = crowd_of(places[rows], goals[rows], ranks=rows)
+    crowd.guide_slots[:] = rows // 9
+    guides = np.stack([grid.potential(goal, 0, 0.25).guide for goal in ((14.0, 8.0), (2.0, 8.0))])
+    for _ in range(scaled(10, 4)):
+        crowd.cells[:] = grid.on_ground(crowd.positions, np.zeros(18))[1]
+        decisions, positions, _ = batch.tick(crowd, guides, walking([], []), TICK_S)
+        step(crowd, decisions, positions)
+    batch.close()
+    return crowd
+
+
+def test_at_a_contested_doorway_actors_keep_right_whatever_their_order_and_threads() -> None:
+    crowd = at_a_doorway(np.arange(18), 1)
+    assert np.allclose(np.abs(crowd.passages[:, :2] - 8.0), 0.0, atol=0.3)
+    to_the_right = np.where(np.arange(18) < 9, -1.0, 1.0) * crowd.velocities[:, 1]
+    assert to_the_right.mean() > 0.05
+    rows = np.random.default_rng(0).permutation(18)
+    for threads in (1, 2, 3):
+        other = at_a_doorway(rows, threads)
+        assert np.array_equal(other.positions, crowd.positions[rows])
+        assert np.array_equal(other.passages, crowd.passages[rows])

@@ -20,7 +20,7 @@ from planning._lane_kernels import (
     order_at_passages,
     see_passage,
 )
-from planning._passage_kernels import BEFORE_M, PASSAGE
+from planning._passage_kernels import BEFORE_M, FEET_M, MIDDLE_X, MIDDLE_Y, PASSAGE
 from planning.grid import LayeredGrid
 from planning.scene import Scene
 from tests.planning.test_batch import crowd_of
@@ -64,16 +64,33 @@ def test_a_passage_is_contested_by_enough_who_come_against_one() -> None:
     assert not contested[OPPOSED - 1 :].any(), "seven come against the east"
 
 
-@pytest.mark.parametrize("column", [0, 1, 5])
+def test_who_has_come_through_contests_nothing() -> None:
+    crowd = _facing(OPPOSED, OPPOSED)
+    crowd.positions[-1] = (5.0, 8.0)
+    contested = np.zeros(2 * OPPOSED, dtype=bool)
+    find_contested(crowd, contested)
+    assert not contested[:OPPOSED].any(), "seven still come against the west"
+    assert contested[OPPOSED:].all()
+
+
+def test_the_two_ends_of_a_long_passage_are_one() -> None:
+    crowd = _facing(OPPOSED, OPPOSED)
+    crowd.passages[:OPPOSED, MIDDLE_X] -= 3.0
+    contested = np.zeros(2 * OPPOSED, dtype=bool)
+    find_contested(crowd, contested)
+    assert contested.all()
+
+
+@pytest.mark.parametrize("column", [MIDDLE_X, MIDDLE_Y, FEET_M])
 def test_another_passage_or_floor_is_not_contested(column) -> None:
     crowd = _facing(OPPOSED, OPPOSED)
-    crowd.passages[:OPPOSED, column] += 3.0
+    crowd.passages[:OPPOSED, column] -= 3.0 if column != MIDDLE_X else 7.0
     contested = np.ones(2 * OPPOSED, dtype=bool)
     find_contested(crowd, contested)
     assert not contested.any()
 
 
-def test_who_has_come_through_contests_nothing_but_goes_first() -> None:
+def test_who_has_come_through_goes_first() -> None:
     crowd = _facing(OPPOSED, OPPOSED + 1)
     crowd.positions[-1] = (5.0, 8.0)
     contested = np.zeros(2 * OPPOSED + 1, dtype=bool)
@@ -85,7 +102,10 @@ def test_who_has_come_through_contests_nothing_but_goes_first() -> None:
     away = np.hypot(*(crowd.positions - 8.0).T)
     assert left_m[-1] == pytest.approx(-3.0)
     assert left_m[1:-1] == pytest.approx(away[1:-1])
-    assert left_m[0] == 7.0 + BEFORE_M
+    assert left_m[0] == 7.0 + 2.0 * BEFORE_M
+    left_m[-1] = np.inf
+    order_at_passages(crowd, contested, left_m)
+    assert left_m[-1] == np.inf, "who is about to arrive goes last"
 
 
 def test_a_passage_is_kept_until_one_is_well_beyond() -> None:
