@@ -23,10 +23,10 @@ from planning import (
     RiskModel,
     Scene,
     TrackHistory,
-    settle,
 )
 
 Point = tuple[float, float]
+Place = tuple[float, ...] | NDArray[np.float64]
 
 _REASONS = tuple(Reason)
 _SLACK_M = 0.02
@@ -189,7 +189,7 @@ class Navigator:
         row = self._row(actor_id)
         z_m = self._floor(int(self._crowd.cells[row]))
         self.check_place(position, z_m)
-        if not np.isfinite(velocity).all():
+        if not (math.isfinite(velocity[0]) and math.isfinite(velocity[1])):
             raise ValueError(f"velocity of {actor_id!r} must be finite, got {velocity}")
         self._crowd.positions[row] = position
         self._crowd.cells[row] = self._cell(position, z_m)
@@ -208,8 +208,8 @@ class Navigator:
 
     # --- ticks ---------------------------------------------------------------------------
 
-    def observe(self, people: Mapping[Hashable, tuple[float, ...]]) -> None:
-        """Tell where everyone is at this tick: id -> (x, y) or (x, y, z).
+    def observe(self, people: Mapping[Hashable, Place]) -> None:
+        """Tell where everyone is at this tick: id -> (x, y) or (x, y, z), tuples or arrays.
 
         Who is absent has left. Call it once before every `tick`.
 
@@ -223,52 +223,43 @@ class Navigator:
     def tick(self) -> dict[Hashable, ActorState]:
         """Plan and take one step for every actor; id -> state."""
         self._guides.renew_one()
-        c = self._crowd
         self._prediction = self._history.predict(self.grid, self.plan.slices, self.plan.slice_s)
-        decisions, positions, cells = self._batch.tick(
-            c, self._guides.arrays, self._prediction, self.tick_s
-        )
-        settle(c, decisions, positions, cells, self.tick_s, self._headings)
-        return self._states(decisions.reasons, decisions.paths)
+        if not self._ids:
+            return {}
+        self._batch.tick(self._crowd, self._guides.arrays, self._prediction, self.tick_s)
+        shown, ways = self._batch.settle(self.tick_s, self._headings)
+        return {
+            who: self._state(who, row, way)
+            for who, row, way in zip(self._ids, shown.tolist(), ways, strict=True)
+        }
 
     def state(self, actor_id: Hashable) -> ActorState:
         """An actor as it stands, before its first tick."""
         row = self._row(actor_id)
-        here = np.broadcast_to(self._crowd.positions, (1, len(self._ids), 2)).swapaxes(0, 1)
-        reasons = np.full(len(self._ids), Reason.WAITING.value)
-        return self._states(reasons, np.ascontiguousarray(here))[self._ids[row]]
-
-    def _states(
-        self, reasons: NDArray[np.int64], paths: NDArray[np.float64]
-    ) -> dict[Hashable, ActorState]:
         c = self._crowd
-        ways = self.grid.with_heights(paths, c.cells)
-        layers = np.where(c.cells >= 0, self.grid.layered.places[c.cells, 0], 0)
-        rows = zip(
-            self._ids,
-            c.positions.tolist(),
-            layers.tolist(),
-            self._floors(c.cells).tolist(),
-            c.velocities.tolist(),
-            self._headings.tolist(),
-            reasons.tolist(),
-            ways,
-            strict=True,
+        cell = int(c.cells[row])
+        x, y = c.positions[row].tolist()
+        vx, vy = c.velocities[row].tolist()
+        z_m = self._floor(cell)
+        layer = self.grid.layered.places[cell, 0] if cell >= 0 else 0
+        shown = [x, y, layer, z_m, vx, vy, float(self._headings[row]), Reason.WAITING]
+        return self._state(actor_id, shown, np.array([[x, y, z_m]]))
+
+    def _state(
+        self, actor_id: Hashable, shown: list[float], way: NDArray[np.float64]
+    ) -> ActorState:
+        x, y, layer, z_m, vx, vy, heading, reason = shown
+        return ActorState(
+            (x, y),
+            int(layer),
+            z_m,
+            (vx, vy),
+            heading,
+            _REASONS[int(reason)],
+            self._goals[actor_id],
+            self.plan.slice_s,
+            way,
         )
-        return {
-            who: ActorState(
-                (x, y),
-                layer,
-                z,
-                (vx, vy),
-                heading,
-                _REASONS[reason],
-                self._goals[who],
-                self.plan.slice_s,
-                way,
-            )
-            for who, (x, y), layer, z, (vx, vy), heading, reason, way in rows
-        }
 
     def predicted_near(
         self, position: Point, z_m: float, within_m: float
@@ -302,13 +293,10 @@ class Navigator:
             raise ValueError(f"({x:g}, {y:g}) lies outside the bounds {self.grid.bounds}")
 
     def _cell(self, position: Point, z_m: float) -> int:
-        return int(self.grid.on_ground([position], [z_m])[1][0])
+        return self.grid.cell_at(position, z_m)
 
     def _floor(self, cell: int) -> float:
         return float(self.grid.layered.floors[cell]) if cell >= 0 else 0.0
-
-    def _floors(self, cells: NDArray[np.int64]) -> NDArray[np.float64]:
-        return np.where(cells >= 0, self.grid.layered.floors[cells], 0.0).astype(np.float64)
 
     def _body_row(self, parameters: ActorParameters) -> int:
         return self.grid.row_of(parameters.body)

@@ -191,8 +191,8 @@ def print_case(grid: LayeredGrid, case: Case, ticks: int, threads: int) -> float
     with ExitStack() as patches:
         for target, attribute, stage in (
             (Batch, "tick", "batch"),
-            (batch, "prepare", "order"),
-            (batch, "resolve", "resolve"),
+            (batch, "put_in_order", "order"),
+            (batch, "take_steps", "resolve"),
         ):
             timed = watch.around(stage, getattr(target, attribute))
             patches.enter_context(mock.patch.object(target, attribute, timed))

@@ -6,7 +6,6 @@ Pure mathematics: no sockets, no clock, no random numbers of its own.
 from planning._crowd import PARAMETERS, Crowd, Decisions
 from planning._passage_kernels import PASSAGE
 from planning._prediction_kernels import Prediction
-from planning._step_kernels import settle
 from planning.batch import Batch, PlanModel
 from planning.bodies import Body
 from planning.find_path import LayeredPath, PathStatus, find_path
@@ -51,6 +50,5 @@ __all__ = [
     "Wall",
     "Wave",
     "find_path",
-    "settle",
     "uncertain_bfp",
 ]

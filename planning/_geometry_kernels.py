@@ -159,7 +159,7 @@ def crosses_any(
 
 
 @kernel
-def _within(low: float, value: float, high: float) -> float:
+def within(low: float, value: float, high: float) -> float:
     return min(high, max(low, value))
 
 
@@ -178,8 +178,8 @@ def slide_step(
 
     The bounds count before barriers do: a wall that ends at them must not be rounded outside.
     """
-    nx = _within(bounds[0], x + dx, bounds[2])
-    ny = _within(bounds[1], y + dy, bounds[3])
+    nx = within(bounds[0], x + dx, bounds[2])
+    ny = within(bounds[1], y + dy, bounds[3])
     before = nearest_segment(index, stance, x, y)[0]
     allowed = min(clearance, before) - 1e-9
     for _ in range(4):
@@ -189,8 +189,8 @@ def slide_step(
         if d < 1e-9:
             return x, y
         push = (min(clearance, before) - d) / d
-        nx = _within(bounds[0], nx + (nx - cx) * push, bounds[2])
-        ny = _within(bounds[1], ny + (ny - cy) * push, bounds[3])
+        nx = within(bounds[0], nx + (nx - cx) * push, bounds[2])
+        ny = within(bounds[1], ny + (ny - cy) * push, bounds[3])
     if nearest_segment(index, stance, nx, ny)[0] < allowed or crosses_any(
         index, stance, x, y, nx, ny
     ):
@@ -211,7 +211,8 @@ def slide(
 ) -> tuple[float, float]:
     """Move a disc by (dx, dy) on one level, sliding along barriers and kept inside the bounds.
 
-    Near walls the way is cut into pieces of half the clearance, so that none is jumped over.
+    Near walls the way is cut into pieces of half the clearance, so that none is jumped over. Where
+    nothing is as near as the way is long, nothing has to be asked on it.
     """
     length = np.hypot(dx, dy)
     if length == 0.0:
@@ -219,6 +220,8 @@ def slide(
     done = 0.0
     while done < length:
         room = min(nearest_segment(index, stance, x, y)[0], index.reach_m) - clearance
+        if done == 0.0 and room > length:
+            return within(bounds[0], x + dx, bounds[2]), within(bounds[1], y + dy, bounds[3])
         piece = min(length - done, max(room, 0.5 * clearance, 0.02))
         u = piece / length
         x, y = slide_step(index, stance, bounds, x, y, dx * u, dy * u, clearance)

@@ -1,5 +1,7 @@
 """Walking on layers and deriving clearances, on bare arrays."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,9 +11,23 @@ from planning._geometry_kernels import (
     point_segment_distance,
     slide,
 )
-from planning._grid_kernels import GridArrays, corners, follow
+from planning._grid_kernels import GridArrays, corners, follow, surface_at
+from planning._held import Held
 from planning._jit import inlined, kernel
 from planning._layered import TILE
+
+
+class GroundArrays(NamedTuple):
+    """A zone's ground and what stops bodies on it."""
+
+    grid: GridArrays
+    barriers: SegmentIndex
+
+
+@kernel
+def cell_at(ground: Held[GroundArrays], x: float, y: float, z: float) -> int:
+    """`surface_at`, for one place at a time."""
+    return surface_at(ground.value.grid, x, y, z)
 
 
 @inlined

@@ -5,9 +5,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planning._geometry_kernels import SegmentIndex
-from planning._grid_kernels import GridArrays, surface_at
-from planning._ground_kernels import walk
+from planning._geometry_kernels import Stance, nearest_segment, within
+from planning._grid_kernels import length, surface_at
+from planning._ground_kernels import GroundArrays, walk
+from planning._held import Held
 from planning._jit import kernel
 
 PERSON_HEIGHT_M = 1.8
@@ -86,24 +87,26 @@ def printed_velocity(
 
 @kernel
 def note(
-    tracks: Tracks,
+    held: Held[Tracks],
     rows: NDArray[np.int64],
-    places: NDArray[np.float64],
+    given: NDArray[np.float64],
     tick: int,
     tick_s: float,
     stride: int,
     memory: float,
     printed: bool,
+    places: NDArray[np.float64],
     velocities: NDArray[np.float64],
     newest: NDArray[np.float64],
 ) -> None:
-    """Add where P people are at a tick, places (P, 3), and work out where they are going.
+    """Add where P people are at a tick, given (P, 2 or 3), and work out where they are going.
 
-    Fills the predicted velocities of eq. (1), with samples `stride` ticks apart, and the newest
-    ones alone, (P, 2) each. What was expected of everyone `expected` ticks ago is held against
-    where they are now: the square of a person's growth is a running mean of their squared errors
-    per axis over the squared time.
+    Fills `places` (P, 3), the predicted velocities of eq. (1), with samples `stride` ticks apart,
+    and the newest ones alone, (P, 2) each. What was expected of everyone `expected` ticks ago is
+    held against where they are now: the square of a person's growth is a running mean of their
+    squared errors per axis over the squared time.
     """
+    tracks = held.value
     depth = tracks.positions.shape[1]
     lag = tracks.expected.shape[1]
     lag_s = lag * tick_s
@@ -112,11 +115,15 @@ def note(
     past = np.empty(((depth - 1) // stride + 1, 2))
     for p in range(len(rows)):
         row = rows[p]
-        x = places[p, 0]
-        y = places[p, 1]
-        if abs(tracks.heights[row] - places[p, 2]) > LIFT_M:
+        x = given[p, 0]
+        y = given[p, 1]
+        z = given[p, 2] if given.shape[1] > 2 else 0.0
+        places[p, 0] = x
+        places[p, 1] = y
+        places[p, 2] = z
+        if abs(tracks.heights[row] - z) > LIFT_M:
             tracks.counts[row] = 0
-        tracks.heights[row] = places[p, 2]
+        tracks.heights[row] = z
         tracks.positions[row, now, 0] = x
         tracks.positions[row, now, 1] = y
         count = min(tracks.counts[row] + 1, depth)
@@ -147,34 +154,51 @@ def note(
 
 @kernel
 def extrapolate(
-    grid: GridArrays,
-    index: SegmentIndex,
-    positions: NDArray[np.float64],
-    heights: NDArray[np.float64],
+    ground: Held[GroundArrays],
+    held: Held[Tracks],
+    rows: NDArray[np.int64],
+    places: NDArray[np.float64],
     velocity: NDArray[np.float64],
     slice_s: float,
     sigma_0: float,
-    sigma_growth: NDArray[np.float64],
+    least_growth: float,
     wall_clearance: float,
     prediction: Prediction,
 ) -> None:
     """Eqs. (2) and (3): means and deviations of every slice, bent along walls.
 
-    People do not walk through walls or off edges: a mean that runs into one slides along it, and
-    its velocity becomes that of the slide. They leave a layer only where it is joined to another.
+    `rows` (P,) are those of the tracks, `places` (P, 3) where everyone is. People do not walk
+    through walls or off edges: a mean that runs into one slides along it, and its velocity becomes
+    that of the slide. They leave a layer only where it is joined to another.
     """
+    grid, index = ground.value
+    bounds = (grid.layered.x0, grid.layered.y0, grid.layered.x1, grid.layered.y1)
+    stance = Stance(0.0, 0.0, PERSON_HEIGHT_M, PERSON_STEP_ON_M)
     people, slices = prediction.sigmas.shape
     for p in range(people):
-        x = positions[p, 0]
-        y = positions[p, 1]
-        cell = surface_at(grid, x, y, heights[p])
+        x = places[p, 0]
+        y = places[p, 1]
+        z = places[p, 2]
+        cell = -1 if grid.flat else surface_at(grid, x, y, z)
         vx = velocity[p, 0]
         vy = velocity[p, 1]
+        dx = vx * slice_s
+        dy = vy * slice_s
+        step_m = length(dx, dy)
+        free_m = 0.0
+        growth = max(np.sqrt(held.value.growths2[rows[p]]), least_growth)
         for k in range(slices):
             if k > 0:
                 nx = x
                 ny = y
-                if cell >= 0 or grid.flat:
+                if grid.flat and free_m <= step_m:
+                    near_m = nearest_segment(index, stance, x, y)[0]
+                    free_m = min(near_m, index.reach_m) - wall_clearance
+                if grid.flat and free_m > step_m:  # nothing can be met in this slice
+                    nx = within(bounds[0], x + dx, bounds[2])
+                    ny = within(bounds[1], y + dy, bounds[3])
+                    free_m -= step_m
+                elif cell >= 0 or grid.flat:
                     cell, nx, ny = walk(
                         grid,
                         index,
@@ -183,10 +207,11 @@ def extrapolate(
                         cell,
                         x,
                         y,
-                        vx * slice_s,
-                        vy * slice_s,
+                        dx,
+                        dy,
                         wall_clearance,
                     )
+                    free_m = 0.0
                 prediction.velocities[p, k, 0] = (nx - x) / slice_s
                 prediction.velocities[p, k, 1] = (ny - y) / slice_s
                 x = nx
@@ -195,7 +220,7 @@ def extrapolate(
                 prediction.velocities[p, k, 0] = vx
                 prediction.velocities[p, k, 1] = vy
             on_ground = cell >= 0 and not grid.flat
-            prediction.heights[p, k] = grid.layered.floors[cell] if on_ground else heights[p]
+            prediction.heights[p, k] = grid.layered.floors[cell] if on_ground else z
             prediction.means[p, k, 0] = x
             prediction.means[p, k, 1] = y
-            prediction.sigmas[p, k] = sigma_0 + sigma_growth[p] * k * slice_s
+            prediction.sigmas[p, k] = sigma_0 + growth * k * slice_s

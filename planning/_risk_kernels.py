@@ -85,14 +85,6 @@ def index_people(
             row = min(len(tables.reaches) - 1, int(sigma / tables.sigma_step_m + 0.5))
             x = prediction.means[p, k, 0]
             y = prediction.means[p, k, 1]
-            risk.rows[k, p] = row
-            known = risk.people[k, p]
-            known[0] = x
-            known[1] = y
-            known[2] = prediction.velocities[p, k, 0]
-            known[3] = prediction.velocities[p, k, 1]
-            known[4] = prediction.heights[p, k]
-            known[5] = tables.reaches[row]
             room = tables.reaches[row] + risk.slack_m
             far = room + 0.5 * k * risk.slack_m
             box[p, 0] = 0
@@ -104,6 +96,14 @@ def index_people(
                 or y - far > around[3]
             ):
                 continue
+            risk.rows[k, p] = row
+            known = risk.people[k, p]
+            known[0] = x
+            known[1] = y
+            known[2] = prediction.velocities[p, k, 0]
+            known[3] = prediction.velocities[p, k, 1]
+            known[4] = prediction.heights[p, k]
+            known[5] = tables.reaches[row]
             box[p, 0] = _row(risk, y - room)
             box[p, 1] = _row(risk, y + room)
             box[p, 2] = _column(risk, x - room)

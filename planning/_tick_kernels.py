@@ -1,4 +1,6 @@
-"""A whole tick in one call, for few actors, on bare arrays."""
+"""The stages of a tick on what compiled code keeps of a zone, and all of them in one call."""
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -6,51 +8,156 @@ from numpy.typing import NDArray
 from planning._crowd import Crowd, Decisions
 from planning._decide_kernels import decide
 from planning._geometry_kernels import SegmentIndex
+from planning._grid_kernels import floor_of, heights_along
+from planning._held import Held
 from planning._jit import kernel
 from planning._precedence_kernels import prepare
 from planning._prediction_kernels import Prediction
 from planning._risk_kernels import index_people
 from planning._search_kernels import Moves, Workspace
-from planning._step_kernels import resolve
+from planning._step_kernels import resolve, settle
 from planning._task_kernels import World
+
+SHOWN = 8
+"""Numbers of an actor after a tick: x, y m, layer, height m, vx, vy m/s, heading rad, reason."""
+
+
+class Zone(NamedTuple):
+    """Everything that the ticks of a zone work on, people's future apart.
+
+    `order` (A,) and what is decided are written anew in every tick; `positions` (A, 2) and `cells`
+    (A,) are those after it.
+    """
+
+    world: World
+    barriers: SegmentIndex
+    guides: NDArray[np.float32]
+    no_guide: NDArray[np.float32]
+    moves: Moves
+    crowd: Crowd
+    order: NDArray[np.int64]
+    decisions: Decisions
+    positions: NDArray[np.float64]
+    cells: NDArray[np.int64]
+    fastest_mps: float
+    """Nobody may be faster, or there is too little room."""
+    last_wider: int
+
+
+@kernel
+def has_room(zone: Held[Zone], workspace: Held[Workspace], branching: int, people: int) -> bool:
+    """Whether there is room for what the actors are and ask by now, and for so many people."""
+    world, crowd = zone.value.world, zone.value.crowd
+    if people > world.risk.people.shape[1]:
+        return False
+    for a in range(len(crowd.positions)):
+        p = crowd.parameters[a]
+        # Who is told to be slower from now on still has to brake.
+        speed = np.hypot(crowd.velocities[a, 0], crowd.velocities[a, 1])
+        if (
+            max(p["max_speed_mps"], speed) > zone.value.fastest_mps
+            or p["radius_m"] > world.reservations.widest_m
+            or p["max_expansions"] * branching + 2 > len(workspace.value.node_state)
+        ):
+            return False
+    return True
+
+
+@kernel
+def index_future(zone: Held[Zone], prediction: Prediction, first: int, step: int) -> None:
+    """Index people slice by slice: first, first + step, ..."""
+    crowd, risk = zone.value.crowd, zone.value.world.risk
+    x0 = x1 = crowd.positions[0, 0]
+    y0 = y1 = crowd.positions[0, 1]
+    for a in range(1, len(crowd.positions)):
+        x, y = crowd.positions[a]
+        x0 = min(x0, x)
+        y0 = min(y0, y)
+        x1 = max(x1, x)
+        y1 = max(y1, y)
+    index_people(prediction, zone.value.last_wider, (x0, y0, x1, y1), first, step, risk)
+
+
+@kernel
+def put_in_order(zone: Held[Zone], tick_s: float) -> None:
+    """See followed paths from now, and who goes first."""
+    z = zone.value
+    for a in range(len(z.order)):
+        z.world.reservations.radii[a] = z.crowd.parameters[a]["radius_m"]
+    prepare(z.world, z.guides, z.crowd, tick_s, z.order)
+
+
+@kernel
+def decide_some(
+    zone: Held[Zone],
+    prediction: Prediction,
+    tick_s: float,
+    first: int,
+    last: int,
+    workspace: Held[Workspace],
+) -> None:
+    """Decide for actors first ... last - 1."""
+    z = zone.value
+    decide(
+        z.world,
+        z.guides,
+        z.no_guide,
+        z.moves,
+        prediction,
+        z.crowd,
+        tick_s,
+        first,
+        last,
+        workspace.value,
+        z.decisions,
+    )
+
+
+@kernel
+def take_steps(zone: Held[Zone], tick_s: float) -> None:
+    """Take the steps, who goes first before all."""
+    z = zone.value
+    resolve(z.world, z.barriers, z.crowd, z.order, tick_s, z.decisions, z.positions, z.cells)
 
 
 @kernel
 def plan_and_step(
-    world: World,
-    index: SegmentIndex,
-    guides: NDArray[np.float32],
-    no_guide: NDArray[np.float32],
-    moves: Moves,
-    prediction: Prediction,
-    last_wider: int,
-    around: tuple[float, float, float, float],
-    crowd: Crowd,
-    tick_s: float,
-    order: NDArray[np.int64],
-    workspace: Workspace,
-    decisions: Decisions,
-    new_positions: NDArray[np.float64],
-    new_cells: NDArray[np.int64],
+    zone: Held[Zone], prediction: Prediction, tick_s: float, workspace: Held[Workspace]
 ) -> None:
-    """What `Batch.tick` does on several threads, one after the other.
+    """All stages one after the other, on one thread."""
+    index_future(zone, prediction, 0, 1)
+    put_in_order(zone, tick_s)
+    decide_some(zone, prediction, tick_s, 0, len(zone.value.order), workspace)
+    take_steps(zone, tick_s)
 
-    To hand a zone's arrays to compiled code takes longer than what it then does for one actor: so
-    they are handed over once.
+
+@kernel
+def settle_all(
+    zone: Held[Zone],
+    tick_s: float,
+    headings: NDArray[np.float64],
+    ways: NDArray[np.float64],
+    shown: NDArray[np.float64],
+) -> None:
+    """Take the tick over into the crowd; fill what is shown of everyone.
+
+    `ways` (A, K, 3) are the plans with their heights, `shown` (A, SHOWN).
     """
-    index_people(prediction, last_wider, around, 0, 1, world.risk)
-    prepare(world, guides, crowd, tick_s, order)
-    decide(
-        world,
-        guides,
-        no_guide,
-        moves,
-        prediction,
-        crowd,
-        tick_s,
-        0,
-        len(order),
-        workspace,
-        decisions,
-    )
-    resolve(world, index, crowd, order, tick_s, decisions, new_positions, new_cells)
+    z = zone.value
+    settle(z.crowd, z.decisions, z.positions, z.cells, tick_s, headings)
+    ways[:, :, :2] = z.decisions.paths
+    ways[:, :, 2] = 0.0
+    if not z.world.grid.flat:
+        heights_along(z.world.grid, z.crowd.cells, ways)
+    layered = z.world.grid.layered
+    for a in range(len(shown)):
+        cell = z.crowd.cells[a]
+        row = shown[a]
+        row[0] = z.crowd.positions[a, 0]
+        row[1] = z.crowd.positions[a, 1]
+        row[2] = layered.places[cell, 0] if cell >= 0 else 0
+        row[3] = floor_of(z.world.grid, cell)
+        row[4] = z.crowd.velocities[a, 0]
+        row[5] = z.crowd.velocities[a, 1]
+        row[6] = headings[a]
+        row[7] = z.decisions.reasons[a]

@@ -10,14 +10,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning._crowd import Crowd, Decisions
-from planning._decide_kernels import decide
-from planning._precedence_kernels import prepare
+from planning._held import Held, hold
 from planning._prediction_kernels import Prediction
-from planning._risk_kernels import index_people
 from planning._search_kernels import Workspace
-from planning._step_kernels import resolve
 from planning._task_kernels import SUB, World
-from planning._tick_kernels import plan_and_step
+from planning._tick_kernels import (
+    SHOWN,
+    Zone,
+    decide_some,
+    has_room,
+    index_future,
+    plan_and_step,
+    put_in_order,
+    settle_all,
+    take_steps,
+)
 from planning.grid import LayeredGrid
 from planning.risk import RiskField, RiskModel
 from planning.search import compass_moves, make_reservations, make_workspace
@@ -54,8 +61,9 @@ class PlanModel:
 class Batch:
     """Plans and steps for all actors of a zone at once.
 
-    Cost of a tick: O(people × slices) for the index of people, O(actors × expansions ×
-    moves × people near) for the searches; both are spread over the threads.
+    What a tick works on is handed over to compiled code when it changes: when actors come or go,
+    or want more room. Cost of a tick: O(people × slices) for the index of people, O(actors ×
+    expansions × moves × people near) for the searches; both are spread over the threads.
     """
 
     def __init__(
@@ -65,10 +73,15 @@ class Batch:
         self.plan = plan
         self.field = RiskField(grid, risk, plan.slices, spread)
         self._moves = compass_moves()
+        self._branching = len(self._moves.speeds) + 1
         self._no_guide = np.full((len(grid.layered.floors), 3), np.inf, dtype=np.float32)
         self._pool = ThreadPoolExecutor(plan.threads, thread_name_prefix="planning")
+        self._made_of: tuple[float, ...] = ()
+        """Which ones `_zone` was made of: it keeps them."""
+        self._zone: Zone
+        self._held: Held[Zone]
+        self._workspaces: list[Held[Workspace]] = []
         self._budget = 0
-        self._workspaces: list[Workspace] = []
 
     def close(self) -> None:
         """End the threads."""
@@ -79,12 +92,68 @@ class Batch:
         for done in [self._pool.submit(work, k) for k in range(threads)]:
             done.result()
 
-    def _workspaces_for(self, budget: int) -> list[Workspace]:
+    def _hand_over(
+        self, crowd: Crowd, guides: NDArray[np.float32], prediction: Prediction, tick_s: float
+    ) -> None:
+        """Make sure that compiled code has this crowd, and room for it."""
+        made_of = id(crowd), id(guides), id(self.grid.arrays), tick_s
+        if made_of == self._made_of and has_room(
+            self._held, self._workspaces[0], self._branching, len(prediction.means)
+        ):
+            return
+        budget = int(crowd.parameters["max_expansions"].max())
         if budget > self._budget:
-            branching = len(self._moves.speeds) + 1
             self._budget = budget
-            self._workspaces = [make_workspace(budget, branching) for _ in range(self.plan.threads)]
-        return self._workspaces
+            self._workspaces = [
+                hold(make_workspace(budget, self._branching)) for _ in range(self.plan.threads)
+            ]
+        self._zone = self._make_zone(crowd, guides, prediction, tick_s)
+        self._held = hold(self._zone)
+        self._made_of = made_of
+
+    def _make_zone(
+        self, crowd: Crowd, guides: NDArray[np.float32], prediction: Prediction, tick_s: float
+    ) -> Zone:
+        actors = len(crowd.positions)
+        slices = self.plan.slices + 1
+        speeds = np.hypot(crowd.velocities[:, 0], crowd.velocities[:, 1])
+        fastest_mps = max(float(crowd.parameters["max_speed_mps"].max()), float(speeds.max()))
+        self.field.make_room(prediction, fastest_mps * self.plan.step_s)
+        risk = self.field.arrays
+        reservations = make_reservations(
+            self.grid,
+            np.empty((actors, slices, 2)),
+            np.zeros((actors, slices)),
+            crowd.parameters["radius_m"].copy(),
+            np.empty(actors, dtype=np.int64),
+            fastest_mps * max(tick_s, self.plan.slice_s),
+        )
+        return Zone(
+            World(
+                self.grid.arrays,
+                risk if actors > 1 else risk._replace(nx=1, ny=1),  # one is soon told from few
+                reservations,
+                self.plan.step_s,
+            ),
+            self.grid.index,
+            guides,
+            self._no_guide,
+            self._moves,
+            crowd,
+            np.empty(actors, dtype=np.int64),
+            Decisions(
+                np.empty((actors, slices, 2)),
+                np.zeros((actors, 2)),
+                np.zeros(actors, dtype=np.int64),
+                np.zeros(actors, dtype=np.int64),
+                np.zeros(actors, dtype=np.int64),
+                np.zeros(actors, dtype=np.bool_),
+            ),
+            np.empty((actors, 2)),
+            np.empty(actors, dtype=np.int64),
+            fastest_mps,
+            self.field.last_wider(self.plan.slice_s),
+        )
 
     def tick(
         self,
@@ -97,94 +166,48 @@ class Batch:
 
         Parameters
         ----------
-        crowd : state of A actors after the finished tick
+        crowd : state of A actors after the finished tick, A > 0
         guides : float32 (G, N, 3), the potentials that `crowd.guide_slots` points into
         prediction : people's future, as many slices as the plan has
         tick_s : length of the tick, seconds
 
         Returns
         -------
-        The decisions, and float64 (A, 2) positions and int64 (A,) cells after the tick.
+        The decisions, and float64 (A, 2) positions and int64 (A,) cells after the tick. All are
+        written over in the next one.
         """
+        self._hand_over(crowd, guides, prediction, tick_s)
+        zone = self._held
         actors = len(crowd.positions)
         threads = min(self.plan.threads, 1 + actors // _WORTH_A_THREAD)
-        slices = self.plan.slices + 1
-        decisions = Decisions(
-            np.empty((actors, slices, 2)),
-            np.zeros((actors, 2)),
-            np.zeros(actors, dtype=np.int64),
-            np.zeros(actors, dtype=np.int64),
-            np.zeros(actors, dtype=np.int64),
-            np.zeros(actors, dtype=np.bool_),
-        )
-        new_positions = np.empty((actors, 2))
-        new_cells = np.empty(actors, dtype=np.int64)
-        if not actors:
-            return decisions, new_positions, new_cells
-        x0, y0 = crowd.positions.min(axis=0).tolist()
-        x1, y1 = crowd.positions.max(axis=0).tolist()
-        around = (x0, y0, x1, y1)
-        # Who is told to be slower from now on still has to brake.
-        speeds = np.hypot(crowd.velocities[:, 0], crowd.velocities[:, 1])
-        fastest_mps = max(float(crowd.parameters["max_speed_mps"].max()), float(speeds.max()))
-        self.field.make_room(prediction, fastest_mps * self.plan.step_s)
-        last_wider = self.field.last_wider(self.plan.slice_s)
-        reservations = make_reservations(
-            self.grid,
-            np.empty((actors, slices, 2)),
-            np.zeros((actors, slices)),
-            crowd.parameters["radius_m"].copy(),
-            np.empty(actors, dtype=np.int64),
-            fastest_mps * max(tick_s, self.plan.slice_s),
-        )
-        world = World(self.grid.arrays, self.field.arrays, reservations, self.plan.step_s)
-        workspaces = self._workspaces_for(int(crowd.parameters["max_expansions"].max()))
-        order = np.empty(actors, dtype=np.int64)
         if threads == 1:
-            plan_and_step(
-                world,
-                self.grid.index,
-                guides,
-                self._no_guide,
-                self._moves,
-                prediction,
-                last_wider,
-                around,
-                crowd,
-                tick_s,
-                order,
-                workspaces[0],
-                decisions,
-                new_positions,
-                new_cells,
-            )
-            return decisions, new_positions, new_cells
+            plan_and_step(zone, prediction, tick_s, self._workspaces[0])
+            return self._zone.decisions, self._zone.positions, self._zone.cells
 
-        def index(k: int) -> None:
-            index_people(prediction, last_wider, around, k, threads, world.risk)
-
-        self._on_threads(index, threads)
-        prepare(world, guides, crowd, tick_s, order)
+        self._on_threads(lambda k: index_future(zone, prediction, k, threads), threads)
+        put_in_order(zone, tick_s)
         # Every thread takes the next portion when it is done with one: none waits for the other.
         portion = min(_PORTION, -(-actors // (2 * threads)))
         portions = iter(range(0, actors, portion))
 
         def work(k: int) -> None:
             for first in portions:
-                decide(
-                    world,
-                    guides,
-                    self._no_guide,
-                    self._moves,
-                    prediction,
-                    crowd,
-                    tick_s,
-                    first,
-                    min(first + portion, actors),
-                    workspaces[k],
-                    decisions,
-                )
+                last = min(first + portion, actors)
+                decide_some(zone, prediction, tick_s, first, last, self._workspaces[k])
 
         self._on_threads(work, threads)
-        resolve(world, self.grid.index, crowd, order, tick_s, decisions, new_positions, new_cells)
-        return decisions, new_positions, new_cells
+        take_steps(zone, tick_s)
+        return self._zone.decisions, self._zone.positions, self._zone.cells
+
+    def settle(
+        self, tick_s: float, headings: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Take the last tick over into the crowd that it was made of.
+
+        `headings` (A,) rad are renewed too. Returns what is shown of everyone, float64 (A, SHOWN),
+        and their plans with heights, float64 (A, K, 3), which are nobody else's.
+        """
+        shown = np.empty((len(headings), SHOWN))
+        ways = np.empty((len(headings), self.plan.slices + 1, 3))
+        settle_all(self._held, tick_s, headings, ways, shown)
+        return shown, ways

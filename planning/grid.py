@@ -12,9 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from planning import _geometry_kernels as geometry
 from planning import _grid_kernels as kernels
+from planning import _ground_kernels as walking
 from planning._geometry_kernels import SegmentIndex, Stance
 from planning._grid_kernels import GridArrays
-from planning._ground_kernels import walk_many
+from planning._ground_kernels import GroundArrays
+from planning._held import Held, hold
 from planning._layered import LayeredArrays
 from planning.barriers import Barriers
 from planning.bodies import MOST_BODIES, Body
@@ -65,6 +67,7 @@ class LayeredGrid:
         )
         self.index = _index(floors.barriers, self.bounds)
         self.centres = centres_of(layered)
+        self._held = self.arrays, hold(GroundArrays(self.arrays, self.index))
         self._rows: dict[Body, int] = {}
         self._potentials: OrderedDict[tuple[float, ...], Potential] = OrderedDict()
         self.row_of(ADULT)
@@ -136,6 +139,14 @@ class LayeredGrid:
         if self.arrays.flat:
             return np.zeros(len(cells), dtype=np.bool_)
         return np.isin(footing_of(self, body).classes[cells], _EDGES)
+
+    @property
+    def ground(self) -> Held[GroundArrays]:
+        """`arrays` and `index` as kernels keep them, for what is asked often."""
+        arrays = self.arrays
+        if self._held[0] is not arrays:
+            self._held = arrays, hold(GroundArrays(arrays, self.index))
+        return self._held[1]
 
     @property
     def layered(self) -> LayeredArrays:
@@ -221,6 +232,10 @@ class LayeredGrid:
         cells = np.empty(len(points), dtype=np.int64)
         kernels.surfaces_at(self.arrays, points, levels, cells)
         return points, cells
+
+    def cell_at(self, position: tuple[float, float], height: float) -> int:
+        """The cell that is stood in at one place, -1 where nobody can; `on_ground` for many."""
+        return walking.cell_at(self.ground, position[0], position[1], height)
 
     def with_heights(
         self, paths: NDArray[np.float64], cells: NDArray[np.int64]
@@ -332,7 +347,7 @@ class LayeredGrid:
         if not np.isfinite(ways).all():
             raise ValueError("displacements must be finite")
         out = points.copy()
-        walk_many(
+        walking.walk_many(
             self.arrays,
             self.index,
             body.height_m,

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import bisect
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from operator import itemgetter
 
 import numpy as np
 from numpy.typing import NDArray
 
 from planning import _prediction_kernels as kernels
+from planning._held import hold
 from planning._prediction_kernels import Prediction, Tracks
 from planning.grid import LayeredGrid
 from planning.spread import PEOPLE, Spread
+
+Place = Sequence[float] | NDArray[np.float64]
+"""(x, y) or (x, y, z) in metres."""
+_NAME = itemgetter(0)
 
 
 @dataclass(frozen=True)
@@ -45,20 +52,19 @@ class PredictionModel:
     """Eq. (1) with the signs as printed. It extrapolates noise on real tracks: reference only."""
 
 
-def _by_name(who: object) -> tuple[str, str]:
+def _name(who: object) -> tuple[str, str]:
     return type(who).__name__, str(who)
 
 
-def _as_places(listed: list[object], given: list[tuple[float, ...]]) -> NDArray[np.float64]:
-    """Places as float64 (P, 3); who has no height is at 0."""
-    places = np.zeros((len(given), 3))
+def _as_places(listed: Sequence[object], given: Sequence[Place]) -> NDArray[np.float64]:
+    """Places as float64 (P, 2) or (P, 3)."""
     try:
         points = np.array(given, dtype=np.float64)
-        places[:, : points.shape[-1]] = points
     except ValueError:  # not all alike, or no numbers
         points = np.empty((0, 0))
-    if points.ndim == 2 and points.shape[1] in (2, 3) and np.isfinite(places).all():
-        return places
+    if points.ndim == 2 and points.shape[1] in (2, 3) and np.isfinite(points).all():
+        return points
+    places = np.zeros((len(given), 3))
     for who, place, row in zip(listed, given, places, strict=True):
         point = tuple(place)
         if len(point) not in (2, 3) or not all(map(math.isfinite, point)):
@@ -72,7 +78,7 @@ class TrackHistory:
 
     People are kept in the order of their ids, so that sums over them do not depend on how they
     were listed. Memory: `samples` x `sample_s` / `tick_s` positions a person. `observe` costs
-    O(people log people).
+    O(people), and as much again for each who comes or leaves.
     """
 
     def __init__(self, model: PredictionModel, tick_s: float) -> None:
@@ -88,7 +94,9 @@ class TrackHistory:
             np.zeros((0, 2 * self.stride, 2)),
             np.zeros(0),
         )
+        self._held = hold(self._tracks)
         self._rows: dict[object, int] = {}
+        self._listed: list[tuple[tuple[str, str], object]] = []
         self._free: list[int] = []
         self._order = np.zeros(0, dtype=np.int64)
         self._places = np.zeros((0, 3))
@@ -99,7 +107,7 @@ class TrackHistory:
     @property
     def ids(self) -> list[object]:
         """Who is present, in the order of `positions` and of every array made from them."""
-        return list(self._rows)
+        return [who for _, who in self._listed]
 
     @property
     def positions(self) -> NDArray[np.float64]:
@@ -111,7 +119,7 @@ class TrackHistory:
         """Heights of everyone's feet, float64 (P,), metres."""
         return np.ascontiguousarray(self._places[:, 2])
 
-    def observe(self, people: Mapping[object, tuple[float, ...]]) -> None:
+    def observe(self, people: Mapping[object, Place]) -> None:
         """Add this tick's positions: id -> (x, y) or (x, y, z). Who is absent has left.
 
         Raises
@@ -119,29 +127,36 @@ class TrackHistory:
         ValueError
             A position is not finite or not of length 2 or 3; nothing is changed then.
         """
-        same = people.keys() == self._rows.keys()
-        listed = list(self._rows) if same else sorted(people, key=_by_name)
-        places = _as_places(listed, [people[who] for who in listed])
-        if not same:
-            for who in [who for who in self._rows if who not in people]:
+        listed = self._listed
+        if people.keys() != self._rows.keys():
+            listed = [pair for pair in listed if pair[1] in people]
+            for who in people:
+                if who not in self._rows:
+                    bisect.insort(listed, (_name(who), who), key=_NAME)
+        ids = [who for _, who in listed]
+        given = _as_places(ids, [people[who] for who in ids])
+        if listed is not self._listed:
+            for who in self._rows.keys() - people.keys():
                 self._free.append(self._rows.pop(who))
-            self._rows = {
-                who: self._rows[who] if who in self._rows else self._take_row() for who in listed
-            }
-            self._order = np.fromiter(self._rows.values(), dtype=np.int64, count=len(listed))
+            for who in ids:
+                if who not in self._rows:
+                    self._rows[who] = self._take_row()
+            self._listed = listed
+            self._order = np.array([self._rows[who] for who in ids], dtype=np.int64)
         self._ticks += 1
-        self._places = places
-        self._velocities = np.empty((len(listed), 2))
-        self._newest = np.empty((len(listed), 2))
+        self._places = np.empty((len(given), 3))
+        self._velocities = np.empty((len(given), 2))
+        self._newest = np.empty((len(given), 2))
         kernels.note(
-            self._tracks,
+            self._held,
             self._order,
-            places,
+            given,
             self._ticks,
             self.tick_s,
             self.stride,
             self._memory,
             self.model.printed,
+            self._places,
             self._velocities,
             self._newest,
         )
@@ -161,6 +176,7 @@ class TrackHistory:
                     for kept in self._tracks
                 )
             )
+            self._held = hold(self._tracks)
             self._free = list(range(size + more - 1, size - 1, -1))
         row = self._free.pop()
         self._tracks.counts[row] = 0
@@ -179,21 +195,21 @@ class TrackHistory:
         people = len(self._order)
         shape = (people, slices + 1)
         prediction = Prediction(
-            np.zeros((*shape, 2)),
-            np.zeros((*shape, 2)),
-            np.zeros(shape),
-            np.zeros(shape),
+            np.empty((*shape, 2)),
+            np.empty((*shape, 2)),
+            np.empty(shape),
+            np.empty(shape),
             self._newest,
         )
         kernels.extrapolate(
-            grid.arrays,
-            grid.index,
-            self.positions,
-            self.heights,
-            self.velocities(),
+            grid.ground,
+            self._held,
+            self._order,
+            self._places,
+            self._velocities,
             slice_s,
             self.model.sigma_0_m,
-            self.growth_mps,
+            self.model.least_growth_mps,
             self.model.wall_clearance_m,
             prediction,
         )

@@ -210,7 +210,7 @@ def test_warming_up_calls_the_kernels_for_few_actors_and_for_many(cast, monkeypa
 
         return call
 
-    names = {"plan_and_step", "index_people", "prepare", "decide", "resolve"}
+    names = {"plan_and_step", "index_future", "put_in_order", "decide_some", "take_steps"}
     for name in names:
         monkeypatch.setattr(batch, name, watched(name, getattr(batch, name)))
     cast.warm_up()

@@ -56,6 +56,36 @@ def test_an_actor_walks_to_its_goal_at_its_speed_and_stays() -> None:
     assert np.ptp(record.positions["a"][-20:], axis=0).max() < 0.02
 
 
+def test_a_zone_without_actors_ticks() -> None:
+    nav = navigator(GRID)
+    nav.observe({"p": (3.0, 3.0)})
+    assert nav.tick() == {}
+    assert len(nav.predicted_near((3.0, 3.0), 0.0, 1.0)) == 1
+    nav.close()
+
+
+def test_people_may_be_given_as_arrays() -> None:
+    states = []
+    for kind in (tuple, list, np.array):
+        nav = navigator(GRID)
+        nav.add_actor("a", (2.0, 6.0), (10.0, 6.0), BODY)
+        nav.observe({"p": kind((4.0, 6.0)), "q": kind((5.0, 6.5))})
+        states.append(nav.tick()["a"])
+        nav.close()
+    assert states[0].position == states[1].position == states[2].position
+
+
+def test_an_actor_shows_itself_before_its_first_tick() -> None:
+    nav = navigator(GRID)
+    nav.add_actor("a", (2.0, 6.0), (10.0, 6.0), BODY, heading=0.5)
+    before = nav.state("a")
+    nav.close()
+    assert (before.position, before.layer, before.z_m) == ((2.0, 6.0), 0, 0.0)
+    assert (before.heading, before.velocity) == (0.5, (0.0, 0.0))
+    assert before.reason is Reason.WAITING
+    assert before.path.tolist() == [[2.0, 6.0, 0.0, 0.0]]
+
+
 def test_without_a_goal_it_stands() -> None:
     nav = navigator(GRID)
     nav.add_actor("a", (2.0, 6.0))

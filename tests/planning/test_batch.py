@@ -12,12 +12,14 @@ from planning import (
     PASSAGE,
     Batch,
     Crowd,
+    Decisions,
     LayeredGrid,
     PlanModel,
     RiskModel,
     Scene,
 )
 from planning._crowd import ARRIVED, BLOCKED, GIVING_WAY, WAITING
+from planning._grid_kernels import GridArrays
 from planning._step_kernels import WALKING_INTO_S, _separation
 from tests.planning.worlds import holds, open_grid, scaled, walking
 
@@ -87,7 +89,13 @@ def batch():
 def tick(batch, crowd, people=()):
     prediction = walking([p for p, _ in people], [v for _, v in people])
     crowd.cells[:] = batch.grid.on_ground(crowd.positions, np.zeros(len(crowd.positions)))[1]
-    return batch.tick(crowd, guides_of(batch.grid, crowd), prediction, TICK_S)[:2]
+    return decided(batch, crowd, guides_of(batch.grid, crowd), prediction)
+
+
+def decided(batch, crowd, guides, prediction):
+    """Copies of the decisions and of the positions: the next tick writes them over."""
+    decisions, positions, _ = batch.tick(crowd, guides, prediction, TICK_S)
+    return Decisions(*(array.copy() for array in decisions)), positions.copy()
 
 
 def step(crowd, decisions, positions) -> None:
@@ -240,9 +248,9 @@ def test_the_last_check_minds_who_has_just_turned(batch) -> None:
     crowd = crowd_of([(4.0, 4.0)], [(7.0, 4.0)], velocities=[(1.3, 0.0)])
     crowd.cells[:] = batch.grid.on_ground(crowd.positions, np.zeros(1))[1]
     prediction = walking([(5.5, 4.0)], [(1.0, 0.0)])
-    parting = batch.tick(crowd, guides_of(batch.grid, crowd), prediction, TICK_S)[0]
+    parting, _ = decided(batch, crowd, guides_of(batch.grid, crowd), prediction)
     prediction.newest[0] = (-1.0, 0.0)
-    turned = batch.tick(crowd, guides_of(batch.grid, crowd), prediction, TICK_S)[0]
+    turned, _ = decided(batch, crowd, guides_of(batch.grid, crowd), prediction)
     assert parting.reasons[0] != GIVING_WAY
     assert turned.reasons[0] == GIVING_WAY
     assert parting.wishes[0] == pytest.approx([1.3, 0.0])
@@ -317,12 +325,29 @@ def test_an_old_path_is_read_on_and_lengthened(batch) -> None:
     assert decisions.paths[0, -1, 0] > 4.0
 
 
-def test_an_empty_zone_ticks(batch) -> None:
-    crowd = crowd_of(np.zeros((0, 2)), np.zeros((0, 2)))
-    guides = np.zeros((0, len(batch.grid.layered.floors), 3), dtype=np.float32)
-    decisions, positions, _ = batch.tick(crowd, guides, walking([(4.0, 4.0)], [(1.0, 0.0)]), TICK_S)
-    assert positions.shape == (0, 2)
-    assert decisions.paths.shape == (0, PLAN.slices + 1, 2)
+def test_a_batch_that_has_ticked_before_decides_like_a_new_one(batch) -> None:
+    """What it has handed over to compiled code is never out of date."""
+    ends = [(1.0, 4.0), (2.0, 5.0)], [(7.0, 4.2), (6.0, 2.0)]
+    crowd = crowd_of(*ends)
+    people = [((4.0 + 0.3 * k, 4.0), (-0.5, 0.1 * k)) for k in range(6)]
+    grid = batch.grid
+    room = GridArrays(*grid.arrays)
+    slow = {"max_speed_mps": 1.0, "speed_mps": 0.6}
+    for changes in ({}, {"radius_m": 0.4}, {"max_speed_mps": 3.0}, {"max_expansions": 200.0}, slow):
+        for many in (0, 2, 6):
+            for name, value in changes.items():
+                crowd.parameters[name] = value
+            again, positions = tick(batch, crowd, people[:many])
+            fresh = Batch(grid, PLAN, RiskModel())
+            anew, expected = tick(fresh, crowd, people[:many])
+            fresh.close()
+            assert all(np.array_equal(a, b) for a, b in zip(again, anew, strict=True)), changes
+            assert np.array_equal(positions, expected)
+    grid.arrays = room._replace(clearance=np.full_like(room.clearance, 0.1))
+    walled_in, _ = tick(batch, crowd)
+    assert not np.array_equal(walled_in.paths, again.paths)
+    one = crowd_of(ends[0][:1], ends[1][:1])
+    assert tick(batch, one, people)[0].paths.shape == (1, PLAN.slices + 1, 2)
 
 
 def test_an_error_in_a_thread_comes_up(batch) -> None:
@@ -346,8 +371,7 @@ def at_a_doorway(rows, threads):
     guides = np.stack([grid.potential(goal, 0, 0.25).guide for goal in ((14.0, 8.0), (2.0, 8.0))])
     for _ in range(scaled(10, 4)):
         crowd.cells[:] = grid.on_ground(crowd.positions, np.zeros(18))[1]
-        decisions, positions, _ = batch.tick(crowd, guides, walking([], []), TICK_S)
-        step(crowd, decisions, positions)
+        step(crowd, *decided(batch, crowd, guides, walking([], [])))
     batch.close()
     return crowd
 

@@ -200,6 +200,39 @@ def test_people_are_expected_to_go_up_stairs_and_to_stay_off_ledges() -> None:
     assert prediction.heights[1, -1] == pytest.approx(UPPER_M, abs=1e-3)
 
 
+@given(st.floats(1.0, 11.0), st.floats(1.0, 11.0), st.floats(-2.0, 2.0), st.floats(-2.0, 2.0))
+@holds(40, 10)
+def test_means_are_what_walking_slice_by_slice_comes_to(x, y, vx, vy) -> None:
+    walls = (((5.0, 2.0), (5.0, 9.0)), ((5.0, 6.0), (9.0, 7.0)))
+    grid = open_grid(12.0, walls)
+    history = TrackHistory(PredictionModel(), TICK_S)
+    for k in range(5):
+        history.observe({"p": (x + vx * k * TICK_S, y + vy * k * TICK_S)})
+    prediction = history.predict(grid, 18, 0.2)
+    place, height = prediction.means[0, :1], np.zeros(1)
+    step = 0.2 * history.velocities()
+    for k in range(1, 19):
+        place, height = grid.walk(place, height, step, PredictionModel().wall_clearance_m)
+        assert prediction.means[0, k] == pytest.approx(place[0], abs=1e-9)
+
+
+@given(st.lists(st.sets(st.integers(0, 12)), min_size=2, max_size=8), st.randoms())
+@holds(30, 10)
+def test_coming_and_going_leaves_everyone_in_order_with_their_own_past(present, random) -> None:
+    """Who has been there all along is as if nobody else had been."""
+    history = TrackHistory(PredictionModel(), TICK_S)
+    alone = TrackHistory(PredictionModel(), TICK_S)
+    for k, ids in enumerate(present):
+        at = {who: (who + 0.1 * k * who, 2.0) for who in random.sample(sorted(ids), len(ids))}
+        history.observe({**at, "z": (0.2 * k, 1.0)})
+        alone.observe({"z": (0.2 * k, 1.0)})
+        assert history.ids == [*sorted(ids, key=str), "z"]
+        assert history.positions[:, 0].tolist() == [at[who][0] for who in history.ids[:-1]] + [
+            0.2 * k
+        ]
+        assert history.velocities()[-1].tolist() == alone.velocities()[0].tolist()
+
+
 def test_the_order_of_listing_does_not_matter() -> None:
     one, other = (TrackHistory(PredictionModel(), TICK_S) for _ in range(2))
     people = {7: (1.0, 2.0), "b": (3.0, 4.0), "a": (5.0, 6.0), 30: (0.5, 0.5)}
