@@ -28,6 +28,7 @@ import uvloop
 from planning import LayeredGrid, Scene
 from protocol import VERSION, encode
 from protocol.messages import Hello, Move
+from protocol.snapshot import RECORD
 from server import logs
 from server.app import running
 from server.casting import assemble
@@ -93,7 +94,7 @@ def print_stages(settings: ServerSettings, people: int) -> None:
         sight = world.finish(world.think())
         world.wrote(sight.snapshots, list(range(people)))
         if tick >= WARM_UP_TICKS:
-            in_view = len(sight.snapshots.data) / 12 / people
+            in_view = len(sight.snapshots.data) / RECORD.itemsize / people
             for name, seconds in world.times.seconds.items():
                 times.setdefault(name, []).append(seconds)
     troupe.close()

@@ -77,6 +77,11 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     async with AsyncExitStack() as stack:
         thread = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="actors"))
         private = await stack.enter_async_context(private_port(settings, metrics, lambda: ready))
+        # Whether the port can be had is found out now, not after a minute of compiling.
+        bound = await loop.create_server(
+            asyncio.Protocol, settings.host, settings.port, start_serving=False
+        )
+        stack.callback(bound.close)
         log.info("compiling; the first start on a machine takes a minute or two")
         cast, world, storeys = await loop.run_in_executor(thread, _build, stage, settings)
         stack.callback(cast.close)
@@ -96,6 +101,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         )
         delivery = Delivery(world, hub.sessions, settings.tick_rate)
         ticker = Ticker(world, hub, delivery, schedule, metrics, thread)
+        bound.close()
         listener = await stack.enter_async_context(
             Listener(hub, assets, settings, metrics).listening()
         )

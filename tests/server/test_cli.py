@@ -3,6 +3,7 @@ from pathlib import Path
 
 import pytest
 
+from server import app
 from server.cli import parser, run
 from server.settings import ServerSettings
 
@@ -54,9 +55,20 @@ def test_a_bad_variable_is_named_as_such(
     assert "esplanade serve: ESPLANADE_ACTORS: Input should be greater" in capsys.readouterr().err
 
 
-def test_a_taken_port_is_named(room_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize("option", ["--port", "--private-port"])
+def test_a_taken_port_is_named_before_anything_is_built(
+    option: str,
+    room_file: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    def build(*_: object) -> None:
+        raise AssertionError("it takes a minute or two")
+
+    monkeypatch.setattr(app, "_build", build)
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = str(taken.getsockname()[1])
-        argv = ["--scene", str(room_file), "--private-port", port, "--port", "0"]
-        assert run(argv) == 1
+        places = {"--host": "127.0.0.1", "--port": "0", "--private-port": "0", option: port}
+        argv = [word for pair in places.items() for word in pair]
+        assert run(["--scene", str(room_file), *argv]) == 1
     assert f"127.0.0.1:{port}" in capsys.readouterr().err
