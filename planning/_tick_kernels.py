@@ -45,11 +45,9 @@ class Zone(NamedTuple):
 
 
 @kernel
-def has_room(zone: Held[Zone], workspace: Held[Workspace], branching: int, people: int) -> bool:
-    """Whether there is room for what the actors are and ask by now, and for so many people."""
+def has_room(zone: Held[Zone], workspace: Held[Workspace], branching: int) -> bool:
+    """Whether there is room for what the actors are and ask by now."""
     world, crowd = zone.value.world, zone.value.crowd
-    if people > world.risk.people.shape[1]:
-        return False
     for a in range(len(crowd.positions)):
         p = crowd.parameters[a]
         # Who is told to be slower from now on still has to brake.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from operator import is_
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,8 +77,7 @@ class Batch:
         self._branching = len(self._moves.speeds) + 1
         self._no_guide = np.full((len(grid.layered.floors), 3), np.inf, dtype=np.float32)
         self._pool = ThreadPoolExecutor(plan.threads, thread_name_prefix="planning")
-        self._made_of: tuple[float, ...] = ()
-        """Which ones `_zone` was made of: it keeps them."""
+        self._made_of: tuple[object, ...] = (None,)
         self._zone: Zone
         self._held: Held[Zone]
         self._workspaces: list[Held[Workspace]] = []
@@ -96,9 +96,10 @@ class Batch:
         self, crowd: Crowd, guides: NDArray[np.float32], prediction: Prediction, tick_s: float
     ) -> None:
         """Make sure that compiled code has this crowd, and room for it."""
-        made_of = id(crowd), id(guides), id(self.grid.arrays), tick_s
-        if made_of == self._made_of and has_room(
-            self._held, self._workspaces[0], self._branching, len(prediction.means)
+        self.field.make_room(prediction, 0.0)
+        parts = crowd, guides, self.grid.arrays, self.field.arrays, tick_s
+        if all(map(is_, parts, self._made_of)) and has_room(
+            self._held, self._workspaces[0], self._branching
         ):
             return
         budget = int(crowd.parameters["max_expansions"].max())
@@ -109,7 +110,7 @@ class Batch:
             ]
         self._zone = self._make_zone(crowd, guides, prediction, tick_s)
         self._held = hold(self._zone)
-        self._made_of = made_of
+        self._made_of = crowd, guides, self.grid.arrays, self.field.arrays, tick_s
 
     def _make_zone(
         self, crowd: Crowd, guides: NDArray[np.float32], prediction: Prediction, tick_s: float
@@ -120,6 +121,8 @@ class Batch:
         fastest_mps = max(float(crowd.parameters["max_speed_mps"].max()), float(speeds.max()))
         self.field.make_room(prediction, fastest_mps * self.plan.step_s)
         risk = self.field.arrays
+        if actors == 1:  # whoever may be met is soon looked through; buckets are not worth it
+            risk = risk._replace(nx=1, ny=1)
         reservations = make_reservations(
             self.grid,
             np.empty((actors, slices, 2)),
@@ -131,7 +134,7 @@ class Batch:
         return Zone(
             World(
                 self.grid.arrays,
-                risk if actors > 1 else risk._replace(nx=1, ny=1),  # one is soon told from few
+                risk,
                 reservations,
                 self.plan.step_s,
             ),

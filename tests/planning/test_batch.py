@@ -350,6 +350,14 @@ def test_a_batch_that_has_ticked_before_decides_like_a_new_one(batch) -> None:
     assert tick(batch, one, people)[0].paths.shape == (1, PLAN.slices + 1, 2)
 
 
+def test_a_prediction_of_other_slices_is_refused_in_every_tick(batch) -> None:
+    crowd = crowd_of([(1.0, 4.0)], [(7.0, 4.0)])
+    tick(batch, crowd, [((4.0, 4.0), (0.0, 0.0))])
+    short = walking([(4.0, 4.0)], [(0.0, 0.0)], slices=4)
+    with pytest.raises(ValueError, match="prediction 5"):
+        batch.tick(crowd, guides_of(batch.grid, crowd), short, TICK_S)
+
+
 def test_an_error_in_a_thread_comes_up(batch) -> None:
     def work(k: int) -> None:
         raise RuntimeError("no such kernel")
