@@ -52,6 +52,17 @@ class ActorParameters(BaseModel):
             "Radius of a person plus the room kept at the last check before a step.",
         ),
     ] = 0.4
+    contact_closing_s: Annotated[
+        float,
+        _field(
+            "s",
+            0.0,
+            5.0,
+            "At the last check, when somebody is bound to be touched: so many metres less between "
+            "the two is what a metre a second toward them counts like; higher would rather be "
+            "walked into than walk into somebody.",
+        ),
+    ] = 0.3
     risk_weight: Annotated[
         float,
         _field(
@@ -120,6 +131,17 @@ class ActorParameters(BaseModel):
             "higher flickers less but reacts later.",
         ),
     ] = 0.15
+    keep_right_weight: Annotated[
+        float,
+        _field(
+            "m/m",
+            0.0,
+            1.0,
+            "Metres of detour that a metre nearer to a narrow place is worth wholly on its left, "
+            "while many want through from the other side; higher keeps right sooner and more "
+            "strictly, 0 never does.",
+        ),
+    ] = 0.8
     max_expansions: Annotated[
         int,
         _field("nodes", 10, 20000, "Budget of one search; a smaller one may end before the goal."),

@@ -86,6 +86,7 @@ def make_task(
     else:
         gx = x
         gy = y
+    keeps_right = contested and left > AFTER_M
     return Task(
         a,
         crowd.bodies[a],
@@ -101,6 +102,7 @@ def make_task(
         p["max_speed_mps"],
         p["max_acceleration_mps2"],
         p["goal_tolerance_m"],
+        p["contact_closing_s"],
         p["risk_weight"],
         p["foresight_s"],
         p["closing_weight"],
@@ -109,7 +111,7 @@ def make_task(
         p["hurry_weight"],
         int(p["max_expansions"]),
         int(p["edge_cells"]),
-        lane_of(crowd.passages[a], contested and left > AFTER_M),
+        lane_of(crowd.passages[a], p["keep_right_weight"] if keeps_right else 0.0),
         hold,
     )
 
@@ -131,9 +133,10 @@ def decide(
     """Perturb the followed path, search anew, keep the better, and wish for a velocity.
 
     The search only looks at what may be better than the followed path by the hysteresis, so that
-    it costs little while that path is good. The actors are first..last; their followed paths,
-    seen from now, are `world.reservations.paths`. The speeds of `moves` are parts of each actor's
-    own.
+    it costs little while that path is good. The actors are first..last of those listed by where
+    they are now: neighbours look at the same ground and the same people, which stay in the cache.
+    Their followed paths, seen from now, are `world.reservations.paths`. The speeds of `moves` are
+    parts of each actor's own.
     """
     slices = out.paths.shape[1]
     speeds = np.empty(len(moves.speeds))
@@ -141,7 +144,8 @@ def decide(
     bent = np.empty((slices, 2))
     trial = np.empty((slices, 2))
     cells = np.empty(slices, dtype=np.int64)
-    for a in range(first, last):
+    for n in range(first, last):
+        a = world.reservations.members[0, n]
         p = crowd.parameters[a]
         contested = world.reservations.contested[a]
         task = make_task(guides, crowd, a, p["goal_tolerance_m"], tick_s, contested)

@@ -11,13 +11,15 @@ from planning._jit import inlined, kernel
 from planning._passage_kernels import (
     BEFORE_M,
     FEET_M,
+    FOUND,
     HALF_M,
     LOOK_IN_S,
     MIDDLE_X,
     MIDDLE_Y,
-    PASSAGE,
+    NEAREST_M,
     THROUGH_X,
     THROUGH_Y,
+    WAITED_S,
     find_passage,
 )
 from planning._potential_kernels import Guide
@@ -37,27 +39,29 @@ PASSED_M = 8.0
 """and goes before those who still have to come there for so far."""
 SHIFT_M = 0.3
 """The lane begins so far to the right of the middle, or half-way to the side of the passage."""
-STEEPNESS = 0.8
-"""What a metre nearer weighs wholly on the left, in metres; below 1, or who is there would rather
-go away than come nearer."""
+NEARER_M = 0.5
+"""Who comes nearer to a passage by so much has got on."""
+WAITING_MPS = 0.15
+"""A second without getting on is worth so many metres less to a passage."""
 LEFT_RAD = 1.0
 """Seen from where the lane begins, who is so far to the left of it is wholly on the left."""
 
 
 class Lane(NamedTuple):
     """The right-hand side of a passage: the middle of the passage, the unit vector through it, how
-    far to the right of the middle the lane begins, and whether it is to be kept to."""
+    far to the right of the middle the lane begins, and what a metre nearer weighs wholly on the
+    left, in metres: 0 where the lane is not to be kept to."""
 
     x: float
     y: float
     along_x: float
     along_y: float
     shift_m: float
-    kept: bool
+    weight: float
 
 
 @inlined
-def lane_of(passage: NDArray[np.float64], kept: bool) -> Lane:
+def lane_of(passage: NDArray[np.float64], weight: float) -> Lane:
     """The lane through a passage (PASSAGE,)."""
     shift_m = min(SHIFT_M, 0.5 * passage[HALF_M])
     return Lane(
@@ -66,7 +70,7 @@ def lane_of(passage: NDArray[np.float64], kept: bool) -> Lane:
         passage[THROUGH_X],
         passage[THROUGH_Y],
         shift_m,
-        kept,
+        weight,
     )
 
 
@@ -77,7 +81,7 @@ def astray(lane: Lane, x: float, y: float) -> float:
     It grows with the angle, so that it leads around those who come out rather than through them,
     and from far away on, so that who comes near is on the right already.
     """
-    if not lane.kept:
+    if lane.weight == 0.0:
         return 0.0
     dx = x - lane.x
     dy = y - lane.y
@@ -87,7 +91,7 @@ def astray(lane: Lane, x: float, y: float) -> float:
     if near <= 0.0 or left <= 0.0:
         return 0.0
     angle = np.arctan2(left, abs(along))
-    return float(STEEPNESS * near * min(1.0, angle / LEFT_RAD))
+    return float(lane.weight * near * min(1.0, angle / LEFT_RAD))
 
 
 @inlined
@@ -106,18 +110,19 @@ def _has_passage(crowd: Crowd, a: int) -> bool:
 
 
 @inlined
-def _opposed(one: NDArray[np.float64], other: NDArray[np.float64]) -> bool:
-    """Whether two passages (PASSAGE,) are the same one, gone through in opposite directions."""
+def _alike(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
+    """Cosine between the ways through two passages (FOUND,) if they are the same one, else 0."""
     ux = one[THROUGH_X]
     uy = one[THROUGH_Y]
     dx = other[MIDDLE_X] - one[MIDDLE_X]
     dy = other[MIDDLE_Y] - one[MIDDLE_Y]
-    return bool(
-        ux * other[THROUGH_X] + uy * other[THROUGH_Y] < 0.0
-        and abs(dx * uy - dy * ux) < SAME_M
+    if (
+        abs(dx * uy - dy * ux) < SAME_M
         and abs(dx * ux + dy * uy) < LONG_M
         and abs(other[FEET_M] - one[FEET_M]) < SAME_M
-    )
+    ):
+        return float(ux * other[THROUGH_X] + uy * other[THROUGH_Y])
+    return 0.0
 
 
 @kernel
@@ -130,26 +135,34 @@ def see_passage(
         p[:] = 0.0
         return
     p[LOOK_IN_S] -= tick_s
+    p[WAITED_S] += tick_s
     beyond, away = _beyond(crowd, a)
     if beyond and away > PASSED_M:
         p[:] = 0.0
     elif not beyond and p[LOOK_IN_S] <= 0.0:
         x, y = crowd.positions[a]
         radius = crowd.parameters[a]["radius_m"]
-        if not find_passage(grid, guide, crowd.bodies[a], radius, crowd.cells[a], x, y, p):
+        before = p[:FOUND].copy()
+        if not find_passage(grid, guide, crowd.bodies[a], radius, crowd.cells[a], x, y, p[:FOUND]):
             p[:] = 0.0
+        elif _alike(before, p) <= 0.0:
+            p[NEAREST_M] = np.inf
         p[LOOK_IN_S] = LOOK_S * (1.0 + crowd.ranks[a] / len(crowd.ranks))
+        away = _beyond(crowd, a)[1]
+    if away < p[NEAREST_M] - NEARER_M:
+        p[NEAREST_M] = away
+        p[WAITED_S] = 0.0
 
 
 @kernel
 def find_contested(crowd: Crowd, out: NDArray[np.bool_]) -> None:
     """Fill (A,): whose passage enough others have still to come through from the other side."""
     out[:] = False
-    coming = np.empty((len(out), PASSAGE))
+    coming = np.empty((len(out), FOUND))
     count = 0
     for a in range(len(out)):
         if _has_passage(crowd, a) and not _beyond(crowd, a)[0]:
-            coming[count] = crowd.passages[a]
+            coming[count] = crowd.passages[a, :FOUND]
             count += 1
     if count < OPPOSED:
         return
@@ -158,7 +171,7 @@ def find_contested(crowd: Crowd, out: NDArray[np.bool_]) -> None:
         against = 0
         if _has_passage(crowd, a):
             for n in range(count):
-                if _opposed(p, coming[n]):
+                if _alike(p, coming[n]) < 0.0:
                     against += 1
                     if against == OPPOSED:
                         break
@@ -172,14 +185,20 @@ def order_at_passages(
     """Put into `left_m` (A,) what decides who goes first where a passage is contested.
 
     Who has come through goes first, the furthest before all, since nobody else can come in before
-    the way out is free; then who has still to come there, the nearest first; then everyone else.
-    Who is about to arrive goes last, as everywhere.
+    the way out is free, up to the goal, since it may lie among those who wait. Then who has still
+    to come there: who has come the nearest first, and who waits without getting on ever sooner, or
+    those who were crowded out to the side would stay there until all others are through. Then
+    everyone else. Who is about to arrive on this side goes last, as everywhere.
     """
     if not contested.any():
         return
     for a in range(len(left_m)):
         if not contested[a]:
             left_m[a] += 2.0 * BEFORE_M  # further than anybody contested is, even in a jam
+            continue
+        p = crowd.passages[a]
+        beyond, away = _beyond(crowd, a)
+        if beyond:
+            left_m[a] = -away
         elif left_m[a] < np.inf:
-            beyond, away = _beyond(crowd, a)
-            left_m[a] = -away if beyond else away
+            left_m[a] = p[NEAREST_M] - WAITING_MPS * p[WAITED_S]

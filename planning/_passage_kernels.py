@@ -7,11 +7,14 @@ from planning._grid_kernels import GridArrays, clearance_at, floor_of, follow, l
 from planning._jit import inlined, kernel
 from planning._potential_kernels import Guide, direction_at
 
-MIDDLE_X, MIDDLE_Y, THROUGH_X, THROUGH_Y, HALF_M, FEET_M, LOOK_IN_S = range(7)
-PASSAGE = 7
-"""Numbers of a passage: its middle, the unit vector through it (zeros if there is none), half the
-width that middles of bodies have in it, the height of its floor, and seconds until it is looked for
-again."""
+MIDDLE_X, MIDDLE_Y, THROUGH_X, THROUGH_Y, HALF_M, FEET_M = range(6)
+FOUND = 6
+"""So many numbers tell of a passage: its middle, the unit vector through it (zeros if there is
+none), half the width that middles of bodies have in it, and the height of its floor."""
+LOOK_IN_S, NEAREST_M, WAITED_S = range(FOUND, FOUND + 3)
+PASSAGE = FOUND + 3
+"""With those that tell of an actor on its way there: seconds until it looks again, how near to the
+middle it has come, and seconds since."""
 NARROW_M = 2.2
 """No passage is wider, between where less than `WALL_PART` of the radius is free."""
 BEFORE_M = 20.0
@@ -29,18 +32,33 @@ RAYS = 8
 
 @inlined
 def _free_way(
-    grid: GridArrays, body: int, cell: int, x: float, y: float, ux: float, uy: float, room_m: float
+    grid: GridArrays,
+    body: int,
+    cell: int,
+    x: float,
+    y: float,
+    ux: float,
+    uy: float,
+    room_m: float,
+    here_m: float,
+    most_m: float,
 ) -> float:
-    """How far a point may go that needs so much room; `NARROW_M` at most."""
+    """How far a point may go that needs so much room and has `here_m` more where it is.
+
+    `NARROW_M` if that is further than `most_m`, beyond which it is not looked, or than that.
+    """
     shortest = 0.5 * grid.layered.cell_m
+    last = min(NARROW_M, most_m + shortest)
+    room = here_m
     way = 0.0
-    while way < NARROW_M:
+    while True:
+        way += max(room, shortest) if grid.flat else min(max(room, shortest), 2.0 * shortest)
+        if way >= last:
+            return NARROW_M
         cell = follow(grid, cell, x + way * ux, y + way * uy)
         room = clearance_at(grid, body, cell, x + way * ux, y + way * uy) - room_m
         if room < 0.0:
             return max(0.0, way + max(room, -shortest))
-        way += max(room, shortest) if grid.flat else min(max(room, shortest), 2.0 * shortest)
-    return NARROW_M
 
 
 @inlined
@@ -56,16 +74,22 @@ def _narrowest(
     lines: int,
 ) -> tuple[float, float, float]:
     """Of lines through a point, at angles first, first + apart, ..., the one that is the shortest
-    from side to side: its length, its angle, and how far along it its middle is."""
-    best = np.inf
+    from side to side: its length, its angle, and how far along it its middle is.
+
+    Only lines shorter than `NARROW_M` count: without one its length is that.
+    """
+    best = NARROW_M
     turn = 0.0
     aside = 0.0
+    here_m = clearance_at(grid, body, cell, x, y) - room_m
+    if here_m < 0.0:
+        return 0.0, first, 0.0
     for n in range(lines):
         angle = first + n * apart
         ux = np.cos(angle)
         uy = np.sin(angle)
-        ahead = _free_way(grid, body, cell, x, y, ux, uy, room_m)
-        behind = _free_way(grid, body, cell, x, y, -ux, -uy, room_m)
+        ahead = _free_way(grid, body, cell, x, y, ux, uy, room_m, here_m, best)
+        behind = _free_way(grid, body, cell, x, y, -ux, -uy, room_m, here_m, best - ahead)
         if ahead + behind < best:
             best = ahead + behind
             turn = angle
@@ -83,7 +107,7 @@ def measure_passage(
     y: float,
     out: NDArray[np.float64],
 ) -> bool:
-    """Whether a point is in a passage; fills all of `out` (PASSAGE,) but the seconds.
+    """Whether a point is in a passage; fills `out` (FOUND,).
 
     The shortest line through the point from side to side, then the shortest through its middle.
     """
@@ -120,7 +144,7 @@ def find_passage(
     y: float,
     out: NDArray[np.float64],
 ) -> bool:
-    """Fill `out` with the first passage on the way, if there is one about straight ahead.
+    """Fill `out` (FOUND,) with the first passage on the way, if one is about straight ahead.
 
     Its unit vector points the way that one goes through it.
     """
@@ -132,7 +156,7 @@ def find_passage(
     last_dy = 0.0
     most = BEFORE_M
     narrowest = np.inf
-    here = np.empty(PASSAGE)
+    here = np.empty(FOUND)
     while way < most and cell >= 0:
         dx, dy, leg = direction_at(grid, guide, cell, x, y)
         room = clearance_at(grid, body, cell, x, y)

@@ -53,9 +53,6 @@ NEAR_M = 4.0
 """Nobody further away can be met in that time."""
 PERSON_RADIUS_M = 0.3
 """A grown person's, and a little for swaying."""
-WALKING_INTO_S = 0.3
-"""When somebody is bound to be touched, a metre a second toward them counts like so many metres
-less between the two."""
 
 
 @kernel
@@ -81,6 +78,7 @@ def _separation(
     since: float,
     seconds: float,
     touching_m: float,
+    closing_s: float,
     ax: float,
     ay: float,
     bx: float,
@@ -90,7 +88,7 @@ def _separation(
 
     The move begins `since` seconds from now. People walk on as predicted, or at their newest
     velocity, whichever brings them nearer: whether a change is a turn or noise shows later. Of
-    whom the move brings nearer than `touching_m`, `WALKING_INTO_S` of the speed toward them is
+    whom the move brings nearer than `touching_m`, `closing_s` of the speed toward them is
     taken off: to be walked into is bad, to walk into somebody is worse.
     """
     best = np.inf
@@ -107,7 +105,7 @@ def _separation(
             if nearest < touching_m:
                 apart = max(1e-9, np.sqrt(rx * rx + ry * ry))
                 toward_mps = -(rx * (bx - ax) + ry * (by - ay)) / (apart * seconds)
-                nearest -= WALKING_INTO_S * max(0.0, toward_mps)
+                nearest -= closing_s * max(0.0, toward_mps)
             best = min(best, nearest)
     return best
 
@@ -125,6 +123,7 @@ def _gap(
     """`_separation` while turning to velocity u; -inf where a wall is."""
     half = 0.5 * LOOK_AHEAD_S
     touching_m = task.radius_m + PERSON_RADIUS_M
+    closing_s = task.contact_closing_s
     a = task.max_acceleration_mps2
     hx, hy, hvx, hvy = advance(task.x, task.y, task.vx, task.vy, ux, uy, a, half)
     ex, ey, _, _ = advance(hx, hy, hvx, hvy, ux, uy, a, half)
@@ -137,8 +136,8 @@ def _gap(
     ):
         return -np.inf
     return min(
-        _separation(prediction, near, 0.0, half, touching_m, task.x, task.y, hx, hy),
-        _separation(prediction, near, half, half, touching_m, hx, hy, ex, ey),
+        _separation(prediction, near, 0.0, half, touching_m, closing_s, task.x, task.y, hx, hy),
+        _separation(prediction, near, half, half, touching_m, closing_s, hx, hy, ex, ey),
     )
 
 

@@ -36,6 +36,7 @@ class Task(NamedTuple):
     max_speed_mps: float
     max_acceleration_mps2: float
     goal_tolerance_m: float
+    contact_closing_s: float
     risk_weight: float
     foresight_s: float
     closing_weight: float
@@ -98,7 +99,7 @@ def metres_left(guide: Guide, task: Task, cell: int, x: float, y: float) -> floa
     if task.hold:
         return length(x - task.goal_x, y - task.goal_y)
     left_m = potential_at(guide, cell, x, y)
-    return left_m + astray(task.lane, x, y) if task.lane.kept else left_m
+    return left_m + astray(task.lane, x, y) if task.lane.weight > 0.0 else left_m
 
 
 @inlined

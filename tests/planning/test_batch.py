@@ -20,7 +20,7 @@ from planning import (
 )
 from planning._crowd import ARRIVED, BLOCKED, GIVING_WAY, WAITING
 from planning._grid_kernels import GridArrays
-from planning._step_kernels import WALKING_INTO_S, _separation
+from planning._step_kernels import _separation
 from tests.planning.worlds import holds, open_grid, scaled, walking
 
 TICK_S = 0.1
@@ -32,6 +32,7 @@ BODY = {
     "max_acceleration_mps2": 2.0,
     "goal_tolerance_m": 0.2,
     "person_clearance_m": 0.3,
+    "contact_closing_s": 0.3,
     "risk_weight": 25.0,
     "foresight_s": 4.0,
     "closing_weight": 0.1,
@@ -40,6 +41,7 @@ BODY = {
     "hurry_weight": 2.0,
     "catch_up": 0.0,
     "hysteresis_s": 0.15,
+    "keep_right_weight": 0.8,
     "max_expansions": float(scaled(150, 30)),
     "height_m": 1.8,
     "step_on_m": 0.6,
@@ -257,16 +259,17 @@ def test_the_last_check_minds_who_has_just_turned(batch) -> None:
     assert turned.wishes[0, 0] < 1.2
 
 
-def test_to_walk_into_somebody_is_worse_than_to_be_walked_into() -> None:
+@pytest.mark.parametrize("closing_s", [0.0, 0.3, 1.0])
+def test_to_walk_into_somebody_is_worse_than_to_be_walked_into(closing_s) -> None:
     """Both come as close, in the same time; only the actor that moves is to blame for it."""
     ahead = walking([(4.8, 4.0)], [(0.0, 0.0)])
     coming = walking([(4.8, 4.0)], [(-1.0, 0.0)])
     near = np.array([0])
-    going = _separation(ahead, near, 0.0, 0.4, 0.55, 4.0, 4.0, 4.4, 4.0)
-    standing = _separation(coming, near, 0.0, 0.4, 0.55, 4.0, 4.0, 4.0, 4.0)
+    going = _separation(ahead, near, 0.0, 0.4, 0.55, closing_s, 4.0, 4.0, 4.4, 4.0)
+    standing = _separation(coming, near, 0.0, 0.4, 0.55, closing_s, 4.0, 4.0, 4.0, 4.0)
     assert standing == pytest.approx(0.4)
-    assert going == pytest.approx(0.4 - WALKING_INTO_S)
-    clear = _separation(ahead, near, 0.0, 0.2, 0.55, 4.0, 4.0, 4.2, 4.0)
+    assert going == pytest.approx(0.4 - closing_s)
+    clear = _separation(ahead, near, 0.0, 0.2, 0.55, closing_s, 4.0, 4.0, 4.2, 4.0)
     assert clear == pytest.approx(0.6)
 
 

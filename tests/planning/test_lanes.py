@@ -11,22 +11,32 @@ from planning._decide_kernels import make_task
 from planning._lane_kernels import (
     AFTER_M,
     LEFT_RAD,
+    NEARER_M,
     OPPOSED,
     PASSED_M,
-    STEEPNESS,
+    WAITING_MPS,
     Lane,
     astray,
     find_contested,
     order_at_passages,
     see_passage,
 )
-from planning._passage_kernels import BEFORE_M, FEET_M, MIDDLE_X, MIDDLE_Y, PASSAGE
+from planning._passage_kernels import (
+    BEFORE_M,
+    FEET_M,
+    FOUND,
+    MIDDLE_X,
+    MIDDLE_Y,
+    NEAREST_M,
+    PASSAGE,
+    WAITED_S,
+)
 from planning.grid import LayeredGrid
 from planning.scene import Scene
 from tests.planning.test_batch import crowd_of
 from tests.planning.worlds import holds, open_grid
 
-EAST = Lane(8.0, 8.0, 1.0, 0.0, 0.3, True)
+EAST = Lane(8.0, 8.0, 1.0, 0.0, 0.3, 0.8)
 
 
 def _naive_astray(lane: Lane, x: float, y: float) -> float:
@@ -36,15 +46,15 @@ def _naive_astray(lane: Lane, x: float, y: float) -> float:
     left = z.imag + lane.shift_m
     if near <= 0.0 or left <= 0.0:
         return 0.0
-    return STEEPNESS * near * min(1.0, math.atan2(left, abs(z.real)) / LEFT_RAD)
+    return lane.weight * near * min(1.0, math.atan2(left, abs(z.real)) / LEFT_RAD)
 
 
-@given(st.floats(-25.0, 25.0), st.floats(-25.0, 25.0), st.floats(-3.2, 3.2))
+@given(st.floats(-25.0, 25.0), st.floats(-25.0, 25.0), st.floats(-3.2, 3.2), st.floats(0.1, 1.0))
 @holds(200, 30)
-def test_only_the_left_is_astray(x, y, turn) -> None:
-    lane = EAST._replace(along_x=math.cos(turn), along_y=math.sin(turn))
+def test_only_the_left_is_astray(x, y, turn, weight) -> None:
+    lane = EAST._replace(along_x=math.cos(turn), along_y=math.sin(turn), weight=weight)
     assert astray(lane, x, y) == pytest.approx(_naive_astray(lane, x, y), abs=1e-9)
-    assert astray(lane._replace(kept=False), x, y) == 0.0
+    assert astray(lane._replace(weight=0.0), x, y) == 0.0
 
 
 def _facing(west: int, east: int):
@@ -53,6 +63,7 @@ def _facing(west: int, east: int):
     crowd = crowd_of(places, places)
     crowd.passages[:, :2] = 8.0
     crowd.passages[:, 2] = [1.0] * west + [-1.0] * east
+    crowd.passages[:, NEAREST_M] = np.hypot(*(crowd.positions - 8.0).T)
     return crowd
 
 
@@ -103,9 +114,45 @@ def test_who_has_come_through_goes_first() -> None:
     assert left_m[-1] == pytest.approx(-3.0)
     assert left_m[1:-1] == pytest.approx(away[1:-1])
     assert left_m[0] == 7.0 + 2.0 * BEFORE_M
+    left_m[1] = np.inf
+    order_at_passages(crowd, contested, left_m)
+    assert left_m[1] == np.inf, "who is about to arrive on this side goes last"
     left_m[-1] = np.inf
     order_at_passages(crowd, contested, left_m)
-    assert left_m[-1] == np.inf, "who is about to arrive goes last"
+    assert left_m[-1] == pytest.approx(-3.0), "on the other side it goes up to the goal first"
+
+
+def test_who_waits_in_vain_goes_before_who_has_come_as_near() -> None:
+    crowd = _facing(OPPOSED, OPPOSED)
+    crowd.passages[:, NEAREST_M] = 5.0
+    crowd.passages[:, WAITED_S] = np.random.default_rng(0).permutation(2 * OPPOSED)
+    crowd.passages[0, NEAREST_M] = 4.0
+    left_m = np.full(2 * OPPOSED, 30.0)
+    order_at_passages(crowd, np.ones(2 * OPPOSED, dtype=bool), left_m)
+    waited_s = crowd.passages[:, WAITED_S]
+    assert left_m[1:] == pytest.approx(5.0 - WAITING_MPS * waited_s[1:])
+    assert left_m[0] == pytest.approx(4.0 - WAITING_MPS * waited_s[0])
+
+
+def test_to_come_nearer_by_enough_ends_the_waiting() -> None:
+    """Along a random walk: nearest and waited are those of the plain account."""
+    walls = (((8.0, 0.1), (8.0, 7.0)), ((8.0, 9.0), (8.0, 15.9)))
+    grid = LayeredGrid.from_scene(Scene.open_space((0.0, 0.0, 20.0, 16.0), walls=walls), 0.25)
+    crowd = crowd_of([(3.0, 8.0)], [(19.0, 8.0)])
+    crowd.guide_slots[:] = 0
+    guide = grid.potential((19.0, 8.0), 0, 0.25).guide
+    random = np.random.default_rng(0)
+    nearest, waited_s = math.inf, 0.0
+    for _ in range(60):
+        crowd.positions[0] = random.uniform((2.0, 6.0), (7.5, 10.0))
+        crowd.cells[:] = grid.on_ground(crowd.positions, [0.0])[1]
+        see_passage(grid.arrays, guide, crowd, 0, True, 0.1)
+        away = math.dist(crowd.positions[0], crowd.passages[0, :2])
+        waited_s += 0.1
+        if away < nearest - NEARER_M:
+            nearest, waited_s = away, 0.0
+        assert crowd.passages[0, NEAREST_M] == pytest.approx(nearest)
+        assert crowd.passages[0, WAITED_S] == pytest.approx(waited_s)
 
 
 def test_a_passage_is_kept_until_one_is_well_beyond() -> None:
@@ -135,7 +182,7 @@ def test_on_open_ground_nobody_has_a_passage() -> None:
     guides = grid.potential((12.0, 8.0), 0, 0.25).guide[None]
     for a in range(2):
         see_passage(grid.arrays, guides[0], crowd, a, True, 0.1)
-    assert not crowd.passages[:, :6].any()
+    assert not crowd.passages[:, :FOUND].any()
 
 
 def test_neither_lanes_nor_order_depend_on_the_order_of_actors() -> None:
@@ -166,13 +213,15 @@ def test_neither_lanes_nor_order_depend_on_the_order_of_actors() -> None:
     assert (once[rows] == again).all()
 
 
-@pytest.mark.parametrize(("x", "kept"), [(6.0, True), (9.0, False)])
-def test_who_is_about_to_arrive_keeps_to_no_lane(x, kept) -> None:
+@pytest.mark.parametrize(("x", "weight"), [(6.0, 0.8), (9.0, 0.0)])
+def test_who_is_about_to_arrive_keeps_to_no_lane(x, weight) -> None:
     grid = open_grid(16.0)
     crowd = crowd_of([(x, 8.0)], [(12.0, 8.0)])
     crowd.guide_slots[:] = 0
     crowd.cells[:] = grid.on_ground(crowd.positions, [0.0])[1]
     crowd.passages[0, :3] = (8.0, 8.0, 1.0)
     guides = grid.potential((12.0, 8.0), 0, 0.25).guide[None]
-    assert make_task(guides, crowd, 0, 0.3, 0.1, True).lane.kept == kept
-    assert not make_task(guides, crowd, 0, 0.3, 0.1, False).lane.kept
+    assert make_task(guides, crowd, 0, 0.3, 0.1, True).lane.weight == weight
+    assert make_task(guides, crowd, 0, 0.3, 0.1, False).lane.weight == 0.0
+    crowd.parameters["keep_right_weight"] = 0.0
+    assert make_task(guides, crowd, 0, 0.3, 0.1, True).lane.weight == 0.0

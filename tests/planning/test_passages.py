@@ -7,10 +7,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning._passage_kernels import NARROW_M, PASSAGE, find_passage, measure_passage
+from planning._passage_kernels import (
+    FOUND,
+    NARROW_M,
+    RAYS,
+    WALL_PART,
+    find_passage,
+    measure_passage,
+)
 from planning.grid import LayeredGrid
 from planning.scene import Scene
-from tests.planning.worlds import holds
+from tests.planning.worlds import holds, lines, open_grid
 
 RADIUS_M = 0.25
 SIDE_M = 16.0
@@ -29,7 +36,7 @@ def _found(grid, start, goal):
     """The passage on the way between two points, None without one."""
     cell = int(grid.on_ground([start], [0.0])[1][0])
     guide = grid.potential(goal, 0, RADIUS_M).guide
-    out = np.zeros(PASSAGE)
+    out = np.zeros(FOUND)
     found = find_passage(grid.arrays, guide, 0, RADIUS_M, cell, *start, out)
     return out if found else None
 
@@ -69,4 +76,46 @@ def test_wide_gaps_lone_walls_and_open_ground_are_no_passages() -> None:
 def test_a_point_without_room_is_in_no_passage() -> None:
     grid = _wall(2.0, math.pi / 2)
     cell = int(grid.on_ground([(8.0, 3.0)], [0.0])[1][0])
-    assert not measure_passage(grid.arrays, 0, RADIUS_M, cell, 8.0, 3.0, np.zeros(PASSAGE))
+    assert not measure_passage(grid.arrays, 0, RADIUS_M, cell, 8.0, 3.0, np.zeros(FOUND))
+
+
+def _naive_narrowest(grid, x, y, angles):
+    """Of lines through a point the shortest from side to side: length, angle, middle."""
+
+    def free_way(angle):
+        ux, uy = math.cos(angle), math.sin(angle)
+        way = 0.0
+        while way < NARROW_M:
+            place = (x + way * ux, y + way * uy)
+            room = float(grid.clearance([place], [0.0])[0]) - WALL_PART * RADIUS_M
+            if room < 0.0:
+                return max(0.0, way + max(room, -0.125))
+            way += max(room, 0.125)
+        return NARROW_M
+
+    ways = [(free_way(angle), free_way(angle + math.pi), angle) for angle in angles]
+    ahead, behind, angle = min(ways, key=lambda both: both[0] + both[1])
+    aside = 0.5 * (ahead - behind)
+    return ahead + behind, angle, (x + aside * math.cos(angle), y + aside * math.sin(angle))
+
+
+@given(lines(0.0, 8.0, 5), st.floats(0.5, 7.5), st.floats(0.5, 7.5))
+@holds(300, 10)
+def test_no_more_is_looked_for_than_counts_and_no_less(walls, x, y) -> None:
+    grid = open_grid(8.0, walls)
+    apart = math.pi / RAYS
+    width, angle, middle = _naive_narrowest(grid, x, y, [n * apart for n in range(RAYS)])
+    free = grid.clearance([(x, y)], [0.0])[0] >= WALL_PART * RADIUS_M
+    expected = bool(free and width < NARROW_M)
+    if expected:
+        finer = [angle + (n - 2) * 0.25 * apart for n in range(5)]
+        width, angle, middle = _naive_narrowest(grid, *middle, finer)
+        expected = width < NARROW_M
+    out = np.zeros(FOUND)
+    cell = int(grid.on_ground([(x, y)], [0.0])[1][0])
+    assert measure_passage(grid.arrays, 0, RADIUS_M, cell, x, y, out) == expected
+    if expected:
+        assert out[:2] == pytest.approx(middle, abs=1e-6)
+        assert 2.0 * (out[4] + (1.0 - WALL_PART) * RADIUS_M) == pytest.approx(
+            max(width, 2.0 * (1.0 - WALL_PART) * RADIUS_M), abs=1e-6
+        )

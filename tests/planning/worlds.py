@@ -154,6 +154,7 @@ def task(
         max_speed_mps=1.7,
         max_acceleration_mps2=2.0,
         goal_tolerance_m=0.2,
+        contact_closing_s=0.3,
         risk_weight=25.0,
         foresight_s=20.0,
         closing_weight=0.1,
@@ -162,7 +163,7 @@ def task(
         hurry_weight=2.0,
         max_expansions=400,
         edge_cells=24,
-        lane=Lane(0.0, 0.0, 1.0, 0.0, 0.0, False),
+        lane=Lane(0.0, 0.0, 1.0, 0.0, 0.0, 0.0),
         hold=False,
     )._replace(**changes)
 
