@@ -120,6 +120,14 @@ def test_readme_shows_how_to_make_a_scene() -> None:
     assert '"bounds"' in example
 
 
+def test_the_planner_goes_into_a_program_of_its_own(capsys: pytest.CaptureFixture[str]) -> None:
+    (example,) = blocks((ROOT / "docs/planning.md").read_text(), "python")
+    names: dict[str, Any] = {}
+    exec(example, names)
+    assert names["state"].reason.name == "ARRIVED"
+    assert " after 1" in capsys.readouterr().out
+
+
 async def test_bot_of_the_readme_answers() -> None:
     (example,) = blocks((ROOT / "README.md").read_text(), "python")
     program, _, last_line = example.strip().rpartition("\n")

@@ -64,7 +64,7 @@ class Esplanade(Policy):
             self._fresh = False
         position, velocity = self._grid_place(view.position), view.velocity
         navigator.place_actor(_ACTOR, position, (float(velocity[0]), float(velocity[1])))
-        navigator.observe({person.id: tuple(person.position) for person in view.people})
+        navigator.observe({person.id: person.position for person in view.people})
         self._state = navigator.tick()[_ACTOR]
         return np.array(self._state.velocity)
 
