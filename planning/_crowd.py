@@ -47,8 +47,8 @@ class Crowd(NamedTuple):
     a goal; `known` tells whether `followed` holds a path; `followed` (A, K, 2) begins at the tick
     that `ages` (A,) ticks ago was. `left_m` is the way that was left a tick ago,
     nan at first; `behind_s` the time lost since the goal was set and not made up yet; `passages`
-    (A, PASSAGE) are the narrow places ahead or just come through. All three are written by who
-    decides.
+    (A, PASSAGE) are the narrow places ahead or just come through, and how one gets on there. All
+    three are written by who decides.
     """
 
     positions: NDArray[np.float64]

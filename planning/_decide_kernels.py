@@ -19,12 +19,12 @@ from planning._crowd import (
 )
 from planning._jit import kernel
 from planning._lane_kernels import AFTER_M, OPPOSED, lane_of, see_passage
-from planning._perturb_kernels import path_cost, stretch_is_legal, update_path
+from planning._perturb_kernels import path_cost, update_path
 from planning._potential_kernels import potential_at
 from planning._prediction_kernels import Prediction
 from planning._search_kernels import FOUND, NO_PATH, Moves, Workspace, search
 from planning._step_kernels import control_toward, last_check, limited
-from planning._task_kernels import SUB, Task, World, metres_left, needed_clearance
+from planning._task_kernels import SUB, Task, World, metres_left
 
 MOST_BEHIND_S = 5.0
 """More lost time than this is not made up."""
@@ -203,13 +203,12 @@ def _improve(
 
     Worth it means less mean risk and less cost, in which time and length are.
     """
-    need = needed_clearance(world, task)
-    if not stretch_is_legal(world, guide, task, need, task.cell, path, 0, len(path) - 1):
+    cost, risk, legal = path_cost(world, guide, task, path)
+    if not legal:
         return np.inf, False
-    cost, risk = path_cost(world, guide, task, path)
     bent[:] = path
     if update_path(world, guide, task, bent, cells, trial) > 0:
-        bent_cost, bent_risk = path_cost(world, guide, task, bent)
+        bent_cost, bent_risk, _ = path_cost(world, guide, task, bent)
         if bent_risk < risk and bent_cost < cost:
             path[:] = bent
             return bent_cost, True

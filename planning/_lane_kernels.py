@@ -129,7 +129,8 @@ def _alike(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
 def see_passage(
     grid: GridArrays, guide: Guide, crowd: Crowd, a: int, going: bool, tick_s: float
 ) -> None:
-    """Renew an actor's passage; who has come through keeps the last one for a while."""
+    """Renew an actor's passage, and how near it has come; who has come through keeps the last one
+    for a while."""
     p = crowd.passages[a]
     if not going:
         p[:] = 0.0
@@ -201,4 +202,4 @@ def order_at_passages(
         if beyond:
             left_m[a] = -away
         elif left_m[a] < np.inf:
-            left_m[a] = p[NEAREST_M] - WAITING_MPS * p[WAITED_S]
+            left_m[a] = max(0.0, p[NEAREST_M] - WAITING_MPS * p[WAITED_S])

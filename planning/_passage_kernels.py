@@ -43,12 +43,12 @@ def _free_way(
     here_m: float,
     most_m: float,
 ) -> float:
-    """How far a point may go that needs so much room and has `here_m` more where it is.
+    """How far a point may go that needs `room_m` and has `here_m` more than that where it is.
 
-    `NARROW_M` if that is further than `most_m`, beyond which it is not looked, or than that.
+    What is further than `most_m` or `NARROW_M` is not looked for: then it is `NARROW_M`.
     """
     shortest = 0.5 * grid.layered.cell_m
-    last = min(NARROW_M, most_m + shortest)
+    last = min(NARROW_M, most_m + shortest)  # a side is noticed up to a shortest step beyond it
     room = here_m
     way = 0.0
     while True:

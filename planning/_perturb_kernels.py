@@ -3,7 +3,14 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from planning._grid_kernels import clearance_at, floor_of, follow, follow_path, length
+from planning._grid_kernels import (
+    GridArrays,
+    clearance_at,
+    floor_of,
+    follow,
+    follow_path,
+    length,
+)
 from planning._jit import inlined, kernel
 from planning._potential_kernels import Guide, potential_at
 from planning._reservation_kernels import conflict
@@ -79,6 +86,25 @@ def risks_along(
     return True
 
 
+@inlined
+def _may_go(task: Task, need: float, moved: float, room: float, left_m: float, ds: float) -> bool:
+    """Whether a slice is free of walls, within the speed limit, with a way to the goal."""
+    return (
+        moved <= task.max_speed_mps * ds + 1e-9
+        and room >= need
+        and bool(task.hold or np.isfinite(left_m))
+    )
+
+
+@inlined
+def _on_edges(grid: GridArrays, task: Task, cell: int, edge_m: float, moved: float) -> float:
+    """Metres in a row at steps and edges, a slice on; inf if they are too many."""
+    if grid.flat or cell < 0 or not grid.edges[task.body, cell]:
+        return 0.0
+    edge_m += moved
+    return edge_m if edge_m < task.edge_cells * grid.layered.cell_m else np.inf
+
+
 @kernel
 def stretch_is_legal(
     world: World,
@@ -103,18 +129,14 @@ def stretch_is_legal(
         bx = path[k + 1, 0]
         by = path[k + 1, 1]
         moved = length(bx - ax, by - ay)
-        if moved > task.max_speed_mps * ds + 1e-9:
-            return False
         feet_m = floor_of(grid, cell)
         cell = follow(grid, cell, bx, by)
-        if clearance_at(grid, task.body, cell, bx, by) < need:
+        room = clearance_at(grid, task.body, cell, bx, by)
+        if not _may_go(task, need, moved, room, potential_at(guide, cell, bx, by), ds):
             return False
-        if not task.hold and not np.isfinite(potential_at(guide, cell, bx, by)):
+        edge_m = _on_edges(grid, task, cell, edge_m, moved)
+        if edge_m == np.inf:
             return False
-        if not grid.flat:
-            edge_m = edge_m + moved if grid.edges[task.body, cell] else 0.0
-            if edge_m >= task.edge_cells * grid.layered.cell_m:
-                return False
         if conflict(world.reservations, task.me, feet_m, k, ax, ay, bx, by)[0]:
             return False
     return True
@@ -123,9 +145,11 @@ def stretch_is_legal(
 @kernel
 def path_cost(
     world: World, guide: Guide, task: Task, path: NDArray[np.float64]
-) -> tuple[float, float]:
-    """Cost of a whole path as the search counts it (its length and time among it), mean risk."""
+) -> tuple[float, float, bool]:
+    """Cost of a whole path as the search counts it (its length and time among it), mean risk, and
+    whether it is legal: `stretch_is_legal` of all of it."""
     grid = world.grid
+    need = needed_clearance(world, task)
     ds = world.step_s / SUB
     slices = len(path) - 1
     cell = task.cell
@@ -134,6 +158,8 @@ def path_cost(
     cost = 0.0
     risk = 0.0
     left_m = 0.0
+    edge_m = 0.0
+    legal = True
     for k in range(slices):
         ax = path[k, 0]
         ay = path[k, 1]
@@ -146,18 +172,22 @@ def path_cost(
         cell = follow(grid, cell, bx, by)
         left_m = metres_left(guide, task, cell, bx, by)
         r = slice_risk(world, task, k + 1, cell, ax, ay, bx, by)
-        soft = conflict(world.reservations, task.me, feet_m, k, ax, ay, bx, by)[1]
+        room = clearance_at(grid, task.body, cell, bx, by)
+        edge_m = _on_edges(grid, task, cell, edge_m, moved)
+        blocked, soft = conflict(world.reservations, task.me, feet_m, k, ax, ay, bx, by)
+        if blocked or edge_m == np.inf or not _may_go(task, need, moved, room, left_m, ds):
+            legal = False
         risk += r
         cost += (
             time_cost(task, left_m, moved / ds, ds)
             + risk_price(task, (k // SUB) * world.step_s) * ds * (r + soft)
             + task.turn_weight * length(ux - vx, uy - vy)
-            + wall_cost(task, clearance_at(grid, task.body, cell, bx, by), ds)
+            + wall_cost(task, room, ds)
         )
         vx = ux
         vy = uy
     cost += way_left(task, left_m, length(vx, vy))
-    return cost, risk / slices
+    return cost, risk / slices, legal
 
 
 @kernel

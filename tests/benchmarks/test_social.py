@@ -9,6 +9,7 @@ import pytest
 from benchmarks import social
 from benchmarks._swaps import SWAPS
 from planning import LayeredGrid
+from tests.planning.worlds import COMPILED
 
 RADIUS_M = 0.25
 
@@ -43,6 +44,12 @@ def test_twelve_on_a_circle_change_places(tmp_path, capsys) -> None:
     assert figures["clearance_m"] > 0.0
     assert 0.9 < figures["time_ratio"] <= figures["worst_time_ratio"] < 4.0
     assert "contacts, pairs" in capsys.readouterr().out
+
+
+@pytest.mark.skipif(not COMPILED, reason="takes minutes uncompiled")
+def test_two_crowds_come_through_a_doorway_and_nobody_is_stuck(capsys) -> None:
+    options = ["--actors", "60", "--scenes", "doorway", "--until", "60", "--threads", "1"]
+    assert social.main(options) == 0, capsys.readouterr().out
 
 
 def test_who_does_not_arrive_in_time_is_told_of(capsys) -> None:

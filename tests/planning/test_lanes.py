@@ -132,6 +132,9 @@ def test_who_waits_in_vain_goes_before_who_has_come_as_near() -> None:
     waited_s = crowd.passages[:, WAITED_S]
     assert left_m[1:] == pytest.approx(5.0 - WAITING_MPS * waited_s[1:])
     assert left_m[0] == pytest.approx(4.0 - WAITING_MPS * waited_s[0])
+    waited_s[:] = 1e3
+    order_at_passages(crowd, np.ones(2 * OPPOSED, dtype=bool), left_m)
+    assert not left_m.any(), "however long they wait, who has come through goes first"
 
 
 def test_to_come_nearer_by_enough_ends_the_waiting() -> None:

@@ -9,7 +9,7 @@ from planning import _perturb_kernels as kernels
 from planning._task_kernels import needed_clearance
 from tests.naive import search as naive
 from tests.planning.test_search import ground_of, people
-from tests.planning.worlds import holds, open_grid, reserved, task, world_of
+from tests.planning.worlds import holds, lines, open_grid, reserved, task, world_of
 
 
 def path_between(start, goal, speed=1.3):
@@ -56,6 +56,22 @@ def test_a_paths_cost_is_its_sum(start, goal, crowd) -> None:
     assert kernels.path_cost(world, guide, ground.task, path)[:2] == pytest.approx(
         expected, rel=1e-5, abs=1e-5
     )
+
+
+@given(starts, goals, lines(0.0, 8.0, 3), st.floats(1.0, 2.0), starts, goals)
+@holds(100, 5)
+def test_a_cost_tells_whether_the_whole_path_is_legal(
+    start, goal, walls, speed, other_start, other_goal
+) -> None:
+    paths = np.stack([path_between(start, goal, speed), path_between(other_goal, other_start)])
+    others = reserved(open_grid(8.0), paths, (0.25, 0.25), (1, 0))
+    ground = ground_of(task(start, goal), walls=walls, others=others)
+    world, guide = kernel_view(ground)
+    need = needed_clearance(world, ground.task)
+    legal = kernels.stretch_is_legal(
+        world, guide, ground.task, need, ground.task.cell, paths[0], 0, 24
+    )
+    assert kernels.path_cost(world, guide, ground.task, paths[0])[2] == legal
 
 
 @given(starts, goals, people)
