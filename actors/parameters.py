@@ -145,7 +145,7 @@ class ActorParameters(BaseModel):
     max_expansions: Annotated[
         int,
         _field("nodes", 10, 20000, "Budget of one search; a smaller one may end before the goal."),
-    ] = 100
+    ] = 70
     height_m: Annotated[
         float, _field("m", 0.8, 2.5, "Height of the body; it passes where there is as much room.")
     ] = 1.8
