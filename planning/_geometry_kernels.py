@@ -173,27 +173,26 @@ def slide_step(
     dx: float,
     dy: float,
     clearance: float,
+    before: float,
 ) -> tuple[float, float]:
     """Move a disc by a short step, pushed out of barriers; stays where it is when that fails.
 
-    The bounds count before barriers do: a wall that ends at them must not be rounded outside.
+    `before` is how near the nearest barrier is. The bounds count before barriers do: a wall that
+    ends at them must not be rounded outside.
     """
     nx = within(bounds[0], x + dx, bounds[2])
     ny = within(bounds[1], y + dy, bounds[3])
-    before = nearest_segment(index, stance, x, y)[0]
     allowed = min(clearance, before) - 1e-9
-    for _ in range(4):
+    for push in range(5):
         d, cx, cy = nearest_segment(index, stance, nx, ny)
         if d >= allowed:
             break
-        if d < 1e-9:
+        if d < 1e-9 or push == 4:
             return x, y
-        push = (min(clearance, before) - d) / d
-        nx = within(bounds[0], nx + (nx - cx) * push, bounds[2])
-        ny = within(bounds[1], ny + (ny - cy) * push, bounds[3])
-    if nearest_segment(index, stance, nx, ny)[0] < allowed or crosses_any(
-        index, stance, x, y, nx, ny
-    ):
+        part = (min(clearance, before) - d) / d
+        nx = within(bounds[0], nx + (nx - cx) * part, bounds[2])
+        ny = within(bounds[1], ny + (ny - cy) * part, bounds[3])
+    if crosses_any(index, stance, x, y, nx, ny):
         return x, y
     return nx, ny
 
@@ -219,12 +218,13 @@ def slide(
         return x, y
     done = 0.0
     while done < length:
-        room = min(nearest_segment(index, stance, x, y)[0], index.reach_m) - clearance
+        before = nearest_segment(index, stance, x, y)[0]
+        room = min(before, index.reach_m) - clearance
         if done == 0.0 and room > length:
             return within(bounds[0], x + dx, bounds[2]), within(bounds[1], y + dy, bounds[3])
         piece = min(length - done, max(room, 0.5 * clearance, 0.02))
         u = piece / length
-        x, y = slide_step(index, stance, bounds, x, y, dx * u, dy * u, clearance)
+        x, y = slide_step(index, stance, bounds, x, y, dx * u, dy * u, clearance, before)
         done += piece
     return x, y
 
