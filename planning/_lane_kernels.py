@@ -37,11 +37,11 @@ AFTER_M = 4.0
 """Who has come through a passage keeps right for so far,"""
 PASSED_M = 8.0
 """and goes before those who still have to come there for so far."""
-SHIFT_M = 0.3
+SHIFT_M = 0.2
 """The lane begins so far to the right of the middle, or half-way to the side of the passage."""
 NEARER_M = 0.5
 """Who comes nearer to a passage by so much has got on."""
-WAITING_MPS = 0.15
+WAITING_MPS = 0.2
 """A second without getting on is worth so many metres less to a passage."""
 LEFT_RAD = 1.0
 """Seen from where the lane begins, who is so far to the left of it is wholly on the left."""
