@@ -199,6 +199,22 @@ def test_how_work_is_shared_out_does_not_matter() -> None:
         assert np.array_equal(ours, theirs)
 
 
+@given(people)
+@holds(20, 4)
+def test_one_bucket_for_all_gives_the_same_risk(crowd) -> None:
+    grid = open_grid(8.0)
+    prediction = walking([p for p, _ in crowd], [v for _, v in crowd], slices=5)
+    many, one = field_of(grid, prediction, slices=5), RiskField(grid, RiskModel(), 5, PEOPLE)
+    one.make_room(prediction, SLACK_M)
+    one.arrays = one.arrays._replace(nx=1, ny=1)
+    one.fill(prediction)
+    assert many.arrays.nx > 1
+    everywhere = np.stack(np.meshgrid(*[np.arange(0.1, 8.0, 0.5)] * 2), axis=-1).reshape(-1, 2)
+    for k in range(6):
+        here = (k, everywhere, np.zeros(len(everywhere)), 0 * everywhere + 0.5, CLOSING_WEIGHT)
+        assert np.array_equal(one.at(*here), many.at(*here))
+
+
 @given(people, points(1.0, 7.0), points(1.0, 7.0))
 @holds(40, 6)
 def test_for_those_in_a_box_only_they_are_left_out_whom_nobody_gets_near(crowd, a, b) -> None:
