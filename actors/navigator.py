@@ -24,9 +24,9 @@ from planning import (
     Scene,
     TrackHistory,
 )
+from planning.prediction import Coordinates
 
 Point = tuple[float, float]
-Place = tuple[float, ...] | NDArray[np.float64]
 
 _REASONS = tuple(Reason)
 _SLACK_M = 0.02
@@ -208,8 +208,8 @@ class Navigator:
 
     # --- ticks ---------------------------------------------------------------------------
 
-    def observe(self, people: Mapping[Hashable, Place]) -> None:
-        """Tell where everyone is at this tick: id -> (x, y) or (x, y, z), tuples or arrays.
+    def observe(self, people: Mapping[Hashable, Coordinates]) -> None:
+        """Tell where everyone is at this tick: id -> (x, y) or (x, y, z).
 
         Who is absent has left. Call it once before every `tick`.
 

@@ -159,8 +159,14 @@ def crosses_any(
 
 
 @kernel
-def within(low: float, value: float, high: float) -> float:
+def _within(low: float, value: float, high: float) -> float:
     return min(high, max(low, value))
+
+
+@kernel
+def in_bounds(bounds: tuple[float, float, float, float], x: float, y: float) -> bool:
+    """Whether a point lies inside the bounds x0, y0, x1, y1, or on them."""
+    return bool(bounds[0] <= x <= bounds[2] and bounds[1] <= y <= bounds[3])
 
 
 @kernel
@@ -180,8 +186,8 @@ def slide_step(
     `before` is how near the nearest barrier is. The bounds count before barriers do: a wall that
     ends at them must not be rounded outside.
     """
-    nx = within(bounds[0], x + dx, bounds[2])
-    ny = within(bounds[1], y + dy, bounds[3])
+    nx = _within(bounds[0], x + dx, bounds[2])
+    ny = _within(bounds[1], y + dy, bounds[3])
     allowed = min(clearance, before) - 1e-9
     for push in range(5):
         d, cx, cy = nearest_segment(index, stance, nx, ny)
@@ -190,8 +196,8 @@ def slide_step(
         if d < 1e-9 or push == 4:
             return x, y
         part = (min(clearance, before) - d) / d
-        nx = within(bounds[0], nx + (nx - cx) * part, bounds[2])
-        ny = within(bounds[1], ny + (ny - cy) * part, bounds[3])
+        nx = _within(bounds[0], nx + (nx - cx) * part, bounds[2])
+        ny = _within(bounds[1], ny + (ny - cy) * part, bounds[3])
     if crosses_any(index, stance, x, y, nx, ny):
         return x, y
     return nx, ny
@@ -220,8 +226,8 @@ def slide(
     while done < length:
         before = nearest_segment(index, stance, x, y)[0]
         room = min(before, index.reach_m) - clearance
-        if done == 0.0 and room > length:
-            return within(bounds[0], x + dx, bounds[2]), within(bounds[1], y + dy, bounds[3])
+        if done == 0.0 and room > length and in_bounds(bounds, x + dx, y + dy):
+            return x + dx, y + dy
         piece = min(length - done, max(room, 0.5 * clearance, 0.02))
         u = piece / length
         x, y = slide_step(index, stance, bounds, x, y, dx * u, dy * u, clearance, before)

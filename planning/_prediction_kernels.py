@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planning._geometry_kernels import Stance, nearest_segment, within
+from planning._geometry_kernels import Stance, in_bounds, nearest_segment
 from planning._grid_kernels import length, surface_at
 from planning._ground_kernels import GroundArrays, walk
 from planning._held import Held
@@ -194,9 +194,9 @@ def extrapolate(
                 if grid.flat and free_m <= step_m:
                     near_m = nearest_segment(index, stance, x, y)[0]
                     free_m = min(near_m, index.reach_m) - wall_clearance
-                if grid.flat and free_m > step_m:  # nothing can be met in this slice
-                    nx = within(bounds[0], x + dx, bounds[2])
-                    ny = within(bounds[1], y + dy, bounds[3])
+                if grid.flat and free_m > step_m and in_bounds(bounds, x + dx, y + dy):
+                    nx = x + dx  # nothing can be met in this slice
+                    ny = y + dy
                     free_m -= step_m
                 elif cell >= 0 or grid.flat:
                     cell, nx, ny = walk(

@@ -40,25 +40,25 @@ class Zone(NamedTuple):
     positions: NDArray[np.float64]
     cells: NDArray[np.int64]
     fastest_mps: float
-    """Nobody may be faster, or there is too little room."""
+    """There is room for nobody who is faster."""
     last_wider: int
 
 
 @kernel
 def has_room(zone: Held[Zone], workspace: Held[Workspace], branching: int) -> bool:
-    """Whether there is room for what the actors are and ask by now."""
+    """Whether there is room for what the actors are and ask by now, and not far too much."""
     world, crowd = zone.value.world, zone.value.crowd
+    fastest_mps = 0.0
     for a in range(len(crowd.positions)):
         p = crowd.parameters[a]
         # Who is told to be slower from now on still has to brake.
         speed = np.hypot(crowd.velocities[a, 0], crowd.velocities[a, 1])
-        if (
-            max(p["max_speed_mps"], speed) > zone.value.fastest_mps
-            or p["radius_m"] > world.reservations.widest_m
-            or p["max_expansions"] * branching + 2 > len(workspace.value.node_state)
+        fastest_mps = max(fastest_mps, p["max_speed_mps"], speed)
+        if p["radius_m"] > world.reservations.widest_m or p["max_expansions"] * branching + 2 > len(
+            workspace.value.node_state
         ):
             return False
-    return True
+    return bool(fastest_mps <= zone.value.fastest_mps <= 2.0 * fastest_mps)
 
 
 @kernel
@@ -94,7 +94,7 @@ def decide_some(
     last: int,
     workspace: Held[Workspace],
 ) -> None:
-    """Decide for actors first ... last - 1."""
+    """`decide` for some actors."""
     z = zone.value
     decide(
         z.world,

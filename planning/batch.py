@@ -31,7 +31,7 @@ from planning.risk import RiskField, RiskModel
 from planning.search import compass_moves, make_reservations, make_workspace
 from planning.spread import GAUSSIAN, Spread
 
-_PORTION = 32
+_PORTION = 8
 """So many actors are decided for at a time, at most."""
 _WORTH_A_THREAD = 4
 """So many actors keep a thread busy for longer than it takes to hand the work over."""

@@ -17,7 +17,7 @@ from planning._prediction_kernels import Prediction, Tracks
 from planning.grid import LayeredGrid
 from planning.spread import PEOPLE, Spread
 
-Place = Sequence[float] | NDArray[np.float64]
+Coordinates = Sequence[float] | NDArray[np.float64]
 """(x, y) or (x, y, z) in metres."""
 _NAME = itemgetter(0)
 
@@ -56,7 +56,7 @@ def _name(who: object) -> tuple[str, str]:
     return type(who).__name__, str(who)
 
 
-def _as_places(listed: Sequence[object], given: Sequence[Place]) -> NDArray[np.float64]:
+def _as_places(listed: Sequence[object], given: Sequence[Coordinates]) -> NDArray[np.float64]:
     """Places as float64 (P, 2) or (P, 3)."""
     try:
         points = np.array(given, dtype=np.float64)
@@ -119,7 +119,7 @@ class TrackHistory:
         """Heights of everyone's feet, float64 (P,), metres."""
         return np.ascontiguousarray(self._places[:, 2])
 
-    def observe(self, people: Mapping[object, Place]) -> None:
+    def observe(self, people: Mapping[object, Coordinates]) -> None:
         """Add this tick's positions: id -> (x, y) or (x, y, z). Who is absent has left.
 
         Raises

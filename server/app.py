@@ -81,7 +81,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         bound = await loop.create_server(
             asyncio.Protocol, settings.host, settings.port, start_serving=False
         )
-        stack.callback(bound.close)
+        bound.close()
         log.info("compiling; the first start on a machine takes a minute or two")
         cast, world, storeys = await loop.run_in_executor(thread, _build, stage, settings)
         stack.callback(cast.close)
@@ -101,7 +101,6 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         )
         delivery = Delivery(world, hub.sessions, settings.tick_rate)
         ticker = Ticker(world, hub, delivery, schedule, metrics, thread)
-        bound.close()
         listener = await stack.enter_async_context(
             Listener(hub, assets, settings, metrics).listening()
         )

@@ -25,7 +25,11 @@ BODY: Final = frozenset(
     }
 )
 """Parameters that say what an actor is, not how it behaves."""
-TEMPER: Final = tuple(name for name in ActorParameters.model_fields if name not in BODY)
+AMONG_ACTORS: Final = frozenset({"keep_right_weight"})
+"""Parameters that one actor alone never asks for."""
+TEMPER: Final = tuple(
+    name for name in ActorParameters.model_fields if name not in BODY | AMONG_ACTORS
+)
 EACH_SIDE: Final = 2
 FACTOR: Final = 2.0
 """By default a setting takes so many values on each side, each so many times its neighbour; one

@@ -334,15 +334,18 @@ def test_a_batch_that_has_ticked_before_decides_like_a_new_one(batch) -> None:
     crowd = crowd_of(*ends)
     people = [((4.0 + 0.3 * k, 4.0), (-0.5, 0.1 * k)) for k in range(6)]
     grid = batch.grid
+    guides = guides_of(grid, crowd)
+    crowd.cells[:] = grid.on_ground(crowd.positions, np.zeros(2))[1]
     room = GridArrays(*grid.arrays)
     slow = {"max_speed_mps": 1.0, "speed_mps": 0.6}
     for changes in ({}, {"radius_m": 0.4}, {"max_speed_mps": 3.0}, {"max_expansions": 200.0}, slow):
         for many in (0, 2, 6):
             for name, value in changes.items():
                 crowd.parameters[name] = value
-            again, positions = tick(batch, crowd, people[:many])
+            prediction = walking([p for p, _ in people[:many]], [v for _, v in people[:many]])
+            again, positions = decided(batch, crowd, guides, prediction)
             fresh = Batch(grid, PLAN, RiskModel())
-            anew, expected = tick(fresh, crowd, people[:many])
+            anew, expected = decided(fresh, crowd, guides, prediction)
             fresh.close()
             assert all(np.array_equal(a, b) for a, b in zip(again, anew, strict=True)), changes
             assert np.array_equal(positions, expected)
@@ -397,3 +400,22 @@ def test_at_a_contested_doorway_actors_keep_right_whatever_their_order_and_threa
         other = at_a_doorway(rows, threads)
         assert np.array_equal(other.positions, crowd.positions[rows])
         assert np.array_equal(other.passages, crowd.passages[rows])
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("radius_m", 0.4), ("max_speed_mps", 3.0), ("max_expansions", 5000.0)],
+)
+def test_a_zone_is_handed_over_anew_when_more_is_asked_and_only_then(batch, name, value) -> None:
+    crowd = crowd_of([(1.0, 4.0), (2.0, 5.0)], [(7.0, 4.2), (6.0, 2.0)])
+    crowd.cells[:] = batch.grid.on_ground(crowd.positions, np.zeros(2))[1]
+    guides, nobody = guides_of(batch.grid, crowd), walking([], [])
+    zones = []
+    for _ in range(2):
+        for _ in range(2):
+            batch.tick(crowd, guides, nobody, TICK_S)
+            zones.append(batch._zone)
+        crowd.parameters[name] = value
+    assert zones[0] is zones[1]
+    assert zones[1] is not zones[2]
+    assert zones[2] is zones[3]

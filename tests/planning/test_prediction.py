@@ -200,9 +200,10 @@ def test_people_are_expected_to_go_up_stairs_and_to_stay_off_ledges() -> None:
     assert prediction.heights[1, -1] == pytest.approx(UPPER_M, abs=1e-3)
 
 
-@given(st.floats(1.0, 11.0), st.floats(1.0, 11.0), st.floats(-2.0, 2.0), st.floats(-2.0, 2.0))
+@given(st.floats(-2.0, 14.0), st.floats(-2.0, 14.0), st.floats(-2.0, 2.0), st.floats(-2.0, 2.0))
 @holds(40, 10)
 def test_means_are_what_walking_slice_by_slice_comes_to(x, y, vx, vy) -> None:
+    """Also of those who come from outside the bounds."""
     walls = (((5.0, 2.0), (5.0, 9.0)), ((5.0, 6.0), (9.0, 7.0)))
     grid = open_grid(12.0, walls)
     history = TrackHistory(PredictionModel(), TICK_S)

@@ -10,7 +10,7 @@ from actors import ActorParameters
 from evaluation.settings import DEFAULTS, SettingError, check
 from evaluation.studies import sensitivity, sensitivity_plot
 from evaluation.studies.measures import MEASURES, Floats
-from evaluation.studies.sensitivity import BODY, TEMPER, Curve
+from evaluation.studies.sensitivity import AMONG_ACTORS, BODY, TEMPER, Curve
 from evaluation.studies.variants import Tables
 from evaluation.trials import Source
 from tests.evaluation.worlds import RULES
@@ -19,8 +19,8 @@ NEAR = [measure.name for measure in MEASURES].index("near_s")
 BASE = {"risk_weight": 8.0}
 
 
-def test_every_parameter_is_body_or_temper() -> None:
-    assert set(TEMPER) | BODY == set(ActorParameters.model_fields)
+def test_every_parameter_is_body_or_temper_or_of_no_use_to_one_actor() -> None:
+    assert set(TEMPER) | BODY | AMONG_ACTORS == set(ActorParameters.model_fields)
     assert "risk_weight" in TEMPER
 
 
