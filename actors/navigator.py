@@ -57,6 +57,7 @@ class Navigator:
             raise ValueError(f"tick_s must lie in (0, 0.5], got {tick_s}")
         grid = scene if isinstance(scene, LayeredGrid) else LayeredGrid.from_scene(scene, cell_m)
         self.grid = grid
+        self._bounds = grid.bounds
         self.tick_s = tick_s
         self.plan = plan or PlanModel()
         self._seed = seed
@@ -285,12 +286,12 @@ class Navigator:
 
     def check_place(self, position: Point, z_m: float) -> None:
         """ValueError unless an actor may be put there or sent there."""
-        x0, y0, x1, y1 = self.grid.bounds
+        x0, y0, x1, y1 = self._bounds
         x, y = position
         if not (math.isfinite(x) and math.isfinite(y) and math.isfinite(z_m)):
             raise ValueError(f"a place must be finite, got ({x}, {y}) at height {z_m}")
         if not (x0 <= x <= x1 and y0 <= y <= y1):
-            raise ValueError(f"({x:g}, {y:g}) lies outside the bounds {self.grid.bounds}")
+            raise ValueError(f"({x:g}, {y:g}) lies outside the bounds {self._bounds}")
 
     def _cell(self, position: Point, z_m: float) -> int:
         return self.grid.cell_at(position, z_m)

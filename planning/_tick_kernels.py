@@ -120,13 +120,20 @@ def take_steps(zone: Held[Zone], tick_s: float) -> None:
 
 @kernel
 def plan_and_step(
-    zone: Held[Zone], prediction: Prediction, tick_s: float, workspace: Held[Workspace]
-) -> None:
-    """All stages one after the other, on one thread."""
+    zone: Held[Zone],
+    workspace: Held[Workspace],
+    branching: int,
+    prediction: Prediction,
+    tick_s: float,
+) -> bool:
+    """All stages one after the other, on one thread; False, and nothing done, without room."""
+    if not has_room(zone, workspace, branching):
+        return False
     index_future(zone, prediction, 0, 1)
     put_in_order(zone, tick_s)
     decide_some(zone, prediction, tick_s, 0, len(zone.value.order), workspace)
     take_steps(zone, tick_s)
+    return True
 
 
 @kernel

@@ -95,13 +95,7 @@ class Batch:
     def _hand_over(
         self, crowd: Crowd, guides: NDArray[np.float32], prediction: Prediction, tick_s: float
     ) -> None:
-        """Make sure that compiled code has this crowd, and room for it."""
-        self.field.make_room(prediction, 0.0)
-        parts = crowd, guides, self.grid.arrays, self.field.arrays, tick_s
-        if all(map(is_, parts, self._made_of)) and has_room(
-            self._held, self._workspaces[0], self._branching
-        ):
-            return
+        """Give compiled code this crowd, and room for it."""
         budget = int(crowd.parameters["max_expansions"].max())
         if budget > self._budget:
             self._budget = budget
@@ -179,17 +173,27 @@ class Batch:
         The decisions, and float64 (A, 2) positions and int64 (A,) cells after the tick. All are
         written over in the next one.
         """
-        self._hand_over(crowd, guides, prediction, tick_s)
-        zone = self._held
-        actors = len(crowd.positions)
-        threads = min(self.plan.threads, 1 + actors // _WORTH_A_THREAD)
-        if threads == 1:
-            plan_and_step(zone, prediction, tick_s, self._workspaces[0])
-            return self._zone.decisions, self._zone.positions, self._zone.cells
+        threads = min(self.plan.threads, 1 + len(crowd.positions) // _WORTH_A_THREAD)
+        self.field.make_room(prediction, 0.0)
+        parts = crowd, guides, self.grid.arrays, self.field.arrays, tick_s
+        if not all(map(is_, parts, self._made_of)):
+            self._hand_over(crowd, guides, prediction, tick_s)
+        if not self._plan_and_step(threads, prediction, tick_s):
+            self._hand_over(crowd, guides, prediction, tick_s)
+            self._plan_and_step(threads, prediction, tick_s)
+        return self._zone.decisions, self._zone.positions, self._zone.cells
 
+    def _plan_and_step(self, threads: int, prediction: Prediction, tick_s: float) -> bool:
+        """The stages of a tick; False, and nothing done, if there is too little room."""
+        zone = self._held
+        if threads == 1:
+            return plan_and_step(zone, self._workspaces[0], self._branching, prediction, tick_s)
+        if not has_room(zone, self._workspaces[0], self._branching):
+            return False
         self._on_threads(lambda k: index_future(zone, prediction, k, threads), threads)
         put_in_order(zone, tick_s)
         # Every thread takes the next portion when it is done with one: none waits for the other.
+        actors = len(self._zone.order)
         portion = min(_PORTION, -(-actors // (2 * threads)))
         portions = iter(range(0, actors, portion))
 
@@ -200,7 +204,7 @@ class Batch:
 
         self._on_threads(work, threads)
         take_steps(zone, tick_s)
-        return self._zone.decisions, self._zone.positions, self._zone.cells
+        return True
 
     def settle(
         self, tick_s: float, headings: NDArray[np.float64]

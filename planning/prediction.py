@@ -97,6 +97,7 @@ class TrackHistory:
         self._held = hold(self._tracks)
         self._rows: dict[object, int] = {}
         self._listed: list[tuple[tuple[str, str], object]] = []
+        self._ids: list[object] = []
         self._free: list[int] = []
         self._order = np.zeros(0, dtype=np.int64)
         self._places = np.zeros((0, 3))
@@ -107,7 +108,7 @@ class TrackHistory:
     @property
     def ids(self) -> list[object]:
         """Who is present, in the order of `positions` and of every array made from them."""
-        return [who for _, who in self._listed]
+        return list(self._ids)
 
     @property
     def positions(self) -> NDArray[np.float64]:
@@ -133,7 +134,7 @@ class TrackHistory:
             for who in people:
                 if who not in self._rows:
                     bisect.insort(listed, (_name(who), who), key=_NAME)
-        ids = [who for _, who in listed]
+        ids = self._ids if listed is self._listed else [who for _, who in listed]
         given = _as_places(ids, [people[who] for who in ids])
         if listed is not self._listed:
             for who in self._rows.keys() - people.keys():
@@ -141,7 +142,7 @@ class TrackHistory:
             for who in ids:
                 if who not in self._rows:
                     self._rows[who] = self._take_row()
-            self._listed = listed
+            self._listed, self._ids = listed, ids
             self._order = np.array([self._rows[who] for who in ids], dtype=np.int64)
         self._ticks += 1
         self._places = np.empty((len(given), 3))
