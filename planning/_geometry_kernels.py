@@ -189,11 +189,11 @@ def slide_step(
     nx = _within(bounds[0], x + dx, bounds[2])
     ny = _within(bounds[1], y + dy, bounds[3])
     allowed = min(clearance, before) - 1e-9
-    for push in range(5):
+    for pushes in range(5):
         d, cx, cy = nearest_segment(index, stance, nx, ny)
         if d >= allowed:
             break
-        if d < 1e-9 or push == 4:
+        if d < 1e-9 or pushes == 4:  # between barriers it may be pushed to and fro for ever
             return x, y
         part = (min(clearance, before) - d) / d
         nx = _within(bounds[0], nx + (nx - cx) * part, bounds[2])

@@ -162,11 +162,6 @@ class TrackHistory:
             self._newest,
         )
 
-    @property
-    def growth_mps(self) -> NDArray[np.float64]:
-        """Growth of everyone's deviation, calibrated on their own past, float64 (P,), m/s."""
-        return np.maximum(np.sqrt(self._tracks.growths2[self._order]), self.model.least_growth_mps)
-
     def _take_row(self) -> int:
         if not self._free:
             size = len(self._tracks.counts)
