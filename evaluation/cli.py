@@ -6,13 +6,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
-from rich.console import Console
-
 from evaluation import forecast_report, plotting, report
 from evaluation.console import (
     UsageError,
     check_targets,
     named_sources,
+    output,
     progress,
     walk,
     write_json,
@@ -73,7 +72,7 @@ def _trips(options: argparse.Namespace) -> bool:
     drawn = _numbers(options.plot_episodes, fewest)
     results = walk(trials, options)
     rows = report.summaries(results, names)
-    report.show(Console(), rows)
+    report.show(output(), rows)
     if options.json is not None:
         told = {**rules.__dict__, "seed": options.seed, "interpolation": options.interp}
         write_json(options.json, report.figures(results, rows, names, {**told, **settings}))
@@ -90,7 +89,7 @@ def _forecasts(options: argparse.Namespace) -> None:
     rows, fits = forecast_report.measure(crowds, options.sample_s, fit=options.fit)
     if not rows:
         raise UsageError("nobody in it is followed for long enough to judge a prediction")
-    forecast_report.show(Console(), rows, fits)
+    forecast_report.show(output(), rows, fits)
     if options.json is not None:
         write_json(options.json, forecast_report.figures(rows, fits, options.sample_s))
 

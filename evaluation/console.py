@@ -17,9 +17,18 @@ from evaluation.trials import Source, Trial
 _ESTIMATE_OVER_S = 300.0
 """Some recordings take longer than others: the time that is left is estimated over many."""
 
+_PAGE = 200
+"""Columns of a file or pipe: nothing is cut off there."""
+
 
 class UsageError(Exception):
     """What was asked for cannot be done; the message says what and why."""
+
+
+def output() -> Console:
+    """Where tables go: on a terminal as wide as that is."""
+    console = Console()
+    return console if console.is_terminal else Console(width=_PAGE)
 
 
 def named_sources(options: argparse.Namespace) -> dict[Source, str]:

@@ -66,7 +66,7 @@ def show(console: Console, rows: Sequence[Row], fits: Fits) -> None:
         table = Table(title=f"Prediction, {model}", title_justify="left", box=box.SIMPLE_HEAD)
         table.add_column("", no_wrap=True)
         for recording in shown:
-            table.add_column(recording, justify="right")
+            table.add_column(recording, justify="right", overflow="fold")
         for heading, *cells in zip(*(_lines(score) for score in shown.values()), strict=True):
             table.add_row(heading[0], *(cell for _, cell in (heading, *cells)))
         console.print(table)

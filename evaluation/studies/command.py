@@ -4,10 +4,8 @@ import argparse
 from collections.abc import Mapping
 from typing import Any
 
-from rich.console import Console
-
 from evaluation import plotting
-from evaluation.console import UsageError, check_targets, named_sources, walk, write_json
+from evaluation.console import UsageError, check_targets, named_sources, output, walk, write_json
 from evaluation.rules import Rules
 from evaluation.settings import read_changes, read_choices
 from evaluation.studies import report, sensitivity, sensitivity_plot, tuning
@@ -28,7 +26,7 @@ def show_sensitivity(options: argparse.Namespace) -> None:
     trials = trials_of(variants, list(names), options.episodes, options.seed)
     tables = tables_of(walk(trials, options))
     found = sensitivity.curves(values, base, rules, tables, options.seed)
-    report.show_curves(Console(), found)
+    report.show_curves(output(), found)
     if options.json is not None:
         told = {"settings": _settings(options, names, base), "points": sensitivity.figures(found)}
         write_json(options.json, told)
@@ -52,7 +50,7 @@ def show_tuning(options: argparse.Namespace) -> None:
     trials = trials_of(variants, list(names), options.episodes, options.seed)
     tables = tables_of(walk(trials, options))
     found = tuning.tune(tables, variants[0], options.seed)
-    report.show_tuning(Console(), found, names)
+    report.show_tuning(output(), found, names)
     if options.json is not None:
         told = {"settings": _settings(options, names, base), **tuning.figures(found, names)}
         write_json(options.json, told)

@@ -117,6 +117,16 @@ def test_predictions_are_measured_and_fitted(
     assert len(found["predictions"]) == 12
 
 
+def test_nothing_is_cut_off_in_a_file_or_pipe(
+    plaza: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", "30")
+    assert run(plaza, "--prediction") == cli.EXIT_WELL
+    shown = capsys.readouterr().out
+    assert "neg. log-likelihood" in shown
+    assert "…" not in shown
+
+
 def test_one_recording_is_fitted_as_a_whole(plaza: Path, tmp_path: Path) -> None:
     target = tmp_path / "all.json"
     assert run(plaza, "--fit", "--json", target) == cli.EXIT_WELL
