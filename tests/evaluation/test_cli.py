@@ -120,7 +120,7 @@ def test_predictions_are_measured_and_fitted(
 def test_nothing_is_cut_off_in_a_file_or_pipe(
     plaza: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setenv("COLUMNS", "30")
+    monkeypatch.setenv("COLUMNS", "20")
     assert run(plaza, "--prediction") == cli.EXIT_WELL
     shown = capsys.readouterr().out
     assert "neg. log-likelihood" in shown
