@@ -13,6 +13,7 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 SKIP_VARIABLE = "ESPLANADE_SKIP_CLIENT"
+PAGE = "src/esplanade/server/client_assets/index.html"
 
 
 class ClientBuildHook(BuildHookInterface):  # type: ignore[type-arg]  # its configuration is unused
@@ -29,7 +30,7 @@ class ClientBuildHook(BuildHookInterface):  # type: ignore[type-arg]  # its conf
             return
         self._npm("ci", "--include=dev", "--no-audit", "--no-fund")
         self._npm("run", "build")
-        page = Path(self.root, "server", "client_assets", "index.html")
+        page = Path(self.root, PAGE)
         if not page.is_file():
             self.app.abort(f"The web client's build ended well but left no {page}.")
 

@@ -10,9 +10,9 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from actors.sights import sight_at
-from actors.state import SAME_FLOOR_M
-from planning import Body, LayeredGrid, Scene
+from esplanade.actors.sights import sight_at
+from esplanade.planning import Body, LayeredGrid, Scene
+from esplanade.planning.scene.heights import SAME_FLOOR_M
 
 Goal = tuple[float, float, float]
 """x, y and the height of the floor, metres."""
@@ -22,7 +22,7 @@ BehaviourName = Literal["go_to", "wander", "patrol", "guide", "idle"]
 
 
 @dataclass(frozen=True)
-class View:
+class Perception:
     """What a behaviour knows at a tick."""
 
     time_s: float
@@ -52,7 +52,7 @@ class Behaviour(ABC):
     name: ClassVar[BehaviourName]
 
     @abstractmethod
-    def update(self, view: View) -> Goal | None:
+    def update(self, view: Perception) -> Goal | None:
         """The goal of this tick, None to stand still."""
 
     def targets(self) -> Sequence[Target]:
@@ -75,7 +75,7 @@ class Idle(Behaviour):
 
     name = "idle"
 
-    def update(self, view: View) -> Goal | None:  # noqa: ARG002 - nothing to look at
+    def update(self, view: Perception) -> Goal | None:  # noqa: ARG002 - nothing to look at
         """Never a goal."""
         return None
 
@@ -92,7 +92,7 @@ class GoTo(Behaviour):
         """The one target."""
         return (self._target,)
 
-    def update(self, view: View) -> Goal | None:
+    def update(self, view: Perception) -> Goal | None:
         """Always the same goal."""
         return view.resolve(self._target)
 
@@ -107,7 +107,7 @@ class Wander(Behaviour):
         self._goal: Goal | None = None
         self._rest_until: float | None = None
 
-    def update(self, view: View) -> Goal | None:
+    def update(self, view: Perception) -> Goal | None:
         """The place being walked to, or rested at."""
         if self._goal is None or view.stuck:
             self._goal = self._choose(view)
@@ -119,7 +119,7 @@ class Wander(Behaviour):
                 self._goal = self._choose(view)
         return self._goal
 
-    def _choose(self, view: View) -> Goal | None:
+    def _choose(self, view: Perception) -> Goal | None:
         here = np.array(view.position)
         places = [
             (*place.position, place.z_m)
@@ -162,7 +162,7 @@ class Patrol(Behaviour):
         """The stops."""
         return self._stops
 
-    def update(self, view: View) -> Goal | None:
+    def update(self, view: Perception) -> Goal | None:
         """The stop being walked to, or rested at."""
         if view.stuck:
             self._advance()
@@ -234,7 +234,7 @@ class Guide(Behaviour):
         """The stops of the tour."""
         return self._tour.targets()
 
-    def update(self, view: View) -> Goal | None:
+    def update(self, view: Perception) -> Goal | None:
         """The next stop; None while waiting for followers."""
         away = {
             who: math.dist(where[:2], view.position)

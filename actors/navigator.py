@@ -8,14 +8,14 @@ from collections.abc import Hashable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from actors.guides import GuidePool
-from actors.parameters import ActorParameters
-from actors.state import SAME_FLOOR_M, ActorState, Reason
-from planning import (
+from esplanade.actors.parameters import ActorParameters
+from esplanade.actors.potential_pool import PotentialPool
+from esplanade.actors.state import ActorState, Reason
+from esplanade.planning import (
     PARAMETERS,
     PASSAGE,
+    Agents,
     Batch,
-    Crowd,
     LayeredGrid,
     PlanModel,
     Prediction,
@@ -24,7 +24,8 @@ from planning import (
     Scene,
     TrackHistory,
 )
-from planning.prediction import Coordinates
+from esplanade.planning.people.prediction import Coordinates
+from esplanade.planning.scene.heights import SAME_FLOOR_M
 
 Point = tuple[float, float]
 
@@ -65,7 +66,7 @@ class Navigator:
         self._batch = Batch(grid, self.plan, risk or RiskModel(), people.spread)
         self._history = TrackHistory(people, tick_s)
         self._prediction = self._history.predict(grid, self.plan.slices, self.plan.slice_s)
-        self._guides = GuidePool(grid)
+        self._potentials = PotentialPool(grid)
         self._ids: list[Hashable] = []
         self._rows: dict[Hashable, int] = {}
         self._headings = np.zeros(0)
@@ -103,13 +104,13 @@ class Navigator:
         parameters = parameters or ActorParameters()
         rows = len(self._ids)
         slices = self.plan.slices + 1
-        self._crowd = Crowd(
+        self._crowd = Agents(
             np.concatenate([c.positions, np.array([position], dtype=np.float64)]),
             np.concatenate([c.velocities, np.zeros((1, 2))]),
             np.append(c.cells, self._cell(position, z_m)),
             np.append(c.bodies, self._body_row(parameters)),
             np.concatenate([c.goals, np.array([position], dtype=np.float64)]),
-            np.append(c.guide_slots, np.int64(-1)),
+            np.append(c.potential_rows, np.int64(-1)),
             np.append(c.parameters, parameters.row()),
             c.ranks,
             np.append(c.known, False),
@@ -131,11 +132,11 @@ class Navigator:
     def remove_actor(self, actor_id: Hashable) -> None:
         """Take an actor out; KeyError when there is none of that id."""
         row = self._row(actor_id)
-        self._guides.release(int(self._crowd.guide_slots[row]))
+        self._potentials.release(int(self._crowd.potential_rows[row]))
         fields = {
             name: np.delete(array, row, axis=0) for name, array in self._crowd._asdict().items()
         }
-        self._crowd = Crowd(**fields)
+        self._crowd = Agents(**fields)
         self._headings = np.delete(self._headings, row)
         del self._ids[row], self._parameters[actor_id], self._goals[actor_id]
         self._rows = {who: k for k, who in enumerate(self._ids)}
@@ -147,21 +148,21 @@ class Navigator:
         if goal is not None:
             self.check_place(goal, z_m)
         c = self._crowd
-        old = int(c.guide_slots[row])
+        old = int(c.potential_rows[row])
         slot = -1
         target = None if goal is None else (float(goal[0]), float(goal[1]), float(z_m))
         if target is not None:
             body = self._parameters[actor_id].body
             free = self.grid.nearest_free(target[:2], z_m, body.radius_m - _SLACK_M, body)
             if free is not None:
-                slot = self._guides.take(free, z_m, body)
+                slot = self._potentials.take(free, z_m, body)
                 c.goals[row] = free
-        c.guide_slots[row] = slot
+        c.potential_rows[row] = slot
         c.known[row] = c.known[row] and slot == old
         c.left_m[row] = np.nan
         c.behind_s[row] = 0.0
         c.passages[row] = 0.0
-        self._guides.release(old)
+        self._potentials.release(old)
         self._goals[actor_id] = target
 
     def prepare_goal(self, goal: Point, z_m: float, parameters: ActorParameters) -> None:
@@ -169,7 +170,7 @@ class Navigator:
         body = parameters.body
         free = self.grid.nearest_free(goal, z_m, body.radius_m - _SLACK_M, body)
         if free is not None:
-            self._guides.release(self._guides.take(free, z_m, body))
+            self._potentials.release(self._potentials.take(free, z_m, body))
 
     def set_parameters(self, actor_id: Hashable, parameters: ActorParameters) -> None:
         """Change an actor's parameters from the next tick on."""
@@ -196,12 +197,12 @@ class Navigator:
         self._crowd.cells[row] = self._cell(position, z_m)
         self._crowd.velocities[row] = velocity
 
-    def ways_changed(self) -> None:
+    def ground_changed(self) -> None:
         """The ground has changed: potentials are derived anew, one a tick, used ones first.
 
         Until its turn comes an actor may walk up to what has closed; it never walks through.
         """
-        self._guides.forget()
+        self._potentials.forget()
 
     def parameters(self, actor_id: Hashable) -> ActorParameters:
         """An actor's parameters."""
@@ -223,11 +224,11 @@ class Navigator:
 
     def tick(self) -> dict[Hashable, ActorState]:
         """Plan and take one step for every actor; id -> state."""
-        self._guides.renew_one()
+        self._potentials.renew_one()
         self._prediction = self._history.predict(self.grid, self.plan.slices, self.plan.slice_s)
         if not self._ids:
             return {}
-        self._batch.tick(self._crowd, self._guides.arrays, self._prediction, self.tick_s)
+        self._batch.tick(self._crowd, self._potentials.arrays, self._prediction, self.tick_s)
         shown, ways = self._batch.settle(self.tick_s, self._headings)
         return {
             who: self._state(who, row, way)
@@ -319,8 +320,8 @@ def _priority(seed: int, who: Hashable) -> int:
     return state ^ (state >> 29)
 
 
-def _empty_crowd(slices: int) -> Crowd:
-    return Crowd(
+def _empty_crowd(slices: int) -> Agents:
+    return Agents(
         np.zeros((0, 2)),
         np.zeros((0, 2)),
         np.zeros(0, dtype=np.int64),

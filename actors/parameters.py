@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from planning import PARAMETERS, Body
+from esplanade.planning import PARAMETERS, Body
 
 
 def _field(unit: str, least: float, most: float, description: str) -> object:

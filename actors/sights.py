@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from actors.state import SAME_FLOOR_M
-from planning import Polygon, Scene
+from esplanade.planning import Polygon, Scene
+from esplanade.planning.scene.heights import SAME_FLOOR_M
 
 Point = tuple[float, float, float]
 

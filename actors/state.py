@@ -8,9 +8,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-SAME_FLOOR_M = 1.5
-"""Places whose heights differ by less are on one floor."""
-
 
 class Reason(IntEnum):
     """Why an actor does what it does."""

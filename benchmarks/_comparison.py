@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any, Final, Protocol, Self
 
 import numpy as np
-
 from benchmarks._pairs import (
     Answer,
     Bools,

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any, Final, Self
 
 import numpy as np
-
 from benchmarks._pairs import Answer, Bools, Floats
 
 RECAST: Final = Path(__file__).parent / "recast"

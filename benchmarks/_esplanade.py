@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-
 from benchmarks._pairs import Answer, Bools, Floats
-from planning import Body, LayeredGrid, PathStatus, find_path
+
+from esplanade.planning import Body, LayeredGrid, PathStatus, find_path
 
 NO_LIMIT: Final = 10_000
 THIN_M: Final = 0.05

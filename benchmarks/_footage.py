@@ -7,10 +7,10 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from bots import Bot, SnapshotEvent, StepsEvent
-from protocol.codec import STEPS_HEAD_BYTES
-from protocol.messages import Enter, Leave
-from protocol.steps import STEP, StepRecords
+from esplanade.bots import Bot, SnapshotEvent, StepsEvent
+from esplanade.protocol.codec import STEPS_HEAD_BYTES
+from esplanade.protocol.messages import Enter, Leave
+from esplanade.protocol.steps import STEP, StepRecords
 
 Floats = npt.NDArray[np.float64]
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-
 from benchmarks._comparison import Disagreement
 from benchmarks._pairs import Floats
 

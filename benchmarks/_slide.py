@@ -6,11 +6,11 @@ from typing import Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-
-from actors.locomotion.motion import Steps
-from actors.locomotion.posing import Build, Pose, pose
 from benchmarks._footage import Floats, Seen
-from server.world.step_records import from_records
+
+from esplanade.actors.locomotion.motion import Steps
+from esplanade.actors.locomotion.reference.posing import Build, Pose, pose
+from esplanade.server.world.step_records import from_records
 
 FRAMES_PER_SECOND: Final = 60
 PHASE: Final = 0.37

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from planning import Scene
+from esplanade.planning import Scene
 
 Floats = NDArray[np.float64]
 

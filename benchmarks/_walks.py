@@ -6,7 +6,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from planning import LayeredGrid
+from esplanade.planning import LayeredGrid
+from esplanade.planning.routes.potential import Potential
 
 Floats = NDArray[np.float64]
 
@@ -112,7 +113,7 @@ def ways_left(grid: LayeredGrid, positions: Floats, goals: Floats, radius_m: flo
     """(T, A): way from each of (T, A, 2) positions to the actor's goal, (A, 2), around walls."""
     floors = np.zeros(len(positions), dtype=np.int64)
     columns = [
-        grid.potential((x, y), 0, radius_m).distance(positions[:, a], floors)
+        Potential(grid, (x, y), 0, radius_m).distance(positions[:, a], floors)
         for a, (x, y) in enumerate(goals.tolist())
     ]
     return np.stack(columns, axis=1)

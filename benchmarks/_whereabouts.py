@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from planning import Polygon, Scene
+from esplanade.planning import Polygon, Scene
 
 Points = NDArray[np.float64]
 """(N, 3): x, y and the height of the feet, metres."""

@@ -20,16 +20,16 @@ from typing import Any
 
 import numpy as np
 import uvloop
-
-import bots
 from benchmarks._whereabouts import Points, clearances, inside, unsupported
-from bots.events import SnapshotEvent
-from planning import Scene
-from planning.scene_file import read_scene
-from server import logs
-from server.app import running
-from server.settings import ServerSettings
-from server.stage import DEFAULT_SCENE
+
+from esplanade import bots
+from esplanade.bots.events import SnapshotEvent
+from esplanade.planning import Scene
+from esplanade.planning.scene.scene_file import read_scene
+from esplanade.server import logs
+from esplanade.server.app import running
+from esplanade.server.loading import DEFAULT_SCENE
+from esplanade.server.settings import ServerSettings
 
 VIEW_M = 200.0
 TOUCHING_M = 0.15

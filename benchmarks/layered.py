@@ -17,15 +17,15 @@ from typing import TypeVar
 
 import numpy as np
 
-from planning import Body, Door, LayeredGrid, Polygon, Scene, Stairs, Wall
-from planning._footing import Footing
-from planning._layered import LayeredArrays
-from planning.barriers import Barriers, barriers_of_scene
-from planning.find_path import PathStatus, find_end, find_way
-from planning.footing import find_footing, renew_footing
-from planning.reachability import near_barriers, reachable_steps
-from planning.stability import classify
-from planning.surfaces import surfaces_of_scene
+from esplanade.planning import Body, Door, LayeredGrid, Polygon, Scene, Stairs, Wall
+from esplanade.planning.ground.barriers import Barriers, barriers_of_scene
+from esplanade.planning.ground.layered import LayeredArrays
+from esplanade.planning.ground.surfaces import surfaces_of_scene
+from esplanade.planning.routes.find_path import PathStatus, find_end, find_route
+from esplanade.planning.traversal.cache import find_traversability, renew_traversability
+from esplanade.planning.traversal.reachability import near_barriers, reachable_steps
+from esplanade.planning.traversal.stability import classify
+from esplanade.planning.traversal.traversability import Traversability
 
 CELL_M = 0.25
 STOREY_M = 3.0
@@ -99,20 +99,20 @@ def measure(side: int, layers: int, runs: int) -> tuple[int, list[float]]:
     reach_ms, near = best_ms(lambda: near_barriers(arrays, barriers, body), runs)
     steps_ms, _ = best_ms(lambda: reachable_steps(arrays, near, body), runs)
     classes_ms, _ = best_ms(lambda: classify(arrays, near, body), runs)
-    footing = find_footing(arrays, barriers, body)
-    search_ms, _ = best_ms(lambda: search(footing, side, layers), runs)
+    traversability = find_traversability(arrays, barriers, body)
+    search_ms, _ = best_ms(lambda: search(traversability, side, layers), runs)
     return len(arrays.floors), [maps_ms, reach_ms + steps_ms, classes_ms, search_ms]
 
 
-def search(footing: Footing, side: int, layers: int) -> float:
+def search(traversability: Traversability, side: int, layers: int) -> float:
     """Length of the way from the ground's far corner to the far corner of the highest floor."""
     width = side * CELL_M
     start = (0.5 * width, width - 0.6, 0.0)
     goal = (width - 0.6, 0.5 * width + 0.4, STOREY_M * (layers - 1))
-    first, last = find_end(footing, start), find_end(footing, goal)
+    first, last = find_end(traversability, start), find_end(traversability, goal)
     if first is None or last is None:
         raise RuntimeError(f"nobody stands at an end at {side}x{side}x{layers}")
-    path = find_way(footing, first, last)
+    path = find_route(traversability, first, last)
     if path.status is not PathStatus.FOUND:
         raise RuntimeError(f"no way at {side}x{side}x{layers}: {path.status.name}")
     return path.length_m
@@ -122,10 +122,10 @@ def print_door(side: int, layers: int, runs: int) -> None:
     """What a door costs that closes, against deriving everything again."""
     body = Body.adult()
     grid = LayeredGrid.from_scene(building(side, layers), CELL_M)
-    footing = find_footing(grid.layered, grid.barriers, body)
+    traversability = find_traversability(grid.layered, grid.barriers, body)
     around = grid.doors.set_open("gate", is_open=False)
-    door_ms, _ = best_ms(lambda: renew_footing(footing, body, around), runs)
-    whole_ms, _ = best_ms(lambda: find_footing(grid.layered, grid.barriers, body), runs)
+    door_ms, _ = best_ms(lambda: renew_traversability(traversability, body, around), runs)
+    whole_ms, _ = best_ms(lambda: find_traversability(grid.layered, grid.barriers, body), runs)
     print(
         f"one door at {side}x{side}x{layers}: {door_ms:.3f} ms, "
         f"everything for a body: {whole_ms:.2f} ms"

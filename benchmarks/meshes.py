@@ -23,17 +23,17 @@ from operator import getitem
 from pathlib import Path
 from typing import Any, Final
 
-from rich import box
-from rich.console import Console
-from rich.table import Table
-
 from benchmarks._comparison import UNEXPLAINED, Comparison, compare, random_pairs
 from benchmarks._detour import Detour, NavMeshSettings, missing
 from benchmarks._esplanade import Esplanade
 from benchmarks._pairs import Verdict
 from benchmarks._pictures import draw
-from planning import Body
-from planning.mesh_file import read_triangles
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from esplanade.planning import Body
+from esplanade.planning.scene.mesh_file import read_triangles
 
 PROJECT: Final = Path(__file__).resolve().parents[1]
 BODIES: Final = {"adult": Body.adult(), "child": Body.child()}

@@ -23,18 +23,9 @@ from unittest import mock
 import numpy as np
 from numpy.typing import NDArray
 
-from actors import Navigator, Reason
-from planning import (
-    Batch,
-    LayeredGrid,
-    PlanModel,
-    Polygon,
-    Potential,
-    Scene,
-    Spawn,
-    Wave,
-    batch,
-)
+from esplanade.actors import Navigator, Reason
+from esplanade.planning import Batch, LayeredGrid, PlanModel, Polygon, Potential, Scene, Spawn, Wave
+from esplanade.planning.agents import batch
 
 SIDE_M = 64.0
 BUILT_PART = 0.1
@@ -124,12 +115,12 @@ def print_goals(grid: LayeredGrid) -> None:
             begun = time.perf_counter()
             potential = Potential(grid, (goal[0], goal[1]), 0, 0.25, wave)
             times.append(1e3 * (time.perf_counter() - begun))
-        size = potential.guide.nbytes / 1e6
+        size = potential.values.nbytes / 1e6
         name, took = wave.name.lower(), np.median(times[1:])
         print(f"new goal, {name:5s}: {took:6.1f} ms, {size:.1f} MB kept")
 
 
-class Crowd:
+class Agents:
     """People who walk to places and turn to others every ten seconds, sliding along walls."""
 
     def __init__(self, grid: LayeredGrid, count: int, random: np.random.Generator) -> None:
@@ -174,7 +165,7 @@ def print_case(grid: LayeredGrid, case: Case, ticks: int, threads: int) -> float
     """Milliseconds a tick, median and 99th percentile, and how they are spent; the median."""
     random = np.random.default_rng(1)
     places = free_points(grid, PLACES, random)
-    crowd = Crowd(grid, case.people, random)
+    crowd = Agents(grid, case.people, random)
     nav = Navigator(grid, TICK_S, seed=0, plan=PlanModel(threads=threads))
 
     def another_place() -> tuple[float, float]:

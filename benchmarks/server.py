@@ -25,17 +25,17 @@ from typing import cast
 import numpy as np
 import uvloop
 
-from planning import LayeredGrid, Scene
-from protocol import VERSION, encode
-from protocol.messages import Hello, Move
-from protocol.snapshot import RECORD
-from server import logs
-from server.app import running
-from server.casting import assemble
-from server.settings import ServerSettings
-from server.stage import set_stage
-from server.world.inputs import Join, Steer
-from server.world.world import World
+from esplanade.planning import LayeredGrid, Scene
+from esplanade.protocol import VERSION, encode
+from esplanade.protocol.messages import Hello, Move
+from esplanade.protocol.snapshot import RECORD
+from esplanade.server import logs
+from esplanade.server.app import running
+from esplanade.server.loading import load_scene
+from esplanade.server.populating import populate
+from esplanade.server.settings import ServerSettings
+from esplanade.server.world.inputs import Join, Steer
+from esplanade.server.world.world import World
 
 SIDE_M = 100.0
 WARM_UP_TICKS = 40
@@ -67,13 +67,13 @@ def main() -> None:
 
 def print_stages(settings: ServerSettings, people: int) -> None:
     """Median time of each stage, and of a client in all of them."""
-    stage = set_stage(settings)
+    stage = load_scene(settings)
     grid = LayeredGrid.from_scene(stage.scene)
-    troupe, bodies = assemble(grid, stage.scene, 0, TICK_S, 0)
+    actors, bodies = populate(grid, stage.scene, 0, TICK_S, 0)
     world = World(
         stage.scene,
         grid,
-        troupe,
+        actors,
         bodies,
         stage.rules,
         tick_s=TICK_S,
@@ -91,13 +91,13 @@ def print_stages(settings: ServerSettings, people: int) -> None:
         world.begin(
             [Steer(ids[k], tick, float(angles[k]), 1.3) for k in np.flatnonzero(turning).tolist()]
         )
-        sight = world.finish(world.think())
-        world.wrote(sight.snapshots, list(range(people)))
+        update = world.finish(world.think())
+        world.wrote(update.snapshots, list(range(people)))
         if tick >= WARM_UP_TICKS:
-            in_view = len(sight.snapshots.data) / RECORD.itemsize / people
+            in_view = len(update.snapshots.data) / RECORD.itemsize / people
             for name, seconds in world.times.seconds.items():
                 times.setdefault(name, []).append(seconds)
-    troupe.close()
+    actors.close()
     medians = {name: float(np.median(values)) for name, values in times.items()}
     total = sum(medians.values())
     parts = "  ".join(f"{name} {1e3 * seconds:6.3f}" for name, seconds in medians.items())

@@ -20,15 +20,15 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
+from benchmarks._swaps import SWAPS, Swap
+from benchmarks._walks import Floats, Verdict, Walks, judge, ways_left
 from rich import box
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from actors import ActorParameters, Navigator
-from benchmarks._swaps import SWAPS, Swap
-from benchmarks._walks import Floats, Verdict, Walks, judge, ways_left
-from planning import LayeredGrid, PlanModel
+from esplanade.actors import ActorParameters, Navigator
+from esplanade.planning import LayeredGrid, PlanModel
 
 TICK_S: Final = 0.05
 CELL_M: Final = 0.25

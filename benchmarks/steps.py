@@ -20,19 +20,19 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
+from benchmarks._footage import Cost, Footage, Seen, cost_of, kinds_of
+from benchmarks._slide import Findings, Floats, judge
 from rich.console import Console
 from rich.table import Table
 
-import bots
-from benchmarks._footage import Cost, Footage, Seen, cost_of, kinds_of
-from benchmarks._slide import Findings, Floats, judge
-from bots.load import LoadJob
-from bots.replay import ReplayJob
-from bots.tally import Tally
-from recordings import Crowd, Track, read_crowd
-from server import logs
-from server.app import running
-from server.settings import ServerSettings
+from esplanade import bots
+from esplanade.bots.load import LoadJob
+from esplanade.bots.replay import ReplayJob
+from esplanade.bots.tally import Tally
+from esplanade.recordings import Crowd, Track, read_crowd
+from esplanade.server import logs
+from esplanade.server.app import running
+from esplanade.server.settings import ServerSettings
 
 VISITORS: Final = 20
 JOINING_S: Final = 2.0

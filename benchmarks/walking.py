@@ -26,18 +26,19 @@ from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
-from actors.locomotion import rotations, two_stage
-from actors.locomotion import table3 as third
-from actors.locomotion.aims import AHEAD, AHEAD_S, Course
-from actors.locomotion.builds import manner_of
-from actors.locomotion.ground import Ground
-from actors.locomotion.motion import Steps
-from actors.locomotion.posing import pose
-from actors.locomotion.stance import Build
-from actors.locomotion.two_stage import Reach
-from actors.locomotion.walkers import Walkers
-from footage.targets import SHARES, random_targets
-from planning import LayeredGrid, Scene
+from esplanade.actors.locomotion import two_stage
+from esplanade.actors.locomotion.aims import AHEAD, AHEAD_S, Course
+from esplanade.actors.locomotion.builds import physique_of
+from esplanade.actors.locomotion.ground import Ground
+from esplanade.actors.locomotion.motion import Steps
+from esplanade.actors.locomotion.reference import rotations
+from esplanade.actors.locomotion.reference import table3 as third
+from esplanade.actors.locomotion.reference.posing import pose
+from esplanade.actors.locomotion.stance import Build
+from esplanade.actors.locomotion.two_stage import Reach
+from esplanade.actors.locomotion.walkers import Walkers
+from esplanade.footage.targets import SHARES, random_targets
+from esplanade.planning import LayeredGrid, Scene
 
 TICK_S: Final = 0.05
 TICK_LIMIT_MS: Final = 20.0
@@ -141,13 +142,13 @@ def cost_of(avatars: int, ticks: int) -> Cost:
         ahead[..., 1] = centres[:, 1:] + radius_m[:, None] * np.sin(turned)
         return Course(turned[:, 0] + 0.5 * np.pi, ahead)
 
-    manners = [manner_of(0, avatar) for avatar in range(avatars)]
+    physiques = [physique_of(0, avatar) for avatar in range(avatars)]
     build = Build(
-        np.array([manner.leg_m for manner in manners]),
-        np.array([manner.stature_m for manner in manners]),
+        np.array([each.leg_m for each in physiques]),
+        np.array([each.stature_m for each in physiques]),
     )
     walkers = Walkers(avatars, ground, TICK_S, carry)
-    walkers.join(0, slots, manners, course(0))
+    walkers.join(0, slots, physiques, course(0))
     settled = round(3.0 / TICK_S)
     tick_ms = []
     for tick in track(

@@ -1,9 +1,9 @@
 """People made of code: a client library for scripts, load tests, replay of recorded crowds."""
 
-from bots.bot import Bot, connect
-from bots.errors import BotError, Disconnected, Refused, Unreachable
-from bots.events import Event, SnapshotEvent, StepsEvent
-from bots.view import Avatar
+from esplanade.bots.bot import Bot, connect
+from esplanade.bots.errors import BotError, Disconnected, Refused, Unreachable
+from esplanade.bots.events import Event, SnapshotEvent, StepsEvent
+from esplanade.bots.view import Avatar
 
 __all__ = [
     "Avatar",

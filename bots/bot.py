@@ -7,14 +7,14 @@ from contextlib import asynccontextmanager
 from types import MappingProxyType
 from typing import Self
 
-from bots.clock import ServerClock
-from bots.connection import NO_CLOSE_CODE, OPEN_TIMEOUT_S, Connection
-from bots.errors import Disconnected, Unreachable
-from bots.events import Event, SnapshotEvent, StepsEvent
-from bots.mailbox import Mailbox
-from bots.view import Avatar, View
-from protocol import VERSION, ProtocolError, decode_server
-from protocol.messages import (
+from esplanade.bots.clock import ServerClock
+from esplanade.bots.connection import NO_CLOSE_CODE, OPEN_TIMEOUT_S, Connection
+from esplanade.bots.errors import Disconnected, Unreachable
+from esplanade.bots.events import Event, SnapshotEvent, StepsEvent
+from esplanade.bots.mailbox import Mailbox
+from esplanade.bots.view import Avatar, View
+from esplanade.protocol import VERSION, ProtocolError, decode_server
+from esplanade.protocol.messages import (
     Bye,
     ChatLine,
     Doors,
@@ -34,8 +34,8 @@ from protocol.messages import (
     Watch,
     Welcome,
 )
-from protocol.snapshot import unpack_block
-from protocol.steps import step_records
+from esplanade.protocol.snapshot import unpack_block
+from esplanade.protocol.steps import step_records
 
 
 class Bot:

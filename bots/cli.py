@@ -14,16 +14,16 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from rich.console import Console
 
-from bots.address import refusal
-from bots.crew import Crew
-from bots.load import LoadJob
-from bots.progress import Progress
-from bots.replay import ReplayJob
-from bots.report import figures, show
-from bots.settings import ENV_PREFIX, BotsSettings
-from bots.tally import Tally
-from bots.worker import Job
-from recordings import Crowd, RecordingError, read_crowd
+from esplanade.bots.address import refusal
+from esplanade.bots.crew import Crew
+from esplanade.bots.load import LoadJob
+from esplanade.bots.progress import Progress
+from esplanade.bots.replay import ReplayJob
+from esplanade.bots.report import figures, show
+from esplanade.bots.settings import ENV_PREFIX, BotsSettings
+from esplanade.bots.tally import Tally
+from esplanade.bots.worker import Job
+from esplanade.recordings import Crowd, RecordingError, read_crowd
 
 EXIT_WELL: Final = 0
 EXIT_FAILED: Final = 1

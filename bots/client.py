@@ -10,14 +10,14 @@ from collections.abc import Awaitable, Callable, Coroutine
 from contextlib import suppress
 from typing import Any, Final
 
-from bots.clock import ServerClock
-from bots.connection import Connection
-from bots.errors import BotError, Disconnected, Refused
-from bots.tally import Tally
-from bots.walkers import Walkers
-from protocol import ErrorCode, ProtocolError, ServerCode, decode_server, peek_snapshot
-from protocol.codes import CloseCode
-from protocol.messages import Error, FromClient, Hello, Ping, Pong, Welcome
+from esplanade.bots.clock import ServerClock
+from esplanade.bots.connection import Connection
+from esplanade.bots.errors import BotError, Disconnected, Refused
+from esplanade.bots.tally import Tally
+from esplanade.bots.walkers import Walkers
+from esplanade.protocol import ErrorCode, ProtocolError, ServerCode, decode_server, peek_snapshot
+from esplanade.protocol.codes import CloseCode
+from esplanade.protocol.messages import Error, FromClient, Hello, Ping, Pong, Welcome
 
 PING_EVERY_S: Final = 1.0
 FIRST_PINGS: Final = 3

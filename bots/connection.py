@@ -6,10 +6,10 @@ from typing import Final, Self
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidURI
 
-from bots.address import websocket_url
-from bots.errors import Disconnected, Refused, Unreachable
-from protocol import ProtocolError, decode_server, encode
-from protocol.messages import Error, FromClient, Hello, Welcome
+from esplanade.bots.address import websocket_url
+from esplanade.bots.errors import Disconnected, Refused, Unreachable
+from esplanade.protocol import ProtocolError, decode_server, encode
+from esplanade.protocol.messages import Error, FromClient, Hello, Welcome
 
 OPEN_TIMEOUT_S: Final = 10.0
 CLOSE_TIMEOUT_S: Final = 2.0

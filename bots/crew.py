@@ -9,8 +9,8 @@ from multiprocessing.connection import wait
 from multiprocessing.context import SpawnProcess
 from typing import Final
 
-from bots.tally import Tally, merged
-from bots.worker import Job, Report, work
+from esplanade.bots.tally import Tally, merged
+from esplanade.bots.worker import Job, Report, work
 
 STOP_WITHIN_S: Final = 15.0
 """A worker that was told to stop and is not done by then is ended."""

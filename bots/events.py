@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from protocol.messages import (
+from esplanade.protocol.messages import (
     Bye,
     Census,
     Chat,
@@ -15,16 +15,23 @@ from protocol.messages import (
     Point,
     Pong,
 )
-from protocol.snapshot import Floats, Records, headings_rad, heights_m, positions_m, speeds_mps
-from protocol.steps import StepRecords, Steps, unpack_steps
+from esplanade.protocol.snapshot import (
+    Floats,
+    Records,
+    headings_rad,
+    heights_m,
+    positions_m,
+    speeds_mps,
+)
+from esplanade.protocol.steps import StepRecords, Steps, unpack_steps
 
 
 @dataclass(frozen=True, eq=False)
 class SnapshotEvent:
     """Who moved by tick `tick`; `ack` is the newest of our sequence numbers that counted in it.
 
-    `records` is an array of `protocol.snapshot.RECORD`, one row an avatar; who is absent is as
-    before.
+    `records` is an array of `esplanade.protocol.snapshot.RECORD`, one row an avatar; avatars
+    that are absent are as before.
     """
 
     tick: int
@@ -57,7 +64,7 @@ class SnapshotEvent:
 class StepsEvent:
     """Who of those near begins a step, or has come near in the middle of one.
 
-    `records` is an array of `protocol.steps.STEP`, one row a step.
+    `records` is an array of `esplanade.protocol.steps.STEP`, one row a step.
     """
 
     tick: int

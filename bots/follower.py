@@ -11,7 +11,7 @@ from collections import deque
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
-from recordings import Track
+from esplanade.recordings import Track
 
 GAIN: Final = 0.5
 """Share of an error that one tick takes back. Less is slow, more amplifies rounding to whole cm."""

@@ -4,12 +4,12 @@ import asyncio
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from bots.client import Client, sleep_until, until_first, visit
-from bots.clock import ServerClock
-from bots.tally import Tally
-from bots.wanderer import Act, wander
-from protocol import VERSION
-from protocol.messages import Hello
+from esplanade.bots.client import Client, sleep_until, until_first, visit
+from esplanade.bots.clock import ServerClock
+from esplanade.bots.tally import Tally
+from esplanade.bots.wanderer import Act, wander
+from esplanade.protocol import VERSION
+from esplanade.protocol.messages import Hello
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ import asyncio
 from collections import deque
 from typing import Final
 
-from bots.events import Event, SnapshotEvent, StepsEvent
+from esplanade.bots.events import Event, SnapshotEvent, StepsEvent
 
 CAPACITY: Final = 1024
 """About fifty seconds of snapshots."""

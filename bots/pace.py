@@ -2,8 +2,8 @@
 
 import asyncio
 
-from bots.client import sleep_until
-from bots.follower import Timeline
+from esplanade.bots.client import sleep_until
+from esplanade.bots.follower import Timeline
 
 
 class Pace:

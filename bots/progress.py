@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.live import Live
 from rich.text import Text
 
-from bots.tally import Tally
+from esplanade.bots.tally import Tally
 
 PLAIN_EVERY_S: Final = 5.0
 

@@ -4,17 +4,17 @@ import asyncio
 from dataclasses import dataclass
 from typing import Final
 
-from bots.client import Client, until_first, visit
-from bots.clock import ServerClock
-from bots.follower import Follower
-from bots.pace import Pace
-from bots.tally import Tally
-from protocol import VERSION
-from protocol.codec import SNAPSHOT_HEAD_BYTES
-from protocol.codes import MAX_NAME_CHARS
-from protocol.messages import Hello, Move
-from protocol.snapshot import find_position_m
-from recordings import Track
+from esplanade.bots.client import Client, until_first, visit
+from esplanade.bots.clock import ServerClock
+from esplanade.bots.follower import Follower
+from esplanade.bots.pace import Pace
+from esplanade.bots.tally import Tally
+from esplanade.protocol import VERSION
+from esplanade.protocol.codec import SNAPSHOT_HEAD_BYTES
+from esplanade.protocol.codes import MAX_NAME_CHARS
+from esplanade.protocol.messages import Hello, Move
+from esplanade.protocol.snapshot import find_position_m
+from esplanade.recordings import Track
 
 LEAD_S: Final = 0.5
 """A pedestrian joins this long (real time) before its recorded start, so that it stands at its

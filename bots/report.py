@@ -5,8 +5,8 @@ from typing import Any, Final
 from rich.console import Console
 from rich.table import Table
 
-from bots.histogram import Histogram
-from bots.tally import Tally
+from esplanade.bots.histogram import Histogram
+from esplanade.bots.tally import Tally
 
 PERCENTILES: Final = (50, 90, 99)
 

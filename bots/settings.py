@@ -1,7 +1,8 @@
 """Every setting of `esplanade bots`, in one frozen object.
 
 Values come from the command line, then from environment variables `ESPLANADE_BOTS_<NAME>`, then
-from the defaults here. Each field carries its group and unit; `bots.cli` makes `--help` of it.
+from the defaults here. Each field carries its group and unit; `esplanade.bots.cli` makes `--help`
+of it.
 """
 
 import math
@@ -12,7 +13,7 @@ from typing import Any, Final, Self
 from pydantic import Field, field_validator, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
-from bots.address import websocket_url
+from esplanade.bots.address import websocket_url
 
 ENV_PREFIX: Final = "ESPLANADE_BOTS_"
 

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from bots.histogram import Histogram
+from esplanade.bots.histogram import Histogram
 
 
 @dataclass

@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 
-from bots.events import SnapshotEvent
-from protocol import Kind, Reason
-from protocol.messages import Enter, Entity, Leave, Place, Point, Welcome
-from protocol.snapshot import HEADING_RAD, POSITION_M, SPEED_MPS
+from esplanade.bots.events import SnapshotEvent
+from esplanade.protocol import Kind, Reason
+from esplanade.protocol.messages import Enter, Entity, Leave, Place, Point, Welcome
+from esplanade.protocol.snapshot import HEADING_RAD, POSITION_M, SPEED_MPS
 
 
 @dataclass(slots=True)

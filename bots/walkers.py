@@ -2,9 +2,9 @@
 
 from typing import Final
 
-from bots.tally import Tally
-from protocol.codec import STEPS_HEAD_BYTES
-from protocol.steps import step_records
+from esplanade.bots.tally import Tally
+from esplanade.protocol.codec import STEPS_HEAD_BYTES
+from esplanade.protocol.steps import step_records
 
 WALKS_ON_S: Final = 2.0
 """Whoever begins no other step for so long stands, and counts no longer as walking."""

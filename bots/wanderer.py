@@ -5,7 +5,7 @@ import random
 from collections.abc import Iterator, Sequence
 from typing import Final, NamedTuple
 
-from protocol.messages import Move, WalkTo
+from esplanade.protocol.messages import Move, WalkTo
 
 SPEED_MPS: Final = (0.6, 1.6)
 TURN_RAD: Final = 0.7

@@ -9,7 +9,7 @@ from contextlib import suppress
 from multiprocessing.connection import Connection as Pipe
 from typing import Final, NamedTuple, Protocol
 
-from bots.tally import Tally
+from esplanade.bots.tally import Tally
 
 REPORT_EVERY_S: Final = 0.25
 

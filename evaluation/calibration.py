@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from evaluation.forecasts import STEP_S, Forecasts
-from planning import Spread
+from esplanade.evaluation.forecasts import STEP_S, Forecasts
+from esplanade.planning import Spread
 
 Floats = NDArray[np.float64]
 

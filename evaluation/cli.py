@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
-from evaluation import forecast_report, plotting, report
-from evaluation.console import (
+from esplanade.evaluation import forecast_report, plotting, report
+from esplanade.evaluation.console import (
     UsageError,
     check_targets,
     named_sources,
@@ -16,15 +16,15 @@ from evaluation.console import (
     walk,
     write_json,
 )
-from evaluation.ledger import LedgerError
-from evaluation.options import parser
-from evaluation.policies import PolicyError
-from evaluation.rules import Rules
-from evaluation.runner import Result, ready_policy
-from evaluation.settings import SettingError, read_changes
-from evaluation.studies import command
-from evaluation.trials import Source, plan_trials
-from recordings import RecordingError
+from esplanade.evaluation.ledger import LedgerError
+from esplanade.evaluation.options import parser
+from esplanade.evaluation.policies import PolicyError
+from esplanade.evaluation.rules import Rules
+from esplanade.evaluation.runner import Result, ready_policy
+from esplanade.evaluation.settings import SettingError, read_changes
+from esplanade.evaluation.studies import command
+from esplanade.evaluation.trials import Source, plan_trials
+from esplanade.recordings import RecordingError
 
 EXIT_WELL: Final = 0
 EXIT_FAILED: Final = 1

@@ -10,9 +10,9 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from evaluation.ledger import Ledger
-from evaluation.runner import Result, run_trials
-from evaluation.trials import Source, Trial
+from esplanade.evaluation.ledger import Ledger
+from esplanade.evaluation.runner import Result, run_trials
+from esplanade.evaluation.trials import Source, Trial
 
 _ESTIMATE_OVER_S = 300.0
 """Some recordings take longer than others: the time that is left is estimated over many."""

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from evaluation.policies.policy import Person
-from evaluation.replay import Replay
-from evaluation.rules import Rules
+from esplanade.evaluation.policies.policy import Person
+from esplanade.evaluation.replay import Replay
+from esplanade.evaluation.rules import Rules
 
 Floats = NDArray[np.float64]
 

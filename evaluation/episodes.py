@@ -5,8 +5,8 @@ from typing import Final
 
 import numpy as np
 
-from evaluation.replay import Replay
-from evaluation.rules import Rules
+from esplanade.evaluation.replay import Replay
+from esplanade.evaluation.rules import Rules
 
 MIN_TICKS: Final = 5
 MIN_WAY_M: Final = 5.0

@@ -8,9 +8,9 @@ import numpy as np
 from scipy.optimize import minimize
 from scipy.special import expit
 
-from evaluation.calibration import negative_log_likelihood, pool
-from evaluation.forecasts import Floats, Forecasts, ahead_s
-from planning import GAUSSIAN, Spread
+from esplanade.evaluation.calibration import negative_log_likelihood, pool
+from esplanade.evaluation.forecasts import Floats, Forecasts, ahead_s
+from esplanade.planning import GAUSSIAN, Spread
 
 STOOD_M: Final = 0.01
 """Who is within a centimetre of where they were expected, at every step, has stood."""

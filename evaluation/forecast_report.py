@@ -9,17 +9,17 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from evaluation.calibration import (
+from esplanade.evaluation.calibration import (
     HORIZONS_S,
     SHARES,
     ForecastScore,
     pool,
     score_forecasts,
 )
-from evaluation.fits import FitRow, Fits, Growth, fit_each
-from evaluation.forecasts import Forecasts, forecast
-from planning import GAUSSIAN, PredictionModel, Spread
-from recordings import Crowd, Obstacles
+from esplanade.evaluation.fits import FitRow, Fits, Growth, fit_each
+from esplanade.evaluation.forecasts import Forecasts, forecast
+from esplanade.planning import GAUSSIAN, PredictionModel, Spread
+from esplanade.recordings import Crowd, Obstacles
 
 MODELS: Final = {
     "default": PredictionModel(),

@@ -6,8 +6,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from planning import LayeredGrid, PredictionModel, Scene, TrackHistory
-from recordings import Crowd, Obstacles, Track
+from esplanade.planning import LayeredGrid, PredictionModel, Scene, TrackHistory
+from esplanade.recordings import Crowd, Obstacles, Track
 
 Floats = NDArray[np.float64]
 

@@ -10,10 +10,10 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Final, Self, TextIO
 
-from evaluation.episodes import Episode
-from evaluation.scores import Score
-from evaluation.trials import Source, Trial
-from recordings import walls_beside
+from esplanade.evaluation.episodes import Episode
+from esplanade.evaluation.scores import Score
+from esplanade.evaluation.trials import Source, Trial
+from esplanade.recordings import walls_beside
 
 _ROOT: Final = Path(__file__).resolve().parents[1]
 _PACKAGES: Final = ("actors", "evaluation", "planning", "recordings")

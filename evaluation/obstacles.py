@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from recordings import Obstacles
+from esplanade.recordings import Obstacles
 
 Floats = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ import math
 from pathlib import Path
 from typing import Any, Final
 
-from evaluation.policies import POLICIES
+from esplanade.evaluation.policies import POLICIES
 
 EXAMPLES: Final = """\
 examples:

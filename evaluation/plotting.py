@@ -8,11 +8,11 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from evaluation.episodes import Episode
-from evaluation.policies.policy import Policy, PolicyError, Thoughts, View
-from evaluation.rules import Rules
-from evaluation.scores import Score
-from evaluation.simulation import Ground, run_episode
+from esplanade.evaluation.episodes import Episode
+from esplanade.evaluation.policies.policy import Policy, PolicyError, Thoughts, View
+from esplanade.evaluation.rules import Rules
+from esplanade.evaluation.scores import Score
+from esplanade.evaluation.simulation import Ground, run_episode
 
 Floats = NDArray[np.float64]
 

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
-from evaluation.obstacles import ObstacleSet
-from recordings import Crowd, Obstacles, Track
+from esplanade.evaluation.obstacles import ObstacleSet
+from esplanade.recordings import Crowd, Obstacles, Track
 
 Floats = NDArray[np.float64]
 Interpolation = Literal["linear", "cubic"]

@@ -9,8 +9,8 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from evaluation.runner import Result
-from evaluation.scores import Score, Summary, summarise
+from esplanade.evaluation.runner import Result
+from esplanade.evaluation.scores import Score, Summary, summarise
 
 POOLED = "all together"
 

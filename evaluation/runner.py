@@ -7,12 +7,12 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
-from evaluation.ledger import Ledger
-from evaluation.policies import Policy, make_policy
-from evaluation.rules import Rules
-from evaluation.scores import Score
-from evaluation.simulation import run_episode
-from evaluation.trials import Source, Trial
+from esplanade.evaluation.ledger import Ledger
+from esplanade.evaluation.policies import Policy, make_policy
+from esplanade.evaluation.rules import Rules
+from esplanade.evaluation.scores import Score
+from esplanade.evaluation.simulation import run_episode
+from esplanade.evaluation.trials import Source, Trial
 
 EPISODES_AT_ONCE: Final = 5
 WARM_UP_S: Final = 1.0

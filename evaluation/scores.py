@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from evaluation.contacts import Encounters
-from evaluation.episodes import Episode
-from evaluation.replay import Replay
-from evaluation.rules import Rules
+from esplanade.evaluation.contacts import Encounters
+from esplanade.evaluation.episodes import Episode
+from esplanade.evaluation.replay import Replay
+from esplanade.evaluation.rules import Rules
 
 Floats = NDArray[np.float64]
 

@@ -8,8 +8,8 @@ from typing import Any, Final
 
 from pydantic import TypeAdapter, ValidationError
 
-from actors import ActorParameters
-from planning import PlanModel, PredictionModel, RiskModel
+from esplanade.actors import ActorParameters
+from esplanade.planning import PlanModel, PredictionModel, RiskModel
 
 MODELS: Final[Mapping[str, type]] = {
     "risk": RiskModel,

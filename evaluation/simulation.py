@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from evaluation.contacts import Encounters
-from evaluation.episodes import Episode
-from evaluation.policies.policy import Person, Policy, Task, View
-from evaluation.replay import Replay
-from evaluation.rules import Rules
-from evaluation.scores import Score, score
-from evaluation.waypoints import WallMap, Waypoints
+from esplanade.evaluation.contacts import Encounters
+from esplanade.evaluation.episodes import Episode
+from esplanade.evaluation.policies.policy import Person, Policy, Task, View
+from esplanade.evaluation.replay import Replay
+from esplanade.evaluation.rules import Rules
+from esplanade.evaluation.scores import Score, score
+from esplanade.evaluation.waypoints import WallMap, Waypoints
 
 Floats = NDArray[np.float64]
 

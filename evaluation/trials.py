@@ -6,12 +6,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from evaluation.episodes import Episode, choose_episodes
-from evaluation.policies import make_policy
-from evaluation.replay import Interpolation, Replay
-from evaluation.rules import Rules
-from evaluation.simulation import Ground
-from recordings import Crowd, Obstacles, read_crowd, read_obstacles, walls_beside
+from esplanade.evaluation.episodes import Episode, choose_episodes
+from esplanade.evaluation.policies import make_policy
+from esplanade.evaluation.replay import Interpolation, Replay
+from esplanade.evaluation.rules import Rules
+from esplanade.evaluation.simulation import Ground
+from esplanade.recordings import Crowd, Obstacles, read_crowd, read_obstacles, walls_beside
 
 
 @dataclass(frozen=True)

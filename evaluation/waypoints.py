@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
-from evaluation.obstacles import point_distances, segment_distances
-from evaluation.replay import Replay
+from esplanade.evaluation.obstacles import point_distances, segment_distances
+from esplanade.evaluation.replay import Replay
 
 Floats = NDArray[np.float64]
 

@@ -5,8 +5,8 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import Final
 
-from footage.console import UsageError, made_folder, part_that_needs, progress
-from footage.options import WALKS, parser
+from esplanade.footage.console import UsageError, made_folder, part_that_needs, progress
+from esplanade.footage.options import WALKS, parser
 
 EXIT_WELL: Final = 0
 EXIT_USAGE: Final = 2
@@ -23,9 +23,9 @@ def run(argv: Sequence[str]) -> int:
 
 
 def _render(options: argparse.Namespace) -> int:
-    strips = part_that_needs("PIL", "footage.strips")
-    recording = part_that_needs("PIL", "footage.recording")
-    walks = part_that_needs("PIL", "footage.walks").walks()
+    strips = part_that_needs("PIL", "esplanade.footage.strips")
+    recording = part_that_needs("PIL", "esplanade.footage.recording")
+    walks = part_that_needs("PIL", "esplanade.footage.walks").walks()
     folder = made_folder(options.out)
     files = []
     with progress() as shown:
@@ -46,7 +46,7 @@ def _render(options: argparse.Namespace) -> int:
 
 
 def _cycle(options: argparse.Namespace) -> int:
-    cycle = part_that_needs("numpy", "footage.cycle")
+    cycle = part_that_needs("numpy", "esplanade.footage.cycle")
     try:
         options.out.write_text(cycle.as_text(cycle.cycle()) + "\n", encoding="utf-8")
     except OSError as error:
@@ -56,7 +56,7 @@ def _cycle(options: argparse.Namespace) -> int:
 
 
 def _plots(options: argparse.Namespace) -> int:
-    plots = part_that_needs("matplotlib", "footage.plots").PLOTS
+    plots = part_that_needs("matplotlib", "esplanade.footage.plots").PLOTS
     folder = made_folder(options.out)
     files = []
     with progress() as shown:

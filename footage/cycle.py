@@ -13,9 +13,9 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from actors.locomotion.curves import smooth
-from actors.locomotion.durations import step_duration_s
-from actors.locomotion.keyframes import (
+from esplanade.actors.locomotion.curves import smooth
+from esplanade.actors.locomotion.durations import step_duration_s
+from esplanade.actors.locomotion.reference.keyframes import (
     CHEST,
     ELBOWS,
     PELVIS,

@@ -6,9 +6,9 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from actors.locomotion.posing import Pose
-from actors.locomotion.rotations import rotate
-from footage.camera import Floats
+from esplanade.actors.locomotion.reference.posing import Pose
+from esplanade.actors.locomotion.reference.rotations import rotate
+from esplanade.footage.camera import Floats
 
 SKIN: Final = "#e3b08a"
 HAIR: Final = "#4a3222"

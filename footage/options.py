@@ -70,7 +70,7 @@ def _render(commands: "_Commands[argparse.ArgumentParser]") -> argparse.Argument
         metavar="N",
         type=_whole(0, 2**32 - 1),
         default=0,
-        help="whose body: size and manner of walking [default: 0]",
+        help="whose body: size and build of walking [default: 0]",
     )
     made.add_argument(
         "--fps",

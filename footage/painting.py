@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 from PIL import Image, ImageColor, ImageDraw, ImageFont
 
-from actors.locomotion.skeleton import FOOT
-from footage.camera import Camera, Floats
-from footage.figure import Part
-from footage.recording import Footprint
-from planning import Polygon, Scene
+from esplanade.actors.locomotion.skeleton import FOOT
+from esplanade.footage.camera import Camera, Floats
+from esplanade.footage.figure import Part
+from esplanade.footage.recording import Footprint
+from esplanade.planning import Polygon, Scene
 
 Colour = str | tuple[int, int, int]
 

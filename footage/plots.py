@@ -11,19 +11,20 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from actors.locomotion import bezier, keyframes, paper_gait, rotations, table3, two_stage
-from actors.locomotion.curves import leg_angles
-from actors.locomotion.durations import boundary_rates, step_duration_s, step_phase
-from actors.locomotion.planner import plan_steps
-from actors.locomotion.step_length import (
+from esplanade.actors.locomotion import two_stage
+from esplanade.actors.locomotion.curves import leg_angles
+from esplanade.actors.locomotion.durations import boundary_rates, step_duration_s, step_phase
+from esplanade.actors.locomotion.planner import plan_steps
+from esplanade.actors.locomotion.reference import bezier, keyframes, paper_gait, rotations, table3
+from esplanade.actors.locomotion.step_length import (
     sl_noslide,
     sl_paper,
     sl_planted,
     solve_relative_velocity,
 )
-from footage.recording import record
-from footage.targets import SHARES, random_targets
-from footage.walks import walks
+from esplanade.footage.recording import record
+from esplanade.footage.targets import SHARES, random_targets
+from esplanade.footage.walks import walks
 
 _STYLE: Final[dict[Any, Any]] = {
     "axes.edgecolor": "#9aa0a6",

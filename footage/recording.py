@@ -8,15 +8,15 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from actors.locomotion.aims import AHEAD, AHEAD_S, Course
-from actors.locomotion.builds import manner_of
-from actors.locomotion.ground import Ground
-from actors.locomotion.motion import Steps
-from actors.locomotion.posing import Pose, pose
-from actors.locomotion.stance import Build
-from actors.locomotion.walkers import Walkers
-from footage.walks import TICK_S, Floats, Walk
-from planning import LayeredGrid
+from esplanade.actors.locomotion.aims import AHEAD, AHEAD_S, Course
+from esplanade.actors.locomotion.builds import physique_of
+from esplanade.actors.locomotion.ground import Ground
+from esplanade.actors.locomotion.motion import Steps
+from esplanade.actors.locomotion.reference.posing import Pose, pose
+from esplanade.actors.locomotion.stance import Build
+from esplanade.actors.locomotion.walkers import Walkers
+from esplanade.footage.walks import TICK_S, Floats, Walk
+from esplanade.planning import LayeredGrid
 
 _CELL_M: Final = 0.25
 _SLOT: Final = np.zeros(1, dtype=np.int64)
@@ -49,8 +49,8 @@ class Recording:
 
 def record(walk: Walk, frames_a_second: float, seed: int = 0) -> Recording:
     """Walk it through and keep every frame."""
-    manner = manner_of(seed, 1)
-    build = Build(np.array([manner.leg_m]), np.array([manner.stature_m]))
+    physique = physique_of(seed, 1)
+    build = Build(np.array([physique.leg_m]), np.array([physique.stature_m]))
     grid = LayeredGrid.from_scene(walk.scene, _CELL_M)
     begun = []
 
@@ -60,7 +60,7 @@ def record(walk: Walk, frames_a_second: float, seed: int = 0) -> Recording:
 
     walkers = Walkers(1, Ground(walk.scene, grid), TICK_S, carry)
     courses = _courses(walk, grid)
-    walkers.join(0, _SLOT, [manner], courses[0])
+    walkers.join(0, _SLOT, [physique], courses[0])
     poses: list[Pose] = []
     times: list[float] = []
     prints: list[Footprint] = []

@@ -9,10 +9,10 @@ from typing import Final
 import numpy as np
 from PIL import Image
 
-from footage.camera import Camera, Floats
-from footage.figure import parts_of
-from footage.painting import Canvas
-from footage.recording import Recording
+from esplanade.footage.camera import Camera, Floats
+from esplanade.footage.figure import parts_of
+from esplanade.footage.painting import Canvas
+from esplanade.footage.recording import Recording
 
 PANELS: Final = 9
 """Pictures in a row of a strip."""

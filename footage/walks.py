@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from planning import Polygon, Scene, Stairs
+from esplanade.planning import Polygon, Scene, Stairs
 
 Floats = NDArray[np.float64]
 

@@ -3,28 +3,28 @@
 Pure mathematics: no sockets, no clock, no random numbers of its own.
 """
 
-from planning._crowd import PARAMETERS, Crowd, Decisions
-from planning._passage_kernels import PASSAGE
-from planning._prediction_kernels import Prediction
-from planning.batch import Batch, PlanModel
-from planning.bodies import Body
-from planning.find_path import LayeredPath, PathStatus, find_path
-from planning.grid import LayeredGrid
-from planning.potential import Potential, Wave
-from planning.prediction import PredictionModel, TrackHistory
-from planning.risk import RiskField, RiskModel
-from planning.scene import Door, Place, Polygon, Ramp, Scene, Spawn, Stairs, Wall
-from planning.search import SearchForm, SearchResult, SearchStatus, uncertain_bfp
-from planning.spread import GAUSSIAN, PEOPLE, Spread
+from esplanade.planning.agents._passage_kernels import PASSAGE
+from esplanade.planning.agents.agents import PARAMETERS, Agents, Decisions
+from esplanade.planning.agents.batch import Batch, PlanModel
+from esplanade.planning.agents.search import SearchForm, SearchResult, SearchStatus, uncertain_bfp
+from esplanade.planning.grid.grid import LayeredGrid
+from esplanade.planning.people._prediction_kernels import Prediction
+from esplanade.planning.people.prediction import PredictionModel, TrackHistory
+from esplanade.planning.people.risk import RiskField, RiskModel
+from esplanade.planning.people.spread import GAUSSIAN, PEOPLE, Spread
+from esplanade.planning.routes.find_path import LayeredPath, PathStatus, find_path
+from esplanade.planning.routes.potential import Potential, Wave
+from esplanade.planning.scene.bodies import Body
+from esplanade.planning.scene.scene import Door, Place, Polygon, Ramp, Scene, Spawn, Stairs, Wall
 
 __all__ = [
     "GAUSSIAN",
     "PARAMETERS",
     "PASSAGE",
     "PEOPLE",
+    "Agents",
     "Batch",
     "Body",
-    "Crowd",
     "Decisions",
     "Door",
     "LayeredGrid",

@@ -1,6 +1,6 @@
 """The wire between browsers, bots and the server: codes, messages, codec, snapshot layout."""
 
-from protocol.codec import (
+from esplanade.protocol.codec import (
     decode_client,
     decode_server,
     encode,
@@ -8,7 +8,7 @@ from protocol.codec import (
     encode_steps,
     peek_snapshot,
 )
-from protocol.codes import (
+from esplanade.protocol.codes import (
     VERSION,
     ByeCode,
     ClientCode,
@@ -18,7 +18,7 @@ from protocol.codes import (
     Reason,
     ServerCode,
 )
-from protocol.errors import ProtocolError
+from esplanade.protocol.errors import ProtocolError
 
 __all__ = [
     "VERSION",

@@ -12,15 +12,15 @@ from typing import Any, Final, NamedTuple
 import msgpack
 from pydantic import ValidationError
 
-from protocol.codes import (
+from esplanade.protocol.codes import (
     MAX_CLIENT_FRAME_BYTES,
     ClientCode,
     CloseCode,
     ErrorCode,
     ServerCode,
 )
-from protocol.errors import ProtocolError
-from protocol.messages import (
+from esplanade.protocol.errors import ProtocolError
+from esplanade.protocol.messages import (
     Bye,
     Census,
     Chat,

@@ -1,6 +1,6 @@
 """What goes wrong while reading the wire."""
 
-from protocol.codes import CloseCode, ErrorCode
+from esplanade.protocol.codes import CloseCode, ErrorCode
 
 
 class ProtocolError(ValueError):

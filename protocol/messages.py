@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints
 
-from protocol.codes import (
+from esplanade.protocol.codes import (
     MAX_CHAT_CHARS,
     MAX_DOOR_CHARS,
     MAX_NAME_CHARS,
@@ -201,7 +201,7 @@ class Leave(FromServer):
 
 
 class Snapshot(FromServer):
-    """Where everyone in view is. `block` holds packed records, see `protocol.snapshot`."""
+    """Where everyone in view is. `block` holds records of `esplanade.protocol.snapshot`."""
 
     code = ServerCode.SNAPSHOT
     tick: int
@@ -290,7 +290,7 @@ class Doors(FromServer):
 
 
 class StepBlock(FromServer):
-    """Steps of those near by. `block` holds packed records, see `protocol.steps`."""
+    """Steps of those near by. `block` holds packed records, see `esplanade.protocol.steps`."""
 
     code = ServerCode.STEPS
     tick: int

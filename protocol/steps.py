@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from protocol.quaternions import (
+from esplanade.protocol.quaternions import (
     pack_near_identity,
     pack_smallest_three,
     unpack_near_identity,

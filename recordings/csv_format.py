@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
-from recordings.errors import RecordingError, read_text
-from recordings.sample import Sample, number
+from esplanade.recordings.errors import RecordingError, read_text
+from esplanade.recordings.sample import Sample, number
 
 HEADER: Final = ["t", "id", "x", "y"]
 

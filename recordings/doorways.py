@@ -10,8 +10,8 @@ from typing import Final
 
 import numpy as np
 
-from recordings.crowd import Crowd, Floats
-from recordings.walls import Wall
+from esplanade.recordings.crowd import Crowd, Floats
+from esplanade.recordings.walls import Wall
 
 MIN_REST_M: Final = 0.05
 """A piece of wall shorter than this, left over between two openings, is left out."""

@@ -10,8 +10,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from recordings.errors import RecordingError, read_text
-from recordings.sample import Sample
+from esplanade.recordings.errors import RecordingError, read_text
+from esplanade.recordings.sample import Sample
 
 DEFAULT_SAMPLES_PER_S: Final = 2.5
 """Of files whose scenes do not say; all TrajNet++ files are sampled so."""

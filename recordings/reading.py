@@ -11,12 +11,12 @@ from typing import Final
 
 import numpy as np
 
-from recordings.crowd import Crowd, Track
-from recordings.csv_format import read_csv
-from recordings.errors import RecordingError
-from recordings.ndjson_format import read_ndjson
-from recordings.obsmat_format import read_obsmat
-from recordings.sample import MAX_METRES, Sample
+from esplanade.recordings.crowd import Crowd, Track
+from esplanade.recordings.csv_format import read_csv
+from esplanade.recordings.errors import RecordingError
+from esplanade.recordings.ndjson_format import read_ndjson
+from esplanade.recordings.obsmat_format import read_obsmat
+from esplanade.recordings.sample import MAX_METRES, Sample
 
 _FORMATS: Final[dict[str, Callable[[Path, float | None], Iterable[Sample]]]] = {
     ".csv": lambda path, _: read_csv(path),

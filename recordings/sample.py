@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from recordings.errors import RecordingError
+from esplanade.recordings.errors import RecordingError
 
 MAX_METRES: Final = 100_000.0
 """A coordinate farther out than this, either way, is taken for a fault of the file."""

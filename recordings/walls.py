@@ -5,8 +5,8 @@ import math
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from recordings.errors import RecordingError, read_text
-from recordings.sample import MAX_METRES
+from esplanade.recordings.errors import RecordingError, read_text
+from esplanade.recordings.sample import MAX_METRES
 
 Wall = tuple[tuple[float, float], tuple[float, float]]
 """A straight wall from (x, y) to (x, y), metres."""

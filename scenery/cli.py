@@ -8,13 +8,13 @@ from typing import Final
 
 from rich.console import Console
 
-from planning.scene_file import SceneError
-from scenery import inventory, pictures
-from scenery.console import UsageError, open_scene, progress
-from scenery.download import local_file
-from scenery.importing import import_mesh
-from scenery.options import parser
-from scenery.views import layer_views
+from esplanade.planning.scene.scene_file import SceneError
+from esplanade.scenery import inventory, pictures
+from esplanade.scenery.console import UsageError, open_scene, progress
+from esplanade.scenery.download import local_file
+from esplanade.scenery.importing import import_mesh
+from esplanade.scenery.options import parser
+from esplanade.scenery.views import layer_views
 
 EXIT_WELL: Final = 0
 EXIT_WRONG: Final = 1

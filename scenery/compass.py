@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from scenery.values import Point
+from esplanade.scenery.values import Point
 
 _THIRD: Final = 1.0 / 3.0
 

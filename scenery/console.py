@@ -5,8 +5,8 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskProgressColumn, TextColumn
 
-from planning import Scene
-from planning.scene_file import read_scene
+from esplanade.planning import Scene
+from esplanade.planning.scene.scene_file import read_scene
 
 
 class UsageError(Exception):

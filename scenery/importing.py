@@ -10,20 +10,19 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from numpy.typing import NDArray
 
-from planning import LayeredGrid, Scene
-from planning._footing import Footing
-from planning.bodies import Body
-from planning.footing import footing_of
-from planning.mesh_file import MeshError
-from planning.scene import Bounds, Place, Spawn
-from planning.stability import Stability
-from planning.storey_heights import storeys_of
-from planning.wavefront import UNREACHED, metres, spread_wave
-from scenery.compass import Ground
-from scenery.console import UsageError
-from scenery.meshes import as_glb
-from scenery.reach import cell_near, centres, largest_region
-from scenery.values import Point
+from esplanade.planning import LayeredGrid, Scene
+from esplanade.planning.routes.storey_heights import storeys_of
+from esplanade.planning.scene.bodies import Body
+from esplanade.planning.scene.mesh_file import MeshError
+from esplanade.planning.scene.scene import Bounds, Place, Spawn
+from esplanade.planning.traversal.stability import Stability
+from esplanade.planning.traversal.traversability import Traversability
+from esplanade.planning.traversal.wavefront import UNREACHED, metres, spread_wave
+from esplanade.scenery.compass import Ground
+from esplanade.scenery.console import UsageError
+from esplanade.scenery.meshes import as_glb
+from esplanade.scenery.reach import cell_near, centres, largest_region
+from esplanade.scenery.values import Point
 
 _SPAWN_RADIUS_M = 1.0
 _NAME_LENGTH = 64
@@ -67,15 +66,15 @@ def import_mesh(
         except MeshError as error:
             raise UsageError(f"{error}; --up and --scale say how it is to be read") from None
     tell("choosing places", _share(1.0))
-    footing = footing_of(grid, Body.adult())
-    start = _spawn_cell(footing, spawn)
-    x, y, z = _rounded(footing, start)
+    traversability = grid.traversability.of(Body.adult())
+    start = _spawn_cell(traversability, spawn)
+    x, y, z = _rounded(traversability, start)
     scene = Scene(
         name=(name or source.stem)[:_NAME_LENGTH],
         bounds=_whole_metres(grid.bounds),
         mesh=Path(kept.name),
         spawns=(Spawn(position=(x, y), z_m=z, radius_m=_SPAWN_RADIUS_M),),
-        places=tuple(_places(footing, start, _ground(grid, footing, start), places)),
+        places=tuple(_places(traversability, start, _ground(grid, traversability, start), places)),
     )
     tell(f"writing {target.name}", 0.95)
     try:
@@ -97,49 +96,49 @@ def _whole_metres(bounds: Bounds) -> Bounds:
     return math.floor(x0), math.floor(y0), math.ceil(x1), math.ceil(y1)
 
 
-def _spawn_cell(footing: Footing, spawn: Point | None) -> int:
+def _spawn_cell(traversability: Traversability, spawn: Point | None) -> int:
     """The cell that is asked for; else one amid the largest region."""
     if spawn is not None:
-        cell = cell_near(footing, spawn, _SPAWN_RADIUS_M)
+        cell = cell_near(traversability, spawn, _SPAWN_RADIUS_M)
         if cell < 0:
             raise UsageError("--spawn: an adult cannot stand there")
         return cell
-    region = largest_region(footing) & (footing.classes == Stability.STABLE)
+    region = largest_region(traversability) & (traversability.classes == Stability.STABLE)
     if not region.any():
         raise UsageError("an adult can stand nowhere in this mesh; is --up or --scale right?")
     cells = np.flatnonzero(region)
-    points = centres(footing)[cells]
+    points = centres(traversability)[cells]
     return int(cells[np.linalg.norm(points - points.mean(axis=0), axis=1).argmin()])
 
 
-def _places(footing: Footing, start: int, ground: Ground, count: int) -> list[Place]:
+def _places(traversability: Traversability, start: int, ground: Ground, count: int) -> list[Place]:
     """Places as far from the spawn and from each other as the ways between them allow."""
-    nearest = _ways(footing, start)
+    nearest = _ways(traversability, start)
     names: Counter[str] = Counter()
     made: list[Place] = []
     for _ in range(count):
         cell = int(nearest.argmax())
         if nearest[cell] <= 0.0:
             break
-        point = x, y, z = _rounded(footing, cell)
+        point = x, y, z = _rounded(traversability, cell)
         name = ground.name_of(point)
         names[name] += 1
         again = f" {names[name]}" if names[name] > 1 else ""
         made.append(Place(name=f"{name}{again}", position=(x, y), z_m=z))
-        nearest = np.minimum(nearest, _ways(footing, cell))
+        nearest = np.minimum(nearest, _ways(traversability, cell))
     return made
 
 
-def _ground(grid: LayeredGrid, footing: Footing, start: int) -> Ground:
-    reached = spread_wave(footing, start) != UNREACHED
-    return Ground(centres(footing)[reached], storeys_of(grid, reached))
+def _ground(grid: LayeredGrid, traversability: Traversability, start: int) -> Ground:
+    reached = spread_wave(traversability, start) != UNREACHED
+    return Ground(centres(traversability)[reached], storeys_of(grid, reached))
 
 
-def _ways(footing: Footing, cell: int) -> NDArray[np.float32]:
+def _ways(traversability: Traversability, cell: int) -> NDArray[np.float32]:
     """The way to each cell in metres; -1 where none leads or nobody stands well."""
-    left = spread_wave(footing, cell)
-    ways = metres(footing, left)
-    ways[(left == UNREACHED) | (footing.classes != Stability.STABLE)] = -1.0
+    left = spread_wave(traversability, cell)
+    ways = metres(traversability, left)
+    ways[(left == UNREACHED) | (traversability.classes != Stability.STABLE)] = -1.0
     return ways
 
 
@@ -156,6 +155,6 @@ def _lines(scene: Scene) -> str:
     return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
-def _rounded(footing: Footing, cell: int) -> Point:
-    x, y, z = (round(float(value), 3) for value in centres(footing)[cell])
+def _rounded(traversability: Traversability, cell: int) -> Point:
+    x, y, z = (round(float(value), 3) for value in centres(traversability)[cell])
     return x, y, z

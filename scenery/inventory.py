@@ -8,9 +8,9 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from planning import LayeredGrid, Scene
-from scenery.reach import Reach, reach_of
-from scenery.values import PRESETS
+from esplanade.planning import LayeredGrid, Scene
+from esplanade.scenery.reach import Reach, reach_of
+from esplanade.scenery.values import PRESETS
 
 _PARTS: Final = ("polygons", "walls", "stairs", "doors", "spawns", "places")
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Final
 
-from planning.mesh_file import open_mesh
+from esplanade.planning.scene.mesh_file import open_mesh
 
 _Z_TO_Y: Final = ((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1))
 """Turns z up into y up, as glTF has it."""

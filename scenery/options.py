@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import Final
 
-from scenery.values import body, number, point, where, whole
+from esplanade.scenery.values import body, number, point, where, whole
 
 DEFAULT_CELL_M: Final = 0.25
 """What the server takes."""

@@ -8,17 +8,15 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from planning import LayeredGrid, Scene
-from planning._footing import Footing
-from planning.bodies import Body
-from planning.find_path import PathStatus, find_path
-from planning.footing import footing_of
-from planning.stability import Stability
-from planning.wavefront import UNREACHED, spread_wave
-from scenery.values import Point
+from esplanade.planning import LayeredGrid, Scene
+from esplanade.planning.routes.find_path import PathStatus, find_path
+from esplanade.planning.scene.bodies import Body
+from esplanade.planning.scene.heights import SAME_SURFACE_M
+from esplanade.planning.traversal.stability import Stability
+from esplanade.planning.traversal.traversability import Traversability
+from esplanade.planning.traversal.wavefront import UNREACHED, spread_wave
+from esplanade.scenery.values import Point
 
-_OTHER_FLOOR_M = 1.0
-"""A floor further above or below than this is not what a point means."""
 _SHELTERED = 4.0
 """What a cell under a roof counts for."""
 
@@ -41,13 +39,13 @@ def reach_of(grid: LayeredGrid, scene: Scene, body: Body) -> Reach:
 
     Without spawns, avatars come in anywhere: the largest region is taken that hangs together.
     """
-    footing = footing_of(grid, body)
-    stands = stands_in(footing)
-    seeds = spawn_cells(footing, scene)
-    reached = reached_cells(footing, seeds)
+    traversability = grid.traversability.of(body)
+    stands = stands_in(traversability)
+    seeds = spawn_cells(traversability, scene)
+    reached = reached_cells(traversability, seeds)
     if not seeds and reached.any():
         seeds = (int(reached.argmax()),)
-    starts = centres(footing)[[seed for seed in seeds if seed >= 0]]
+    starts = centres(traversability)[[seed for seed in seeds if seed >= 0]]
     missed = [
         place.name
         for place in scene.places
@@ -63,21 +61,22 @@ def reach_of(grid: LayeredGrid, scene: Scene, body: Body) -> Reach:
     )
 
 
-def spawn_cells(footing: Footing, scene: Scene) -> tuple[int, ...]:
+def spawn_cells(traversability: Traversability, scene: Scene) -> tuple[int, ...]:
     """The cell where a body comes in, for each spawn; -1: there is no room for it."""
     return tuple(
-        cell_near(footing, (*spawn.position, spawn.z_m), spawn.radius_m) for spawn in scene.spawns
+        cell_near(traversability, (*spawn.position, spawn.z_m), spawn.radius_m)
+        for spawn in scene.spawns
     )
 
 
-def reached_cells(footing: Footing, seeds: Sequence[int]) -> NDArray[np.bool_]:
+def reached_cells(traversability: Traversability, seeds: Sequence[int]) -> NDArray[np.bool_]:
     """Where one gets from some cells, bool (N,); without any, the largest region."""
     if not seeds:
-        return largest_region(footing)
-    reached = np.zeros(len(footing.steps), dtype=np.bool_)
+        return largest_region(traversability)
+    reached = np.zeros(len(traversability.steps), dtype=np.bool_)
     for seed in seeds:
         if seed >= 0 and not reached[seed]:
-            reached |= spread_wave(footing, seed) != UNREACHED
+            reached |= spread_wave(traversability, seed) != UNREACHED
     return reached
 
 
@@ -86,9 +85,9 @@ def _leads(grid: LayeredGrid, start: NDArray[np.float64], goal: Point, body: Bod
     return find_path(grid, (x, y, z), goal, body=body).status is PathStatus.FOUND
 
 
-def centres(footing: Footing) -> NDArray[np.float64]:
+def centres(traversability: Traversability) -> NDArray[np.float64]:
     """x, y, z of every cell, float64 (N, 3), metres; z is nan where there is no floor."""
-    a = footing.arrays
+    a = traversability.arrays
     return np.stack(
         [
             a.x0 + (a.places[:, 2] + 0.5) * a.cell_m,
@@ -99,32 +98,32 @@ def centres(footing: Footing) -> NDArray[np.float64]:
     )
 
 
-def cell_near(footing: Footing, point: Point, within_m: float) -> int:
+def cell_near(traversability: Traversability, point: Point, within_m: float) -> int:
     """The nearest cell in which the body can stand; -1: none within that distance on the map."""
-    away = centres(footing) - point
+    away = centres(traversability) - point
     on_map = np.hypot(away[:, 0], away[:, 1])
     near = np.flatnonzero(
-        stands_in(footing)
-        & (on_map <= within_m + footing.arrays.cell_m)
-        & (np.abs(away[:, 2]) <= _OTHER_FLOOR_M)
+        stands_in(traversability)
+        & (on_map <= within_m + traversability.arrays.cell_m)
+        & (np.abs(away[:, 2]) <= SAME_SURFACE_M)
     )
     if not len(near):
         return -1
     return int(near[np.hypot(on_map[near], away[near, 2]).argmin()])
 
 
-def stands_in(footing: Footing) -> NDArray[np.bool_]:
+def stands_in(traversability: Traversability) -> NDArray[np.bool_]:
     """Cells in which the body can stand, bool (N,)."""
-    return np.asarray(footing.classes != Stability.FORBIDDEN)
+    return np.asarray(traversability.classes != Stability.FORBIDDEN)
 
 
-def largest_region(footing: Footing) -> NDArray[np.bool_]:
+def largest_region(traversability: Traversability) -> NDArray[np.bool_]:
     """The most cells that one body can walk between, bool (N,); none if it stands nowhere.
 
     Cells under a roof count for more, so that the rooms of a building come before its roof.
     """
-    stands, links = stands_in(footing), footing.arrays.links
-    steps = (footing.steps[:, None] >> np.arange(8)) & 1 == 1
+    stands, links = stands_in(traversability), traversability.arrays.links
+    steps = (traversability.steps[:, None] >> np.arange(8)) & 1 == 1
     steps &= stands[:, None] & stands[links]
     starts, directions = np.nonzero(steps)
     count = len(stands)
@@ -133,6 +132,6 @@ def largest_region(footing: Footing) -> NDArray[np.bool_]:
         shape=(count, count),
     )
     labels = connected_components(graph, directed=False)[1]
-    worth = np.where(np.isfinite(footing.arrays.ceilings), _SHELTERED, 1.0) * stands
+    worth = np.where(np.isfinite(traversability.arrays.ceilings), _SHELTERED, 1.0) * stands
     sizes = np.bincount(labels, weights=worth, minlength=1)
     return np.asarray(stands & (labels == sizes.argmax()))

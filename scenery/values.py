@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Final
 
-from planning.bodies import Body
+from esplanade.planning.scene.bodies import Body
 
 PRESETS: Final = {"adult": Body.adult, "child": Body.child}
 _MEASURES: Final = {

@@ -5,16 +5,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from planning import LayeredGrid, Scene
-from planning._footing import Footing
-from planning.bodies import Body
-from planning.find_path import LayeredPath, PathStatus, find_path
-from planning.footing import footing_of
-from planning.wavefront import metres, spread_wave
-from scenery.console import UsageError
-from scenery.pictures import LayerView, Mark
-from scenery.reach import cell_near, centres, reached_cells, spawn_cells
-from scenery.values import Point, Where
+from esplanade.planning import LayeredGrid, Scene
+from esplanade.planning.routes.find_path import LayeredPath, PathStatus, find_path
+from esplanade.planning.scene.bodies import Body
+from esplanade.planning.traversal.traversability import Traversability
+from esplanade.planning.traversal.wavefront import metres, spread_wave
+from esplanade.scenery.console import UsageError
+from esplanade.scenery.pictures import LayerView, Mark
+from esplanade.scenery.reach import cell_near, centres, reached_cells, spawn_cells
+from esplanade.scenery.values import Point, Where
 
 Floats = NDArray[np.float64]
 
@@ -35,27 +34,35 @@ def layer_views(
         An end of the path is no place, or nobody can stand there.
     """
     grid = LayeredGrid.from_scene(scene, cell_m)
-    footing = footing_of(grid, body)
-    reached = reached_cells(footing, spawn_cells(footing, scene))
+    traversability = grid.traversability.of(body)
+    reached = reached_cells(traversability, spawn_cells(traversability, scene))
     if not reached.any():
         raise UsageError("nobody of this body comes in: it cannot stand at any spawn")
-    first = _end("--from", scene, start) if start else _entrance(scene, footing, reached)
-    ways = metres(footing, spread_wave(footing, _cell("--from", footing, first)))
-    last = _end("--to", scene, goal) if goal else _farthest(scene, footing, ways)
+    first = _end("--from", scene, start) if start else _entrance(scene, traversability, reached)
+    ways = metres(
+        traversability, spread_wave(traversability, _cell("--from", traversability, first))
+    )
+    last = _end("--to", scene, goal) if goal else _farthest(scene, traversability, ways)
     path = find_path(grid, first, last, body=body)
-    distance = metres(footing, spread_wave(footing, _cell("--to", footing, last)))
+    distance = metres(
+        traversability, spread_wave(traversability, _cell("--to", traversability, last))
+    )
     return [
         LayerView(
             title=scene.name,
             number=number,
             body=_words(body),
-            corner=(footing.arrays.x0, footing.arrays.y0),
+            corner=(traversability.arrays.x0, traversability.arrays.y0),
             cell_m=cell_m,
-            floors=_dense(footing, number, footing.arrays.floors, np.nan),
-            reachable=_dense(footing, number, reached, False),
-            classes=_dense(footing, number, footing.classes.astype(np.int8), -1),
-            distance=_dense(footing, number, distance, np.nan),
-            walls=_walls_on(_dense(footing, number, footing.arrays.floors, np.nan), footing, body),
+            floors=_dense(traversability, number, traversability.arrays.floors, np.nan),
+            reachable=_dense(traversability, number, reached, False),
+            classes=_dense(traversability, number, traversability.classes.astype(np.int8), -1),
+            distance=_dense(traversability, number, distance, np.nan),
+            walls=_walls_on(
+                _dense(traversability, number, traversability.arrays.floors, np.nan),
+                traversability,
+                body,
+            ),
             marks=_marks(scene, grid, number),
             way=_way_words(path),
             path=path.points[:, :2],
@@ -76,53 +83,55 @@ def _end(option: str, scene: Scene, where: Where) -> Point:
     return *place.position, place.z_m
 
 
-def _cell(option: str, footing: Footing, point: Point) -> int:
-    cell = cell_near(footing, point, _NEAR_M)
+def _cell(option: str, traversability: Traversability, point: Point) -> int:
+    cell = cell_near(traversability, point, _NEAR_M)
     if cell < 0:
         x, y, z = point
         raise UsageError(f"{option}: this body cannot stand near ({x:g}, {y:g}, {z:g})")
     return cell
 
 
-def _entrance(scene: Scene, footing: Footing, reached: NDArray[np.bool_]) -> Point:
+def _entrance(scene: Scene, traversability: Traversability, reached: NDArray[np.bool_]) -> Point:
     """Where avatars come in, or the first place they get to."""
     for part in (*scene.spawns, *scene.places):
         point = (*part.position, part.z_m)
-        cell = cell_near(footing, point, _NEAR_M)
+        cell = cell_near(traversability, point, _NEAR_M)
         if cell >= 0 and reached[cell]:
             return point
-    return _centre(footing, int(reached.argmax()))
+    return _centre(traversability, int(reached.argmax()))
 
 
-def _farthest(scene: Scene, footing: Footing, ways: NDArray[np.float32]) -> Point:
+def _farthest(scene: Scene, traversability: Traversability, ways: NDArray[np.float32]) -> Point:
     """The place with the longest way to it; without places, the cell."""
     lengths = np.where(np.isfinite(ways), ways, -1.0)
     points: list[Point] = [(*place.position, place.z_m) for place in scene.places]
-    cells = {point: cell_near(footing, point, _NEAR_M) for point in points}
+    cells = {point: cell_near(traversability, point, _NEAR_M) for point in points}
     return max(
         (point for point in points if cells[point] >= 0),
         key=lambda point: float(lengths[cells[point]]),
-        default=_centre(footing, int(lengths.argmax())),
+        default=_centre(traversability, int(lengths.argmax())),
     )
 
 
-def _centre(footing: Footing, cell: int) -> Point:
-    x, y, z = (float(value) for value in centres(footing)[cell])
+def _centre(traversability: Traversability, cell: int) -> Point:
+    x, y, z = (float(value) for value in centres(traversability)[cell])
     return x, y, z
 
 
-def _dense(footing: Footing, layer: int, values: NDArray[Any], nothing: float) -> NDArray[Any]:
+def _dense(
+    traversability: Traversability, layer: int, values: NDArray[Any], nothing: float
+) -> NDArray[Any]:
     """A layer's values by row and column, `nothing` where it has no floor."""
-    a = footing.arrays
+    a = traversability.arrays
     own = (a.places[:, 0] == layer) & np.isfinite(a.floors)
     dense = np.full((a.ny, a.nx), nothing, dtype=values.dtype)
     dense[a.places[own, 1], a.places[own, 2]] = values[own]
     return dense
 
 
-def _walls_on(floors: Floats, footing: Footing, body: Body) -> Floats:
+def _walls_on(floors: Floats, traversability: Traversability, body: Body) -> Floats:
     """The barriers that stop a body where it stands beside them on one layer, float64 (S, 4)."""
-    rows, a = footing.near.barriers, footing.arrays
+    rows, a = traversability.near.barriers, traversability.arrays
     ends = rows[:, :4].reshape(-1, 2, 2)
     along = ends[:, 1] - ends[:, 0]
     normal = np.stack([-along[:, 1], along[:, 0]], axis=1)

@@ -10,23 +10,23 @@ from dataclasses import dataclass
 import structlog
 from websockets.asyncio.server import Server
 
-from actors import Cast
-from planning import LayeredGrid
-from planning.storey_heights import reached_from, storeys_of
-from server.assets import Assets
-from server.casting import assemble
-from server.metrics import Metrics
-from server.net.delivery import Delivery
-from server.net.guidance import Guidance
-from server.net.hub import Hub
-from server.net.listener import Listener
-from server.net.private import private_port
-from server.net.schedule import Schedule
-from server.net.ticker import Ticker
-from server.settings import ServerSettings
-from server.stage import Stage, StageError, set_stage
-from server.world.troupe import Body
-from server.world.world import World
+from esplanade.actors import Population
+from esplanade.planning import LayeredGrid
+from esplanade.planning.routes.storey_heights import reached_from, storeys_of
+from esplanade.server.assets import Assets
+from esplanade.server.loading import LoadedScene, LoadingError, load_scene
+from esplanade.server.metrics import Metrics
+from esplanade.server.net.delivery import Delivery
+from esplanade.server.net.hub import Hub
+from esplanade.server.net.listener import Listener
+from esplanade.server.net.private import private_port
+from esplanade.server.net.route_requests import RouteRequests
+from esplanade.server.net.schedule import Schedule
+from esplanade.server.net.ticker import Ticker
+from esplanade.server.populating import populate
+from esplanade.server.settings import ServerSettings
+from esplanade.server.world.actors import Body
+from esplanade.server.world.world import World
 
 log = structlog.get_logger(__name__)
 
@@ -62,15 +62,15 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
 
     Raises
     ------
-    StageError
+    LoadingError
         The scene or crowd cannot be run.
     OSError
         A port cannot be had.
     """
-    stage = set_stage(settings)
+    loaded = load_scene(settings)
     assets, mesh = assets or Assets.load(), None
-    if stage.triangles is not None:
-        assets, mesh = assets.with_data("mesh", stage.triangles)
+    if loaded.triangles is not None:
+        assets, mesh = assets.with_data("mesh", loaded.triangles)
     metrics = Metrics()
     loop = asyncio.get_running_loop()
     ready = False
@@ -83,17 +83,17 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         )
         bound.close()
         log.info("compiling; the first start on a machine takes a minute or two")
-        cast, world, storeys = await loop.run_in_executor(thread, _build, stage, settings)
-        stack.callback(cast.close)
+        population, world, storeys = await loop.run_in_executor(thread, _build, loaded, settings)
+        stack.callback(population.close)
         _watch(world, metrics)
 
         schedule = Schedule(world.tick_s, loop.time())
         ways = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ways"))
-        guidance = Guidance(world, ways)
-        metrics.gauge("ways_waiting", "People who wait for a way", lambda: guidance.waiting)
+        route_requests = RouteRequests(world, ways)
+        metrics.gauge("ways_waiting", "People who wait for a way", lambda: route_requests.waiting)
         hub = Hub(
             world,
-            guidance,
+            route_requests,
             settings,
             metrics,
             lambda: schedule.world_time(world.tick, loop.time()),
@@ -105,7 +105,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             Listener(hub, assets, settings, metrics).listening()
         )
         ticking = asyncio.create_task(ticker.run())
-        guiding = asyncio.create_task(guidance.run(hub.way_found))
+        guiding = asyncio.create_task(route_requests.run(hub.route_found))
         ready = True
         try:
             yield Running(_port(listener), _port(private), world, metrics, ticking)
@@ -115,29 +115,29 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             await _stop(ticker, ticking, hub)
 
 
-def _build(stage: Stage, settings: ServerSettings) -> tuple[Cast, World, list[float]]:
-    grid = LayeredGrid.from_scene(stage.scene)
+def _build(loaded: LoadedScene, settings: ServerSettings) -> tuple[Population, World, list[float]]:
+    grid = LayeredGrid.from_scene(loaded.scene)
     tick_s, seed = settings.tick_s, settings.seed
     bodies: dict[Hashable, Body]
     try:
-        cast, bodies = assemble(grid, stage.scene, settings.actors, tick_s, seed)
+        population, bodies = populate(grid, loaded.scene, settings.actors, tick_s, seed)
         world = World(
-            stage.scene,
+            loaded.scene,
             grid,
-            cast,
+            population,
             bodies,
-            stage.rules,
+            loaded.rules,
             tick_s=tick_s,
             max_people=settings.max_clients,
             seed=seed,
             clock=time.perf_counter,
         )
     except ValueError as error:
-        raise StageError(f"scene {stage.scene.name!r}: {error}") from error
-    cast.warm_up()
-    starts = [(*spawn.position, spawn.z_m) for spawn in stage.scene.spawns]
+        raise LoadingError(f"scene {loaded.scene.name!r}: {error}") from error
+    population.warm_up()
+    starts = [(*spawn.position, spawn.z_m) for spawn in loaded.scene.spawns]
     storeys = storeys_of(grid, reached_from(grid, starts))
-    return cast, world, [round(height, 2) for height in storeys]
+    return population, world, [round(height, 2) for height in storeys]
 
 
 async def _stop(ticker: Ticker, ticking: "asyncio.Task[None]", hub: Hub) -> None:

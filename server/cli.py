@@ -9,9 +9,9 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
-from server.main import serve
-from server.settings import ENV_PREFIX, ServerSettings
-from server.stage import StageError
+from esplanade.server.loading import LoadingError
+from esplanade.server.main import serve
+from esplanade.server.settings import ENV_PREFIX, ServerSettings
 
 EXIT_USAGE = 2
 EXIT_FAILED = 1
@@ -26,7 +26,7 @@ def run(argv: Sequence[str]) -> int:
         return _refuse(_faults(error, given), EXIT_USAGE)
     try:
         serve(settings)
-    except StageError as error:
+    except LoadingError as error:
         return _refuse(str(error), EXIT_USAGE)
     except OSError as error:
         ports = f"{settings.host}:{settings.port}, {settings.private_host}:{settings.private_port}"

@@ -5,7 +5,7 @@ import sys
 
 import structlog
 
-from server.settings import ServerSettings
+from esplanade.server.settings import ServerSettings
 
 
 def configure(settings: ServerSettings) -> None:
@@ -43,4 +43,4 @@ def configure(settings: ServerSettings) -> None:
     root.handlers = [handler]
     root.setLevel(settings.log_level.upper())
     # The library tells of every handshake that a port scanner breaks off.
-    logging.getLogger("server.websockets").setLevel(logging.ERROR)
+    logging.getLogger("esplanade.server.websockets").setLevel(logging.ERROR)

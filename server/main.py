@@ -6,9 +6,9 @@ import signal
 
 import structlog
 
-from server import logs
-from server.app import Running, running
-from server.settings import ServerSettings
+from esplanade.server import logs
+from esplanade.server.app import Running, running
+from esplanade.server.settings import ServerSettings
 
 log = structlog.get_logger(__name__)
 
@@ -18,7 +18,7 @@ def serve(settings: ServerSettings) -> None:
 
     Raises
     ------
-    StageError
+    LoadingError
         The scene or crowd cannot be run.
     OSError
         A port cannot be had.

@@ -1,7 +1,8 @@
 """Every setting of the server process, in one frozen object built at the composition root.
 
 Values come from the command line, then from environment variables `ESPLANADE_<NAME>`, then from
-the defaults here. Each field carries its group, unit and range; `server.cli` makes `--help` of it.
+the defaults here. Each field carries its group, unit and range; `esplanade.server.cli` makes
+`--help` of it.
 """
 
 from pathlib import Path

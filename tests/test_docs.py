@@ -14,12 +14,12 @@ from typing import Any
 
 import pytest
 
-import bots
+from esplanade import bots
 from esplanade.cli import COMMANDS
-from planning import Scene
-from protocol.messages import Chat, Enter
-from server.app import running
-from server.settings import ServerSettings
+from esplanade.planning import Scene
+from esplanade.protocol.messages import Chat, Enter
+from esplanade.server.app import running
+from esplanade.server.settings import ServerSettings
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md"))]

@@ -5,30 +5,35 @@ import re
 import subprocess
 import sys
 import tarfile
-import tomllib
 import zipfile
 from pathlib import Path
 
 import pytest
 import yaml
+from hatch_build import PAGE, SKIP_VARIABLE, ClientBuildHook
 from hatchling.bridge.app import Application
 
 from esplanade.cli import COMMANDS
-from hatch_build import SKIP_VARIABLE, ClientBuildHook
-from server.settings import ServerSettings
+from esplanade.server.settings import ServerSettings
 
 ROOT = Path(__file__).resolve().parents[1]
-PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
-PACKAGES = PROJECT["tool"]["hatch"]["build"]["targets"]["wheel"]["packages"]
+PACKAGE = ROOT / "src" / "esplanade"
+SCENES = ("gallery.json", "pavilion.json", "pavilion.obj", "plaza.json")
 
 NPM_THAT_BUILDS = """
 import sys
 from pathlib import Path
-assets = Path(__file__).resolve().parents[1] / "server" / "client_assets"
+assets = Path(__file__).resolve().parents[1] / "src/esplanade/server/client_assets"
 if sys.argv[1:] == ["run", "build"]:
     assets.mkdir(parents=True)
     (assets / "index.html").touch()
 """
+
+
+def source_files() -> list[Path]:
+    """Every module below the package, through the links that make one package of the folders."""
+    found = [path for folder in PACKAGE.iterdir() for path in folder.rglob("*.py")]
+    return found + list(PACKAGE.glob("*.py"))
 
 
 def hook(root: Path, npm: str) -> ClientBuildHook:
@@ -43,12 +48,12 @@ def test_hook_builds_the_client_into_a_wheel(
 ) -> None:
     monkeypatch.delenv(SKIP_VARIABLE, raising=False)
     hook(tmp_path, NPM_THAT_BUILDS).initialize("standard", {})
-    assert (tmp_path / "server" / "client_assets" / "index.html").is_file()
+    assert (tmp_path / PAGE).is_file()
 
 
 def test_hook_leaves_the_client_of_an_editable_install_alone(tmp_path: Path) -> None:
     hook(tmp_path, NPM_THAT_BUILDS).initialize("editable", {})
-    assert not (tmp_path / "server").exists()
+    assert not (tmp_path / "src").exists()
 
 
 def test_hook_skips_where_the_variable_says_so(
@@ -56,7 +61,7 @@ def test_hook_skips_where_the_variable_says_so(
 ) -> None:
     monkeypatch.setenv(SKIP_VARIABLE, "1")
     hook(tmp_path, NPM_THAT_BUILDS).initialize("standard", {})
-    assert not (tmp_path / "server").exists()
+    assert not (tmp_path / "src").exists()
     assert "client is not built" in "".join(capsys.readouterr())
 
 
@@ -93,10 +98,13 @@ def test_wheel_carries_every_package_and_the_scenes(tmp_path: Path) -> None:
     with zipfile.ZipFile(build("wheel", tmp_path)) as wheel:
         names = wheel.namelist()
     tops = {name.split("/")[0] for name in names if ".dist-info/" not in name}
-    assert tops == set(PACKAGES)
-    assert {"scenes/gallery.json", "scenes/pavilion.json", "scenes/pavilion.obj"} <= set(names)
-    built = sorted(ROOT.glob("server/client_assets/**/*.*"))
-    assert {path.relative_to(ROOT).as_posix() for path in built} <= set(names)
+    assert tops == {"esplanade"}
+    sources = {f"esplanade/{path.relative_to(PACKAGE)}" for path in source_files()}
+    assert len(sources) > 250
+    assert sources <= set(names)
+    assert {f"esplanade/scenes/{name}" for name in SCENES} <= set(names)
+    built = sorted((PACKAGE / "server" / "client_assets").glob("**/*.*"))
+    assert {f"esplanade/{path.relative_to(PACKAGE)}" for path in built} <= set(names)
 
 
 def test_source_archive_can_build_the_client(tmp_path: Path) -> None:
@@ -104,6 +112,7 @@ def test_source_archive_can_build_the_client(tmp_path: Path) -> None:
         names = {name.partition("/")[2] for name in archive.getnames()}
     needed = {"hatch_build.py", "tools/npm.py", "client_web/package-lock.json", "LICENSE"}
     assert needed <= names
+    assert {f"src/esplanade/{path.relative_to(PACKAGE)}" for path in source_files()} <= names
     assert any(name.startswith("client_web/src/") for name in names)
     assert not any("node_modules" in name or "client_assets" in name for name in names)
 
@@ -129,7 +138,8 @@ def test_image_gets_everything_that_the_wheel_is_built_from() -> None:
         if line.startswith("!")
     }
     needed = {"pyproject.toml", "hatch_build.py", "README.md", "LICENSE", "client_web", "tools"}
-    assert {*needed, *PACKAGES} <= admitted
+    linked = {path.name for path in PACKAGE.iterdir() if path.is_symlink()}
+    assert {*needed, *linked, "src"} <= admitted
 
 
 def test_scripts_can_be_run() -> None:

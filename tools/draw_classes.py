@@ -8,9 +8,8 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 
-from planning import Body, LayeredGrid, Polygon, Scene, Stairs, Wall, find_path
-from planning.footing import footing_of
-from planning.stability import Stability
+from esplanade.planning import Body, LayeredGrid, Polygon, Scene, Stairs, Wall, find_path
+from esplanade.planning.traversal.stability import Stability
 
 mpl.use("Agg")
 from matplotlib import pyplot as plt
@@ -45,13 +44,17 @@ def scene() -> Scene:
 
 def main() -> None:
     grid, body = LayeredGrid.from_scene(scene()), Body.adult()
-    footing, path = footing_of(grid, body), find_path(grid, START, GOAL, body)
-    layers, rows, columns = footing.arrays.places.T
+    traversability, path = grid.traversability.of(body), find_path(grid, START, GOAL, body)
+    layers, rows, columns = traversability.arrays.places.T
     figure, axes = plt.subplots(1, 2, figsize=(10, 5.6), layout="constrained")
     for layer, axis in enumerate(axes):
-        held = (layers == layer) & (rows < footing.arrays.ny) & (columns < footing.arrays.nx)
-        shown = np.zeros((footing.arrays.ny, footing.arrays.nx))
-        shown[rows[held], columns[held]] = footing.classes[held]
+        held = (
+            (layers == layer)
+            & (rows < traversability.arrays.ny)
+            & (columns < traversability.arrays.nx)
+        )
+        shown = np.zeros((traversability.arrays.ny, traversability.arrays.nx))
+        shown[rows[held], columns[held]] = traversability.classes[held]
         axis.imshow(
             shown,
             origin="lower",

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from actors import ActorParameters, Navigator
-from planning import PlanModel, Scene
+from esplanade.actors import ActorParameters, Navigator
+from esplanade.planning import PlanModel, Scene
 
 OUT = Path(__file__).resolve().parents[1] / "docs" / "images" / "encounters.svg"
 START, GOAL = (2.0, 5.0), (12.0, 5.0)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from actors.locomotion._hinge_kernels import (
+from esplanade.actors.locomotion._hinge_kernels import (
     Floats,
     Hinges,
     Scratch,
@@ -21,7 +21,7 @@ from actors.locomotion._hinge_kernels import (
     place,
     sweep_over,
 )
-from planning._jit import kernel
+from esplanade.planning.compiled.jit import kernel
 
 LIMB = 4
 """Hinges of a limb: about Y, Z and X at its root, and about X at the knee or elbow."""

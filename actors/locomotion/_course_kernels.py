@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from actors.locomotion.skeleton import Floats
-from planning._jit import inlined, kernel
+from esplanade.actors.locomotion.skeleton import Floats
+from esplanade.planning.compiled.jit import inlined, kernel
 
 AHEAD_S = 0.2
 AHEAD = 7

@@ -7,14 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from actors.locomotion._gait_kernels import mix, smooth, swinging_leg
-from actors.locomotion._hips_kernels import Hips, hips_at, lift_of
-from actors.locomotion._reach_kernels import FULL, eased, hip_too_high, raised_heel
-from actors.locomotion._stairs_kernels import swing_over, unevenness
-from actors.locomotion._turning_kernels import BothDown, Footprint, Poses, both_down
-from actors.locomotion.skeleton import FOOT, SHIN, THIGH, TRACK_HALF_WIDTH, Floats
-from actors.locomotion.step_length import RV_LONGEST
-from planning._jit import inlined, kernel
+from esplanade.actors.locomotion._gait_kernels import mix, smooth, swinging_leg
+from esplanade.actors.locomotion._hips_kernels import Hips, hips_at, lift_of
+from esplanade.actors.locomotion._reach_kernels import FULL, eased, hip_too_high, raised_heel
+from esplanade.actors.locomotion._stairs_kernels import swing_over, unevenness
+from esplanade.actors.locomotion._turning_kernels import BothDown, Footprint, Poses, both_down
+from esplanade.actors.locomotion.skeleton import FOOT, SHIN, THIGH, TRACK_HALF_WIDTH, Floats
+from esplanade.actors.locomotion.step_length import RV_LONGEST
+from esplanade.planning.compiled.jit import inlined, kernel
 
 _AT_ENDS = 0.04
 """Share of a step at its ends in which a foot is where the footprint has it, whatever the leg."""

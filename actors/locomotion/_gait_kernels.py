@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from planning._jit import inlined
+from esplanade.planning.compiled.jit import inlined
 
 _DEGREE = math.pi / 180.0
 _TURN = 2.0 * math.pi

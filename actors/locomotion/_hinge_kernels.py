@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planning._jit import inlined, kernel
+from esplanade.planning.compiled.jit import inlined, kernel
 
 Floats = NDArray[np.float64]
 Vector = tuple[float, float, float]

@@ -8,11 +8,11 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from actors.locomotion._gait_kernels import mix, pelvis, smooth, support_share
-from actors.locomotion._stairs_kernels import ground_under_way
-from actors.locomotion._turning_kernels import CROUCH, BothDown, hermite
-from actors.locomotion.skeleton import TRACK_HALF_WIDTH
-from planning._jit import inlined, kernel
+from esplanade.actors.locomotion._gait_kernels import mix, pelvis, smooth, support_share
+from esplanade.actors.locomotion._stairs_kernels import ground_under_way
+from esplanade.actors.locomotion._turning_kernels import CROUCH, BothDown, hermite
+from esplanade.actors.locomotion.skeleton import TRACK_HALF_WIDTH
+from esplanade.planning.compiled.jit import inlined, kernel
 
 _TURN = 2.0 * math.pi
 _CREST = 0.35

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from actors.locomotion._gait_kernels import smooth
-from actors.locomotion.skeleton import Floats
-from planning._jit import inlined, kernel
+from esplanade.actors.locomotion._gait_kernels import smooth
+from esplanade.actors.locomotion.skeleton import Floats
+from esplanade.planning.compiled.jit import inlined, kernel
 
 KEYS = 6
 WIDTH = 21

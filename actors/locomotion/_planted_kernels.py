@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import math
 
-from actors.locomotion._feet_kernels import clearance, standing_foot, swinging_foot, too_high
-from actors.locomotion._gait_kernels import arm, chest_torsion, mix, smooth
-from actors.locomotion._hips_kernels import hips_at, lift_of
-from actors.locomotion._turning_kernels import Footprint, Poses, both_down
-from actors.locomotion.footfalls import Footfalls, Targets
-from actors.locomotion.skeleton import Floats
-from planning._jit import inlined, kernel
+from esplanade.actors.locomotion._feet_kernels import (
+    clearance,
+    standing_foot,
+    swinging_foot,
+    too_high,
+)
+from esplanade.actors.locomotion._gait_kernels import arm, chest_torsion, mix, smooth
+from esplanade.actors.locomotion._hips_kernels import hips_at, lift_of
+from esplanade.actors.locomotion._turning_kernels import Footprint, Poses, both_down
+from esplanade.actors.locomotion.footfalls import Footfalls, Targets
+from esplanade.actors.locomotion.skeleton import Floats
+from esplanade.planning.compiled.jit import inlined, kernel
 
 _TURN = 2.0 * math.pi
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from actors.locomotion.skeleton import FOOT
-from planning._jit import inlined
+from esplanade.actors.locomotion.skeleton import FOOT
+from esplanade.planning.compiled.jit import inlined
 
 FULL = 0.9999
 """Legs are never stretched further: a knee that locks moves with infinite speed."""

@@ -5,9 +5,9 @@ Lengths are shares of the leg's; heights are those of footprints.
 
 from __future__ import annotations
 
-from actors.locomotion._gait_kernels import mix, smooth
-from actors.locomotion.skeleton import FOOT
-from planning._jit import inlined
+from esplanade.actors.locomotion._gait_kernels import mix, smooth
+from esplanade.actors.locomotion.skeleton import FOOT
+from esplanade.planning.compiled.jit import inlined
 
 CLEARANCE = 0.09
 """A foot passes so far over the highest of the three footprints."""

@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from actors.locomotion._gait_kernels import smooth
-from actors.locomotion._motion_kernels import (
+from esplanade.actors.locomotion._gait_kernels import smooth
+from esplanade.actors.locomotion._motion_kernels import (
     ANKLE,
     PELVIS,
     SETTLE,
@@ -16,8 +16,8 @@ from actors.locomotion._motion_kernels import (
     SWING_HEADING,
     SWING_PITCH,
 )
-from actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH, Floats
-from planning._jit import inlined, kernel
+from esplanade.actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH, Floats
+from esplanade.planning.compiled.jit import inlined, kernel
 
 REACH = 0.9995
 STEEPEST_RAD = -1.3

@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from actors.locomotion._gait_kernels import smooth
-from actors.locomotion._motion_kernels import (
+from esplanade.actors.locomotion._gait_kernels import smooth
+from esplanade.actors.locomotion._motion_kernels import (
     ANKLE,
     CHEST,
     KEYS,
@@ -19,9 +19,9 @@ from actors.locomotion._motion_kernels import (
     WIDTH,
     make_unit,
 )
-from actors.locomotion.footfalls import Footfalls, Targets
-from actors.locomotion.skeleton import Floats
-from planning._jit import inlined, kernel
+from esplanade.actors.locomotion.footfalls import Footfalls, Targets
+from esplanade.actors.locomotion.skeleton import Floats
+from esplanade.planning.compiled.jit import inlined, kernel
 
 ARMS = 17
 _TURN = 2.0 * math.pi

@@ -13,10 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from actors.locomotion._reach_kernels import hip_too_high
-from actors.locomotion._stairs_kernels import ground_height, heel_height, unevenness
-from actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH, Floats
-from planning._jit import inlined, kernel
+from esplanade.actors.locomotion._reach_kernels import hip_too_high
+from esplanade.actors.locomotion._stairs_kernels import ground_height, heel_height, unevenness
+from esplanade.actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH, Floats
+from esplanade.planning.compiled.jit import inlined, kernel
 
 Footprint = tuple[float, float, float, float]
 

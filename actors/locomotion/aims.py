@@ -7,13 +7,18 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from actors.locomotion import _course_kernels as kernels
-from actors.locomotion.durations import step_duration_s
-from actors.locomotion.ground import Ground
-from actors.locomotion.motion import Floats
-from actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH
-from actors.locomotion.step_length import RV_LONGEST, double_support, longest_step, planted_length
-from actors.locomotion.strides import wrapped
+from esplanade.actors.locomotion import _course_kernels as kernels
+from esplanade.actors.locomotion.durations import step_duration_s
+from esplanade.actors.locomotion.ground import Ground
+from esplanade.actors.locomotion.motion import Floats
+from esplanade.actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH
+from esplanade.actors.locomotion.step_length import (
+    RV_LONGEST,
+    double_support,
+    longest_step,
+    planted_length,
+)
+from esplanade.actors.locomotion.strides import wrapped
 
 AHEAD_S: Final = kernels.AHEAD_S
 """Time between the places of a course."""

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from actors.locomotion.skeleton import Floats
+from esplanade.actors.locomotion.skeleton import Floats
 
 RV_MAX = 3.0
 _FADED_BELOW = 0.05

@@ -7,16 +7,16 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from actors.locomotion.aims import (
+from esplanade.actors.locomotion.aims import (
     WALKING_MPS,
     Course,
     durations_s,
     wanted_headings,
     within_reach_s,
 )
-from actors.locomotion.motion import STANDING_PITCH, SWING_PITCH, Floats, Steps
-from actors.locomotion.skeleton import TRACK_HALF_WIDTH
-from actors.locomotion.strides import wrapped
+from esplanade.actors.locomotion.motion import STANDING_PITCH, SWING_PITCH, Floats, Steps
+from esplanade.actors.locomotion.skeleton import TRACK_HALF_WIDTH
+from esplanade.actors.locomotion.strides import wrapped
 
 Rows = NDArray[np.int64]
 Flags = NDArray[np.bool_]

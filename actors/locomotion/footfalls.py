@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from actors.locomotion.skeleton import Floats
+from esplanade.actors.locomotion.skeleton import Floats
 
 
 class Footfalls(NamedTuple):

@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from actors.locomotion.motion import Floats
-from planning import LayeredGrid, Scene
+from esplanade.actors.locomotion.motion import Floats
+from esplanade.planning import LayeredGrid, Scene
 
 NEAR_M: Final = 0.6
 """Ground that is further up or down than that is none for the next step."""

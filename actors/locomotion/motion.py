@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from actors.locomotion import _motion_kernels as kernels
+from esplanade.actors.locomotion import _motion_kernels as kernels
 
 Floats = NDArray[np.float64]
 

@@ -9,12 +9,12 @@ from functools import cache
 
 import numpy as np
 
-from actors.locomotion._feet_kernels import fill_clearances
-from actors.locomotion._planted_kernels import fill_targets
-from actors.locomotion._turning_kernels import Poses
-from actors.locomotion.footfalls import Footfalls, Targets, room_for
-from actors.locomotion.skeleton import Floats
-from actors.locomotion.step_length import RV_LONGEST, final_poses, sl_planted
+from esplanade.actors.locomotion._feet_kernels import fill_clearances
+from esplanade.actors.locomotion._planted_kernels import fill_targets
+from esplanade.actors.locomotion._turning_kernels import Poses
+from esplanade.actors.locomotion.footfalls import Footfalls, Targets, room_for
+from esplanade.actors.locomotion.skeleton import Floats
+from esplanade.actors.locomotion.step_length import RV_LONGEST, final_poses, sl_planted
 
 __all__ = ["Footfalls", "Targets", "step_targets"]
 

@@ -7,9 +7,9 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from actors.locomotion import _stance_kernels as kernels
-from actors.locomotion.motion import Floats, Steps, heel_from_toe
-from actors.locomotion.skeleton import FOOT, HEAD_TOP, HIP_DEPTH
+from esplanade.actors.locomotion import _stance_kernels as kernels
+from esplanade.actors.locomotion.motion import Floats, Steps, heel_from_toe
+from esplanade.actors.locomotion.skeleton import FOOT, HEAD_TOP, HIP_DEPTH
 
 REACH: Final = kernels.REACH
 """A leg is not stretched further: knees that lock straighten with a jerk."""

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from actors.locomotion.curves import joint_angles
-from actors.locomotion.skeleton import FOOT, Floats, foot_pitch, leg_points
+from esplanade.actors.locomotion.curves import joint_angles
+from esplanade.actors.locomotion.skeleton import FOOT, Floats, foot_pitch, leg_points
 
 RV_LONGEST = 0.5
 """Steps are lengthened by velocities up to here; beyond, legs only move faster (stretch B)."""

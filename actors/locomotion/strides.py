@@ -7,9 +7,9 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from actors.locomotion._stride_kernels import fill_keys, go_on
-from actors.locomotion.footfalls import Footfalls, Targets
-from actors.locomotion.motion import (
+from esplanade.actors.locomotion._stride_kernels import fill_keys, go_on
+from esplanade.actors.locomotion.footfalls import Footfalls, Targets
+from esplanade.actors.locomotion.motion import (
     ANKLE,
     KEYS,
     ROOT,
@@ -22,8 +22,8 @@ from actors.locomotion.motion import (
     smooth,
     under_way,
 )
-from actors.locomotion.planted import step_targets
-from actors.locomotion.stance import Build, stance
+from esplanade.actors.locomotion.planted import step_targets
+from esplanade.actors.locomotion.stance import Build, stance
 
 _SHARES: Final = np.linspace(0.0, 1.0, KEYS)
 _LEVEL: Final = 0.15

@@ -13,10 +13,10 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from actors.locomotion import _ccd_kernels as kernels
-from actors.locomotion import skeleton
-from actors.locomotion._ccd_kernels import Effort
-from actors.locomotion._hinge_kernels import Hinges, place_all
+from esplanade.actors.locomotion import _ccd_kernels as kernels
+from esplanade.actors.locomotion import skeleton
+from esplanade.actors.locomotion._ccd_kernels import Effort
+from esplanade.actors.locomotion._hinge_kernels import Hinges, place_all
 
 Floats = NDArray[np.float64]
 

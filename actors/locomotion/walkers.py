@@ -8,15 +8,15 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from actors.locomotion.aims import Course, aim
-from actors.locomotion.builds import Manner
-from actors.locomotion.decisions import Due, Intent, beginning, re_aiming
-from actors.locomotion.footfalls import Footfalls
-from actors.locomotion.ground import Ground
-from actors.locomotion.motion import Floats, Steps, no_steps
-from actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH
-from actors.locomotion.stance import Build
-from actors.locomotion.strides import drawn, shifted, standing_keys, strides
+from esplanade.actors.locomotion.aims import Course, aim
+from esplanade.actors.locomotion.builds import Physique
+from esplanade.actors.locomotion.decisions import Due, Intent, beginning, re_aiming
+from esplanade.actors.locomotion.footfalls import Footfalls
+from esplanade.actors.locomotion.ground import Ground
+from esplanade.actors.locomotion.motion import Floats, Steps, no_steps
+from esplanade.actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH
+from esplanade.actors.locomotion.stance import Build
+from esplanade.actors.locomotion.strides import drawn, shifted, standing_keys, strides
 
 Slots = NDArray[np.int64]
 Carry = Callable[[Steps, Slots], Steps]
@@ -56,11 +56,11 @@ class Walkers:
             np.ones(capacity),
         )
 
-    def join(self, tick: int, slots: Slots, manners: Sequence[Manner], course: Course) -> None:
+    def join(self, tick: int, slots: Slots, physiques: Sequence[Physique], course: Course) -> None:
         """Somebody new stands in each of N slots, at the beginning of a course."""
-        self._build.leg_m[slots] = [manner.leg_m for manner in manners]
-        self._build.stature_m[slots] = [manner.stature_m for manner in manners]
-        self._intent.briskness[slots] = [manner.briskness for manner in manners]
+        self._build.leg_m[slots] = [each.leg_m for each in physiques]
+        self._build.stature_m[slots] = [each.stature_m for each in physiques]
+        self._intent.briskness[slots] = [each.briskness for each in physiques]
         self._stand(tick, slots, course)
 
     def update(self, tick: int, slots: Slots, course: Course) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import Any, Final, NamedTuple, cast
 
-from evaluation.policies.policy import Policy, PolicyError
+from esplanade.evaluation.policies.policy import Policy, PolicyError
 
 
 class Entry(NamedTuple):
@@ -40,7 +40,7 @@ def make_policy(name: str, settings: Mapping[str, Any] | None = None) -> Policy:
     entry = POLICIES[name]
     maker = cast(
         Callable[..., Policy],
-        getattr(import_module(f"evaluation.policies.{entry.module}"), entry.maker),
+        getattr(import_module(f"esplanade.evaluation.policies.{entry.module}"), entry.maker),
     )
     return maker(settings) if name == "esplanade" else maker()
 

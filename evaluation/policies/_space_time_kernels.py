@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from planning._jit import kernel
+from esplanade.planning.compiled.jit import kernel
 
 CELL_M = 0.25
 HEADINGS = 8

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from evaluation.policies.policy import View
-from evaluation.policies.space_time import STEP_S, STEPS, SpaceTimeSearch
+from esplanade.evaluation.policies.policy import View
+from esplanade.evaluation.policies.space_time import STEP_S, STEPS, SpaceTimeSearch
 
 
 class Clairvoyant(SpaceTimeSearch):

@@ -5,8 +5,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from evaluation.policies.policy import Person, View
-from evaluation.policies.space_time import STEP_S, STEPS, SpaceTimeSearch
+from esplanade.evaluation.policies.policy import Person, View
+from esplanade.evaluation.policies.space_time import STEP_S, STEPS, SpaceTimeSearch
 
 PAST_TICKS: Final = 8
 """Velocities are means over this time: shorter ones are noise, longer ones are old."""

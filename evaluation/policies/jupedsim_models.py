@@ -13,7 +13,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from evaluation.policies.policy import Person, Policy, PolicyError, Task, View
+from esplanade.evaluation.policies.policy import Person, Policy, PolicyError, Task, View
 
 Floats = NDArray[np.float64]
 

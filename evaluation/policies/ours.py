@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from actors import ActorParameters, Navigator
-from evaluation.policies.policy import Policy, PolicyError, Task, Thoughts, View
-from evaluation.replay import Replay
-from evaluation.rules import Rules
-from evaluation.settings import models_of, parameters_of
-from planning import LayeredGrid, Scene
+from esplanade.actors import ActorParameters, Navigator
+from esplanade.evaluation.policies.policy import Policy, PolicyError, Task, Thoughts, View
+from esplanade.evaluation.replay import Replay
+from esplanade.evaluation.rules import Rules
+from esplanade.evaluation.settings import models_of, parameters_of
+from esplanade.planning import LayeredGrid, Scene
 
 MARGIN_M: Final = 10.0
 """Ground around everyone's recorded ways."""

@@ -9,9 +9,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from evaluation.episodes import Episode
-from evaluation.replay import Replay
-from evaluation.rules import Rules
+from esplanade.evaluation.episodes import Episode
+from esplanade.evaluation.replay import Replay
+from esplanade.evaluation.rules import Rules
 
 Floats = NDArray[np.float64]
 

@@ -6,8 +6,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from evaluation.policies import _space_time_kernels as kernels
-from evaluation.policies.policy import Policy, Task, Thoughts, View
+from esplanade.evaluation.policies import _space_time_kernels as kernels
+from esplanade.evaluation.policies.policy import Policy, Task, Thoughts, View
 
 Floats = NDArray[np.float64]
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from evaluation.policies.policy import Policy, Task, Thoughts, View
+from esplanade.evaluation.policies.policy import Policy, Task, Thoughts, View
 
 
 class Straight(Policy):

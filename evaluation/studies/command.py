@@ -4,13 +4,20 @@ import argparse
 from collections.abc import Mapping
 from typing import Any
 
-from evaluation import plotting
-from evaluation.console import UsageError, check_targets, named_sources, output, walk, write_json
-from evaluation.rules import Rules
-from evaluation.settings import read_changes, read_choices
-from evaluation.studies import report, sensitivity, sensitivity_plot, tuning
-from evaluation.studies.variants import Variant, tables_of, trials_of
-from evaluation.trials import Source
+from esplanade.evaluation import plotting
+from esplanade.evaluation.console import (
+    UsageError,
+    check_targets,
+    named_sources,
+    output,
+    walk,
+    write_json,
+)
+from esplanade.evaluation.rules import Rules
+from esplanade.evaluation.settings import read_changes, read_choices
+from esplanade.evaluation.studies import report, sensitivity, sensitivity_plot, tuning
+from esplanade.evaluation.studies.variants import Variant, tables_of, trials_of
+from esplanade.evaluation.trials import Source
 
 
 def show_sensitivity(options: argparse.Namespace) -> None:

@@ -6,7 +6,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from evaluation.scores import Score
+from esplanade.evaluation.scores import Score
 
 Floats = NDArray[np.float64]
 

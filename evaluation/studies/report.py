@@ -8,11 +8,11 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from evaluation.studies.measures import MEASURES, Measure
-from evaluation.studies.sensitivity import Curve
-from evaluation.studies.tuning import Tuning
-from evaluation.studies.variants import Variant
-from evaluation.trials import Source
+from esplanade.evaluation.studies.measures import MEASURES, Measure
+from esplanade.evaluation.studies.sensitivity import Curve
+from esplanade.evaluation.studies.tuning import Tuning
+from esplanade.evaluation.studies.variants import Variant
+from esplanade.evaluation.trials import Source
 
 RANKED_SHOWN: Final = 15
 AS_IS: Final = "as is"

@@ -6,11 +6,11 @@ from typing import Any, Final
 
 import numpy as np
 
-from actors import ActorParameters
-from evaluation.rules import Rules
-from evaluation.settings import DEFAULTS, SettingError, check
-from evaluation.studies.measures import MEASURES, interval, pooled, resampled
-from evaluation.studies.variants import Tables, Variant
+from esplanade.actors import ActorParameters
+from esplanade.evaluation.rules import Rules
+from esplanade.evaluation.settings import DEFAULTS, SettingError, check
+from esplanade.evaluation.studies.measures import MEASURES, interval, pooled, resampled
+from esplanade.evaluation.studies.variants import Tables, Variant
 
 BODY: Final = frozenset(
     {

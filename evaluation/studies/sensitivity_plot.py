@@ -7,9 +7,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from evaluation.plotting import require_matplotlib
-from evaluation.studies.measures import MEASURES
-from evaluation.studies.sensitivity import Curve, Point
+from esplanade.evaluation.plotting import require_matplotlib
+from esplanade.evaluation.studies.measures import MEASURES
+from esplanade.evaluation.studies.sensitivity import Curve, Point
 
 SHOWN: Final = 4
 """So many of `MEASURES` are drawn, from the first."""

@@ -9,10 +9,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from evaluation.settings import SettingError, check
-from evaluation.studies.measures import MEASURES, Floats, named, pooled, resampled
-from evaluation.studies.variants import Tables, Variant
-from evaluation.trials import Source
+from esplanade.evaluation.settings import SettingError, check
+from esplanade.evaluation.studies.measures import MEASURES, Floats, named, pooled, resampled
+from esplanade.evaluation.studies.variants import Tables, Variant
+from esplanade.evaluation.trials import Source
 
 BEYOND_GOALS: Final = 0.1
 """What getting better is still worth once a goal is met; before that, it is worth one more."""

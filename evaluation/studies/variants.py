@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
-from evaluation.rules import Rules
-from evaluation.runner import Result
-from evaluation.settings import DEFAULTS
-from evaluation.studies.measures import Floats, table
-from evaluation.trials import Source, Trial, plan_trials
+from esplanade.evaluation.rules import Rules
+from esplanade.evaluation.runner import Result
+from esplanade.evaluation.settings import DEFAULTS
+from esplanade.evaluation.studies.measures import Floats, table
+from esplanade.evaluation.trials import Source, Trial, plan_trials
 
 OURS: Final = "esplanade"
 LIMIT: Final = "max_acceleration_mps2"

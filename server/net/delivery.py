@@ -5,13 +5,13 @@ from typing import Final
 
 import numpy as np
 
-from actors import Explanation
-from protocol import Reason
-from protocol.messages import Census, Circle, Doors, Plan, Point
-from server.net import frames
-from server.net.outbox import Outbox
-from server.net.session import Session
-from server.world.world import Sight, World
+from esplanade.actors import Explanation
+from esplanade.protocol import Reason
+from esplanade.protocol.messages import Census, Circle, Doors, Plan, Point
+from esplanade.server.net import frames
+from esplanade.server.net.outbox import Outbox
+from esplanade.server.net.session import Session
+from esplanade.server.world.world import World, WorldUpdate
 
 PLANS_PER_SECOND: Final = 5
 
@@ -25,15 +25,15 @@ class Delivery:
         self._plan_period = max(1, tick_rate // PLANS_PER_SECOND)
         self._census_period = tick_rate
 
-    def deliver(self, sight: Sight, now: float) -> None:
+    def deliver(self, update: WorldUpdate, now: float) -> None:
         """Doors and changes of view first, then steps and snapshots, then what is for some."""
-        if sight.doors:
-            doors = frames.message(Doors(doors=sight.doors))
+        if update.doors:
+            doors = frames.message(Doors(doors=update.doors))
             for session in self._sessions.values():
                 session.outbox.post(doors)
-        self._changes(sight)
-        self._pointing(sight)
-        self._snapshots(sight, now)
+        self._changes(update)
+        self._pointing(update)
+        self._snapshots(update, now)
         self._plans()
         if self._world.tick % self._census_period == 0:
             people, actors = self._world.count()
@@ -41,13 +41,13 @@ class Delivery:
             for session in self._sessions.values():
                 session.outbox.offer(census)
 
-    def _changes(self, sight: Sight) -> None:
+    def _changes(self, update: WorldUpdate) -> None:
         tick = self._world.tick
-        for viewer, ids in sight.changes.left.items():
+        for viewer, ids in update.changes.left.items():
             if (outbox := self._outbox(viewer)) is not None:
                 outbox.post(frames.leave(tick, ids))
         packed: dict[int, bytes] = {}
-        for viewer, slots in sight.changes.entered.items():
+        for viewer, slots in update.changes.entered.items():
             if (outbox := self._outbox(viewer)) is None:
                 continue
             for slot in slots:
@@ -55,25 +55,25 @@ class Delivery:
                     packed[slot] = frames.entity(self._world.describe(slot))
             outbox.post(frames.enter(tick, [packed[slot] for slot in slots]))
 
-    def _pointing(self, sight: Sight) -> None:
-        for actor, target in sight.pointing.items():
+    def _pointing(self, update: WorldUpdate) -> None:
+        for actor, target in update.pointing.items():
             frame = frames.message(Point(id=actor, target=target))
             for viewer in self._world.seen_by(actor):
                 if (outbox := self._outbox(viewer)) is not None:
                     outbox.post(frame)
 
-    def _snapshots(self, sight: Sight, now: float) -> None:
-        snapshots = sight.snapshots
+    def _snapshots(self, update: WorldUpdate, now: float) -> None:
+        snapshots = update.snapshots
         sessions, tick, data = self._sessions, snapshots.tick, snapshots.data
         written: list[int] = []
         begin = 0
         begin_steps = 0
         places = zip(
-            snapshots.viewers, snapshots.ends, snapshots.acks, sight.steps.ends, strict=True
+            snapshots.viewers, snapshots.ends, snapshots.acks, update.steps.ends, strict=True
         )
         for place, (viewer, end, ack, end_steps) in enumerate(places):
             session = sessions.get(viewer)
-            steps = sight.steps.data[begin_steps:end_steps]
+            steps = update.steps.data[begin_steps:end_steps]
             if session is not None and session.outbox.snapshot(
                 tick, ack, data[begin:end], steps, now
             ):

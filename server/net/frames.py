@@ -10,8 +10,8 @@ from typing import Final
 
 import msgpack
 
-from protocol import ServerCode, encode, encode_snapshot, encode_steps
-from protocol.messages import FromServer, Welcome
+from esplanade.protocol import ServerCode, encode, encode_snapshot, encode_steps
+from esplanade.protocol.messages import FromServer, Welcome
 
 _FINAL_BINARY: Final = 0x82
 _SHORT = struct.Struct(">BB")

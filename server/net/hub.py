@@ -7,15 +7,15 @@ from typing import Final
 
 import structlog
 
-from protocol import VERSION, ByeCode, CloseCode, ErrorCode, ProtocolError
-from protocol.messages import Bye, Chat, Hello, Move, SetDoor, WalkTo, Welcome
-from server.metrics import Metrics
-from server.net import frames
-from server.net.guidance import Guidance
-from server.net.seats import Seat, Seats
-from server.net.session import Session
-from server.settings import ServerSettings
-from server.world.inputs import (
+from esplanade.protocol import VERSION, ByeCode, CloseCode, ErrorCode, ProtocolError
+from esplanade.protocol.messages import Bye, Chat, Hello, Move, SetDoor, WalkTo, Welcome
+from esplanade.server.metrics import Metrics
+from esplanade.server.net import frames
+from esplanade.server.net.route_requests import RouteRequests
+from esplanade.server.net.seats import Seat, Seats
+from esplanade.server.net.session import Session
+from esplanade.server.settings import ServerSettings
+from esplanade.server.world.inputs import (
     Attach,
     Detach,
     Follow,
@@ -26,8 +26,8 @@ from server.world.inputs import (
     Movement,
     Steer,
 )
-from server.world.ways import Way
-from server.world.world import Joined, World
+from esplanade.server.world.routes import Route
+from esplanade.server.world.world import Joined, World
 
 MAX_JOINS_PER_TICK: Final = 16
 """Each join costs every neighbour an enter message; a crowd comes in over some ticks."""
@@ -46,7 +46,7 @@ class Hub:
     def __init__(
         self,
         world: World,
-        guidance: Guidance,
+        route_requests: RouteRequests,
         settings: ServerSettings,
         metrics: Metrics,
         server_time: Callable[[], float],
@@ -56,7 +56,7 @@ class Hub:
         self.sessions: dict[int, Session] = {}
         """Sessions that have been welcomed, by their avatar's id."""
         self._world = world
-        self._guidance = guidance
+        self._routes = route_requests
         self._settings = settings
         self._metrics = metrics
         scene = world.scene.model_dump(mode="json", exclude={"mesh"})
@@ -106,13 +106,13 @@ class Hub:
         if isinstance(wish, Move):
             self._want(Steer(avatar_id, wish.seq, wish.direction, wish.speed))
             return
-        straight = self._world.straight_way(avatar_id, (wish.x, wish.y, wish.z))
+        straight = self._world.straight_route(avatar_id, (wish.x, wish.y, wish.z))
         if straight is not None:
             self._want(Follow(avatar_id, wish.seq, straight))
         else:
-            self._guidance.ask(avatar_id, wish)
+            self._routes.ask(avatar_id, wish)
 
-    def way_found(self, avatar_id: int, wish: WalkTo, way: Way | None) -> None:
+    def route_found(self, avatar_id: int, wish: WalkTo, way: Route | None) -> None:
         """Send a person on the way that was found, or tell them that there is none."""
         session = self.sessions.get(avatar_id)
         if session is None:
@@ -255,13 +255,13 @@ class Hub:
     def _unbind(self, seat: Seat[Session]) -> None:
         self.sessions.pop(seat.avatar_id, None)
         self._movements.pop(seat.avatar_id, None)
-        self._guidance.forget(seat.avatar_id)
+        self._routes.forget(seat.avatar_id)
 
     def _want(self, movement: Movement) -> None:
         if movement.id in self._movements:
             self._metrics.traffic.movements_superseded += 1
         self._movements[movement.id] = movement
-        self._guidance.forget(movement.id)
+        self._routes.forget(movement.id)
 
     def _remove(self, seat: Seat[Session]) -> None:
         self._seats.remove(seat)

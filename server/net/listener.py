@@ -10,13 +10,13 @@ from websockets.asyncio.server import Server, ServerConnection, serve
 from websockets.http11 import Request, Response
 from websockets.typing import Origin
 
-from protocol.codes import MAX_CLIENT_FRAME_BYTES
-from server.assets import Assets, path_of, respond
-from server.metrics import Metrics
-from server.net.connections import Connections
-from server.net.hub import Hub
-from server.net.session import CLOSE_S, Session
-from server.settings import ServerSettings
+from esplanade.protocol.codes import MAX_CLIENT_FRAME_BYTES
+from esplanade.server.assets import Assets, path_of, respond
+from esplanade.server.metrics import Metrics
+from esplanade.server.net.connections import Connections
+from esplanade.server.net.hub import Hub
+from esplanade.server.net.session import CLOSE_S, Session
+from esplanade.server.settings import ServerSettings
 
 SOCKET_PATH: Final = "/ws"
 ANSWER_TIMEOUT_S: Final = 30.0
@@ -74,7 +74,7 @@ class Listener:
             open_timeout=ANSWER_TIMEOUT_S,
             close_timeout=CLOSE_S,
             max_size=MAX_FRAME_BYTES,
-            logger=logging.getLogger("server.websockets"),
+            logger=logging.getLogger("esplanade.server.websockets"),
             create_connection=self._connections.factory,
         )
         try:

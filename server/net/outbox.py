@@ -16,10 +16,10 @@ from typing import Final
 from websockets.asyncio.server import ServerConnection
 from websockets.protocol import State
 
-from server.metrics import Traffic
-from server.net import frames
-from server.settings import ServerSettings
-from server.world.onlookers import STEP_BYTES
+from esplanade.server.metrics import Traffic
+from esplanade.server.net import frames
+from esplanade.server.settings import ServerSettings
+from esplanade.server.world.step_interest import STEP_BYTES
 
 MAX_WAITING_FRAMES: Final = 256
 JOINING_PATIENCE_S: Final = 30.0

@@ -9,10 +9,10 @@ from typing import Final
 from websockets.asyncio.server import Server, ServerConnection, serve
 from websockets.http11 import Request, Response
 
-from server.assets import path_of, respond
-from server.metrics import Metrics
-from server.net.connections import Connections
-from server.settings import ServerSettings
+from esplanade.server.assets import path_of, respond
+from esplanade.server.metrics import Metrics
+from esplanade.server.net.connections import Connections
+from esplanade.server.settings import ServerSettings
 
 METRICS_TYPE: Final = "text/plain; version=0.0.4; charset=utf-8"
 
@@ -53,7 +53,7 @@ async def private_port(
         settings.private_port,
         process_request=answer,
         server_header=None,
-        logger=logging.getLogger("server.websockets"),
+        logger=logging.getLogger("esplanade.server.websockets"),
         create_connection=connections.factory,
     )
     try:

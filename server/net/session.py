@@ -8,8 +8,8 @@ from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode as LibraryCode
 
-from protocol import VERSION, CloseCode, ErrorCode, ProtocolError, decode_client
-from protocol.messages import (
+from esplanade.protocol import VERSION, CloseCode, ErrorCode, ProtocolError, decode_client
+from esplanade.protocol.messages import (
     ChatLine,
     ClientMessage,
     Error,
@@ -21,14 +21,14 @@ from protocol.messages import (
     WalkTo,
     Watch,
 )
-from server.metrics import Metrics
-from server.net import frames
-from server.net.limits import TokenBucket
-from server.net.outbox import Outbox, SlowPolicy
-from server.settings import ServerSettings
+from esplanade.server.metrics import Metrics
+from esplanade.server.net import frames
+from esplanade.server.net.limits import TokenBucket
+from esplanade.server.net.outbox import Outbox, SlowPolicy
+from esplanade.server.settings import ServerSettings
 
 if TYPE_CHECKING:
-    from server.net.hub import Hub
+    from esplanade.server.net.hub import Hub
 
 CLOSE_S: Final = 2.0
 """A client that has not answered the closing handshake by then is cut off."""

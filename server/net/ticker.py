@@ -6,12 +6,12 @@ from time import perf_counter
 
 import structlog
 
-from server.metrics import Metrics
-from server.net.delivery import Delivery
-from server.net.hub import Hub
-from server.net.schedule import Schedule
-from server.world.troupe import ActorStates
-from server.world.world import World
+from esplanade.server.metrics import Metrics
+from esplanade.server.net.delivery import Delivery
+from esplanade.server.net.hub import Hub
+from esplanade.server.net.schedule import Schedule
+from esplanade.server.world.actors import ActorStates
+from esplanade.server.world.world import World
 
 log = structlog.get_logger(__name__)
 
@@ -70,9 +70,9 @@ class Ticker:
         joined = self._world.begin(inputs)
         self._hub.welcome(inputs, joined)
         actors = await loop.run_in_executor(self._thread, self._think)
-        sight = self._world.finish(actors)
+        update = self._world.finish(actors)
         with self._world.times.stage("write"):
-            self._delivery.deliver(sight, loop.time())
+            self._delivery.deliver(update, loop.time())
         self._metrics.tick_took(perf_counter() - start, self._world.times.seconds)
 
     def _think(self) -> ActorStates:

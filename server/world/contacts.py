@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from server.world.neighbours import Neighbours
-from server.world.state import ACTOR, PERSON, Floats, Slots, State
+from esplanade.server.world.neighbours import Neighbours
+from esplanade.server.world.state import ACTOR, PERSON, Floats, Slots, State
 
 Pair = tuple[int, int]
 

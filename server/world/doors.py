@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from planning import LayeredGrid
-from server.world.neighbours import OVERLAP_M
-from server.world.state import State
+from esplanade.planning import LayeredGrid
+from esplanade.planning.scene.heights import BODIES_OVERLAP_M
+from esplanade.server.world.state import State
 
 GAP_M = 0.05
 """Room that a closing leaf leaves to whoever stands beside it."""
@@ -45,7 +45,7 @@ class Doors:
         x0, y0, x1, y1, foot, top, _ = self._grid.barriers[self._grid.doors.rows[name]]
         slots = state.live()
         heights = state.heights[slots]
-        level = (heights < top) & (heights > foot - OVERLAP_M)
+        level = (heights < top) & (heights > foot - BODIES_OVERLAP_M)
         start, leaf = np.array((x0, y0)), np.array((x1 - x0, y1 - y0))
         places = state.positions[slots] - start
         along = np.clip(places @ leaf / (leaf @ leaf), 0.0, 1.0)

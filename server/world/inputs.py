@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from server.world.ways import Point, Way
+from esplanade.server.world.routes import Point, Route
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ class Follow:
 
     id: int
     seq: int
-    way: Way
+    way: Route
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,9 +6,9 @@ from typing import Final
 
 import numpy as np
 
-from server.world.neighbours import Neighbours
-from server.world.rules import Rules
-from server.world.state import Slots, State
+from esplanade.server.world.neighbours import Neighbours
+from esplanade.server.world.rules import Rules
+from esplanade.server.world.state import Slots, State
 
 LEAVE_RATIO: Final = 1.15
 """Out of view at this multiple of the distance at which one comes into view."""

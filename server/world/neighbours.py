@@ -4,12 +4,11 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-from server.world.state import Floats, Slots, State
+from esplanade.planning.scene.heights import BODIES_OVERLAP_M
+from esplanade.server.world.state import Floats, Slots, State
 
 STOREY_WEIGHT = 3.0
 """A metre up or down counts so many metres: who is on another floor is seen, but later."""
-OVERLAP_M = 1.8
-"""Whose feet are further apart in height than that cannot touch."""
 
 
 class Neighbours:
@@ -40,13 +39,13 @@ class Neighbours:
     def within(self, slots: Slots, reach_m: float) -> tuple[Slots, Slots]:
         """All pairs (avatar of N, other) on one level and not further apart than `reach_m` on the
         map: int (M,), int (M,)."""
-        radius = float(np.hypot(reach_m, OVERLAP_M * STOREY_WEIGHT))
+        radius = float(np.hypot(reach_m, BODIES_OVERLAP_M * STOREY_WEIGHT))
         found = self._tree.query_ball_point(self._points[slots], radius, return_sorted=True)
         counts = [len(row) for row in found]
         others = np.fromiter((i for row in found for i in row), dtype=np.int64, count=sum(counts))
         first: npt.NDArray[np.int64] = np.repeat(slots, counts)
         second = self._slots[others]
         apart_m = np.hypot(*(self._points[first, :2] - self._points[second, :2]).T)
-        level = np.abs(self._heights[first] - self._heights[second]) < OVERLAP_M
+        level = np.abs(self._heights[first] - self._heights[second]) < BODIES_OVERLAP_M
         pairs = (first != second) & level & (apart_m <= reach_m)
         return first[pairs], second[pairs]

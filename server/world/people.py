@@ -5,12 +5,12 @@ from typing import Final
 
 import numpy as np
 
-from actors.locomotion.aims import AHEAD, AHEAD_S
-from planning import LayeredGrid
-from server.world.inputs import Follow, Steer
-from server.world.rules import Rules
-from server.world.state import PERSON, Floats, Slots, State
-from server.world.ways import Point
+from esplanade.actors.locomotion.aims import AHEAD, AHEAD_S
+from esplanade.planning import LayeredGrid
+from esplanade.server.world.inputs import Follow, Steer
+from esplanade.server.world.routes import Point
+from esplanade.server.world.rules import Rules
+from esplanade.server.world.state import PERSON, Floats, Slots, State
 
 BLOCKED_TICKS: Final = 20
 """Whoever follows a way and gets nowhere for so long gives it up."""

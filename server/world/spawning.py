@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from planning import LayeredGrid, Scene
-from server.world.ways import Point
+from esplanade.planning import LayeredGrid, Scene
+from esplanade.server.world.routes import Point
 
 
 class NoRoomError(ValueError):

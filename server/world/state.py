@@ -5,8 +5,8 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from actors.locomotion.aims import AHEAD
-from protocol import Kind
+from esplanade.actors.locomotion.aims import AHEAD
+from esplanade.protocol import Kind
 
 Floats = npt.NDArray[np.float64]
 Slots = npt.NDArray[np.int64]
@@ -26,7 +26,7 @@ class State:
     Arrays are indexed by slot and have a fixed capacity. A slot is used again once its avatar
     is gone; an id never is. `before` holds the positions of the tick before; `heights` are those of
     the feet above the scene's ground, metres; `ahead` is where each is going, as in
-    `actors.locomotion.Course`.
+    `esplanade.actors.locomotion.Course`.
     """
 
     def __init__(self, capacity: int) -> None:

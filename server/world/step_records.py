@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from actors.locomotion import motion
-from protocol import steps as wire
-from protocol.steps import Footprints, Keys, StepRecords, pack_steps, unpack_steps
-from server.world.state import Slots
+from esplanade.actors.locomotion import motion
+from esplanade.protocol import steps as wire
+from esplanade.protocol.steps import Footprints, Keys, StepRecords, pack_steps, unpack_steps
+from esplanade.server.world.state import Slots
 
 
 def to_records(steps: motion.Steps, ids: Slots) -> StepRecords:

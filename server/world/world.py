@@ -6,31 +6,40 @@ from functools import partial
 
 import numpy as np
 
-from actors import Cast, Explanation
-from actors.locomotion.ground import Ground
-from planning import LayeredGrid, Scene
-from server.world.contacts import Contacts
-from server.world.doors import Doors
-from server.world.inputs import Attach, Detach, Follow, Input, Join, Leave, MoveDoor, Steer
-from server.world.interest import Changes, Interest
-from server.world.neighbours import Neighbours
-from server.world.onlookers import LatestSteps, Onlookers, StepBlocks
-from server.world.people import People
-from server.world.rules import Rules
-from server.world.spawning import Spawning
-from server.world.state import ACTOR, KINDS, PERSON, State
-from server.world.steps import Feet
-from server.world.tick import StageTimes
-from server.world.troupe import ActorStates, Body, Troupe
-from server.world.views import Snapshots, Views
-from server.world.ways import Point, Way, find_way, straight_way
+from esplanade.actors import Explanation, Population
+from esplanade.actors.locomotion.ground import Ground
+from esplanade.planning import LayeredGrid, Scene
+from esplanade.server.world.actors import ActorAvatars, ActorStates, Body
+from esplanade.server.world.contacts import Contacts
+from esplanade.server.world.doors import Doors
+from esplanade.server.world.inputs import (
+    Attach,
+    Detach,
+    Follow,
+    Input,
+    Join,
+    Leave,
+    MoveDoor,
+    Steer,
+)
+from esplanade.server.world.interest import Changes, Interest
+from esplanade.server.world.neighbours import Neighbours
+from esplanade.server.world.people import People
+from esplanade.server.world.routes import Point, Route, find_route, straight_route
+from esplanade.server.world.rules import Rules
+from esplanade.server.world.snapshots import SnapshotEncoder, Snapshots
+from esplanade.server.world.spawning import Spawning
+from esplanade.server.world.stage_times import StageTimes
+from esplanade.server.world.state import ACTOR, KINDS, PERSON, State
+from esplanade.server.world.step_interest import LatestSteps, StepBlocks, StepInterest
+from esplanade.server.world.walking import Feet
 
 Joined = list[tuple[int, int]]
 """(ticket, avatar's id) of everyone new."""
 
 
 @dataclass(frozen=True)
-class Sight:
+class WorldUpdate:
     """What the viewers of a tick are to be told, in this order."""
 
     doors: dict[str, bool]
@@ -55,7 +64,7 @@ class World:
         self,
         scene: Scene,
         grid: LayeredGrid,
-        cast: Cast,
+        population: Population,
         bodies: Mapping[Hashable, Body],
         rules: Rules,
         *,
@@ -77,12 +86,12 @@ class World:
         self.doors = Doors(self.state, grid)
         self._moved_doors: dict[str, bool] = {}
         self._people = People(self.state, grid, rules, tick_s)
-        self._troupe = Troupe(self.state, cast, bodies, tick_s)
+        self._actors = ActorAvatars(self.state, population, bodies, tick_s)
         self._interest = Interest(self.state, rules)
-        self._views = Views(self.state, self.origin_m)
+        self._encoder = SnapshotEncoder(self.state, self.origin_m)
         self.steps = LatestSteps(self.state.capacity)
         self.feet = Feet(self.state, self.steps, Ground(scene, grid), tick_s, seed)
-        self._onlookers = Onlookers(self.state, rules)
+        self._step_interest = StepInterest(self.state, rules)
         self._spawning = Spawning(
             scene, grid, rules.person_clearance_m, np.random.SeedSequence(seed)
         )
@@ -105,7 +114,7 @@ class World:
                     self._apply(item, self.state.slot(item.id))
             self._moved_doors = self.doors.update()
             if self._moved_doors:
-                self._troupe.ways_changed()
+                self._actors.ground_changed()
         with self.times.stage("people"):
             self._people.move()
             self._observed = self._observe()
@@ -114,14 +123,14 @@ class World:
     def think(self) -> ActorStates:
         """Find the next step of every actor."""
         with self.times.stage("actors"):
-            return self._troupe.plan(self._observed)
+            return self._actors.plan(self._observed)
 
-    def finish(self, actors: ActorStates) -> Sight:
+    def finish(self, actors: ActorStates) -> WorldUpdate:
         """Move the actors and work out what each viewer is to be told."""
         with self.times.stage("contacts"):
-            pointing = self._troupe.place(actors)
+            pointing = self._actors.place(actors)
             if actors:
-                for name, is_open in self._troupe.doors_wanted.items():
+                for name, is_open in self._actors.doors_wanted.items():
                     self.doors.want(name, is_open)
             neighbours = Neighbours(self.state)
             self.contacts.update(self.state, neighbours)
@@ -129,31 +138,31 @@ class World:
             self.feet.update(self.tick)
         with self.times.stage("interest"):
             changes = self._interest.update(neighbours, self.tick)
-            self._onlookers.update(self._interest, self.tick)
+            self._step_interest.update(self._interest, self.tick)
         with self.times.stage("encode"):
             viewers = self._interest.viewers()
-            snapshots = self._views.encode(self._interest, self.tick)
-            written = self._views.written[viewers]
-            steps = self._onlookers.encode(self._interest, self.steps, viewers, written)
-        return Sight(self._moved_doors, changes, pointing, steps, snapshots)
+            snapshots = self._encoder.encode(self._interest, self.tick)
+            written = self._encoder.written[viewers]
+            steps = self._step_interest.encode(self._interest, self.steps, viewers, written)
+        return WorldUpdate(self._moved_doors, changes, pointing, steps, snapshots)
 
     def wrote(self, snapshots: Snapshots, places: list[int]) -> None:
         """The snapshots at these places were sent, and the steps; the next ones build on them."""
-        self._views.wrote(snapshots, places)
+        self._encoder.wrote(snapshots, places)
 
     # --- questions ----------------------------------------------------------------------------
 
     @property
     def trips(self) -> int:
         """Trips that the actors have completed."""
-        return self._troupe.trips
+        return self._actors.trips
 
     def count(self) -> tuple[int, int]:
         """People and actors in the world."""
         return len(self.state.of_kind(PERSON)), len(self.state.of_kind(ACTOR))
 
     def describe(self, slot: int) -> dict[str, object]:
-        """An avatar as the fields of `protocol.messages.Entity`."""
+        """An avatar as the fields of `esplanade.protocol.messages.Entity`."""
         state = self.state
         x, y = state.positions[slot].tolist()
         return {
@@ -168,23 +177,23 @@ class World:
             "radius": float(state.radii[slot]),
             "leg_m": float(state.legs_m[slot]),
             "stature_m": float(state.statures_m[slot]),
-            "points_at": self._troupe.pointing.get(int(state.ids[slot])),
+            "points_at": self._actors.pointing.get(int(state.ids[slot])),
         }
 
-    def straight_way(self, avatar_id: int, goal: Point) -> Way | None:
+    def straight_route(self, avatar_id: int, goal: Point) -> Route | None:
         """The straight way from where that avatar is, if nothing stands between; quick."""
         here = self._where(avatar_id)
-        return straight_way(self._grid, here, goal, self.rules.person_clearance_m)
+        return straight_route(self._grid, here, goal, self.rules.person_clearance_m)
 
-    def way_finder(self, avatar_id: int, goal: Point) -> Callable[[], Way | None]:
+    def route_finder(self, avatar_id: int, goal: Point) -> Callable[[], Route | None]:
         """A search for a way from where that avatar is now; heavy, and safe in any thread."""
         clearance_m = self.rules.person_clearance_m
-        return partial(find_way, self._grid, self._where(avatar_id), goal, clearance_m)
+        return partial(find_route, self._grid, self._where(avatar_id), goal, clearance_m)
 
     @property
     def walkers_shown(self) -> int:
         """How many walkers all viewers together are shown step by step."""
-        return self._onlookers.shown
+        return self._step_interest.shown
 
     def sees(self, viewer_id: int, avatar_id: int) -> bool:
         """Whether that viewer has that avatar in view."""
@@ -208,7 +217,7 @@ class World:
 
     def explain(self, actor_id: int) -> Explanation:
         """Why an actor, named by its avatar's id, does what it does."""
-        return self._troupe.explain(actor_id)
+        return self._actors.explain(actor_id)
 
     def _where(self, avatar_id: int) -> Point:
         slot = self.state.slot(avatar_id)
@@ -229,27 +238,27 @@ class World:
 
     def _attach(self, slot: int) -> None:
         self._interest.attach(slot)
-        self._onlookers.attach(slot)
-        self._views.attach(slot)
+        self._step_interest.attach(slot)
+        self._encoder.attach(slot)
 
     def _apply(self, item: Attach | Detach | Leave | Steer | Follow, slot: int) -> None:
         match item:
             case Steer():
                 self._people.steer(slot, item)
-                self._views.acks[slot] = item.seq
+                self._encoder.acks[slot] = item.seq
             case Follow():
                 self._people.follow(slot, item)
-                self._views.acks[slot] = item.seq
+                self._encoder.acks[slot] = item.seq
             case Attach():
                 self._attach(slot)
             case Detach():
                 self._people.stop(slot)
                 self._interest.detach(slot)
-                self._onlookers.detach(slot)
+                self._step_interest.detach(slot)
             case Leave():
                 self._people.stop(slot)
                 self._interest.remove(slot, item.id)
-                self._onlookers.remove(slot)
+                self._step_interest.remove(slot)
                 self.state.remove(item.id)
 
     def _observe(self) -> dict[Hashable, Point]:

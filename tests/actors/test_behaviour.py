@@ -6,8 +6,8 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from actors import Behaviour, GoTo, Guide, Idle, Patrol, View, Wander
-from planning import Body, LayeredGrid, Place, Polygon, Scene
+from esplanade.actors import Behaviour, GoTo, Guide, Idle, Patrol, Perception, Wander
+from esplanade.planning import Body, LayeredGrid, Place, Polygon, Scene
 from tests.actors.worlds import block, plaza
 from tests.planning.storeys import storeyed
 from tests.planning.worlds import UPPER_M
@@ -29,9 +29,9 @@ def seeing(
     seed: int = 0,
     z_m: float = 0.0,
     body: Body = ADULT,
-) -> View:
+) -> Perception:
     rng = np.random.default_rng(seed)
-    return View(time_s, position, z_m, arrived, stuck, people or {}, scene, grid, body, rng)
+    return Perception(time_s, position, z_m, arrived, stuck, people or {}, scene, grid, body, rng)
 
 
 def test_idle_wants_nothing() -> None:

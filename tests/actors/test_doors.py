@@ -4,9 +4,9 @@ from collections.abc import Mapping
 
 import pytest
 
-from actors import ActorParameters, Cast, Navigator, Reason
-from actors.behaviour import Idle, View
-from planning import Door, LayeredGrid, PlanModel, Scene, Wall
+from esplanade.actors import ActorParameters, Navigator, Population, Reason
+from esplanade.actors.behaviour import Idle, Perception
+from esplanade.planning import Door, LayeredGrid, PlanModel, Scene, Wall
 
 BODY = ActorParameters()
 GATE = Door(name="gate", start=(6.0, 3.0), end=(6.0, 5.0))
@@ -37,7 +37,7 @@ def test_an_actor_turns_round_when_its_door_closes_and_arrives(navigator) -> Non
     navigator.add_actor("a", (3.0, 4.0), (9.0, 4.0), BODY)
     walk(navigator, 1.0)
     navigator.grid.set_door("gate", is_open=False)
-    navigator.ways_changed()
+    navigator.ground_changed()
     track = walk(navigator, 25.0)
     assert track[-1][2] is Reason.ARRIVED
     assert max(y for _, y, _ in track) > 10.0, "around the end of the wall"
@@ -48,7 +48,7 @@ def test_an_open_door_is_taken_by_who_was_on_a_longer_way(navigator) -> None:
     navigator.add_actor("a", (3.0, 4.0), (9.0, 4.0), BODY)
     walk(navigator, 1.0)
     navigator.grid.set_door("gate", is_open=True)
-    navigator.ways_changed()
+    navigator.ground_changed()
     track = walk(navigator, 10.0)
     assert track[-1][2] is Reason.ARRIVED
     assert max(y for _, y, _ in track) < 7.0, "through the gate"
@@ -57,7 +57,7 @@ def test_an_open_door_is_taken_by_who_was_on_a_longer_way(navigator) -> None:
 def test_a_goal_known_before_is_derived_anew_for_who_comes_later(navigator) -> None:
     navigator.prepare_goal((9.0, 4.0), 0.0, BODY)
     navigator.grid.set_door("gate", is_open=False)
-    navigator.ways_changed()
+    navigator.ground_changed()
     navigator.add_actor("a", (3.0, 4.0), (9.0, 4.0), BODY)
     track = walk(navigator, 25.0)
     assert track[-1][2] is Reason.ARRIVED
@@ -70,7 +70,7 @@ class Keeper(Idle):
     def __init__(self) -> None:
         self._moves: dict[str, bool] = {}
 
-    def update(self, view: View) -> None:
+    def update(self, view: Perception) -> None:
         self._moves = {"gate": False} if view.time_s == 1.0 else {}
 
     @property
@@ -80,11 +80,11 @@ class Keeper(Idle):
 
 def test_a_behaviour_says_once_which_doors_are_to_move() -> None:
     scene = Scene(bounds=(0.0, 0.0, 12.0, 12.0), walls=BACK_WAY, doors=(GATE,))
-    cast = Cast(LayeredGrid.from_scene(scene), scene, 0.25)
-    cast.add("keeper", Keeper(), position=(3.0, 4.0))
+    population = Population(LayeredGrid.from_scene(scene), scene, 0.25)
+    population.add("keeper", Keeper(), position=(3.0, 4.0))
     wanted = []
     for _ in range(8):
-        cast.tick({})
-        wanted.append(cast.doors_wanted)
-    cast.close()
+        population.tick({})
+        wanted.append(population.doors_wanted)
+    population.close()
     assert wanted == [{}] * 4 + [{"gate": False}] + [{}] * 3

@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from actors import ActorParameters, Cast, GoTo, Idle, Reason
-from planning import LayeredGrid, Place
+from esplanade.actors import ActorParameters, GoTo, Idle, Population, Reason
+from esplanade.planning import LayeredGrid, Place
+from esplanade.planning.routes.potential import Potential
 from tests.actors.worlds import BODY, TICK_S, along, navigator, run
 from tests.planning.storeys import SLAB_FROM, STAIRS_FROM, box, grid_of, storeyed
 from tests.planning.worlds import UPPER_M
@@ -65,7 +66,7 @@ def check_walk(record, start, goal, step_on_m) -> None:
 
 def test_up_to_a_goal_straight_above_by_the_stairs(ups) -> None:
     check_walk(ups, BELOW, ABOVE, BODY.step_on_m)
-    way = HOUSE.potential(ABOVE[:2], ABOVE[2], 0.25).distance([BELOW[:2]], [0.0])[0]
+    way = Potential(HOUSE, ABOVE[:2], ABOVE[2], 0.25).distance([BELOW[:2]], [0.0])[0]
     assert ups.arrival_s("a") < way / 1.3 + 4.0
 
 
@@ -221,22 +222,22 @@ def test_a_cast_plays_on_all_floors() -> None:
         Place(name="gallery", position=(11.0, 6.0), z_m=UPPER_M),
     )
     scene = storeyed().model_copy(update={"places": places})
-    cast = Cast(LayeredGrid.from_scene(scene), scene, tick_s=TICK_S, seed=1)
-    cast.add("climber", GoTo("gallery"), BODY, position=(2.0, 6.0))
-    cast.add("stays", GoTo("cellar"), BODY, position=(11.0, 5.0))
-    placed = cast.add("idle", Idle(), BODY, z_m=UPPER_M)
+    population = Population(LayeredGrid.from_scene(scene), scene, tick_s=TICK_S, seed=1)
+    population.add("climber", GoTo("gallery"), BODY, position=(2.0, 6.0))
+    population.add("stays", GoTo("cellar"), BODY, position=(11.0, 5.0))
+    placed = population.add("idle", Idle(), BODY, z_m=UPPER_M)
     assert placed.z_m == pytest.approx(UPPER_M, abs=1e-4)
-    assert cast.grid.is_free([placed.position], [UPPER_M], 0.25)[0]
+    assert population.grid.is_free([placed.position], [UPPER_M], 0.25)[0]
     for _ in range(140):
-        states = cast.tick({"p": (11.0, 6.0, 0.0)})
-    told = cast.explain("climber")
-    cast.close()
+        states = population.tick({"p": (11.0, 6.0, 0.0)})
+    told = population.explain("climber")
+    population.close()
     assert states["climber"].reason is Reason.ARRIVED
     assert states["climber"].z_m == pytest.approx(UPPER_M, abs=1e-4)
     assert states["climber"].goal == (11.0, 6.0, UPPER_M)
     assert told.people == [], "who is below is of no concern"
     assert states["stays"].z_m == 0.0
-    assert cast.trips >= 1
+    assert population.trips >= 1
 
 
 def test_bodies_are_checked() -> None:

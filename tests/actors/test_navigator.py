@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actors import ActorParameters, Navigator, Reason
-from planning import LayeredGrid, Scene, Spawn
+from esplanade.actors import ActorParameters, Navigator, Reason
+from esplanade.planning import LayeredGrid, Scene, Spawn
 from tests.actors.worlds import BODY, TICK_S, along, block, holds, navigator, run
 
 OPEN = Scene.open_space((0.0, 0.0, 12.0, 12.0))

@@ -5,8 +5,8 @@ import math
 import pytest
 from pydantic import ValidationError
 
-from actors import ActorParameters
-from planning import PARAMETERS
+from esplanade.actors import ActorParameters
+from esplanade.planning import PARAMETERS
 
 FIELDS = ActorParameters.model_fields
 SCHEMA = ActorParameters.model_json_schema()["properties"]

@@ -8,8 +8,8 @@ import math
 import numpy as np
 import pytest
 
-from actors import Reason
-from planning import Scene
+from esplanade.actors import Reason
+from esplanade.planning import Scene
 from tests.actors.worlds import BODY, TICK_S, along, block, navigator, run
 
 CONTACT_M = 0.5

@@ -2,8 +2,8 @@
 
 import pytest
 
-from actors.sights import SEEN_WITHIN_M, sight_at
-from planning import Polygon, Scene
+from esplanade.actors.sights import SEEN_WITHIN_M, sight_at
+from esplanade.planning import Polygon, Scene
 from tests.actors.worlds import block
 
 FIELD = (0.0, 0.0, 40.0, 40.0)

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-import protocol
-from actors import ActorState, Reason
+from esplanade import protocol
+from esplanade.actors import ActorState, Reason
 
 
 def test_reasons_are_those_of_the_protocol() -> None:

@@ -10,8 +10,8 @@ import numpy as np
 from hypothesis import settings
 from numpy.typing import NDArray
 
-from actors import ActorParameters, Navigator, Reason
-from planning import Place, PlanModel, Polygon, Scene
+from esplanade.actors import ActorParameters, Navigator, Reason
+from esplanade.planning import Place, PlanModel, Polygon, Scene
 
 TICK_S = 0.1
 BODY = ActorParameters(radius_m=0.25, speed_mps=1.3, max_speed_mps=1.7, max_acceleration_mps2=2.0)

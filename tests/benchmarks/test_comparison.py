@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-
 from benchmarks._comparison import MOVED, NO_GROUND, UNEXPLAINED, compare, random_pairs
 from benchmarks._pairs import Answer, Verdict
 

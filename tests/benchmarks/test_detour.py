@@ -5,7 +5,6 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
-
 from benchmarks._detour import Detour, NavMeshSettings, missing, y_up, z_up
 
 SETTINGS = NavMeshSettings(radius_m=0.25, height_m=1.8, climb_m=0.6, cell_m=0.125)

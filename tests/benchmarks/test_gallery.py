@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-
 from benchmarks._whereabouts import clearances, inside, unsupported
 from benchmarks.gallery import whereabouts
-from planning import Place
-from planning.scene_file import read_scene
-from server.stage import DEFAULT_SCENE
+
+from esplanade.planning import Place
+from esplanade.planning.scene.scene_file import read_scene
+from esplanade.server.loading import DEFAULT_SCENE
 from tests.server.worlds import ROOM
 
 GALLERY = read_scene(DEFAULT_SCENE)

@@ -5,7 +5,6 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-
 from benchmarks import _detour, meshes
 
 STEP_M = 0.5

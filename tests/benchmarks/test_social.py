@@ -5,10 +5,10 @@ from importlib.util import find_spec
 
 import numpy as np
 import pytest
-
 from benchmarks import social
 from benchmarks._swaps import SWAPS
-from planning import LayeredGrid
+
+from esplanade.planning import LayeredGrid
 from tests.planning.worlds import COMPILED
 
 RADIUS_M = 0.25

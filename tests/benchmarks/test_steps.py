@@ -6,14 +6,14 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-
 from benchmarks import steps as benchmark
 from benchmarks._footage import Seen, cost_of
 from benchmarks._slide import judge
-from protocol.steps import RE_AIMED
-from recordings import Crowd, Track, read_crowd
-from server.settings import ServerSettings
-from server.world.inputs import Steer
+
+from esplanade.protocol.steps import RE_AIMED
+from esplanade.recordings import Crowd, Track, read_crowd
+from esplanade.server.settings import ServerSettings
+from esplanade.server.world.inputs import Steer
 from tests.recordings.data import recorded
 from tests.server.worlds import FIELD, Trial
 

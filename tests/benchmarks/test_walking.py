@@ -4,7 +4,6 @@ import json
 from pathlib import Path
 
 import pytest
-
 from benchmarks import walking
 from benchmarks.walking import PRODUCT, TICK_LIMIT_MS, Cost, Work
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from benchmarks._walks import Walks, judge
 
 TICK_S = 0.5

@@ -15,8 +15,8 @@ import numpy as np
 from websockets.asyncio.server import ServerConnection, serve
 from websockets.exceptions import ConnectionClosed
 
-from protocol import VERSION, ErrorCode, Kind, decode_client, encode, encode_snapshot
-from protocol.messages import (
+from esplanade.protocol import VERSION, ErrorCode, Kind, decode_client, encode, encode_snapshot
+from esplanade.protocol.messages import (
     Chat,
     ChatLine,
     ClientMessage,
@@ -34,7 +34,7 @@ from protocol.messages import (
     WalkTo,
     Welcome,
 )
-from protocol.snapshot import pack_records
+from esplanade.protocol.snapshot import pack_records
 
 ORIGIN = (-50.0, -50.0)
 OPERATOR = "key"

@@ -2,7 +2,7 @@
 
 import pytest
 
-from bots.address import websocket_url
+from esplanade.bots.address import websocket_url
 
 
 @pytest.mark.parametrize(

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-import bots
-from bots.events import SnapshotEvent, StepsEvent
-from protocol import ByeCode, CloseCode, ErrorCode, encode
-from protocol.messages import (
+from esplanade import bots
+from esplanade.bots.events import SnapshotEvent, StepsEvent
+from esplanade.protocol import ByeCode, CloseCode, ErrorCode, encode
+from esplanade.protocol.messages import (
     Bye,
     Chat,
     Enter,
@@ -23,7 +23,7 @@ from protocol.messages import (
     StepBlock,
     Watch,
 )
-from protocol.steps import FOOTPRINT_M, pack_steps
+from esplanade.protocol.steps import FOOTPRINT_M, pack_steps
 from tests.bots.scripted import OPERATOR, scripted_server, until
 from tests.protocol.steps import made_up_steps
 

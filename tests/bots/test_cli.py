@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from bots.cli import parser, run
-from protocol import ErrorCode
-from protocol.messages import Error
+from esplanade.bots.cli import parser, run
+from esplanade.protocol import ErrorCode
+from esplanade.protocol.messages import Error
 from tests.bots.scripted import scripted_server, until
 
 PROJECT = Path(__file__).resolve().parents[2]

@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bots.clock import KEPT, ServerClock
+from esplanade.bots.clock import KEPT, ServerClock
 
 
 def test_welcome_counts_until_the_first_pong() -> None:

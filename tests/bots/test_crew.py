@@ -6,8 +6,8 @@ import os
 import time
 from dataclasses import dataclass
 
-from bots.crew import Crew
-from bots.tally import Tally
+from esplanade.bots.crew import Crew
+from esplanade.bots.tally import Tally
 
 
 @dataclass(frozen=True)

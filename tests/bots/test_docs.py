@@ -5,8 +5,8 @@ import re
 import sys
 from pathlib import Path
 
-import bots
-from protocol.messages import Chat
+from esplanade import bots
+from esplanade.protocol.messages import Chat
 from tests.bots.scripted import scripted_server, until
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import bots
-from bots.load import LoadJob
-from bots.replay import ReplayJob
-from bots.tally import Tally
-from protocol.messages import Chat
-from recordings import Crowd, read_crowd
-from server.app import Running, running
-from server.settings import ServerSettings
+from esplanade import bots
+from esplanade.bots.load import LoadJob
+from esplanade.bots.replay import ReplayJob
+from esplanade.bots.tally import Tally
+from esplanade.protocol.messages import Chat
+from esplanade.recordings import Crowd, read_crowd
+from esplanade.server.app import Running, running
+from esplanade.server.settings import ServerSettings
 from tests.bots.scripted import until
 
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from bots.follower import Follower, Timeline
-from recordings import Track
+from esplanade.bots.follower import Follower, Timeline
+from esplanade.recordings import Track
 
 TICK_S = 0.05
 Vector = tuple[float, float]

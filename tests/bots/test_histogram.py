@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bots.histogram import GREATEST, LEAST, STEP, Histogram
+from esplanade.bots.histogram import GREATEST, LEAST, STEP, Histogram
 
 values = st.lists(st.floats(LEAST, GREATEST), min_size=1, max_size=200)
 

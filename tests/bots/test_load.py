@@ -3,11 +3,11 @@
 import asyncio
 from dataclasses import replace
 
-from bots.load import LoadJob
-from bots.tally import Tally
-from protocol import ErrorCode, encode
-from protocol.codes import CloseCode
-from protocol.messages import Error, Move, Notice, WalkTo
+from esplanade.bots.load import LoadJob
+from esplanade.bots.tally import Tally
+from esplanade.protocol import ErrorCode, encode
+from esplanade.protocol.codes import CloseCode
+from esplanade.protocol.messages import Error, Move, Notice, WalkTo
 from tests.bots.scripted import ScriptedServer, scripted_server, until
 
 JOB = LoadJob(url="", count=6, first=0, step=1, seed=1, join_rate=100.0, duration_s=1.0)

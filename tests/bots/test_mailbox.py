@@ -2,11 +2,11 @@
 
 import asyncio
 
-from bots.events import SnapshotEvent, StepsEvent
-from bots.mailbox import Mailbox
-from protocol.messages import Notice
-from protocol.snapshot import unpack_block
-from protocol.steps import step_records
+from esplanade.bots.events import SnapshotEvent, StepsEvent
+from esplanade.bots.mailbox import Mailbox
+from esplanade.protocol.messages import Notice
+from esplanade.protocol.snapshot import unpack_block
+from esplanade.protocol.steps import step_records
 
 
 def snapshot(tick: int) -> SnapshotEvent:

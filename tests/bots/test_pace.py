@@ -4,7 +4,7 @@ import asyncio
 
 import pytest
 
-from bots.pace import Pace
+from esplanade.bots.pace import Pace
 
 
 async def test_ticks_take_over_from_the_clock_without_a_jump() -> None:

@@ -5,9 +5,9 @@ import io
 import pytest
 from rich.console import Console
 
-from bots.histogram import Histogram
-from bots.progress import Progress
-from bots.tally import Tally
+from esplanade.bots.histogram import Histogram
+from esplanade.bots.progress import Progress
+from esplanade.bots.tally import Tally
 
 TALLY = Tally(expected=5, joined=4, lost=1, bytes_in=3000, round_trip_s=Histogram([0.002]))
 
@@ -16,7 +16,7 @@ TALLY = Tally(expected=5, joined=4, lost=1, bytes_in=3000, round_trip_s=Histogra
 def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """The time, to be moved on by hand."""
     now = [100.0]
-    monkeypatch.setattr("bots.progress.time.monotonic", lambda: now[0])
+    monkeypatch.setattr("esplanade.bots.progress.time.monotonic", lambda: now[0])
     return now
 
 

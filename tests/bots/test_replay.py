@@ -6,10 +6,10 @@ import math
 import numpy as np
 import pytest
 
-from bots.replay import NEAR_M, ReplayJob
-from bots.tally import Tally
-from protocol.messages import Move
-from recordings import Track, read_crowd
+from esplanade.bots.replay import NEAR_M, ReplayJob
+from esplanade.bots.tally import Tally
+from esplanade.protocol.messages import Move
+from esplanade.recordings import Track, read_crowd
 from tests.bots.scripted import scripted_server, until
 from tests.recordings.data import recorded
 

@@ -7,9 +7,9 @@ from collections import Counter
 import pytest
 from rich.console import Console
 
-from bots.histogram import Histogram
-from bots.report import figures, show
-from bots.tally import Tally
+from esplanade.bots.histogram import Histogram
+from esplanade.bots.report import figures, show
+from esplanade.bots.tally import Tally
 
 
 def full() -> Tally:

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from bots.settings import CLIENTS_PER_PROCESS, BotsSettings
+from esplanade.bots.settings import CLIENTS_PER_PROCESS, BotsSettings
 
 
 @pytest.fixture(autouse=True)

@@ -2,8 +2,8 @@
 
 from collections import Counter
 
-from bots.histogram import Histogram
-from bots.tally import Tally, merged
+from esplanade.bots.histogram import Histogram
+from esplanade.bots.tally import Tally, merged
 
 
 def test_every_field_is_added_up() -> None:

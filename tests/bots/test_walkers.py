@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bots.tally import Tally
-from bots.walkers import MAX_REMEMBERED, Walkers
-from protocol import encode_steps
-from protocol.steps import STEP, pack_steps
+from esplanade.bots.tally import Tally
+from esplanade.bots.walkers import MAX_REMEMBERED, Walkers
+from esplanade.protocol import encode_steps
+from esplanade.protocol.steps import STEP, pack_steps
 from tests.protocol.steps import made_up_steps
 
 

@@ -5,8 +5,8 @@ from itertools import islice
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bots.wanderer import wander
-from protocol.messages import Move, WalkTo
+from esplanade.bots.wanderer import wander
+from esplanade.protocol.messages import Move, WalkTo
 
 BOUNDS = (-10.0, -5.0, 20.0, 5.0)
 

@@ -15,9 +15,9 @@ from typing import Final
 from PIL import Image
 from playwright.async_api import Browser, Page, async_playwright
 
-from planning import Scene
-from server.app import running
-from server.settings import ServerSettings
+from esplanade.planning import Scene
+from esplanade.server.app import running
+from esplanade.server.settings import ServerSettings
 from tests.browser.conftest import FLAGS, executable
 from tests.browser.visitor import Visitor, own
 

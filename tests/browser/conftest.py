@@ -10,9 +10,9 @@ import pytest
 import pytest_asyncio
 from playwright.async_api import Browser, BrowserContext, Playwright, async_playwright
 
-from server.app import running
-from server.assets import CLIENT_ASSETS
-from server.settings import ServerSettings
+from esplanade.server.app import running
+from esplanade.server.assets import CLIENT_ASSETS
+from esplanade.server.settings import ServerSettings
 
 ACTORS: Final = 6
 

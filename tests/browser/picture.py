@@ -12,10 +12,10 @@ from typing import Final
 
 from playwright.async_api import async_playwright
 
-from planning import Scene
-from server.app import running
-from server.settings import ServerSettings
-from server.stage import DEFAULT_SCENE
+from esplanade.planning import Scene
+from esplanade.server.app import running
+from esplanade.server.loading import DEFAULT_SCENE
+from esplanade.server.settings import ServerSettings
 from tests.browser.conftest import FLAGS, executable
 from tests.browser.visitor import View, Visitor, own, place_of
 

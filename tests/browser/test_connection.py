@@ -3,8 +3,8 @@
 import pytest
 from playwright.async_api import BrowserContext
 
-from server.app import running
-from server.settings import ServerSettings
+from esplanade.server.app import running
+from esplanade.server.settings import ServerSettings
 from tests.browser.visitor import Visitor
 
 pytestmark = [pytest.mark.browser, pytest.mark.asyncio(loop_scope="module")]

@@ -9,9 +9,9 @@ import pytest
 import pytest_asyncio
 from playwright.async_api import Browser, BrowserContext
 
-from planning.scene_file import read_scene
-from server.app import running
-from server.settings import ServerSettings
+from esplanade.planning.scene.scene_file import read_scene
+from esplanade.server.app import running
+from esplanade.server.settings import ServerSettings
 from tests.browser.test_layout import CONTROLS, boxes_of, overlapping, shares_of_colours, visit
 from tests.browser.visitor import Visitor, moved_m, own
 

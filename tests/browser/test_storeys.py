@@ -8,8 +8,8 @@ import pytest
 import pytest_asyncio
 from playwright.async_api import Browser
 
-from server.app import running
-from server.settings import ServerSettings
+from esplanade.server.app import running
+from esplanade.server.settings import ServerSettings
 from tests.browser.test_layout import CONTROLS, PANELS, boxes_of, overlapping, visit
 
 pytestmark = [pytest.mark.browser, pytest.mark.asyncio(loop_scope="module")]

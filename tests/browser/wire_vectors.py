@@ -10,7 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from protocol import (
+from esplanade.protocol import (
     VERSION,
     ByeCode,
     ClientCode,
@@ -23,8 +23,8 @@ from protocol import (
     encode_snapshot,
     encode_steps,
 )
-from protocol.codes import MAX_CHAT_CHARS, MAX_NAME_CHARS
-from protocol.messages import (
+from esplanade.protocol.codes import MAX_CHAT_CHARS, MAX_NAME_CHARS
+from esplanade.protocol.messages import (
     Bye,
     Census,
     Chat,
@@ -49,8 +49,8 @@ from protocol.messages import (
     Watch,
     Welcome,
 )
-from protocol.snapshot import pack_records
-from protocol.steps import Footprints, Steps, pack_steps, unpack_steps
+from esplanade.protocol.snapshot import pack_records
+from esplanade.protocol.steps import Footprints, Steps, pack_steps, unpack_steps
 from tests.protocol.steps import made_up_steps
 
 FIXTURE: Final = Path(__file__).parents[2] / "client_web" / "tests" / "fixtures" / "wire.json"

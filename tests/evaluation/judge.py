@@ -8,10 +8,10 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from evaluation.episodes import Episode
-from evaluation.policies.policy import Person, Policy, Task, View
-from evaluation.replay import Floats, Replay
-from evaluation.rules import Rules
+from esplanade.evaluation.episodes import Episode
+from esplanade.evaluation.policies.policy import Person, Policy, Task, View
+from esplanade.evaluation.replay import Floats, Replay
+from esplanade.evaluation.rules import Rules
 
 
 def load_judge(recording: Path) -> ModuleType:

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from evaluation import cli
+from esplanade.evaluation import cli
 from tests.evaluation.worlds import busy_plaza, crowd, walk, write_csv
 
 

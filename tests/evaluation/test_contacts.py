@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evaluation.contacts import Encounters, closest_approach
-from evaluation.policies.policy import Person
-from evaluation.replay import Replay
+from esplanade.evaluation.contacts import Encounters, closest_approach
+from esplanade.evaluation.policies.policy import Person
+from esplanade.evaluation.replay import Replay
 from tests.evaluation.worlds import RULES, Point, replay, walk
 
 number = st.floats(-3.0, 3.0)

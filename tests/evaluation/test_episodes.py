@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from evaluation.episodes import choose_episodes
-from evaluation.replay import Replay
-from recordings import Obstacles, Track
+from esplanade.evaluation.episodes import choose_episodes
+from esplanade.evaluation.replay import Replay
+from esplanade.recordings import Obstacles, Track
 from tests.evaluation.worlds import RULES, busy_plaza, replay, walk
 
 LONG = walk("1", 0.0, (0, 0), (10, 0))

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from evaluation.calibration import negative_log_likelihood, pool
-from evaluation.fits import fit_each, fit_growth, fit_spread, those_who_moved
-from evaluation.forecasts import STEPS, Forecasts
-from planning import GAUSSIAN, PEOPLE, Spread
+from esplanade.evaluation.calibration import negative_log_likelihood, pool
+from esplanade.evaluation.fits import fit_each, fit_growth, fit_spread, those_who_moved
+from esplanade.evaluation.forecasts import STEPS, Forecasts
+from esplanade.planning import GAUSSIAN, PEOPLE, Spread
 from tests.evaluation.worlds import drawn
 
 

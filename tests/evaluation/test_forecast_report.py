@@ -4,10 +4,10 @@ import json
 
 from rich.console import Console
 
-from evaluation.fits import Fits
-from evaluation.forecast_report import MODELS, POOLED, Row, figures, measure, show
-from planning import PEOPLE
-from recordings import Crowd, Obstacles
+from esplanade.evaluation.fits import Fits
+from esplanade.evaluation.forecast_report import MODELS, POOLED, Row, figures, measure, show
+from esplanade.planning import PEOPLE
+from esplanade.recordings import Crowd, Obstacles
 from tests.evaluation.worlds import crowd, walk
 
 SQUARE = crowd(*(walk(str(k), 2.0 * k, (0, 0), (4 + k, 0), (4 + k, 12)) for k in range(3)))

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from evaluation.calibration import pool, score_forecasts
-from evaluation.forecasts import STEPS, Forecasts, ahead_s, forecast
-from planning import GAUSSIAN, PEOPLE, PredictionModel, Spread
-from recordings import Crowd, Obstacles, Track, read_crowd
+from esplanade.evaluation.calibration import pool, score_forecasts
+from esplanade.evaluation.forecasts import STEPS, Forecasts, ahead_s, forecast
+from esplanade.planning import GAUSSIAN, PEOPLE, PredictionModel, Spread
+from esplanade.recordings import Crowd, Obstacles, Track, read_crowd
 from tests.evaluation.worlds import crowd, drawn, walk
 from tests.recordings.data import recorded
 

@@ -6,12 +6,12 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from evaluation.episodes import Episode, choose_episodes
-from evaluation.policies import make_policy
-from evaluation.replay import Interpolation, Replay
-from evaluation.rules import Rules
-from evaluation.simulation import Ground, run_episode
-from recordings import Obstacles, read_crowd, read_obstacles, walls_beside
+from esplanade.evaluation.episodes import Episode, choose_episodes
+from esplanade.evaluation.policies import make_policy
+from esplanade.evaluation.replay import Interpolation, Replay
+from esplanade.evaluation.rules import Rules
+from esplanade.evaluation.simulation import Ground, run_episode
+from esplanade.recordings import Obstacles, read_crowd, read_obstacles, walls_beside
 from tests.evaluation.judge import Judged, load_judge
 from tests.recordings.data import recorded
 

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from evaluation import ledger as ledgers
-from evaluation.ledger import Ledger, LedgerError
-from evaluation.runner import run_trials
-from evaluation.trials import Source, Trial, plan_trials
+from esplanade.evaluation import ledger as ledgers
+from esplanade.evaluation.ledger import Ledger, LedgerError
+from esplanade.evaluation.runner import run_trials
+from esplanade.evaluation.trials import Source, Trial, plan_trials
 from tests.evaluation.worlds import RULES, busy_plaza, write_csv
 
 

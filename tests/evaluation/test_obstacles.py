@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evaluation.obstacles import ObstacleSet, point_distances, segment_distances
-from recordings import Obstacles
+from esplanade.evaluation.obstacles import ObstacleSet, point_distances, segment_distances
+from esplanade.recordings import Obstacles
 
 coordinate = st.floats(-4.0, 4.0).map(lambda value: round(value, 2))
 point = st.tuples(coordinate, coordinate)

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from evaluation import plotting
-from evaluation.policies import PolicyError, make_policy
-from evaluation.simulation import run_episode
-from recordings import Obstacles
+from esplanade.evaluation import plotting
+from esplanade.evaluation.policies import PolicyError, make_policy
+from esplanade.evaluation.simulation import run_episode
+from esplanade.recordings import Obstacles
 from tests.evaluation.worlds import RULES, ground, trip, walk
 
 HEDGE = Obstacles(segments=(((5.0, -3.0), (5.0, -1.0)),), circles=((8.0, 1.0, 0.3),))

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from evaluation.replay import Replay
-from recordings import Crowd, Track
+from esplanade.evaluation.replay import Replay
+from esplanade.recordings import Crowd, Track
 from tests.evaluation.worlds import crowd, replay, walk
 
 

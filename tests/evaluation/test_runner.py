@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from evaluation.ledger import Ledger
-from evaluation.runner import run_trials
-from evaluation.scores import Score
-from evaluation.trials import Source, Trial, plan_trials
+from esplanade.evaluation.ledger import Ledger
+from esplanade.evaluation.runner import run_trials
+from esplanade.evaluation.scores import Score
+from esplanade.evaluation.trials import Source, Trial, plan_trials
 from tests.evaluation.worlds import RULES, busy_plaza, write_csv
 
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evaluation.contacts import Encounters
-from evaluation.scores import Score, score, summarise
+from esplanade.evaluation.contacts import Encounters
+from esplanade.evaluation.scores import Score, score, summarise
 from tests.evaluation.worlds import RULES, Point, replay, trip, walk
 
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from actors import ActorParameters
-from evaluation.settings import (
+from esplanade.actors import ActorParameters
+from esplanade.evaluation.settings import (
     DEFAULTS,
     SettingError,
     check,
@@ -15,7 +15,7 @@ from evaluation.settings import (
     read_changes,
     read_choices,
 )
-from planning import PlanModel, PredictionModel, RiskModel
+from esplanade.planning import PlanModel, PredictionModel, RiskModel
 
 
 def test_every_parameter_and_every_number_of_a_model_is_a_setting_with_its_default() -> None:

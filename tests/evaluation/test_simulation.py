@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from evaluation.policies.human import Human
-from evaluation.policies.policy import Policy, View
-from evaluation.rules import Rules
-from evaluation.simulation import Sight, limited, run_episode
-from recordings import Obstacles
+from esplanade.evaluation.policies.human import Human
+from esplanade.evaluation.policies.policy import Policy, View
+from esplanade.evaluation.rules import Rules
+from esplanade.evaluation.simulation import Sight, limited, run_episode
+from esplanade.recordings import Obstacles
 from tests.evaluation.worlds import RULES, Scripted, ground, trip, walk
 
 EAST = walk("1", 0.0, (0, 0), (12, 0))

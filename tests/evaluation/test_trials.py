@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from evaluation.trials import Source, plan_trials
-from recordings import RecordingError
+from esplanade.evaluation.trials import Source, plan_trials
+from esplanade.recordings import RecordingError
 from tests.evaluation.worlds import RULES, busy_plaza, write_csv
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from evaluation.waypoints import WallMap, Waypoints
-from recordings import Obstacles
+from esplanade.evaluation.waypoints import WallMap, Waypoints
+from esplanade.recordings import Obstacles
 from tests.evaluation.worlds import replay, walk
 
 HEDGE = Obstacles(segments=(((5.0, -3.0), (5.0, 3.0)),))

@@ -5,15 +5,15 @@ from pathlib import Path
 
 import numpy as np
 
-from evaluation.episodes import Episode
-from evaluation.fits import Growth
-from evaluation.forecasts import STEPS, Forecasts
-from evaluation.policies.policy import Policy, Task, View
-from evaluation.replay import Floats, Replay
-from evaluation.rules import Rules
-from evaluation.simulation import Ground
-from planning import GAUSSIAN, Spread
-from recordings import Crowd, Obstacles, Track
+from esplanade.evaluation.episodes import Episode
+from esplanade.evaluation.fits import Growth
+from esplanade.evaluation.forecasts import STEPS, Forecasts
+from esplanade.evaluation.policies.policy import Policy, Task, View
+from esplanade.evaluation.replay import Floats, Replay
+from esplanade.evaluation.rules import Rules
+from esplanade.evaluation.simulation import Ground
+from esplanade.planning import GAUSSIAN, Spread
+from esplanade.recordings import Crowd, Obstacles, Track
 
 Point = tuple[float, float]
 RULES = Rules()

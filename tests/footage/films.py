@@ -2,8 +2,8 @@
 
 from functools import cache
 
-from footage.recording import Recording, record
-from footage.walks import walks
+from esplanade.footage.recording import Recording, record
+from esplanade.footage.walks import walks
 
 FRAMES_A_SECOND = 20.0
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from footage.camera import Camera
+from esplanade.footage.camera import Camera
 
 
 def test_axes_are_upright_and_at_right_angles():

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from footage.cli import EXIT_USAGE, EXIT_WELL, run
+from esplanade.footage.cli import EXIT_USAGE, EXIT_WELL, run
 
 
 def test_help_teaches_every_command_and_option(capsys: pytest.CaptureFixture[str]):

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from actors.locomotion.keyframes import KEYS, walked
-from footage.cycle import STEP, as_text, cycle
+from esplanade.actors.locomotion.reference.keyframes import KEYS, walked
+from esplanade.footage.cycle import STEP, as_text, cycle
 
 COMMITTED = Path(__file__).resolve().parents[2] / "client_web" / "src" / "world" / "cycle.json"
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from footage.figure import SHOES, TROUSERS, parts_of
+from esplanade.footage.figure import SHOES, TROUSERS, parts_of
 from tests.footage.films import filmed
 
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from PIL import ImageColor
 
-from footage import painting
-from footage.camera import Camera
-from footage.figure import Part
-from footage.painting import Canvas
-from footage.recording import Footprint
-from planning import Polygon, Scene
+from esplanade.footage import painting
+from esplanade.footage.camera import Camera
+from esplanade.footage.figure import Part
+from esplanade.footage.painting import Canvas
+from esplanade.footage.recording import Footprint
+from esplanade.planning import Polygon, Scene
 
 ABOVE = Camera((0.0, 0.0, 0.0), -90.0, 90.0, 50.0, (100, 100))
 SIDE = Camera((0.0, 0.0, 0.5), -90.0, 0.0, 50.0, (100, 100))

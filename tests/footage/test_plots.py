@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from footage.plots import PLOTS
+from esplanade.footage.plots import PLOTS
 
 ROOT = Path(__file__).resolve().parents[2]
 QUICK = [name for name in PLOTS if name not in {"bends", "stairs", "reaching"}]

@@ -5,9 +5,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from footage.options import WALKS
-from footage.recording import record
-from footage.walks import walks
+from esplanade.footage.options import WALKS
+from esplanade.footage.recording import record
+from esplanade.footage.walks import walks
 from tests.footage.films import FRAMES_A_SECOND, filmed
 
 

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from actors.locomotion.posing import Pose
-from footage.recording import Recording
-from footage.strips import PANELS, draw_film, draw_strip, draw_trail
+from esplanade.actors.locomotion.reference.posing import Pose
+from esplanade.footage.recording import Recording
+from esplanade.footage.strips import PANELS, draw_film, draw_strip, draw_trail
 from tests.footage.films import filmed
 
 

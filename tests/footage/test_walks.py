@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from footage.options import WALKS
-from footage.walks import TICK_S, walks
+from esplanade.footage.options import WALKS
+from esplanade.footage.walks import TICK_S, walks
 
 
 def test_the_options_name_every_walk():

@@ -9,9 +9,9 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from planning import Body
-from planning._layered import LINK_ROOM_M, LayeredArrays
-from planning.stability import Stability
+from esplanade.planning import Body
+from esplanade.planning.ground.layered import LINK_ROOM_M, LayeredArrays
+from esplanade.planning.traversal.stability import Stability
 from tests.naive.geometry import Point, point_segment_distance, segment_distance
 from tests.naive.waves import dijkstra
 

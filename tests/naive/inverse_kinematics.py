@@ -1,10 +1,10 @@
-"""Twin of `actors.locomotion._hinge_kernels`: CCD by quaternions, all of the chain each time."""
+"""Twin of `esplanade.actors.locomotion._hinge_kernels`: CCD by quaternions over all the chain."""
 
 import math
 
 import numpy as np
 
-from actors.locomotion import rotations
+from esplanade.actors.locomotion.reference import rotations
 
 
 def hinges_and_tip(chain, angles):

@@ -6,19 +6,19 @@ import math
 
 import numpy as np
 
-from planning._precedence_kernels import JAM_ACTORS, JAM_M
-from planning._reservation_kernels import (
+from esplanade.planning.agents._priority_kernels import JAM_ACTORS, JAM_M
+from esplanade.planning.agents._reservation_kernels import (
     AGAINST,
     EVADING_M,
     EVADING_SLICES,
     MEETING_ROOM,
     MEETING_ROOM_M,
-    OVERLAP_M,
     QUEUE_ROOM,
     QUEUE_ROOM_M,
     SOFT,
     Reservations,
 )
+from esplanade.planning.scene.heights import BODIES_OVERLAP_M
 from tests.naive.geometry import Point, closest_approach
 
 
@@ -29,7 +29,7 @@ def conflict(
     blocked = False
     soft = 0.0
     for other in range(len(r.paths)):
-        if other == me or abs(r.heights[other, k + 1] - feet_m) >= OVERLAP_M:
+        if other == me or abs(r.heights[other, k + 1] - feet_m) >= BODIES_OVERLAP_M:
             continue
         if k % 2:
             soft += crowding(r, margin_m, me, other, k + 1, b)
@@ -88,7 +88,7 @@ def _in_jam(r: Reservations, me: int, left_m: float, held_up: list[int]) -> floa
         for o in held_up
         if o != me
         and math.dist(r.paths[o, 0], here) <= JAM_M
-        and abs(r.heights[o, 0] - r.heights[me, 0]) < OVERLAP_M
+        and abs(r.heights[o, 0] - r.heights[me, 0]) < BODIES_OVERLAP_M
     ]
     against = [r.paths[o, 0] for o in near if course @ r.courses[o] < AGAINST]
     if left_m == math.inf or len(against) < JAM_ACTORS:

@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from planning import Prediction, RiskModel, Spread
-from planning._reservation_kernels import OVERLAP_M
+from esplanade.planning import Prediction, RiskModel, Spread
+from esplanade.planning.scene.heights import BODIES_OVERLAP_M
 
 
 def sigma_grid() -> list[tuple[float, float, float]]:
@@ -37,7 +37,7 @@ def risk(
     near = 0.0
     closing = 0.0
     for p in range(len(prediction.means)):
-        if abs(prediction.heights[p, k] - feet_m) >= OVERLAP_M:
+        if abs(prediction.heights[p, k] - feet_m) >= BODIES_OVERLAP_M:
             continue
         likely = [
             (scale * a, scale * b, share * weight)

@@ -10,10 +10,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from planning import LayeredGrid, Potential, RiskField, SearchStatus
-from planning._reservation_kernels import MARGIN_M, Reservations
-from planning._search_kernels import DEPTH_BONUS_S, LIKELY_PART, Moves
-from planning._task_kernels import Task, advance, risk_price, time_cost, wall_cost
+from esplanade.planning import LayeredGrid, Potential, RiskField, SearchStatus
+from esplanade.planning.agents._reservation_kernels import MARGIN_M, Reservations
+from esplanade.planning.agents._search_kernels import DEPTH_BONUS_S, LIKELY_PART, Moves
+from esplanade.planning.agents._task_kernels import Task, advance, risk_price, time_cost, wall_cost
 from tests.naive.geometry import Point
 from tests.naive.reservations import conflict
 

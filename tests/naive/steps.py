@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from actors.locomotion._stance_kernels import EASE_RAD, STEEPEST_RAD
-from actors.locomotion.footfalls import Footfalls, Targets
-from actors.locomotion.motion import (
+from esplanade.actors.locomotion._stance_kernels import EASE_RAD, STEEPEST_RAD
+from esplanade.actors.locomotion.footfalls import Footfalls, Targets
+from esplanade.actors.locomotion.motion import (
     ANKLE,
     CHEST,
     ELBOWS,
@@ -24,10 +24,10 @@ from actors.locomotion.motion import (
     smooth,
     standing_ankles,
 )
-from actors.locomotion.rotations import about, multiply, normalise, rotate
-from actors.locomotion.skeleton import TRACK_HALF_WIDTH
-from actors.locomotion.stance import REACH, Build, Legs, both_sides
-from actors.locomotion.strides import Drawn, wrapped
+from esplanade.actors.locomotion.reference.rotations import about, multiply, normalise, rotate
+from esplanade.actors.locomotion.skeleton import TRACK_HALF_WIDTH
+from esplanade.actors.locomotion.stance import REACH, Build, Legs, both_sides
+from esplanade.actors.locomotion.strides import Drawn, wrapped
 
 LANDING = [7, 8, 9, 10, 12]
 

@@ -7,8 +7,8 @@ from itertools import pairwise
 
 from hypothesis import strategies as st
 
-from planning import Body, LayeredGrid, LayeredPath, Polygon, Scene, Stairs, Wall
-from planning.footing import find_footing, footing_of
+from esplanade.planning import Body, LayeredGrid, LayeredPath, Polygon, Scene, Stairs, Wall
+from esplanade.planning.traversal.cache import find_traversability
 from tests.naive.floors import Floors
 from tests.naive.geometry import segment_distance
 from tests.planning.worlds import UPPER_M
@@ -41,9 +41,9 @@ def grid_of(side_m, polygons=(), walls=(), stairs=(), doors=()) -> LayeredGrid:
     return LayeredGrid.from_scene(scene_of(side_m, polygons, walls, stairs, doors), CELL_M)
 
 
-def footing(grid: LayeredGrid, body: Body):
+def traversability(grid: LayeredGrid, body: Body):
     """Derived afresh."""
-    return find_footing(grid.layered, grid.barriers, body)
+    return find_traversability(grid.layered, grid.barriers, body)
 
 
 def _on(low: int, high: int) -> st.SearchStrategy[float]:
@@ -82,7 +82,7 @@ bodies = st.sampled_from(BODIES)
 def walk_through(path: LayeredPath, grid: LayeredGrid, body: Body) -> None:
     """Follow a path with the whole body; fails where a body could not go."""
     floors = Floors(grid.layered, grid.barriers, body)
-    classes = footing_of(grid, body).classes
+    classes = grid.traversability.of(body).classes
     a = grid.layered
     assert len(path.points) == len(path.layers) == len(path.headings)
     count, last = 0, None

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from planning import Body, Door, LayeredGrid, Polygon, Potential, Ramp, Scene, find_path
-from planning.bodies import MOST_BODIES
-from planning.clearances import CLEARANCE_CAP_M
+from esplanade.planning import Body, Door, LayeredGrid, Polygon, Potential, Ramp, Scene, find_path
+from esplanade.planning.grid.clearances import CLEARANCE_CAP_M
+from esplanade.planning.scene.bodies import MOST_BODIES
 from tests.naive.geometry import point_segment_distance
 from tests.planning.storeys import SLAB_FROM, STAIRS_FROM, box, grid_of, storeyed
 from tests.planning.worlds import UPPER_M, scaled
@@ -183,7 +183,7 @@ BELOW, ABOVE = (12.0, 6.0, 0.0), (12.0, 6.0, UPPER_M)
 @pytest.mark.parametrize(("start", "goal"), [(BELOW, ABOVE), (ABOVE, BELOW)])
 @pytest.mark.parametrize("body", [ADULT, CHILD], ids=["adult", "child"])
 def test_straight_above_is_as_far_as_over_the_stairs(house, start, goal, body) -> None:
-    potential = house.potential(goal[:2], goal[2], body.radius_m, body)
+    potential = Potential(house, goal[:2], goal[2], body.radius_m, body=body)
     found = potential.distance([start[:2]], [start[2]])[0]
     assert potential.distance([goal[:2]], [goal[2]])[0] == pytest.approx(0.0, abs=1e-6)
     # Around the flight's side to its foot, and up: the foot lies 9 m west of both.
@@ -213,7 +213,7 @@ def test_steps_too_high_for_a_child_are_no_way_for_it() -> None:
     steep = scene.stairs[0].model_copy(update={"steps": 9})
     grid = LayeredGrid.from_scene(scene.model_copy(update={"stairs": (steep,)}))
     for body, reached in ((ADULT, True), (CHILD, False)):
-        potential = grid.potential(ABOVE[:2], ABOVE[2], body.radius_m, body)
+        potential = Potential(grid, ABOVE[:2], ABOVE[2], body.radius_m, body=body)
         assert math.isfinite(potential.distance([BELOW[:2]], [BELOW[2]])[0]) == reached
 
 
@@ -222,7 +222,7 @@ def test_the_way_of_a_child_leads_where_an_adult_has_to_go_around() -> None:
     grid = grid_of(12.0, [low])
     start, goal = (2.0, 8.0), (8.0, 8.0)
     ways = {
-        body: grid.potential(goal, 0.0, body.radius_m, body).distance([start], [0.0])[0]
+        body: Potential(grid, goal, 0.0, body.radius_m, body=body).distance([start], [0.0])[0]
         for body in (ADULT, CHILD)
     }
     assert ways[CHILD] == pytest.approx(6.0, abs=0.05)
@@ -230,10 +230,11 @@ def test_the_way_of_a_child_leads_where_an_adult_has_to_go_around() -> None:
 
 
 def test_a_goal_above_and_one_below_are_two_potentials(house) -> None:
-    above = house.potential((12.0, 6.0), UPPER_M, 0.25)
-    below = house.potential((12.0, 6.0), 0.0, 0.25)
-    assert above is not below
-    assert house.potential((12.0, 6.0), UPPER_M + 0.1, 0.25) is above
+    above = Potential(house, (12.0, 6.0), UPPER_M, 0.25)
+    below = Potential(house, (12.0, 6.0), 0.0, 0.25)
+    assert not np.array_equal(above.values, below.values)
+    again = Potential(house, (12.0, 6.0), UPPER_M + 0.1, 0.25)
+    assert np.array_equal(again.values, above.values)
     pool = grid_of(8.0, [box(2.0, 2.0, 6.0, 6.0, 2.0).model_copy(update={"kind": "water"})])
     with pytest.raises(ValueError, match="nobody can stand at the goal"):
         Potential(pool, (4.0, 4.0), 0.0, 0.25)
@@ -315,19 +316,18 @@ def test_on_bare_ground_too() -> None:
 def test_a_way_through_a_closed_door_leads_around_it() -> None:
     grid = LayeredGrid.from_scene(doored())
     start, goal = (10.0, 5.75), (14.0, 5.75)
-    through = grid.potential(goal, 0.0, 0.25)
+    through = Potential(grid, goal, 0.0, 0.25)
     assert through.distance([start], [0.0])[0] == pytest.approx(4.0, abs=0.01)
     grid.set_door("gate", False)
-    around = grid.potential(goal, 0.0, 0.25)
-    assert around is not through
+    around = Potential(grid, goal, 0.0, 0.25)
     expected = 2.0 * math.hypot(2.0, 11.25 - 5.75)
     assert expected <= around.distance([start], [0.0])[0] <= expected + 1.0
     places = followed(around, (*start, 0.0))
     assert places[np.abs(places[:, 0] - 12.0) < 0.1, 1].min() > 11.0
     grid.set_door("back", False)
-    assert grid.potential(goal, 0.0, 0.25).distance([start], [0.0])[0] == math.inf
+    assert Potential(grid, goal, 0.0, 0.25).distance([start], [0.0])[0] == math.inf
     grid.set_door("gate", True)
-    again = grid.potential(goal, 0.0, 0.25)
+    again = Potential(grid, goal, 0.0, 0.25)
     assert again.distance([start], [0.0])[0] == pytest.approx(4.0, abs=0.01)
 
 

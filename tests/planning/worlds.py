@@ -10,7 +10,7 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from numpy.typing import ArrayLike, NDArray
 
-from planning import (
+from esplanade.planning import (
     PEOPLE,
     LayeredGrid,
     PlanModel,
@@ -21,10 +21,10 @@ from planning import (
     Scene,
     Spawn,
 )
-from planning._lane_kernels import Lane
-from planning._reservation_kernels import Reservations, index_paths
-from planning._task_kernels import Task, World
-from planning.search import make_reservations
+from esplanade.planning.agents._bottleneck_kernels import Lane
+from esplanade.planning.agents._reservation_kernels import Reservations, index_paths
+from esplanade.planning.agents._task_kernels import Task, World
+from esplanade.planning.agents.search import make_reservations
 
 COMPILED = not numba.config.DISABLE_JIT
 """False in the leg that runs kernels as plain Python, a hundred times slower."""

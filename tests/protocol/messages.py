@@ -4,9 +4,9 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from protocol import ByeCode, ErrorCode, Kind, Reason
-from protocol.codes import MAX_CHAT_CHARS, MAX_DOOR_CHARS, MAX_NAME_CHARS, MAX_TOKEN_CHARS
-from protocol.messages import (
+from esplanade.protocol import ByeCode, ErrorCode, Kind, Reason
+from esplanade.protocol.codes import MAX_CHAT_CHARS, MAX_DOOR_CHARS, MAX_NAME_CHARS, MAX_TOKEN_CHARS
+from esplanade.protocol.messages import (
     Bye,
     Census,
     Chat,

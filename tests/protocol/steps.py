@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from protocol.steps import KEYS, Floats, Footprints, Keys, Steps
+from esplanade.protocol.steps import KEYS, Floats, Footprints, Keys, Steps
 
 
 def made_up_steps(count: int, seed: int = 0) -> Steps:

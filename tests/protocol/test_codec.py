@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from protocol import (
+from esplanade.protocol import (
     CloseCode,
     ErrorCode,
     ProtocolError,
@@ -20,15 +20,15 @@ from protocol import (
     encode_steps,
     peek_snapshot,
 )
-from protocol.codec import (
+from esplanade.protocol.codec import (
     CLIENT_MESSAGES,
     MAX_BLOCK_BYTES,
     SERVER_MESSAGES,
     SNAPSHOT_HEAD_BYTES,
     STEPS_HEAD_BYTES,
 )
-from protocol.codes import MAX_CLIENT_FRAME_BYTES, ClientCode
-from protocol.messages import FromClient, FromServer, Hello, Snapshot
+from esplanade.protocol.codes import MAX_CLIENT_FRAME_BYTES, ClientCode
+from esplanade.protocol.messages import FromClient, FromServer, Hello, Snapshot
 from tests.protocol.messages import client_messages, server_messages
 
 

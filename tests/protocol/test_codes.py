@@ -6,8 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from protocol import codes
-from protocol.codes import ByeCode, ClientCode, CloseCode, ErrorCode, Kind, Reason, ServerCode
+from esplanade.protocol import codes
+from esplanade.protocol.codes import (
+    ByeCode,
+    ClientCode,
+    CloseCode,
+    ErrorCode,
+    Kind,
+    Reason,
+    ServerCode,
+)
 
 TYPESCRIPT = Path(__file__).resolve().parents[2] / "client_web" / "src" / "net" / "codes.ts"
 

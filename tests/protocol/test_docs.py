@@ -10,11 +10,19 @@ import pytest
 from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 
-from protocol import VERSION, ByeCode, ErrorCode, Kind, Reason, decode_server, peek_snapshot
-from protocol import codes as table
-from protocol.codec import MAX_BLOCK_BYTES, SNAPSHOT_HEAD_BYTES, STEPS_HEAD_BYTES
-from protocol.codes import ClientCode, CloseCode, ServerCode
-from protocol.messages import (
+from esplanade.protocol import (
+    VERSION,
+    ByeCode,
+    ErrorCode,
+    Kind,
+    Reason,
+    decode_server,
+    peek_snapshot,
+)
+from esplanade.protocol import codes as table
+from esplanade.protocol.codec import MAX_BLOCK_BYTES, SNAPSHOT_HEAD_BYTES, STEPS_HEAD_BYTES
+from esplanade.protocol.codes import ClientCode, CloseCode, ServerCode
+from esplanade.protocol.messages import (
     Circle,
     Entity,
     FromClient,
@@ -23,7 +31,7 @@ from protocol.messages import (
     Snapshot,
     StepBlock,
 )
-from protocol.snapshot import (
+from esplanade.protocol.snapshot import (
     MAX_EXTENT_M,
     RECORD,
     Floats,
@@ -33,7 +41,7 @@ from protocol.snapshot import (
     speeds_mps,
     unpack_block,
 )
-from protocol.steps import FOOTPRINT, KEY, STEP, step_records, unpack_steps
+from esplanade.protocol.steps import FOOTPRINT, KEY, STEP, step_records, unpack_steps
 
 TEXT = (Path(__file__).resolve().parents[2] / "docs" / "protocol.md").read_text(encoding="utf-8")
 
@@ -170,7 +178,7 @@ def test_limits() -> None:
 
 
 def test_the_servers_defaults() -> None:
-    settings = pytest.importorskip("server.settings").ServerSettings
+    settings = pytest.importorskip("esplanade.server.settings").ServerSettings
     for row in tables(section("Limits"))[1]:
         assert float(row["Default"]) == settings.model_fields[row["Setting"]].default, row
 

@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from protocol import decode_client, decode_server, encode, messages
-from protocol.messages import FromClient, FromServer
+from esplanade.protocol import decode_client, decode_server, encode, messages
+from esplanade.protocol.messages import FromClient, FromServer
 
 GOLDEN: list[dict[str, Any]] = json.loads(
     (Path(__file__).parent / "golden.json").read_text(encoding="utf-8")

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from protocol.messages import (
+from esplanade.protocol.messages import (
     ChatLine,
     FromClient,
     Hello,

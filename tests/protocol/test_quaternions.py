@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from protocol.quaternions import (
+from esplanade.protocol.quaternions import (
     Floats,
     pack_near_identity,
     pack_smallest_three,

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from protocol.snapshot import (
+from esplanade.protocol.snapshot import (
     HEADING_RAD,
     MAX_EXTENT_M,
     POSITION_M,

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from protocol.steps import (
+from esplanade.protocol.steps import (
     ARM_RAD,
     FOOT_RAD,
     FOOTPRINT_M,

@@ -9,7 +9,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from recordings import Crowd, Track, Wall, open_doorways, read_crowd, read_walls, walls_beside
+from esplanade.recordings import (
+    Crowd,
+    Track,
+    Wall,
+    open_doorways,
+    read_crowd,
+    read_walls,
+    walls_beside,
+)
 from tests.recordings.data import recorded
 
 Point = tuple[float, float]

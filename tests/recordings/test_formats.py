@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from recordings import RecordingError, read_crowd
+from esplanade.recordings import RecordingError, read_crowd
 
 OBSMAT = (
     "7.8e+02 1.0e+00 8.4 0 3.5 1.6 0 0.1\n7.86e+02 1.0 9.0 0 3.6 1.6 0 0.1\n\n780 2 0 0 1 0 0 0\n"

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from recordings import RecordingError, read_crowd
+from esplanade.recordings import RecordingError, read_crowd
 from tests.recordings.data import recorded
 
 HEADER = "t,id,x,y\n"

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from recordings import RecordingError, read_obstacles, read_walls, walls_beside
+from esplanade.recordings import RecordingError, read_obstacles, read_walls, walls_beside
 
 
 def write(folder: Path, text: str) -> Path:

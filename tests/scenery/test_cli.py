@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from scenery import cli
+from esplanade.scenery import cli
 from tests.scenery.worlds import LOFT, write, write_building
 
 needs_matplotlib = pytest.mark.skipif(find_spec("matplotlib") is None, reason="no matplotlib")

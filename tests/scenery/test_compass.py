@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from scenery.compass import Ground
+from esplanade.scenery.compass import Ground
 
 POINTS = np.array([[x, y, 0.0] for x in (0.0, 30.0) for y in (-30.0, 0.0)])
 

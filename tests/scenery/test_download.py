@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from scenery import cli, download
-from scenery.console import UsageError
-from scenery.download import local_file
+from esplanade.scenery import cli, download
+from esplanade.scenery.console import UsageError
+from esplanade.scenery.download import local_file
 from tests.scenery.worlds import write_building
 
 Told = list[tuple[str, float]]

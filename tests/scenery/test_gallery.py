@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from planning import LayeredGrid, Scene
-from planning.bodies import Body
-from planning.find_path import LayeredPath, PathStatus, find_path
-from planning.scene_file import read_scene
-from scenery.inventory import take_inventory
+from esplanade.planning import LayeredGrid, Scene
+from esplanade.planning.routes.find_path import LayeredPath, PathStatus, find_path
+from esplanade.planning.scene.bodies import Body
+from esplanade.planning.scene.scene_file import read_scene
+from esplanade.scenery.inventory import take_inventory
 
 FILE = Path(__file__).resolve().parents[2] / "scenes" / "gallery.json"
 UPPER_M = 3.5

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from scenery.inventory import show, take_inventory
+from esplanade.scenery.inventory import show, take_inventory
 from tests.scenery.worlds import loft
 
 

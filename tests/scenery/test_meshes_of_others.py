@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from planning import LayeredGrid
-from planning.find_path import PathStatus, find_path
-from planning.scene_file import read_scene
-from planning.storey_heights import reached_from, storeys_of
-from scenery import cli
+from esplanade.planning import LayeredGrid
+from esplanade.planning.routes.find_path import PathStatus, find_path
+from esplanade.planning.routes.storey_heights import reached_from, storeys_of
+from esplanade.planning.scene.scene_file import read_scene
+from esplanade.scenery import cli
 
 DATA = Path(__file__).resolve().parents[3] / "shared" / "data"
 HOUSE = Path(os.environ.get("ESPLANADE_DATA", DATA)) / "meshes" / "duplex.obj"

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from planning import LayeredGrid, Scene
-from planning.bodies import Body
-from planning.find_path import PathStatus, find_path
-from planning.scene_file import read_scene
-from planning.storey_heights import reached_from, storeys_of
-from scenery.inventory import take_inventory
+from esplanade.planning import LayeredGrid, Scene
+from esplanade.planning.routes.find_path import PathStatus, find_path
+from esplanade.planning.routes.storey_heights import reached_from, storeys_of
+from esplanade.planning.scene.bodies import Body
+from esplanade.planning.scene.scene_file import read_scene
+from esplanade.scenery.inventory import take_inventory
 
 ROOT = Path(__file__).resolve().parents[2]
 FILE = ROOT / "scenes" / "pavilion.json"

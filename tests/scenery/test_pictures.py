@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from planning.stability import Stability
-from scenery import pictures
-from scenery.console import UsageError
-from scenery.pictures import CLASSES, LayerView, Mark, draw_layer
+from esplanade.planning.traversal.stability import Stability
+from esplanade.scenery import pictures
+from esplanade.scenery.console import UsageError
+from esplanade.scenery.pictures import CLASSES, LayerView, Mark, draw_layer
 
 needs_matplotlib = pytest.mark.skipif(find_spec("matplotlib") is None, reason="no matplotlib")
 

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from planning import LayeredGrid, Scene
-from planning.bodies import Body
-from planning.footing import footing_of
-from scenery.reach import cell_near, largest_region, reach_of
+from esplanade.planning import LayeredGrid, Scene
+from esplanade.planning.scene.bodies import Body
+from esplanade.scenery.reach import cell_near, largest_region, reach_of
 from tests.scenery.worlds import LOFT, loft
 
 
@@ -61,7 +60,7 @@ def test_without_spawns_one_begins_in_the_largest_region() -> None:
 def test_the_largest_region_hangs_together_and_is_the_largest() -> None:
     scene = Scene(bounds=(0, 0, 10, 4), polygons=(), walls=({"start": (7, 0), "end": (7, 4)},))  # type: ignore[arg-type]
     grid = grid_of(scene)
-    region = largest_region(footing_of(grid, Body.adult()))
+    region = largest_region(grid.traversability.of(Body.adult()))
     columns = grid.layered.places[region, 2]
     assert columns.max() < 7 / 0.25
     assert 0.9 < region.sum() / (16 * 28) <= 1.0
@@ -69,9 +68,9 @@ def test_the_largest_region_hangs_together_and_is_the_largest() -> None:
 
 def test_a_point_means_the_floor_that_is_near() -> None:
     grid = grid_of(loft())
-    footing = footing_of(grid, Body.adult())
-    upper, lower = (cell_near(footing, (10.0, 4.0, z), 0.5) for z in (3.4, 0.3))
+    traversability = grid.traversability.of(Body.adult())
+    upper, lower = (cell_near(traversability, (10.0, 4.0, z), 0.5) for z in (3.4, 0.3))
     assert grid.layered.floors[upper] == pytest.approx(3.0)
     assert grid.layered.floors[lower] == 0.0
-    assert cell_near(footing, (10.0, 4.0, 1.5), 0.5) == -1
+    assert cell_near(traversability, (10.0, 4.0, 1.5), 0.5) == -1
     assert np.array_equal(grid.layered.places[upper, 1:], grid.layered.places[lower, 1:])

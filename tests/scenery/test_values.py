@@ -4,8 +4,8 @@ import argparse
 
 import pytest
 
-from planning.bodies import Body
-from scenery.values import body, number, point, where, whole
+from esplanade.planning.scene.bodies import Body
+from esplanade.scenery.values import body, number, point, where, whole
 
 
 @pytest.mark.parametrize(

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from planning.bodies import Body
-from planning.stability import Stability
-from scenery.console import UsageError
-from scenery.pictures import LayerView
-from scenery.values import Where
-from scenery.views import layer_views
+from esplanade.planning.scene.bodies import Body
+from esplanade.planning.traversal.stability import Stability
+from esplanade.scenery.console import UsageError
+from esplanade.scenery.pictures import LayerView
+from esplanade.scenery.values import Where
+from esplanade.scenery.views import layer_views
 from tests.scenery.worlds import loft
 
 

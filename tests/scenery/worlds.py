@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from planning import Scene
+from esplanade.planning import Scene
 
 LOFT: dict[str, Any] = {
     "name": "Loft",

@@ -8,8 +8,8 @@ from typing import TypeVar
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 
-from protocol import VERSION, decode_server, encode
-from protocol.messages import (
+from esplanade.protocol import VERSION, decode_server, encode
+from esplanade.protocol.messages import (
     Enter,
     Entity,
     Error,
@@ -21,7 +21,7 @@ from protocol.messages import (
     Snapshot,
     Welcome,
 )
-from protocol.snapshot import positions_m, unpack_block
+from esplanade.protocol.snapshot import positions_m, unpack_block
 
 DEADLINE_S = 20.0
 """No test waits longer than this for anything."""

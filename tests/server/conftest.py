@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from server.app import Running, running
-from server.assets import Assets
-from server.settings import ServerSettings
+from esplanade.server.app import Running, running
+from esplanade.server.assets import Assets
+from esplanade.server.settings import ServerSettings
 from tests.server.worlds import ROOM
 
 NO_CLIENT = Assets.load(Path("no such folder"))

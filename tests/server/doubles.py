@@ -1,16 +1,16 @@
-"""A cast whose actors do as a test says."""
+"""A population whose actors do as a test says."""
 
 from collections.abc import Hashable, Mapping
 from typing import cast
 
 import numpy as np
 
-from actors import ActorState, Cast, Explanation, Reason
+from esplanade.actors import ActorState, Explanation, Population, Reason
 
 Place = tuple[float, float, int]
 
 
-class ScriptedCast:
+class ScriptedPopulation:
     """Actors that stand where they were put and move at the velocity they were given."""
 
     def __init__(self, tick_s: float = 0.05) -> None:
@@ -59,7 +59,7 @@ class ScriptedCast:
             )
         return states
 
-    def ways_changed(self) -> None:
+    def ground_changed(self) -> None:
         self.found_anew += 1
 
     def explain(self, actor_id: Hashable) -> Explanation:
@@ -68,5 +68,5 @@ class ScriptedCast:
         people = [np.array([[px, py, pz, 0.5]]) for px, py, pz in self.observed.values()]
         return Explanation("patrol", Reason.MOVING, (x + 1.0, y, 0), path, people)
 
-    def as_cast(self) -> Cast:
-        return cast(Cast, self)
+    def as_population(self) -> Population:
+        return cast(Population, self)

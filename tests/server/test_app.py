@@ -5,12 +5,12 @@ from pathlib import Path
 import pytest
 from websockets.exceptions import ConnectionClosed
 
-from planning import Polygon, Scene
-from protocol import ByeCode, CloseCode
-from protocol.messages import Bye
-from server.app import running
-from server.settings import ServerSettings
-from server.stage import StageError
+from esplanade.planning import Polygon, Scene
+from esplanade.protocol import ByeCode, CloseCode
+from esplanade.protocol.messages import Bye
+from esplanade.server.app import running
+from esplanade.server.loading import LoadingError
+from esplanade.server.settings import ServerSettings
 from tests.server.client import connected, joined
 from tests.server.conftest import NO_CLIENT, Serving
 from tests.server.http import get
@@ -73,7 +73,7 @@ async def test_a_scene_without_room_is_refused_by_name(tmp_path: Path) -> None:
     path = tmp_path / "stone.json"
     path.write_text(scene.model_dump_json())
     settings = ServerSettings(scene=path, port=0, private_port=0)
-    with pytest.raises(StageError, match="'stone': no free place"):
+    with pytest.raises(LoadingError, match="'stone': no free place"):
         async with running(settings, NO_CLIENT):
             pass
 

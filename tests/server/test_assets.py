@@ -5,7 +5,7 @@ import pytest
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
-from server.assets import SECURITY_HEADERS, Assets
+from esplanade.server.assets import SECURITY_HEADERS, Assets
 
 SCRIPT = b"console.log('esplanade');\n" * 100
 

@@ -3,9 +3,9 @@ from pathlib import Path
 
 import pytest
 
-from server import app
-from server.cli import parser, run
-from server.settings import ServerSettings
+from esplanade.server import app
+from esplanade.server.cli import parser, run
+from esplanade.server.settings import ServerSettings
 
 
 def test_help_explains_every_setting_in_its_group(capsys: pytest.CaptureFixture[str]) -> None:

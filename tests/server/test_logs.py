@@ -6,8 +6,8 @@ from typing import Literal
 import pytest
 import structlog
 
-from server import logs
-from server.settings import ServerSettings
+from esplanade.server import logs
+from esplanade.server.settings import ServerSettings
 
 
 @pytest.fixture(autouse=True)
@@ -21,7 +21,7 @@ def _as_before() -> Iterator[None]:
 
 def test_lines_are_json_where_that_is_wanted(capsys: pytest.CaptureFixture[str]) -> None:
     logs.configure(ServerSettings(log_format="json"))
-    structlog.get_logger("server.test").info("person here", id=3)
+    structlog.get_logger("esplanade.server.test").info("person here", id=3)
     logging.getLogger("some.library").warning("told %s", "you")
     ours, theirs = (json.loads(line) for line in capsys.readouterr().err.splitlines())
     assert (ours["event"], ours["id"], ours["level"]) == ("person here", 3, "info")
@@ -37,7 +37,7 @@ def test_faults_are_logged_without_the_values_of_variables(
     try:
         int(f"no number {len(token)}")
     except ValueError:
-        structlog.get_logger("server.test").exception("a fault")
+        structlog.get_logger("esplanade.server.test").exception("a fault")
     text = capsys.readouterr().err
     assert "ValueError: invalid literal" in text
     assert f"'{token}'" not in text
@@ -45,8 +45,8 @@ def test_faults_are_logged_without_the_values_of_variables(
 
 def test_what_is_below_the_level_is_left_out(capsys: pytest.CaptureFixture[str]) -> None:
     logs.configure(ServerSettings(log_level="warning"))
-    structlog.get_logger("server.test").info("unheard")
-    structlog.get_logger("server.test").warning("heard")
+    structlog.get_logger("esplanade.server.test").info("unheard")
+    structlog.get_logger("esplanade.server.test").warning("heard")
     text = capsys.readouterr().err
     assert "unheard" not in text
     assert "heard" in text

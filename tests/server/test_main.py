@@ -11,7 +11,7 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
-from protocol import CloseCode
+from esplanade.protocol import CloseCode
 from tests.server.client import joined
 
 DEADLINE_S = 200.0

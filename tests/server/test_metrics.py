@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from server.metrics import Durations, Metrics
+from esplanade.server.metrics import Durations, Metrics
 
 
 def test_percentiles_are_those_of_the_latest_durations() -> None:

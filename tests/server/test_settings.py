@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 from pydantic import ValidationError
 
-from server.settings import ServerSettings
+from esplanade.server.settings import ServerSettings
 
 
 def test_every_field_says_what_it_is_and_where_it_belongs() -> None:

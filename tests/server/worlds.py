@@ -6,12 +6,12 @@ from functools import cache
 from itertools import count
 from pathlib import Path
 
-from planning import LayeredGrid, Place, Scene, Spawn, Wall
-from server.world.inputs import Input, Join
-from server.world.rules import Rules
-from server.world.troupe import Body
-from server.world.world import Joined, Sight, World
-from tests.server.doubles import ScriptedCast
+from esplanade.planning import LayeredGrid, Place, Scene, Spawn, Wall
+from esplanade.server.world.actors import Body
+from esplanade.server.world.inputs import Input, Join
+from esplanade.server.world.rules import Rules
+from esplanade.server.world.world import Joined, World, WorldUpdate
+from tests.server.doubles import ScriptedPopulation
 
 TICK_S = 0.05
 
@@ -73,19 +73,19 @@ class Trial:
     def __init__(
         self,
         scene: Scene = ROOM,
-        cast: ScriptedCast | None = None,
+        population: ScriptedPopulation | None = None,
         seed: int = 1,
         max_people: int = 64,
         **changes: float,
     ) -> None:
-        self.cast = cast or ScriptedCast(TICK_S)
+        self.population = population or ScriptedPopulation(TICK_S)
         self.grid = grid_of(scene)
         ticks = count()
         self.world = World(
             scene,
             self.grid,
-            self.cast.as_cast(),
-            {actor_id: Body(str(actor_id), 0.25) for actor_id in self.cast.positions},
+            self.population.as_population(),
+            {actor_id: Body(str(actor_id), 0.25) for actor_id in self.population.positions},
             rules(**changes),
             tick_s=TICK_S,
             max_people=max_people,
@@ -94,14 +94,14 @@ class Trial:
         )
         self.joined: Joined = []
 
-    def tick(self, *inputs: Input, writing: bool = True) -> Sight:
+    def tick(self, *inputs: Input, writing: bool = True) -> WorldUpdate:
         """One whole tick; with `writing`, every viewer is sent its snapshot."""
         self.joined = self.world.begin(inputs)
-        sight = self.world.finish(self.world.think())
+        update = self.world.finish(self.world.think())
         if writing:
-            places = list(range(len(sight.snapshots.viewers)))
-            self.world.wrote(sight.snapshots, places)
-        return sight
+            places = list(range(len(update.snapshots.viewers)))
+            self.world.wrote(update.snapshots, places)
+        return update
 
     def ticks(self, number: int) -> None:
         for _ in range(number):
@@ -120,9 +120,9 @@ class Trial:
         return float(self.world.state.speeds[self.world.state.slot(avatar_id)])
 
 
-def block_of(sight: Sight, viewer: int) -> bytes:
+def block_of(update: WorldUpdate, viewer: int) -> bytes:
     """The packed records that this viewer is to be sent."""
-    snapshots = sight.snapshots
+    snapshots = update.snapshots
     place = snapshots.viewers.index(viewer)
     begin = snapshots.ends[place - 1] if place else 0
     return bytes(snapshots.data[begin : snapshots.ends[place]])

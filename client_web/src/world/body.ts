@@ -1,4 +1,4 @@
-/** The joints of a body in the world, from its posture: the twin of `actors/locomotion/posing.py`. */
+/** The joints of a body in the world, from its posture: the twin of `actors/locomotion/reference/posing.py`. */
 
 import type { ArmPosture, FootPosture, Posture } from "./posture";
 import {

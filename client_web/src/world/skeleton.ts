@@ -1,4 +1,4 @@
-/** The lengths of a body, as the server poses it: `actors/locomotion/posing.py`. */
+/** The lengths of a body, as the server poses it: `actors/locomotion/reference/posing.py`. */
 
 /** Shares of the leg, hip joint to ankle. */
 export const THIGH = 0.466;

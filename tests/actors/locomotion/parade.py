@@ -6,15 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from actors.locomotion.aims import AHEAD, AHEAD_S, Course
-from actors.locomotion.builds import manner_of
-from actors.locomotion.ground import Ground
-from actors.locomotion.motion import Floats, Steps, no_steps
-from actors.locomotion.posing import Pose, pose
-from actors.locomotion.stance import Build
-from actors.locomotion.walkers import Walkers
-from planning import LayeredGrid, Scene
-from server.world.step_records import from_records, to_records
+from esplanade.actors.locomotion.aims import AHEAD, AHEAD_S, Course
+from esplanade.actors.locomotion.builds import physique_of
+from esplanade.actors.locomotion.ground import Ground
+from esplanade.actors.locomotion.motion import Floats, Steps, no_steps
+from esplanade.actors.locomotion.reference.posing import Pose, pose
+from esplanade.actors.locomotion.stance import Build
+from esplanade.actors.locomotion.walkers import Walkers
+from esplanade.planning import LayeredGrid, Scene
+from esplanade.server.world.step_records import from_records, to_records
 
 TICK_S = 0.05
 FIELD = Scene.open_space((-40.0, -40.0, 40.0, 40.0))
@@ -58,16 +58,16 @@ class Parade:
         self.walkers = Walkers(count, self.ground, TICK_S, self._carry)
         self.begun: list[Begun] = []
         self.places: list[Floats] = []
-        self._manners = [manner_of(seed, number) for number in range(count)]
+        self._physiques = [physique_of(seed, number) for number in range(count)]
         self.build = Build(
-            np.array([manner.leg_m for manner in self._manners]),
-            np.array([manner.stature_m for manner in self._manners]),
+            np.array([build.leg_m for build in self._physiques]),
+            np.array([build.stature_m for build in self._physiques]),
         )
 
     def stand(self) -> None:
         """Everyone comes in."""
         slots = np.arange(self.count)
-        self.walkers.join(self.tick, slots, self._manners, self._course(None))
+        self.walkers.join(self.tick, slots, self._physiques, self._course(None))
         self.places.append(self.positions.copy())
 
     def go(self, velocity: Floats | tuple[float, float], ticks: int = 1, turn: bool = True) -> None:

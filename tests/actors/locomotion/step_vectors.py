@@ -9,9 +9,14 @@ from typing import Any, Final
 
 import numpy as np
 
-from actors.locomotion import motion, posing, skeleton, stance
-from actors.locomotion.rotations import from_euler, normalise, to_forward_left_up
-from server.world.step_records import from_records, to_records
+from esplanade.actors.locomotion import motion, skeleton, stance
+from esplanade.actors.locomotion.reference import posing
+from esplanade.actors.locomotion.reference.rotations import (
+    from_euler,
+    normalise,
+    to_forward_left_up,
+)
+from esplanade.server.world.step_records import from_records, to_records
 
 FIXTURE: Final = Path(__file__).parents[3] / "client_web" / "tests" / "fixtures" / "steps.json"
 

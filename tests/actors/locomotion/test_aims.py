@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from actors.locomotion.aims import (
+from esplanade.actors.locomotion.aims import (
     AHEAD,
     AHEAD_S,
     CLOSING_S,
@@ -13,9 +13,9 @@ from actors.locomotion.aims import (
     durations_s,
     wanted_headings,
 )
-from actors.locomotion.motion import Floats
-from actors.locomotion.skeleton import TRACK_HALF_WIDTH
-from planning import Polygon, Scene
+from esplanade.actors.locomotion.motion import Floats
+from esplanade.actors.locomotion.skeleton import TRACK_HALF_WIDTH
+from esplanade.planning import Polygon, Scene
 from tests.actors.locomotion.parade import FIELD, Parade
 
 LEG = np.array([0.9])

@@ -1,17 +1,17 @@
 import numpy as np
 
-from actors.locomotion.builds import LONGEST_LEG_M, SHORTEST_LEG_M, manner_of
+from esplanade.actors.locomotion.builds import LONGEST_LEG_M, SHORTEST_LEG_M, physique_of
 
 
 def test_everyone_is_different_and_always_the_same() -> None:
-    everyone = [manner_of(3, avatar) for avatar in range(300)]
-    assert everyone == [manner_of(3, avatar) for avatar in range(300)]
+    everyone = [physique_of(3, avatar) for avatar in range(300)]
+    assert everyone == [physique_of(3, avatar) for avatar in range(300)]
     assert len({one.leg_m for one in everyone}) > 250
-    assert manner_of(4, 17) != everyone[17]
+    assert physique_of(4, 17) != everyone[17]
 
 
 def test_sizes_are_those_of_people() -> None:
-    everyone = [manner_of(0, avatar) for avatar in range(1000)]
+    everyone = [physique_of(0, avatar) for avatar in range(1000)]
     legs = np.array([one.leg_m for one in everyone])
     statures = np.array([one.stature_m for one in everyone])
     briskness = np.array([one.briskness for one in everyone])

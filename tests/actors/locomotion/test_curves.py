@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from actors.locomotion import curves
-from actors.locomotion.curves import leg_angles
+from esplanade.actors.locomotion import curves
+from esplanade.actors.locomotion.curves import leg_angles
 
 GOLDEN = [
     (0.25, 0.0, (11.018519, 3.0, -3.0)),

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from actors.locomotion.durations import (
+from esplanade.actors.locomotion.durations import (
     LONGEST_S,
     SHORTEST_S,
     boundary_rates,

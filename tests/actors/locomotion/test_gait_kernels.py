@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from actors.locomotion import _gait_kernels as kernels
-from actors.locomotion import curves
+from esplanade.actors.locomotion import _gait_kernels as kernels
+from esplanade.actors.locomotion import curves
 
 VELOCITIES = (0.0, 0.02, 0.2, 0.35, 0.5)
 SHARES = np.linspace(0.0, 1.0, 41)

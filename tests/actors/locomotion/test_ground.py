@@ -3,9 +3,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from actors.locomotion.ground import Ground
-from planning import LayeredGrid, Polygon, Ramp, Scene, Stairs
-from planning.scene_file import read_scene
+from esplanade.actors.locomotion.ground import Ground
+from esplanade.planning import LayeredGrid, Polygon, Ramp, Scene, Stairs
+from esplanade.planning.scene.scene_file import read_scene
 from tests.server.worlds import write_mesh_world
 
 BOUNDS = (-5.0, -5.0, 10.0, 10.0)

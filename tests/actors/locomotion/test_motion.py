@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from actors.locomotion.motion import (
+from esplanade.actors.locomotion.motion import (
     ANKLE,
     CHEST,
     KEYS,

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actors.locomotion.planner import LONGEST_STEP, PREFERRED_STEP, plan_steps
+from esplanade.actors.locomotion.planner import LONGEST_STEP, PREFERRED_STEP, plan_steps
 
 
 @given(st.floats(1e-6, 200.0))

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from actors.locomotion.planted import Footfalls, step_targets
-from actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH
+from esplanade.actors.locomotion.planted import Footfalls, step_targets
+from esplanade.actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH
 from tests.actors.locomotion import walks
 from tests.naive import planted as naive
 

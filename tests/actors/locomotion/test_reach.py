@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from actors.locomotion import _reach_kernels as reach
-from actors.locomotion.skeleton import FOOT
+from esplanade.actors.locomotion import _reach_kernels as reach
+from esplanade.actors.locomotion.skeleton import FOOT
 
 
 def test_distances_are_eased_only_near_the_end():

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from actors.locomotion.aims import AHEAD, AHEAD_S, Course
-from actors.locomotion.motion import Floats
-from actors.locomotion.skeleton import FOOT
-from actors.locomotion.stance import REACH
-from planning import Scene
-from recordings import Crowd, read_crowd
+from esplanade.actors.locomotion.aims import AHEAD, AHEAD_S, Course
+from esplanade.actors.locomotion.motion import Floats
+from esplanade.actors.locomotion.skeleton import FOOT
+from esplanade.actors.locomotion.stance import REACH
+from esplanade.planning import Scene
+from esplanade.recordings import Crowd, read_crowd
 from tests.actors.locomotion.parade import TICK_S, Parade
 from tests.recordings.data import recorded
 

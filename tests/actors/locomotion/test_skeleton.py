@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from actors.locomotion import skeleton
+from esplanade.actors.locomotion import skeleton
 
 
 def test_lengths_add_up_to_one_leg():

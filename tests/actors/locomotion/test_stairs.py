@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from actors.locomotion import _stairs_kernels as stairs
-from actors.locomotion.planted import step_targets
-from actors.locomotion.skeleton import FOOT
+from esplanade.actors.locomotion import _stairs_kernels as stairs
+from esplanade.actors.locomotion.planted import step_targets
+from esplanade.actors.locomotion.skeleton import FOOT
 from tests.actors.locomotion import walks
 
 TREAD = 0.333

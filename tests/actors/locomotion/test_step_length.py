@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from actors.locomotion import step_length
-from actors.locomotion.step_length import (
+from esplanade.actors.locomotion import step_length
+from esplanade.actors.locomotion.step_length import (
     sl_noslide,
     sl_paper,
     sl_planted,

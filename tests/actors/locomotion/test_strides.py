@@ -1,10 +1,10 @@
 import numpy as np
 
-from actors.locomotion._stride_kernels import fill_keys, go_on
-from actors.locomotion.footfalls import Footfalls
-from actors.locomotion.motion import KEYS, PELVIS, WIDTH, Floats, between
-from actors.locomotion.planted import step_targets
-from actors.locomotion.strides import Drawn, shifted, standing_keys, strides
+from esplanade.actors.locomotion._stride_kernels import fill_keys, go_on
+from esplanade.actors.locomotion.footfalls import Footfalls
+from esplanade.actors.locomotion.motion import KEYS, PELVIS, WIDTH, Floats, between
+from esplanade.actors.locomotion.planted import step_targets
+from esplanade.actors.locomotion.strides import Drawn, shifted, standing_keys, strides
 from tests.naive import steps as naive
 
 SHARES = np.linspace(0.0, 1.0, KEYS)

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from actors.locomotion import _turning_kernels as turning
-from actors.locomotion.planted import step_targets
-from actors.locomotion.skeleton import TRACK_HALF_WIDTH
-from actors.locomotion.step_length import final_poses
+from esplanade.actors.locomotion import _turning_kernels as turning
+from esplanade.actors.locomotion.planted import step_targets
+from esplanade.actors.locomotion.skeleton import TRACK_HALF_WIDTH
+from esplanade.actors.locomotion.step_length import final_poses
 from tests.actors.locomotion import walks
 
 BENDS = [(0.3, 3.0), (0.3, 1.5), (0.3, 1.0), (0.3, 0.6), (0.5, 3.0), (0.5, 1.5), (0.5, 1.0)]

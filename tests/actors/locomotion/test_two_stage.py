@@ -5,8 +5,15 @@ from functools import cache
 import numpy as np
 import pytest
 
-from actors.locomotion import skeleton
-from actors.locomotion.two_stage import Reach, arm_chain, effector, heel_chain, reach, reach_by_ccd
+from esplanade.actors.locomotion import skeleton
+from esplanade.actors.locomotion.two_stage import (
+    Reach,
+    arm_chain,
+    effector,
+    heel_chain,
+    reach,
+    reach_by_ccd,
+)
 from tests.naive.inverse_kinematics import ccd, hinges_and_tip
 
 TARGETS = 1000

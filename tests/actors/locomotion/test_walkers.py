@@ -3,10 +3,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from actors.locomotion.aims import AHEAD, Course
-from actors.locomotion.motion import Floats
-from actors.locomotion.walkers import JUMP_M
-from planning import Scene, Stairs
+from esplanade.actors.locomotion.aims import AHEAD, Course
+from esplanade.actors.locomotion.motion import Floats
+from esplanade.actors.locomotion.walkers import JUMP_M
+from esplanade.planning import Scene, Stairs
 from tests.actors.locomotion.parade import TICK_S, Parade
 
 MM = 1e-3

@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from actors.locomotion.limbs import LegAngles, leg_ends, leg_ik
-from actors.locomotion.planted import Footfalls, Targets, step_targets
-from actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH
+from esplanade.actors.locomotion.planted import Footfalls, Targets, step_targets
+from esplanade.actors.locomotion.reference.limbs import LegAngles, leg_ends, leg_ik
+from esplanade.actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH
 
 Floats = NDArray[np.float64]
 

@@ -5,11 +5,11 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 
-from evaluation.policies import POLICIES, PolicyError, jupedsim_models, make_policy
-from evaluation.policies.policy import Policy
-from evaluation.replay import Replay
-from evaluation.simulation import Ground, Run, run_episode
-from recordings import Obstacles
+from esplanade.evaluation.policies import POLICIES, PolicyError, jupedsim_models, make_policy
+from esplanade.evaluation.policies.policy import Policy
+from esplanade.evaluation.replay import Replay
+from esplanade.evaluation.simulation import Ground, Run, run_episode
+from esplanade.recordings import Obstacles
 from tests.evaluation.worlds import RULES, busy_plaza, ground, trip, walk
 
 HEDGE = Obstacles(segments=(((5.0, -3.0), (5.0, 1.5)),))

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from evaluation import cli
+from esplanade.evaluation import cli
 from tests.evaluation.worlds import busy_plaza, write_csv
 
 

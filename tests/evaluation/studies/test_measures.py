@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evaluation.policies import make_policy
-from evaluation.simulation import Ground, run_episode
-from evaluation.studies.measures import (
+from esplanade.evaluation.policies import make_policy
+from esplanade.evaluation.simulation import Ground, run_episode
+from esplanade.evaluation.studies.measures import (
     MEASURES,
     RESAMPLES,
     interval,

@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from actors import ActorParameters
-from evaluation.settings import DEFAULTS, SettingError, check
-from evaluation.studies import sensitivity, sensitivity_plot
-from evaluation.studies.measures import MEASURES, Floats
-from evaluation.studies.sensitivity import AMONG_ACTORS, BODY, TEMPER, Curve
-from evaluation.studies.variants import Tables
-from evaluation.trials import Source
+from esplanade.actors import ActorParameters
+from esplanade.evaluation.settings import DEFAULTS, SettingError, check
+from esplanade.evaluation.studies import sensitivity, sensitivity_plot
+from esplanade.evaluation.studies.measures import MEASURES, Floats
+from esplanade.evaluation.studies.sensitivity import AMONG_ACTORS, BODY, TEMPER, Curve
+from esplanade.evaluation.studies.variants import Tables
+from esplanade.evaluation.trials import Source
 from tests.evaluation.worlds import RULES
 
 NEAR = [measure.name for measure in MEASURES].index("near_s")

@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from evaluation.settings import SettingError
-from evaluation.studies import tuning
-from evaluation.studies.measures import MEASURES, Floats
-from evaluation.studies.variants import Variant
-from evaluation.trials import Source
+from esplanade.evaluation.settings import SettingError
+from esplanade.evaluation.studies import tuning
+from esplanade.evaluation.studies.measures import MEASURES, Floats
+from esplanade.evaluation.studies.variants import Variant
+from esplanade.evaluation.trials import Source
 from tests.evaluation.worlds import RULES
 
 GOALS = {measure.name: measure.goal for measure in MEASURES}

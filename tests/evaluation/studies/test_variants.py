@@ -3,11 +3,11 @@
 from dataclasses import replace
 from pathlib import Path
 
-from evaluation.runner import run_trials
-from evaluation.settings import DEFAULTS
-from evaluation.studies.measures import MEASURES
-from evaluation.studies.variants import LIMIT, Variant, tables_of, trials_of
-from evaluation.trials import Source
+from esplanade.evaluation.runner import run_trials
+from esplanade.evaluation.settings import DEFAULTS
+from esplanade.evaluation.studies.measures import MEASURES
+from esplanade.evaluation.studies.variants import LIMIT, Variant, tables_of, trials_of
+from esplanade.evaluation.trials import Source
 from tests.evaluation.worlds import RULES, busy_plaza, write_csv
 
 

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from actors.locomotion.curves import joint_angles, smooth
-from actors.locomotion.skeleton import (
+from esplanade.actors.locomotion.curves import joint_angles, smooth
+from esplanade.actors.locomotion.skeleton import (
     FOOT,
     TRACK_HALF_WIDTH,
     Floats,
@@ -14,7 +14,7 @@ from actors.locomotion.skeleton import (
     foot_pitch,
     leg_points,
 )
-from actors.locomotion.step_length import RV_LONGEST, sl_planted
+from esplanade.actors.locomotion.step_length import RV_LONGEST, sl_planted
 from tests.naive.planted import stairs
 from tests.naive.planted.hips import Hips, hips_at, mix
 from tests.naive.planted.reach import FULL, drawn_to_hip, hip_ceiling, raised_heel

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from actors.locomotion.curves import pelvis_motion, smooth, support_share
-from actors.locomotion.skeleton import TRACK_HALF_WIDTH, Floats
+from esplanade.actors.locomotion.curves import pelvis_motion, smooth, support_share
+from esplanade.actors.locomotion.skeleton import TRACK_HALF_WIDTH, Floats
 from tests.naive.planted import stairs
 from tests.naive.planted.turning import CROUCH, BothDown, forward_and_left, hips_under_way
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from actors.locomotion.skeleton import FOOT, Floats
+from esplanade.actors.locomotion.skeleton import FOOT, Floats
 
 FULL = 0.9999
 """Legs are never stretched further: a knee that locks moves with infinite speed."""

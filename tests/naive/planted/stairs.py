@@ -5,8 +5,8 @@ Lengths are shares of the leg's; heights are those of footprints.
 
 import numpy as np
 
-from actors.locomotion.curves import smooth
-from actors.locomotion.skeleton import FOOT, Floats
+from esplanade.actors.locomotion.curves import smooth
+from esplanade.actors.locomotion.skeleton import FOOT, Floats
 
 CLEARANCE = 0.09
 """A foot passes so far over the highest of the three footprints."""

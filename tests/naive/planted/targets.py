@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from actors.locomotion.curves import upper_angles
-from actors.locomotion.footfalls import Footfalls, Targets
-from actors.locomotion.skeleton import Floats
+from esplanade.actors.locomotion.curves import upper_angles
+from esplanade.actors.locomotion.footfalls import Footfalls, Targets
+from esplanade.actors.locomotion.skeleton import Floats
 from tests.naive.planted.feet import clearance, lowered_to, standing_foot, swinging_foot
 from tests.naive.planted.hips import hips_at
 from tests.naive.planted.turning import BothDown, both_down, forward_and_left

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH, Floats, ankle_over_toe
-from actors.locomotion.step_length import (
+from esplanade.actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH, Floats, ankle_over_toe
+from esplanade.actors.locomotion.step_length import (
     DoubleSupport,
     final_poses,
     longest_step,

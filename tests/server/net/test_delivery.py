@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from websockets.asyncio.server import ServerConnection
 
-from actors import Explanation, Reason
-from protocol import Reason as WireReason
-from protocol import decode_server, encode
-from protocol.messages import (
+from esplanade.actors import Explanation, Reason
+from esplanade.protocol import Reason as WireReason
+from esplanade.protocol import decode_server, encode
+from esplanade.protocol.messages import (
     Census,
     Error,
     Plan,
@@ -17,16 +17,16 @@ from protocol.messages import (
     StepBlock,
     Watch,
 )
-from protocol.steps import STEP, step_records
-from server.metrics import Traffic
-from server.net.delivery import Delivery, plan
-from server.net.outbox import Outbox, SlowPolicy
-from server.world.interest import PERIOD_TICKS
-from server.world.state import ACTOR
-from server.world.steps import Feet
+from esplanade.protocol.steps import STEP, step_records
+from esplanade.server.metrics import Traffic
+from esplanade.server.net.delivery import Delivery, plan
+from esplanade.server.net.outbox import Outbox, SlowPolicy
+from esplanade.server.world.interest import PERIOD_TICKS
+from esplanade.server.world.state import ACTOR
+from esplanade.server.world.walking import Feet
 from tests.server.client import joined
 from tests.server.conftest import Serving
-from tests.server.doubles import ScriptedCast
+from tests.server.doubles import ScriptedPopulation
 from tests.server.net.test_frames import payload_of
 from tests.server.net.test_outbox import StuffedConnection
 from tests.server.worlds import FIELD, TICK_S, Trial
@@ -108,9 +108,9 @@ def lifts_of(messages: list[ServerMessage]) -> list[int]:
 def trial(monkeypatch: pytest.MonkeyPatch) -> Trial:
     """One actor and one person, two metres apart, who step only when told."""
     monkeypatch.setattr(Feet, "update", lambda _self, _tick: None)
-    script = ScriptedCast(TICK_S)
+    script = ScriptedPopulation(TICK_S)
     script.put("oak", (52.0, 50.0))
-    return Trial(scene=FIELD, cast=script)
+    return Trial(scene=FIELD, population=script)
 
 
 @pytest.fixture
@@ -165,14 +165,14 @@ def test_pointing_is_told_to_those_who_see_it(
     trial: Trial, listener: Listener, delivery: Delivery
 ) -> None:
     oak = int(trial.world.state.ids[trial.world.state.of_kind(ACTOR)][0])
-    trial.cast.pointing["oak"] = (1.0, 2.0, 3.0)
+    trial.population.pointing["oak"] = (1.0, 2.0, 3.0)
     delivery.deliver(trial.tick(writing=False), now=0.05)
     assert Point(id=oak, target=(1.0, 2.0, 3.0)) in listener.heard()
-    trial.cast.pointing = {}
-    trial.cast.put("oak", (150.0, 150.0))
+    trial.population.pointing = {}
+    trial.population.put("oak", (150.0, 150.0))
     for _ in range(PERIOD_TICKS):
         delivery.deliver(trial.tick(writing=False), now=0.1)
     listener.heard()
-    trial.cast.pointing["oak"] = (1.0, 2.0, 3.0)
+    trial.population.pointing["oak"] = (1.0, 2.0, 3.0)
     delivery.deliver(trial.tick(writing=False), now=0.15)
     assert [type(message) for message in listener.heard()] == [Snapshot]

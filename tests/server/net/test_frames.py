@@ -2,9 +2,9 @@ import pytest
 from websockets.frames import Frame, Opcode
 from websockets.streams import StreamReader
 
-from protocol import VERSION, ByeCode, Kind, decode_server
-from protocol.messages import Bye, Enter, Entity, Leave, Snapshot, StepBlock, Welcome
-from server.net import frames
+from esplanade.protocol import VERSION, ByeCode, Kind, decode_server
+from esplanade.protocol.messages import Bye, Enter, Entity, Leave, Snapshot, StepBlock, Welcome
+from esplanade.server.net import frames
 from tests.server.worlds import ROOM
 
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from planning import Door, Wall
-from protocol import VERSION, ByeCode, CloseCode, ErrorCode
-from protocol.messages import (
+from esplanade.planning import Door, Wall
+from esplanade.protocol import VERSION, ByeCode, CloseCode, ErrorCode
+from esplanade.protocol.messages import (
     Bye,
     Chat,
     ChatLine,

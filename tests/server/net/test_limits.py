@@ -1,4 +1,4 @@
-from server.net.limits import TokenBucket
+from esplanade.server.net.limits import TokenBucket
 
 
 def test_a_burst_is_allowed_and_then_the_rate() -> None:

@@ -6,12 +6,12 @@ import pytest
 from websockets.asyncio.server import ServerConnection
 from websockets.protocol import State
 
-from protocol import ByeCode, decode_server
-from protocol.messages import Bye, Snapshot, StepBlock
-from protocol.steps import pack_steps
-from server.metrics import Traffic
-from server.net import frames
-from server.net.outbox import JOINING_PATIENCE_S, MAX_WAITING_FRAMES, Outbox, SlowPolicy
+from esplanade.protocol import ByeCode, decode_server
+from esplanade.protocol.messages import Bye, Snapshot, StepBlock
+from esplanade.protocol.steps import pack_steps
+from esplanade.server.metrics import Traffic
+from esplanade.server.net import frames
+from esplanade.server.net.outbox import JOINING_PATIENCE_S, MAX_WAITING_FRAMES, Outbox, SlowPolicy
 from tests.protocol.steps import made_up_steps
 from tests.server.client import joined
 from tests.server.conftest import Serving

@@ -1,6 +1,6 @@
 import pytest
 
-from server.net.schedule import MAX_BEHIND_TICKS, Schedule
+from esplanade.server.net.schedule import MAX_BEHIND_TICKS, Schedule
 
 PERIOD_S = 0.05
 

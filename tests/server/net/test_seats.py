@@ -1,6 +1,6 @@
 import secrets
 
-from server.net.seats import Seats
+from esplanade.server.net.seats import Seats
 
 
 def test_a_token_finds_its_seat_and_no_other() -> None:

@@ -6,9 +6,9 @@ import struct
 import msgpack
 import pytest
 
-from protocol import VERSION, ClientCode, CloseCode, ErrorCode, encode
-from protocol.codes import MAX_CLIENT_FRAME_BYTES
-from protocol.messages import ChatLine, Error, Hello, Move, Ping, Pong
+from esplanade.protocol import VERSION, ClientCode, CloseCode, ErrorCode, encode
+from esplanade.protocol.codes import MAX_CLIENT_FRAME_BYTES
+from esplanade.protocol.messages import ChatLine, Error, Hello, Move, Ping, Pong
 from tests.server.client import connected, joined
 from tests.server.conftest import Serving
 

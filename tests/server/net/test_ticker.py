@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from actors import Cast
-from protocol.messages import Ping, Pong
+from esplanade.actors import Population
+from esplanade.protocol.messages import Ping, Pong
 from tests.server.client import joined
 from tests.server.conftest import Serving
 
@@ -26,7 +26,7 @@ async def test_when_planning_fails_people_walk_on(
         raise RuntimeError("told to fail")
 
     async with serving(actors=1) as server, joined(server.port) as client:
-        monkeypatch.setattr(Cast, "tick", fail)
+        monkeypatch.setattr(Population, "tick", fail)
         await client.move(0.0, 1.0)
         x = client.position[0]
         await client.wait_for(lambda: client.position[0] > x + 0.2)
@@ -44,7 +44,7 @@ async def test_the_event_loop_serves_while_actors_are_planned(
         return {}
 
     async with serving(actors=1) as server, joined(server.port) as client:
-        monkeypatch.setattr(Cast, "tick", think_long)
+        monkeypatch.setattr(Population, "tick", think_long)
         await asyncio.to_thread(planning.wait, 20.0)
         tick = server.world.tick
         await client.send(Ping(nonce=5))

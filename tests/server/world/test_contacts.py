@@ -3,18 +3,18 @@ import math
 import numpy as np
 import pytest
 
-from server.world.contacts import closest_approach
-from server.world.inputs import Leave, Steer
-from server.world.state import PERSON, State
-from tests.server.doubles import ScriptedCast
+from esplanade.server.world.contacts import closest_approach
+from esplanade.server.world.inputs import Leave, Steer
+from esplanade.server.world.state import PERSON, State
+from tests.server.doubles import ScriptedPopulation
 from tests.server.worlds import FIELD, TICK_S, Trial
 
 
 def trial_with(*actors: tuple[tuple[float, float], tuple[float, float]]) -> Trial:
-    cast = ScriptedCast(TICK_S)
+    population = ScriptedPopulation(TICK_S)
     for number, (position, velocity) in enumerate(actors):
-        cast.put(f"a{number}", position, velocity)
-    return Trial(scene=FIELD, cast=cast)
+        population.put(f"a{number}", position, velocity)
+    return Trial(scene=FIELD, population=population)
 
 
 def test_a_contact_counts_once_until_the_pair_has_parted() -> None:

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from planning import Door, LayeredGrid, Scene, Wall
-from server.world.doors import Doors
-from server.world.inputs import MoveDoor, Steer
-from server.world.state import PERSON, State
-from tests.server.doubles import ScriptedCast
+from esplanade.planning import Door, LayeredGrid, Scene, Wall
+from esplanade.server.world.doors import Doors
+from esplanade.server.world.inputs import MoveDoor, Steer
+from esplanade.server.world.state import PERSON, State
+from tests.server.doubles import ScriptedPopulation
 from tests.server.worlds import Trial
 
 GATED = Scene(
@@ -65,7 +65,7 @@ def test_the_world_holds_people_back_at_a_closed_door_and_tells_everyone() -> No
     trial = Trial(GATED)
     (ann,) = trial.join((4.0, 4.0))
     assert trial.tick(MoveDoor("gate", is_open=False)).doors == {"gate": False}
-    assert trial.cast.found_anew == 1
+    assert trial.population.found_anew == 1
     assert trial.tick(Steer(ann, 1, 0.0, 2.0)).doors == {}
     trial.ticks(40)
     assert trial.position(ann)[0] == pytest.approx(5.75, abs=0.01)
@@ -75,13 +75,13 @@ def test_the_world_holds_people_back_at_a_closed_door_and_tells_everyone() -> No
 
 
 def test_an_actor_moves_a_door_and_everyone_is_told() -> None:
-    cast = ScriptedCast()
-    cast.put("keeper", (2.0, 2.0))
-    trial = Trial(GATED, cast)
-    cast.doors_wanted = {"gate": False, "no such door": True}
+    population = ScriptedPopulation()
+    population.put("keeper", (2.0, 2.0))
+    trial = Trial(GATED, population)
+    population.doors_wanted = {"gate": False, "no such door": True}
     assert trial.tick().doors == {}
     assert trial.tick().doors == {"gate": False}
-    cast.doors_wanted = {}
+    population.doors_wanted = {}
     assert trial.tick(MoveDoor("gate", is_open=True)).doors == {"gate": True}
     assert trial.tick().doors == {}
 

@@ -2,9 +2,9 @@ import math
 
 import numpy as np
 
-from server.world.inputs import Attach, Detach, Leave, Steer
-from server.world.interest import LEAVE_RATIO, PERIOD_TICKS
-from tests.server.doubles import ScriptedCast
+from esplanade.server.world.inputs import Attach, Detach, Leave, Steer
+from esplanade.server.world.interest import LEAVE_RATIO, PERIOD_TICKS
+from tests.server.doubles import ScriptedPopulation
 from tests.server.worlds import FIELD, TICK_S, Trial
 
 
@@ -23,19 +23,19 @@ def test_one_sees_oneself_and_those_within_the_radius() -> None:
 
 
 def test_coming_and_going_is_told_once_with_hysteresis_between() -> None:
-    cast = ScriptedCast(TICK_S)
-    cast.put("oak", (75.0, 50.0), (-4.0, 0.0))
-    trial = Trial(scene=FIELD, cast=cast, view_radius_m=20.0)
+    population = ScriptedPopulation(TICK_S)
+    population.put("oak", (75.0, 50.0), (-4.0, 0.0))
+    trial = Trial(scene=FIELD, population=population, view_radius_m=20.0)
     (ann,) = trial.join((50.0, 50.0))
     entered, left = [], []
     for _ in range(100):
         changes = trial.tick().changes
         if changes.entered[ann]:
-            entered.append(cast.positions["oak"][0] - 50.0)
+            entered.append(population.positions["oak"][0] - 50.0)
         if changes.left[ann]:
-            left.append(cast.positions["oak"][0] - 50.0)
+            left.append(population.positions["oak"][0] - 50.0)
         if entered:
-            cast.velocities["oak"] = (4.0, 0.0)
+            population.velocities["oak"] = (4.0, 0.0)
     slack_m = 4.0 * TICK_S * PERIOD_TICKS
     assert len(entered) == len(left) == 1
     assert 20.0 - slack_m <= entered[0] <= 20.0
@@ -43,15 +43,15 @@ def test_coming_and_going_is_told_once_with_hysteresis_between() -> None:
 
 
 def test_nobody_flickers_at_the_edge_of_sight() -> None:
-    cast = ScriptedCast(TICK_S)
-    cast.put("oak", (69.9, 50.0))
-    trial = Trial(scene=FIELD, cast=cast, view_radius_m=20.0)
+    population = ScriptedPopulation(TICK_S)
+    population.put("oak", (69.9, 50.0))
+    trial = Trial(scene=FIELD, population=population, view_radius_m=20.0)
     (ann,) = trial.join((50.0, 50.0))
     changes = 0
     for k in range(80):
-        cast.velocities["oak"] = (4.0 if k % 2 else -4.0, 0.0)
-        sight = trial.tick()
-        changes += len(sight.changes.entered[ann]) + len(sight.changes.left[ann])
+        population.velocities["oak"] = (4.0 if k % 2 else -4.0, 0.0)
+        update = trial.tick()
+        changes += len(update.changes.entered[ann]) + len(update.changes.left[ann])
     assert changes == 0
     assert trial.world.sees(ann, trial.world.state.ids[1].item())
 
@@ -74,10 +74,10 @@ def test_oneself_is_seen_even_in_a_heap_of_people() -> None:
 def test_who_leaves_the_world_leaves_every_view_at_once() -> None:
     trial = Trial(scene=FIELD)
     ann, ben = trial.join((50.0, 50.0), (52.0, 50.0))
-    sight = trial.tick(Leave(ben))
-    assert sight.changes.left[ann] == [ben]
+    update = trial.tick(Leave(ben))
+    assert update.changes.left[ann] == [ben]
     assert not trial.world.sees(ann, ben)
-    assert ben not in sight.changes.left
+    assert ben not in update.changes.left
     (cem,) = trial.join((52.0, 50.0))
     trial.ticks(PERIOD_TICKS)
     assert trial.world.sees(ann, cem)
@@ -86,12 +86,12 @@ def test_who_leaves_the_world_leaves_every_view_at_once() -> None:
 def test_who_looks_again_is_told_everything_again() -> None:
     trial = Trial(scene=FIELD)
     ann, ben = trial.join((50.0, 50.0), (52.0, 50.0))
-    sight = trial.tick(Detach(ann))
-    assert ann not in sight.snapshots.viewers
+    update = trial.tick(Detach(ann))
+    assert ann not in update.snapshots.viewers
     assert not trial.world.sees(ann, ben)
-    sight = trial.tick(Attach(ann))
-    assert ids(trial, sight.changes.entered[ann]) == {ann, ben}
-    assert ann in sight.snapshots.viewers
+    update = trial.tick(Attach(ann))
+    assert ids(trial, update.changes.entered[ann]) == {ann, ben}
+    assert ann in update.snapshots.viewers
 
 
 def test_events_rebuild_exactly_what_the_server_thinks_is_in_view() -> None:

@@ -1,7 +1,7 @@
 import numpy as np
 
-from server.world.neighbours import Neighbours
-from server.world.state import PERSON, State
+from esplanade.server.world.neighbours import Neighbours
+from esplanade.server.world.state import PERSON, State
 
 
 def crowd(*places: tuple[float, float, float]) -> State:

@@ -2,8 +2,8 @@ import math
 
 import pytest
 
-from server.world.inputs import Detach, Follow, Steer
-from server.world.people import BLOCKED_TICKS
+from esplanade.server.world.inputs import Detach, Follow, Steer
+from esplanade.server.world.people import BLOCKED_TICKS
 from tests.server.worlds import FIELD, TICK_S, Trial
 
 

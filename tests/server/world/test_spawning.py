@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from planning import Polygon, Scene
-from server.world.spawning import NoRoomError, Spawning
+from esplanade.planning import Polygon, Scene
+from esplanade.server.world.spawning import NoRoomError, Spawning
 from tests.server.worlds import FIELD, ROOM, grid_of
 
 

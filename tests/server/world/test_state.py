@@ -1,6 +1,6 @@
 import pytest
 
-from server.world.state import ACTOR, PERSON, State, WorldFullError
+from esplanade.server.world.state import ACTOR, PERSON, State, WorldFullError
 
 
 def test_slots_are_used_again_but_ids_never() -> None:

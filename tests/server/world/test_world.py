@@ -2,14 +2,14 @@ import math
 
 import numpy as np
 
-from actors import Cast
-from planning import LayeredGrid
-from protocol import Kind
-from server.casting import assemble
-from server.world.inputs import Detach, Follow, Input, Join, Leave, Steer
-from server.world.tick import STAGES
-from server.world.world import World
-from tests.server.doubles import ScriptedCast
+from esplanade.actors import Population
+from esplanade.planning import LayeredGrid
+from esplanade.protocol import Kind
+from esplanade.server.populating import populate
+from esplanade.server.world.inputs import Detach, Follow, Input, Join, Leave, Steer
+from esplanade.server.world.stage_times import STAGES
+from esplanade.server.world.world import World
+from tests.server.doubles import ScriptedPopulation
 from tests.server.worlds import ROOM, TICK_S, Trial, rules
 
 
@@ -39,12 +39,12 @@ def recorded(ticks: int) -> list[list[Input]]:
 def replay(record: list[list[Input]]) -> bytes:
     """Every byte of the world's story: all positions, and all that viewers are sent."""
     grid = LayeredGrid.from_scene(ROOM)
-    cast: Cast
-    cast, bodies = assemble(grid, ROOM, 3, TICK_S, seed=7)
+    population: Population
+    population, bodies = populate(grid, ROOM, 3, TICK_S, seed=7)
     world = World(
         ROOM,
         grid,
-        cast,
+        population,
         bodies,
         rules(),
         tick_s=TICK_S,
@@ -57,11 +57,11 @@ def replay(record: list[list[Input]]) -> bytes:
     story = bytearray()
     for inputs in record:
         world.begin(inputs)
-        sight = world.finish(world.think())
-        world.wrote(sight.snapshots, list(range(len(sight.snapshots.viewers))))
-        story += world.state.positions.tobytes() + bytes(sight.snapshots.data)
+        update = world.finish(world.think())
+        world.wrote(update.snapshots, list(range(len(update.snapshots.viewers))))
+        story += world.state.positions.tobytes() + bytes(update.snapshots.data)
     story += repr((world.trips, world.contacts.actor_person, world.state.names)).encode()
-    cast.close()
+    population.close()
     return bytes(story)
 
 
@@ -86,12 +86,12 @@ def test_inputs_of_people_who_are_gone_are_void() -> None:
 
 
 def test_actors_see_the_people_of_this_tick_and_people_the_actors() -> None:
-    cast = ScriptedCast(TICK_S)
-    cast.put("oak", (5.0, 5.0), (1.0, 0.0))
-    trial = Trial(cast=cast)
+    population = ScriptedPopulation(TICK_S)
+    population.put("oak", (5.0, 5.0), (1.0, 0.0))
+    trial = Trial(population=population)
     (ann,) = trial.join((3.0, 3.0))
     trial.tick(Steer(ann, 1, math.pi / 2.0, 1.0))
-    assert cast.observed == {ann: (*trial.position(ann), 0)}
+    assert population.observed == {ann: (*trial.position(ann), 0)}
     state = trial.world.state
     (oak,) = [int(i) for i in state.ids[state.alive] if trial.world.is_actor(int(i))]
     described = trial.world.describe(state.slot(oak))
@@ -103,9 +103,9 @@ def test_actors_see_the_people_of_this_tick_and_people_the_actors() -> None:
 
 
 def test_actors_stand_when_there_is_no_plan() -> None:
-    cast = ScriptedCast(TICK_S)
-    cast.put("oak", (5.0, 5.0), (1.0, 0.0))
-    trial = Trial(cast=cast)
+    population = ScriptedPopulation(TICK_S)
+    population.put("oak", (5.0, 5.0), (1.0, 0.0))
+    trial = Trial(population=population)
     trial.tick()
     trial.world.begin([])
     trial.world.finish({})
@@ -113,19 +113,19 @@ def test_actors_stand_when_there_is_no_plan() -> None:
 
 
 def test_what_an_actor_points_at_is_told_when_it_changes_and_to_who_comes() -> None:
-    cast = ScriptedCast(TICK_S)
-    cast.put("oak", (4.0, 3.0))
-    cast.put("elm", (5.0, 3.0))
-    trial = Trial(cast=cast)
+    population = ScriptedPopulation(TICK_S)
+    population.put("oak", (4.0, 3.0))
+    population.put("elm", (5.0, 3.0))
+    trial = Trial(population=population)
     assert trial.tick().pointing == {}
     oak, elm = (int(i) for i in trial.world.state.ids[trial.world.state.live()])
-    cast.pointing["oak"] = (1.0, 2.0, 3.0)
+    population.pointing["oak"] = (1.0, 2.0, 3.0)
     assert trial.tick().pointing == {oak: (1.0, 2.0, 3.0)}
     assert trial.tick().pointing == {}
     slots = trial.world.state.slot(oak), trial.world.state.slot(elm)
     assert [trial.world.describe(slot)["points_at"] for slot in slots] == [(1.0, 2.0, 3.0), None]
-    cast.pointing = {"oak": (4.0, 2.0, 3.0), "elm": (1.0, 2.0, 3.0)}
+    population.pointing = {"oak": (4.0, 2.0, 3.0), "elm": (1.0, 2.0, 3.0)}
     assert trial.tick().pointing == {oak: (4.0, 2.0, 3.0), elm: (1.0, 2.0, 3.0)}
-    cast.pointing = {}
+    population.pointing = {}
     assert trial.tick().pointing == {oak: None, elm: None}
     assert [trial.world.describe(slot)["points_at"] for slot in slots] == [None, None]

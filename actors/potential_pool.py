@@ -1,0 +1,90 @@
+"""Potentials of the goals that actors are on their way to, shared by all with the same goal."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.planning import Body, LayeredGrid, Potential
+
+_Key = tuple[float, float, float, Body]
+_IDLE_KEPT = 32
+
+
+class PotentialPool:
+    """One row a goal in a single array that kernels index.
+
+    Rows nobody uses are kept for the next who goes there and reused, oldest first, when more
+    than 32 lie idle. Memory: 12 bytes a cell and goal.
+    """
+
+    def __init__(self, grid: LayeredGrid) -> None:
+        self._grid = grid
+        self.arrays: NDArray[np.float32] = np.empty(
+            (0, len(grid.layered.floors), 3), dtype=np.float32
+        )
+        self._slots: dict[_Key, int] = {}
+        self._keys: list[_Key | None] = []
+        self._users: list[int] = []
+        self._idle: list[int] = []
+        self._stale: list[int] = []
+
+    def take(self, goal: tuple[float, float], z_m: float, body: Body) -> int:
+        """Row of a goal, for one more user."""
+        key = (goal[0], goal[1], z_m, body)
+        slot = self._slots.get(key)
+        if slot is None:
+            slot = self._fresh_slot()
+            self.arrays[slot] = self._potential(key)
+            self._slots[key] = slot
+            self._keys[slot] = key
+        elif slot in self._idle:
+            self._idle.remove(slot)
+        self._users[slot] += 1
+        return slot
+
+    def release(self, slot: int) -> None:
+        """One user less; -1 is nobody's row."""
+        if slot < 0:
+            return
+        self._users[slot] -= 1
+        if self._users[slot] == 0:
+            self._idle.append(slot)
+
+    def forget(self) -> None:
+        """The ground has changed: what is idle is dropped, what is in use is derived anew."""
+        for slot in self._idle:
+            key = self._keys[slot]
+            if key is not None:
+                del self._slots[key]
+                self._keys[slot] = None
+        self._stale = [slot for slot, users in enumerate(self._users) if users]
+
+    def renew_one(self) -> None:
+        """Derive the next potential that is out of date, if any; it costs as much as a new goal."""
+        while self._stale:
+            slot = self._stale.pop(0)
+            key = self._keys[slot]
+            if key is not None and self._users[slot]:
+                self.arrays[slot] = self._potential(key)
+                return
+
+    def _potential(self, key: _Key) -> NDArray[np.float32]:
+        x, y, z_m, body = key
+        return Potential(self._grid, (x, y), z_m, body.radius_m, body=body).values
+
+    def _fresh_slot(self) -> int:
+        if len(self._idle) > _IDLE_KEPT:
+            slot = self._idle.pop(0)
+            key = self._keys[slot]
+            if key is not None:
+                del self._slots[key]
+            return slot
+        slot = len(self._keys)
+        if slot == len(self.arrays):
+            grown = np.empty((max(4, 2 * slot), *self.arrays.shape[1:]), dtype=np.float32)
+            grown[:slot] = self.arrays
+            self.arrays = grown
+        self._keys.append(None)
+        self._users.append(0)
+        return slot

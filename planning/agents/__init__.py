@@ -1,0 +1,1 @@
+"""Agents: what each decides in a tick, all in one batch."""

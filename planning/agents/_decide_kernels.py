@@ -1,0 +1,253 @@
+"""One tick's decisions for many actors, on bare arrays.
+
+Everyone reads the state of the finished tick and writes its own row, so rows may be worked on in
+any order and on any number of threads; only `resolve` runs through the actors in rank order.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.planning.agents._bottleneck_kernels import AFTER_M, OPPOSED, lane_of, see_passage
+from esplanade.planning.agents._perturb_kernels import path_cost, update_path
+from esplanade.planning.agents._search_kernels import FOUND, NO_PATH, Moves, Workspace, search
+from esplanade.planning.agents._step_kernels import control_toward, last_check, limited
+from esplanade.planning.agents._task_kernels import SUB, Task, World, metres_left
+from esplanade.planning.agents.agents import (
+    ARRIVED,
+    BLOCKED,
+    GIVING_WAY,
+    MOVING,
+    REPLANNING,
+    WAITING,
+    Agents,
+    Decisions,
+)
+from esplanade.planning.compiled.jit import kernel
+from esplanade.planning.people._prediction_kernels import Prediction
+from esplanade.planning.routes._potential_kernels import potential_at
+
+MOST_BEHIND_S = 5.0
+"""More lost time than this is not made up."""
+EASE_S = 0.5
+"""Who is behind by less than this makes it up more slowly."""
+
+
+@kernel
+def keep_account(crowd: Agents, a: int, left: float, tick_s: float) -> float:
+    """Book the time that an actor lost or made up since the last tick; its speed from now on.
+
+    Lost is what a tick lasts beyond the time that the way made good in it takes at the preferred
+    speed.
+    """
+    p = crowd.parameters[a]
+    before = crowd.left_m[a]
+    crowd.left_m[a] = left
+    if np.isfinite(before) and np.isfinite(left):
+        lost = tick_s - (before - left) / p["speed_mps"]
+        crowd.behind_s[a] = min(MOST_BEHIND_S, max(0.0, crowd.behind_s[a] + lost))
+    faster = 1.0 + p["catch_up"] * min(1.0, crowd.behind_s[a] / EASE_S)
+    return float(min(p["max_speed_mps"], p["speed_mps"] * faster))
+
+
+@kernel
+def make_task(
+    potentials: NDArray[np.float32],
+    crowd: Agents,
+    a: int,
+    max_hold_m: float,
+    tick_s: float,
+    contested: bool,
+) -> Task:
+    """The question that actor a asks this tick. Without a goal or a way to it, it stays around.
+
+    `contested` is its passage; who is about to arrive keeps to no lane, or could not go to a goal
+    that lies left of it.
+    """
+    p = crowd.parameters[a]
+    cell = crowd.cells[a]
+    x = crowd.positions[a, 0]
+    y = crowd.positions[a, 1]
+    gx = crowd.goals[a, 0]
+    gy = crowd.goals[a, 1]
+    slot = crowd.potential_rows[a]
+    hold = slot < 0
+    speed = p["speed_mps"]
+    left = 0.0
+    if not hold:
+        left = potential_at(potentials[slot], cell, x, y)
+        if not np.isfinite(left):
+            hold = True
+            gx = x
+            gy = y
+        elif left <= max_hold_m:
+            hold = True
+        else:
+            speed = keep_account(crowd, a, left, tick_s)
+    else:
+        gx = x
+        gy = y
+    keeps_right = contested and left > AFTER_M
+    return Task(
+        a,
+        crowd.bodies[a],
+        cell,
+        x,
+        y,
+        crowd.velocities[a, 0],
+        crowd.velocities[a, 1],
+        gx,
+        gy,
+        p["radius_m"],
+        speed,
+        p["max_speed_mps"],
+        p["max_acceleration_mps2"],
+        p["goal_tolerance_m"],
+        p["contact_closing_s"],
+        p["risk_weight"],
+        p["foresight_s"],
+        p["closing_weight"],
+        p["turn_weight"],
+        p["wall_weight"],
+        p["hurry_weight"],
+        int(p["max_expansions"]),
+        int(p["edge_cells"]),
+        lane_of(crowd.passages[a], p["keep_right_weight"] if keeps_right else 0.0),
+        hold,
+    )
+
+
+@kernel
+def decide(
+    world: World,
+    potentials: NDArray[np.float32],
+    no_potential: NDArray[np.float32],
+    moves: Moves,
+    prediction: Prediction,
+    crowd: Agents,
+    tick_s: float,
+    first: int,
+    last: int,
+    workspace: Workspace,
+    out: Decisions,
+) -> None:
+    """Perturb the followed path, search anew, keep the better, and wish for a velocity.
+
+    The search only looks at what may be better than the followed path by the hysteresis, so that
+    it costs little while that path is good. The actors are first..last of those listed by where
+    they are now: neighbours look at the same ground and the same people, which stay in the cache.
+    Their followed paths, seen from now, are `world.reservations.paths`. The speeds of `moves` are
+    parts of each actor's own.
+    """
+    slices = out.paths.shape[1]
+    speeds = np.empty(len(moves.speeds))
+    kept = np.empty((slices, 2))
+    bent = np.empty((slices, 2))
+    trial = np.empty((slices, 2))
+    cells = np.empty(slices, dtype=np.int64)
+    for n in range(first, last):
+        a = world.reservations.members[0, n]
+        p = crowd.parameters[a]
+        contested = world.reservations.contested[a]
+        task = make_task(potentials, crowd, a, p["goal_tolerance_m"], tick_s, contested)
+        slot = crowd.potential_rows[a]
+        potential = potentials[slot] if slot >= 0 else no_potential
+        for m in range(len(moves.speeds)):
+            part = moves.speeds[m]
+            speeds[m] = task.max_speed_mps if part > 1.0 else part * task.speed_mps
+        own = Moves(moves.cosines, moves.sines, speeds, moves.straight, True)
+        bound = np.inf
+        changed = False
+        if crowd.known[a]:
+            kept[:] = world.reservations.paths[a]
+            cost, changed = _improve(world, potential, task, kept, bent, cells, trial)
+            bound = cost - p["hysteresis_s"]
+        found = search(world, potential, own, task, True, bound, workspace, out.paths[a])
+        status = found.status
+        better = True
+        if bound < np.inf:
+            better = (
+                status != NO_PATH and path_cost(world, potential, task, out.paths[a])[0] < bound
+            )
+            if not better:
+                out.paths[a] = kept
+                status = FOUND
+        out.statuses[a] = status
+        out.expansions[a] = found.expansions
+        out.renewed[a] = better or changed
+        switched = better and crowd.known[a]
+        path = out.paths[a]
+        ux, uy = control_toward(task, path[SUB, 0], path[SUB, 1], world.step_s)
+        contact = p["radius_m"] + p["person_clearance_m"]
+        ux, uy, dodged = last_check(world, prediction, task, contact, ux, uy)
+        wx, wy = limited(task, ux, uy, tick_s)
+        out.wishes[a, 0] = wx
+        out.wishes[a, 1] = wy
+        away = metres_left(potential, task, task.cell, task.x, task.y)
+        lost = slot >= 0 and not np.isfinite(potential_at(potential, task.cell, task.x, task.y))
+        if len(crowd.passages) > OPPOSED:
+            see_passage(world.grid, potential, crowd, a, slot >= 0 and not task.hold, tick_s)
+        out.reasons[a] = _reason(
+            crowd, task, away, lost, path, status, switched, dodged, world.step_s
+        )
+
+
+@kernel
+def _improve(
+    world: World,
+    potential: NDArray[np.float32],
+    task: Task,
+    path: NDArray[np.float64],
+    bent: NDArray[np.float64],
+    cells: NDArray[np.int64],
+    trial: NDArray[np.float64],
+) -> tuple[float, bool]:
+    """Perturb a path in place where that is worth it: its cost, inf if illegal, and if it changed.
+
+    Worth it means less mean risk and less cost, in which time and length are.
+    """
+    cost, risk, legal = path_cost(world, potential, task, path)
+    if not legal:
+        return np.inf, False
+    bent[:] = path
+    if update_path(world, potential, task, bent, cells, trial) > 0:
+        bent_cost, bent_risk, _ = path_cost(world, potential, task, bent)
+        if bent_risk < risk and bent_cost < cost:
+            path[:] = bent
+            return bent_cost, True
+    return cost, False
+
+
+@kernel
+def _reason(
+    crowd: Agents,
+    task: Task,
+    away: float,
+    lost: bool,
+    path: NDArray[np.float64],
+    status: int,
+    switched: bool,
+    dodged: bool,
+    step_s: float,
+) -> int:
+    """Why the actor does what it does; `lost` tells that no way leads to its goal."""
+    if dodged:
+        return GIVING_WAY
+    if lost:
+        return BLOCKED
+    if crowd.potential_rows[task.me] < 0:
+        return WAITING
+    if task.hold:
+        return ARRIVED
+    if status == NO_PATH:  # a way leads there, but every first move is taken by somebody
+        return WAITING
+    ramp = 2 * SUB  # from a stand it takes so many slices to get going
+    ahead = 2 * ramp
+    pace = np.hypot(path[ahead, 0] - path[ramp, 0], path[ahead, 1] - path[ramp, 1]) / (2.0 * step_s)
+    standing = np.hypot(task.vx, task.vy) < 0.15 * task.speed_mps
+    if standing and pace < 0.15 * task.speed_mps and away > 4.0 * task.speed_mps * step_s:
+        return WAITING
+    if pace < 0.6 * task.speed_mps and away > 4.0 * task.speed_mps * step_s:
+        return GIVING_WAY
+    if switched:
+        return REPLANNING
+    return MOVING

@@ -1,0 +1,320 @@
+"""Costs of a whole path and its recursive perturbation, Lei & Li, figs. 7-9, on bare arrays."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.planning.agents._reservation_kernels import conflict
+from esplanade.planning.agents._task_kernels import (
+    SUB,
+    Task,
+    World,
+    metres_left,
+    needed_clearance,
+    risk_price,
+    time_cost,
+    wall_cost,
+    way_left,
+)
+from esplanade.planning.compiled.jit import inlined, kernel
+from esplanade.planning.grid._grid_kernels import (
+    GridArrays,
+    clearance_at,
+    floor_of,
+    follow,
+    follow_path,
+    length,
+)
+from esplanade.planning.people._risk_kernels import risk_at
+from esplanade.planning.routes._potential_kernels import Guide, potential_at
+
+SHORTEST_STRETCH = 4
+"""Stretches of fewer slices are not split further."""
+OFFSETS = 3
+"""Candidates m' on either side of the middle."""
+OFFSET_M = 0.2
+"""Distance between candidates, metres."""
+LEAST_RISK = 1e-3
+"""A bend has to lower the mean risk of a stretch by so much."""
+
+
+@inlined
+def slice_risk(
+    world: World, task: Task, k: int, cell: int, ax: float, ay: float, bx: float, by: float
+) -> float:
+    """Risk at b, in a cell, slice k, having come from a in one slice; none where nobody stands."""
+    if cell < 0:
+        return 0.0
+    ds = world.step_s / SUB
+    return risk_at(
+        world.grid,
+        world.risk,
+        k,
+        cell,
+        bx,
+        by,
+        (bx - ax) / ds,
+        (by - ay) / ds,
+        task.closing_weight,
+    )
+
+
+@kernel
+def risks_along(
+    world: World,
+    task: Task,
+    cell: int,
+    path: NDArray[np.float64],
+    first: int,
+    last: int,
+    most: float,
+    out: NDArray[np.float64],
+) -> bool:
+    """Fill `out` (K,) with the risks of slices first + 1 ... last; False if their sum is not below
+    `most`, beyond which they are not asked.
+
+    The path is in `cell` at slice first.
+    """
+    total = 0.0
+    for k in range(first + 1, last + 1):
+        x = path[k, 0]
+        y = path[k, 1]
+        cell = follow(world.grid, cell, x, y)
+        out[k] = slice_risk(world, task, k, cell, path[k - 1, 0], path[k - 1, 1], x, y)
+        total += out[k]
+        if total >= most:
+            return False
+    return True
+
+
+@inlined
+def _may_go(task: Task, need: float, moved: float, room: float, left_m: float, ds: float) -> bool:
+    """Whether a slice is free of walls, within the speed limit, with a way to the goal."""
+    return (
+        moved <= task.max_speed_mps * ds + 1e-9
+        and room >= need
+        and bool(task.hold or np.isfinite(left_m))
+    )
+
+
+@inlined
+def _on_edges(grid: GridArrays, task: Task, cell: int, edge_m: float, moved: float) -> float:
+    """Metres in a row at steps and edges, a slice on; inf if they are too many."""
+    if grid.flat or cell < 0 or not grid.edges[task.body, cell]:
+        return 0.0
+    edge_m += moved
+    return edge_m if edge_m < task.edge_cells * grid.layered.cell_m else np.inf
+
+
+@kernel
+def stretch_is_legal(
+    world: World,
+    potential: Guide,
+    task: Task,
+    need: float,
+    cell: int,
+    path: NDArray[np.float64],
+    first: int,
+    last: int,
+) -> bool:
+    """Free of walls, within the speed limit, clear of certain obstacles, with a way to the goal.
+
+    The path is in `cell` at slice first.
+    """
+    grid = world.grid
+    ds = world.step_s / SUB
+    edge_m = 0.0
+    for k in range(first, last):
+        ax = path[k, 0]
+        ay = path[k, 1]
+        bx = path[k + 1, 0]
+        by = path[k + 1, 1]
+        moved = length(bx - ax, by - ay)
+        feet_m = floor_of(grid, cell)
+        cell = follow(grid, cell, bx, by)
+        room = clearance_at(grid, task.body, cell, bx, by)
+        if not _may_go(task, need, moved, room, potential_at(potential, cell, bx, by), ds):
+            return False
+        edge_m = _on_edges(grid, task, cell, edge_m, moved)
+        if edge_m == np.inf:
+            return False
+        if conflict(world.reservations, task.me, feet_m, k, ax, ay, bx, by)[0]:
+            return False
+    return True
+
+
+@kernel
+def path_cost(
+    world: World, potential: Guide, task: Task, path: NDArray[np.float64]
+) -> tuple[float, float, bool]:
+    """Cost of a whole path as the search counts it (its length and time among it), mean risk, and
+    whether it is legal: `stretch_is_legal` of all of it."""
+    grid = world.grid
+    need = needed_clearance(world, task)
+    ds = world.step_s / SUB
+    slices = len(path) - 1
+    cell = task.cell
+    vx = task.vx
+    vy = task.vy
+    cost = 0.0
+    risk = 0.0
+    left_m = 0.0
+    edge_m = 0.0
+    legal = True
+    for k in range(slices):
+        ax = path[k, 0]
+        ay = path[k, 1]
+        bx = path[k + 1, 0]
+        by = path[k + 1, 1]
+        moved = length(bx - ax, by - ay)
+        ux = (bx - ax) / ds
+        uy = (by - ay) / ds
+        feet_m = floor_of(grid, cell)
+        cell = follow(grid, cell, bx, by)
+        left_m = metres_left(potential, task, cell, bx, by)
+        r = slice_risk(world, task, k + 1, cell, ax, ay, bx, by)
+        room = clearance_at(grid, task.body, cell, bx, by)
+        edge_m = _on_edges(grid, task, cell, edge_m, moved)
+        blocked, soft = conflict(world.reservations, task.me, feet_m, k, ax, ay, bx, by)
+        if blocked or edge_m == np.inf or not _may_go(task, need, moved, room, left_m, ds):
+            legal = False
+        risk += r
+        cost += (
+            time_cost(task, left_m, moved / ds, ds)
+            + risk_price(task, (k // SUB) * world.step_s) * ds * (r + soft)
+            + task.turn_weight * length(ux - vx, uy - vy)
+            + wall_cost(task, room, ds)
+        )
+        vx = ux
+        vy = uy
+    cost += way_left(task, left_m, length(vx, vy))
+    return cost, risk / slices, legal
+
+
+@kernel
+def _bend(
+    old: NDArray[np.float64],
+    new: NDArray[np.float64],
+    first: int,
+    middle: int,
+    last: int,
+    mx: float,
+    my: float,
+) -> None:
+    """Write P[first]-m' and m'-P[last], evenly in space and time, into `new`."""
+    for k in range(first, last + 1):
+        if k <= middle:
+            u = (k - first) / (middle - first)
+            new[k, 0] = (1.0 - u) * old[first, 0] + u * mx
+            new[k, 1] = (1.0 - u) * old[first, 1] + u * my
+        else:
+            u = (k - middle) / (last - middle)
+            new[k, 0] = (1.0 - u) * mx + u * old[last, 0]
+            new[k, 1] = (1.0 - u) * my + u * old[last, 1]
+
+
+@kernel
+def perturb_path(
+    world: World,
+    potential: Guide,
+    task: Task,
+    need: float,
+    path: NDArray[np.float64],
+    cells: NDArray[np.int64],
+    first: int,
+    last: int,
+    risks: NDArray[np.float64],
+    trial: NDArray[np.float64],
+    trial_risks: NDArray[np.float64],
+) -> bool:
+    """Replace a stretch by the first bend that is legal and less risky by `LEAST_RISK`; fig. 8.
+
+    Candidates lie on the normal through the chord's midpoint, nearest first, either side in turn.
+    The printed test accepts equal risk too, with which the recursion need not settle. `cells` (K,)
+    are those that the path is in.
+    """
+    if last - first < 2:  # there is nothing between its ends
+        return False
+    begin = cells[first]
+    total = 0.0
+    for k in range(first + 1, last + 1):
+        total += risks[k]
+    least = (last - first) * LEAST_RISK
+    if total <= least:
+        return False
+    cx = path[last, 0] - path[first, 0]
+    cy = path[last, 1] - path[first, 1]
+    chord = np.hypot(cx, cy)
+    if chord < 1e-6:
+        return False
+    middle = (first + last) // 2
+    for n in range(2 * OFFSETS):
+        offset = OFFSET_M * (n // 2 + 1) * (1.0 if n % 2 == 0 else -1.0)
+        mx = path[first, 0] + 0.5 * cx - offset * cy / chord
+        my = path[first, 1] + 0.5 * cy + offset * cx / chord
+        _bend(path, trial, first, middle, last, mx, my)
+        if risks_along(
+            world, task, begin, trial, first, last, total - least, trial_risks
+        ) and stretch_is_legal(world, potential, task, need, begin, trial, first, last):
+            risks[first + 1 : last + 1] = trial_risks[first + 1 : last + 1]
+            path[first : last + 1] = trial[first : last + 1]
+            follow_path(world.grid, path, cells, first, last)
+            return True
+    return False
+
+
+@kernel
+def _arrival(
+    potential: Guide, task: Task, path: NDArray[np.float64], cells: NDArray[np.int64]
+) -> int:
+    """Slice at which a path arrives at the goal, its last if it does not."""
+    last = len(path) - 1
+    if not task.hold:
+        for k in range(1, last):
+            left_m = metres_left(potential, task, cells[k], path[k, 0], path[k, 1])
+            if left_m <= task.goal_tolerance_m:
+                return k
+    return last
+
+
+@kernel
+def update_path(
+    world: World,
+    potential: Guide,
+    task: Task,
+    path: NDArray[np.float64],
+    cells: NDArray[np.int64],
+    trial: NDArray[np.float64],
+) -> int:
+    """Fig. 7: perturb the whole path, else its halves, and so on; returns how many bends held.
+
+    The recursion is a stack of stretches; the earlier half comes first, as printed. What lies
+    after the arrival at the goal is left alone: a bend over it would arrive later and later.
+    `cells` (K,) are filled with those that the path is in.
+    """
+    cells[0] = task.cell
+    follow_path(world.grid, path, cells, 0, len(path) - 1)
+    need = needed_clearance(world, task)
+    risks = np.empty(len(path))
+    trial_risks = np.empty(len(path))
+    risks_along(world, task, task.cell, path, 0, len(path) - 1, np.inf, risks)
+    stack = np.empty((64, 2), dtype=np.int64)
+    stack[0, 0] = 0
+    stack[0, 1] = _arrival(potential, task, path, cells)
+    height = 1
+    bends = 0
+    while height > 0:
+        height -= 1
+        first = stack[height, 0]
+        last = stack[height, 1]
+        if perturb_path(
+            world, potential, task, need, path, cells, first, last, risks, trial, trial_risks
+        ):
+            bends += 1
+        elif last - first >= SHORTEST_STRETCH:
+            middle = (first + last) // 2
+            stack[height, 0] = middle
+            stack[height, 1] = last
+            stack[height + 1, 0] = first
+            stack[height + 1, 1] = middle
+            height += 2
+    return bends

@@ -1,0 +1,217 @@
+"""Where everyone is headed and who goes first, on bare arrays: before anybody decides."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.planning.agents._bottleneck_kernels import OPPOSED, find_contested, order_at_passages
+from esplanade.planning.agents._reservation_kernels import (
+    AGAINST,
+    Reservations,
+    index_paths,
+)
+from esplanade.planning.agents._task_kernels import SUB, World
+from esplanade.planning.agents.agents import Agents
+from esplanade.planning.compiled.jit import inlined, kernel
+from esplanade.planning.grid._grid_kernels import GridArrays, floor_of, follow
+from esplanade.planning.routes._potential_kernels import direction_at, potential_at
+from esplanade.planning.scene.heights import BODIES_OVERLAP_M
+
+HELD_UP_PART = 0.3
+"""Who is slower than this part of the preferred speed is held up."""
+SETTLED_M = 1.0
+"""Who is so near the goal lets everyone else pass."""
+JAM_M = 8.0
+"""Those held up no further away than that belong to the same jam."""
+JAM_ACTORS = 8
+"""So many who are held up and want against somebody make a jam."""
+
+
+@kernel
+def prepare(
+    world: World,
+    potentials: NDArray[np.float32],
+    crowd: Agents,
+    tick_s: float,
+    order: NDArray[np.int64],
+) -> None:
+    """Fill the reservations of a tick, and `order` (A,) with the actors, who goes first before all.
+
+    Of two with equal ways left the one of smaller rank goes first.
+    """
+    r = world.reservations
+    actors = len(order)
+    continue_paths(world, potentials, crowd, tick_s, r.paths, r.heights)
+    index_paths(r)
+    left_m = np.empty(actors)
+    ways_left(potentials, crowd, left_m)
+    find_courses(world.grid, potentials, crowd, left_m, r)
+    empty_jams(left_m, r)
+    if actors > OPPOSED:
+        find_contested(crowd, r.contested)
+        order_at_passages(crowd, r.contested, left_m)
+    by_rank = np.argsort(crowd.ranks, kind="mergesort")
+    order[:] = by_rank[np.argsort(left_m[by_rank], kind="mergesort")]
+    for n in range(actors):
+        r.ranks[order[n]] = n
+
+
+@kernel
+def continue_paths(
+    world: World,
+    potentials: NDArray[np.float32],
+    crowd: Agents,
+    tick_s: float,
+    out: NDArray[np.float64],
+    heights: NDArray[np.float64],
+) -> None:
+    """Followed paths as seen from now: fill out (A, K, 2) and heights (A, K).
+
+    A path is read off `ages` ticks after its start, begins where the actor really is, and is
+    lengthened at its end down the potential. Who follows none is taken to stand.
+    """
+    slices = out.shape[1]
+    ds = world.step_s / SUB
+    for a in range(len(out)):
+        px = crowd.positions[a, 0]
+        py = crowd.positions[a, 1]
+        if not crowd.known[a]:
+            out[a, :, 0] = px
+            out[a, :, 1] = py
+            heights[a] = floor_of(world.grid, crowd.cells[a])
+            continue
+        path = crowd.followed[a]
+        cell = crowd.cells[a]
+        shift = crowd.ages[a] * tick_s / ds
+        ox = 0.0
+        oy = 0.0
+        for k in range(slices):
+            u = shift + k
+            i = int(u)
+            if i + 1 < slices:
+                w = u - i
+                x = (1.0 - w) * path[i, 0] + w * path[i + 1, 0]
+                y = (1.0 - w) * path[i, 1] + w * path[i + 1, 1]
+            else:
+                x, y = _carry_on(
+                    world,
+                    potentials,
+                    crowd,
+                    a,
+                    follow(world.grid, cell, path[slices - 1, 0], path[slices - 1, 1]),
+                    path[slices - 1, 0],
+                    path[slices - 1, 1],
+                    (u - (slices - 1)) * ds,
+                )
+            if k == 0:
+                ox = px - x
+                oy = py - y
+            fade = max(0.0, 1.0 - 0.25 * k)
+            out[a, k, 0] = x + fade * ox
+            out[a, k, 1] = y + fade * oy
+            if cell >= 0:
+                on = follow(world.grid, cell, out[a, k, 0], out[a, k, 1])
+                cell = on if on >= 0 else cell
+            heights[a, k] = floor_of(world.grid, cell)
+
+
+@inlined
+def _carry_on(
+    world: World,
+    potentials: NDArray[np.float32],
+    crowd: Agents,
+    a: int,
+    cell: int,
+    x: float,
+    y: float,
+    seconds: float,
+) -> tuple[float, float]:
+    """Where an actor gets from the end of its path, straight down the potential."""
+    slot = crowd.potential_rows[a]
+    if slot < 0:
+        return x, y
+    gx, gy, leg = direction_at(world.grid, potentials[slot], cell, x, y)
+    way = min(leg, crowd.parameters[a]["speed_mps"] * seconds)
+    return x + gx * way, y + gy * way
+
+
+@kernel
+def ways_left(potentials: NDArray[np.float32], crowd: Agents, out: NDArray[np.float64]) -> None:
+    """Fill (A,) with the metres that decide who goes first: who has the least way left.
+
+    Two do not change their order while one lets the other pass, since only the other gains.
+    Those who are about there, or have no way to go, have inf.
+    """
+    for a in range(len(out)):
+        out[a] = np.inf
+        slot = crowd.potential_rows[a]
+        if slot >= 0:
+            x, y = crowd.positions[a]
+            left = potential_at(potentials[slot], crowd.cells[a], x, y)
+            if left > SETTLED_M:
+                out[a] = left
+
+
+@kernel
+def find_courses(
+    grid: GridArrays,
+    potentials: NDArray[np.float32],
+    crowd: Agents,
+    left_m: NDArray[np.float64],
+    reservations: Reservations,
+) -> None:
+    """Fill `courses` and `held_up`; `left_m` (A,) is what `ways_left` gave."""
+    r = reservations
+    for a in range(len(left_m)):
+        r.courses[a] = 0.0
+        r.held_up[a] = False
+        if left_m[a] < np.inf:
+            x, y = crowd.positions[a]
+            potential = potentials[crowd.potential_rows[a]]
+            r.courses[a, 0], r.courses[a, 1], _ = direction_at(
+                grid, potential, crowd.cells[a], x, y
+            )
+            speed = np.hypot(crowd.velocities[a, 0], crowd.velocities[a, 1])
+            r.held_up[a] = speed < HELD_UP_PART * crowd.parameters[a]["speed_mps"]
+
+
+@kernel
+def empty_jams(left_m: NDArray[np.float64], reservations: Reservations) -> None:
+    """Put into `left_m` (A,), for those in a jam, what decides who goes first there.
+
+    The middle of a jam lies half-way between those held up who want where I want, with me, and
+    those against me. Who is beyond it goes first, the furthest before all; then those who still
+    have to come there, the nearest first; then everyone else. Places are summed in whole
+    micrometres, so that the order of actors does not matter.
+    """
+    r = reservations
+    held_up = np.flatnonzero(r.held_up)
+    if len(held_up) < JAM_ACTORS:
+        return
+    for a in range(len(left_m)):
+        if left_m[a] == np.inf:
+            continue
+        left_m[a] += JAM_M
+        count = np.zeros(2, dtype=np.int64)  # with me, against me
+        place = np.zeros((2, 2), dtype=np.int64)
+        count[0] = 1
+        for o in held_up:
+            dx = r.paths[o, 0, 0] - r.paths[a, 0, 0]
+            dy = r.paths[o, 0, 1] - r.paths[a, 0, 1]
+            if (
+                o == a
+                or dx * dx + dy * dy > JAM_M * JAM_M
+                or abs(r.heights[o, 0] - r.heights[a, 0]) >= BODIES_OVERLAP_M
+            ):
+                continue
+            along = r.courses[a, 0] * r.courses[o, 0] + r.courses[a, 1] * r.courses[o, 1]
+            if abs(along) > -AGAINST:
+                side = 0 if along > 0.0 else 1
+                count[side] += 1
+                place[side, 0] += int(np.round(1e6 * dx))
+                place[side, 1] += int(np.round(1e6 * dy))
+        if count[1] < JAM_ACTORS:
+            continue
+        mx = 0.5e-6 * (place[0, 0] / count[0] + place[1, 0] / count[1])
+        my = 0.5e-6 * (place[0, 1] / count[0] + place[1, 1] / count[1])
+        beyond = mx * r.courses[a, 0] + my * r.courses[a, 1] < 0.0
+        left_m[a] = np.sqrt(mx * mx + my * my) * (-1.0 if beyond else 1.0)

@@ -1,0 +1,301 @@
+"""Certain obstacles: the planned ways of other actors, looked up in CT-space."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.planning.compiled.jit import inlined, kernel
+from esplanade.planning.ground._geometry_kernels import closest_approach
+from esplanade.planning.scene.heights import BODIES_OVERLAP_M
+
+MARGIN_M = 0.03
+"""Planned ways keep this much more than the sum of the radii."""
+SOFT = 0.25
+"""What a meeting with somebody who will yield weighs, in certain contacts with a person. If it were
+as dear, everyone would rather wait than go where others stand, and nobody would make way."""
+EVADING_SLICES = 2
+"""So soon there may be no time left to get out of somebody's way."""
+EVADING_M = 0.005
+"""Who then gains so much room over standing may move, even if they would meet all the same."""
+MEETING_ROOM_M = 0.8
+"""Room that two who want against each other would like, if one of them is held up."""
+MEETING_ROOM = 0.2
+"""What having none of it weighs, in certain contacts with a person: half of that when they face
+each other, more with the other on the right, nothing with the other on the left. So both keep to
+the right, and two streams form where there was a crowd."""
+QUEUE_ROOM_M = 0.5
+"""Room that two who are held up would like. Coming closer gains a little way once, but costs as
+long as both stay: those who wait leave gaps, through which others come out."""
+QUEUE_ROOM = 0.2
+AGAINST = -0.2
+"""Cosine of the angle between two courses from which on they are against each other."""
+
+
+class Reservations(NamedTuple):
+    """Everyone's planned way and an index of it by bucket, slice by slice.
+
+    `paths` (A, K, 2) m; `heights` (A, K) m of the feet; `radii` (A,) m; `ranks` (A,), smaller goes
+    first; `courses` (A, 2) unit vectors of where they want, zeros for who goes nowhere; `held_up`
+    (A,) tells who gets on badly, `contested` (A,) at whose passage many want against them; `starts`
+    (K, buckets + 1) and `members` (K, A) list the actors of a bucket.
+    """
+
+    paths: NDArray[np.float64]
+    heights: NDArray[np.float64]
+    radii: NDArray[np.float64]
+    ranks: NDArray[np.int64]
+    courses: NDArray[np.float64]
+    held_up: NDArray[np.bool_]
+    contested: NDArray[np.bool_]
+    starts: NDArray[np.int64]
+    members: NDArray[np.int64]
+    x0: float
+    y0: float
+    bucket_m: float
+    widest_m: float
+    """The greatest radius."""
+    fastest_m: float
+    """How far anyone gets in a slice."""
+    nx: int
+    ny: int
+
+
+@kernel
+def index_paths(reservations: Reservations) -> None:
+    """Fill `starts` and `members` from `paths` (a counting sort for every slice)."""
+    r = reservations
+    actors, slices, _ = r.paths.shape
+    bucket = np.empty(actors, dtype=np.int64)
+    for k in range(slices):
+        r.starts[k] = 0
+        for a in range(actors):
+            i = min(r.nx - 1, max(0, int((r.paths[a, k, 0] - r.x0) / r.bucket_m)))
+            j = min(r.ny - 1, max(0, int((r.paths[a, k, 1] - r.y0) / r.bucket_m)))
+            bucket[a] = j * r.nx + i
+            r.starts[k, bucket[a] + 1] += 1
+        for b in range(r.nx * r.ny):
+            r.starts[k, b + 1] += r.starts[k, b]
+        for a in range(actors - 1, -1, -1):
+            r.starts[k, bucket[a] + 1] -= 1
+            r.members[k, r.starts[k, bucket[a] + 1]] = a
+        for b in range(r.nx * r.ny):
+            r.starts[k, b] = r.starts[k, b + 1]
+        r.starts[k, r.nx * r.ny] = actors
+
+
+@inlined
+def _against(r: Reservations, me: int, other: int) -> bool:
+    """Whether the two want against each other."""
+    along = r.courses[me, 0] * r.courses[other, 0] + r.courses[me, 1] * r.courses[other, 1]
+    return bool(along < AGAINST)
+
+
+@inlined
+def room_wanted(r: Reservations, me: int, other: int) -> float:
+    """Metres that I would like to another beyond not touching; none where everyone gets along."""
+    if not (r.held_up[me] or r.held_up[other]):
+        return 0.0
+    if _against(r, me, other):
+        return MEETING_ROOM_M
+    return QUEUE_ROOM_M if r.held_up[me] and r.held_up[other] else 0.0
+
+
+@inlined
+def crowding(r: Reservations, me: int, other: int, k: int, x: float, y: float) -> float:
+    """What being at (x, y) at slice k weighs because it leaves too little room to one other."""
+    room_m = room_wanted(r, me, other)
+    if room_m == 0.0:
+        return 0.0
+    ex = x - r.paths[other, k, 0]
+    ey = y - r.paths[other, k, 1]
+    apart = np.sqrt(ex * ex + ey * ey)
+    lacking = 1.0 - max(0.0, apart - r.radii[me] - r.radii[other] - MARGIN_M) / room_m
+    if lacking <= 0.0:
+        return 0.0
+    if not _against(r, me, other):
+        return float(QUEUE_ROOM * lacking)
+    to_the_right = (r.courses[me, 0] * ey - r.courses[me, 1] * ex) / max(apart, 1e-9)
+    return float(MEETING_ROOM * lacking * max(0.0, 0.5 + to_the_right))
+
+
+@inlined
+def buckets_within(
+    r: Reservations, x: float, y: float, within_m: float
+) -> tuple[int, int, int, int]:
+    """Rows and columns (j0, j1, i0, i1) of the buckets that may hold somebody within so far."""
+    return (
+        min(r.ny - 1, max(0, int((y - within_m - r.y0) / r.bucket_m))),
+        min(r.ny - 1, max(0, int((y + within_m - r.y0) / r.bucket_m))),
+        min(r.nx - 1, max(0, int((x - within_m - r.x0) / r.bucket_m))),
+        min(r.nx - 1, max(0, int((x + within_m - r.x0) / r.bucket_m))),
+    )
+
+
+@inlined
+def conflict(
+    reservations: Reservations,
+    me: int,
+    feet_m: float,
+    k: int,
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+) -> tuple[bool, float]:
+    """Meetings while moving from a at slice k to b at slice k + 1.
+
+    The first value tells of one that is forbidden, the second adds up what the others weigh, and
+    at the end of a step what is lacking of the room between them. Swapping places is a meeting.
+    `feet_m` is the height that I am at; who is on another floor is
+    not met.
+    """
+    r = reservations
+    soft = 0.0
+    # Who is further away in the end neither was met on the way nor is crowded.
+    far = max(MEETING_ROOM_M, np.sqrt((bx - ax) ** 2 + (by - ay) ** 2) + r.fastest_m)
+    j0, j1, i0, i1 = buckets_within(r, bx, by, 2.0 * r.widest_m + MARGIN_M + far)
+    for j in range(j0, j1 + 1):
+        row = j * r.nx  # buckets of a row are listed one after the other
+        for m in range(r.starts[k + 1, row + i0], r.starts[k + 1, row + i1 + 1]):
+            other = r.members[k + 1, m]
+            if other == me or abs(r.heights[other, k + 1] - feet_m) >= BODIES_OVERLAP_M:
+                continue
+            dx = bx - r.paths[other, k + 1, 0]
+            dy = by - r.paths[other, k + 1, 1]
+            most = r.radii[me] + r.radii[other] + MARGIN_M + far
+            if dx * dx + dy * dy > most * most:
+                continue
+            weight = _meeting(r, me, other, k, ax, ay, bx, by)
+            if weight == np.inf:
+                return True, 1.0
+            soft += weight
+            if k % 2 == 1:  # b is the end of a step
+                soft += crowding(r, me, other, k + 1, bx, by)
+    return False, soft
+
+
+@inlined
+def others_near(
+    reservations: Reservations,
+    me: int,
+    feet_m: float,
+    k: int,
+    x: float,
+    y: float,
+    slice_m: float,
+    others: NDArray[np.int64],
+) -> tuple[int, int]:
+    """List whom one may meet who leaves (x, y) at slice k, within two slices; how many they are.
+
+    From the end of `others` are listed, backwards, those whom one cannot meet but may crowd: the
+    second number. `slice_m` is how far one gets in a slice. `others` takes as many as it has room
+    for.
+    """
+    r = reservations
+    room_m = MEETING_ROOM_M + r.fastest_m
+    j0, j1, i0, i1 = buckets_within(r, x, y, 2.0 * r.widest_m + MARGIN_M + 2.0 * slice_m + room_m)
+    met = 0
+    crowded = 0
+    for j in range(j0, j1 + 1):
+        row = j * r.nx  # buckets of a row are listed one after the other
+        for m in range(r.starts[k + 1, row + i0], r.starts[k + 1, row + i1 + 1]):
+            o = r.members[k + 1, m]
+            if o == me or abs(r.heights[o, k + 1] - feet_m) >= BODIES_OVERLAP_M:
+                continue
+            if met + crowded == len(others):
+                return met, crowded
+            reach = r.radii[me] + r.radii[o] + MARGIN_M + 2.0 * slice_m
+            room_m = room_wanted(r, me, o)
+            dx = x - r.paths[o, k + 1, 0]
+            dy = y - r.paths[o, k + 1, 1]
+            # Nobody gets further than that from where they are in the middle of the step.
+            most = reach + room_m + r.fastest_m
+            if dx * dx + dy * dy > most * most:
+                continue
+            nearest = np.inf
+            for s in range(2):
+                d = closest_approach(
+                    x - r.paths[o, k + s, 0],
+                    y - r.paths[o, k + s, 1],
+                    r.paths[o, k + s, 0] - r.paths[o, k + s + 1, 0],
+                    r.paths[o, k + s, 1] - r.paths[o, k + s + 1, 1],
+                )
+                nearest = min(nearest, d)
+            if nearest < reach:
+                others[met] = o
+                met += 1
+            elif nearest < reach + room_m:
+                crowded += 1
+                others[len(others) - crowded] = o
+    return met, crowded
+
+
+@inlined
+def meetings(
+    reservations: Reservations,
+    others: NDArray[np.int64],
+    met: int,
+    crowded: int,
+    me: int,
+    k: int,
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+    cx: float,
+    cy: float,
+) -> tuple[bool, float]:
+    """`conflict` from a at slice k to b and on to c, with those that `others_near` listed."""
+    soft = 0.0
+    for n in range(met):
+        o = others[n]
+        weight = _meeting(reservations, me, o, k, ax, ay, bx, by) + _meeting(
+            reservations, me, o, k + 1, bx, by, cx, cy
+        )
+        if weight == np.inf:
+            return True, 1.0
+        soft += weight + crowding(reservations, me, o, k + 2, cx, cy)
+    for n in range(len(others) - crowded, len(others)):
+        soft += crowding(reservations, me, others[n], k + 2, cx, cy)
+    return False, soft
+
+
+@inlined
+def _meeting(
+    reservations: Reservations,
+    me: int,
+    other: int,
+    k: int,
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+) -> float:
+    """What a move from a at slice k to b weighs because of one other actor; inf if forbidden.
+
+    Nothing if the two stay clear, or are too close already and draw apart. A meeting with an actor
+    of larger rank, who will yield, is dear; with one of smaller rank it is forbidden, unless it
+    is about to come to me wherever I stand and the move gains room: who cannot get out of the way
+    in time has to begin with it.
+    """
+    r = reservations
+    rx = ax - r.paths[other, k, 0]
+    ry = ay - r.paths[other, k, 1]
+    ex = bx - r.paths[other, k + 1, 0]
+    ey = by - r.paths[other, k + 1, 1]
+    reach = r.radii[me] + r.radii[other] + MARGIN_M
+    d = closest_approach(rx, ry, ex - rx, ey - ry)
+    if d >= reach:
+        return 0.0
+    before = np.sqrt(rx * rx + ry * ry)
+    if d >= before - 1e-9 and np.sqrt(ex * ex + ey * ey) > before:
+        return 0.0
+    if r.ranks[other] > r.ranks[me]:
+        return SOFT
+    if (
+        k < EVADING_SLICES
+        and d > closest_approach(rx, ry, ex + ax - bx - rx, ey + ay - by - ry) + EVADING_M
+    ):
+        return SOFT
+    return np.inf

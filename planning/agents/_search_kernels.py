@@ -1,0 +1,356 @@
+"""Best-first search in CT-space on bare arrays, Lei & Li, fig. 5."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.planning.agents._reservation_kernels import meetings, others_near
+from esplanade.planning.agents._task_kernels import (
+    SUB,
+    WALL_COST_M,
+    Task,
+    World,
+    metres_left,
+    needed_clearance,
+    on_ramp,
+    risk_price,
+    time_cost,
+    wall_cost,
+    way_left,
+)
+from esplanade.planning.compiled._heap_kernels import heap_pop, heap_push
+from esplanade.planning.compiled.jit import inlined
+from esplanade.planning.grid._grid_kernels import GridArrays, clearance_at, follow, length
+from esplanade.planning.people._risk_kernels import people_near, risk_among
+from esplanade.planning.routes._potential_kernels import Guide, direction_at
+
+FOUND = 0
+PARTIAL = 1
+NO_PATH = 2
+
+
+DEPTH_BONUS_S = 0.01
+"""Deeper nodes go first by at least so much a step: the path may cost that much more a step than
+the best, and the search looks at a fraction of the nodes."""
+LIKELY_PART = 0.7
+"""Part of what the followed path costs beyond its time that any other is expected to cost too."""
+
+
+class Moves(NamedTuple):
+    """The moves that a node branches into, besides staying put.
+
+    `cosines` and `sines` (M,) are those of the heading, counted from the way down the potential
+    when `relative`, else from +x; `speeds` (M,) m/s. The first `straight` moves go straight down
+    and stop at the goal rather than beyond it.
+    """
+
+    cosines: NDArray[np.float64]
+    sines: NDArray[np.float64]
+    speeds: NDArray[np.float64]
+    straight: int
+    relative: bool
+
+
+class Workspace(NamedTuple):
+    """Memory of one search at a time; `node_*` rows are nodes in the order they were made.
+
+    `table_*` is a hash table of the best node so far in each cell and step. Best means the least
+    cost so far + way left: places differ within a cell, and less cost alone would favour whoever
+    has come less far.
+    """
+
+    node_state: NDArray[np.float64]
+    """(N, 7): x, y, vx, vy at the node, cost so far, x, y half a step before."""
+    node_cell: NDArray[np.int64]
+    node_edge: NDArray[np.int64]
+    """Cells in a row at steps and edges."""
+    node_parent: NDArray[np.int64]
+    node_step: NDArray[np.int64]
+    heap_keys: NDArray[np.float64]
+    heap_items: NDArray[np.int64]
+    table_key: NDArray[np.int64]
+    table_worth: NDArray[np.float64]
+    table_stamp: NDArray[np.int64]
+    stamp: NDArray[np.int64]
+    others: NDArray[np.int64]
+    """Actors near the node that is looked at."""
+    halfway: NDArray[np.int64]
+    ahead: NDArray[np.int64]
+    """People near it in the middle and at the end of its moves."""
+
+
+class Outcome(NamedTuple):
+    """What a search came to."""
+
+    status: int
+    expansions: int
+    cost: float
+
+
+@inlined
+def depth_bonus(excess: float, steps: int) -> float:
+    """Seconds that each step ahead is expected to cost beyond its time.
+
+    A known path's excess over the bare time tells how hard the way is. Expecting a part of it of
+    every other path keeps the search from looking into all that begins well.
+    """
+    if excess < np.inf:
+        return max(DEPTH_BONUS_S, LIKELY_PART * excess / steps)
+    return DEPTH_BONUS_S
+
+
+@inlined
+def _cells_between(grid: GridArrays, ax: float, ay: float, bx: float, by: float) -> int:
+    """How many cells further b is than a, along rows or columns."""
+    return int(max(abs(bx - ax), abs(by - ay)) / grid.layered.cell_m + 0.5)
+
+
+@inlined
+def _slot(workspace: Workspace, key: int) -> int:
+    """Row of the table for a key, found or fresh; -1 when the table is full."""
+    size = len(workspace.table_key)
+    stamp = workspace.stamp[0]
+    h = (key * 0x9E3779B1) & (size - 1)
+    for _ in range(size):
+        if workspace.table_stamp[h] != stamp:
+            workspace.table_stamp[h] = stamp
+            workspace.table_key[h] = key
+            workspace.table_worth[h] = np.inf
+            return h
+        if workspace.table_key[h] == key:
+            return h
+        h = (h + 1) & (size - 1)
+    return -1
+
+
+@inlined
+def search(
+    world: World,
+    potential: Guide,
+    moves: Moves,
+    task: Task,
+    accumulate: bool,
+    bound: float,
+    workspace: Workspace,
+    path: NDArray[np.float64],
+) -> Outcome:
+    """Fill `path` (K, 2) with positions slice by slice, the start first.
+
+    With `accumulate` the key of a node is f = cost so far + way left, cost being time, risk and
+    what else is minded; without, it is the printed U(q') = potential(q') + Risk(q').
+    Nodes that cannot end below `bound` are left out.
+    """
+    grid = world.grid
+    risk = world.risk
+    reservations = world.reservations
+    steps = (len(path) - 1) // SUB
+    step_s = world.step_s
+    ds = step_s / SUB
+    need = needed_clearance(world, task)
+    a_max = task.max_acceleration_mps2
+    per_a = 1.0 / a_max
+    per_s = 1.0 / step_s
+    most_m = task.max_speed_mps * step_s
+    open_m = task.radius_m + WALL_COST_M + most_m + 1.5 * grid.layered.cell_m
+    node = workspace.node_state
+    others = workspace.others
+    capacity = len(node)
+    cells = len(grid.layered.floors)
+    workspace.stamp[0] += 1
+    path[:, 0] = task.x
+    path[:, 1] = task.y
+    node[0, 0] = task.x
+    node[0, 1] = task.y
+    node[0, 2] = task.vx
+    node[0, 3] = task.vy
+    node[0, 4] = 0.0
+    workspace.node_cell[0] = task.cell
+    workspace.node_edge[0] = 0
+    workspace.node_parent[0] = -1
+    workspace.node_step[0] = 0
+    speed = length(task.vx, task.vy)
+    start = way_left(task, metres_left(potential, task, task.cell, task.x, task.y), speed)
+    if not np.isfinite(start):
+        return Outcome(NO_PATH, 0, np.inf)
+    bonus = depth_bonus(bound - start, steps)
+    count = 1
+    size = heap_push(workspace.heap_keys, workspace.heap_items, 0, start, 0)
+    expansions = 0
+    best = 0
+    best_step = 0
+    best_key = np.inf
+    status = NO_PATH
+    while size > 0:
+        key = workspace.heap_keys[0]
+        n = workspace.heap_items[0]
+        size = heap_pop(workspace.heap_keys, workspace.heap_items, size)
+        step = workspace.node_step[n]
+        cell = workspace.node_cell[n]
+        x = node[n, 0]
+        y = node[n, 1]
+        vx = node[n, 2]
+        vy = node[n, 3]
+        if n > 0 and accumulate:
+            slot = _slot(workspace, step * cells + cell)
+            if slot < 0 or workspace.table_worth[slot] < key + bonus * step - 1e-9:
+                continue
+        if step > best_step or (step == best_step and key < best_key):
+            best = n
+            best_step = step
+            best_key = key
+        away = metres_left(potential, task, cell, x, y)
+        at_goal = away <= task.goal_tolerance_m
+        if step == steps or (at_goal and not accumulate and not task.hold):
+            best = n
+            best_step = step
+            best_key = key
+            status = FOUND
+            break
+        if expansions == task.max_expansions:
+            status = PARTIAL
+            break
+        expansions += 1
+        gx, gy, leg = direction_at(grid, potential, cell, x, y)
+        if task.hold:
+            gx = task.goal_x - x
+            gy = task.goal_y - y
+            leg = away
+            if leg > 1e-9:
+                gx /= leg
+                gy /= leg
+        if not moves.relative or leg <= 1e-9:
+            gx = 1.0
+            gy = 0.0
+        price = risk_price(task, step * step_s) * ds
+        k = step * SUB
+        feet_m = 0.0 if grid.flat else float(grid.layered.floors[cell])
+        slice_m = max(task.max_speed_mps, length(vx, vy)) * ds
+        met, crowded = others_near(reservations, task.me, feet_m, k, x, y, slice_m, others)
+        halfway = people_near(risk, grid.flat, feet_m, k + 1, x, y, slice_m, workspace.halfway)
+        ahead = people_near(risk, grid.flat, feet_m, k + 2, x, y, 2.0 * slice_m, workspace.ahead)
+        # The clearance falls by no more than the way: far from walls no child has to be asked.
+        in_the_open = clearance_at(grid, task.body, cell, x, y) >= open_m
+        # What the rest of the way is bound to cost beyond its time, if it is like the path known.
+        room_s = bound - bonus * (steps - step - 1) if accumulate else bound
+        for m in range(len(moves.speeds) + 1):
+            ux = 0.0
+            uy = 0.0
+            if m < len(moves.speeds):
+                speed = moves.speeds[m]
+                if moves.relative and m < moves.straight and away < speed * step_s:
+                    speed = away / step_s
+                ux = speed * (gx * moves.cosines[m] - gy * moves.sines[m])
+                uy = speed * (gx * moves.sines[m] + gy * moves.cosines[m])
+            dvx = ux - vx
+            dvy = uy - vy
+            ramp = length(dvx, dvy) * per_a
+            ex, ey, evx, evy = on_ramp(x, y, vx, vy, dvx, dvy, ramp, step_s)
+            end_speed = length(evx, evy) if accumulate else task.speed_mps
+            if grid.flat:
+                half = -1
+                end = follow(grid, cell, ex, ey)
+            else:
+                hx, hy, hvx, hvy = on_ramp(x, y, vx, vy, dvx, dvy, ramp, ds)
+                half = follow(grid, cell, hx, hy)
+                end = follow(grid, half, ex, ey)
+            left_m = metres_left(potential, task, end, ex, ey)
+            left = way_left(task, left_m, end_speed)
+            cost = (
+                node[n, 4]
+                + time_cost(task, left_m, length(ex - x, ey - y) * per_s, step_s)
+                + task.turn_weight * a_max * min(ramp, step_s)
+            )
+            if not cost + left < room_s or end < 0:
+                continue
+            edge = 0
+            if not grid.flat and grid.edges[task.body, end]:
+                edge = workspace.node_edge[n] + _cells_between(grid, x, y, ex, ey)
+                if edge >= task.edge_cells:
+                    continue
+            slot = _slot(workspace, (step + 1) * cells + end)
+            if slot < 0:
+                continue
+            least = workspace.table_worth[slot] - 1e-12
+            if accumulate and cost + left >= least:
+                continue
+            hx, hy, hvx, hvy = on_ramp(x, y, vx, vy, dvx, dvy, ramp, ds)
+            if grid.flat:
+                half = follow(grid, cell, hx, hy)
+                if half < 0:  # bounds without a wall do not show in the clearance
+                    continue
+            if not in_the_open:
+                room = min(
+                    clearance_at(grid, task.body, half, hx, hy),
+                    clearance_at(grid, task.body, end, ex, ey),
+                )
+                if room < need:
+                    continue
+                cost += wall_cost(task, room, step_s)
+            worth = cost + left if accumulate else 0.0
+            if worth >= least:
+                continue
+            soft = 0.0
+            if met + crowded > 0:
+                blocked, soft = meetings(
+                    reservations, others, met, crowded, task.me, k, x, y, hx, hy, ex, ey
+                )
+                if blocked:
+                    continue
+            # Risk is never negative: what cannot be worth it any more is not asked further.
+            most = min(room_s, least) - worth if accumulate else np.inf
+            if price * soft >= most:
+                continue
+            minded = soft + risk_among(
+                risk, workspace.ahead, ahead, k + 2, ex, ey, evx, evy, task.closing_weight
+            )
+            if price * minded >= most:
+                continue
+            minded += risk_among(
+                risk, workspace.halfway, halfway, k + 1, hx, hy, hvx, hvy, task.closing_weight
+            )
+            if price * minded >= most:
+                continue
+            if accumulate:
+                cost += price * minded
+                worth += price * minded
+                key = worth - bonus * (step + 1)
+            else:
+                key = left + price * minded
+            if count == capacity:
+                continue
+            workspace.table_worth[slot] = worth
+            node[count, 0] = ex
+            node[count, 1] = ey
+            node[count, 2] = evx
+            node[count, 3] = evy
+            node[count, 4] = cost
+            node[count, 5] = hx
+            node[count, 6] = hy
+            workspace.node_cell[count] = end
+            workspace.node_edge[count] = edge
+            workspace.node_parent[count] = n
+            workspace.node_step[count] = step + 1
+            size = heap_push(workspace.heap_keys, workspace.heap_items, size, key, count)
+            count += 1
+    if status == NO_PATH and best_step > 0:
+        status = PARTIAL
+    _trace(workspace, best, path)
+    return Outcome(status, expansions, best_key)
+
+
+@inlined
+def _trace(workspace: Workspace, last: int, path: NDArray[np.float64]) -> None:
+    """Write the way to a node; after its end the path stays where it is."""
+    k = workspace.node_step[last] * SUB
+    node = workspace.node_state
+    path[k:, 0] = node[last, 0]
+    path[k:, 1] = node[last, 1]
+    n = last
+    while workspace.node_parent[n] >= 0:
+        k = workspace.node_step[n] * SUB
+        path[k, 0] = node[n, 0]
+        path[k, 1] = node[n, 1]
+        path[k - 1, 0] = node[n, 5]
+        path[k - 1, 1] = node[n, 6]
+        n = workspace.node_parent[n]

@@ -1,0 +1,151 @@
+"""What one actor asks of the search, and what a stretch of way costs it, on bare arrays."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from esplanade.planning.agents._bottleneck_kernels import Lane, astray
+from esplanade.planning.agents._reservation_kernels import Reservations
+from esplanade.planning.compiled.jit import inlined
+from esplanade.planning.grid._grid_kernels import GridArrays, clearance_at, length
+from esplanade.planning.people._risk_kernels import RiskArrays
+from esplanade.planning.routes._potential_kernels import Guide, potential_at
+
+SUB = 2
+"""Slices of the risk field in one step: a move is looked at half-way and at its end."""
+WALL_COST_M = 0.15
+"""Walls are minded within so much of the body."""
+
+
+class Task(NamedTuple):
+    """One actor's question: from where, how it moves, what it minds."""
+
+    me: int
+    body: int
+    """Row of the grid's clearances for this kind of body."""
+    cell: int
+    """Where it stands; -1 where nobody can."""
+    x: float
+    y: float
+    vx: float
+    vy: float
+    goal_x: float
+    goal_y: float
+    radius_m: float
+    speed_mps: float
+    max_speed_mps: float
+    max_acceleration_mps2: float
+    goal_tolerance_m: float
+    contact_closing_s: float
+    risk_weight: float
+    foresight_s: float
+    closing_weight: float
+    turn_weight: float
+    wall_weight: float
+    hurry_weight: float
+    max_expansions: int
+    edge_cells: int
+    """M of Huang & Li: so many cells in a row it may be at steps and edges."""
+    lane: Lane
+    """Where to keep right on the way."""
+    hold: bool
+    """Stay where the start is rather than go anywhere: at the goal, or with no way to it."""
+
+
+class World(NamedTuple):
+    """What all actors of a zone look up."""
+
+    grid: GridArrays
+    risk: RiskArrays
+    reservations: Reservations
+    step_s: float
+
+
+@inlined
+def advance(
+    x: float, y: float, vx: float, vy: float, ux: float, uy: float, a_max: float, seconds: float
+) -> tuple[float, float, float, float]:
+    """Position and velocity after turning the velocity v evenly into u at no more than a_max."""
+    dvx = ux - vx
+    dvy = uy - vy
+    ramp = np.sqrt(dvx * dvx + dvy * dvy) / a_max
+    return on_ramp(x, y, vx, vy, dvx, dvy, ramp, seconds)
+
+
+@inlined
+def on_ramp(
+    x: float, y: float, vx: float, vy: float, dvx: float, dvy: float, ramp: float, seconds: float
+) -> tuple[float, float, float, float]:
+    """Position and velocity `seconds` into a change of velocity by dv that takes `ramp` seconds."""
+    if ramp <= seconds:
+        lag = seconds - 0.5 * ramp
+        return x + vx * seconds + dvx * lag, y + vy * seconds + dvy * lag, vx + dvx, vy + dvy
+    f = seconds / ramp
+    half = 0.5 * f * seconds
+    return (
+        x + vx * seconds + dvx * half,
+        y + vy * seconds + dvy * half,
+        vx + dvx * f,
+        vy + dvy * f,
+    )
+
+
+@inlined
+def metres_left(potential: Guide, task: Task, cell: int, x: float, y: float) -> float:
+    """Metres from a point, in a cell, to the goal, and what being left of a lane is like besides.
+
+    Who holds a place goes straight back to it.
+    """
+    if task.hold:
+        return length(x - task.goal_x, y - task.goal_y)
+    left_m = potential_at(potential, cell, x, y)
+    return left_m + astray(task.lane, x, y) if task.lane.weight > 0.0 else left_m
+
+
+@inlined
+def time_cost(task: Task, left_m: float, speed: float, seconds: float) -> float:
+    """Seconds that a stretch is worth: its time, more when faster than preferred, none while
+    standing at the goal."""
+    if task.hold:
+        return seconds * (speed / task.speed_mps + 0.5 * min(1.0, left_m))
+    if speed < 0.2 and left_m <= task.goal_tolerance_m:
+        return seconds * speed
+    over = max(0.0, speed * (1.0 / task.speed_mps) - 1.0)
+    return seconds * (1.0 + over + task.hurry_weight * over * over)
+
+
+@inlined
+def risk_price(task: Task, seconds_ahead: float) -> float:
+    """Weight of risk at a time ahead. What lies far ahead will be decided anew, so it fades."""
+    return float(task.risk_weight * np.exp(-seconds_ahead / task.foresight_s))
+
+
+@inlined
+def way_left(task: Task, left_m: float, speed: float) -> float:
+    """Seconds to the goal at the preferred speed, and what it costs to get to that speed.
+
+    Without the latter who is slow would seem as good as who has speed already. About to arrive
+    there is no need to be fast any more.
+    """
+    if task.hold:
+        return 0.0
+    seconds = left_m * (1.0 / task.speed_mps)
+    lacking = task.speed_mps - speed
+    if lacking > 0.0 and left_m > task.speed_mps:
+        lag = lacking * (1.0 / (2.0 * task.max_acceleration_mps2 * task.speed_mps))
+        seconds += lacking * (lag + task.turn_weight)
+    return seconds
+
+
+@inlined
+def wall_cost(task: Task, clearance: float, seconds: float) -> float:
+    """Cost of brushing along a wall."""
+    lacking = max(0.0, task.radius_m + WALL_COST_M - clearance)
+    return task.wall_weight * seconds * lacking / WALL_COST_M
+
+
+@inlined
+def needed_clearance(world: World, task: Task) -> float:
+    """The radius; less for who starts closer to a wall than that, so that it can come out."""
+    here = clearance_at(world.grid, task.body, task.cell, task.x, task.y)
+    return min(task.radius_m, max(0.0, here)) - 1e-6

@@ -1,0 +1,168 @@
+"""The stages of a tick on what compiled code keeps of a zone, and all of them in one call."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.planning.agents._decide_kernels import decide
+from esplanade.planning.agents._priority_kernels import prepare
+from esplanade.planning.agents._search_kernels import Moves, Workspace
+from esplanade.planning.agents._step_kernels import resolve, settle
+from esplanade.planning.agents._task_kernels import World
+from esplanade.planning.agents.agents import Agents, Decisions
+from esplanade.planning.compiled.handle import Handle
+from esplanade.planning.compiled.jit import kernel
+from esplanade.planning.grid._grid_kernels import floor_of, heights_along
+from esplanade.planning.ground._geometry_kernels import SegmentIndex
+from esplanade.planning.people._prediction_kernels import Prediction
+from esplanade.planning.people._risk_kernels import index_people
+
+SHOWN = 8
+"""Numbers of an actor after a tick: x, y m, layer, height m, vx, vy m/s, heading rad, reason."""
+
+
+class Zone(NamedTuple):
+    """Everything that the ticks of a zone work on, people's future apart.
+
+    `order` (A,) and what is decided are written anew in every tick; `positions` (A, 2) and `cells`
+    (A,) are those after it.
+    """
+
+    world: World
+    barriers: SegmentIndex
+    potentials: NDArray[np.float32]
+    no_potential: NDArray[np.float32]
+    moves: Moves
+    crowd: Agents
+    order: NDArray[np.int64]
+    decisions: Decisions
+    positions: NDArray[np.float64]
+    cells: NDArray[np.int64]
+    fastest_mps: float
+    """There is room for nobody who is faster."""
+    last_wider: int
+
+
+@kernel
+def has_room(zone: Handle[Zone], workspace: Handle[Workspace], branching: int) -> bool:
+    """Whether there is room for what the actors are and ask by now, and not far too much."""
+    world, crowd = zone.value.world, zone.value.crowd
+    fastest_mps = 0.0
+    for a in range(len(crowd.positions)):
+        p = crowd.parameters[a]
+        # Who is told to be slower from now on still has to brake.
+        speed = np.hypot(crowd.velocities[a, 0], crowd.velocities[a, 1])
+        fastest_mps = max(fastest_mps, p["max_speed_mps"], speed)
+        if p["radius_m"] > world.reservations.widest_m or p["max_expansions"] * branching + 2 > len(
+            workspace.value.node_state
+        ):
+            return False
+    return bool(fastest_mps <= zone.value.fastest_mps <= 2.0 * fastest_mps)
+
+
+@kernel
+def index_future(zone: Handle[Zone], prediction: Prediction, first: int, step: int) -> None:
+    """Index people slice by slice: first, first + step, ..."""
+    crowd, risk = zone.value.crowd, zone.value.world.risk
+    x0 = x1 = crowd.positions[0, 0]
+    y0 = y1 = crowd.positions[0, 1]
+    for a in range(1, len(crowd.positions)):
+        x, y = crowd.positions[a]
+        x0 = min(x0, x)
+        y0 = min(y0, y)
+        x1 = max(x1, x)
+        y1 = max(y1, y)
+    index_people(prediction, zone.value.last_wider, (x0, y0, x1, y1), first, step, risk)
+
+
+@kernel
+def put_in_order(zone: Handle[Zone], tick_s: float) -> None:
+    """See followed paths from now, and who goes first."""
+    z = zone.value
+    for a in range(len(z.order)):
+        z.world.reservations.radii[a] = z.crowd.parameters[a]["radius_m"]
+    prepare(z.world, z.potentials, z.crowd, tick_s, z.order)
+
+
+@kernel
+def decide_some(
+    zone: Handle[Zone],
+    prediction: Prediction,
+    tick_s: float,
+    first: int,
+    last: int,
+    workspace: Handle[Workspace],
+) -> None:
+    """`decide` for some actors."""
+    z = zone.value
+    decide(
+        z.world,
+        z.potentials,
+        z.no_potential,
+        z.moves,
+        prediction,
+        z.crowd,
+        tick_s,
+        first,
+        last,
+        workspace.value,
+        z.decisions,
+    )
+
+
+@kernel
+def take_steps(zone: Handle[Zone], tick_s: float) -> None:
+    """Take the steps, who goes first before all."""
+    z = zone.value
+    resolve(z.world, z.barriers, z.crowd, z.order, tick_s, z.decisions, z.positions, z.cells)
+
+
+@kernel
+def plan_and_step(
+    zone: Handle[Zone],
+    workspace: Handle[Workspace],
+    branching: int,
+    prediction: Prediction,
+    tick_s: float,
+) -> bool:
+    """All stages one after the other, on one thread; False, and nothing done, without room."""
+    if not has_room(zone, workspace, branching):
+        return False
+    index_future(zone, prediction, 0, 1)
+    put_in_order(zone, tick_s)
+    decide_some(zone, prediction, tick_s, 0, len(zone.value.order), workspace)
+    take_steps(zone, tick_s)
+    return True
+
+
+@kernel
+def settle_all(
+    zone: Handle[Zone],
+    tick_s: float,
+    headings: NDArray[np.float64],
+    ways: NDArray[np.float64],
+    shown: NDArray[np.float64],
+) -> None:
+    """Take the tick over into the crowd; fill what is shown of everyone.
+
+    `ways` (A, K, 3) are the plans with their heights, `shown` (A, SHOWN).
+    """
+    z = zone.value
+    settle(z.crowd, z.decisions, z.positions, z.cells, tick_s, headings)
+    ways[:, :, :2] = z.decisions.paths
+    ways[:, :, 2] = 0.0
+    if not z.world.grid.flat:
+        heights_along(z.world.grid, z.crowd.cells, ways)
+    layered = z.world.grid.layered
+    for a in range(len(shown)):
+        cell = z.crowd.cells[a]
+        row = shown[a]
+        row[0] = z.crowd.positions[a, 0]
+        row[1] = z.crowd.positions[a, 1]
+        row[2] = layered.places[cell, 0] if cell >= 0 else 0
+        row[3] = floor_of(z.world.grid, cell)
+        row[4] = z.crowd.velocities[a, 0]
+        row[5] = z.crowd.velocities[a, 1]
+        row[6] = headings[a]
+        row[7] = z.decisions.reasons[a]

@@ -1,0 +1,221 @@
+"""One tick of planning for all actors of a zone, in compiled batches on several threads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from operator import is_
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.planning.agents._search_kernels import Workspace
+from esplanade.planning.agents._task_kernels import SUB, World
+from esplanade.planning.agents._tick_kernels import (
+    SHOWN,
+    Zone,
+    decide_some,
+    has_room,
+    index_future,
+    plan_and_step,
+    put_in_order,
+    settle_all,
+    take_steps,
+)
+from esplanade.planning.agents.agents import Agents, Decisions
+from esplanade.planning.agents.search import compass_moves, make_reservations, make_workspace
+from esplanade.planning.compiled.handle import Handle, make_handle
+from esplanade.planning.grid.grid import LayeredGrid
+from esplanade.planning.people._prediction_kernels import Prediction
+from esplanade.planning.people.risk import RiskField, RiskModel
+from esplanade.planning.people.spread import GAUSSIAN, Spread
+
+_PORTION = 8
+"""So many actors are decided for at a time, at most."""
+_WORTH_A_THREAD = 4
+"""So many actors keep a thread busy for longer than it takes to hand the work over."""
+
+
+@dataclass(frozen=True)
+class PlanModel:
+    """How far and how finely the actors of a zone plan."""
+
+    step_s: float = 0.4
+    """Time step of the search (delta), seconds; the risk field has two slices in each."""
+    steps: int = 9
+    """Steps to the horizon."""
+    threads: int = 2
+    """Threads that share the work; the result does not depend on their number."""
+
+    @property
+    def slices(self) -> int:
+        """Slices of the risk field after now."""
+        return self.steps * SUB
+
+    @property
+    def slice_s(self) -> float:
+        """Time between slices, seconds."""
+        return self.step_s / SUB
+
+
+class Batch:
+    """Plans and steps for all actors of a zone at once.
+
+    What a tick works on is handed over to compiled code when it changes: when actors come or go,
+    or want more room. Cost of a tick: O(people × slices) for the index of people, O(actors ×
+    expansions × moves × people near) for the searches; both are spread over the threads.
+    """
+
+    def __init__(
+        self, grid: LayeredGrid, plan: PlanModel, risk: RiskModel, spread: Spread = GAUSSIAN
+    ) -> None:
+        self.grid = grid
+        self.plan = plan
+        self.field = RiskField(grid, risk, plan.slices, spread)
+        self._moves = compass_moves()
+        self._branching = len(self._moves.speeds) + 1
+        self._no_potential = np.full((len(grid.layered.floors), 3), np.inf, dtype=np.float32)
+        self._pool = ThreadPoolExecutor(plan.threads, thread_name_prefix="planning")
+        self._made_of: tuple[object, ...] = (None,)
+        self._zone: Zone
+        self._held: Handle[Zone]
+        self._workspaces: list[Handle[Workspace]] = []
+        self._budget = 0
+
+    def close(self) -> None:
+        """End the threads."""
+        self._pool.shutdown()
+
+    def _on_threads(self, work: Callable[[int], None], threads: int) -> None:
+        """Call work(k) for every k at once and wait for all; their errors come up here."""
+        for done in [self._pool.submit(work, k) for k in range(threads)]:
+            done.result()
+
+    def _hand_over(
+        self, crowd: Agents, potentials: NDArray[np.float32], prediction: Prediction, tick_s: float
+    ) -> None:
+        """Give compiled code this crowd, and room for it."""
+        budget = int(crowd.parameters["max_expansions"].max())
+        if budget > self._budget:
+            self._budget = budget
+            self._workspaces = [
+                make_handle(make_workspace(budget, self._branching))
+                for _ in range(self.plan.threads)
+            ]
+        self._zone = self._make_zone(crowd, potentials, prediction, tick_s)
+        self._held = make_handle(self._zone)
+        self._made_of = crowd, potentials, self.grid.arrays, self.field.arrays, tick_s
+
+    def _make_zone(
+        self, crowd: Agents, potentials: NDArray[np.float32], prediction: Prediction, tick_s: float
+    ) -> Zone:
+        actors = len(crowd.positions)
+        slices = self.plan.slices + 1
+        speeds = np.hypot(crowd.velocities[:, 0], crowd.velocities[:, 1])
+        fastest_mps = max(float(crowd.parameters["max_speed_mps"].max()), float(speeds.max()))
+        self.field.make_room(prediction, fastest_mps * self.plan.step_s)
+        risk = self.field.arrays
+        if actors == 1:  # whoever may be met is soon looked through; buckets are not worth it
+            risk = risk._replace(nx=1, ny=1)
+        reservations = make_reservations(
+            self.grid,
+            np.empty((actors, slices, 2)),
+            np.zeros((actors, slices)),
+            crowd.parameters["radius_m"].copy(),
+            np.empty(actors, dtype=np.int64),
+            fastest_mps * max(tick_s, self.plan.slice_s),
+        )
+        return Zone(
+            World(
+                self.grid.arrays,
+                risk,
+                reservations,
+                self.plan.step_s,
+            ),
+            self.grid.index,
+            potentials,
+            self._no_potential,
+            self._moves,
+            crowd,
+            np.empty(actors, dtype=np.int64),
+            Decisions(
+                np.empty((actors, slices, 2)),
+                np.zeros((actors, 2)),
+                np.zeros(actors, dtype=np.int64),
+                np.zeros(actors, dtype=np.int64),
+                np.zeros(actors, dtype=np.int64),
+                np.zeros(actors, dtype=np.bool_),
+            ),
+            np.empty((actors, 2)),
+            np.empty(actors, dtype=np.int64),
+            fastest_mps,
+            self.field.last_wider(self.plan.slice_s),
+        )
+
+    def tick(
+        self,
+        crowd: Agents,
+        potentials: NDArray[np.float32],
+        prediction: Prediction,
+        tick_s: float,
+    ) -> tuple[Decisions, NDArray[np.float64], NDArray[np.int64]]:
+        """Decide for everyone and take the step.
+
+        Parameters
+        ----------
+        crowd : state of A actors after the finished tick, A > 0
+        potentials : float32 (G, N, 3), the potentials that `crowd.potential_rows` points into
+        prediction : people's future, as many slices as the plan has
+        tick_s : length of the tick, seconds
+
+        Returns
+        -------
+        The decisions, and float64 (A, 2) positions and int64 (A,) cells after the tick. All are
+        written over in the next one.
+        """
+        threads = min(self.plan.threads, 1 + len(crowd.positions) // _WORTH_A_THREAD)
+        self.field.make_room(prediction, 0.0)
+        parts = crowd, potentials, self.grid.arrays, self.field.arrays, tick_s
+        if not all(map(is_, parts, self._made_of)):
+            self._hand_over(crowd, potentials, prediction, tick_s)
+        if not self._plan_and_step(threads, prediction, tick_s):
+            self._hand_over(crowd, potentials, prediction, tick_s)
+            self._plan_and_step(threads, prediction, tick_s)
+        return self._zone.decisions, self._zone.positions, self._zone.cells
+
+    def _plan_and_step(self, threads: int, prediction: Prediction, tick_s: float) -> bool:
+        """The stages of a tick; False, and nothing done, if there is too little room."""
+        zone = self._held
+        if threads == 1:
+            return plan_and_step(zone, self._workspaces[0], self._branching, prediction, tick_s)
+        if not has_room(zone, self._workspaces[0], self._branching):
+            return False
+        self._on_threads(lambda k: index_future(zone, prediction, k, threads), threads)
+        put_in_order(zone, tick_s)
+        # Every thread takes the next portion when it is done with one: none waits for the other.
+        actors = len(self._zone.order)
+        portion = min(_PORTION, -(-actors // (2 * threads)))
+        portions = iter(range(0, actors, portion))
+
+        def work(k: int) -> None:
+            for first in portions:
+                last = min(first + portion, actors)
+                decide_some(zone, prediction, tick_s, first, last, self._workspaces[k])
+
+        self._on_threads(work, threads)
+        take_steps(zone, tick_s)
+        return True
+
+    def settle(
+        self, tick_s: float, headings: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Take the last tick over into the crowd that it was made of.
+
+        `headings` (A,) rad are renewed too. Returns what is shown of everyone, float64 (A, SHOWN),
+        and their plans with heights, float64 (A, K, 3), which are nobody else's.
+        """
+        shown = np.empty((len(headings), SHOWN))
+        ways = np.empty((len(headings), self.plan.slices + 1, 3))
+        settle_all(self._held, tick_s, headings, ways, shown)
+        return shown, ways

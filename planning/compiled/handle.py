@@ -1,0 +1,51 @@
+"""Arrays that compiled code keeps from one call to the next."""
+
+from typing import Generic, NamedTuple, TypeVar, cast
+
+import numba
+from numba.core import types
+from numba.experimental import structref
+
+from esplanade.planning.compiled.jit import kernel
+
+T = TypeVar("T")
+
+
+class Handle(Generic[T]):
+    """A tuple of arrays, handed over to compiled code once: `value` is what it was made of.
+
+    To hand a hundred arrays over takes 20 µs at every call, as long as all that is then done for
+    one actor; a `Handle` takes half a microsecond. The arrays are shared, numbers are copied.
+    """
+
+    value: T
+
+
+class _Plain(NamedTuple):
+    """A `Handle` where kernels are not compiled."""
+
+    value: object
+
+
+@structref.register
+class _HandleType(types.StructRef):
+    def preprocess_fields(self, fields: tuple[tuple[str, types.Type], ...]) -> object:
+        return tuple((name, types.unliteral(kind)) for name, kind in fields)  # type: ignore[no-untyped-call]
+
+
+class _Proxy(structref.StructRefProxy):
+    """What Python has of a `Handle`: nothing but its place."""
+
+
+structref.define_proxy(_Proxy, _HandleType, ["value"])  # type: ignore[no-untyped-call]
+
+
+@kernel
+def _hold(value: object) -> object:
+    return _Proxy(value)  # type: ignore[no-untyped-call]
+
+
+def make_handle(value: T) -> Handle[T]:
+    """Hand a tuple of arrays over to be kept."""
+    held = _Plain(value) if numba.config.DISABLE_JIT else _hold(value)  # type: ignore[attr-defined]
+    return cast(Handle[T], held)

@@ -1,0 +1,1 @@
+"""The grid that movement is checked against: clearances, lookups of cells, walking step by step."""

@@ -1,0 +1,183 @@
+"""Walking on layers and deriving clearances, on bare arrays."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.planning.compiled.handle import Handle
+from esplanade.planning.compiled.jit import inlined, kernel
+from esplanade.planning.grid._grid_kernels import GridArrays, corners, follow, surface_at
+from esplanade.planning.ground._geometry_kernels import (
+    SegmentIndex,
+    Stance,
+    point_segment_distance,
+    slide,
+)
+from esplanade.planning.ground.layered import TILE
+
+
+class GroundArrays(NamedTuple):
+    """A zone's ground and what stops bodies on it."""
+
+    grid: GridArrays
+    barriers: SegmentIndex
+
+
+@kernel
+def cell_at(ground: Handle[GroundArrays], x: float, y: float, z: float) -> int:
+    """`surface_at`, for one place at a time."""
+    return surface_at(ground.value.grid, x, y, z)
+
+
+@inlined
+def _foothold(grid: GridArrays, cell: int, x: float, y: float, step_on_m: float) -> float:
+    """Height of the highest floor around a point that a body in a cell can step on.
+
+    Stairs rise within a cell: who is nearly out of it may have a foot on the next tread already.
+    """
+    floor = grid.layered.floors[cell]
+    beside, over, across, _, _ = corners(grid, cell, x, y)
+    top = floor
+    for other in (beside, over, across):
+        if top < grid.layered.floors[other] <= floor + step_on_m:
+            top = grid.layered.floors[other]
+    return float(top)
+
+
+@inlined
+def walk(
+    grid: GridArrays,
+    index: SegmentIndex,
+    height_m: float,
+    step_on_m: float,
+    cell: int,
+    x: float,
+    y: float,
+    dx: float,
+    dy: float,
+    clearance: float,
+) -> tuple[int, float, float]:
+    """Move a body by (dx, dy), sliding along what stops it, up and down what it can step on.
+
+    Where there is nothing to stand on it stays. Over several levels the way is cut into pieces of
+    a cell at most, since what stops it depends on where it stands.
+    """
+    bounds = (grid.layered.x0, grid.layered.y0, grid.layered.x1, grid.layered.y1)
+    if grid.flat:
+        stance = Stance(0.0, 0.0, height_m, step_on_m)
+        nx, ny = slide(index, stance, bounds, x, y, dx, dy, clearance)
+        return follow(grid, cell, nx, ny), nx, ny
+    pieces = max(1, int(np.ceil(np.hypot(dx, dy) / (0.8 * grid.layered.cell_m))))
+    for _ in range(pieces):
+        foothold = _foothold(grid, cell, x, y, step_on_m)
+        stance = Stance(float(grid.layered.floors[cell]), foothold, height_m, step_on_m)
+        nx, ny = slide(index, stance, bounds, x, y, dx / pieces, dy / pieces, clearance)
+        other = follow(grid, cell, nx, ny)
+        if (
+            other < 0
+            or abs(grid.layered.floors[other] - grid.layered.floors[cell]) > step_on_m + 1e-4
+        ):
+            break
+        cell = other
+        x = nx
+        y = ny
+    return cell, x, y
+
+
+@kernel
+def walk_many(
+    grid: GridArrays,
+    index: SegmentIndex,
+    height_m: float,
+    step_on_m: float,
+    cells: NDArray[np.int64],
+    positions: NDArray[np.float64],
+    displacements: NDArray[np.float64],
+    clearance: float,
+) -> None:
+    """`walk` for N bodies in place: cells (N,), positions (N, 2) by displacements (N, 2)."""
+    for n in range(len(cells)):
+        if cells[n] < 0 and not grid.flat:
+            continue
+        cells[n], positions[n, 0], positions[n, 1] = walk(
+            grid,
+            index,
+            height_m,
+            step_on_m,
+            cells[n],
+            positions[n, 0],
+            positions[n, 1],
+            displacements[n, 0],
+            displacements[n, 1],
+            clearance,
+        )
+
+
+@kernel
+def lower_to_barriers(
+    grid: GridArrays,
+    index: SegmentIndex,
+    height_m: float,
+    step_on_m: float,
+    reach: float,
+    box: tuple[float, float, float, float],
+    field: NDArray[np.float32],
+) -> None:
+    """Lower a field (N,), preset to `reach`, to the distances of cells from what stops a body.
+
+    Only cells whose centres lie in `box` (x0, y0, x1, y1) are looked at.
+    """
+    layered, segments = grid.layered, index.segments
+    pages, cell_m = layered.pages, layered.cell_m
+    tile_m = TILE * cell_m
+    body = height_m, step_on_m
+    highest = np.full(len(layered.plain), reach, dtype=np.float32)
+    for s in range(len(segments)):
+        ax, ay, bx, by = segments[s, :4]
+        if step_on_m >= segments[s, 6]:
+            continue
+        i0 = max(0, int((max(box[0], min(ax, bx) - reach) - layered.x0) / cell_m) - 1)
+        i1 = min(layered.nx, int((min(box[2], max(ax, bx) + reach) - layered.x0) / cell_m) + 2)
+        j0 = max(0, int((max(box[1], min(ay, by) - reach) - layered.y0) / cell_m) - 1)
+        j1 = min(layered.ny, int((min(box[3], max(ay, by) + reach) - layered.y0) / cell_m) + 2)
+        for tj in range(j0 // TILE, (j1 - 1) // TILE + 1):
+            for ti in range(i0 // TILE, (i1 - 1) // TILE + 1):
+                x, y = layered.x0 + (ti + 0.5) * tile_m, layered.y0 + (tj + 0.5) * tile_m
+                nearest = point_segment_distance(x, y, ax, ay, bx, by)[0] - 0.71 * tile_m
+                if nearest > reach:
+                    continue
+                rows = max(j0, tj * TILE), min(j1, (tj + 1) * TILE)
+                columns = max(i0, ti * TILE), min(i1, (ti + 1) * TILE)
+                for layer in range(len(pages)):
+                    page = pages[layer, tj, ti]
+                    tile = page // (TILE * TILE)
+                    if page >= 0 and nearest < highest[tile]:
+                        _lower_tile(grid, segments[s], body, page, rows, columns, field)
+                        highest[tile] = field[page : page + TILE * TILE].max()
+
+
+@inlined
+def _lower_tile(
+    grid: GridArrays,
+    segment: NDArray[np.float64],
+    body: tuple[float, float],
+    page: int,
+    rows: tuple[int, int],
+    columns: tuple[int, int],
+    field: NDArray[np.float32],
+) -> None:
+    """`lower_to_barriers` for one barrier and some cells of one tile."""
+    layered = grid.layered
+    height_m, step_on_m = body
+    for j in range(rows[0], rows[1]):
+        for i in range(columns[0], columns[1]):
+            cell = page + (j % TILE) * TILE + i % TILE
+            floor = 0.0 if grid.flat else float(layered.floors[cell])
+            if segment[4] < floor + height_m and segment[5] > floor + step_on_m:
+                x = layered.x0 + (i + 0.5) * layered.cell_m
+                y = layered.y0 + (j + 0.5) * layered.cell_m
+                away = point_segment_distance(x, y, segment[0], segment[1], segment[2], segment[3])[
+                    0
+                ]
+                field[cell] = min(field[cell], away)

@@ -1,0 +1,71 @@
+"""How far cells are from what stops a body, for each kind of body that a zone tells apart."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.planning.grid._grid_kernels import GridArrays
+from esplanade.planning.grid._walking_kernels import lower_to_barriers
+from esplanade.planning.ground._geometry_kernels import SegmentIndex
+from esplanade.planning.ground.layered import TILE, LayeredArrays
+from esplanade.planning.scene.bodies import Body
+
+CLEARANCE_CAP_M = 3.0
+"""Distances to obstacles are kept up to here; further is as good as far."""
+Box = tuple[float, float, float, float]
+"""x0, y0, x1, y1 in metres."""
+
+_BODY_STEP_M = 0.05
+_ROUNDING_M = 1e-4
+
+
+def kind_of(body: Body) -> Body:
+    """The kind that a body counts as: radius and height rounded up to 5 cm, whatever its M."""
+    return replace(
+        body,
+        radius_m=math.ceil(body.radius_m / _BODY_STEP_M - 1e-9) * _BODY_STEP_M,
+        height_m=math.ceil(body.height_m / _BODY_STEP_M - 1e-9) * _BODY_STEP_M,
+        edge_cells=Body.edge_cells,
+    )
+
+
+def write_clearance(
+    arrays: GridArrays,
+    index: SegmentIndex,
+    body: Body,
+    box: Box,
+    cells: NDArray[np.int64],
+    out: NDArray[np.float32],
+) -> None:
+    """Write the distance to what stops a body into `out` (N,), for all cells of a box.
+
+    It is negative in holes and under ceilings that are too low.
+    """
+    out[cells] = CLEARANCE_CAP_M
+    lower_to_barriers(arrays, index, body.height_m, body.step_on_m, CLEARANCE_CAP_M, box, out)
+    room_m = arrays.layered.ceilings[cells] - arrays.layered.floors[cells]
+    out[cells[~(room_m >= body.height_m - _ROUNDING_M)]] *= -1.0
+
+
+def centres_of(layered: LayeredArrays) -> NDArray[np.float64]:
+    """Centres of the cells, float64 (N, 2)."""
+    rows_columns = layered.places[:, 1:].astype(np.float64) + 0.5
+    return np.ascontiguousarray(rows_columns[:, ::-1] * layered.cell_m + (layered.x0, layered.y0))
+
+
+def cells_within(
+    layered: LayeredArrays, centres: NDArray[np.float64], box: Box
+) -> NDArray[np.int64]:
+    """The cells, holes included, whose centres lie in a box."""
+    tile_m = TILE * layered.cell_m
+    i0, i1 = (max(0, int((x - layered.x0) // tile_m)) for x in box[::2])
+    j0, j1 = (max(0, int((y - layered.y0) // tile_m)) for y in box[1::2])
+    pages = layered.pages[:, j0 : j1 + 1, i0 : i1 + 1]
+    cells = (pages[pages >= 0].astype(np.int64)[:, None] + np.arange(TILE**2)).ravel()
+    near = centres[cells]
+    within: NDArray[np.int64] = cells[((near >= box[:2]) & (near <= box[2:])).all(axis=1)]
+    return within

@@ -1,0 +1,370 @@
+"""The ground of a zone: where a body may stand, how it walks, and the ways to goals."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from esplanade.planning.compiled.handle import Handle, make_handle
+from esplanade.planning.grid import _grid_kernels as kernels
+from esplanade.planning.grid import _walking_kernels as walking
+from esplanade.planning.grid._grid_kernels import GridArrays
+from esplanade.planning.grid._walking_kernels import GroundArrays
+from esplanade.planning.grid.clearances import (
+    CLEARANCE_CAP_M,
+    cells_within,
+    centres_of,
+    kind_of,
+    write_clearance,
+)
+from esplanade.planning.ground import _geometry_kernels as geometry
+from esplanade.planning.ground._geometry_kernels import SegmentIndex, Stance
+from esplanade.planning.ground.barriers import Barriers
+from esplanade.planning.ground.floors import Floors, floors_of_mesh, floors_of_scene
+from esplanade.planning.ground.layered import LayeredArrays
+from esplanade.planning.ground.meshes import Progress, unheard
+from esplanade.planning.ground.surfaces import Surfaces
+from esplanade.planning.scene.bodies import MOST_BODIES, Body
+from esplanade.planning.scene.doors import Doors
+from esplanade.planning.scene.mesh_file import Up
+from esplanade.planning.scene.scene import Scene
+from esplanade.planning.traversal.cache import TraversabilityCache
+from esplanade.planning.traversal.stability import Stability
+
+_BUCKET_M = 1.0
+_BUCKET_REACH_M = 1.5
+
+ADULT = Body.adult()
+_EDGES = (Stability.UNSTABLE, Stability.UP_STAIR, Stability.DOWN_STAIR)
+
+
+class LayeredGrid:
+    """Cells of one zone, layer by layer, and what stops bodies from going where they like.
+
+    Places are given by x, y and a height: the standing surface nearest in height is meant. A disc
+    of radius r may stand where the clearance of its kind of body is at least r: that set is the
+    complement of its C-obstacles. Memory is some 60 bytes a cell, 5 more for each kind of body.
+    """
+
+    def __init__(self, floors: Floors) -> None:
+        self.floors = floors
+        layered = floors.layered
+        flat = len(layered.pages) == 1 and not (np.nan_to_num(layered.floors) != 0.0).any()
+        cells = len(layered.floors)
+        self.arrays = GridArrays(
+            layered,
+            np.zeros((0, cells), dtype=np.float32),
+            np.zeros((0, cells), dtype=np.bool_),
+            flat,
+        )
+        self.traversability = TraversabilityCache(floors)
+        self.index = _index(floors.barriers, self.bounds)
+        self.centres = centres_of(layered)
+        self._held = self.arrays, make_handle(GroundArrays(self.arrays, self.index))
+        self._rows: dict[Body, int] = {}
+        self.row_of(ADULT)
+
+    @classmethod
+    def from_scene(cls, scene: Scene, cell_m: float = 0.25) -> Self:
+        """Derive the grid of a scene. Cost O(surfaces + obstacles × cells near them).
+
+        Raises
+        ------
+        ValueError
+            `cell_m` is not between 0.05 and 2 m; the scene's mesh is at fault.
+        """
+        if scene.mesh is not None:
+            return cls.from_mesh(scene.mesh, cell_m)
+        return cls(floors_of_scene(scene, cell_m))
+
+    @classmethod
+    def from_mesh(
+        cls, path: str | Path, cell_m: float = 0.25, up: Up = "y", progress: Progress = unheard
+    ) -> Self:
+        """Derive the grid of a building: OBJ, glTF, or whatever else trimesh reads.
+
+        Parameters
+        ----------
+        up : "y" or "z"
+            The file's axis that points up. With "y", its (x, y, z) becomes (x, -z, y).
+        progress : what is being done, share of the whole -> None
+
+        Raises
+        ------
+        MeshError
+            The file is at fault; the message names it and says how.
+        """
+        return cls(floors_of_mesh(path, cell_m, up, progress))
+
+    def row_of(self, body: Body) -> int:
+        """Row of a kind of body in `arrays.clearance`; derived when it is asked for first.
+
+        Bodies that differ by less than 5 cm in radius or height, or only in how long they may stay
+        on edges, share a row: that of the widest and tallest.
+
+        Raises
+        ------
+        ValueError
+            That would be more than `MOST_BODIES` kinds. Whoever walks here has a row, so that
+            none can be given to another.
+        """
+        body = kind_of(body)
+        row = self._rows.get(body)
+        if row is None:
+            if len(self._rows) == MOST_BODIES:
+                raise ValueError(
+                    f"the zone knows {MOST_BODIES} kinds of body already, and none like {body}"
+                )
+            a = self.arrays
+            everywhere = np.arange(len(a.layered.floors))
+            field = np.empty(len(everywhere), dtype=np.float32)
+            write_clearance(a, self.index, body, self.bounds, everywhere, field)
+            row = self._rows[body] = len(a.clearance)
+            self.arrays = a._replace(
+                clearance=np.concatenate([a.clearance, field[None]]),
+                edges=np.concatenate([a.edges, self._edges(body, everywhere)[None]]),
+            )
+        return row
+
+    def _edges(self, body: Body, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Of some cells those where a body is on an edge."""
+        if self.arrays.flat:
+            return np.zeros(len(cells), dtype=np.bool_)
+        return np.isin(self.traversability.of(body).classes[cells], _EDGES)
+
+    @property
+    def ground(self) -> Handle[GroundArrays]:
+        """`arrays` and `index` as kernels keep them, for what is asked often."""
+        arrays = self.arrays
+        if self._held[0] is not arrays:
+            self._held = arrays, make_handle(GroundArrays(arrays, self.index))
+        return self._held[1]
+
+    @property
+    def layered(self) -> LayeredArrays:
+        """Floors, ceilings and links of the cells."""
+        return self.floors.layered
+
+    @property
+    def surfaces(self) -> Surfaces:
+        """Where one can stand."""
+        return self.floors.surfaces
+
+    @property
+    def barriers(self) -> Barriers:
+        """What stops bodies, doors included."""
+        return self.floors.barriers
+
+    @property
+    def doors(self) -> Doors:
+        """What of the barriers opens and closes; use `set_door` to do so."""
+        return self.floors.doors
+
+    def set_door(self, name: str, is_open: bool) -> None:
+        """Open or close a door. Only clearances within reach of it are derived again.
+
+        Who reads `arrays` meanwhile, in another thread, keeps what was before.
+        Potentials made before lead through what is closed now: ask for them anew. KeyError when
+        there is no door of that name.
+        """
+        x0, y0, x1, y1 = self.doors.set_open(name, is_open)
+        reach = CLEARANCE_CAP_M
+        box = (x0 - reach, y0 - reach, x1 + reach, y1 + reach)
+        near = cells_within(self.layered, self.centres, box)
+        clearance, edges = self.arrays.clearance.copy(), self.arrays.edges.copy()
+        for body, row in self._rows.items():
+            write_clearance(self.arrays, self.index, body, box, near, clearance[row])
+            edges[row, near] = self._edges(body, near)
+        self.arrays = self.arrays._replace(clearance=clearance, edges=edges)
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """x0, y0, x1, y1 in metres."""
+        a = self.layered
+        return a.x0, a.y0, a.x1, a.y1
+
+    @property
+    def cell_m(self) -> float:
+        """Edge of a cell, metres."""
+        return self.layered.cell_m
+
+    @property
+    def layers(self) -> int:
+        """Number of layers."""
+        return len(self.layered.pages)
+
+    def as_points(
+        self, positions: ArrayLike, heights: ArrayLike
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Positions as float64 (N, 2) and heights as float64 (N,), checked.
+
+        Raises
+        ------
+        ValueError
+            Wrong shapes, or numbers that are not finite.
+        """
+        points = np.ascontiguousarray(positions, dtype=np.float64).reshape(-1, 2)
+        levels = np.ascontiguousarray(heights, dtype=np.float64).reshape(-1)
+        if len(points) != len(levels):
+            raise ValueError(f"{len(points)} positions but {len(levels)} heights")
+        if not (np.isfinite(points).all() and np.isfinite(levels).all()):
+            raise ValueError("positions and heights must be finite")
+        return points, levels
+
+    def on_ground(
+        self, positions: ArrayLike, heights: ArrayLike
+    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Positions float64 (N, 2) and the cells int64 (N,) that are stood in there.
+
+        The cell is that of the surface nearest in height, where need be up to two cells aside; -1
+        where nobody can stand.
+        """
+        points, levels = self.as_points(positions, heights)
+        cells = np.empty(len(points), dtype=np.int64)
+        kernels.surfaces_at(self.arrays, points, levels, cells)
+        return points, cells
+
+    def cell_at(self, position: tuple[float, float], height: float) -> int:
+        """The cell that is stood in at one place, -1 where nobody can; `on_ground` for many."""
+        return walking.cell_at(self.ground, position[0], position[1], height)
+
+    def with_heights(
+        self, paths: NDArray[np.float64], cells: NDArray[np.int64]
+    ) -> NDArray[np.float64]:
+        """Heights added to A paths (A, K, 2) that begin in cells (A,): float64 (A, K, 3)."""
+        out = np.zeros((*paths.shape[:2], 3))
+        out[:, :, :2] = paths
+        if not self.arrays.flat:
+            kernels.heights_along(self.arrays, cells, out)
+        return out
+
+    def floor_at(self, position: tuple[float, float], height: float) -> float:
+        """Height of the standing surface there that is nearest in height; `height` if none is."""
+        cell = int(self.on_ground([position], [height])[1][0])
+        return float(self.layered.floors[cell]) if cell >= 0 else height
+
+    def layers_at(self, positions: ArrayLike, heights: ArrayLike) -> NDArray[np.int64]:
+        """`layer_at` for (N, 2), (N,): int64 (N,)."""
+        _, cells = self.on_ground(positions, heights)
+        return np.where(cells >= 0, self.layered.places[cells, 0], 0).astype(np.int64)
+
+    def layer_at(self, position: tuple[float, float], height: float) -> int:
+        """Layer of the standing surface there that is nearest in height; 0 if none is."""
+        return int(self.layers_at([position], [height])[0])
+
+    def clearance(
+        self, positions: ArrayLike, heights: ArrayLike, body: Body = ADULT
+    ) -> NDArray[np.float64]:
+        """Metres to what stops a body, float64 (N,); -inf where it cannot stand."""
+        row = self.row_of(body)
+        points, cells = self.on_ground(positions, heights)
+        out = np.empty(len(points))
+        kernels.clearance_many(self.arrays, row, cells, points, out)
+        return out
+
+    def is_free(
+        self,
+        positions: ArrayLike,
+        heights: ArrayLike,
+        clearance_m: float,
+        body: Body = ADULT,
+    ) -> NDArray[np.bool_]:
+        """Whether a disc of that radius may stand there, bool (N,)."""
+        return np.asarray(self.clearance(positions, heights, body) >= clearance_m)
+
+    def nearest_free(
+        self,
+        position: tuple[float, float],
+        height: float,
+        clearance_m: float,
+        body: Body = ADULT,
+    ) -> tuple[float, float] | None:
+        """The position itself when free, else the centre of the nearest free cell on its level.
+
+        Within a metre a cell on this side of walls is taken before any beyond. Levels are told
+        apart by half a body's height; if there is none on this level, on any. A position in the
+        air is one on the floor below, one inside a building is none on its roof.
+        """
+        a = self.layered
+        level_m = 0.5 * body.height_m
+        row = self.row_of(body)
+        free = (self.arrays.clearance[row] >= clearance_m) & np.isfinite(a.floors)
+        apart = np.abs(a.floors - height)
+        free_here = self.is_free([position], [height], clearance_m, body)[0]
+        for candidates, near_m in ((free & (apart < level_m), level_m), (free, math.inf)):
+            if free_here and self.floor_at(position, height) - height < near_m:
+                return float(position[0]), float(position[1])
+            cells = np.flatnonzero(candidates)
+            if len(cells):
+                away = np.hypot(*(self.centres[cells] - position).T) + apart[cells]
+                near = cells[away < 1.0][np.argsort(away[away < 1.0], kind="stable")]
+                floor = self.floor_at(position, height)
+                stance = Stance(floor, floor, body.height_m, body.step_on_m)
+                for x, y in self.centres[near].tolist():
+                    if not geometry.crosses_any(self.index, stance, *position, x, y):
+                        return x, y
+                x, y = self.centres[cells[away.argmin()]].tolist()
+                return x, y
+        return None
+
+    def walk(
+        self,
+        positions: ArrayLike,
+        heights: ArrayLike,
+        displacements: ArrayLike,
+        clearance_m: float,
+        body: Body = ADULT,
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Move bodies, sliding along what stops them; no wall is ever crossed, no ledge left.
+
+        Parameters
+        ----------
+        positions, displacements : float (N, 2), metres
+        heights : float (N,), metres
+        clearance_m : float, metres
+            Distance that a centre keeps from walls, at most 1 m. Who starts closer is let out,
+            never further in.
+
+        Returns
+        -------
+        float64 (N, 2) positions and float64 (N,) heights of the floor there.
+        """
+        if not 0.0 <= clearance_m <= 1.0:
+            raise ValueError(f"clearance_m must lie between 0 and 1 m, got {clearance_m}")
+        points, cells = self.on_ground(positions, heights)
+        ways = np.ascontiguousarray(displacements, dtype=np.float64).reshape(-1, 2)
+        if ways.shape != points.shape:
+            raise ValueError(f"{len(points)} positions but {len(ways)} displacements")
+        if not np.isfinite(ways).all():
+            raise ValueError("displacements must be finite")
+        out = points.copy()
+        walking.walk_many(
+            self.arrays,
+            self.index,
+            body.height_m,
+            body.step_on_m,
+            cells,
+            out,
+            ways,
+            clearance_m,
+        )
+        levels = np.where(cells >= 0, self.layered.floors[cells], heights)
+        return out, levels.astype(np.float64)
+
+
+def _index(barriers: Barriers, bounds: tuple[float, float, float, float]) -> SegmentIndex:
+    x0, y0, x1, y1 = bounds
+    nx = max(1, math.ceil((x1 - x0) / _BUCKET_M))
+    ny = max(1, math.ceil((y1 - y0) / _BUCKET_M))
+    reach = _BUCKET_REACH_M + _BUCKET_M * math.sqrt(0.5)
+    starts = np.zeros(nx * ny + 1, dtype=np.int64)
+    place = (x0, y0, _BUCKET_M, nx, ny)
+    geometry.list_by_bucket(barriers, place, reach, starts, np.empty(0, dtype=np.int64))
+    starts[1:] = np.cumsum(starts[1:])
+    members = np.empty(starts[-1], dtype=np.int64)
+    geometry.list_by_bucket(barriers, place, reach, starts, members)
+    return SegmentIndex(barriers, starts, members, *place[:3], _BUCKET_REACH_M, nx, ny)

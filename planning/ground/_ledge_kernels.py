@@ -1,0 +1,319 @@
+"""Ledges on bare arrays: where floors end or change their height between neighbouring cells.
+
+A ledge is written as a barrier: x0, y0, x1, y1, z0, z1, rise.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.planning.compiled.jit import inlined, kernel
+from esplanade.planning.ground._geometry_kernels import segments_cross
+from esplanade.planning.ground._surface_kernels import LOWEST_M, SolidArrays, SolidColumns, top_at
+from esplanade.planning.ground.layered import (
+    LINK_COLUMNS,
+    LINK_M,
+    LINK_ROWS,
+    TILE,
+    LayeredArrays,
+    cell_index,
+)
+
+LEAST_STEP_M = 0.1
+"""Floors that differ by less are as good as level: everybody steps that high."""
+_PIECE_RISE_M = 0.25
+"""The side of a ramp is cut into pieces whose tops rise by no more than this."""
+_BELOW_M = 0.05
+_ABOVE_M = 2.0
+_LINTEL_M = 0.2
+"""More than what a body may lack under a lintel, less than what it steps on top of one."""
+_HIGHEST_M = 2.5
+"""Ceilings further above a floor than this hinder nobody."""
+_SAME_M = 1e-4
+
+
+class Sides(NamedTuple):
+    """What is known beside floors: the solids of a scene, the steep faces of a mesh."""
+
+    solids: SolidColumns
+    face_starts: NDArray[np.int64]
+    """(columns + 1,): the faces of each column (CSR)."""
+    faces: NDArray[np.float64]
+    """(R, 6): x0, y0, x1, y1, z0, z1 of the pieces of faces in a column, metres."""
+
+
+@kernel
+def outlines(solids: SolidArrays, out: NDArray[np.float64]) -> int:
+    """The sides of solids, up to their tops; of what nobody climbs, higher than anyone steps.
+
+    Returns how many there are; those beyond the room in `out` are not written.
+    """
+    count = 0
+    for k in range(len(solids.bottoms)):
+        least = 0.0 if solids.standable[k] else solids.bottoms[k] + LINK_M
+        first, last = solids.starts[k], solids.starts[k + 1]
+        for a in range(first, last):
+            b = a + 1 if a + 1 < last else first
+            ax, ay = solids.points[a]
+            ux, uy = solids.points[b, 0] - ax, solids.points[b, 1] - ay
+            rise = abs(top_at(solids, k, ax + ux, ay + uy) - top_at(solids, k, ax, ay))
+            pieces = max(1, int(np.ceil(rise / _PIECE_RISE_M - 1e-9)))
+            for piece in range(pieces):
+                u, v = piece / pieces, (piece + 1) / pieces
+                px, py, qx, qy = ax + u * ux, ay + u * uy, ax + v * ux, ay + v * uy
+                top = max(least, top_at(solids, k, px, py), top_at(solids, k, qx, qy))
+                if count < len(out):
+                    out[count] = (px, py, qx, qy, solids.bottoms[k], top, np.inf)
+                count += 1
+    return count
+
+
+@inlined
+def _common_edge(
+    arrays: LayeredArrays, j: int, i: int, d: int
+) -> tuple[float, float, float, float]:
+    """The edge between a cell and one of its four neighbours, from south to north, west to east."""
+    dj, di = LINK_ROWS[d], LINK_COLUMNS[d]
+    x = arrays.x0 + (i + 0.5 + 0.5 * di) * arrays.cell_m
+    y = arrays.y0 + (j + 0.5 + 0.5 * dj) * arrays.cell_m
+    h = 0.5 * arrays.cell_m
+    return x - h * abs(dj), y - h * abs(di), x + h * abs(dj), y + h * abs(di)
+
+
+@inlined
+def _solid_stops(columns: SolidColumns, c: int, x: float, y: float, floor: float) -> bool:
+    """Whether the side of a solid in a column stops everybody who stands beside it."""
+    s = columns.solids
+    for m in range(columns.starts[c], columns.starts[c + 1]):
+        k = columns.members[m]
+        top = top_at(s, k, x, y) + (0.0 if s.standable[k] else LINK_M)
+        if s.bottoms[k] < floor + LOWEST_M and top > floor + LINK_M:
+            return True
+    return False
+
+
+@inlined
+def _face_between(
+    sides: Sides, arrays: LayeredArrays, cell: int, d: int, low: float, high: float
+) -> bool:
+    """Whether one face between a cell and its neighbour reaches from `low` or less to `high`."""
+    j, i = arrays.places[cell, 1], arrays.places[cell, 2]
+    x = arrays.x0 + (i + 0.5) * arrays.cell_m
+    y = arrays.y0 + (j + 0.5) * arrays.cell_m
+    xx, yy = x + LINK_COLUMNS[d] * arrays.cell_m, y + LINK_ROWS[d] * arrays.cell_m
+    own = j * arrays.nx + i
+    for c in (own, own + LINK_ROWS[d] * arrays.nx + LINK_COLUMNS[d]):
+        for f in range(sides.face_starts[c], sides.face_starts[c + 1]):
+            x0, y0, x1, y1, z0, z1 = sides.faces[f]
+            if z0 < low and z1 > high and segments_cross(x, y, xx, yy, x0, y0, x1, y1):
+                return True
+    return False
+
+
+@inlined
+def _carrier(columns: SolidColumns, c: int, x: float, y: float, floor: float) -> int:
+    """The solid whose top is that floor; -1: the ground."""
+    for m in range(columns.starts[c], columns.starts[c + 1]):
+        k = columns.members[m]
+        if columns.solids.standable[k] and abs(top_at(columns.solids, k, x, y) - floor) < _SAME_M:
+            return int(k)
+    return -1
+
+
+@inlined
+def _outline_between(
+    solids: SolidArrays, k: int, axis: int, line: tuple[float, float, float, float]
+) -> tuple[bool, tuple[float, float, float, float]]:
+    """Where a solid's outline really passes between two cells that differ along an axis.
+
+    `line` is their common edge; it is returned as it is where no outline is within half a cell.
+    """
+    across = 1 - axis
+    low, high = line[across], line[across + 2]
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    ring = solids.points[solids.starts[k] : solids.starts[k + 1]]
+    p = ring[len(ring) - 1]
+    for q in ring:
+        if (p[across] > middle) != (q[across] > middle):
+            slope = (q[axis] - p[axis]) / (q[across] - p[across])
+            if abs(p[axis] + (middle - p[across]) * slope - line[axis]) <= half + _SAME_M:
+                u = max(min(p[across], q[across]), low)
+                v = min(max(p[across], q[across]), high)
+                a = p[axis] + (u - p[across]) * slope
+                b = p[axis] + (v - p[across]) * slope
+                return True, ((a, u, b, v) if axis == 0 else (u, a, v, b))
+        p = q
+    return False, line
+
+
+@inlined
+def _put(
+    out: NDArray[np.float64],
+    count: int,
+    line: tuple[float, float, float, float],
+    heights: tuple[float, float, float],
+) -> int:
+    """Write a barrier, or lengthen the last one if it goes straight on; returns the new count.
+
+    Barriers beyond the room in `out` are counted, not written.
+    """
+    x0, y0, x1, y1 = line
+    z0, z1, rise = heights
+    if 0 < count <= len(out):
+        last = out[count - 1]
+        ux, uy = last[2] - last[0], last[3] - last[1]
+        vx, vy = x1 - x0, y1 - y0
+        if (
+            abs(last[2] - x0) + abs(last[3] - y0) < 1e-9
+            and abs(last[4] - z0) + abs(last[5] - z1) < _SAME_M
+            and (last[6] == rise or abs(last[6] - rise) < _SAME_M)
+            and abs(ux * vy - uy * vx) < 1e-9
+            and ux * vx + uy * vy > 0.0
+        ):
+            last[2], last[3] = x1, y1
+            return count
+    if count < len(out):
+        new = out[count]
+        new[0], new[1], new[2], new[3] = x0, y0, x1, y1
+        new[4], new[5], new[6] = z0, z1, rise
+    return count + 1
+
+
+@inlined
+def _passes(arrays: LayeredArrays, cell: int, d: int) -> bool:
+    """Whether nothing is to be written at a side: level ground, or a ledge found from the west
+    or south already."""
+    other = arrays.links[cell, d]
+    return bool(
+        other >= 0 and (d >= 4 or abs(arrays.floors[other] - arrays.floors[cell]) < LEAST_STEP_M)
+    )
+
+
+@inlined
+def _ceiling(arrays: LayeredArrays, cell: int, d: int, floor: float) -> float:
+    """The ceiling over a ledge: of the cell or, if that is the higher one, of its neighbour."""
+    higher = cell
+    if abs(arrays.floors[cell] - floor) > _SAME_M:
+        higher = arrays.links[cell, d]
+    return float(arrays.ceilings[higher])
+
+
+@inlined
+def _ledge(arrays: LayeredArrays, sides: Sides, cell: int, d: int) -> tuple[bool, float, float]:
+    """Whether there is a ledge at a side of a cell that is not level, its floor and its rise."""
+    j = arrays.places[cell, 1] + LINK_ROWS[d]
+    i = arrays.places[cell, 2] + LINK_COLUMNS[d]
+    floor = float(arrays.floors[cell])
+    other = arrays.links[cell, d]
+    if other >= 0:
+        neighbour = float(arrays.floors[other])
+        return True, max(floor, neighbour), abs(floor - neighbour)
+    if not (0 <= j < arrays.ny and 0 <= i < arrays.nx):
+        return False, 0.0, 0.0
+    x = arrays.x0 + (i + 0.5) * arrays.cell_m
+    y = arrays.y0 + (j + 0.5) * arrays.cell_m
+    stopped = _solid_stops(sides.solids, j * arrays.nx + i, x, y, floor) or _face_between(
+        sides, arrays, cell, d, floor + LOWEST_M, floor + LINK_M
+    )
+    return not stopped, floor, np.inf
+
+
+@inlined
+def _ledge_line(
+    arrays: LayeredArrays, sides: Sides, cell: int, d: int, floor: float
+) -> tuple[bool, tuple[float, float, float, float]]:
+    """Where a ledge is: on the outline of the solid that carries the floor, if one does."""
+    axis = 0 if d in (0, 4) else 1
+    j, i = arrays.places[cell, 1], arrays.places[cell, 2]
+    if abs(arrays.floors[cell] - floor) > _SAME_M:
+        j += LINK_ROWS[d]
+        i += LINK_COLUMNS[d]
+    x = arrays.x0 + (i + 0.5) * arrays.cell_m
+    y = arrays.y0 + (j + 0.5) * arrays.cell_m
+    line = _common_edge(arrays, arrays.places[cell, 1], arrays.places[cell, 2], d)
+    k = _carrier(sides.solids, j * arrays.nx + i, x, y, floor)
+    if k < 0:
+        return False, line
+    return _outline_between(sides.solids.solids, k, axis, line)
+
+
+@kernel
+def _cells_along(
+    arrays: LayeredArrays,
+    layer: int,
+    line: int,
+    d: int,
+    headroom: float,
+    cells: NDArray[np.int32],
+) -> int:
+    """The cells of a column (d = 0 or 4) or row of a layer in order, but for tiles that are plain
+    with so much headroom; returns how many are written."""
+    count = 0
+    by_column = d in (0, 4)
+    length = arrays.ny if by_column else arrays.nx
+    for first in range(0, length, TILE):
+        tj, ti = (first // TILE, line // TILE) if by_column else (line // TILE, first // TILE)
+        page = arrays.pages[layer, tj, ti]
+        if page < 0 or arrays.plain[page // (TILE * TILE)] >= headroom:
+            continue
+        for k in range(first, min(length, first + TILE)):
+            j, i = (k, line) if by_column else (line, k)
+            cell = cell_index(arrays, layer, j, i)
+            if cell >= 0:
+                cells[count] = cell
+                count += 1
+    return count
+
+
+@kernel
+def ledges_towards(arrays: LayeredArrays, sides: Sides, d: int, out: NDArray[np.float64]) -> int:
+    """Ledges of every cell towards its neighbour E (d = 0), N (2), W (4) or S (6).
+
+    Linked cells have one if their floors differ, with the difference as its rise, but for slopes
+    up to 45 degrees. A cell whose neighbour is not linked has one of its own that nobody passes,
+    unless a solid or a face stops everybody there. Returns how many there are; those beyond the
+    room in `out` are not written.
+    """
+    count = 0
+    cells = np.empty(max(arrays.ny, arrays.nx), dtype=np.int32)
+    for layer in range(arrays.pages.shape[0]):
+        for line in range(arrays.nx if d in (0, 4) else arrays.ny):
+            for cell in cells[: _cells_along(arrays, layer, line, d, 0.0, cells)]:
+                if _passes(arrays, cell, d):
+                    continue
+                found, floor, rise = _ledge(arrays, sides, cell, d)
+                if not found:
+                    continue
+                exact, edge = _ledge_line(arrays, sides, cell, d, floor)
+                slope = rise <= 1.001 * arrays.cell_m and not exact
+                middle = floor - 0.5 * rise
+                if not slope or _face_between(sides, arrays, cell, d, middle, middle):
+                    # Nobody above the ceiling is concerned.
+                    top = min(floor + _ABOVE_M, _ceiling(arrays, cell, d, floor))
+                    count = _put(out, count, edge, (floor - _BELOW_M, top, rise))
+    return count
+
+
+@kernel
+def lintels_between(arrays: LayeredArrays, d: int, out: NDArray[np.float64]) -> int:
+    """Where the ceiling changes its height between linked cells, low enough to hinder anyone.
+
+    For the neighbours to the east (d = 0) or north (d = 2), as `ledges_towards`. Only meshes need
+    them: of polygons the exact outline is known.
+    """
+    count = 0
+    cells = np.empty(max(arrays.ny, arrays.nx), dtype=np.int32)
+    for layer in range(arrays.pages.shape[0]):
+        for line in range(arrays.nx if d == 0 else arrays.ny):
+            for cell in cells[: _cells_along(arrays, layer, line, d, _HIGHEST_M, cells)]:
+                other = arrays.links[cell, d]
+                if other < 0:
+                    continue
+                above, beside = float(arrays.ceilings[cell]), float(arrays.ceilings[other])
+                low, high = min(above, beside), max(above, beside)
+                floor = max(arrays.floors[cell], arrays.floors[other])
+                if high - low >= LEAST_STEP_M and low < floor + _HIGHEST_M:
+                    edge = _common_edge(arrays, arrays.places[cell, 1], arrays.places[cell, 2], d)
+                    count = _put(out, count, edge, (low, low + _LINTEL_M, np.inf))
+    return count

@@ -1,0 +1,1 @@
+"""People: where they may go, and the risk of being near them."""

@@ -1,0 +1,1 @@
+"""Ways over static ground: potentials of goals, shortest paths, storeys."""

@@ -1,0 +1,212 @@
+"""Wave fronts that lead to a goal, on bare arrays.
+
+Both kinds fill the same potential: per cell the distance left from a *waypoint* and the waypoint's
+place, so that the potential anywhere in the cell is `potential distance + way to the waypoint`.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.planning.compiled._heap_kernels import heap_pop, heap_push
+from esplanade.planning.compiled.jit import inlined, kernel
+from esplanade.planning.grid._grid_kernels import GridArrays, follow, length, line_is_clear
+
+Guide = NDArray[np.float32]
+"""(N, 3): metres from the waypoint to the goal, waypoint x, waypoint y; inf where no way leads."""
+
+
+@inlined
+def potential_at(potential: Guide, cell: int, x: float, y: float) -> float:
+    """Metres from a point, in a cell, to the goal; inf where no way leads."""
+    if cell < 0:
+        return np.inf
+    g = potential[cell]
+    return float(g[0] + length(g[1] - x, g[2] - y))
+
+
+@inlined
+def direction_at(
+    grid: GridArrays, potential: Guide, cell: int, x: float, y: float
+) -> tuple[float, float, float]:
+    """Unit vector toward the waypoint and the way to it; zeros at the goal or where no way leads.
+
+    Within a quarter of a cell of a waypoint the one after it counts.
+    """
+    if cell < 0:
+        return 0.0, 0.0, 0.0
+    left, wx, wy = potential[cell]
+    if not np.isfinite(left):
+        return 0.0, 0.0, 0.0
+    leg = length(wx - x, wy - y)
+    if leg < 0.25 * grid.layered.cell_m and left > 0.0:
+        there = follow(grid, cell, wx, wy)
+        if there >= 0:
+            left, wx, wy = potential[there]
+            leg = length(wx - x, wy - y)
+    if leg < 1e-4:  # waypoints are rounded to float32
+        return 0.0, 0.0, 0.0
+    return (wx - x) / leg, (wy - y) / leg, leg
+
+
+@inlined
+def _way_to(
+    grid: GridArrays, body: int, step_on_m: float, radius: float, cell: int, direction: int
+) -> int:
+    """Neighbour that a disc may pass to, without cutting an obstacle's corner; -1 if it may not."""
+    clear = grid.clearance[body]
+    other = grid.layered.links[cell, direction]
+    if other < 0 or clear[other] < radius:
+        return -1
+    if abs(grid.layered.floors[other] - grid.layered.floors[cell]) > step_on_m:
+        return -1
+    if direction & 1:
+        one = grid.layered.links[cell, direction - 1]
+        two = grid.layered.links[cell, (direction + 1) & 7]
+        if one < 0 or two < 0 or min(clear[one], clear[two]) < radius:
+            return -1
+    return int(other)
+
+
+@kernel
+def spread_wave(
+    grid: GridArrays,
+    body: int,
+    step_on_m: float,
+    radius: float,
+    goal_cell: int,
+    goal_x: float,
+    goal_y: float,
+    longest_sight: float,
+    centres: NDArray[np.float64],
+    potential: Guide,
+    settled: NDArray[np.uint8],
+    keys: NDArray[np.float64],
+    items: NDArray[np.int64],
+) -> int:
+    """Fill a potential; returns how many cells were reached.
+
+    The wave spreads from cell to cell over the links, never cutting a corner. A cell that sees its
+    neighbour's waypoint within `longest_sight` metres takes that waypoint over, else the neighbour
+    itself is its waypoint; at zero sight this is NF1. Lines of sight are tested once a cell, when
+    it leaves the heap. `keys` and `items` hold 8 entries a cell plus one; `centres` (N, 2).
+    """
+    potential[:, 0] = np.inf
+    potential[:, 1:] = 0.0
+    settled[:] = 0
+    potential[goal_cell, 0] = 0.0
+    potential[goal_cell, 1] = goal_x
+    potential[goal_cell, 2] = goal_y
+    size = heap_push(keys, items, 0, 0.0, goal_cell)
+    reached = 0
+    while size > 0:
+        cell = items[0]
+        size = heap_pop(keys, items, size)
+        if settled[cell]:
+            continue
+        x = centres[cell, 0]
+        y = centres[cell, 1]
+        own = potential[cell]
+        seen = longest_sight == 0.0 or line_is_clear(grid, body, cell, x, y, own[1], own[2], radius)
+        if reached > 0 and not seen:
+            own[0] = np.inf
+            for direction in range(8):
+                other = _way_to(grid, body, step_on_m, radius, cell, direction)
+                if other < 0 or not settled[other]:
+                    continue
+                cx = centres[other, 0]
+                cy = centres[other, 1]
+                left = potential_at(potential, other, cx, cy)
+                if left + length(cx - x, cy - y) < own[0] + length(own[1] - x, own[2] - y):
+                    own[0] = left
+                    own[1] = cx
+                    own[2] = cy
+            if not np.isfinite(own[0]):
+                continue
+        settled[cell] = 1
+        reached += 1
+        for direction in range(8):
+            other = _way_to(grid, body, step_on_m, radius, cell, direction)
+            if other < 0 or settled[other]:
+                continue
+            cx = centres[other, 0]
+            cy = centres[other, 1]
+            left = own[0]
+            wx = own[1]
+            wy = own[2]
+            if length(wx - cx, wy - cy) > longest_sight:
+                left = own[0] + length(wx - x, wy - y)
+                wx = x
+                wy = y
+            cost = left + length(wx - cx, wy - cy)
+            if cost < potential_at(potential, other, cx, cy):
+                potential[other, 0] = left
+                potential[other, 1] = wx
+                potential[other, 2] = wy
+                size = heap_push(keys, items, size, cost, other)
+    return reached
+
+
+@kernel
+def extend_into_obstacles(
+    grid: GridArrays,
+    step_on_m: float,
+    centres: NDArray[np.float64],
+    potential: Guide,
+    settled: NDArray[np.uint8],
+) -> None:
+    """Lead out of cells that are not free but lie next to reached ones, three rings deep.
+
+    Who was put beside a wall, closer than its radius, then still knows the way. Such ground
+    counts thrice its length.
+    """
+    for ring in range(1, 4):
+        for cell in range(len(settled)):
+            if settled[cell] or grid.layered.floors[cell] != grid.layered.floors[cell]:
+                continue
+            x = centres[cell, 0]
+            y = centres[cell, 1]
+            best = np.inf
+            for direction in range(8):
+                other = grid.layered.links[cell, direction]
+                if other < 0 or settled[other] == 0 or settled[other] > ring:
+                    continue
+                if abs(grid.layered.floors[other] - grid.layered.floors[cell]) > step_on_m:
+                    continue
+                cx = centres[other, 0]
+                cy = centres[other, 1]
+                way = length(cx - x, cy - y)
+                left = potential_at(potential, other, cx, cy) + 2.0 * way
+                if left + way < best:
+                    best = left + way
+                    potential[cell, 0] = left
+                    potential[cell, 1] = cx
+                    potential[cell, 2] = cy
+            if np.isfinite(best):
+                settled[cell] = ring + 1
+
+
+@kernel
+def distances(
+    potential: Guide,
+    cells: NDArray[np.int64],
+    positions: NDArray[np.float64],
+    out: NDArray[np.float64],
+) -> None:
+    """`potential_at` for (N,), (N, 2) -> out (N,)."""
+    for k in range(len(positions)):
+        out[k] = potential_at(potential, cells[k], positions[k, 0], positions[k, 1])
+
+
+@kernel
+def directions(
+    grid: GridArrays,
+    potential: Guide,
+    cells: NDArray[np.int64],
+    positions: NDArray[np.float64],
+    out: NDArray[np.float64],
+) -> None:
+    """`direction_at` for (N,), (N, 2) -> out (N, 2)."""
+    for k in range(len(positions)):
+        dx, dy, _ = direction_at(grid, potential, cells[k], positions[k, 0], positions[k, 1])
+        out[k, 0] = dx
+        out[k, 1] = dy

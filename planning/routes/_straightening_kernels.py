@@ -1,0 +1,170 @@
+"""Straight stretches over floors, on bare arrays: Huang & Li, sec. 4.4."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.planning.compiled.jit import inlined, kernel
+from esplanade.planning.ground._barrier_kernels import HAIR_M, crosses, to_raise, way_to_barrier
+from esplanade.planning.traversal._stability_kernels import FORBIDDEN, STABLE
+from esplanade.planning.traversal.traversability import Traversability
+
+_CORNER_M = 1e-9
+
+
+class Line(NamedTuple):
+    """A way as points, at least one in every cell that it crosses."""
+
+    xy: NDArray[np.float64]
+    """(N, 2), metres."""
+    cells: NDArray[np.int32]
+    """(N,)."""
+    counts: NDArray[np.int32]
+    """(N,): cells on edges in a row."""
+
+
+@inlined
+def is_clear(
+    traversability: Traversability, cell: int, ax: float, ay: float, bx: float, by: float
+) -> bool:
+    """Whether a body keeps its distance from barriers on a straight way within one cell."""
+    near, body = traversability.near, traversability.body
+    floor = float(traversability.arrays.floors[cell])
+    entry = near.first[cell]
+    while entry >= 0:
+        barrier = near.barriers[near.entries[entry, 0]]
+        entry = near.entries[entry, 1]
+        step = to_raise(barrier, floor, floor, body.height_m)
+        if step <= body.step_on_m + HAIR_M:
+            continue
+        if crosses(barrier, ax, ay, bx, by):
+            return False
+        if (
+            step > body.leg_length_m + HAIR_M
+            and way_to_barrier(barrier, ax, ay, bx, by) < body.radius_m - HAIR_M
+        ):
+            return False
+    return True
+
+
+@inlined
+def _until(a: float, b: float, cell: int, last: int, origin: float, cell_m: float) -> float:
+    """The part of the way from a to b at which it leaves a row (or column) of cells."""
+    if cell == last:
+        return np.inf
+    side = cell + 1 if last > cell else cell
+    return (origin + side * cell_m - a) / (b - a) if b != a else 0.0
+
+
+@inlined
+def trace(
+    traversability: Traversability, line: Line, a: int, b: int, count: int, out: Line, used: int
+) -> int:
+    """Walk straight from point a of a line to point b, of which `count` cells were on edges.
+
+    Writes the points after a, one in every cell on the way, into `out` from `used` on; returns
+    how many are used then, or -1 if the body may not walk so.
+    """
+    arrays = traversability.arrays
+    ax, ay = line.xy[a]
+    bx, by = line.xy[b]
+    cell, last = line.cells[a], line.cells[b]
+    j, i = arrays.places[cell, 1], arrays.places[cell, 2]
+    last_j, last_i = arrays.places[last, 1], arrays.places[last, 2]
+    x, y, done = ax, ay, 0.0
+    while True:
+        u = _until(ax, bx, i, last_i, arrays.x0, arrays.cell_m)
+        v = _until(ay, by, j, last_j, arrays.y0, arrays.cell_m)
+        part = min(1.0, max(done, min(u, v)))
+        then_x, then_y = ax + part * (bx - ax), ay + part * (by - ay)
+        if not is_clear(traversability, cell, x, y, then_x, then_y):
+            return -1
+        if j == last_j and i == last_i:
+            if cell != last:
+                return -1
+            out.xy[used] = (bx, by)
+            out.cells[used] = cell
+            out.counts[used] = count
+            return used + 1
+        if cell != line.cells[a]:
+            out.xy[used] = (0.5 * (x + then_x), 0.5 * (y + then_y))
+            out.cells[used] = cell
+            out.counts[used] = count
+            used += 1
+        x, y, done = then_x, then_y, part
+        di = 0 if u > v + _CORNER_M else (1 if last_i > i else -1)
+        dj = 0 if v > u + _CORNER_M else (1 if last_j > j else -1)
+        d = _link_toward(dj, di)
+        if not traversability.steps[cell] >> d & 1:
+            return -1
+        cell = arrays.links[cell, d]
+        if traversability.classes[cell] == FORBIDDEN:
+            return -1
+        count = 0 if traversability.classes[cell] == STABLE else count + 1
+        if count >= traversability.edge_cells:
+            return -1
+        j += dj
+        i += di
+
+
+@inlined
+def _link_toward(dj: int, di: int) -> int:
+    if dj == 0:
+        return 0 if di > 0 else 4
+    if dj > 0:
+        return 2 - di
+    return 6 + di
+
+
+@kernel
+def straighten(traversability: Traversability, line: Line, out: Line) -> int:
+    """Replace stretches of a line by straight ones, longest first; returns the points in `out`.
+
+    A stretch is taken if it may be walked and ends with no higher count than before, so that
+    what follows stays legal. How far one can go straight is found by doubling, then halving.
+    """
+    n = len(line.cells)
+    out.xy[0] = line.xy[0]
+    out.cells[0] = line.cells[0]
+    out.counts[0] = line.counts[0]
+    used = 1
+    anchor = 0
+    while anchor < n - 1:
+        count = out.counts[used - 1]
+        good, bad, span = anchor, n, 1
+        while bad - good > 1:
+            if bad == n and good < n - 1:
+                to = min(anchor + span, n - 1)
+                span *= 2
+            else:
+                to = (good + bad) // 2
+            end = trace(traversability, line, anchor, to, count, out, used)
+            if end > 0 and out.counts[end - 1] <= line.counts[to]:
+                good = to
+            else:
+                bad = to
+        if good == anchor:
+            good = anchor + 1
+            out.xy[used] = line.xy[good]
+            out.cells[used] = line.cells[good]
+            out.counts[used] = line.counts[good]
+            used += 1
+        else:
+            used = trace(traversability, line, anchor, good, count, out, used)
+        anchor = good
+    return used
+
+
+@kernel
+def recount(traversability: Traversability, line: Line) -> bool:
+    """Count cells on edges anew, from the first point on; whether M allows the line."""
+    line.counts[0] = 0
+    for k in range(1, len(line.cells)):
+        count = line.counts[k - 1]
+        if line.cells[k] != line.cells[k - 1]:
+            count = 0 if traversability.classes[line.cells[k]] == STABLE else count + 1
+        line.counts[k] = count
+        if count >= traversability.edge_cells:
+            return False
+    return True

@@ -1,0 +1,62 @@
+"""The storeys of a building as people count them: heights with much ground, one above the other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.planning.grid.grid import ADULT, LayeredGrid
+from esplanade.planning.scene.bodies import Body
+from esplanade.planning.scene.heights import LEVEL_M, STOREYS_APART_M
+from esplanade.planning.traversal.wavefront import UNREACHED, spread_wave
+
+LANDING_M2: Final = 6.0
+"""What is smaller is a landing."""
+
+
+def storeys_of(grid: LayeredGrid, ground: NDArray[np.bool_]) -> tuple[float, ...]:
+    """Heights of the storeys in metres, the lowest first; at least one.
+
+    Of the `ground`, bool (N,), only cells count that lie above or below others of it: hills have
+    no storeys. A storey's height is the median of its floors.
+    """
+    a = grid.layered
+    cells = np.flatnonzero(ground & np.isfinite(a.floors))
+    floors = a.floors[cells].astype(np.float64)
+    if not len(floors):
+        return (0.0,)
+    columns = a.places[cells, 1].astype(np.int64) * a.nx + a.places[cells, 2]
+    order = np.lexsort((floors, columns))
+    over = (np.diff(columns[order]) == 0) & (np.diff(floors[order]) >= STOREYS_APART_M)
+    stacked = np.zeros(len(cells), dtype=np.bool_)
+    stacked[order[:-1][over]] = stacked[order[1:][over]] = True
+    found: list[float] = []
+    left = np.sort(floors[stacked])
+    while len(left):
+        within = np.searchsorted(left, left + LEVEL_M, side="right") - np.arange(len(left))
+        fullest = int(within.argmax())
+        if within[fullest] * a.cell_m**2 < LANDING_M2:
+            break
+        height = float(np.median(left[fullest : fullest + within[fullest]]))
+        found.append(height)
+        left = left[np.abs(left - height) >= STOREYS_APART_M]
+    return tuple(sorted(found)) or (float(np.median(floors)),)
+
+
+def reached_from(
+    grid: LayeredGrid, starts: Sequence[tuple[float, float, float]], body: Body = ADULT
+) -> NDArray[np.bool_]:
+    """Cells where a body gets to from any of some places x, y, z in metres, bool (N,).
+
+    Without any place to start from, all cells.
+    """
+    traversability = grid.traversability.of(body)
+    reached = np.full(len(traversability.steps), not starts)
+    for x, y, z in starts:
+        cell = int(grid.on_ground([(x, y)], [z])[1][0])
+        if cell >= 0 and not reached[cell]:
+            reached |= spread_wave(traversability, cell) != UNREACHED
+    return reached

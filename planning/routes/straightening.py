@@ -1,0 +1,70 @@
+"""After the search: straight stretches instead of steps from cell to cell, then headings.
+
+Huang & Li, sec. 4.4.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.planning.routes import _straightening_kernels as kernels
+from esplanade.planning.routes._straightening_kernels import Line
+from esplanade.planning.traversal.traversability import Traversability
+
+
+def line_of_cells(
+    traversability: Traversability,
+    cells: NDArray[np.int32],
+    counts: NDArray[np.int32],
+    start: tuple[float, float],
+    goal: tuple[float, float],
+) -> Line:
+    """The way over the centres of cells, from a start in the first to a goal in the last."""
+    arrays = traversability.arrays
+    around = np.concatenate([cells[:1], cells, cells[-1:]])
+    xy = np.empty((len(around), 2))
+    xy[:, 0] = arrays.x0 + (arrays.places[around, 2] + 0.5) * arrays.cell_m
+    xy[:, 1] = arrays.y0 + (arrays.places[around, 1] + 0.5) * arrays.cell_m
+    xy[0], xy[-1] = start, goal
+    return Line(xy, around, np.concatenate([counts[:1], counts, counts[-1:]]))
+
+
+def straighten(traversability: Traversability, line: Line) -> Line:
+    """Make a way shorter by straight stretches that are legal for the body, M included.
+
+    Straight stretches are walked on the floors, from cell to cell, with the body's exact distance
+    to walls; from the start, then from the goal, since from a corner one sees less far along the
+    way than toward it. The result has a point in every cell that it crosses, so that it follows
+    the floor up and down. Cost O(points x log points).
+    """
+    line = _from_start(traversability, line)
+    back = _reversed(line)
+    if not kernels.recount(traversability, back):
+        return line
+    shorter = _reversed(_from_start(traversability, back))
+    return shorter if kernels.recount(traversability, shorter) else line
+
+
+def _from_start(traversability: Traversability, line: Line) -> Line:
+    room = 3 * len(line.cells) + 8
+    out = Line(np.empty((room, 2)), np.empty(room, dtype=np.int32), np.empty(room, dtype=np.int32))
+    used = kernels.straighten(traversability, line, out)
+    return Line(out.xy[:used], out.cells[:used], out.counts[:used])
+
+
+def _reversed(line: Line) -> Line:
+    return Line(line.xy[::-1].copy(), line.cells[::-1].copy(), line.counts[::-1].copy())
+
+
+def headings(xy: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Where a body looks that walks a way (N, 2): radians from east, toward north, float64 (N,).
+
+    The tangent at each point, along the line between its neighbours.
+    """
+    if len(xy) < 2:
+        return np.zeros(len(xy))
+    along = np.empty_like(xy)
+    along[1:-1] = xy[2:] - xy[:-2]
+    along[0], along[-1] = xy[1] - xy[0], xy[-1] - xy[-2]
+    return np.arctan2(along[:, 1], along[:, 0])

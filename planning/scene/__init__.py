@@ -1,0 +1,1 @@
+"""Scenes and bodies as people describe them: files, doors, meshes, heights."""

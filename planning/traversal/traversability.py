@@ -1,0 +1,23 @@
+"""Everything that decides where one body may go, together, for kernels."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.planning.ground._barrier_kernels import Measures, NearBarriers
+from esplanade.planning.ground.layered import LayeredArrays
+
+
+class Traversability(NamedTuple):
+    """The floors of a zone as one body finds them."""
+
+    arrays: LayeredArrays
+    near: NearBarriers
+    body: Measures
+    steps: NDArray[np.uint8]
+    """(N,): the links that the body may follow; bit d is link d."""
+    classes: NDArray[np.uint8]
+    """(N,): `Stability` of each cell."""
+    edge_cells: int
+    """M: fewer cells than these in a row may lie on edges."""

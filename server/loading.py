@@ -1,0 +1,147 @@
+"""What world the settings ask for: the scene, from a file or around a recorded crowd."""
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from pydantic import ValidationError
+
+from esplanade.planning import Place, Scene, Wall
+from esplanade.planning.scene.mesh_file import MeshError, read_triangles
+from esplanade.planning.scene.scene_file import SceneError, read_scene, scene_faults
+from esplanade.recordings import (
+    Crowd,
+    RecordingError,
+    open_doorways,
+    read_crowd,
+    read_walls,
+    walls_beside,
+)
+from esplanade.server.settings import ServerSettings
+from esplanade.server.world.rules import Rules
+
+DEFAULT_SCENE: Final = Path(__file__).parent.parent / "scenes" / "gallery.json"
+
+CROWD_MARGIN_M: Final = 2.0
+CROWD_PLACES: Final = 8
+CROWD_PLACE_INSET_M: Final = 1.0
+DOORWAY_M: Final = 0.5
+"""Walls drawn across the way of a recorded person are opened this wide."""
+CATCH_UP: Final = 1.5
+"""A replayed person may be this much faster than the recording, to catch up with it."""
+MAX_TRIANGLES: Final = 400_000
+"""Every visitor's browser fetches a mesh whole: this many are 14 MB before compression."""
+
+
+class LoadingError(ValueError):
+    """A scene or crowd that cannot be run; the message names the file and the place in it."""
+
+
+@dataclass(frozen=True)
+class LoadedScene:
+    """A scene and the rules that hold in it."""
+
+    scene: Scene
+    rules: Rules
+    triangles: bytes | None = None
+    """Of a building that is a mesh: nine little-endian 32-bit floats each, metres, z up."""
+
+
+def load_scene(settings: ServerSettings) -> LoadedScene:
+    """Read what the settings name.
+
+    Raises
+    ------
+    LoadingError
+        A file cannot be read or does not hold what it should.
+    """
+    rules = Rules(
+        person_radius_m=settings.person_radius_m,
+        person_clearance_m=settings.person_radius_m,
+        person_max_speed_mps=settings.person_max_speed_mps,
+        person_walk_speed_mps=settings.person_walk_speed_mps,
+        view_radius_m=settings.view_radius_m,
+        view_limit=settings.view_limit,
+        steps_radius_m=settings.steps_radius_m,
+        steps_limit=settings.steps_limit,
+    )
+    if settings.crowd is None:
+        scene = _read_scene(settings.scene or DEFAULT_SCENE)
+        return LoadedScene(scene, rules, None if scene.mesh is None else _triangles(scene.mesh))
+    try:
+        crowd = read_crowd(settings.crowd)
+        path = settings.walls or walls_beside(settings.crowd)
+        walls = open_doorways(read_walls(path), crowd, DOORWAY_M) if path else []
+        scene = _scene_around(crowd, walls)
+    except RecordingError as error:
+        raise LoadingError(str(error)) from None
+    except ValidationError as error:
+        raise LoadingError(str(SceneError(settings.crowd, scene_faults(error)))) from None
+    needed_mps = CATCH_UP * crowd.max_speed_mps
+    # Recorded people brush along walls: they are held to their tracks, not to a clearance.
+    return LoadedScene(
+        scene,
+        replace(
+            rules,
+            person_clearance_m=0.0,
+            person_max_speed_mps=max(rules.person_max_speed_mps, needed_mps),
+        ),
+    )
+
+
+def _read_scene(path: Path) -> Scene:
+    try:
+        return read_scene(path)
+    except OSError as error:
+        raise LoadingError(f"{path}: cannot be read: {error.strerror or error}") from None
+    except SceneError as error:
+        raise LoadingError(str(error)) from None
+
+
+def _triangles(mesh: Path) -> bytes:
+    try:
+        triangles = read_triangles(mesh)
+    except MeshError as error:
+        raise LoadingError(str(error)) from None
+    if len(triangles) > MAX_TRIANGLES:
+        raise LoadingError(
+            f"{mesh}: it has {len(triangles)} triangles, but browsers are handed at most "
+            f"{MAX_TRIANGLES}; make a simpler mesh of it"
+        )
+    return triangles.astype("<f4").tobytes()
+
+
+def _scene_around(
+    crowd: Crowd, walls: list[tuple[tuple[float, float], tuple[float, float]]]
+) -> Scene:
+    """Open ground around everyone's ways, with places along its edge to walk between."""
+    x0, y0, x1, y1 = crowd.bounds
+    bounds = (
+        x0 - CROWD_MARGIN_M,
+        y0 - CROWD_MARGIN_M,
+        x1 + CROWD_MARGIN_M,
+        y1 + CROWD_MARGIN_M,
+    )
+    return Scene(
+        name=crowd.name[:64],
+        bounds=bounds,
+        walls=tuple(Wall(start=start, end=end) for start, end in walls),
+        places=tuple(_places_along(bounds)),
+    )
+
+
+def _places_along(bounds: tuple[float, float, float, float]) -> list[Place]:
+    """In the corners and in the middle of the sides, just inside the bounds."""
+    x0, y0, x1, y1 = bounds
+    middle = np.array([(x0 + x1) / 2.0, (y0 + y1) / 2.0])
+    half = np.array([(x1 - x0) / 2.0, (y1 - y0) / 2.0]) - CROWD_PLACE_INSET_M
+    places = []
+    for number in range(CROWD_PLACES):
+        angle = 2.0 * math.pi * number / CROWD_PLACES
+        # Onto the rectangle: the larger coordinate of the direction reaches its edge.
+        direction = np.array([math.cos(angle), math.sin(angle)])
+        x, y = middle + half * direction / np.abs(direction).max()
+        places.append(Place(name=f"edge {number + 1}", position=(float(x), float(y))))
+    return places

@@ -1,0 +1,125 @@
+"""Who is shown the steps of whom: of those in view the ones that are near, with hysteresis."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from esplanade.protocol.steps import STEP, StepRecords
+from esplanade.server.world.interest import LEAVE_RATIO, Interest
+from esplanade.server.world.neighbours import STOREY_WEIGHT
+from esplanade.server.world.rules import Rules
+from esplanade.server.world.state import Slots, State
+
+STEP_BYTES = STEP.itemsize
+
+
+class LatestSteps:
+    """The newest step of everyone, by slot, also when it is over.
+
+    `records` is STEP (capacity + 1,), `begun` int32 the tick in which each was written, 0 for
+    none; the last row belongs to nobody and stays as it is.
+    """
+
+    def __init__(self, capacity: int) -> None:
+        self.records: StepRecords = np.zeros(capacity + 1, dtype=STEP)
+        self.begun = np.zeros(capacity + 1, dtype=np.int32)
+
+    def begin(self, slots: Slots, records: StepRecords, tick: int) -> None:
+        """Those in these slots, (N,), begin these steps, STEP (N,)."""
+        self.records[slots] = records
+        self.begun[slots] = tick
+
+
+@dataclass(frozen=True)
+class StepBlocks:
+    """One tick's steps for some viewers, packed one after the other.
+
+    The i-th of them is to get `data[ends[i-1]:ends[i]]` (from 0 for the first).
+    """
+
+    ends: list[int]
+    data: memoryview
+
+
+class StepInterest:
+    """Keeps for every viewer since when it is shown whose steps.
+
+    `since[viewer, slot]` is the tick at which that walker came near, 0 for who is not near. Oneself
+    is always near; of the others in view those within `steps_radius_m`, the nearest `steps_limit`.
+    """
+
+    def __init__(self, state: State, rules: Rules) -> None:
+        self._state = state
+        self._nobody = state.capacity
+        self._near_m = rules.steps_radius_m
+        self._leave_m = rules.steps_radius_m * LEAVE_RATIO
+        self._leave_rank = rules.steps_limit + 1
+        self._near_rank = self._leave_rank - rules.steps_limit // 8
+        self.since = np.zeros((state.capacity, state.capacity + 1), dtype=np.int32)
+
+    @property
+    def shown(self) -> int:
+        """How many walkers all viewers together are shown."""
+        return int(np.count_nonzero(self.since))
+
+    def attach(self, slot: int) -> None:
+        """This avatar looks, and has been shown nothing so far."""
+        self.since[slot] = 0
+
+    def detach(self, slot: int) -> None:
+        """This avatar looks no more."""
+        self.since[slot] = 0
+
+    def remove(self, slot: int) -> None:
+        """This avatar is out of the world."""
+        self.detach(slot)
+        self.since[:, slot] = 0
+
+    def update(self, interest: Interest, tick: int) -> None:
+        """Look again for those whose view was looked at in this tick."""
+        due = interest.looked
+        viewer = due[:, None]
+        rows = interest.rows[due]
+        known = self.since[viewer, rows]
+        distances = self._distances(due, rows)
+        rank = np.cumsum(rows != self._nobody, axis=1)
+        near = (distances <= self._near_m) & (rank <= self._near_rank)
+        near |= (known > 0) & (distances <= self._leave_m) & (rank <= self._leave_rank)
+        near &= rows != self._nobody
+        near |= rows == viewer
+        self.since[due] = 0
+        row, column = np.nonzero(near)
+        stamps = np.where(known > 0, known, tick)
+        self.since[due[row], rows[row, column]] = stamps[row, column]
+
+    def encode(
+        self,
+        interest: Interest,
+        steps: LatestSteps,
+        viewers: Slots,
+        written: npt.NDArray[np.int32],
+    ) -> StepBlocks:
+        """Steps that these viewers, (V,), have not been sent by the ticks `written`, (V,).
+
+        That is the latest of each walker who began one since, or came near since.
+        """
+        rows = interest.rows[viewers]
+        since = self.since[viewers[:, None], rows]
+        begun = steps.begun.take(rows)
+        wanted = np.maximum(begun, since) > written[:, None]
+        wanted &= (since > 0) & (begun > 0)
+        ends = np.cumsum(np.count_nonzero(wanted, axis=1)) * STEP_BYTES
+        slots = rows.ravel().take(np.flatnonzero(wanted))
+        # Gathering rows of bytes is faster than gathering structured records.
+        data = steps.records.view(np.uint8).reshape(-1, STEP_BYTES).take(slots, axis=0).tobytes()
+        return StepBlocks(ends.tolist(), memoryview(data))
+
+    def _distances(self, viewers: Slots, rows: Slots) -> npt.NDArray[np.float64]:
+        """From each of V viewers to those in its row, (V, C); of nobody any number."""
+        state = self._state
+        places = np.column_stack([state.positions, state.heights * STOREY_WEIGHT])
+        apart: npt.NDArray[np.float64] = np.linalg.norm(
+            places.take(rows, axis=0, mode="clip") - places[viewers][:, None], axis=-1
+        )
+        return apart

@@ -1,0 +1,183 @@
+"""`esplanade demo`: the demo world with actors, and in a second process a few visitors.
+
+The server runs in this process and owns its signals. A thread waits until people may come in,
+says so, and then sends the visitors: real clients over real sockets, ended with the server.
+"""
+
+import argparse
+import contextlib
+import http.client
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Sequence
+from http import HTTPStatus
+from importlib import import_module
+from typing import Final, cast
+
+from rich.console import Console
+from rich.panel import Panel
+
+EXIT_FAILED: Final = 1
+POLL_S: Final = 0.25
+GRACE_S: Final = 2.0
+END_LIMIT_S: Final = 5.0
+
+
+def run(argv: Sequence[str]) -> int:
+    """Run the demo until the server ends, and return the server's exit code."""
+    options, passed_on = parser().parse_known_args(argv)
+    for port in (options.port, options.private_port):
+        if not _is_free(port):
+            print(
+                f"esplanade demo: port {port} is taken, perhaps by another world. "
+                "Others can be given by --port and --private-port.",
+                file=sys.stderr,
+            )
+            return EXIT_FAILED
+    visitors = Visitors(options)
+    visitors.start()
+    try:
+        return cast(
+            int, import_module("esplanade.server.cli").run(server_arguments(options, passed_on))
+        )
+    finally:
+        visitors.end()
+
+
+class Visitors:
+    """A few wandering bots that come when the world is ready and go when it ends."""
+
+    def __init__(self, options: argparse.Namespace) -> None:
+        self._options = options
+        self._ending = threading.Event()
+        self._thread = threading.Thread(target=self._come, name="visitors", daemon=True)
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def start(self) -> None:
+        """Begin to wait for the server, in the background."""
+        self._thread.start()
+
+    def end(self) -> None:
+        """Send the visitors home, and wait for it."""
+        self._ending.set()
+        self._thread.join()
+        if self._process is None:
+            return
+        self._process.terminate()
+        try:
+            self._process.wait(END_LIMIT_S)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+
+    def _come(self) -> None:
+        while not is_ready(self._options.private_port):
+            if self._ending.wait(POLL_S):
+                return
+        _announce(self._options.port)
+        if not self._options.visitors or self._ending.is_set():
+            return
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "esplanade", "bots", *bots_arguments(self._options)],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            # Not the terminal's group: its Ctrl-C is ours alone, and we send them home.
+            process_group=0,
+        )
+        self._watch(self._process)
+
+    def _watch(self, process: subprocess.Popen[bytes]) -> None:
+        """Say so if the visitors leave before the world ends."""
+        while process.poll() is None:
+            if self._ending.wait(POLL_S):
+                return
+        if not self._ending.wait(GRACE_S):
+            print(
+                f"The visitors have left (status {process.returncode}). "
+                f"To see why: esplanade bots {' '.join(bots_arguments(self._options))}",
+                file=sys.stderr,
+            )
+
+
+def server_arguments(options: argparse.Namespace, passed_on: Sequence[str]) -> list[str]:
+    return [
+        f"--port={options.port}",
+        f"--private-port={options.private_port}",
+        f"--actors={options.actors}",
+        f"--seed={options.seed}",
+        *passed_on,
+    ]
+
+
+def bots_arguments(options: argparse.Namespace) -> list[str]:
+    return [
+        f"--url=ws://localhost:{options.port}",
+        f"--count={options.visitors}",
+        f"--seed={options.seed}",
+        "--duration=0",
+    ]
+
+
+def _is_free(port: int) -> bool:
+    """Whether we may listen there; asked first, so that nobody waits for a start in vain."""
+    try:
+        socket.create_server(("", port)).close()
+    except OSError:
+        return False
+    return True
+
+
+def is_ready(private_port: int) -> bool:
+    """Whether the server says that people may come in."""
+    connection = http.client.HTTPConnection("127.0.0.1", private_port, timeout=1.0)
+    with contextlib.closing(connection), contextlib.suppress(OSError, http.client.HTTPException):
+        connection.request("GET", "/readyz")
+        return connection.getresponse().status == HTTPStatus.OK
+    return False
+
+
+def _announce(port: int) -> None:
+    Console().print(
+        Panel.fit(
+            f"Esplanade is open:  [bold]http://localhost:{port}[/bold]\n\n"
+            "Open this address in a browser, as often as you like. Ctrl-C ends it.",
+            padding=(1, 4),
+            border_style="green",
+        )
+    )
+
+
+def parser() -> argparse.ArgumentParser:
+    """Options of the demo itself; what it does not know is the server's."""
+    options = argparse.ArgumentParser(
+        prog="esplanade demo",
+        description="Run the demo world with actors, and with a few visitors made of code.",
+        epilog="All other options go to the server: see `esplanade serve --help`.",
+        formatter_class=argparse.ArgumentDefaultsHelpFormatter,
+        allow_abbrev=False,
+    )
+    port, amount = _number(1, 65535), _number(0, 500)
+    options.add_argument("--port", type=port, default=8080, help="port for people")
+    options.add_argument(
+        "--private-port", type=port, default=8081, help="port for health and metrics"
+    )
+    options.add_argument("--actors", type=amount, default=12, help="number of actors")
+    options.add_argument("--visitors", type=amount, default=6, help="number of wandering bots")
+    options.add_argument(
+        "--seed", type=_number(0, 2**32 - 1), default=1, help="seed of everything drawn by chance"
+    )
+    return options
+
+
+def _number(least: int, most: int) -> Callable[[str], int]:
+    """Reads a whole number within these limits."""
+
+    def read(text: str) -> int:
+        if not (text.isdecimal() and least <= int(text) <= most):
+            raise argparse.ArgumentTypeError(f"{text!r} is no number from {least} to {most}")
+        return int(text)
+
+    return read

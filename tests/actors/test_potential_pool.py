@@ -1,0 +1,66 @@
+"""The pool of potentials that actors are led by."""
+
+import numpy as np
+
+from esplanade.actors.potential_pool import PotentialPool
+from esplanade.planning import Body, LayeredGrid, Scene
+from tests.planning.storeys import storeyed
+from tests.planning.worlds import UPPER_M
+
+BODY = Body.adult()
+GRID = LayeredGrid.from_scene(Scene.open_space((0.0, 0.0, 4.0, 4.0)))
+
+
+def pool() -> PotentialPool:
+    return PotentialPool(GRID)
+
+
+def test_actors_with_the_same_goal_share_a_row() -> None:
+    guides = pool()
+    one = guides.take((1.0, 1.0), 0.0, BODY)
+    assert guides.take((1.0, 1.0), 0.0, BODY) == one
+    assert guides.take((1.0, 1.0), 0.0, Body(radius_m=0.3)) != one
+    assert guides.take((2.0, 1.0), 0.0, BODY) != one
+
+
+def test_floors_and_bodies_have_rows_of_their_own() -> None:
+    grid = LayeredGrid.from_scene(storeyed())
+    guides = PotentialPool(grid)
+    below = guides.take((12.0, 6.0), 0.0, BODY)
+    above = guides.take((12.0, 6.0), UPPER_M, BODY)
+    child = guides.take((12.0, 6.0), 0.0, Body.child())
+    assert len({below, above, child}) == 3
+    cells = grid.on_ground([(12.0, 6.0)] * 2, [0.0, UPPER_M])[1]
+    # What is left from the cell's first waypoint: of the other floor, the way over the stairs.
+    left = guides.arrays[[below, above]][:, cells, 0]
+    assert np.diag(left).max() < 0.5
+    assert min(left[0, 1], left[1, 0]) > 5.0
+
+
+def test_a_goal_comes_back_to_the_row_it_had() -> None:
+    guides = pool()
+    slot = guides.take((1.0, 1.0), 0.0, BODY)
+    before = guides.arrays[slot].copy()
+    guides.release(slot)
+    assert guides.take((1.0, 1.0), 0.0, BODY) == slot
+    assert np.array_equal(guides.arrays[slot], before)
+
+
+def test_rows_in_use_stay_while_idle_ones_are_used_again() -> None:
+    guides = pool()
+    kept = guides.take((3.0, 3.0), 0.0, BODY)
+    before = guides.arrays[kept].copy()
+    for k in range(200):
+        guides.release(guides.take((0.5 + 0.01 * k, 1.0), 0.0, BODY))
+    assert len(guides.arrays) <= 64
+    assert np.array_equal(guides.arrays[kept], before)
+    fresh = guides.take((0.5, 1.0), 0.0, BODY)
+    assert fresh != kept
+    cell = GRID.on_ground([(0.6, 1.1)], [0.0])[1][0]
+    assert guides.arrays[fresh, cell, 0] < 0.5
+
+
+def test_nobodys_row_may_be_given_back() -> None:
+    guides = pool()
+    guides.release(-1)
+    assert guides.take((1.0, 1.0), 0.0, BODY) == 0

@@ -1,0 +1,231 @@
+"""Keeping right at contested passages: whom it concerns, where it leads, who goes first."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from esplanade.planning.agents._bottleneck_kernels import (
+    AFTER_M,
+    LEFT_RAD,
+    NEARER_M,
+    OPPOSED,
+    PASSED_M,
+    WAITING_MPS,
+    Lane,
+    astray,
+    find_contested,
+    order_at_passages,
+    see_passage,
+)
+from esplanade.planning.agents._decide_kernels import make_task
+from esplanade.planning.agents._passage_kernels import (
+    BEFORE_M,
+    FEET_M,
+    FOUND,
+    MIDDLE_X,
+    MIDDLE_Y,
+    NEAREST_M,
+    PASSAGE,
+    WAITED_S,
+)
+from esplanade.planning.grid.grid import LayeredGrid
+from esplanade.planning.routes.potential import Potential
+from esplanade.planning.scene.scene import Scene
+from tests.planning.agents.test_batch import crowd_of
+from tests.planning.worlds import holds, open_grid
+
+EAST = Lane(8.0, 8.0, 1.0, 0.0, 0.3, 0.8)
+
+
+def _naive_astray(lane: Lane, x: float, y: float) -> float:
+    """The same by complex numbers, with the way through the passage along the real axis."""
+    z = complex(x - lane.x, y - lane.y) / complex(lane.along_x, lane.along_y)
+    near = (AFTER_M if z.real > 0.0 else BEFORE_M) - abs(z)
+    left = z.imag + lane.shift_m
+    if near <= 0.0 or left <= 0.0:
+        return 0.0
+    return lane.weight * near * min(1.0, math.atan2(left, abs(z.real)) / LEFT_RAD)
+
+
+@given(st.floats(-25.0, 25.0), st.floats(-25.0, 25.0), st.floats(-3.2, 3.2), st.floats(0.1, 1.0))
+@holds(200, 30)
+def test_only_the_left_is_astray(x, y, turn, weight) -> None:
+    lane = EAST._replace(along_x=math.cos(turn), along_y=math.sin(turn), weight=weight)
+    assert astray(lane, x, y) == pytest.approx(_naive_astray(lane, x, y), abs=1e-9)
+    assert astray(lane._replace(weight=0.0), x, y) == 0.0
+
+
+def _facing(west: int, east: int):
+    """So many on either side of the same passage, who all want through it; places beside it."""
+    places = [(4.0 - 0.1 * n, 8.0) for n in range(west)] + [(12.0, 8.0 + n) for n in range(east)]
+    crowd = crowd_of(places, places)
+    crowd.passages[:, :2] = 8.0
+    crowd.passages[:, 2] = [1.0] * west + [-1.0] * east
+    crowd.passages[:, NEAREST_M] = np.hypot(*(crowd.positions - 8.0).T)
+    return crowd
+
+
+def test_a_passage_is_contested_by_enough_who_come_against_one() -> None:
+    crowd = _facing(OPPOSED - 1, OPPOSED)
+    contested = np.ones(len(crowd.positions), dtype=bool)
+    find_contested(crowd, contested)
+    assert contested[: OPPOSED - 1].all(), "eight come against the west"
+    assert not contested[OPPOSED - 1 :].any(), "seven come against the east"
+
+
+def test_who_has_come_through_contests_nothing() -> None:
+    crowd = _facing(OPPOSED, OPPOSED)
+    crowd.positions[-1] = (5.0, 8.0)
+    contested = np.zeros(2 * OPPOSED, dtype=bool)
+    find_contested(crowd, contested)
+    assert not contested[:OPPOSED].any(), "seven still come against the west"
+    assert contested[OPPOSED:].all()
+
+
+def test_the_two_ends_of_a_long_passage_are_one() -> None:
+    crowd = _facing(OPPOSED, OPPOSED)
+    crowd.passages[:OPPOSED, MIDDLE_X] -= 3.0
+    contested = np.zeros(2 * OPPOSED, dtype=bool)
+    find_contested(crowd, contested)
+    assert contested.all()
+
+
+@pytest.mark.parametrize("column", [MIDDLE_X, MIDDLE_Y, FEET_M])
+def test_another_passage_or_floor_is_not_contested(column) -> None:
+    crowd = _facing(OPPOSED, OPPOSED)
+    crowd.passages[:OPPOSED, column] -= 3.0 if column != MIDDLE_X else 7.0
+    contested = np.ones(2 * OPPOSED, dtype=bool)
+    find_contested(crowd, contested)
+    assert not contested.any()
+
+
+def test_who_has_come_through_goes_first() -> None:
+    crowd = _facing(OPPOSED, OPPOSED + 1)
+    crowd.positions[-1] = (5.0, 8.0)
+    contested = np.zeros(2 * OPPOSED + 1, dtype=bool)
+    find_contested(crowd, contested)
+    assert contested.all()
+    contested[0] = False
+    left_m = np.full(2 * OPPOSED + 1, 7.0)
+    order_at_passages(crowd, contested, left_m)
+    away = np.hypot(*(crowd.positions - 8.0).T)
+    assert left_m[-1] == pytest.approx(-3.0)
+    assert left_m[1:-1] == pytest.approx(away[1:-1])
+    assert left_m[0] == 7.0 + 2.0 * BEFORE_M
+    left_m[1] = np.inf
+    order_at_passages(crowd, contested, left_m)
+    assert left_m[1] == np.inf, "who is about to arrive on this side goes last"
+    left_m[-1] = np.inf
+    order_at_passages(crowd, contested, left_m)
+    assert left_m[-1] == pytest.approx(-3.0), "on the other side it goes up to the goal first"
+
+
+def test_who_waits_in_vain_goes_before_who_has_come_as_near() -> None:
+    crowd = _facing(OPPOSED, OPPOSED)
+    crowd.passages[:, NEAREST_M] = 5.0
+    crowd.passages[:, WAITED_S] = np.random.default_rng(0).permutation(2 * OPPOSED)
+    crowd.passages[0, NEAREST_M] = 4.0
+    left_m = np.full(2 * OPPOSED, 30.0)
+    order_at_passages(crowd, np.ones(2 * OPPOSED, dtype=bool), left_m)
+    waited_s = crowd.passages[:, WAITED_S]
+    assert left_m[1:] == pytest.approx(5.0 - WAITING_MPS * waited_s[1:])
+    assert left_m[0] == pytest.approx(4.0 - WAITING_MPS * waited_s[0])
+    waited_s[:] = 1e3
+    order_at_passages(crowd, np.ones(2 * OPPOSED, dtype=bool), left_m)
+    assert not left_m.any(), "however long they wait, who has come through goes first"
+
+
+def test_to_come_nearer_by_enough_ends_the_waiting() -> None:
+    """Along a random walk: nearest and waited are those of the plain account."""
+    walls = (((8.0, 0.1), (8.0, 7.0)), ((8.0, 9.0), (8.0, 15.9)))
+    grid = LayeredGrid.from_scene(Scene.open_space((0.0, 0.0, 20.0, 16.0), walls=walls), 0.25)
+    crowd = crowd_of([(3.0, 8.0)], [(19.0, 8.0)])
+    crowd.potential_rows[:] = 0
+    potential = Potential(grid, (19.0, 8.0), 0, 0.25).values
+    random = np.random.default_rng(0)
+    nearest, waited_s = math.inf, 0.0
+    for _ in range(60):
+        crowd.positions[0] = random.uniform((2.0, 6.0), (7.5, 10.0))
+        crowd.cells[:] = grid.on_ground(crowd.positions, [0.0])[1]
+        see_passage(grid.arrays, potential, crowd, 0, True, 0.1)
+        away = math.dist(crowd.positions[0], crowd.passages[0, :2])
+        waited_s += 0.1
+        if away < nearest - NEARER_M:
+            nearest, waited_s = away, 0.0
+        assert crowd.passages[0, NEAREST_M] == pytest.approx(nearest)
+        assert crowd.passages[0, WAITED_S] == pytest.approx(waited_s)
+
+
+def test_a_passage_is_kept_until_one_is_well_beyond() -> None:
+    walls = (((8.0, 0.1), (8.0, 7.0)), ((8.0, 9.0), (8.0, 15.9)))
+    scene = Scene.open_space((0.0, 0.0, 20.0, 16.0), walls=walls)
+    grid = LayeredGrid.from_scene(scene, 0.25)
+    crowd = crowd_of([(3.0, 8.0)], [(19.0, 8.0)])
+    crowd.potential_rows[:] = 0
+    potentials = Potential(grid, (19.0, 8.0), 0, 0.25).values[None]
+    seen = []
+    for x in (3.0, 7.0, 9.0, 8.0 + PASSED_M - 0.5, 8.0 + PASSED_M + 0.5):
+        crowd.positions[0, 0] = x
+        crowd.cells[:] = grid.on_ground(crowd.positions, [0.0])[1]
+        see_passage(grid.arrays, potentials[0], crowd, 0, True, 3.0)
+        seen.append(bool(crowd.passages[0, 2]))
+    assert seen == [True, True, True, True, False]
+    crowd.positions[0, 0] = 3.0
+    see_passage(grid.arrays, potentials[0], crowd, 0, False, 3.0)
+    assert (crowd.passages == np.zeros((1, PASSAGE))).all()
+
+
+def test_on_open_ground_nobody_has_a_passage() -> None:
+    grid = open_grid(16.0)
+    crowd = crowd_of([(3.0, 8.0), (4.0, 3.0)], [(12.0, 8.0)] * 2)
+    crowd.potential_rows[:] = 0
+    crowd.cells[:] = grid.on_ground(crowd.positions, [0.0, 0.0])[1]
+    potentials = Potential(grid, (12.0, 8.0), 0, 0.25).values[None]
+    for a in range(2):
+        see_passage(grid.arrays, potentials[0], crowd, a, True, 0.1)
+    assert not crowd.passages[:, :FOUND].any()
+
+
+def test_neither_lanes_nor_order_depend_on_the_order_of_actors() -> None:
+    random = np.random.default_rng(1)
+    walls = (((8.0, 0.1), (8.0, 7.0)), ((8.0, 9.0), (8.0, 15.9)))
+    grid = LayeredGrid.from_scene(Scene.open_space((0.0, 0.0, 16.0, 16.0), walls=walls), 0.25)
+    goals = [(14.0, 8.0), (2.0, 8.0)]
+    potentials = np.stack([Potential(grid, goal, 0, 0.25).values for goal in goals])
+    places = random.uniform((1.0, 3.0), (15.0, 13.0), (40, 2))
+    slots = random.integers(0, 2, 40)
+    ranks = random.permutation(40)
+
+    def decided(rows):
+        crowd = crowd_of(places[rows], np.array(goals)[slots[rows]], ranks=ranks[rows])
+        crowd.potential_rows[:] = slots[rows]
+        crowd.cells[:] = grid.on_ground(crowd.positions, np.zeros(40))[1]
+        left_m = np.hypot(*(crowd.goals - crowd.positions).T)
+        contested = np.zeros(40, dtype=bool)
+        for a in range(40):
+            see_passage(grid.arrays, potentials[crowd.potential_rows[a]], crowd, a, True, 0.1)
+        find_contested(crowd, contested)
+        order_at_passages(crowd, contested, left_m)
+        return np.column_stack([crowd.passages, contested, left_m])
+
+    rows = random.permutation(40)
+    once, again = decided(np.arange(40)), decided(rows)
+    assert once[:, PASSAGE].any()
+    assert (once[rows] == again).all()
+
+
+@pytest.mark.parametrize(("x", "weight"), [(6.0, 0.8), (9.0, 0.0)])
+def test_who_is_about_to_arrive_keeps_to_no_lane(x, weight) -> None:
+    grid = open_grid(16.0)
+    crowd = crowd_of([(x, 8.0)], [(12.0, 8.0)])
+    crowd.potential_rows[:] = 0
+    crowd.cells[:] = grid.on_ground(crowd.positions, [0.0])[1]
+    crowd.passages[0, :3] = (8.0, 8.0, 1.0)
+    potentials = Potential(grid, (12.0, 8.0), 0, 0.25).values[None]
+    assert make_task(potentials, crowd, 0, 0.3, 0.1, True).lane.weight == weight
+    assert make_task(potentials, crowd, 0, 0.3, 0.1, False).lane.weight == 0.0
+    crowd.parameters["keep_right_weight"] = 0.0
+    assert make_task(potentials, crowd, 0, 0.3, 0.1, True).lane.weight == 0.0

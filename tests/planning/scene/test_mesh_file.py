@@ -1,0 +1,153 @@
+"""Mesh files as people have them: what is read all the same, and what is refused by name."""
+
+import json
+
+import numpy as np
+import pytest
+import trimesh
+
+from esplanade.planning import Body, LayeredGrid, PathStatus, find_path
+from esplanade.planning.routes.potential import Potential
+from esplanade.planning.scene.mesh_file import MeshError, read_triangles
+from tests.planning.ground.test_meshes import block, house, written
+
+BELOW, ABOVE = (6.0, 2.0, 0.0), (6.0, 2.0, 2.7)
+LENGTH_M = 13.84
+
+
+def obj_of(vertices: np.ndarray, faces: np.ndarray) -> str:
+    corners = "".join(f"v {x!r} {y!r} {z!r}\n" for x, y, z in vertices.tolist())
+    return corners + "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in faces.tolist())
+
+
+def spoiled(how: str) -> tuple[np.ndarray, np.ndarray]:
+    """The house with flaws that meshes have and that change nothing."""
+    mesh = house()
+    vertices, faces = np.asarray(mesh.vertices), np.asarray(mesh.faces)
+    match how:
+        case "every face twice":
+            faces = np.concatenate([faces, faces])
+        case "faces of no area":
+            faces = np.concatenate([faces, [[0, 0, 1], [1, 1, 1], [2, 3, 2]]])
+        case "faces of three corners in a line":
+            line = [[3.0, 3.0, 1.0], [4.0, 3.0, 1.0], [5.0, 3.0, 1.0]]
+            faces = np.concatenate([faces, [len(vertices) + np.arange(3)]])
+            vertices = np.concatenate([vertices, line])
+        case "faces that look both ways":
+            faces = np.concatenate([faces, faces[:, ::-1]])
+        case "corners a hair apart":
+            vertices = vertices + np.random.default_rng(0).normal(0.0, 1e-6, vertices.shape)
+        case "parts one millimetre apart":
+            vertices = vertices + np.random.default_rng(0).normal(0.0, 5e-4, vertices.shape)
+    return vertices, faces
+
+
+@pytest.mark.parametrize(
+    "how",
+    [
+        "none",
+        "every face twice",
+        "faces of no area",
+        "faces of three corners in a line",
+        "faces that look both ways",
+        "corners a hair apart",
+        "parts one millimetre apart",
+    ],
+)
+def test_flaws_of_meshes_change_no_way(tmp_path, how) -> None:
+    path = tmp_path / "house.obj"
+    path.write_text(obj_of(*spoiled(how)))
+    grid = LayeredGrid.from_mesh(path, up="z")
+    assert grid.layers == 2
+    way = find_path(grid, BELOW, ABOVE)
+    assert way.status is PathStatus.FOUND
+    assert way.length_m == pytest.approx(LENGTH_M, abs=0.15)
+
+
+@pytest.mark.parametrize("far_m", [1e3, 1e5, 9e5])
+def test_far_from_its_origin_a_house_is_the_same(tmp_path, far_m) -> None:
+    mesh = house()
+    path = tmp_path / "far.obj"
+    path.write_text(obj_of(np.add(mesh.vertices, (far_m, -far_m, 0.0)), np.asarray(mesh.faces)))
+    grid = LayeredGrid.from_mesh(path, up="z")
+    ends = [tuple(np.add(end, (far_m, -far_m, 0.0)).tolist()) for end in (BELOW, ABOVE)]
+    way = find_path(grid, *ends)
+    assert way.length_m == pytest.approx(LENGTH_M, abs=0.01)
+    left = Potential(grid, ends[1][:2], ends[1][2], 0.25).distance([ends[0][:2]], [0.0])
+    assert left[0] == pytest.approx(LENGTH_M, abs=0.6)
+
+
+@pytest.mark.parametrize("thick_m", [0.001, 0.02, 0.3])
+def test_thin_floors_are_floors(tmp_path, thick_m) -> None:
+    slabs = [block(0, 0, z - thick_m, 6, 4, z) for z in (0.0, 2.7)]
+    grid = LayeredGrid.from_mesh(written(tmp_path, trimesh.util.concatenate(slabs)), up="z")
+    assert grid.layers == 2
+    heights = grid.layered.floors[np.isfinite(grid.layered.floors)].astype(float)
+    assert set(heights.round(3).tolist()) == {0.0, 2.7}
+    for z in (0.0, 2.7):
+        assert find_path(grid, (1.0, 1.0, z), (5.0, 3.0, z)).status is PathStatus.FOUND
+    assert find_path(grid, (1.0, 1.0, 0.0), (5.0, 3.0, 2.7)).status is PathStatus.NO_WAY
+
+
+def test_names_in_any_encoding_do_no_harm(tmp_path) -> None:
+    mesh = house()
+    path = tmp_path / "old.obj"
+    text = obj_of(np.asarray(mesh.vertices), np.asarray(mesh.faces)).replace("\n", "\r\n")
+    path.write_bytes(
+        "# Geb\u00e4ude\r\nmtllib absent.mtl\r\no K\u00fcche\r\n".encode("latin-1") + text.encode()
+    )
+    assert len(read_triangles(path, "z")) == len(mesh.faces)
+
+
+def test_a_house_is_the_same_in_every_format(tmp_path) -> None:
+    ours = np.sort(read_triangles(written(tmp_path, house()), "z").reshape(-1, 9), axis=0)
+    for suffix in ("stl", "ply", "off", "glb", "gltf"):
+        if suffix == "gltf":
+            files = trimesh.Scene(house()).export(file_type="gltf")
+            for name, data in files.items():
+                (tmp_path / name).write_bytes(data)
+            path = tmp_path / "model.gltf"
+        else:
+            path = written(tmp_path, house(), f"house.{suffix}")
+        found = np.sort(read_triangles(path, "z").reshape(-1, 9), axis=0)
+        assert found == pytest.approx(ours, abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("v 0 0 0\nv 1 0 0\nf 1 2\n", "holds no triangles"),
+        ("v 0 0 0\nv 4 0 0\nv 0 0 4\nf 1 3 2\nf 1 2 9\n", "is out of bounds"),
+        ("v 0 0 0\nv 1 0 0\nl 1 2\n", "holds no triangles"),
+        ("v 2e6 0 0\nv 2000004 0 0\nv 2e6 0 4\nf 1 3 2\n", "lies 2e.06 m from its origin"),
+        ("\x00\x01\x02", "holds no triangles"),
+    ],
+)
+def test_what_is_no_mesh_is_refused_in_words(tmp_path, text, message) -> None:
+    path = tmp_path / "wrong.obj"
+    path.write_text(text)
+    with pytest.raises(MeshError, match=rf"wrong.obj: .*({message})"):
+        read_triangles(path)
+
+
+def test_compressed_triangles_are_refused_by_the_name_of_the_extension(tmp_path) -> None:
+    path = tmp_path / "packed.gltf"
+    head = {"asset": {"version": "2.0"}, "extensionsRequired": ["EXT_meshopt_compression"]}
+    path.write_text(json.dumps(head))
+    with pytest.raises(MeshError, match=r"packed.gltf: .* save it without EXT_meshopt_compression"):
+        read_triangles(path)
+
+
+def test_who_stands_inside_a_hollow_wall_is_let_out(tmp_path) -> None:
+    rooms = [
+        block(0, 0, -0.2, 8, 4, 0),
+        block(3.9, 0, 0, 3.92, 4, 2.5),
+        block(4.1, 0, 0, 4.12, 4, 2.5),
+    ]
+    grid = LayeredGrid.from_mesh(written(tmp_path, trimesh.util.concatenate(rooms)), up="z")
+    inside = (4.0, 2.0, 0.0)
+    for goal in ((1.0, 2.0, 0.0), (7.0, 2.0, 0.0)):
+        assert find_path(grid, inside, goal).status is PathStatus.FOUND
+        assert find_path(grid, goal, inside, Body.child()).status is PathStatus.FOUND
+    beside = (3.75, 2.0, 0.0)
+    assert find_path(grid, beside, (7.0, 2.0, 0.0)).status is PathStatus.NO_WAY

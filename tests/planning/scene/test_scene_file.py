@@ -1,0 +1,92 @@
+"""Scene files: what is read, and the words in which faults are told."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from esplanade.planning.scene.scene_file import SceneError, read_scene
+
+TRIANGLE = [[1.0, 1.0], [3.0, 1.0], [3.0, 3.0]]
+
+
+def write(folder: Path, **parts: Any) -> Path:
+    path = folder / "scene.json"
+    path.write_text(json.dumps({"bounds": [0.0, 0.0, 20.0, 10.0], **parts}))
+    return path
+
+
+def faults(path: Path) -> list[str]:
+    with pytest.raises(SceneError) as caught:
+        read_scene(path)
+    assert str(caught.value).splitlines() == [f"{path}: {fault}" for fault in caught.value.faults]
+    return list(caught.value.faults)
+
+
+def test_a_scene_is_read(tmp_path: Path) -> None:
+    path = write(tmp_path, name="Yard", polygons=[{"points": TRIANGLE, "height_m": 2.0}])
+    scene = read_scene(path)
+    assert scene.name == "Yard"
+    assert scene.polygons[0].height_m == 2.0
+
+
+@pytest.mark.parametrize(
+    ("parts", "fault"),
+    [
+        (
+            {"polygons": [{"points": TRIANGLE, "height_m": -1}]},
+            "polygons.0.height_m: must be > 0, got -1",
+        ),
+        (
+            {"polygons": [{"points": TRIANGLE, "height_m": 501}]},
+            "polygons.0.height_m: must be <= 500, got 501",
+        ),
+        (
+            {"polygons": [{"points": TRIANGLE[:2], "height_m": 1}]},
+            "polygons.0.points: needs at least 3 of them, got 2",
+        ),
+        ({"walls": [{"start": [1, 1]}]}, "walls.0.end: is missing"),
+        ({"colour": "red"}, "colour: there is no such key"),
+        ({"bounds": None}, "bounds: must be a list"),
+        ({"spawns": [{"position": [50, 1]}]}, "spawns.0: (50, 1) lies outside the bounds"),
+        (
+            {"places": [{"name": "gate", "position": [1, "a"]}]},
+            "places.0.position.1: must be a number, got 'a'",
+        ),
+        ({"places": [{"name": " ", "position": [1, 1]}]}, "places.0.name: must not be empty"),
+    ],
+)
+def test_a_fault_is_told_with_its_place(tmp_path: Path, parts: Any, fault: str) -> None:
+    assert faults(write(tmp_path, **parts)) == [fault]
+
+
+def test_all_faults_are_told_at_once(tmp_path: Path) -> None:
+    path = write(tmp_path, colour="red", polygons=[{"points": TRIANGLE, "height_m": 0}])
+    assert len(faults(path)) == 2
+
+
+def test_what_is_no_json_is_told_with_its_line(tmp_path: Path) -> None:
+    path = tmp_path / "scene.json"
+    path.write_text('{\n  "bounds": [0, 0, 20')
+    (fault,) = faults(path)
+    assert fault.startswith("is no JSON: ")
+    assert "line 2" in fault
+
+
+def test_a_mesh_lies_beside_the_file(tmp_path: Path) -> None:
+    mesh = tmp_path / "hall.glb"
+    path = write(tmp_path, mesh=mesh.name)
+    assert faults(path) == [f"mesh: there is no file {mesh}"]
+    mesh.touch()
+    assert read_scene(path).mesh == mesh
+
+
+def test_a_scene_of_a_mesh_has_no_parts_of_its_own(tmp_path: Path) -> None:
+    path = write(tmp_path, mesh="hall.glb", walls=[{"start": [1, 1], "end": [2, 2]}])
+    assert faults(path) == ["walls: a scene of a mesh has none"]
+
+
+def test_a_file_that_is_not_there_is_an_error_of_the_system(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError):
+        read_scene(tmp_path / "none.json")

@@ -1,0 +1,184 @@
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from esplanade import scenes
+from esplanade.actors.locomotion.motion import Steps, no_steps
+from esplanade.actors.locomotion.reference.posing import pose
+from esplanade.actors.locomotion.stance import Build
+from esplanade.planning import LayeredGrid
+from esplanade.planning.scene.scene_file import read_scene
+from esplanade.protocol.steps import RE_AIMED
+from esplanade.server.populating import populate
+from esplanade.server.world.inputs import Detach, Leave, Steer
+from esplanade.server.world.state import Floats
+from esplanade.server.world.step_records import from_records, to_records
+from esplanade.server.world.world import World
+from tests.server.worlds import FIELD, TICK_S, Trial, rules
+
+
+def drawn(world: World) -> tuple[Floats, Floats]:
+    """Hips as a client draws them at the end of this tick, and places of everyone, (N, 2) each."""
+    slots = world.state.live()
+    steps = from_records(world.steps.records[slots])
+    build = Build(world.state.legs_m[slots], world.state.statures_m[slots])
+    hips = pose(steps, steps.share(world.tick), build).root[:, :2]
+    return hips, world.state.positions[slots]
+
+
+def test_who_comes_in_stands_there_on_legs_of_their_own() -> None:
+    trial = Trial(scene=FIELD)
+    ids = trial.join((50.0, 50.0), (60.0, 50.0))
+    state, steps = trial.world.state, trial.world.steps
+    slots = np.array([state.slot(avatar) for avatar in ids])
+    assert steps.records["id"][slots].tolist() == ids
+    assert steps.records["ticks"][slots].tolist() == [0, 0]
+    assert (steps.begun[slots] == trial.world.tick).all()
+    assert len(set(state.legs_m[slots].tolist())) == 2
+    assert ((state.legs_m[slots] > 0.7) & (state.legs_m[slots] < 1.0)).all()
+    assert ((state.statures_m[slots] > 1.3) & (state.statures_m[slots] < 2.0)).all()
+    hips, places = drawn(trial.world)
+    np.testing.assert_allclose(hips, places, atol=1e-3)
+
+
+def test_a_person_walks_and_comes_to_stand() -> None:
+    trial = Trial(scene=FIELD)
+    (ann,) = trial.join((50.0, 50.0))
+    trial.tick(Steer(ann, 1, 0.0, 1.3))
+    trial.ticks(80)
+    assert trial.world.feet.begun > 8
+    hips, places = drawn(trial.world)
+    assert np.hypot(*(hips - places).T).max() < 0.1
+    trial.tick(Steer(ann, 2, 0.0, 0.0))
+    trial.ticks(60)
+    begun = trial.world.feet.begun
+    hips, places = drawn(trial.world)
+    np.testing.assert_allclose(hips, places, atol=2e-3)
+    trial.ticks(40)
+    assert trial.world.feet.begun == begun
+
+
+def test_a_sudden_turn_changes_the_step_under_way() -> None:
+    trial = Trial(scene=FIELD)
+    (ann,) = trial.join((50.0, 50.0))
+    trial.tick(Steer(ann, 1, 0.0, 1.3))
+    trial.ticks(40)
+    trial.tick(Steer(ann, 2, 2.5, 1.3))
+    flags = []
+    for _ in range(8):
+        trial.tick()
+        flags.append(int(trial.world.steps.records["flags"][trial.world.state.slot(ann)]))
+    assert any(flag & RE_AIMED for flag in flags)
+
+
+def test_a_slot_taken_again_is_somebody_else_who_stands() -> None:
+    trial = Trial(scene=FIELD)
+    (ann,) = trial.join((50.0, 50.0))
+    trial.tick(Steer(ann, 1, 0.0, 1.3))
+    trial.ticks(20)
+    slot = trial.world.state.slot(ann)
+    trial.tick(Leave(ann))
+    (ben,) = trial.join((70.0, 70.0))
+    assert trial.world.state.slot(ben) == slot
+    record = trial.world.steps.records[slot]
+    assert (int(record["id"]), int(record["ticks"])) == (ben, 0)
+    assert trial.world.feet.lost == 0
+
+
+def test_who_is_left_by_its_client_stands_still() -> None:
+    trial = Trial(scene=FIELD)
+    (ann,) = trial.join((50.0, 50.0))
+    trial.tick(Steer(ann, 1, 0.0, 1.3))
+    trial.ticks(20)
+    trial.tick(Detach(ann))
+    trial.ticks(60)
+    hips, places = drawn(trial.world)
+    np.testing.assert_allclose(hips, places, atol=2e-3)
+
+
+def test_the_world_goes_on_without_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    trial = Trial(scene=FIELD)
+    (ann,) = trial.join((50.0, 50.0))
+    trial.tick(Steer(ann, 1, 0.0, 1.3))
+    trial.ticks(10)
+
+    def fail(*_: object) -> None:
+        raise RuntimeError("told to fail")
+
+    with monkeypatch.context() as broken:
+        broken.setattr(trial.world.feet._walkers, "update", fail)
+        trial.ticks(5)
+    assert trial.world.feet.failures == 5
+    trial.ticks(40)
+    assert trial.world.feet.failures == 5
+    hips, places = drawn(trial.world)
+    assert np.hypot(*(hips - places).T).max() < 0.15
+
+
+def test_same_inputs_give_the_same_steps() -> None:
+    worlds = []
+    for _ in range(2):
+        trial = Trial(scene=FIELD)
+        ids = trial.join((50.0, 50.0), (52.0, 51.0))
+        trial.tick(*(Steer(avatar, 1, 0.3 * avatar, 1.4) for avatar in ids))
+        trial.ticks(30)
+        worlds.append(trial.world.steps.records.tobytes())
+    assert worlds[0] == worlds[1]
+
+
+@pytest.mark.parametrize("name", ["plaza.json", "gallery.json"])
+def test_actors_on_their_ways_are_drawn_where_they_are(name: str) -> None:
+    scene = read_scene(Path(scenes.__path__[0], name))
+    grid = LayeredGrid.from_scene(scene)
+    population, bodies = populate(grid, scene, 12, TICK_S, 5)
+    world = World(
+        scene, grid, population, bodies, rules(), tick_s=TICK_S, max_people=1, seed=5,
+        clock=time.perf_counter,
+    )  # fmt: skip
+    off = []
+    for _ in range(300):
+        world.begin([])
+        world.finish(world.think())
+        hips, places = drawn(world)
+        off.append(np.hypot(*(hips - places).T))
+    population.close()
+    assert world.feet.failures == world.feet.lost == 0
+    assert np.percentile(np.concatenate(off), 99) < 0.15
+    assert np.percentile(np.concatenate(off), 50) < 0.05
+
+
+def test_records_keep_what_steps_are() -> None:
+    random = np.random.default_rng(2)
+    steps = no_steps(3)
+    steps.right[:] = [True, False, True]
+    steps.again[:] = [False, False, True]
+    steps.start[:], steps.ticks[:] = [3, 70000, 12], [9, 0, 12]
+    steps.standing[:], steps.landing[:] = random.uniform(-3.0, 3.0, (2, 3, 4))
+    steps.lift[:] = [0.0, 1.0, 51 / 255]
+    steps.keys[:] = random.uniform(-0.4, 0.4, steps.keys.shape)
+    steps.keys[..., 3] = steps.keys[..., 13] = 1.0
+    steps.keys[..., 3:7] /= np.linalg.norm(steps.keys[..., 3:7], axis=-1, keepdims=True)
+    steps.keys[..., 13:17] /= np.linalg.norm(steps.keys[..., 13:17], axis=-1, keepdims=True)
+    records = to_records(steps, np.array([4, 5, 6]))
+    known = from_records(records)
+    assert records["id"].tolist() == [4, 5, 6]
+    for name in ("right", "again", "start", "ticks", "lift"):
+        np.testing.assert_array_equal(getattr(known, name), getattr(steps, name))
+    np.testing.assert_allclose(known.keys[..., :3], steps.keys[..., :3], atol=1.5e-4)
+    np.testing.assert_allclose(known.keys[..., 7:10], steps.keys[..., 7:10], atol=1.5e-4)
+    np.testing.assert_allclose(known.keys[..., 10:13], steps.keys[..., 10:13], atol=1.5e-4)
+    np.testing.assert_allclose(known.keys[..., 3:7], steps.keys[..., 3:7], atol=1e-4)
+    np.testing.assert_allclose(known.keys[..., 13:], steps.keys[..., 13:], atol=1.3e-2)
+    again = from_records(to_records(known, np.array([4, 5, 6])))
+    for one, other in zip(known, again, strict=True):
+        np.testing.assert_allclose(one, other, atol=1e-12)
+
+
+def test_a_step_over_stands_in_its_last_pose() -> None:
+    steps: Steps = no_steps(2)
+    steps.start[:], steps.ticks[:] = 10, [4, 0]
+    assert steps.share(9).tolist() == [0.0, 1.0]
+    assert steps.share(12).tolist() == [0.5, 1.0]
+    assert steps.share(20).tolist() == [1.0, 1.0]
