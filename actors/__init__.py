@@ -3,6 +3,7 @@
 from esplanade.actors.behaviour import Behaviour, GoTo, Guide, Idle, Patrol, Perception, Wander
 from esplanade.actors.navigator import Navigator
 from esplanade.actors.parameters import ActorParameters
+from esplanade.actors.people import ObservedPeople
 from esplanade.actors.population import Explanation, Population
 from esplanade.actors.state import ActorState, Reason
 
@@ -15,6 +16,7 @@ __all__ = [
     "Guide",
     "Idle",
     "Navigator",
+    "ObservedPeople",
     "Patrol",
     "Perception",
     "Population",

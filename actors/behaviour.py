@@ -47,13 +47,18 @@ class Perception:
 
 
 class Behaviour(ABC):
-    """Decides where an actor wants to be; asked once a tick."""
+    """Decides where an actor wants to be, when it is asked."""
 
     name: ClassVar[BehaviourName]
+    ask_at_s: float = -math.inf
+    """When `update` wants to be called again, in seconds of the world; at once unless it says so.
+
+    It is called before that when the actor has arrived, and while no path leads to its goal.
+    """
 
     @abstractmethod
     def update(self, view: Perception) -> Goal | None:
-        """The goal of this tick, None to stand still."""
+        """The goal from now on, None to stand still."""
 
     def targets(self) -> Sequence[Target]:
         """Targets that must exist in the scene."""
@@ -74,6 +79,7 @@ class Idle(Behaviour):
     """Stand, and make way when somebody comes too close."""
 
     name = "idle"
+    ask_at_s = math.inf
 
     def update(self, view: Perception) -> Goal | None:  # noqa: ARG002 - nothing to look at
         """Never a goal."""
@@ -84,6 +90,7 @@ class GoTo(Behaviour):
     """Go to one place or point and stay there."""
 
     name = "go_to"
+    ask_at_s = math.inf
 
     def __init__(self, target: Target) -> None:
         self._target = target
@@ -109,15 +116,23 @@ class Wander(Behaviour):
 
     def update(self, view: Perception) -> Goal | None:
         """The place being walked to, or rested at."""
+        self.ask_at_s = math.inf
         if self._goal is None or view.stuck:
-            self._goal = self._choose(view)
+            self._set_out(view)
         elif view.arrived:
             if self._rest_until is None:
                 self._rest_until = view.time_s + view.rng.uniform(*self._pause_s)
+                self.ask_at_s = self._rest_until
             elif view.time_s >= self._rest_until:
                 self._rest_until = None
-                self._goal = self._choose(view)
+                self._set_out(view)
+            else:
+                self.ask_at_s = self._rest_until
         return self._goal
+
+    def _set_out(self, view: Perception) -> None:
+        self._goal = self._choose(view)
+        self.ask_at_s = -math.inf
 
     def _choose(self, view: Perception) -> Goal | None:
         here = np.array(view.position)
@@ -164,6 +179,7 @@ class Patrol(Behaviour):
 
     def update(self, view: Perception) -> Goal | None:
         """The stop being walked to, or rested at."""
+        self.ask_at_s = math.inf
         if view.stuck:
             self._advance()
         elif view.arrived:
@@ -171,11 +187,14 @@ class Patrol(Behaviour):
                 self._rest_until = view.time_s + self._pause_s
             elif view.time_s >= self._rest_until:
                 self._advance()
+        if self._rest_until is not None:
+            self.ask_at_s = self._rest_until
         return view.resolve(self._stops[self._next])
 
     def _advance(self) -> None:
         self._rest_until = None
         self._next = (self._next + 1) % len(self._stops)
+        self.ask_at_s = -math.inf
 
 
 class Guide(Behaviour):

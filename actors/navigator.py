@@ -4,27 +4,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable, Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.actors.parameters import ActorParameters
+from esplanade.actors.parameters import ActorParameters, body_of
+from esplanade.actors.people import ObservedPeople, People
 from esplanade.actors.potential_pool import PotentialPool
 from esplanade.actors.state import ActorState, Reason
 from esplanade.planning import (
-    PARAMETERS,
-    PASSAGE,
-    Agents,
+    AgentTable,
     Batch,
     LayeredGrid,
     PlanModel,
     Prediction,
     PredictionModel,
     RiskModel,
+    SavedAgentsError,
     Scene,
     TrackHistory,
 )
-from esplanade.planning.people.prediction import Coordinates
 from esplanade.planning.scene.heights import SAME_FLOOR_M
 
 Point = tuple[float, float]
@@ -67,12 +67,8 @@ class Navigator:
         self._history = TrackHistory(people, tick_s)
         self._prediction = self._history.predict(grid, self.plan.slices, self.plan.slice_s)
         self._potentials = PotentialPool(grid)
-        self._ids: list[Hashable] = []
-        self._rows: dict[Hashable, int] = {}
-        self._headings = np.zeros(0)
-        self._crowd = _empty_crowd(self.plan.slices + 1)
-        self._parameters: dict[Hashable, ActorParameters] = {}
-        self._goals: dict[Hashable, tuple[float, float, float] | None] = {}
+        self.table = AgentTable(self.plan.slices)
+        """Every actor's state; read it freely between two ticks."""
 
     # --- actors --------------------------------------------------------------------------
 
@@ -95,75 +91,68 @@ class Navigator:
             The id is taken, or a position is not finite or outside the bounds. Nothing is changed
             then.
         """
-        if actor_id in self._rows:
+        if actor_id in self.table:
             raise ValueError(f"there already is an actor {actor_id!r}")
         self.check_place(position, z_m)
         if goal is not None:
             self.check_place(goal, z_m if goal_z_m is None else goal_z_m)
-        c = self._crowd
         parameters = parameters or ActorParameters()
-        rows = len(self._ids)
-        slices = self.plan.slices + 1
-        self._crowd = Agents(
-            np.concatenate([c.positions, np.array([position], dtype=np.float64)]),
-            np.concatenate([c.velocities, np.zeros((1, 2))]),
-            np.append(c.cells, self._cell(position, z_m)),
-            np.append(c.bodies, self._body_row(parameters)),
-            np.concatenate([c.goals, np.array([position], dtype=np.float64)]),
-            np.append(c.potential_rows, np.int64(-1)),
-            np.append(c.parameters, parameters.row()),
-            c.ranks,
-            np.append(c.known, False),
-            np.append(c.ages, np.int64(0)),
-            np.concatenate([c.followed, np.zeros((1, slices, 2))]),
-            np.append(c.left_m, np.nan),
-            np.append(c.behind_s, 0.0),
-            np.concatenate([c.passages, np.zeros((1, PASSAGE))]),
+        cell = self._cell(position, z_m)
+        row = self.table.add(
+            actor_id,
+            (float(position[0]), float(position[1]), self._floor(cell)),
+            parameters.row(),
+            cell=cell,
+            layer=self._layer(cell),
+            heading=heading,
         )
-        self._ids.append(actor_id)
-        self._rows[actor_id] = rows
-        self._headings = np.append(self._headings, heading)
-        self._parameters[actor_id] = parameters
-        self._goals[actor_id] = None
+        self._fit_body(row)
         self._rank()
         if goal is not None:
             self.set_goal(actor_id, goal, z_m=z_m if goal_z_m is None else goal_z_m)
 
     def remove_actor(self, actor_id: Hashable) -> None:
         """Take an actor out; KeyError when there is none of that id."""
-        row = self._row(actor_id)
-        self._potentials.release(int(self._crowd.potential_rows[row]))
-        fields = {
-            name: np.delete(array, row, axis=0) for name, array in self._crowd._asdict().items()
-        }
-        self._crowd = Agents(**fields)
-        self._headings = np.delete(self._headings, row)
-        del self._ids[row], self._parameters[actor_id], self._goals[actor_id]
-        self._rows = {who: k for k, who in enumerate(self._ids)}
+        row = self.table.row(actor_id)
+        self._potentials.release(int(self.table.agents.potential_rows[row]))
+        self.table.remove(actor_id)
         self._rank()
 
     def set_goal(self, actor_id: Hashable, goal: Point | None, *, z_m: float = 0.0) -> None:
         """Send an actor somewhere, or let it stand (None). A goal inside a wall is moved out."""
-        row = self._row(actor_id)
+        row = self.table.row(actor_id)
+        target = None
         if goal is not None:
             self.check_place(goal, z_m)
-        c = self._crowd
-        old = int(c.potential_rows[row])
-        slot = -1
-        target = None if goal is None else (float(goal[0]), float(goal[1]), float(z_m))
+            target = float(goal[0]), float(goal[1]), float(z_m)
+        self._head_for(row, target)
+        trips = self.table.trips
+        trips.wanted[row] = np.nan if target is None else target
+        trips.arrived[row] = False
+        trips.no_path_s[row] = 0.0
+
+    def _head_for(self, row: int, target: tuple[float, float, float] | None) -> None:
+        """Let an actor go by the potential of a goal, or by none."""
+        agents = self.table.agents
+        old, new = int(agents.potential_rows[row]), -1
         if target is not None:
-            body = self._parameters[actor_id].body
-            free = self.grid.nearest_free(target[:2], z_m, body.radius_m - _SLACK_M, body)
-            if free is not None:
-                slot = self._potentials.take(free, z_m, body)
-                c.goals[row] = free
-        c.potential_rows[row] = slot
-        c.known[row] = c.known[row] and slot == old
-        c.left_m[row] = np.nan
-        c.behind_s[row] = 0.0
-        c.passages[row] = 0.0
+            new = self._potential_row(row, target)
+        agents.potential_rows[row] = new
+        agents.known[row] = agents.known[row] and new == old
+        agents.left_m[row] = np.nan
+        agents.behind_s[row] = 0.0
+        agents.passages[row] = 0.0
         self._potentials.release(old)
-        self._goals[actor_id] = target
+
+    def _potential_row(self, row: int, target: tuple[float, float, float]) -> int:
+        """The potential of an actor's goal, -1 where none can be; its `goals` are moved out of
+        walls."""
+        body = body_of(self.table.agents.parameters[row])
+        free = self.grid.nearest_free(target[:2], target[2], body.radius_m - _SLACK_M, body)
+        if free is None:
+            return -1
+        self.table.agents.goals[row] = free
+        return self._potentials.take(free, target[2], body)
 
     def prepare_goal(self, goal: Point, z_m: float, parameters: ActorParameters) -> None:
         """Work out the potential of a goal before somebody needs it in the middle of a tick."""
@@ -174,28 +163,39 @@ class Navigator:
 
     def set_parameters(self, actor_id: Hashable, parameters: ActorParameters) -> None:
         """Change an actor's parameters from the next tick on."""
-        row = self._row(actor_id)
-        before = self._parameters[actor_id]
-        self._parameters[actor_id] = parameters
-        self._crowd.parameters[row] = parameters.row()
-        goal = self._goals[actor_id]
-        if before.body != parameters.body:
-            self._crowd.bodies[row] = self._body_row(parameters)
+        row = self.table.row(actor_id)
+        records = self.table.agents.parameters
+        before = body_of(records[row])
+        records[row] = parameters.row()
+        if before != parameters.body:
+            self._fit_body(row)
+            goal = self.table.wanted(row)
             if goal is not None:
-                self.set_goal(actor_id, goal[:2], z_m=goal[2])
+                self._head_for(row, goal)
+
+    def _fit_body(self, row: int) -> None:
+        """Find what the ground and the risk are for an actor's body."""
+        agents = self.table.agents
+        body = body_of(agents.parameters[row])
+        agents.bodies[row] = self.grid.row_of(body)
+        agents.contacts[row] = self._batch.field.contact_row(body.radius_m)
 
     def place_actor(
         self, actor_id: Hashable, position: Point, velocity: tuple[float, float] = (0.0, 0.0)
     ) -> None:
         """Put an actor where another simulation has it; the path it follows stays."""
-        row = self._row(actor_id)
-        z_m = self._floor(int(self._crowd.cells[row]))
+        row = self.table.row(actor_id)
+        agents = self.table.agents
+        z_m = self._floor(int(agents.cells[row]))
         self.check_place(position, z_m)
         if not (math.isfinite(velocity[0]) and math.isfinite(velocity[1])):
             raise ValueError(f"velocity of {actor_id!r} must be finite, got {velocity}")
-        self._crowd.positions[row] = position
-        self._crowd.cells[row] = self._cell(position, z_m)
-        self._crowd.velocities[row] = velocity
+        cell = self._cell(position, z_m)
+        agents.positions[row] = position
+        agents.velocities[row] = velocity
+        agents.cells[row] = cell
+        agents.heights[row] = self._floor(cell)
+        agents.layers[row] = self._layer(cell)
 
     def ground_changed(self) -> None:
         """The ground has changed: potentials are derived anew, one a tick, used ones first.
@@ -206,61 +206,81 @@ class Navigator:
 
     def parameters(self, actor_id: Hashable) -> ActorParameters:
         """An actor's parameters."""
-        return self._parameters[self._ids[self._row(actor_id)]]
+        return ActorParameters.of_row(self.table.agents.parameters[self.table.row(actor_id)])
+
+    def load(self, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> None:
+        """Take the actors of a saved table (`AgentTable.save`) in the place of those here.
+
+        Raises
+        ------
+        SavedAgentsError
+            The table cannot be read, or was planned with another horizon; nothing is changed then.
+        """
+        table = AgentTable.load(header, arrays)
+        if table.agents.planned.shape[1] != self.plan.slices + 1:
+            raise SavedAgentsError(
+                f"saved agents plan {table.agents.planned.shape[1] - 1} slices ahead, "
+                f"this zone {self.plan.slices}"
+            )
+        for slot in self.table.agents.potential_rows.tolist():
+            self._potentials.release(slot)
+        self.table = table
+        for row in range(len(table)):
+            self._fit_body(row)
+            target = table.wanted(row)
+            if target is not None:
+                table.agents.potential_rows[row] = self._potential_row(row, target)
+        self._rank()
 
     # --- ticks ---------------------------------------------------------------------------
 
-    def observe(self, people: Mapping[Hashable, Coordinates]) -> None:
+    def observe(self, people: People) -> None:
         """Tell where everyone is at this tick: id -> (x, y) or (x, y, z).
 
-        Who is absent has left. Call it once before every `tick`.
+        Those who are absent have left. Call it once before every tick.
 
         Raises
         ------
         ValueError
             A position is not finite; nothing is changed then.
         """
-        self._history.observe(people)
+        if isinstance(people, ObservedPeople):
+            self._history.observe_arrays(people.ids, people.places)
+        else:
+            self._history.observe(people)
 
-    def tick(self) -> dict[Hashable, ActorState]:
-        """Plan and take one step for every actor; id -> state."""
+    def advance(self) -> None:
+        """Plan and take one step for every actor; `table` holds what has come of it."""
         self._potentials.renew_one()
         self._prediction = self._history.predict(self.grid, self.plan.slices, self.plan.slice_s)
-        if not self._ids:
-            return {}
-        self._batch.tick(self._crowd, self._potentials.arrays, self._prediction, self.tick_s)
-        shown, ways = self._batch.settle(self.tick_s, self._headings)
-        return {
-            who: self._state(who, row, way)
-            for who, row, way in zip(self._ids, shown.tolist(), ways, strict=True)
-        }
+        if len(self.table):
+            agents = self.table.agents
+            self._batch.tick(agents, self._potentials.arrays, self._prediction, self.tick_s)
+            self._batch.settle(self.tick_s)
+
+    def tick(self) -> dict[Hashable, ActorState]:
+        """`advance`, and what every actor shows of itself afterwards; id -> state."""
+        self.advance()
+        return {actor_id: self._shown(row) for row, actor_id in enumerate(self.table)}
 
     def state(self, actor_id: Hashable) -> ActorState:
-        """An actor as it stands, before its first tick."""
-        row = self._row(actor_id)
-        c = self._crowd
-        cell = int(c.cells[row])
-        x, y = c.positions[row].tolist()
-        vx, vy = c.velocities[row].tolist()
-        z_m = self._floor(cell)
-        layer = self.grid.layered.places[cell, 0] if cell >= 0 else 0
-        shown = [x, y, layer, z_m, vx, vy, float(self._headings[row]), Reason.WAITING]
-        return self._state(actor_id, shown, np.array([[x, y, z_m]]))
+        """What an actor shows of itself: as of the latest tick, or as it was put there."""
+        return self._shown(self.table.row(actor_id))
 
-    def _state(
-        self, actor_id: Hashable, shown: list[float], way: NDArray[np.float64]
-    ) -> ActorState:
-        x, y, layer, z_m, vx, vy, heading, reason = shown
+    def _shown(self, row: int) -> ActorState:
+        agents = self.table.agents
+        x, y = agents.positions[row].tolist()
+        vx, vy = agents.velocities[row].tolist()
         return ActorState(
             (x, y),
-            int(layer),
-            z_m,
+            int(agents.layers[row]),
+            float(agents.heights[row]),
             (vx, vy),
-            heading,
-            _REASONS[int(reason)],
-            self._goals[actor_id],
+            float(agents.headings[row]),
+            _REASONS[agents.reasons[row]],
+            self.table.wanted(row),
             self.plan.slice_s,
-            way,
+            agents.planned[row].copy(),
         )
 
     def predicted_near(
@@ -279,12 +299,6 @@ class Navigator:
         """End the planning threads."""
         self._batch.close()
 
-    def _row(self, actor_id: Hashable) -> int:
-        try:
-            return self._rows[actor_id]
-        except KeyError:
-            raise KeyError(f"there is no actor {actor_id!r}") from None
-
     def check_place(self, position: Point, z_m: float) -> None:
         """ValueError unless an actor may be put there or sent there."""
         x0, y0, x1, y1 = self._bounds
@@ -300,40 +314,22 @@ class Navigator:
     def _floor(self, cell: int) -> float:
         return float(self.grid.layered.floors[cell]) if cell >= 0 else 0.0
 
-    def _body_row(self, parameters: ActorParameters) -> int:
-        return self.grid.row_of(parameters.body)
+    def _layer(self, cell: int) -> int:
+        return int(self.grid.layered.places[cell, 0]) if cell >= 0 else 0
 
     def _rank(self) -> None:
         """Order among those with equal ways left: a hash of id and seed, free of ties."""
-        keys = [(_priority(self._seed, who), str(who)) for who in self._ids]
+        keys = [(_priority(self._seed, who), str(who)) for who in self.table]
         order = sorted(range(len(keys)), key=keys.__getitem__)
-        ranks = np.empty(len(keys), dtype=np.int64)
-        ranks[order] = np.arange(len(keys))
-        self._crowd = self._crowd._replace(ranks=ranks)
+        self.table.agents.ranks[order] = np.arange(len(keys))
 
 
 def _priority(seed: int, who: Hashable) -> int:
-    """A number that is the same in every run for the same seed and id."""
+    """A number that is the same in every run for the same seed and id (FNV-1a, 64 bits).
+
+    It decides ranks, so that another hash would be another world.
+    """
     state = 0xCBF29CE484222325 ^ (seed & 0xFFFFFFFFFFFFFFFF)
     for byte in str(who).encode():
         state = ((state ^ byte) * 0x100000001B3) & 0xFFFFFFFFFFFFFFFF
     return state ^ (state >> 29)
-
-
-def _empty_crowd(slices: int) -> Agents:
-    return Agents(
-        np.zeros((0, 2)),
-        np.zeros((0, 2)),
-        np.zeros(0, dtype=np.int64),
-        np.zeros(0, dtype=np.int64),
-        np.zeros((0, 2)),
-        np.zeros(0, dtype=np.int64),
-        np.zeros(0, dtype=PARAMETERS),
-        np.zeros(0, dtype=np.int64),
-        np.zeros(0, dtype=np.bool_),
-        np.zeros(0, dtype=np.int64),
-        np.zeros((0, slices, 2)),
-        np.zeros(0),
-        np.zeros(0),
-        np.zeros((0, PASSAGE)),
-    )

@@ -43,15 +43,10 @@ class ActorParameters(BaseModel):
     goal_tolerance_m: Annotated[
         float, _field("m", 0.05, 2.0, "So close to the goal counts as arrived.")
     ] = 0.2
-    person_clearance_m: Annotated[
+    person_room_m: Annotated[
         float,
-        _field(
-            "m",
-            0.1,
-            1.0,
-            "Radius of a person plus the room kept at the last check before a step.",
-        ),
-    ] = 0.4
+        _field("m", 0.0, 0.75, "Room kept to people's bodies at the last check before a step."),
+    ] = 0.15
     contact_closing_s: Annotated[
         float,
         _field(
@@ -186,6 +181,25 @@ class ActorParameters(BaseModel):
         return self
 
     def row(self) -> NDArray[np.void]:
-        """As kernels take it: one record of `planning.PARAMETERS`."""
+        """As the agents' table holds it: one record of `planning.PARAMETERS`."""
         values = tuple(getattr(self, name) for name in PARAMETERS.names or ())
         return np.array(values, dtype=PARAMETERS)
+
+    @classmethod
+    def of_row(cls, row: NDArray[np.void]) -> Self:
+        """The parameters that a record of `planning.PARAMETERS` was made of."""
+        values = dict(zip(PARAMETERS.names or (), row.item(), strict=True))
+        for name in ("max_expansions", "edge_cells"):
+            values[name] = int(values[name])
+        return cls(**values)
+
+
+def body_of(row: NDArray[np.void]) -> Body:
+    """The body of an actor with these parameters, as the ground is seen by it."""
+    return Body(
+        float(row["radius_m"]),
+        float(row["height_m"]),
+        float(row["step_on_m"]),
+        float(row["leg_length_m"]),
+        int(row["edge_cells"]),
+    )

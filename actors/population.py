@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from esplanade.actors.behaviour import Behaviour, BehaviourName, Goal, Perception
 from esplanade.actors.navigator import Navigator
-from esplanade.actors.parameters import ActorParameters
+from esplanade.actors.parameters import ActorParameters, body_of
 from esplanade.actors.state import ActorState, Reason
-from esplanade.planning import Body, LayeredGrid, Polygon, Potential, Scene
+from esplanade.planning import AgentTable, Body, LayeredGrid, Polygon, Potential, RiskModel, Scene
 from esplanade.planning.scene.heights import SAME_FLOOR_M
 
 _EXPLAINED_WITHIN_M = 8.0
@@ -34,37 +34,43 @@ class Explanation:
     """For each person near: float64 (K, 4) x, y, z, radius of the two-sigma circle, m."""
 
 
-@dataclass
-class _Actor:
-    behaviour: Behaviour
-    parameters: ActorParameters
-    rng: np.random.Generator
-    state: ActorState
-    goal: Goal | None = None
-    arrived: bool = False
-    no_path_s: float = 0.0
-
-
 class Population:
-    """All actors of a zone. One call of `tick` a tick; same seed and same people, same walks."""
+    """All actors of a zone. One call of `tick` a tick; same seed and same people, same walks.
+
+    An actor has one identity, its id; all that it is and does stands in `navigator.table`.
+    """
 
     def __init__(
-        self, grid: LayeredGrid, scene: Scene, tick_s: float = 0.05, seed: int = 0
+        self,
+        grid: LayeredGrid,
+        scene: Scene,
+        tick_s: float = 0.05,
+        seed: int = 0,
+        *,
+        person_radius_m: float = 0.25,
     ) -> None:
         self.grid = grid
         self.scene = scene
-        self.navigator = Navigator(grid, tick_s, seed)
+        self.navigator = Navigator(
+            grid, tick_s, seed, risk=RiskModel(person_radius_m=person_radius_m)
+        )
         self.trips = 0
         """Goals reached by all actors so far."""
         self.doors_wanted: dict[str, bool] = {}
-        """Doors that behaviours wanted moved in the last tick; who was added last prevails."""
+        """Doors that behaviours wanted moved in the last tick; the actor added last prevails."""
         self._tick = 0
         self._seed = seed
-        self._actors: dict[Hashable, _Actor] = {}
+        self._behaviours: dict[Hashable, Behaviour] = {}
+        self._generators: dict[Hashable, np.random.Generator] = {}
         self._entrances: dict[Body, Potential | None] = {}
 
+    @property
+    def table(self) -> AgentTable:
+        """Every actor's state; read it freely between two ticks."""
+        return self.navigator.table
+
     def __len__(self) -> int:
-        return len(self._actors)
+        return len(self._behaviours)
 
     def add(
         self,
@@ -94,60 +100,126 @@ class Population:
             self.navigator.check_place(position, z_m)
             position = self._ground_near(parameters, position, z_m)
         self.navigator.add_actor(actor_id, position, None, parameters, z_m=z_m)
-        state = self.navigator.state(actor_id)
-        self._actors[actor_id] = _Actor(behaviour, parameters, rng, state)
-        return state
+        self._behaviours[actor_id] = behaviour
+        self._generators[actor_id] = rng
+        return self.navigator.state(actor_id)
 
     def remove(self, actor_id: Hashable) -> None:
         """Take an actor out; KeyError when there is none of that id."""
         self.navigator.remove_actor(actor_id)
-        del self._actors[actor_id]
+        del self._behaviours[actor_id], self._generators[actor_id]
 
     def set_behaviour(self, actor_id: Hashable, behaviour: Behaviour) -> None:
         """Give an actor another behaviour; KeyError for an unknown actor or place."""
-        actor = self._actors[actor_id]
+        row = self.table.row(actor_id)
         self._check_targets(behaviour)
-        actor.behaviour = behaviour
-        actor.arrived = False
+        self._behaviours[actor_id] = behaviour
+        trips = self.table.trips
+        trips.arrived[row] = False
+        trips.ask_at_s[row] = -np.inf
 
     def set_parameters(self, actor_id: Hashable, parameters: ActorParameters) -> None:
         """Change an actor's parameters from the next tick on."""
         self.navigator.set_parameters(actor_id, parameters)
-        self._actors[actor_id].parameters = parameters
 
     def tick(self, people: Mapping[Hashable, Goal]) -> dict[Hashable, ActorState]:
-        """One tick: behaviours choose goals, then everyone plans and steps. id -> state."""
-        time_s = self._tick * self.navigator.tick_s
+        """`advance`, and what every actor shows of itself afterwards: id -> state."""
+        self.advance(people)
+        return {actor_id: self.state(actor_id) for actor_id in self.table}
+
+    def advance(self, people: Mapping[Hashable, Goal]) -> None:
+        """One tick: behaviours choose goals, then everyone plans and steps; see `table`.
+
+        A behaviour is asked when its time has come, when its actor has arrived, and while no path
+        leads to the goal. Cost in Python: O(behaviours asked).
+        """
         self.doors_wanted = {}
-        for actor_id, actor in self._actors.items():
-            goal = actor.behaviour.update(self._view(actor, people, time_s))
-            self.doors_wanted.update(actor.behaviour.moves_doors)
-            if goal != actor.goal:
-                self.navigator.set_goal(
-                    actor_id,
-                    None if goal is None else goal[:2],
-                    z_m=0.0 if goal is None else goal[2],
-                )
-                actor.goal = goal
-                actor.arrived = False
-                actor.no_path_s = 0.0
+        trips, time_s = self.table.trips, self._tick * self.navigator.tick_s
+        stuck = trips.no_path_s >= _STUCK_AFTER_S
+        due = (time_s >= trips.ask_at_s) | stuck | (trips.arrived != trips.arrived_when_asked)
+        rows = np.flatnonzero(due).tolist()
+        if rows:
+            ids = self.table.ids
+            for row in rows:
+                self._ask(ids[row], row, bool(stuck[row]), people, time_s)
         self.navigator.observe(people)
-        states = self.navigator.tick()
-        for actor_id, actor in self._actors.items():
-            if actor.behaviour.points_at is not None:
-                states[actor_id] = _pointing(states[actor_id], actor.behaviour.points_at)
-        for actor_id, state in states.items():
-            actor = self._actors[actor_id]
-            actor.state = state
-            if state.reason is Reason.NO_PATH:
-                actor.no_path_s += self.navigator.tick_s
-            else:
-                actor.no_path_s = 0.0
-            if actor.goal is not None and state.reason is Reason.ARRIVED and not actor.arrived:
-                actor.arrived = True
-                self.trips += 1
+        self.navigator.advance()
+        self._keep_account()
         self._tick += 1
-        return states
+
+    def _ask(
+        self,
+        actor_id: Hashable,
+        row: int,
+        stuck: bool,
+        people: Mapping[Hashable, Goal],
+        time_s: float,
+    ) -> None:
+        """Ask a behaviour where its actor is to go, and send it there."""
+        behaviour = self._behaviours[actor_id]
+        agents, trips = self.table.agents, self.table.trips
+        arrived = bool(trips.arrived[row])
+        x, y = agents.positions[row].tolist()
+        goal = behaviour.update(
+            Perception(
+                time_s,
+                (x, y),
+                float(agents.heights[row]),
+                arrived,
+                stuck,
+                people,
+                self.scene,
+                self.grid,
+                body_of(agents.parameters[row]),
+                self._generators[actor_id],
+            )
+        )
+        self.doors_wanted.update(behaviour.moves_doors)
+        if goal != self.table.wanted(row):
+            self.navigator.set_goal(
+                actor_id,
+                None if goal is None else goal[:2],
+                z_m=0.0 if goal is None else goal[2],
+            )
+        trips.arrived_when_asked[row] = arrived
+        trips.ask_at_s[row] = behaviour.ask_at_s
+        trips.points_at[row] = np.nan if behaviour.points_at is None else behaviour.points_at
+
+    def _keep_account(self) -> None:
+        """Count the trips that ended in this tick, and the time that goals are out of reach."""
+        reasons, trips = self.table.agents.reasons, self.table.trips
+        no_path = reasons == Reason.NO_PATH
+        trips.no_path_s[:] = np.where(no_path, trips.no_path_s + self.navigator.tick_s, 0.0)
+        going = ~np.isnan(trips.wanted[:, 0])
+        arrived = going & (reasons == Reason.ARRIVED) & ~trips.arrived
+        trips.arrived[:] |= arrived
+        self.trips += int(np.count_nonzero(arrived))
+
+    def state(self, actor_id: Hashable) -> ActorState:
+        """What an actor shows of itself; one that points at something is turned to it."""
+        state = self.navigator.state(actor_id)
+        target = self.table.points_at(self.table.row(actor_id))
+        if target is None:
+            return state
+        return state._replace(points_at=target, heading=_turned_to(state.position, target))
+
+    def facing(self) -> NDArray[np.float64]:
+        """Headings that actors show, float64 (A,) rad: those who point at something face it."""
+        agents, trips = self.table.agents, self.table.trips
+        headings = agents.headings.copy()
+        for row in np.flatnonzero(~np.isnan(trips.points_at[:, 0])).tolist():
+            headings[row] = _turned_to(
+                agents.positions[row].tolist(), trips.points_at[row].tolist()
+            )
+        return headings
+
+    def pointing(self) -> dict[Hashable, Goal]:
+        """What actors point at just now, x, y, z in metres by their ids."""
+        rows = np.flatnonzero(~np.isnan(self.table.trips.points_at[:, 0])).tolist()
+        if not rows:
+            return {}
+        ids = self.table.ids
+        return {ids[row]: target for row in rows if (target := self.table.points_at(row))}
 
     def ground_changed(self) -> None:
         """The ground has changed, as when a door closes: ways to goals are found anew."""
@@ -156,12 +228,11 @@ class Population:
 
     def explain(self, actor_id: Hashable) -> Explanation:
         """Why an actor does what it does; KeyError when there is none of that id."""
-        actor = self._actors[actor_id]
-        state = actor.state
+        behaviour, state = self._behaviours[actor_id], self.navigator.state(actor_id)
         near = self.navigator.predicted_near(state.position, state.z_m, _EXPLAINED_WITHIN_M)
         for circles in near:
             circles[:, 3] *= 2.0
-        return Explanation(actor.behaviour.name, state.reason, actor.goal, state.path, near)
+        return Explanation(behaviour.name, state.reason, state.goal, state.path, near)
 
     def warm_up(self) -> None:
         """Make ready all that a tick would have to wait for: kernels, and potentials of places.
@@ -193,20 +264,6 @@ class Population:
         """End the planning threads."""
         self.navigator.close()
 
-    def _view(self, actor: _Actor, people: Mapping[Hashable, Goal], time_s: float) -> Perception:
-        return Perception(
-            time_s,
-            actor.state.position,
-            actor.state.z_m,
-            actor.arrived,
-            actor.no_path_s >= _STUCK_AFTER_S,
-            people,
-            self.scene,
-            self.grid,
-            actor.parameters.body,
-            actor.rng,
-        )
-
     def _check_targets(self, behaviour: Behaviour) -> None:
         for target in behaviour.targets():
             if isinstance(target, str):
@@ -218,8 +275,8 @@ class Population:
         """Somewhere free, on the floor at that height unless that is nowhere to be found."""
         x0, y0, x1, y1 = self.scene.bounds
         elsewhere = None
-        here = [a.state for a in self._actors.values() if abs(a.state.z_m - z_m) < SAME_FLOOR_M]
-        taken = np.array([state.position for state in here]).reshape(-1, 2)
+        agents = self.table.agents
+        taken = agents.positions[np.abs(agents.heights - z_m) < SAME_FLOOR_M]
         for _ in range(_PLACING_TRIES):
             point = rng.uniform((x0, y0), (x1, y1))
             place = float(point[0]), float(point[1])
@@ -268,7 +325,6 @@ class Population:
         return Potential(self.grid, free, entry.z_m, body.radius_m, body=body)
 
 
-def _pointing(state: ActorState, target: Goal) -> ActorState:
-    """The same actor, turned to what it points at."""
-    (x, y), (to_x, to_y, _) = state.position, target
-    return state._replace(points_at=target, heading=math.atan2(to_y - y, to_x - x))
+def _turned_to(position: Sequence[float], target: Sequence[float]) -> float:
+    """Heading from a place to a target, radians."""
+    return math.atan2(target[1] - position[1], target[0] - position[0])

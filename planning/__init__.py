@@ -4,6 +4,7 @@ Pure mathematics: no sockets, no clock, no random numbers of its own.
 """
 
 from esplanade.planning.agents._passage_kernels import PASSAGE
+from esplanade.planning.agents.agent_table import AgentTable, SavedAgentsError
 from esplanade.planning.agents.agents import PARAMETERS, Agents, Decisions
 from esplanade.planning.agents.batch import Batch, PlanModel
 from esplanade.planning.agents.search import SearchForm, SearchResult, SearchStatus, uncertain_bfp
@@ -22,6 +23,7 @@ __all__ = [
     "PARAMETERS",
     "PASSAGE",
     "PEOPLE",
+    "AgentTable",
     "Agents",
     "Batch",
     "Body",
@@ -39,6 +41,7 @@ __all__ = [
     "Ramp",
     "RiskField",
     "RiskModel",
+    "SavedAgentsError",
     "Scene",
     "SearchForm",
     "SearchResult",

@@ -2,7 +2,7 @@
 
 import asyncio
 import time
-from collections.abc import AsyncIterator, Hashable
+from collections.abc import AsyncIterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
@@ -25,7 +25,6 @@ from esplanade.server.net.schedule import Schedule
 from esplanade.server.net.ticker import Ticker
 from esplanade.server.populating import populate
 from esplanade.server.settings import ServerSettings
-from esplanade.server.world.actors import Body
 from esplanade.server.world.world import World
 
 log = structlog.get_logger(__name__)
@@ -118,14 +117,20 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
 def _build(loaded: LoadedScene, settings: ServerSettings) -> tuple[Population, World, list[float]]:
     grid = LayeredGrid.from_scene(loaded.scene)
     tick_s, seed = settings.tick_s, settings.seed
-    bodies: dict[Hashable, Body]
     try:
-        population, bodies = populate(grid, loaded.scene, settings.actors, tick_s, seed)
+        population, names = populate(
+            grid,
+            loaded.scene,
+            settings.actors,
+            tick_s,
+            seed,
+            person_radius_m=settings.person_radius_m,
+        )
         world = World(
             loaded.scene,
             grid,
             population,
-            bodies,
+            names,
             loaded.rules,
             tick_s=tick_s,
             max_people=settings.max_clients,

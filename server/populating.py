@@ -7,7 +7,6 @@ import numpy as np
 
 from esplanade.actors import ActorParameters, Behaviour, Guide, Patrol, Population, Wander
 from esplanade.planning import LayeredGrid, Scene
-from esplanade.server.world.actors import Body
 
 NAMES: Final = (
     "Alder", "Aspen", "Bay", "Birch", "Cedar", "Clover", "Cove", "Dale", "Drift", "Dune", "Elm",
@@ -23,9 +22,15 @@ GUIDE_STOPS: Final = 4
 
 
 def populate(
-    grid: LayeredGrid, scene: Scene, count: int, tick_s: float, seed: int
-) -> tuple[Population, dict[Hashable, Body]]:
-    """A population of so many actors, and what others see of each.
+    grid: LayeredGrid,
+    scene: Scene,
+    count: int,
+    tick_s: float,
+    seed: int,
+    *,
+    person_radius_m: float = 0.25,
+) -> tuple[Population, dict[Hashable, str]]:
+    """A population of so many actors among people of that radius, and what each is called.
 
     Raises
     ------
@@ -33,16 +38,16 @@ def populate(
         The scene has no room for so many.
     """
     random = np.random.default_rng([seed, count])
-    population = Population(grid, scene, tick_s=tick_s, seed=seed)
-    bodies: dict[Hashable, Body] = {}
+    population = Population(grid, scene, tick_s=tick_s, seed=seed, person_radius_m=person_radius_m)
+    names: dict[Hashable, str] = {}
     order = random.permutation(len(NAMES)).tolist()
     for number in range(count):
         actor_id = f"actor-{number + 1}"
         name, again = NAMES[order[number % len(NAMES)]], number // len(NAMES)
         parameters = ActorParameters(speed_mps=round(float(random.uniform(*SPEEDS_MPS)), 2))
         population.add(actor_id, _behaviour(number, scene, random), parameters)
-        bodies[actor_id] = Body(f"{name} {again + 1}" if again else name, parameters.radius_m)
-    return population, bodies
+        names[actor_id] = f"{name} {again + 1}" if again else name
+    return population, names
 
 
 def _behaviour(number: int, scene: Scene, random: np.random.Generator) -> Behaviour:

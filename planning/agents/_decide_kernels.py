@@ -33,26 +33,26 @@ EASE_S = 0.5
 
 
 @kernel
-def keep_account(crowd: Agents, a: int, left: float, tick_s: float) -> float:
+def keep_account(agents: Agents, a: int, left: float, tick_s: float) -> float:
     """Book the time that an actor lost or made up since the last tick; its speed from now on.
 
     Lost is what a tick lasts beyond the time that the way made good in it takes at the preferred
     speed.
     """
-    p = crowd.parameters[a]
-    before = crowd.left_m[a]
-    crowd.left_m[a] = left
+    p = agents.parameters[a]
+    before = agents.left_m[a]
+    agents.left_m[a] = left
     if np.isfinite(before) and np.isfinite(left):
         lost = tick_s - (before - left) / p["speed_mps"]
-        crowd.behind_s[a] = min(MOST_BEHIND_S, max(0.0, crowd.behind_s[a] + lost))
-    faster = 1.0 + p["catch_up"] * min(1.0, crowd.behind_s[a] / EASE_S)
+        agents.behind_s[a] = min(MOST_BEHIND_S, max(0.0, agents.behind_s[a] + lost))
+    faster = 1.0 + p["catch_up"] * min(1.0, agents.behind_s[a] / EASE_S)
     return float(min(p["max_speed_mps"], p["speed_mps"] * faster))
 
 
 @kernel
 def make_task(
     potentials: NDArray[np.float32],
-    crowd: Agents,
+    agents: Agents,
     a: int,
     max_hold_m: float,
     tick_s: float,
@@ -63,13 +63,13 @@ def make_task(
     `contested` is its passage; who is about to arrive keeps to no lane, or could not go to a goal
     that lies left of it.
     """
-    p = crowd.parameters[a]
-    cell = crowd.cells[a]
-    x = crowd.positions[a, 0]
-    y = crowd.positions[a, 1]
-    gx = crowd.goals[a, 0]
-    gy = crowd.goals[a, 1]
-    slot = crowd.potential_rows[a]
+    p = agents.parameters[a]
+    cell = agents.cells[a]
+    x = agents.positions[a, 0]
+    y = agents.positions[a, 1]
+    gx = agents.goals[a, 0]
+    gy = agents.goals[a, 1]
+    slot = agents.potential_rows[a]
     hold = slot < 0
     speed = p["speed_mps"]
     left = 0.0
@@ -82,19 +82,20 @@ def make_task(
         elif left <= max_hold_m:
             hold = True
         else:
-            speed = keep_account(crowd, a, left, tick_s)
+            speed = keep_account(agents, a, left, tick_s)
     else:
         gx = x
         gy = y
     keeps_right = contested and left > AFTER_M
     return Task(
         a,
-        crowd.bodies[a],
+        agents.bodies[a],
+        agents.contacts[a],
         cell,
         x,
         y,
-        crowd.velocities[a, 0],
-        crowd.velocities[a, 1],
+        agents.velocities[a, 0],
+        agents.velocities[a, 1],
         gx,
         gy,
         p["radius_m"],
@@ -111,7 +112,7 @@ def make_task(
         p["hurry_weight"],
         int(p["max_expansions"]),
         int(p["edge_cells"]),
-        lane_of(crowd.passages[a], p["keep_right_weight"] if keeps_right else 0.0),
+        lane_of(agents.passages[a], p["keep_right_weight"] if keeps_right else 0.0),
         hold,
     )
 
@@ -123,7 +124,7 @@ def decide(
     no_potential: NDArray[np.float32],
     moves: Moves,
     prediction: Prediction,
-    crowd: Agents,
+    agents: Agents,
     tick_s: float,
     first: int,
     last: int,
@@ -146,10 +147,10 @@ def decide(
     cells = np.empty(slices, dtype=np.int64)
     for n in range(first, last):
         a = world.reservations.members[0, n]
-        p = crowd.parameters[a]
+        p = agents.parameters[a]
         contested = world.reservations.contested[a]
-        task = make_task(potentials, crowd, a, p["goal_tolerance_m"], tick_s, contested)
-        slot = crowd.potential_rows[a]
+        task = make_task(potentials, agents, a, p["goal_tolerance_m"], tick_s, contested)
+        slot = agents.potential_rows[a]
         potential = potentials[slot] if slot >= 0 else no_potential
         for m in range(len(moves.speeds)):
             part = moves.speeds[m]
@@ -157,7 +158,7 @@ def decide(
         own = Moves(moves.cosines, moves.sines, speeds, moves.straight, True)
         bound = np.inf
         changed = False
-        if crowd.known[a]:
+        if agents.known[a]:
             kept[:] = world.reservations.paths[a]
             cost, changed = _improve(world, potential, task, kept, bent, cells, trial)
             bound = cost - p["hysteresis_s"]
@@ -174,20 +175,20 @@ def decide(
         out.statuses[a] = status
         out.expansions[a] = found.expansions
         out.renewed[a] = better or changed
-        switched = better and crowd.known[a]
+        switched = better and agents.known[a]
         path = out.paths[a]
         ux, uy = control_toward(task, path[SUB, 0], path[SUB, 1], world.step_s)
-        contact = p["radius_m"] + p["person_clearance_m"]
+        contact = p["radius_m"] + (world.person_radius_m + p["person_room_m"])
         ux, uy, dodged = last_check(world, prediction, task, contact, ux, uy)
         wx, wy = limited(task, ux, uy, tick_s)
         out.wishes[a, 0] = wx
         out.wishes[a, 1] = wy
         away = metres_left(potential, task, task.cell, task.x, task.y)
         lost = slot >= 0 and not np.isfinite(potential_at(potential, task.cell, task.x, task.y))
-        if len(crowd.passages) > OPPOSED:
-            see_passage(world.grid, potential, crowd, a, slot >= 0 and not task.hold, tick_s)
+        if len(agents.passages) > OPPOSED:
+            see_passage(world.grid, potential, agents, a, slot >= 0 and not task.hold, tick_s)
         out.reasons[a] = _reason(
-            crowd, task, away, lost, path, status, switched, dodged, world.step_s
+            agents, task, away, lost, path, status, switched, dodged, world.step_s
         )
 
 
@@ -219,7 +220,7 @@ def _improve(
 
 @kernel
 def _reason(
-    crowd: Agents,
+    agents: Agents,
     task: Task,
     away: float,
     lost: bool,
@@ -234,7 +235,7 @@ def _reason(
         return GIVING_WAY
     if lost:
         return BLOCKED
-    if crowd.potential_rows[task.me] < 0:
+    if agents.potential_rows[task.me] < 0:
         return WAITING
     if task.hold:
         return ARRIVED

@@ -48,6 +48,7 @@ def slice_risk(
     return risk_at(
         world.grid,
         world.risk,
+        task.contact,
         k,
         cell,
         bx,

@@ -23,7 +23,7 @@ MEETING_ROOM_M = 0.8
 MEETING_ROOM = 0.2
 """What having none of it weighs, in certain contacts with a person: half of that when they face
 each other, more with the other on the right, nothing with the other on the left. So both keep to
-the right, and two streams form where there was a crowd."""
+the right, and two streams form where there was a agents."""
 QUEUE_ROOM_M = 0.5
 """Room that two who are held up would like. Coming closer gains a little way once, but costs as
 long as both stay: those who wait leave gaps, through which others come out."""
@@ -188,7 +188,7 @@ def others_near(
 ) -> tuple[int, int]:
     """List whom one may meet who leaves (x, y) at slice k, within two slices; how many they are.
 
-    From the end of `others` are listed, backwards, those whom one cannot meet but may crowd: the
+    From the end of `others` are listed, backwards, those whom one cannot meet but may agents: the
     second number. `slice_m` is how far one gets in a slice. `others` takes as many as it has room
     for.
     """

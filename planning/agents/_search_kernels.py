@@ -302,12 +302,30 @@ def search(
             if price * soft >= most:
                 continue
             minded = soft + risk_among(
-                risk, workspace.ahead, ahead, k + 2, ex, ey, evx, evy, task.closing_weight
+                risk,
+                task.contact,
+                workspace.ahead,
+                ahead,
+                k + 2,
+                ex,
+                ey,
+                evx,
+                evy,
+                task.closing_weight,
             )
             if price * minded >= most:
                 continue
             minded += risk_among(
-                risk, workspace.halfway, halfway, k + 1, hx, hy, hvx, hvy, task.closing_weight
+                risk,
+                task.contact,
+                workspace.halfway,
+                halfway,
+                k + 1,
+                hx,
+                hy,
+                hvx,
+                hvy,
+                task.closing_weight,
             )
             if price * minded >= most:
                 continue

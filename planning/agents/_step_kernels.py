@@ -52,8 +52,8 @@ LOOK_AHEAD_S = 0.6
 """How far ahead the last check before a step looks, in two halves."""
 NEAR_M = 4.0
 """Nobody further away can be met in that time."""
-PERSON_RADIUS_M = 0.3
-"""A grown person's, and a little for swaying."""
+SWAY_M = 0.05
+"""A person's body sways by this much beyond its radius."""
 
 
 @kernel
@@ -123,7 +123,7 @@ def _gap(
 ) -> float:
     """`_separation` while turning to velocity u; -inf where a wall is."""
     half = 0.5 * LOOK_AHEAD_S
-    touching_m = task.radius_m + PERSON_RADIUS_M
+    touching_m = task.radius_m + (world.person_radius_m + SWAY_M)
     closing_s = task.contact_closing_s
     a = task.max_acceleration_mps2
     hx, hy, hvx, hvy = advance(task.x, task.y, task.vx, task.vy, ux, uy, a, half)
@@ -188,7 +188,7 @@ def last_check(
 def resolve(
     world: World,
     index: SegmentIndex,
-    crowd: Agents,
+    agents: Agents,
     order: NDArray[np.int64],
     tick_s: float,
     decisions: Decisions,
@@ -201,15 +201,15 @@ def resolve(
     so that standing still remains possible for everyone who comes after.
     """
     moved = np.zeros(len(order), dtype=np.bool_)
-    new_positions[:] = crowd.positions
-    new_cells[:] = crowd.cells
+    new_positions[:] = agents.positions
+    new_cells[:] = agents.cells
     for n in range(len(order)):
         a = order[n]
-        x = crowd.positions[a, 0]
-        y = crowd.positions[a, 1]
+        x = agents.positions[a, 0]
+        y = agents.positions[a, 1]
         need = min(
-            crowd.parameters[a]["radius_m"],
-            max(0.0, clearance_at(world.grid, crowd.bodies[a], crowd.cells[a], x, y)),
+            agents.parameters[a]["radius_m"],
+            max(0.0, clearance_at(world.grid, agents.bodies[a], agents.cells[a], x, y)),
         )
         moved[a] = True
         wx = decisions.wishes[a, 0]
@@ -221,16 +221,16 @@ def resolve(
             cell, ex, ey = walk(
                 world.grid,
                 index,
-                crowd.parameters[a]["height_m"],
-                crowd.parameters[a]["step_on_m"],
-                crowd.cells[a],
+                agents.parameters[a]["height_m"],
+                agents.parameters[a]["step_on_m"],
+                agents.cells[a],
                 x,
                 y,
                 vx * tick_s,
                 vy * tick_s,
                 need - 1e-6,
             )
-            if trial == 6 or not _touches(world, crowd, moved, new_positions, a, ex, ey):
+            if trial == 6 or not _touches(world, agents, moved, new_positions, a, ex, ey):
                 new_positions[a, 0] = ex
                 new_positions[a, 1] = ey
                 new_cells[a] = cell
@@ -242,28 +242,27 @@ def resolve(
 
 @kernel
 def settle(
-    crowd: Agents,
+    agents: Agents,
     decisions: Decisions,
     positions: NDArray[np.float64],
     cells: NDArray[np.int64],
     tick_s: float,
-    headings: NDArray[np.float64],
 ) -> None:
-    """Take over into `crowd` what a tick has come to; who walks looks where it goes."""
+    """Take over into `agents` what a tick has come to; an agent that walks faces where it goes."""
     for a in range(len(positions)):
-        vx = (positions[a, 0] - crowd.positions[a, 0]) / tick_s
-        vy = (positions[a, 1] - crowd.positions[a, 1]) / tick_s
-        crowd.velocities[a, 0] = vx
-        crowd.velocities[a, 1] = vy
-        crowd.positions[a] = positions[a]
-        crowd.cells[a] = cells[a]
+        vx = (positions[a, 0] - agents.positions[a, 0]) / tick_s
+        vy = (positions[a, 1] - agents.positions[a, 1]) / tick_s
+        agents.velocities[a, 0] = vx
+        agents.velocities[a, 1] = vy
+        agents.positions[a] = positions[a]
+        agents.cells[a] = cells[a]
         if decisions.renewed[a]:
-            crowd.followed[a] = decisions.paths[a]
-            crowd.ages[a] = 0
-        crowd.ages[a] += 1
-        crowd.known[a] = True
+            agents.followed[a] = decisions.paths[a]
+            agents.ages[a] = 0
+        agents.ages[a] += 1
+        agents.known[a] = True
         if np.hypot(vx, vy) > HEADING_MPS:
-            headings[a] = np.arctan2(vy, vx)
+            agents.headings[a] = np.arctan2(vy, vx)
 
 
 @kernel
@@ -283,7 +282,7 @@ def _alternative(wx: float, wy: float, n: int) -> tuple[float, float]:
 @kernel
 def _touches(
     world: World,
-    crowd: Agents,
+    agents: Agents,
     moved: NDArray[np.bool_],
     new_positions: NDArray[np.float64],
     a: int,
@@ -292,8 +291,8 @@ def _touches(
 ) -> bool:
     """Whether actor a, moving to (ex, ey), comes closer than it may to another actor."""
     r = world.reservations
-    x = crowd.positions[a, 0]
-    y = crowd.positions[a, 1]
+    x = agents.positions[a, 0]
+    y = agents.positions[a, 1]
     j0, j1, i0, i1 = buckets_within(r, x, y, 2.0 * (r.widest_m + r.fastest_m) + MARGIN_M)
     for j in range(j0, j1 + 1):
         row = j * r.nx  # buckets of a row are listed one after the other
@@ -301,13 +300,13 @@ def _touches(
             o = r.members[0, m]
             if o == a or abs(r.heights[o, 0] - r.heights[a, 0]) >= BODIES_OVERLAP_M:
                 continue
-            rx = x - crowd.positions[o, 0]
-            ry = y - crowd.positions[o, 1]
+            rx = x - agents.positions[o, 0]
+            ry = y - agents.positions[o, 1]
             dx = ex - x
             dy = ey - y
             if moved[o]:
-                dx -= new_positions[o, 0] - crowd.positions[o, 0]
-                dy -= new_positions[o, 1] - crowd.positions[o, 1]
+                dx -= new_positions[o, 0] - agents.positions[o, 0]
+                dy -= new_positions[o, 1] - agents.positions[o, 1]
             d = closest_approach(rx, ry, dx, dy)
             if d < r.radii[a] + r.radii[o] + MARGIN_M and d < np.hypot(rx, ry) - 1e-9:
                 return True

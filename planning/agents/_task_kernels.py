@@ -23,6 +23,8 @@ class Task(NamedTuple):
     me: int
     body: int
     """Row of the grid's clearances for this kind of body."""
+    contact: int
+    """Row of the tables of risk for its distance of contact with people."""
     cell: int
     """Where it stands; -1 where nobody can."""
     x: float
@@ -59,6 +61,7 @@ class World(NamedTuple):
     risk: RiskArrays
     reservations: Reservations
     step_s: float
+    person_radius_m: float
 
 
 @inlined

@@ -18,9 +18,6 @@ from esplanade.planning.ground._geometry_kernels import SegmentIndex
 from esplanade.planning.people._prediction_kernels import Prediction
 from esplanade.planning.people._risk_kernels import index_people
 
-SHOWN = 8
-"""Numbers of an actor after a tick: x, y m, layer, height m, vx, vy m/s, heading rad, reason."""
-
 
 class Zone(NamedTuple):
     """Everything that the ticks of a zone work on, people's future apart.
@@ -34,7 +31,7 @@ class Zone(NamedTuple):
     potentials: NDArray[np.float32]
     no_potential: NDArray[np.float32]
     moves: Moves
-    crowd: Agents
+    agents: Agents
     order: NDArray[np.int64]
     decisions: Decisions
     positions: NDArray[np.float64]
@@ -47,12 +44,12 @@ class Zone(NamedTuple):
 @kernel
 def has_room(zone: Handle[Zone], workspace: Handle[Workspace], branching: int) -> bool:
     """Whether there is room for what the actors are and ask by now, and not far too much."""
-    world, crowd = zone.value.world, zone.value.crowd
+    world, agents = zone.value.world, zone.value.agents
     fastest_mps = 0.0
-    for a in range(len(crowd.positions)):
-        p = crowd.parameters[a]
+    for a in range(len(agents.positions)):
+        p = agents.parameters[a]
         # Who is told to be slower from now on still has to brake.
-        speed = np.hypot(crowd.velocities[a, 0], crowd.velocities[a, 1])
+        speed = np.hypot(agents.velocities[a, 0], agents.velocities[a, 1])
         fastest_mps = max(fastest_mps, p["max_speed_mps"], speed)
         if p["radius_m"] > world.reservations.widest_m or p["max_expansions"] * branching + 2 > len(
             workspace.value.node_state
@@ -64,11 +61,11 @@ def has_room(zone: Handle[Zone], workspace: Handle[Workspace], branching: int) -
 @kernel
 def index_future(zone: Handle[Zone], prediction: Prediction, first: int, step: int) -> None:
     """Index people slice by slice: first, first + step, ..."""
-    crowd, risk = zone.value.crowd, zone.value.world.risk
-    x0 = x1 = crowd.positions[0, 0]
-    y0 = y1 = crowd.positions[0, 1]
-    for a in range(1, len(crowd.positions)):
-        x, y = crowd.positions[a]
+    agents, risk = zone.value.agents, zone.value.world.risk
+    x0 = x1 = agents.positions[0, 0]
+    y0 = y1 = agents.positions[0, 1]
+    for a in range(1, len(agents.positions)):
+        x, y = agents.positions[a]
         x0 = min(x0, x)
         y0 = min(y0, y)
         x1 = max(x1, x)
@@ -81,8 +78,8 @@ def put_in_order(zone: Handle[Zone], tick_s: float) -> None:
     """See followed paths from now, and who goes first."""
     z = zone.value
     for a in range(len(z.order)):
-        z.world.reservations.radii[a] = z.crowd.parameters[a]["radius_m"]
-    prepare(z.world, z.potentials, z.crowd, tick_s, z.order)
+        z.world.reservations.radii[a] = z.agents.parameters[a]["radius_m"]
+    prepare(z.world, z.potentials, z.agents, tick_s, z.order)
 
 
 @kernel
@@ -102,7 +99,7 @@ def decide_some(
         z.no_potential,
         z.moves,
         prediction,
-        z.crowd,
+        z.agents,
         tick_s,
         first,
         last,
@@ -115,7 +112,7 @@ def decide_some(
 def take_steps(zone: Handle[Zone], tick_s: float) -> None:
     """Take the steps, who goes first before all."""
     z = zone.value
-    resolve(z.world, z.barriers, z.crowd, z.order, tick_s, z.decisions, z.positions, z.cells)
+    resolve(z.world, z.barriers, z.agents, z.order, tick_s, z.decisions, z.positions, z.cells)
 
 
 @kernel
@@ -137,32 +134,18 @@ def plan_and_step(
 
 
 @kernel
-def settle_all(
-    zone: Handle[Zone],
-    tick_s: float,
-    headings: NDArray[np.float64],
-    ways: NDArray[np.float64],
-    shown: NDArray[np.float64],
-) -> None:
-    """Take the tick over into the crowd; fill what is shown of everyone.
-
-    `ways` (A, K, 3) are the plans with their heights, `shown` (A, SHOWN).
-    """
+def settle_all(zone: Handle[Zone], tick_s: float) -> None:
+    """Take the tick over into the agents' own state: where they are, why, and their plans."""
     z = zone.value
-    settle(z.crowd, z.decisions, z.positions, z.cells, tick_s, headings)
-    ways[:, :, :2] = z.decisions.paths
-    ways[:, :, 2] = 0.0
+    agents = z.agents
+    settle(agents, z.decisions, z.positions, z.cells, tick_s)
+    agents.reasons[:] = z.decisions.reasons
+    agents.planned[:, :, :2] = z.decisions.paths
+    agents.planned[:, :, 2] = 0.0
     if not z.world.grid.flat:
-        heights_along(z.world.grid, z.crowd.cells, ways)
+        heights_along(z.world.grid, agents.cells, agents.planned)
     layered = z.world.grid.layered
-    for a in range(len(shown)):
-        cell = z.crowd.cells[a]
-        row = shown[a]
-        row[0] = z.crowd.positions[a, 0]
-        row[1] = z.crowd.positions[a, 1]
-        row[2] = layered.places[cell, 0] if cell >= 0 else 0
-        row[3] = floor_of(z.world.grid, cell)
-        row[4] = z.crowd.velocities[a, 0]
-        row[5] = z.crowd.velocities[a, 1]
-        row[6] = headings[a]
-        row[7] = z.decisions.reasons[a]
+    for a in range(len(agents.cells)):
+        cell = agents.cells[a]
+        agents.layers[a] = layered.places[cell, 0] if cell >= 0 else 0
+        agents.heights[a] = floor_of(z.world.grid, cell)

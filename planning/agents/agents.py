@@ -1,4 +1,4 @@
-"""What kernels know of a crowd of actors, and what these decide."""
+"""What kernels know of agents, and what these decide."""
 
 from typing import NamedTuple
 
@@ -19,7 +19,7 @@ PARAMETERS = np.dtype(
         ("max_speed_mps", "f8"),
         ("max_acceleration_mps2", "f8"),
         ("goal_tolerance_m", "f8"),
-        ("person_clearance_m", "f8"),
+        ("person_room_m", "f8"),
         ("contact_closing_s", "f8"),
         ("risk_weight", "f8"),
         ("foresight_s", "f8"),
@@ -33,6 +33,7 @@ PARAMETERS = np.dtype(
         ("max_expansions", "f8"),
         ("height_m", "f8"),
         ("step_on_m", "f8"),
+        ("leg_length_m", "f8"),
         ("edge_cells", "f8"),
     ]
 )
@@ -40,21 +41,31 @@ PARAMETERS = np.dtype(
 
 
 class Agents(NamedTuple):
-    """State of A actors; every array has A rows.
+    """State of A agents as kernels read and write it; every array has A rows.
 
-    `cells` (A,) are those that they stand in, -1 where nobody can; `bodies` (A,) the rows of their
-    kinds of body in the grid's clearances. `potential_rows` are rows of the potential pool, -1
-    without a goal; `known` tells whether `followed` holds a path; `followed` (A, K, 2) begins at
-    the tick that `ages` (A,) ticks ago was. `left_m` is the way that was left a tick ago, nan at
-    first; `behind_s` the time lost since the goal was set and not made up yet; `passages`
+    What they are: `bodies` (A,) are rows of their kinds of body in the grid's clearances,
+    `contacts` (A,) those of their contact distances in the tables of risk, `parameters` (A,)
+    records of `PARAMETERS`; the agent with the smaller of `ranks` (A,) goes first of two with
+    equal ways left.
+
+    Where they are: `positions` (A, 2) m, `velocities` (A, 2) m/s, `headings` (A,) rad from +x,
+    `cells` (A,) that they stand in, -1 where nobody can stand, `heights` (A,) m of the floor there
+    and `layers` (A,) of it; `reasons` (A,) why they do what they do.
+
+    Where they are going: `goals` (A, 2) m; `potential_rows` (A,) of the pool, -1 without a goal;
+    `planned` (A, K, 3) m is the plan of the latest tick, from that tick's beginning, with heights.
+    `known` (A,) tells whether `followed` holds a path; `followed` (A, K, 2) m begins at the tick
+    that `ages` (A,) ticks ago was. `left_m` (A,) is the way that was left a tick ago, nan at first;
+    `behind_s` (A,) the time lost since the goal was set and not made up yet; `passages`
     (A, PASSAGE) are the narrow places ahead or just come through, and how one gets on there. The
-    kernels that decide write all three.
+    kernels that decide write these three.
     """
 
     positions: NDArray[np.float64]
     velocities: NDArray[np.float64]
     cells: NDArray[np.int64]
     bodies: NDArray[np.int64]
+    contacts: NDArray[np.int64]
     goals: NDArray[np.float64]
     potential_rows: NDArray[np.int64]
     parameters: NDArray[np.void]
@@ -65,10 +76,15 @@ class Agents(NamedTuple):
     left_m: NDArray[np.float64]
     behind_s: NDArray[np.float64]
     passages: NDArray[np.float64]
+    headings: NDArray[np.float64]
+    heights: NDArray[np.float64]
+    layers: NDArray[np.int64]
+    reasons: NDArray[np.int64]
+    planned: NDArray[np.float64]
 
 
 class Decisions(NamedTuple):
-    """What the actors decided; every array has A rows.
+    """What the agents decided; every array has A rows.
 
     `paths` (A, K, 2); `wishes` (A, 2) m/s for the next tick; `reasons`; `statuses` of the
     searches; `expansions`; `renewed` tells that `paths` replaces what was followed.

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from esplanade.planning.agents._search_kernels import Workspace
 from esplanade.planning.agents._task_kernels import SUB, World
 from esplanade.planning.agents._tick_kernels import (
-    SHOWN,
     Zone,
     decide_some,
     has_room,
@@ -93,27 +92,27 @@ class Batch:
             done.result()
 
     def _hand_over(
-        self, crowd: Agents, potentials: NDArray[np.float32], prediction: Prediction, tick_s: float
+        self, agents: Agents, potentials: NDArray[np.float32], prediction: Prediction, tick_s: float
     ) -> None:
-        """Give compiled code this crowd, and room for it."""
-        budget = int(crowd.parameters["max_expansions"].max())
+        """Give compiled code this agents, and room for it."""
+        budget = int(agents.parameters["max_expansions"].max())
         if budget > self._budget:
             self._budget = budget
             self._workspaces = [
                 make_handle(make_workspace(budget, self._branching))
                 for _ in range(self.plan.threads)
             ]
-        self._zone = self._make_zone(crowd, potentials, prediction, tick_s)
+        self._zone = self._make_zone(agents, potentials, prediction, tick_s)
         self._held = make_handle(self._zone)
-        self._made_of = crowd, potentials, self.grid.arrays, self.field.arrays, tick_s
+        self._made_of = agents, potentials, self.grid.arrays, self.field.arrays, tick_s
 
     def _make_zone(
-        self, crowd: Agents, potentials: NDArray[np.float32], prediction: Prediction, tick_s: float
+        self, agents: Agents, potentials: NDArray[np.float32], prediction: Prediction, tick_s: float
     ) -> Zone:
-        actors = len(crowd.positions)
+        actors = len(agents.positions)
         slices = self.plan.slices + 1
-        speeds = np.hypot(crowd.velocities[:, 0], crowd.velocities[:, 1])
-        fastest_mps = max(float(crowd.parameters["max_speed_mps"].max()), float(speeds.max()))
+        speeds = np.hypot(agents.velocities[:, 0], agents.velocities[:, 1])
+        fastest_mps = max(float(agents.parameters["max_speed_mps"].max()), float(speeds.max()))
         self.field.make_room(prediction, fastest_mps * self.plan.step_s)
         risk = self.field.arrays
         if actors == 1:  # whoever may be met is soon looked through; buckets are not worth it
@@ -122,7 +121,7 @@ class Batch:
             self.grid,
             np.empty((actors, slices, 2)),
             np.zeros((actors, slices)),
-            crowd.parameters["radius_m"].copy(),
+            agents.parameters["radius_m"].copy(),
             np.empty(actors, dtype=np.int64),
             fastest_mps * max(tick_s, self.plan.slice_s),
         )
@@ -132,12 +131,13 @@ class Batch:
                 risk,
                 reservations,
                 self.plan.step_s,
+                self.field.model.person_radius_m,
             ),
             self.grid.index,
             potentials,
             self._no_potential,
             self._moves,
-            crowd,
+            agents,
             np.empty(actors, dtype=np.int64),
             Decisions(
                 np.empty((actors, slices, 2)),
@@ -155,7 +155,7 @@ class Batch:
 
     def tick(
         self,
-        crowd: Agents,
+        agents: Agents,
         potentials: NDArray[np.float32],
         prediction: Prediction,
         tick_s: float,
@@ -164,8 +164,8 @@ class Batch:
 
         Parameters
         ----------
-        crowd : state of A actors after the finished tick, A > 0
-        potentials : float32 (G, N, 3), the potentials that `crowd.potential_rows` points into
+        agents : state of A actors after the finished tick, A > 0
+        potentials : float32 (G, N, 3), the potentials that `agents.potential_rows` points into
         prediction : people's future, as many slices as the plan has
         tick_s : length of the tick, seconds
 
@@ -174,13 +174,13 @@ class Batch:
         The decisions, and float64 (A, 2) positions and int64 (A,) cells after the tick. All are
         written over in the next one.
         """
-        threads = min(self.plan.threads, 1 + len(crowd.positions) // _WORTH_A_THREAD)
+        threads = min(self.plan.threads, 1 + len(agents.positions) // _WORTH_A_THREAD)
         self.field.make_room(prediction, 0.0)
-        parts = crowd, potentials, self.grid.arrays, self.field.arrays, tick_s
+        parts = agents, potentials, self.grid.arrays, self.field.arrays, tick_s
         if not all(map(is_, parts, self._made_of)):
-            self._hand_over(crowd, potentials, prediction, tick_s)
+            self._hand_over(agents, potentials, prediction, tick_s)
         if not self._plan_and_step(threads, prediction, tick_s):
-            self._hand_over(crowd, potentials, prediction, tick_s)
+            self._hand_over(agents, potentials, prediction, tick_s)
             self._plan_and_step(threads, prediction, tick_s)
         return self._zone.decisions, self._zone.positions, self._zone.cells
 
@@ -207,15 +207,6 @@ class Batch:
         take_steps(zone, tick_s)
         return True
 
-    def settle(
-        self, tick_s: float, headings: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Take the last tick over into the crowd that it was made of.
-
-        `headings` (A,) rad are renewed too. Returns what is shown of everyone, float64 (A, SHOWN),
-        and their plans with heights, float64 (A, K, 3), which are nobody else's.
-        """
-        shown = np.empty((len(headings), SHOWN))
-        ways = np.empty((len(headings), self.plan.slices + 1, 3))
-        settle_all(self._held, tick_s, headings, ways, shown)
-        return shown, ways
+    def settle(self, tick_s: float) -> None:
+        """Take the last tick over into the agents that it was made of."""
+        settle_all(self._held, tick_s)

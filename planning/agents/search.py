@@ -186,7 +186,9 @@ def uncertain_bfp(
         )
     if not (math.isfinite(task.x) and math.isfinite(task.y)):
         raise ValueError(f"the start must be finite, got ({task.x}, {task.y})")
-    world = World(field.grid.arrays, field.arrays, reservations, step_s)
+    world = World(
+        field.grid.arrays, field.arrays, reservations, step_s, field.model.person_radius_m
+    )
     path = np.zeros((slices + 1, 2))
     workspace = make_workspace(task.max_expansions, len(moves.speeds) + 1)
     outcome = kernels.search(

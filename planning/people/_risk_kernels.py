@@ -14,10 +14,12 @@ from esplanade.planning.scene.heights import BODIES_OVERLAP_M
 class RadialTables(NamedTuple):
     """What one predicted person adds at a distance, by deviation (rows) and distance (columns).
 
-    `values` (S, C, 2) holds the proximity term and the factor of the closing speed over the
-    distance, whose product with the offset is the factor times n. Both are means over the person's
-    likely range. Columns are even in the squared distance, so that no root has to be drawn.
-    `reaches` (S,) m tells for each row how far away a person matters.
+    An agent of another radius is in contact at another distance, so that there is a table for each
+    of B contact distances. `values` (B, S, C, 2) holds the proximity term and the factor of the
+    closing speed over the distance, whose product with the offset is the factor times n. Both are
+    means over the person's likely range. Columns are even in the squared distance, so that no root
+    has to be drawn.
+    `reaches` (S,) m tells for each row how far away a person matters, to any agent.
     """
 
     values: NDArray[np.float32]
@@ -158,9 +160,9 @@ def people_near(
 
 @inlined
 def _terms(
-    risk: RiskArrays, k: int, p: int, x: float, y: float
+    risk: RiskArrays, contact: int, k: int, p: int, x: float, y: float
 ) -> tuple[float, float, float, float]:
-    """What a person adds at (x, y): proximity p, p·n (two numbers), p·(v_o·n)."""
+    """What a person adds at (x, y) in one table: proximity p, p·n (two numbers), p·(v_o·n)."""
     known = risk.people[k, p]
     rx = x - known[0]
     ry = y - known[1]
@@ -170,7 +172,7 @@ def _terms(
     u = squared * (1.0 / risk.tables.squared_step_m2)
     c = int(u)
     w = u - c
-    row = risk.tables.values[risk.rows[k, p]]
+    row = risk.tables.values[contact, risk.rows[k, p]]
     near = (1.0 - w) * row[c, 0] + w * row[c + 1, 0]
     toward = (1.0 - w) * row[c, 1] + w * row[c + 1, 1]
     return near, toward * rx, toward * ry, toward * (known[2] * rx + known[3] * ry)
@@ -179,6 +181,7 @@ def _terms(
 @inlined
 def risk_among(
     risk: RiskArrays,
+    contact: int,
     listed: NDArray[np.int64],
     count: int,
     k: int,
@@ -190,12 +193,14 @@ def risk_among(
 ) -> float:
     """Risk of being at (x, y) with velocity (vx, vy) at slice k, among the people listed.
 
+    `contact` is the table of the contact distance that holds for who asks.
+
     proximity + closing_weight * max(0, sum of p (v_o - v_r)·n), n from the person to here.
     """
     near = 0.0
     closing = 0.0
     for n in range(count):
-        one, nx, ny, theirs = _terms(risk, k, listed[n], x, y)
+        one, nx, ny, theirs = _terms(risk, contact, k, listed[n], x, y)
         near += one
         closing += theirs - vx * nx - vy * ny
     return float(near + closing_weight * max(0.0, closing))
@@ -205,6 +210,7 @@ def risk_among(
 def risk_at(
     grid: GridArrays,
     risk: RiskArrays,
+    contact: int,
     k: int,
     cell: int,
     x: float,
@@ -221,7 +227,7 @@ def risk_at(
     for m in range(risk.starts[k, b], risk.starts[k, b + 1]):
         p = risk.members[k, m]
         if grid.flat or abs(risk.people[k, p, 4] - feet_m) < BODIES_OVERLAP_M:
-            one, nx, ny, theirs = _terms(risk, k, p, x, y)
+            one, nx, ny, theirs = _terms(risk, contact, k, p, x, y)
             near += one
             closing += theirs - vx * nx - vy * ny
     return float(near + closing_weight * max(0.0, closing))
@@ -231,6 +237,7 @@ def risk_at(
 def risk_many(
     grid: GridArrays,
     risk: RiskArrays,
+    contact: int,
     k: int,
     cells: NDArray[np.int64],
     positions: NDArray[np.float64],
@@ -245,6 +252,7 @@ def risk_many(
             out[n] = risk_at(
                 grid,
                 risk,
+                contact,
                 k,
                 cells[n],
                 positions[n, 0],

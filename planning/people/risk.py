@@ -28,6 +28,8 @@ Box = tuple[float, float, float, float]
 """x0, y0, x1, y1 in metres."""
 EVERYWHERE: Box = (-math.inf, -math.inf, math.inf, math.inf)
 _SIGMA_POINTS = 9
+_RADIUS_M = 0.25
+_RADIUS_STEP_M = 0.05
 _SIGMA_SPAN = 2.5
 
 
@@ -35,8 +37,10 @@ _SIGMA_SPAN = 2.5
 class RiskModel:
     """Shape of the risk around one person."""
 
-    contact_m: float = 0.6
-    """Distance of centres that counts as contact: sum of the radii and a margin, metres."""
+    person_radius_m: float = 0.25
+    """Radius of the people of a zone, metres."""
+    contact_margin_m: float = 0.1
+    """Centres nearer than the sum of the radii and this count as in contact, metres."""
     influence_m: float = 0.6
     """Beyond contact the proximity term falls to zero over this distance, metres."""
     comfort: float = 0.05
@@ -48,18 +52,22 @@ class RiskModel:
     """Deviations count as they are so far ahead at most, seconds: whoever is to be met later will
     have been seen again before there is need to turn aside."""
 
-    def near(self, distance_m: ArrayLike) -> NDArray[np.float64]:
+    def contact_m(self, radius_m: float) -> float:
+        """Distance of centres that counts as contact for an agent of this radius, metres."""
+        return radius_m + self.person_radius_m + self.contact_margin_m
+
+    def near(self, distance_m: ArrayLike, contact_m: float) -> NDArray[np.float64]:
         """Proximity term w1·d of eq. (5) for a person known to be at a distance; in [0, 1].
 
         As printed the weight of the distance would have to be negative for "nearer is riskier" to
         hold. This term is positive, falls with distance and ends at contact + influence.
         """
         d = np.asarray(distance_m, dtype=np.float64)
-        return np.where(d <= self.contact_m, 1.0, self.comfort * self.toward(d))
+        return np.where(d <= contact_m, 1.0, self.comfort * self.toward(d, contact_m))
 
-    def toward(self, distance_m: ArrayLike) -> NDArray[np.float64]:
+    def toward(self, distance_m: ArrayLike, contact_m: float) -> NDArray[np.float64]:
         """Factor of the closing speed for a person known to be at a distance; in [0, 1]."""
-        beyond = (np.asarray(distance_m, dtype=np.float64) - self.contact_m) / self.influence_m
+        beyond = (np.asarray(distance_m, dtype=np.float64) - contact_m) / self.influence_m
         return np.asarray(np.clip(1.0 - beyond, 0.0, 1.0) ** 2)
 
 
@@ -78,18 +86,39 @@ def sigma_points() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 
 @lru_cache(maxsize=8)
-def radial_tables(model: RiskModel, spread: Spread = GAUSSIAN) -> RadialTables:
+def radial_tables(
+    model: RiskModel, contacts_m: tuple[float, ...], spread: Spread = GAUSSIAN
+) -> RadialTables:
     """Influence of one person by deviation and distance; it is the same in every direction.
 
-    Each entry is the mean over the sigma points of density × term of eq. (5), for every Gaussian
-    of the spread over a likely range of its own. For the closing term the points' directions n
-    are projected on the direction from the mean. It takes a while, so that zones alike share it.
+    There is a table for each of the contact distances `contacts_m`. Each entry is the mean over
+    the sigma points of density × term of eq. (5), for every Gaussian of the spread over a likely
+    range of its own. For the closing term the points' directions n are projected on the direction
+    from the mean. It takes a while, so that zones alike share it.
     """
-    offsets, weights = sigma_points()
     sigmas = np.arange(0.0, _SIGMA_MAX_M + _SIGMA_STEP_M / 2, _SIGMA_STEP_M)
     widest = max(spread.scales) * math.hypot(_SIGMA_MAX_M, model.sway_m)
-    reach = model.contact_m + model.influence_m + _SIGMA_SPAN * widest
+    reach = max(contacts_m) + model.influence_m + _SIGMA_SPAN * widest
     squared = np.arange(0.0, reach**2 + 3 * _SQUARED_STEP_M2, _SQUARED_STEP_M2)
+    tables = [_radial_table(model, spread, each, sigmas, squared) for each in contacts_m]
+    reaches = np.max([reaching for _, reaching in tables], axis=0)
+    return RadialTables(
+        np.stack([values for values, _ in tables]).astype(np.float32),
+        np.sqrt((reaches + 1) * _SQUARED_STEP_M2),
+        _SIGMA_STEP_M,
+        _SQUARED_STEP_M2,
+    )
+
+
+def _radial_table(
+    model: RiskModel,
+    spread: Spread,
+    contact_m: float,
+    sigmas: NDArray[np.float64],
+    squared: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """The two terms, float64 (S, C, 2), and the last column that matters in each row, (S,)."""
+    offsets, weights = sigma_points()
     distances = np.sqrt(squared)
     here = np.stack([distances, np.zeros_like(distances)], axis=1)
     near = np.zeros((len(sigmas), len(squared)))
@@ -100,19 +129,14 @@ def radial_tables(model: RiskModel, spread: Spread = GAUSSIAN) -> RadialTables:
             relative = here[:, None] - strayed
             length = np.hypot(relative[..., 0], relative[..., 1])
             along = relative[..., 0] / np.maximum(length, 1e-9)
-            near[row] += share * model.near(length) @ weights
-            toward[row] += share * (model.toward(length) * along) @ weights
+            near[row] += share * model.near(length, contact_m) @ weights
+            toward[row] += share * (model.toward(length, contact_m) * along) @ weights
     toward = np.maximum(toward, 0.0)
     matters = (near > _LEAST) | (toward > _LEAST)
-    reaches = len(squared) - 2 - np.argmax(matters[:, -2::-1], axis=1)
+    reaching = len(squared) - 2 - np.argmax(matters[:, -2::-1], axis=1)
     toward[:, 1:] /= distances[1:]
     toward[:, 0] = toward[:, 1]
-    return RadialTables(
-        np.stack([near, toward], axis=2).astype(np.float32),
-        np.sqrt((reaches + 1) * _SQUARED_STEP_M2),
-        _SIGMA_STEP_M,
-        _SQUARED_STEP_M2,
-    )
+    return np.stack([near, toward], axis=2), reaching
 
 
 class RiskField:
@@ -132,12 +156,27 @@ class RiskField:
         self.grid = grid
         self.model = model
         self.slices = slices
-        self.tables = radial_tables(model, spread)
+        self._spread = spread
+        self._contacts_m = [model.contact_m(_RADIUS_M)]
+        self.tables = radial_tables(model, tuple(self._contacts_m), spread)
         x0, y0, x1, y1 = grid.bounds
         self._bucket_m = max(_LEAST_BUCKET_M, math.sqrt((x1 - x0) * (y1 - y0) / _MOST_BUCKETS))
         self._columns = max(1, math.ceil((x1 - x0) / self._bucket_m))
         self._rows = max(1, math.ceil((y1 - y0) / self._bucket_m))
         self.arrays = self._room_for(0, 0.0)
+
+    def contact_row(self, radius_m: float) -> int:
+        """Row of the tables for agents of a radius, which is rounded up to 5 cm.
+
+        The first agent of a radius costs the making of its table.
+        """
+        rounded = math.ceil(radius_m / _RADIUS_STEP_M - 1e-9) * _RADIUS_STEP_M
+        contact_m = self.model.contact_m(rounded)
+        if contact_m not in self._contacts_m:
+            self._contacts_m.append(contact_m)
+            self.tables = radial_tables(self.model, tuple(self._contacts_m), self._spread)
+            self.arrays = self._room_for(self.arrays.people.shape[1], self.arrays.slack_m)
+        return self._contacts_m.index(contact_m)
 
     def _room_for(self, people: int, slack_m: float) -> RiskArrays:
         widest = float(self.tables.reaches.max()) + slack_m
@@ -207,14 +246,26 @@ class RiskField:
         heights: ArrayLike,
         velocities: ArrayLike,
         closing_weight: float,
+        radius_m: float = _RADIUS_M,
     ) -> NDArray[np.float64]:
-        """Risk of N configurations, float64 (N,); positions and velocities (N, 2), heights (N,)."""
+        """Risk of N configurations, float64 (N,); positions and velocities (N, 2), heights (N,).
+
+        It is that for agents of a radius that is known to the field (`contact_row`).
+        """
         if slice_index not in range(self.slices + 1):
             raise ValueError(f"slices are 0..{self.slices}, got {slice_index}")
         points, cells = self.grid.on_ground(positions, heights)
         v = np.ascontiguousarray(velocities, dtype=np.float64).reshape(-1, 2)
         out = np.empty(len(points))
         kernels.risk_many(
-            self.grid.arrays, self.arrays, slice_index, cells, points, v, closing_weight, out
+            self.grid.arrays,
+            self.arrays,
+            self.contact_row(radius_m),
+            slice_index,
+            cells,
+            points,
+            v,
+            closing_weight,
+            out,
         )
         return out

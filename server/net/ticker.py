@@ -10,7 +10,6 @@ from esplanade.server.metrics import Metrics
 from esplanade.server.net.delivery import Delivery
 from esplanade.server.net.hub import Hub
 from esplanade.server.net.schedule import Schedule
-from esplanade.server.world.actors import ActorStates
 from esplanade.server.world.world import World
 
 log = structlog.get_logger(__name__)
@@ -69,17 +68,17 @@ class Ticker:
         inputs = self._hub.drain(loop.time())
         joined = self._world.begin(inputs)
         self._hub.welcome(inputs, joined)
-        actors = await loop.run_in_executor(self._thread, self._think)
-        update = self._world.finish(actors)
+        actors_moved = await loop.run_in_executor(self._thread, self._think)
+        update = self._world.finish(actors_moved)
         with self._world.times.stage("write"):
             self._delivery.deliver(update, loop.time())
         self._metrics.tick_took(perf_counter() - start, self._world.times.seconds)
 
-    def _think(self) -> ActorStates:
+    def _think(self) -> bool:
         try:
             return self._world.think()
         except Exception:
             # The people's world goes on; the actors stand until planning works again.
             log.exception("planning failed", tick=self._world.tick)
             self._metrics.planning_failures.inc()
-            return {}
+            return False

@@ -6,10 +6,11 @@ from functools import partial
 
 import numpy as np
 
-from esplanade.actors import Explanation, Population
+from esplanade.actors import Explanation, ObservedPeople, Population
 from esplanade.actors.locomotion.ground import Ground
+from esplanade.actors.people import NOBODY
 from esplanade.planning import LayeredGrid, Scene
-from esplanade.server.world.actors import ActorAvatars, ActorStates, Body
+from esplanade.server.world.actors import ActorAvatars
 from esplanade.server.world.contacts import Contacts
 from esplanade.server.world.doors import Doors
 from esplanade.server.world.inputs import (
@@ -65,7 +66,7 @@ class World:
         scene: Scene,
         grid: LayeredGrid,
         population: Population,
-        bodies: Mapping[Hashable, Body],
+        names: Mapping[Hashable, str],
         rules: Rules,
         *,
         tick_s: float,
@@ -79,14 +80,14 @@ class World:
         self.tick = 0
         self.people_seen = 0
         self.origin_m = (scene.bounds[0], scene.bounds[1])
-        self.state = State(max_people + len(bodies))
+        self.state = State(max_people + len(names))
         self.contacts = Contacts()
         self.times = StageTimes(clock)
         self._grid = grid
         self.doors = Doors(self.state, grid)
         self._moved_doors: dict[str, bool] = {}
         self._people = People(self.state, grid, rules, tick_s)
-        self._actors = ActorAvatars(self.state, population, bodies, tick_s)
+        self._actors = ActorAvatars(self.state, population, names, tick_s)
         self._interest = Interest(self.state, rules)
         self._encoder = SnapshotEncoder(self.state, self.origin_m)
         self.steps = LatestSteps(self.state.capacity)
@@ -95,7 +96,7 @@ class World:
         self._spawning = Spawning(
             scene, grid, rules.person_clearance_m, np.random.SeedSequence(seed)
         )
-        self._observed: dict[Hashable, Point] = {}
+        self._observed = NOBODY
 
     # --- one tick -----------------------------------------------------------------------------
 
@@ -120,16 +121,16 @@ class World:
             self._observed = self._observe()
         return joined
 
-    def think(self) -> ActorStates:
-        """Find the next step of every actor."""
+    def think(self) -> bool:
+        """Find the next step of every actor; whether there are any."""
         with self.times.stage("actors"):
             return self._actors.plan(self._observed)
 
-    def finish(self, actors: ActorStates) -> WorldUpdate:
-        """Move the actors and work out what each viewer is to be told."""
+    def finish(self, actors_moved: bool) -> WorldUpdate:
+        """Move the actors, if they have moved, and work out what each viewer is to be told."""
         with self.times.stage("contacts"):
-            pointing = self._actors.place(actors)
-            if actors:
+            pointing = self._actors.place(actors_moved)
+            if actors_moved:
                 for name, is_open in self._actors.doors_wanted.items():
                     self.doors.want(name, is_open)
             neighbours = Neighbours(self.state)
@@ -261,13 +262,8 @@ class World:
                 self._step_interest.remove(slot)
                 self.state.remove(item.id)
 
-    def _observe(self) -> dict[Hashable, Point]:
+    def _observe(self) -> ObservedPeople:
         state = self.state
         people = state.of_kind(PERSON)
-        places = zip(
-            state.positions[people, 0].tolist(),
-            state.positions[people, 1].tolist(),
-            state.heights[people].tolist(),
-            strict=True,
-        )
-        return dict(zip(state.ids[people].tolist(), places, strict=True))
+        places = np.column_stack([state.positions[people], state.heights[people]])
+        return ObservedPeople(state.ids[people], places)

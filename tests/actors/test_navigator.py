@@ -8,8 +8,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from esplanade.actors import ActorParameters, Navigator, Reason
-from esplanade.planning import LayeredGrid, Scene, Spawn
+from esplanade.actors import ActorParameters, Navigator, ObservedPeople, Reason
+from esplanade.planning import (
+    LayeredGrid,
+    PlanModel,
+    RiskModel,
+    SavedAgentsError,
+    Scene,
+    Spawn,
+)
 from tests.actors.worlds import BODY, TICK_S, along, block, holds, navigator, run
 
 OPEN = Scene.open_space((0.0, 0.0, 12.0, 12.0))
@@ -355,3 +362,77 @@ def test_who_leaves_is_forgotten_and_ids_may_be_used_again() -> None:
     nav.close()
     assert record.positions["b"][-1, 0] < 9.0
     assert set(record.positions) == {"a", "b", "c"}
+
+
+def crossing(count: int) -> Navigator:
+    navigator = Navigator(Scene.open_space((0.0, 0.0, 12.0, 12.0)), tick_s=0.1, seed=4)
+    for k in range(count):
+        angle = 2.0 * math.pi * k / count
+        at = 6.0 + 4.0 * math.cos(angle), 6.0 + 4.0 * math.sin(angle)
+        body = ActorParameters(radius_m=0.2 + 0.05 * (k % 3))
+        navigator.add_actor(k, at, (12.0 - at[0], 12.0 - at[1]), body)
+    return navigator
+
+
+def test_actors_that_were_saved_go_on_as_they_would_have() -> None:
+    first, second = crossing(6), crossing(2)
+    for _ in range(20):
+        first.observe({})
+        first.advance()
+    second.load(*first.table.save())
+    for _ in range(20):
+        for each in (first, second):
+            each.observe({})
+            each.advance()
+    for one, other in zip(first.table.agents, second.table.agents, strict=True):
+        np.testing.assert_array_equal(one, other)
+    assert second.table.ids == list(range(6))
+    first.close()
+    second.close()
+
+
+def test_saved_actors_of_another_horizon_are_refused_and_nothing_changes() -> None:
+    first, second = crossing(2), Navigator(OPEN, plan=PlanModel(steps=5))
+    second.add_actor("a", (1.0, 1.0))
+    with pytest.raises(SavedAgentsError, match="plan 18 slices ahead, this zone 10"):
+        second.load(*first.table.save())
+    assert second.table.ids == ["a"]
+    first.close()
+    second.close()
+
+
+@pytest.mark.parametrize(
+    ("radius_m", "person_radius_m"), [(0.25, 0.25), (0.45, 0.25), (0.25, 0.6), (0.15, 0.25)]
+)
+def test_room_to_a_person_grows_with_both_radii(radius_m, person_radius_m) -> None:
+    """Somebody stands in the middle of the way: how near an actor passes depends on both bodies."""
+    scene = Scene.open_space((0.0, 0.0, 14.0, 10.0))
+    risk = RiskModel(person_radius_m=person_radius_m)
+    navigator = Navigator(scene, tick_s=0.1, risk=risk)
+    body = ActorParameters(radius_m=radius_m)
+    navigator.add_actor("a", (1.0, 5.05), (13.0, 5.05), body)
+    nearest = math.inf
+    for _ in range(150):
+        navigator.observe({"p": (7.0, 5.0)})
+        nearest = min(nearest, math.dist(navigator.tick()["a"].position, (7.0, 5.0)))
+    navigator.close()
+    assert navigator.state("a").reason is Reason.ARRIVED
+    assert nearest > radius_m + person_radius_m + 0.05
+
+
+def test_arrays_of_people_are_seen_as_a_mapping_is() -> None:
+    walks = {3: (1.0, 0.5), 11: (-0.5, 0.2), 2: (0.0, -1.0)}
+    first, second = crossing(4), crossing(4)
+    for tick in range(30):
+        if tick == 15:
+            del walks[11]
+        now = 0.1 * tick
+        seen = {who: (6.0 + vx * now, 6.0 + vy * now, 0.0) for who, (vx, vy) in walks.items()}
+        first.observe(seen)
+        ids = np.array(list(seen), dtype=np.int64)
+        second.observe(ObservedPeople(ids, np.array(list(seen.values()))))
+        first.advance()
+        second.advance()
+    np.testing.assert_array_equal(first.table.agents.positions, second.table.agents.positions)
+    first.close()
+    second.close()

@@ -20,7 +20,7 @@ from esplanade.planning import PlanModel, PredictionModel, RiskModel
 
 def test_every_parameter_and_every_number_of_a_model_is_a_setting_with_its_default() -> None:
     assert DEFAULTS["risk_weight"] == ActorParameters().risk_weight
-    assert DEFAULTS["risk.contact_m"] == RiskModel().contact_m
+    assert DEFAULTS["risk.contact_margin_m"] == RiskModel().contact_margin_m
     assert DEFAULTS["prediction.samples"] == PredictionModel().samples
     assert DEFAULTS["plan.steps"] == PlanModel().steps
     assert not {"plan.threads", "prediction.spread"} & set(DEFAULTS)
@@ -29,11 +29,16 @@ def test_every_parameter_and_every_number_of_a_model_is_a_setting_with_its_defau
 
 def test_text_gets_the_type_of_its_setting() -> None:
     found = read_changes(
-        ["risk_weight=12", "risk.contact_m=0.55", "plan.steps=8", "prediction.calibration_s=inf"]
+        [
+            "risk_weight=12",
+            "risk.contact_margin_m=0.05",
+            "plan.steps=8",
+            "prediction.calibration_s=inf",
+        ]
     )
     assert found == {
         "risk_weight": 12.0,
-        "risk.contact_m": 0.55,
+        "risk.contact_margin_m": 0.05,
         "plan.steps": 8,
         "prediction.calibration_s": math.inf,
     }
@@ -52,9 +57,9 @@ def test_choices_are_several_values_or_a_mere_name() -> None:
     [
         ("risk_weigth=3", "--set risk_weigth: there is no such setting; did you mean risk_weight?"),
         ("plan.threads=2", "--set plan.threads: there is no such setting"),
-        ("risk.contact_m=x", "--set risk.contact_m: Input should be a valid number"),
-        ("risk.contact_m=-1", "--set risk.contact_m: -1.0 is negative"),
-        ("risk.contact_m=nan", "--set risk.contact_m: nan is negative, or no number"),
+        ("risk.contact_margin_m=x", "--set risk.contact_margin_m: Input should be a valid number"),
+        ("risk.contact_margin_m=-1", "--set risk.contact_margin_m: -1.0 is negative"),
+        ("risk.contact_margin_m=nan", "--set risk.contact_margin_m: nan is negative, or no number"),
         ("plan.steps=1.5", "--set plan.steps: Input should be a valid integer"),
         ("speed_mps=3", "max_speed_mps (1.7) must not be below speed_mps (3.0)"),
         ("risk_weight", "--set 'risk_weight' is not NAME=VALUE"),
@@ -72,9 +77,14 @@ def test_choices_are_checked_too() -> None:
 
 
 def test_models_and_parameters_are_made_of_settings() -> None:
-    settings = {"risk.contact_m": 0.55, "plan.steps": 8, "risk_weight": 12.0, "radius_m": 0.3}
+    settings = {
+        "risk.contact_margin_m": 0.05,
+        "plan.steps": 8,
+        "risk_weight": 12.0,
+        "radius_m": 0.3,
+    }
     models = models_of(settings)
-    assert models.risk == RiskModel(contact_m=0.55)
+    assert models.risk == RiskModel(contact_margin_m=0.05)
     assert models.plan == PlanModel(steps=8)
     assert models.prediction == PredictionModel()
     made = parameters_of(settings, {"radius_m": 0.25, "speed_mps": 1.1})

@@ -36,6 +36,7 @@ def risk(
     """
     near = 0.0
     closing = 0.0
+    contact_m = 0.25 + 0.25 + 0.1
     for p in range(len(prediction.means)):
         if abs(prediction.heights[p, k] - feet_m) >= BODIES_OVERLAP_M:
             continue
@@ -49,8 +50,8 @@ def risk(
             place = prediction.means[p, k] + sigma * np.array([a, b])
             away = position - place
             distance = math.hypot(*away)
-            near += weight * float(model.near(distance))
+            near += weight * float(model.near(distance, contact_m))
             if distance > 1e-9:
                 speed = -(velocity - prediction.velocities[p, k]) @ (away / distance)
-                closing += weight * float(model.toward(distance)) * speed
+                closing += weight * float(model.toward(distance, contact_m)) * speed
     return near + closing_weight * max(0.0, closing)

@@ -129,7 +129,7 @@ def reserved(
 
 def world_of(grid: LayeredGrid, field: RiskField, reservations: Reservations) -> World:
     """What kernels look up."""
-    return World(grid.arrays, field.arrays, reservations, STEP_S)
+    return World(grid.arrays, field.arrays, reservations, STEP_S, field.model.person_radius_m)
 
 
 def task(
@@ -142,6 +142,7 @@ def task(
     return Task(
         me=0,
         body=0,
+        contact=0,
         cell=-1,
         x=start[0],
         y=start[1],

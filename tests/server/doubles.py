@@ -1,13 +1,16 @@
 """A population whose actors do as a test says."""
 
 from collections.abc import Hashable, Mapping
+from types import SimpleNamespace
 from typing import cast
 
 import numpy as np
+from numpy.typing import NDArray
 
-from esplanade.actors import ActorState, Explanation, Population, Reason
+from esplanade.actors import ActorParameters, Explanation, Population, Reason
+from esplanade.planning import AgentTable
 
-Place = tuple[float, float, int]
+Place = tuple[float, float, float]
 
 
 class ScriptedPopulation:
@@ -15,9 +18,11 @@ class ScriptedPopulation:
 
     def __init__(self, tick_s: float = 0.05) -> None:
         self.tick_s = tick_s
+        self.table = AgentTable(1)
+        self.navigator = SimpleNamespace(plan=SimpleNamespace(slice_s=0.4))
         self.positions: dict[Hashable, tuple[float, float]] = {}
         self.velocities: dict[Hashable, tuple[float, float]] = {}
-        self.pointing: dict[Hashable, tuple[float, float, float]] = {}
+        self.pointed_at: dict[Hashable, Place] = {}
         self.doors_wanted: dict[str, bool] = {}
         self.observed: Mapping[Hashable, Place] = {}
         self.trips = 0
@@ -32,32 +37,33 @@ class ScriptedPopulation:
     ) -> None:
         self.positions[actor_id] = position
         self.velocities[actor_id] = velocity
+        if actor_id not in self.table:
+            row = ActorParameters().row()
+            self.table.add(actor_id, (*position, 0.0), row, cell=-1, layer=0, heading=0.0)
 
     def __len__(self) -> int:
         return len(self.positions)
 
-    def tick(self, people: Mapping[Hashable, Place]) -> dict[Hashable, ActorState]:
+    def advance(self, people: Mapping[Hashable, Place]) -> None:
         if self.failing:
             raise RuntimeError("told to fail")
         self.observed = people
-        states = {}
         for actor_id, (x, y) in self.positions.items():
             vx, vy = self.velocities[actor_id]
             here = (x + vx * self.tick_s, y + vy * self.tick_s)
             self.positions[actor_id] = here
-            states[actor_id] = ActorState(
-                position=here,
-                layer=0,
-                z_m=0.0,
-                velocity=(vx, vy),
-                heading=float(np.arctan2(vy, vx)),
-                reason=Reason.MOVING,
-                goal=None,
-                slice_s=0.4,
-                way=np.array([(*here, 0.0)]),
-                points_at=self.pointing.get(actor_id),
-            )
-        return states
+            row, agents = self.table.row(actor_id), self.table.agents
+            agents.positions[row] = here
+            agents.velocities[row] = vx, vy
+            agents.headings[row] = np.arctan2(vy, vx)
+            agents.reasons[row] = Reason.MOVING
+            agents.planned[row] = (*here, 0.0)
+
+    def facing(self) -> NDArray[np.float64]:
+        return self.table.agents.headings
+
+    def pointing(self) -> dict[Hashable, Place]:
+        return self.pointed_at
 
     def ground_changed(self) -> None:
         self.found_anew += 1

@@ -7,7 +7,6 @@ from itertools import count
 from pathlib import Path
 
 from esplanade.planning import LayeredGrid, Place, Scene, Spawn, Wall
-from esplanade.server.world.actors import Body
 from esplanade.server.world.inputs import Input, Join
 from esplanade.server.world.rules import Rules
 from esplanade.server.world.world import Joined, World, WorldUpdate
@@ -85,7 +84,7 @@ class Trial:
             scene,
             self.grid,
             self.population.as_population(),
-            {actor_id: Body(str(actor_id), 0.25) for actor_id in self.population.positions},
+            {actor_id: str(actor_id) for actor_id in self.population.positions},
             rules(**changes),
             tick_s=TICK_S,
             max_people=max_people,

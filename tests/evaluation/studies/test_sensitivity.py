@@ -33,7 +33,7 @@ def test_by_default_values_double_around_the_unchanged_within_limits() -> None:
     weight = DEFAULTS["risk_weight"]
     assert taken["risk_weight"] == tuple(weight * 2.0**k for k in range(-2, 3))
     assert all(isinstance(value, int) for value in taken["max_expansions"])
-    (wide,) = sensitivity.ranges({"person_clearance_m": None}, {"person_clearance_m": 0.4}).values()
+    (wide,) = sensitivity.ranges({"person_room_m": None}, {"person_room_m": 0.4}).values()
     assert wide == (0.1, 0.2, 0.4, 0.8, 1.0)
 
 

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from esplanade.planning import (
     PARAMETERS,
-    PASSAGE,
     Agents,
+    AgentTable,
     Batch,
     Decisions,
     LayeredGrid,
@@ -32,7 +32,7 @@ BODY = {
     "max_speed_mps": 1.7,
     "max_acceleration_mps2": 2.0,
     "goal_tolerance_m": 0.2,
-    "person_clearance_m": 0.3,
+    "person_room_m": 0.05,
     "contact_closing_s": 0.3,
     "risk_weight": 25.0,
     "foresight_s": 4.0,
@@ -46,6 +46,7 @@ BODY = {
     "max_expansions": float(scaled(150, 30)),
     "height_m": 1.8,
     "step_on_m": 0.6,
+    "leg_length_m": 0.9,
     "edge_cells": 24.0,
 }
 
@@ -54,24 +55,16 @@ def crowd_of(positions, goals, velocities=None, ranks=None, **changes) -> Agents
     positions = np.array(positions, dtype=np.float64)
     actors = len(positions)
     row = np.array(tuple(BODY[name] for name in PARAMETERS.names or ()), dtype=PARAMETERS)
-    parameters = np.repeat(row, actors)
+    table = AgentTable(PLAN.slices)
+    for actor, place in enumerate(positions):
+        table.add(actor, (*place, 0.0), row, cell=-1, layer=0, heading=0.0)
     for name, value in changes.items():
-        parameters[name] = value
-    return Agents(
-        positions,
-        np.zeros((actors, 2)) if velocities is None else np.array(velocities),
-        np.full(actors, -1),
-        np.zeros(actors, dtype=np.int64),
-        np.array(goals, dtype=np.float64),
-        np.arange(actors),
-        parameters,
-        np.arange(actors) if ranks is None else np.array(ranks),
-        np.zeros(actors, dtype=np.bool_),
-        np.zeros(actors, dtype=np.int64),
-        np.zeros((actors, PLAN.slices + 1, 2)),
-        np.full(actors, np.nan),
-        np.zeros(actors),
-        np.zeros((actors, PASSAGE)),
+        table.agents.parameters[name] = value
+    return table.agents._replace(
+        velocities=np.zeros((actors, 2)) if velocities is None else np.array(velocities),
+        goals=np.array(goals, dtype=np.float64),
+        potential_rows=np.arange(actors),
+        ranks=np.arange(actors) if ranks is None else np.array(ranks),
     )
 
 

@@ -247,9 +247,9 @@ def test_sigma_points_weigh_one_and_centre_on_the_mean() -> None:
 
 @pytest.mark.parametrize("spread", [GAUSSIAN, PEOPLE, Spread((0.1, 3.0), (0.5, 0.5))])
 def test_tables_are_bounded_and_end_in_nothing(spread) -> None:
-    tables = radial_tables(RiskModel(), spread)
-    distances = np.sqrt(np.arange(tables.values.shape[1]) * tables.squared_step_m2)
-    near, toward = tables.values[..., 0], tables.values[..., 1]
+    tables = radial_tables(RiskModel(), (0.6,), spread)
+    distances = np.sqrt(np.arange(tables.values.shape[2]) * tables.squared_step_m2)
+    near, toward = tables.values[0, ..., 0], tables.values[0, ..., 1]
     for table in (near, toward * distances):
         assert table.min() >= 0.0
         assert table.max() <= 1.0 + 1e-6
@@ -261,16 +261,16 @@ def test_tables_are_bounded_and_end_in_nothing(spread) -> None:
 
 def test_tables_of_a_mixture_are_those_of_its_parts_by_weight() -> None:
     exact = RiskModel(sway_m=0.0)
-    mixed = radial_tables(exact, Spread((1.0, 2.0), (0.75, 0.25)))
-    one = radial_tables(exact)
-    rows, columns = np.arange(len(one.values) // 2), one.values.shape[1]
-    near = one.values[..., 0]
+    mixed = radial_tables(exact, (0.6,), Spread((1.0, 2.0), (0.75, 0.25)))
+    one = radial_tables(exact, (0.6,))
+    rows, columns = np.arange(one.values.shape[1] // 2), one.values.shape[2]
+    near = one.values[0, ..., 0]
     expected = 0.75 * near[rows] + 0.25 * near[2 * rows]
-    np.testing.assert_allclose(mixed.values[rows, :columns, 0], expected, atol=1e-5)
+    np.testing.assert_allclose(mixed.values[0, rows, :columns, 0], expected, atol=1e-5)
 
 
 def test_what_seldom_happens_reaches_further() -> None:
-    even, heavy = (radial_tables(RiskModel(), spread) for spread in (GAUSSIAN, PEOPLE))
+    even, heavy = (radial_tables(RiskModel(), (0.6,), spread) for spread in (GAUSSIAN, PEOPLE))
     assert (heavy.reaches >= even.reaches).all()
     assert heavy.reaches[10] > even.reaches[10]
 
@@ -278,10 +278,10 @@ def test_what_seldom_happens_reaches_further() -> None:
 def test_the_model_has_the_two_properties_of_eq_5() -> None:
     model = RiskModel()
     distances = np.linspace(0.0, 3.0, 301)
-    for term in (model.near(distances), model.toward(distances)):
+    for term in (model.near(distances, 0.6), model.toward(distances, 0.6)):
         assert (np.diff(term) <= 0.0).all()
         assert term[0] == 1.0
-        assert not term[distances > model.contact_m + model.influence_m].any()
+        assert not term[distances > 0.6 + model.influence_m].any()
 
 
 def test_what_does_not_fit_is_refused() -> None:

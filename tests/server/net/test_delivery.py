@@ -165,14 +165,14 @@ def test_pointing_is_told_to_those_who_see_it(
     trial: Trial, listener: Listener, delivery: Delivery
 ) -> None:
     oak = int(trial.world.state.ids[trial.world.state.of_kind(ACTOR)][0])
-    trial.population.pointing["oak"] = (1.0, 2.0, 3.0)
+    trial.population.pointed_at["oak"] = (1.0, 2.0, 3.0)
     delivery.deliver(trial.tick(writing=False), now=0.05)
     assert Point(id=oak, target=(1.0, 2.0, 3.0)) in listener.heard()
-    trial.population.pointing = {}
+    trial.population.pointed_at = {}
     trial.population.put("oak", (150.0, 150.0))
     for _ in range(PERIOD_TICKS):
         delivery.deliver(trial.tick(writing=False), now=0.1)
     listener.heard()
-    trial.population.pointing["oak"] = (1.0, 2.0, 3.0)
+    trial.population.pointed_at["oak"] = (1.0, 2.0, 3.0)
     delivery.deliver(trial.tick(writing=False), now=0.15)
     assert [type(message) for message in listener.heard()] == [Snapshot]

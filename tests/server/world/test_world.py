@@ -108,7 +108,7 @@ def test_actors_stand_when_there_is_no_plan() -> None:
     trial = Trial(population=population)
     trial.tick()
     trial.world.begin([])
-    trial.world.finish({})
+    trial.world.finish(False)
     assert trial.world.state.speeds.max() == 0.0
 
 
@@ -119,13 +119,13 @@ def test_what_an_actor_points_at_is_told_when_it_changes_and_to_who_comes() -> N
     trial = Trial(population=population)
     assert trial.tick().pointing == {}
     oak, elm = (int(i) for i in trial.world.state.ids[trial.world.state.live()])
-    population.pointing["oak"] = (1.0, 2.0, 3.0)
+    population.pointed_at["oak"] = (1.0, 2.0, 3.0)
     assert trial.tick().pointing == {oak: (1.0, 2.0, 3.0)}
     assert trial.tick().pointing == {}
     slots = trial.world.state.slot(oak), trial.world.state.slot(elm)
     assert [trial.world.describe(slot)["points_at"] for slot in slots] == [(1.0, 2.0, 3.0), None]
-    population.pointing = {"oak": (4.0, 2.0, 3.0), "elm": (1.0, 2.0, 3.0)}
+    population.pointed_at = {"oak": (4.0, 2.0, 3.0), "elm": (1.0, 2.0, 3.0)}
     assert trial.tick().pointing == {oak: (4.0, 2.0, 3.0), elm: (1.0, 2.0, 3.0)}
-    population.pointing = {}
+    population.pointed_at = {}
     assert trial.tick().pointing == {oak: None, elm: None}
     assert [trial.world.describe(slot)["points_at"] for slot in slots] == [None, None]
