@@ -79,10 +79,10 @@ class Idle(Behaviour):
     """Stand, and make way when somebody comes too close."""
 
     name = "idle"
-    ask_at_s = math.inf
 
     def update(self, view: Perception) -> Goal | None:  # noqa: ARG002 - nothing to look at
         """Never a goal."""
+        self.ask_at_s = math.inf
         return None
 
 
@@ -90,7 +90,6 @@ class GoTo(Behaviour):
     """Go to one place or point and stay there."""
 
     name = "go_to"
-    ask_at_s = math.inf
 
     def __init__(self, target: Target) -> None:
         self._target = target
@@ -101,6 +100,7 @@ class GoTo(Behaviour):
 
     def update(self, view: Perception) -> Goal | None:
         """Always the same goal."""
+        self.ask_at_s = math.inf
         return view.resolve(self._target)
 
 

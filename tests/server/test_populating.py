@@ -12,10 +12,10 @@ SQUARE = Scene.model_validate({"bounds": [0, 0, 10, 10], "places": PLACES})
 
 
 def behaviours(scene: Scene, count: int, seed: int = 1) -> tuple[list[str], list[str]]:
-    population, bodies = populate(LayeredGrid.from_scene(scene), scene, count, 0.05, seed)
+    population, names = populate(LayeredGrid.from_scene(scene), scene, count, 0.05, seed)
     population.close()
-    names = [body.name for body in bodies.values()]
-    return [population.explain(actor_id).behaviour for actor_id in bodies], names
+    kinds = [population.explain(actor_id).behaviour for actor_id in names]
+    return kinds, list(names.values())
 
 
 def test_most_wander_one_patrols_and_one_guides_where_there_are_places() -> None:
@@ -36,7 +36,7 @@ def test_names_are_told_apart_and_follow_the_seed() -> None:
     assert behaviours(ROOM, 5, seed=2)[1] != behaviours(ROOM, 5, seed=3)[1]
 
 
-def test_a_scene_too_small_for_its_cast_says_so() -> None:
+def test_a_scene_too_small_for_its_actors_says_so() -> None:
     scene = Scene.open_space((0.0, 0.0, 2.0, 2.0))
     with pytest.raises(ValueError, match="no free place for another actor"):
         populate(grid_of(scene), scene, 100, 0.05, 1)

@@ -26,7 +26,7 @@ async def test_when_planning_fails_people_walk_on(
         raise RuntimeError("told to fail")
 
     async with serving(actors=1) as server, joined(server.port) as client:
-        monkeypatch.setattr(Population, "tick", fail)
+        monkeypatch.setattr(Population, "advance", fail)
         await client.move(0.0, 1.0)
         x = client.position[0]
         await client.wait_for(lambda: client.position[0] > x + 0.2)
@@ -38,13 +38,12 @@ async def test_the_event_loop_serves_while_actors_are_planned(
 ) -> None:
     planning, go_on = threading.Event(), threading.Event()
 
-    def think_long(*_: Any) -> dict[str, Any]:
+    def think_long(*_: Any) -> None:
         planning.set()
         assert go_on.wait(20.0)
-        return {}
 
     async with serving(actors=1) as server, joined(server.port) as client:
-        monkeypatch.setattr(Population, "tick", think_long)
+        monkeypatch.setattr(Population, "advance", think_long)
         await asyncio.to_thread(planning.wait, 20.0)
         tick = server.world.tick
         await client.send(Ping(nonce=5))
