@@ -49,10 +49,6 @@ class ActorAvatars:
         self._population.advance(people)
         return True
 
-    def ground_changed(self) -> None:
-        """Something opened or closed: find the ways to goals anew."""
-        self._population.ground_changed()
-
     def place(self, moved: bool) -> dict[int, Point | None]:
         """Move the avatars; new actors come into the world. If none has moved, all stand.
 

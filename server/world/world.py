@@ -87,6 +87,7 @@ class World:
         self.doors = Doors(self.state, grid)
         self._moved_doors: dict[str, bool] = {}
         self._people = People(self.state, grid, rules, tick_s)
+        self._population = population
         self._actors = ActorAvatars(self.state, population, names, tick_s)
         self._interest = Interest(self.state, rules)
         self._encoder = SnapshotEncoder(self.state, self.origin_m)
@@ -115,7 +116,7 @@ class World:
                     self._apply(item, self.state.slot(item.id))
             self._moved_doors = self.doors.update()
             if self._moved_doors:
-                self._actors.ground_changed()
+                self._population.ground_changed()
         with self.times.stage("people"):
             self._people.move()
             self._observed = self._observe()
