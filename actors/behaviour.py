@@ -1,4 +1,4 @@
-"""What actors want: each behaviour turns what an actor sees into the goal of the moment."""
+"""Behaviours: each turns what an actor perceives into its goal of the moment."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ BehaviourName = Literal["go_to", "wander", "patrol", "guide", "idle"]
 
 @dataclass(frozen=True)
 class Perception:
-    """What a behaviour knows at a tick."""
+    """A behaviour's knowledge at a tick."""
 
     time_s: float
     position: tuple[float, float]
@@ -66,7 +66,7 @@ class Behaviour(ABC):
 
     @property
     def points_at(self) -> Goal | None:
-        """What an actor that explains something shows to people since the last update."""
+        """The place that the actor shows to people since the last update, None for none."""
         return None
 
     @property
@@ -202,9 +202,9 @@ class Guide(Behaviour):
 
     At a stop it explains the place to its followers, and points at what stands there.
 
-    Whoever stays within `join_m` for `join_after_s` seconds follows. When a follower is further
-    than `lag_m` away the guide stands until it has come within `join_m` again, but no longer
-    than `patience_s`: then it is no follower any more.
+    A person who stays within `join_m` for `join_after_s` seconds follows. When a follower is
+    further than `lag_m` away the guide stands until it has come within `join_m` again, but no
+    longer than `patience_s`: then it is no follower any more.
     """
 
     name = "guide"
@@ -236,7 +236,7 @@ class Guide(Behaviour):
 
     @property
     def followers(self) -> frozenset[Hashable]:
-        """Who is being led."""
+        """The people who are being led."""
         return frozenset(self._followers)
 
     @property
@@ -246,7 +246,7 @@ class Guide(Behaviour):
 
     @property
     def points_at(self) -> Goal | None:
-        """What stands at the stop, while it is explained to somebody."""
+        """The sight at the stop, while it is explained to somebody."""
         return self._sight if self._explains else None
 
     def targets(self) -> Sequence[Target]:

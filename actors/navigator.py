@@ -31,16 +31,16 @@ Point = tuple[float, float]
 
 _REASONS = tuple(Reason)
 _SLACK_M = 0.02
-"""A goal may lie so much closer to a wall than the radius."""
+"""A goal may lie closer to a wall than the radius by this."""
 
 
 class Navigator:
     """Takes every actor to its goal among people whose future is not known.
 
     A tick is `observe` (where everyone is now) and `tick` (one step of every actor). Time is
-    tick × `tick_s`; the seed decides nothing but who goes first of two with equal ways left, and
-    who looks for narrow places when; the order in which actors were added or people are listed
-    never matters.
+    tick × `tick_s`; the seed decides nothing but which of two with equal ways left goes first, and
+    in which tick each looks for narrow places; the order in which actors were added or people are
+    listed never matters.
     """
 
     def __init__(
@@ -259,12 +259,12 @@ class Navigator:
             self._batch.settle(self.tick_s)
 
     def tick(self) -> dict[Hashable, ActorState]:
-        """`advance`, and what every actor shows of itself afterwards; id -> state."""
+        """`advance`, then the states of all actors; id -> state."""
         self.advance()
         return {actor_id: self._shown(row) for row, actor_id in enumerate(self.table)}
 
     def state(self, actor_id: Hashable) -> ActorState:
-        """What an actor shows of itself: as of the latest tick, or as it was put there."""
+        """One actor's state as of the latest tick, or as it was put there."""
         return self._shown(self.table.row(actor_id))
 
     def _shown(self, row: int) -> ActorState:

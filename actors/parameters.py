@@ -1,4 +1,4 @@
-"""What an operator can tune on an actor, with units, ranges and effects."""
+"""The parameters of an actor that an operator can tune, with units, ranges and effects."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class ActorParameters(BaseModel):
         _field("m/s²", 0.2, 20.0, "Greatest change of velocity; lower is calmer but later."),
     ] = 2.0
     goal_tolerance_m: Annotated[
-        float, _field("m", 0.05, 2.0, "So close to the goal counts as arrived.")
+        float, _field("m", 0.05, 2.0, "An actor this close to its goal has arrived.")
     ] = 0.2
     person_room_m: Annotated[
         float,
@@ -53,9 +53,9 @@ class ActorParameters(BaseModel):
             "s",
             0.0,
             5.0,
-            "At the last check, when somebody is bound to be touched: so many metres less between "
-            "the two is what a metre a second toward them counts like; higher would rather be "
-            "walked into than walk into somebody.",
+            "At the last check, when somebody is bound to be touched, each metre a second toward "
+            "them counts like this many metres less between the two; an actor with more would "
+            "rather be walked into than walk into somebody.",
         ),
     ] = 0.3
     risk_weight: Annotated[
@@ -142,18 +142,24 @@ class ActorParameters(BaseModel):
         _field("nodes", 10, 20000, "Budget of one search; a smaller one may end before the goal."),
     ] = 70
     height_m: Annotated[
-        float, _field("m", 0.8, 2.5, "Height of the body; it passes where there is as much room.")
+        float,
+        _field("m", 0.8, 2.5, "Height of the body; it passes where there is as much headroom."),
     ] = 1.8
     step_on_m: Annotated[
         float, _field("m", 0.05, 0.8, "Greatest step that the body takes up or down.")
     ] = 0.6
     leg_length_m: Annotated[
         float,
-        _field("m", 0.3, 1.3, "Greatest step that is an edge; what is higher is an obstacle."),
+        _field("m", 0.3, 1.3, "Greatest step that is an edge; a higher one is an obstacle."),
     ] = 0.9
     edge_cells: Annotated[
         int,
-        _field("cells", 2, 1000, "So many cells in a row the body may be at steps and edges."),
+        _field(
+            "cells",
+            2,
+            1000,
+            "The body may be at steps and edges for fewer cells in a row than this.",
+        ),
     ] = 64
 
     @model_validator(mode="after")

@@ -37,7 +37,7 @@ class Explanation:
 class Population:
     """All actors of a zone. One call of `tick` a tick; same seed and same people, same walks.
 
-    An actor has one identity, its id; all that it is and does stands in `navigator.table`.
+    An actor has one identity, its id; its whole state stands in `navigator.table`.
     """
 
     def __init__(
@@ -123,7 +123,7 @@ class Population:
         self.navigator.set_parameters(actor_id, parameters)
 
     def tick(self, people: Mapping[Hashable, Goal]) -> dict[Hashable, ActorState]:
-        """`advance`, and what every actor shows of itself afterwards: id -> state."""
+        """`advance`, then the states of all actors: id -> state."""
         self.advance(people)
         return {actor_id: self.state(actor_id) for actor_id in self.table}
 
@@ -196,7 +196,7 @@ class Population:
         self.trips += int(np.count_nonzero(arrived))
 
     def state(self, actor_id: Hashable) -> ActorState:
-        """What an actor shows of itself; one that points at something is turned to it."""
+        """One actor's state; an actor that points at something is turned to it."""
         state = self.navigator.state(actor_id)
         target = self.table.points_at(self.table.row(actor_id))
         if target is None:
@@ -214,7 +214,7 @@ class Population:
         return headings
 
     def pointing(self) -> dict[Hashable, Goal]:
-        """What actors point at just now, x, y, z in metres by their ids."""
+        """The places that actors point at just now, x, y, z in metres by their ids."""
         rows = np.flatnonzero(~np.isnan(self.table.trips.points_at[:, 0])).tolist()
         if not rows:
             return {}

@@ -1,4 +1,4 @@
-"""What there is to see at a place: the thing that stands nearest to it."""
+"""The sight at a place: the thing that stands nearest to it."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from esplanade.planning.scene.heights import SAME_FLOOR_M
 Point = tuple[float, float, float]
 
 SEEN_WITHIN_M = 6.0
-"""What stands further away does not belong to the place."""
+"""A thing further away than this does not belong to the place."""
 
 
 def sight_at(scene: Scene, place: Point) -> Point | None:
-    """Middle (x, y, z) of what stands nearest to a place, metres; None where nothing is near.
+    """Middle (x, y, z) of the thing nearest to a place, metres; None where nothing is near.
 
-    Floors are no sights, nor is what stands on another floor. Cost O(corners of the scene).
+    Floors are no sights, nor are things on another floor. Cost O(corners of the scene).
     """
     nearest, sight = SEEN_WITHIN_M, None
     for polygon in scene.polygons:

@@ -1,4 +1,4 @@
-"""What an actor shows of itself after a tick."""
+"""The state of one actor after a tick, for those who ask about one."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class ActorState(NamedTuple):
     """(K, 3): planned positions and heights, `slice_s` apart, the first at the beginning of the
     tick."""
     points_at: tuple[float, float, float] | None = None
-    """What it shows to people, if it explains something."""
+    """The place that it shows to people, if it explains something."""
 
     @property
     def path(self) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""What world the settings ask for: the scene, from a file or around a recorded crowd."""
+"""Loads the world that the settings ask for: a scene file, or ground around a recorded crowd."""
 
 import math
 from dataclasses import dataclass, replace

@@ -42,7 +42,7 @@ async def _serve(settings: ServerSettings) -> None:
     def on_signal(number: int) -> None:
         log.info("stopping", signal=signal.Signals(number).name)
         stop.set()
-        # Whoever asks a second time does not want to wait.
+        # A person who asks a second time does not want to wait.
         for each in (signal.SIGINT, signal.SIGTERM):
             loop.remove_signal_handler(each)
 

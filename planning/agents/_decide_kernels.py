@@ -29,7 +29,7 @@ from esplanade.planning.routes._potential_kernels import potential_at
 MOST_BEHIND_S = 5.0
 """More lost time than this is not made up."""
 EASE_S = 0.5
-"""Who is behind by less than this makes it up more slowly."""
+"""An agent that is behind by less than this makes it up more slowly."""
 
 
 @kernel

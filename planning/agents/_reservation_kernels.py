@@ -1,4 +1,4 @@
-"""Certain obstacles: the planned ways of other actors, looked up in CT-space."""
+"""Certain obstacles: the planned paths of other agents, looked up in CT-space."""
 
 from typing import NamedTuple
 
@@ -10,30 +10,31 @@ from esplanade.planning.ground._geometry_kernels import closest_approach
 from esplanade.planning.scene.heights import BODIES_OVERLAP_M
 
 MARGIN_M = 0.03
-"""Planned ways keep this much more than the sum of the radii."""
+"""Planned paths keep this much more than the sum of the radii."""
 SOFT = 0.25
-"""What a meeting with somebody who will yield weighs, in certain contacts with a person. If it were
-as dear, everyone would rather wait than go where others stand, and nobody would make way."""
+"""A meeting with an agent that will yield weighs this many certain contacts with a person. If it
+were as dear as one, everyone would rather wait than go where others stand, and nobody would make
+way."""
 EVADING_SLICES = 2
-"""So soon there may be no time left to get out of somebody's way."""
+"""In the first slices, this many, there may be no time left to get out of somebody's way."""
 EVADING_M = 0.005
-"""Who then gains so much room over standing may move, even if they would meet all the same."""
+"""An agent that then gains this much room over standing may move, even if the two still meet."""
 MEETING_ROOM_M = 0.8
-"""Room that two who want against each other would like, if one of them is held up."""
+"""Room that two agents with opposite courses would like, if one of them is held up."""
 MEETING_ROOM = 0.2
 """What having none of it weighs, in certain contacts with a person: half of that when they face
 each other, more with the other on the right, nothing with the other on the left. So both keep to
 the right, and two streams form where there was a agents."""
 QUEUE_ROOM_M = 0.5
-"""Room that two who are held up would like. Coming closer gains a little way once, but costs as
-long as both stay: those who wait leave gaps, through which others come out."""
+"""Room that two agents who are both held up would like. Coming closer gains a little way once, but
+costs as long as both stay: agents that wait leave gaps, through which others come out."""
 QUEUE_ROOM = 0.2
 AGAINST = -0.2
-"""Cosine of the angle between two courses from which on they are against each other."""
+"""Courses whose angle has a smaller cosine than this are against each other."""
 
 
 class Reservations(NamedTuple):
-    """Everyone's planned way and an index of it by bucket, slice by slice.
+    """Everyone's planned path and an index of it by bucket, slice by slice.
 
     `paths` (A, K, 2) m; `heights` (A, K) m of the feet; `radii` (A,) m; `ranks` (A,), smaller goes
     first; `courses` (A, 2) unit vectors of where they want, zeros for who goes nowhere; `held_up`
@@ -56,7 +57,7 @@ class Reservations(NamedTuple):
     widest_m: float
     """The greatest radius."""
     fastest_m: float
-    """How far anyone gets in a slice."""
+    """Nobody gets further than this in a slice."""
     nx: int
     ny: int
 
@@ -103,7 +104,7 @@ def room_wanted(r: Reservations, me: int, other: int) -> float:
 
 @inlined
 def crowding(r: Reservations, me: int, other: int, k: int, x: float, y: float) -> float:
-    """What being at (x, y) at slice k weighs because it leaves too little room to one other."""
+    """Weight of being at (x, y) at slice k for leaving too little room to one other agent."""
     room_m = room_wanted(r, me, other)
     if room_m == 0.0:
         return 0.0
@@ -152,7 +153,7 @@ def conflict(
     """
     r = reservations
     soft = 0.0
-    # Who is further away in the end neither was met on the way nor is crowded.
+    # An agent further away than this in the end neither was met on the way nor is crowded.
     far = max(MEETING_ROOM_M, np.sqrt((bx - ax) ** 2 + (by - ay) ** 2) + r.fastest_m)
     j0, j1, i0, i1 = buckets_within(r, bx, by, 2.0 * r.widest_m + MARGIN_M + far)
     for j in range(j0, j1 + 1):
@@ -272,7 +273,7 @@ def _meeting(
     bx: float,
     by: float,
 ) -> float:
-    """What a move from a at slice k to b weighs because of one other actor; inf if forbidden.
+    """Weight of a move from a at slice k to b because of one other agent; inf if forbidden.
 
     Nothing if the two stay clear, or are too close already and draw apart. A meeting with an actor
     of larger rank, who will yield, is dear; with one of smaller rank it is forbidden, unless it

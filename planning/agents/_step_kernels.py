@@ -47,11 +47,11 @@ def limited(task: Task, ux: float, uy: float, tick_s: float) -> tuple[float, flo
 MARGIN_M = 0.01
 """No step brings two actors closer than that."""
 HEADING_MPS = 0.1
-"""Who is slower keeps its heading."""
+"""An agent that is slower than this keeps its heading."""
 LOOK_AHEAD_S = 0.6
-"""How far ahead the last check before a step looks, in two halves."""
+"""The last check before a step looks this far ahead, in two halves."""
 NEAR_M = 4.0
-"""Nobody further away can be met in that time."""
+"""Nobody further away than this can be met in that time."""
 SWAY_M = 0.05
 """A person's body sways by this much beyond its radius."""
 
@@ -88,8 +88,8 @@ def _separation(
     """Smallest distance to the people listed while moving evenly from a to b.
 
     The move begins `since` seconds from now. People walk on as predicted, or at their newest
-    velocity, whichever brings them nearer: whether a change is a turn or noise shows later. Of
-    whom the move brings nearer than `touching_m`, `closing_s` of the speed toward them is
+    velocity, whichever brings them nearer: whether a change is a turn or noise shows later. If the
+    move brings somebody nearer than `touching_m`, `closing_s` times the speed toward them is
     taken off: to be walked into is bad, to walk into somebody is worse.
     """
     best = np.inf

@@ -1,4 +1,4 @@
-"""What one actor asks of the search, and what a stretch of way costs it, on bare arrays."""
+"""One agent's question to the search, and the cost of a stretch of path to it, on bare arrays."""
 
 from typing import NamedTuple
 
@@ -14,7 +14,7 @@ from esplanade.planning.routes._potential_kernels import Guide, potential_at
 SUB = 2
 """Slices of the risk field in one step: a move is looked at half-way and at its end."""
 WALL_COST_M = 0.15
-"""Walls are minded within so much of the body."""
+"""A wall nearer to the body than this has a cost."""
 
 
 class Task(NamedTuple):
@@ -26,7 +26,7 @@ class Task(NamedTuple):
     contact: int
     """Row of the tables of risk for its distance of contact with people."""
     cell: int
-    """Where it stands; -1 where nobody can."""
+    """The cell that it stands in; -1 where nobody can stand."""
     x: float
     y: float
     vx: float
@@ -49,13 +49,13 @@ class Task(NamedTuple):
     edge_cells: int
     """M of Huang & Li: so many cells in a row it may be at steps and edges."""
     lane: Lane
-    """Where to keep right on the way."""
+    """The line to keep right of on the way."""
     hold: bool
     """Stay where the start is rather than go anywhere: at the goal, or with no way to it."""
 
 
 class World(NamedTuple):
-    """What all actors of a zone look up."""
+    """Everything that all agents of a zone look up."""
 
     grid: GridArrays
     risk: RiskArrays
@@ -97,7 +97,7 @@ def on_ramp(
 def metres_left(potential: Guide, task: Task, cell: int, x: float, y: float) -> float:
     """Metres from a point, in a cell, to the goal, and what being left of a lane is like besides.
 
-    Who holds a place goes straight back to it.
+    An agent that holds its place goes straight back to it.
     """
     if task.hold:
         return length(x - task.goal_x, y - task.goal_y)
@@ -127,8 +127,8 @@ def risk_price(task: Task, seconds_ahead: float) -> float:
 def way_left(task: Task, left_m: float, speed: float) -> float:
     """Seconds to the goal at the preferred speed, and what it costs to get to that speed.
 
-    Without the latter who is slow would seem as good as who has speed already. About to arrive
-    there is no need to be fast any more.
+    Without the latter an agent that is slow would seem as well off as one that has speed already.
+    Shortly before it arrives it has no need to be fast any more.
     """
     if task.hold:
         return 0.0

@@ -37,18 +37,18 @@ class Zone(NamedTuple):
     positions: NDArray[np.float64]
     cells: NDArray[np.int64]
     fastest_mps: float
-    """There is room for nobody who is faster."""
+    """Nobody faster than this has room."""
     last_wider: int
 
 
 @kernel
 def has_room(zone: Handle[Zone], workspace: Handle[Workspace], branching: int) -> bool:
-    """Whether there is room for what the actors are and ask by now, and not far too much."""
+    """Whether the agents as they are now have room enough, and not far too much of it."""
     world, agents = zone.value.world, zone.value.agents
     fastest_mps = 0.0
     for a in range(len(agents.positions)):
         p = agents.parameters[a]
-        # Who is told to be slower from now on still has to brake.
+        # An agent that is told to be slower from now on still has to brake.
         speed = np.hypot(agents.velocities[a, 0], agents.velocities[a, 1])
         fastest_mps = max(fastest_mps, p["max_speed_mps"], speed)
         if p["radius_m"] > world.reservations.widest_m or p["max_expansions"] * branching + 2 > len(
@@ -75,7 +75,7 @@ def index_future(zone: Handle[Zone], prediction: Prediction, first: int, step: i
 
 @kernel
 def put_in_order(zone: Handle[Zone], tick_s: float) -> None:
-    """See followed paths from now, and who goes first."""
+    """Shift followed paths to now, and put the agents in order of priority."""
     z = zone.value
     for a in range(len(z.order)):
         z.world.reservations.radii[a] = z.agents.parameters[a]["radius_m"]
@@ -110,7 +110,7 @@ def decide_some(
 
 @kernel
 def take_steps(zone: Handle[Zone], tick_s: float) -> None:
-    """Take the steps, who goes first before all."""
+    """Take the steps in order of priority."""
     z = zone.value
     resolve(z.world, z.barriers, z.agents, z.order, tick_s, z.decisions, z.positions, z.cells)
 

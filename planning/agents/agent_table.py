@@ -1,4 +1,4 @@
-"""The one table of a zone's agents: a row each, from the planner to whoever shows them."""
+"""The one table of a zone's agents: a row each, from the planner to those who show them."""
 
 from __future__ import annotations
 
@@ -23,12 +23,13 @@ class SavedAgentsError(ValueError):
 
 
 class Trips(NamedTuple):
-    """What the kernels do not need of A agents: where each wants to be and how it gets on there.
+    """The part of A agents' state that kernels do not need: where each wants to be, its progress.
 
     `wanted` (A, 3) m is the goal as it was asked for, nan without one; `arrived` (A,) whether it
     has been reached; `no_path_s` (A,) s for how long no path has led there; `points_at` (A, 3) m
-    what the agent shows to people, nan for nothing. Its behaviour is asked again at `ask_at_s`
-    (A,) s, and when `arrived` is no longer what it was when last asked, `arrived_when_asked` (A,).
+    the place that the agent shows to people, nan for none. Its behaviour is asked again at
+    `ask_at_s` (A,) s, and when `arrived` is no longer what it was when last asked,
+    `arrived_when_asked` (A,).
     """
 
     wanted: NDArray[np.float64]
@@ -132,7 +133,7 @@ class AgentTable:
         return _place_or_none(self.trips.wanted[row])
 
     def points_at(self, row: int) -> tuple[float, float, float] | None:
-        """What an agent shows to people, x, y, z in metres; None for nothing."""
+        """The place that an agent shows to people, x, y, z in metres; None for none."""
         return _place_or_none(self.trips.points_at[row])
 
     def save(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:

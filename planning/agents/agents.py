@@ -1,4 +1,4 @@
-"""What kernels know of agents, and what these decide."""
+"""The state of agents as kernels know it, and their decisions."""
 
 from typing import NamedTuple
 
@@ -37,25 +37,25 @@ PARAMETERS = np.dtype(
         ("edge_cells", "f8"),
     ]
 )
-"""What kernels know of an actor's parameters; one field each, in the units of their names."""
+"""An agent's parameters as kernels know them, one field each, in the units of their names."""
 
 
 class Agents(NamedTuple):
     """State of A agents as kernels read and write it; every array has A rows.
 
-    What they are: `bodies` (A,) are rows of their kinds of body in the grid's clearances,
-    `contacts` (A,) those of their contact distances in the tables of risk, `parameters` (A,)
-    records of `PARAMETERS`; the agent with the smaller of `ranks` (A,) goes first of two with
+    Their bodies and tempers: `bodies` (A,) are rows of their kinds of body in the grid's
+    clearances, `contacts` (A,) those of their contact distances in the tables of risk, `parameters`
+    (A,) records of `PARAMETERS`; the agent with the smaller of `ranks` (A,) goes first of two with
     equal ways left.
 
-    Where they are: `positions` (A, 2) m, `velocities` (A, 2) m/s, `headings` (A,) rad from +x,
+    Their places: `positions` (A, 2) m, `velocities` (A, 2) m/s, `headings` (A,) rad from +x,
     `cells` (A,) that they stand in, -1 where nobody can stand, `heights` (A,) m of the floor there
-    and `layers` (A,) of it; `reasons` (A,) why they do what they do.
+    and `layers` (A,) of it; `reasons` (A,) codes of why they do what they do.
 
-    Where they are going: `goals` (A, 2) m; `potential_rows` (A,) of the pool, -1 without a goal;
-    `planned` (A, K, 3) m is the plan of the latest tick, from that tick's beginning, with heights.
-    `known` (A,) tells whether `followed` holds a path; `followed` (A, K, 2) m begins at the tick
-    that `ages` (A,) ticks ago was. `left_m` (A,) is the way that was left a tick ago, nan at first;
+    Their ways: `goals` (A, 2) m; `potential_rows` (A,) of the pool, -1 without a goal; `planned`
+    (A, K, 3) m is the plan of the latest tick, from that tick's beginning, with heights. `known`
+    (A,) tells whether `followed` holds a path; `followed` (A, K, 2) m begins at the tick that
+    `ages` (A,) ticks ago was. `left_m` (A,) is the distance that was left a tick ago, nan at first;
     `behind_s` (A,) the time lost since the goal was set and not made up yet; `passages`
     (A, PASSAGE) are the narrow places ahead or just come through, and how one gets on there. The
     kernels that decide write these three.
@@ -84,7 +84,7 @@ class Agents(NamedTuple):
 
 
 class Decisions(NamedTuple):
-    """What the agents decided; every array has A rows.
+    """Decisions of A agents; every array has A rows.
 
     `paths` (A, K, 2); `wishes` (A, 2) m/s for the next tick; `reasons`; `statuses` of the
     searches; `expansions`; `renewed` tells that `paths` replaces what was followed.

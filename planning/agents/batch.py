@@ -31,14 +31,14 @@ from esplanade.planning.people.risk import RiskField, RiskModel
 from esplanade.planning.people.spread import GAUSSIAN, Spread
 
 _PORTION = 8
-"""So many actors are decided for at a time, at most."""
+"""A thread decides for this many agents at a time, at most."""
 _WORTH_A_THREAD = 4
-"""So many actors keep a thread busy for longer than it takes to hand the work over."""
+"""This many agents keep a thread busy for longer than it takes to hand the work over."""
 
 
 @dataclass(frozen=True)
 class PlanModel:
-    """How far and how finely the actors of a zone plan."""
+    """Horizon and resolution of the plans of a zone's agents."""
 
     step_s: float = 0.4
     """Time step of the search (delta), seconds; the risk field has two slices in each."""
@@ -61,7 +61,7 @@ class PlanModel:
 class Batch:
     """Plans and steps for all actors of a zone at once.
 
-    What a tick works on is handed over to compiled code when it changes: when actors come or go,
+    The arrays of a tick are handed over to compiled code when they change: when agents come or go,
     or want more room. Cost of a tick: O(people × slices) for the index of people, O(actors ×
     expansions × moves × people near) for the searches; both are spread over the threads.
     """

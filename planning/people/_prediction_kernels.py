@@ -13,13 +13,13 @@ from esplanade.planning.ground._geometry_kernels import Stance, in_bounds, neare
 
 PERSON_HEIGHT_M = 1.8
 PERSON_STEP_ON_M = 0.6
-"""People are taken to be adults."""
+"""All people are taken to be adults."""
 LIFT_M = 1.0
-"""Who is suddenly so much higher or lower has been put there: the past before does not count."""
+"""A person who is suddenly this much higher or lower was put there: the past does not count."""
 
 
 class Prediction(NamedTuple):
-    """Where people may be, slice by slice; slice 0 is now.
+    """Likely places of people, slice by slice; slice 0 is now.
 
     `means` (P, K, 2) m; `velocities` (P, K, 2) m/s; `sigmas` (P, K) m per axis; `heights` (P, K) m
     of the feet; `newest` (P, 2) m/s, the newest velocity alone: the mean of eq. (1) follows those

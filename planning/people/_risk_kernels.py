@@ -12,7 +12,7 @@ from esplanade.planning.scene.heights import BODIES_OVERLAP_M
 
 
 class RadialTables(NamedTuple):
-    """What one predicted person adds at a distance, by deviation (rows) and distance (columns).
+    """Risk that one predicted person adds, by deviation (rows) and distance (columns).
 
     An agent of another radius is in contact at another distance, so that there is a table for each
     of B contact distances. `values` (B, S, C, 2) holds the proximity term and the factor of the
@@ -29,7 +29,7 @@ class RadialTables(NamedTuple):
 
 
 class RiskArrays(NamedTuple):
-    """People's future as risk is made of it, and an index of whom to ask, slice by slice.
+    """People's future as risk is made of it, and an index of the people to ask, slice by slice.
 
     `people` (K, P, 6) are x, y m, vx, vy m/s, height of the feet m, and how far they matter m;
     `rows` (K, P) those of the tables. `starts` (K, buckets + 1) and `members` (K, M) list for each
@@ -137,9 +137,9 @@ def people_near(
     within_m: float,
     out: NDArray[np.int64],
 ) -> int:
-    """List who matters at slice k within so far of a place, at most `slack_m`; how many they are.
+    """List the people who matter at slice k within some metres of a place, and count them.
 
-    Who is on the floor at `feet_m` counts, that of the node, wherever its moves lead. `out` takes
+    People on the floor at `feet_m`, that of the node, count wherever its moves lead. `out` takes
     as many as it has room for.
     """
     count = 0
@@ -162,7 +162,7 @@ def people_near(
 def _terms(
     risk: RiskArrays, contact: int, k: int, p: int, x: float, y: float
 ) -> tuple[float, float, float, float]:
-    """What a person adds at (x, y) in one table: proximity p, p·n (two numbers), p·(v_o·n)."""
+    """Terms of a person at (x, y) in one table: proximity p, p·n (two numbers), p·(v_o·n)."""
     known = risk.people[k, p]
     rx = x - known[0]
     ry = y - known[1]

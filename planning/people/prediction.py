@@ -1,4 +1,4 @@
-"""Where people may go next: Lei & Li, sec. 3.2, eqs. (1)-(4)."""
+"""Prediction of people from their past: Lei & Li, sec. 3.2, eqs. (1)-(4)."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class PredictionModel:
     """
 
     samples: int = 4
-    """How many past velocities count."""
+    """Number of past velocities that count."""
     sample_s: float = 0.4
     """Time between the positions that velocities are taken from, seconds."""
     sigma_0_m: float = 0.05
@@ -109,7 +109,7 @@ class TrackHistory:
 
     @property
     def ids(self) -> list[object]:
-        """Who is present, in the order of `positions` and of every array made from them."""
+        """Everyone present, in the order of `positions` and of every array made from them."""
         return list(self._ids)
 
     @property
@@ -220,7 +220,7 @@ class TrackHistory:
     def velocities(self) -> NDArray[np.float64]:
         """Predicted velocities, eq. (1), float64 (P, 2), m/s.
 
-        Who has been seen for less than one sample gets the mean velocity so far, zero at first.
+        A person seen for less than one sample has the mean velocity so far, zero at first.
         """
         return self._velocities
 

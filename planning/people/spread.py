@@ -1,4 +1,4 @@
-"""How far people stray from where they are expected: Lei & Li, eq. (4), and its heavier tails."""
+"""The spread of people around where they are expected: Lei & Li, eq. (4), with heavier tails."""
 
 from __future__ import annotations
 
@@ -97,4 +97,4 @@ class Spread:
 GAUSSIAN: Final = Spread()
 """The paper's eq. (4)."""
 PEOPLE: Final = Spread(scales=(0.5, 1.4), weights=(0.63, 0.37))
-"""What holds on recorded pedestrians: most go on as expected, some do something else."""
+"""Recorded pedestrians spread like this: most go on as expected, some do something else."""

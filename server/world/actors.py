@@ -31,7 +31,7 @@ class ActorAvatars:
         """Slots of the avatars, in the order of the population's table."""
         self._version = 0
         self.pointing: dict[int, Point] = {}
-        """What actors point at just now, by their avatars' ids."""
+        """The places that actors point at just now, by their avatars' ids."""
 
     @property
     def trips(self) -> int:
@@ -123,7 +123,7 @@ class ActorAvatars:
 
 
 def course(planned: Floats, slice_s: float, now_s: float, places: Floats) -> Floats:
-    """Where A actors will be from now on: (A, AHEAD, 3).
+    """Places of A actors from now on, (A, AHEAD, 3) m.
 
     Their paths (A, K, 3) were planned for `now_s` ago. They are where limits of speed and of what
     stands there let them be, (A, 3), and get back to their paths within a second.

@@ -1,4 +1,4 @@
-"""Who is where: one dense table of avatars, a slot each."""
+"""The avatars of a zone: one dense table, a slot each."""
 
 from typing import Final
 

@@ -41,13 +41,13 @@ Joined = list[tuple[int, int]]
 
 @dataclass(frozen=True)
 class WorldUpdate:
-    """What the viewers of a tick are to be told, in this order."""
+    """News of a tick for its viewers, in this order."""
 
     doors: dict[str, bool]
     """Doors that opened or closed."""
     changes: Changes
     pointing: dict[int, Point | None]
-    """What actors point at since this tick, by their ids; None for nothing any more."""
+    """The places that actors point at since this tick, by their ids; None for none any more."""
     steps: StepBlocks
     """For the viewers of `snapshots`, in their order."""
     snapshots: Snapshots
@@ -102,7 +102,7 @@ class World:
     # --- one tick -----------------------------------------------------------------------------
 
     def begin(self, inputs: Iterable[Input]) -> Joined:
-        """Take in what happened outside and move the people. Inputs of who is gone are void."""
+        """Take in what happened outside and move the people. Inputs of those who left are void."""
         self.tick += 1
         self.state.before[:] = self.state.positions
         joined: Joined = []
@@ -194,7 +194,7 @@ class World:
 
     @property
     def walkers_shown(self) -> int:
-        """How many walkers all viewers together are shown step by step."""
+        """Number of avatars whose steps are sent, counted for each viewer."""
         return self._step_interest.shown
 
     def sees(self, viewer_id: int, avatar_id: int) -> bool:
