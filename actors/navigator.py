@@ -243,7 +243,7 @@ class Navigator:
         x, y = c.positions[row].tolist()
         vx, vy = c.velocities[row].tolist()
         z_m = self._floor(cell)
-        layer = self.grid.layered.places[cell, 0] if cell >= 0 else 0
+        layer = self.grid.layered.places["layer"][cell] if cell >= 0 else 0
         shown = [x, y, layer, z_m, vx, vy, float(self._headings[row]), Reason.WAITING]
         return self._state(actor_id, shown, np.array([[x, y, z_m]]))
 

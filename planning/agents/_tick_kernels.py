@@ -14,7 +14,7 @@ from esplanade.planning.agents.agents import Agents, Decisions
 from esplanade.planning.compiled.handle import Handle
 from esplanade.planning.compiled.jit import kernel
 from esplanade.planning.grid._grid_kernels import floor_of, heights_along
-from esplanade.planning.ground._geometry_kernels import SegmentIndex
+from esplanade.planning.ground._geometry_kernels import BarrierIndex
 from esplanade.planning.people._prediction_kernels import Prediction
 from esplanade.planning.people._risk_kernels import index_people
 
@@ -30,7 +30,7 @@ class Zone(NamedTuple):
     """
 
     world: World
-    barriers: SegmentIndex
+    barriers: BarrierIndex
     potentials: NDArray[np.float32]
     no_potential: NDArray[np.float32]
     moves: Moves
@@ -160,7 +160,7 @@ def settle_all(
         row = shown[a]
         row[0] = z.crowd.positions[a, 0]
         row[1] = z.crowd.positions[a, 1]
-        row[2] = layered.places[cell, 0] if cell >= 0 else 0
+        row[2] = layered.places[cell]["layer"] if cell >= 0 else 0
         row[3] = floor_of(z.world.grid, cell)
         row[4] = z.crowd.velocities[a, 0]
         row[5] = z.crowd.velocities[a, 1]
