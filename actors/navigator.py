@@ -118,7 +118,7 @@ class Navigator:
             np.concatenate([c.followed, np.zeros((1, slices, 2))]),
             np.append(c.left_m, np.nan),
             np.append(c.behind_s, 0.0),
-            np.concatenate([c.passages, np.zeros((1, PASSAGE))]),
+            np.append(c.passages, np.zeros(1, dtype=PASSAGE)),
         )
         self._ids.append(actor_id)
         self._rows[actor_id] = rows
@@ -335,5 +335,5 @@ def _empty_crowd(slices: int) -> Agents:
         np.zeros((0, slices, 2)),
         np.zeros(0),
         np.zeros(0),
-        np.zeros((0, PASSAGE)),
+        np.zeros(0, dtype=PASSAGE),
     )

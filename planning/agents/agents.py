@@ -47,7 +47,7 @@ class Agents(NamedTuple):
     without a goal; `known` tells whether `followed` holds a path; `followed` (A, K, 2) begins at
     the tick that `ages` (A,) ticks ago was. `left_m` is the way that was left a tick ago, nan at
     first; `behind_s` the time lost since the goal was set and not made up yet; `passages`
-    (A, PASSAGE) are the narrow places ahead or just come through, and how one gets on there. The
+    (A,) of `PASSAGE` are the narrow places ahead or just come through, and the progress there. The
     kernels that decide write all three.
     """
 
@@ -64,7 +64,7 @@ class Agents(NamedTuple):
     followed: NDArray[np.float64]
     left_m: NDArray[np.float64]
     behind_s: NDArray[np.float64]
-    passages: NDArray[np.float64]
+    passages: NDArray[np.void]
 
 
 class Decisions(NamedTuple):

@@ -72,19 +72,12 @@ def stops(barrier: NDArray[np.void], placement: Placement) -> bool:
 
 
 @inlined
-def nearest_on_segment(
-    px: float, py: float, ax: float, ay: float, bx: float, by: float
-) -> tuple[float, float, float]:
-    """Distance from a point p to the segment ab, and the nearest point of the segment."""
-    dx = bx - ax
-    dy = by - ay
+def _nearest_share(px: float, py: float, ax: float, ay: float, dx: float, dy: float) -> float:
+    """The part of a segment, from a on along (dx, dy), at which it is nearest to a point p."""
     length2 = dx * dx + dy * dy
-    u = 0.0
     if length2 > 0.0:
-        u = min(1.0, max(0.0, ((px - ax) * dx + (py - ay) * dy) / length2))
-    cx = ax + u * dx
-    cy = ay + u * dy
-    return np.hypot(px - cx, py - cy), cx, cy
+        return min(1.0, max(0.0, ((px - ax) * dx + (py - ay) * dy) / length2))
+    return 0.0
 
 
 @inlined
@@ -92,7 +85,25 @@ def point_segment_distance(
     px: float, py: float, ax: float, ay: float, bx: float, by: float
 ) -> float:
     """Distance from a point p to the segment ab."""
-    return nearest_on_segment(px, py, ax, ay, bx, by)[0]
+    dx = bx - ax
+    dy = by - ay
+    u = _nearest_share(px, py, ax, ay, dx, dy)
+    ex = px - ax - u * dx
+    ey = py - ay - u * dy
+    return float(np.sqrt(ex * ex + ey * ey))
+
+
+@inlined
+def nearest_on_segment(
+    px: float, py: float, ax: float, ay: float, bx: float, by: float
+) -> tuple[float, float, float]:
+    """Distance from a point p to the segment ab, and the nearest point of the segment."""
+    dx = bx - ax
+    dy = by - ay
+    u = _nearest_share(px, py, ax, ay, dx, dy)
+    cx = ax + u * dx
+    cy = ay + u * dy
+    return np.hypot(px - cx, py - cy), cx, cy
 
 
 @kernel

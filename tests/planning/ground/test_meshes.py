@@ -111,7 +111,7 @@ def test_a_doorway_is_as_wide_as_it_is(tmp_path) -> None:
     jambs = rows[
         (rows["bottom_m"] < 1.0) & (rows["top_m"] > 1.5) & (np.abs(rows["x0"] - 4.075) < 0.08)
     ]
-    ys = np.sort(jambs[:, [1, 3]].ravel())
+    ys = np.sort(np.concatenate([jambs["y0"], jambs["y1"]]))
     assert ys[ys < 1.5].max() == pytest.approx(1.1, abs=1e-6)
     assert ys[ys > 1.5].min() == pytest.approx(2.0, abs=1e-6)
 
