@@ -315,7 +315,7 @@ class Navigator:
         return float(self.grid.layered.floors[cell]) if cell >= 0 else 0.0
 
     def _layer(self, cell: int) -> int:
-        return int(self.grid.layered.places[cell, 0]) if cell >= 0 else 0
+        return int(self.grid.layered.places["layer"][cell]) if cell >= 0 else 0
 
     def _rank(self) -> None:
         """Order among those with equal ways left: a hash of id and seed, free of ties."""

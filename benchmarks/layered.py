@@ -21,7 +21,7 @@ from esplanade.planning import Body, Door, LayeredGrid, Polygon, Scene, Stairs, 
 from esplanade.planning.ground.barriers import Barriers, barriers_of_scene
 from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.ground.surfaces import surfaces_of_scene
-from esplanade.planning.routes.find_path import PathStatus, find_end, find_route
+from esplanade.planning.routes.find_path import PathStatus, find_endpoint, find_route
 from esplanade.planning.traversal.cache import find_traversability, renew_traversability
 from esplanade.planning.traversal.reachability import near_barriers, reachable_steps
 from esplanade.planning.traversal.stability import classify
@@ -109,7 +109,7 @@ def search(traversability: Traversability, side: int, layers: int) -> float:
     width = side * CELL_M
     start = (0.5 * width, width - 0.6, 0.0)
     goal = (width - 0.6, 0.5 * width + 0.4, STOREY_M * (layers - 1))
-    first, last = find_end(traversability, start), find_end(traversability, goal)
+    first, last = find_endpoint(traversability, start), find_endpoint(traversability, goal)
     if first is None or last is None:
         raise RuntimeError(f"nobody stands at an end at {side}x{side}x{layers}")
     path = find_route(traversability, first, last)

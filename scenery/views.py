@@ -123,16 +123,17 @@ def _dense(
 ) -> NDArray[Any]:
     """A layer's values by row and column, `nothing` where it has no floor."""
     a = traversability.arrays
-    own = (a.places[:, 0] == layer) & np.isfinite(a.floors)
+    own = (a.places["layer"] == layer) & np.isfinite(a.floors)
     dense = np.full((a.ny, a.nx), nothing, dtype=values.dtype)
-    dense[a.places[own, 1], a.places[own, 2]] = values[own]
+    dense[a.places["row"][own], a.places["column"][own]] = values[own]
     return dense
 
 
 def _walls_on(floors: Floats, traversability: Traversability, body: Body) -> Floats:
     """The barriers that stop a body where it stands beside them on one layer, float64 (S, 4)."""
     rows, a = traversability.near.barriers, traversability.arrays
-    ends = rows[:, :4].reshape(-1, 2, 2)
+    lines = np.stack([rows[name] for name in ("x0", "y0", "x1", "y1")], axis=1)
+    ends = lines.reshape(-1, 2, 2)
     along = ends[:, 1] - ends[:, 0]
     normal = np.stack([-along[:, 1], along[:, 0]], axis=1)
     normal *= 0.5 * a.cell_m / np.maximum(np.hypot(*along.T), 1e-9)[:, None]
@@ -144,8 +145,8 @@ def _walls_on(floors: Floats, traversability: Traversability, body: Body) -> Flo
             inside = (i >= 0) & (i < a.nx) & (j >= 0) & (j < a.ny)
             z = np.full(len(rows), np.nan)
             z[inside] = floors[j[inside], i[inside]]
-            stops |= (rows[:, 4] < z + body.height_m) & (rows[:, 5] > z + body.step_on_m)
-    return rows[stops & (rows[:, 6] > body.step_on_m), :4]
+            stops |= (rows["bottom_m"] < z + body.height_m) & (rows["top_m"] > z + body.step_on_m)
+    return lines[stops & (rows["climb_m"] > body.step_on_m)]
 
 
 def _marks(scene: Scene, grid: LayeredGrid, layer: int) -> tuple[Mark, ...]:

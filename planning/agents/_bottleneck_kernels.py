@@ -1,4 +1,4 @@
-"""Keeping right at narrow places that many want through from both sides, on bare arrays."""
+"""Keeping right at passages that agents want to go through from both sides, on bare arrays."""
 
 from typing import NamedTuple
 
@@ -7,16 +7,8 @@ from numpy.typing import NDArray
 
 from esplanade.planning.agents._passage_kernels import (
     BEFORE_M,
-    FEET_M,
-    FOUND,
-    HALF_M,
-    LOOK_IN_S,
-    MIDDLE_X,
-    MIDDLE_Y,
-    NEAREST_M,
-    THROUGH_X,
-    THROUGH_Y,
-    WAITED_S,
+    NO_PASSAGE,
+    PassageShape,
     find_passage,
 )
 from esplanade.planning.agents.agents import Agents
@@ -25,61 +17,99 @@ from esplanade.planning.grid._grid_kernels import GridArrays, length
 from esplanade.planning.routes._potential_kernels import Guide
 
 OPPOSED = 8
-"""So many who want through a passage against me make me keep right there."""
+"""Number of agents that want to go through a passage against an agent and make it keep right."""
 SAME_M = 1.0
-"""Two found passages no further apart than that across and in height,"""
+"""Two passages may be the two ends of one if they are no further apart than this, both across the
+direction through them and in height."""
 LONG_M = 6.0
-"""and along the way through: they are the two ends of one."""
+"""Greatest distance between the two ends of one passage, in the direction through it."""
 LOOK_S = 1.0
-"""Passages are looked for every so often, or half as often: after the first look not by all in the
-same tick."""
+"""Least time between two looks for passages. It is up to twice as long, depending on the rank, so
+that agents do not all look in the same tick."""
 AFTER_M = 4.0
-"""Who has come through a passage keeps right for so far,"""
+"""Distance behind a passage up to which agents that have come through keep right."""
 PASSED_M = 8.0
-"""and goes before those who still have to come there for so far."""
+"""Distance behind a passage up to which agents that have come through have priority over those that
+still have to come there."""
 SHIFT_M = 0.2
-"""The lane begins so far to the right of the middle, or half-way to the side of the passage."""
+"""Greatest distance from the middle of a passage to the left border of a lane; in a narrow passage
+the border is half-way between the middle and the side."""
 NEARER_M = 0.5
-"""Who comes nearer to a passage by so much has got on."""
+"""An agent makes progress when it comes nearer to a passage by this distance."""
 WAITING_MPS = 0.2
-"""A second without getting on is worth so many metres less to a passage."""
+"""A second without progress counts like this distance to a passage."""
 LEFT_RAD = 1.0
-"""Seen from where the lane begins, who is so far to the left of it is wholly on the left."""
+"""An agent is wholly on the left of a lane if it is seen at this angle from the lane's beginning."""
 
 
 class Lane(NamedTuple):
-    """The right-hand side of a passage: the middle of the passage, the unit vector through it, how
-    far to the right of the middle the lane begins, and what a metre nearer weighs wholly on the
-    left, in metres: 0 where the lane is not to be kept to."""
+    """The right-hand side of a passage, in metres."""
 
     x: float
+    """Middle of the passage."""
     y: float
     along_x: float
+    """Unit vector through the passage."""
     along_y: float
     shift_m: float
+    """Distance from the middle of the passage to the left border of the lane, to the right."""
     weight: float
+    """Cost, in metres of path, of a metre wholly on the left; 0 if the agent keeps to no lane."""
 
 
 @inlined
-def lane_of(passage: NDArray[np.float64], weight: float) -> Lane:
-    """The lane through a passage (PASSAGE,)."""
-    shift_m = min(SHIFT_M, 0.5 * passage[HALF_M])
+def lane_of(passage: NDArray[np.void], weight: float) -> Lane:
+    """The lane through a passage, one row of `PASSAGE`."""
+    shift_m = min(SHIFT_M, 0.5 * passage["half_m"])
     return Lane(
-        passage[MIDDLE_X],
-        passage[MIDDLE_Y],
-        passage[THROUGH_X],
-        passage[THROUGH_Y],
+        passage["middle_x"],
+        passage["middle_y"],
+        passage["along_x"],
+        passage["along_y"],
         shift_m,
         weight,
     )
 
 
-@kernel
-def astray(lane: Lane, x: float, y: float) -> float:
-    """Metres of way that being left of a lane is like; none where there is no lane to keep to.
+@inlined
+def _shape_of(passage: NDArray[np.void]) -> PassageShape:
+    """The shape of a passage, one row of `PASSAGE`."""
+    return PassageShape(
+        passage["middle_x"],
+        passage["middle_y"],
+        passage["along_x"],
+        passage["along_y"],
+        passage["half_m"],
+        passage["floor_m"],
+    )
 
-    It grows with the angle, so that it leads around those who come out rather than through them,
-    and from far away on, so that who comes near is on the right already.
+
+@inlined
+def _set_passage(passage: NDArray[np.void], shape: PassageShape) -> None:
+    """Write a shape into one row of `PASSAGE`."""
+    passage["middle_x"] = shape.middle_x
+    passage["middle_y"] = shape.middle_y
+    passage["along_x"] = shape.along_x
+    passage["along_y"] = shape.along_y
+    passage["half_m"] = shape.half_m
+    passage["floor_m"] = shape.floor_m
+
+
+@inlined
+def _clear(passage: NDArray[np.void]) -> None:
+    """Forget a passage and the agent's progress."""
+    _set_passage(passage, NO_PASSAGE)
+    passage["look_in_s"] = 0.0
+    passage["nearest_m"] = 0.0
+    passage["waited_s"] = 0.0
+
+
+@kernel
+def off_lane_m(lane: Lane, x: float, y: float) -> float:
+    """Cost of being left of a lane, in metres of path; 0 if there is no lane to keep to.
+
+    The cost grows with the angle to the left, so that it leads agents around those that come out
+    of the passage. It begins far from the passage, so that agents are on the right in time.
     """
     if lane.weight == 0.0:
         return 0.0
@@ -96,32 +126,33 @@ def astray(lane: Lane, x: float, y: float) -> float:
 
 @inlined
 def _beyond(crowd: Agents, a: int) -> tuple[bool, float]:
-    """Whether an actor has come through its passage, and how far it is from the middle of it."""
+    """Whether an agent has come through its passage, and its distance from the middle in metres."""
     p = crowd.passages[a]
-    dx = crowd.positions[a, 0] - p[MIDDLE_X]
-    dy = crowd.positions[a, 1] - p[MIDDLE_Y]
-    return bool(p[THROUGH_X] * dx + p[THROUGH_Y] * dy > 0.0), length(dx, dy)
+    dx = crowd.positions[a, 0] - p["middle_x"]
+    dy = crowd.positions[a, 1] - p["middle_y"]
+    return bool(p["along_x"] * dx + p["along_y"] * dy > 0.0), length(dx, dy)
 
 
 @inlined
 def _has_passage(crowd: Agents, a: int) -> bool:
+    """Whether an agent has a passage ahead or has just come through one."""
     p = crowd.passages[a]
-    return bool(p[THROUGH_X] != 0.0 or p[THROUGH_Y] != 0.0)
+    return bool(p["along_x"] != 0.0 or p["along_y"] != 0.0)
 
 
 @inlined
-def _alike(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
-    """Cosine between the ways through two passages (FOUND,) if they are the same one, else 0."""
-    ux = one[THROUGH_X]
-    uy = one[THROUGH_Y]
-    dx = other[MIDDLE_X] - one[MIDDLE_X]
-    dy = other[MIDDLE_Y] - one[MIDDLE_Y]
+def _alike(one: PassageShape, other: PassageShape) -> float:
+    """Cosine between the directions through two passages if they are the same one, else 0."""
+    ux = one.along_x
+    uy = one.along_y
+    dx = other.middle_x - one.middle_x
+    dy = other.middle_y - one.middle_y
     if (
         abs(dx * uy - dy * ux) < SAME_M
         and abs(dx * ux + dy * uy) < LONG_M
-        and abs(other[FEET_M] - one[FEET_M]) < SAME_M
+        and abs(other.floor_m - one.floor_m) < SAME_M
     ):
-        return float(ux * other[THROUGH_X] + uy * other[THROUGH_Y])
+        return float(ux * other.along_x + uy * other.along_y)
     return 0.0
 
 
@@ -129,52 +160,56 @@ def _alike(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
 def see_passage(
     grid: GridArrays, potential: Guide, crowd: Agents, a: int, going: bool, tick_s: float
 ) -> None:
-    """Renew an actor's passage, and how near it has come; who has come through keeps the last one
-    for a while."""
+    """Renew an agent's passage and its progress there.
+
+    An agent that has come through a passage keeps it for a while.
+    """
     p = crowd.passages[a]
     if not going:
-        p[:] = 0.0
+        _clear(p)
         return
-    p[LOOK_IN_S] -= tick_s
-    p[WAITED_S] += tick_s
+    p["look_in_s"] -= tick_s
+    p["waited_s"] += tick_s
     beyond, away = _beyond(crowd, a)
     if beyond and away > PASSED_M:
-        p[:] = 0.0
-    elif not beyond and p[LOOK_IN_S] <= 0.0:
+        _clear(p)
+    elif not beyond and p["look_in_s"] <= 0.0:
         x, y = crowd.positions[a]
         radius = crowd.parameters[a]["radius_m"]
-        before = p[:FOUND].copy()
-        if not find_passage(
-            grid, potential, crowd.bodies[a], radius, crowd.cells[a], x, y, p[:FOUND]
-        ):
-            p[:] = 0.0
-        elif _alike(before, p) <= 0.0:
-            p[NEAREST_M] = np.inf
-        p[LOOK_IN_S] = LOOK_S * (1.0 + crowd.ranks[a] / len(crowd.ranks))
+        before = _shape_of(p)
+        found, shape = find_passage(grid, potential, crowd.bodies[a], radius, crowd.cells[a], x, y)
+        if not found:
+            _clear(p)
+        else:
+            _set_passage(p, shape)
+            if _alike(before, shape) <= 0.0:
+                p["nearest_m"] = np.inf
+        p["look_in_s"] = LOOK_S * (1.0 + crowd.ranks[a] / len(crowd.ranks))
         away = _beyond(crowd, a)[1]
-    if away < p[NEAREST_M] - NEARER_M:
-        p[NEAREST_M] = away
-        p[WAITED_S] = 0.0
+    if away < p["nearest_m"] - NEARER_M:
+        p["nearest_m"] = away
+        p["waited_s"] = 0.0
 
 
 @kernel
 def find_contested(crowd: Agents, out: NDArray[np.bool_]) -> None:
-    """Fill (A,): whose passage enough others have still to come through from the other side."""
+    """Fill `out` (A,): whether enough others still have to come through an agent's passage against
+    it."""
     out[:] = False
-    coming = np.empty((len(out), FOUND))
+    coming = np.empty(len(out), dtype=np.int64)
     count = 0
     for a in range(len(out)):
         if _has_passage(crowd, a) and not _beyond(crowd, a)[0]:
-            coming[count] = crowd.passages[a, :FOUND]
+            coming[count] = a
             count += 1
     if count < OPPOSED:
         return
     for a in range(len(out)):
-        p = crowd.passages[a]
         against = 0
         if _has_passage(crowd, a):
+            own = _shape_of(crowd.passages[a])
             for n in range(count):
-                if _alike(p, coming[n]) < 0.0:
+                if _alike(own, _shape_of(crowd.passages[coming[n]])) < 0.0:
                     against += 1
                     if against == OPPOSED:
                         break
@@ -185,23 +220,24 @@ def find_contested(crowd: Agents, out: NDArray[np.bool_]) -> None:
 def order_at_passages(
     crowd: Agents, contested: NDArray[np.bool_], left_m: NDArray[np.float64]
 ) -> None:
-    """Put into `left_m` (A,) what decides who goes first where a passage is contested.
+    """Replace distances left in `left_m` (A,), which give priority, where a passage is contested.
 
-    Who has come through goes first, the furthest before all, since nobody else can come in before
-    the way out is free, up to the goal, since it may lie among those who wait. Then who has still
-    to come there: who has come the nearest first, and who waits without getting on ever sooner, or
-    those who were crowded out to the side would stay there until all others are through. Then
-    everyone else. Who is about to arrive on this side goes last, as everywhere.
+    Agents that have come through go first, the furthest of them before all, since nobody can enter
+    before the exit is free; this holds up to the goal, which may lie among those that wait. Then
+    follow the agents that still have to come there, the nearest first. Their waiting without
+    progress counts in their favour, since agents that were crowded out to the side would otherwise
+    stay there until all others are through. All other agents follow. An agent that is about to
+    arrive on this side goes last, as everywhere.
     """
     if not contested.any():
         return
     for a in range(len(left_m)):
         if not contested[a]:
-            left_m[a] += 2.0 * BEFORE_M  # further than anybody contested is, even in a jam
+            left_m[a] += 2.0 * BEFORE_M  # further than any contested agent is, even in a jam
             continue
         p = crowd.passages[a]
         beyond, away = _beyond(crowd, a)
         if beyond:
             left_m[a] = -away
         elif left_m[a] < np.inf:
-            left_m[a] = max(0.0, p[NEAREST_M] - WAITING_MPS * p[WAITED_S])
+            left_m[a] = max(0.0, p["nearest_m"] - WAITING_MPS * p["waited_s"])

@@ -1,37 +1,65 @@
-"""Narrow places on the way ahead, found from the ground alone, on bare arrays."""
+"""Narrow passages on the path ahead, found from the static ground alone, on bare arrays."""
+
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.grid._grid_kernels import GridArrays, clearance_at, floor_of, follow, length
 from esplanade.planning.routes._potential_kernels import Guide, direction_at
 
-MIDDLE_X, MIDDLE_Y, THROUGH_X, THROUGH_Y, HALF_M, FEET_M = range(6)
-FOUND = 6
-"""So many numbers tell of a passage: its middle, the unit vector through it (zeros if there is
-none), half the width that middles of bodies have in it, and the height of its floor."""
-LOOK_IN_S, NEAREST_M, WAITED_S = range(FOUND, FOUND + 3)
-PASSAGE = FOUND + 3
-"""With those that tell of an actor on its way there: seconds until it looks again, how near to the
-middle it has come, and seconds since."""
+PASSAGE = np.dtype(
+    [
+        ("middle_x", "f8"),
+        ("middle_y", "f8"),
+        ("along_x", "f8"),
+        ("along_y", "f8"),
+        ("half_m", "f8"),
+        ("floor_m", "f8"),
+        ("look_in_s", "f8"),
+        ("nearest_m", "f8"),
+        ("waited_s", "f8"),
+    ]
+)
+"""An agent's passage, its `PassageShape` in the first six fields, and the agent's progress.
+
+The progress is the time until the agent looks for passages again (`look_in_s`), how near to the
+middle it has come (`nearest_m`), and how long ago that was (`waited_s`); metres and seconds.
+"""
 NARROW_M = 2.2
-"""No passage is wider, between where less than `WALL_PART` of the radius is free."""
+"""Greatest width of a passage, between obstacles that leave less than `WALL_PART` of the radius."""
 BEFORE_M = 20.0
-"""So far ahead passages are looked for."""
+"""Distance ahead along the path within which passages are looked for."""
 STRAIGHT = 0.9
-"""Part of the way to a passage that the straight line there has to be: what lies around a corner
-leads nobody to one side of it yet."""
+"""Least part of the distance along the path to a passage that the straight line to it has to be: a
+passage around a corner leads nobody to one side of it yet."""
 WALL_PART = 0.8
-"""What leaves less room than this part of the radius is a side of a passage."""
+"""Places with a clearance of less than this part of the radius are the sides of a passage."""
 DEEP_M = 1.0
-"""Of so much of a passage, from where the way comes in, the narrowest place counts."""
+"""The narrowest place within this distance of a passage's entrance is its middle."""
 RAYS = 8
-"""Lines along which its width is looked for, before the best is refined."""
+"""Number of lines along which the width of a passage is measured before the best is refined."""
+
+
+class PassageShape(NamedTuple):
+    """The geometry of a passage, in metres."""
+
+    middle_x: float
+    middle_y: float
+    along_x: float
+    """Unit vector through the passage; zeros where there is no passage."""
+    along_y: float
+    half_m: float
+    """Half the width that centres of bodies have in the passage."""
+    floor_m: float
+    """Height of the floor."""
+
+
+NO_PASSAGE = PassageShape(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @inlined
-def _free_way(
+def _free_distance(
     grid: GridArrays,
     body: int,
     cell: int,
@@ -43,9 +71,10 @@ def _free_way(
     here_m: float,
     most_m: float,
 ) -> float:
-    """How far a point may go that needs `room_m` and has `here_m` more than that where it is.
+    """Distance that a point with a clearance of at least `room_m` may move in a direction, metres.
 
-    What is further than `most_m` or `NARROW_M` is not looked for: then it is `NARROW_M`.
+    `here_m` is the clearance at its start beyond `room_m`. Distances of more than `most_m` are not
+    measured; the result is then `NARROW_M`.
     """
     shortest = 0.5 * grid.layered.cell_m
     last = min(NARROW_M, most_m + shortest)  # a side is noticed up to a shortest step beyond it
@@ -73,10 +102,10 @@ def _narrowest(
     apart: float,
     lines: int,
 ) -> tuple[float, float, float]:
-    """Of lines through a point, at angles first, first + apart, ..., the one that is the shortest
-    from side to side: its length, its angle, and how far along it its middle is.
+    """The shortest line from side to side through a point: its length, angle and middle.
 
-    Only lines shorter than `NARROW_M` count: without one its length is that.
+    Lines at the angles first, first + apart, ... are tried; the middle is given as a distance along
+    the line. Only lines shorter than `NARROW_M` count; without any the length is `NARROW_M`.
     """
     best = NARROW_M
     turn = 0.0
@@ -88,8 +117,8 @@ def _narrowest(
         angle = first + n * apart
         ux = np.cos(angle)
         uy = np.sin(angle)
-        ahead = _free_way(grid, body, cell, x, y, ux, uy, room_m, here_m, best)
-        behind = _free_way(grid, body, cell, x, y, -ux, -uy, room_m, here_m, best - ahead)
+        ahead = _free_distance(grid, body, cell, x, y, ux, uy, room_m, here_m, best)
+        behind = _free_distance(grid, body, cell, x, y, -ux, -uy, room_m, here_m, best - ahead)
         if ahead + behind < best:
             best = ahead + behind
             turn = angle
@@ -99,54 +128,44 @@ def _narrowest(
 
 @kernel
 def measure_passage(
-    grid: GridArrays,
-    body: int,
-    radius: float,
-    cell: int,
-    x: float,
-    y: float,
-    out: NDArray[np.float64],
-) -> bool:
-    """Whether a point is in a passage; fills `out` (FOUND,).
+    grid: GridArrays, body: int, radius: float, cell: int, x: float, y: float
+) -> tuple[bool, PassageShape]:
+    """Whether a point is in a passage, and the shape of the passage.
 
-    The shortest line through the point from side to side, then the shortest through its middle.
+    The shortest line through the point from side to side is found first, then the shortest line
+    through the middle of that line.
     """
     room_m = WALL_PART * radius
     if clearance_at(grid, body, cell, x, y) < room_m:
-        return False
+        return False, NO_PASSAGE
     apart = np.pi / RAYS
     width, turn, aside = _narrowest(grid, body, cell, x, y, room_m, 0.0, apart, RAYS)
     if width >= NARROW_M:
-        return False
+        return False, NO_PASSAGE
     x += aside * np.cos(turn)
     y += aside * np.sin(turn)
     cell = follow(grid, cell, x, y)
     width, turn, aside = _narrowest(
         grid, body, cell, x, y, room_m, turn - 0.5 * apart, 0.25 * apart, 5
     )
-    out[MIDDLE_X] = x + aside * np.cos(turn)
-    out[MIDDLE_Y] = y + aside * np.sin(turn)
-    out[THROUGH_X] = -np.sin(turn)
-    out[THROUGH_Y] = np.cos(turn)
-    out[HALF_M] = max(0.0, 0.5 * width - (radius - room_m))
-    out[FEET_M] = floor_of(grid, cell)
-    return width < NARROW_M
+    shape = PassageShape(
+        x + aside * np.cos(turn),
+        y + aside * np.sin(turn),
+        -np.sin(turn),
+        np.cos(turn),
+        max(0.0, 0.5 * width - (radius - room_m)),
+        floor_of(grid, cell),
+    )
+    return width < NARROW_M, shape
 
 
 @kernel
 def find_passage(
-    grid: GridArrays,
-    potential: Guide,
-    body: int,
-    radius: float,
-    cell: int,
-    x: float,
-    y: float,
-    out: NDArray[np.float64],
-) -> bool:
-    """Fill `out` (FOUND,) with the first passage on the way, if one is about straight ahead.
+    grid: GridArrays, potential: Guide, body: int, radius: float, cell: int, x: float, y: float
+) -> tuple[bool, PassageShape]:
+    """Whether there is a passage about straight ahead on the path to the goal, and its shape.
 
-    Its unit vector points the way that one goes through it.
+    The unit vector of the shape points in the direction of the path.
     """
     wide = 0.5 * NARROW_M + radius
     start_x = x
@@ -156,23 +175,32 @@ def find_passage(
     last_dy = 0.0
     most = BEFORE_M
     narrowest = np.inf
-    here = np.empty(FOUND)
+    passage = NO_PASSAGE
     while way < most and cell >= 0:
         dx, dy, leg = direction_at(grid, potential, cell, x, y)
         room = clearance_at(grid, body, cell, x, y)
-        if room < wide and measure_passage(grid, body, radius, cell, x, y, here):
+        narrow = False
+        here = NO_PASSAGE
+        if room < wide:
+            narrow, here = measure_passage(grid, body, radius, cell, x, y)
+        if narrow:
             if narrowest == np.inf:
                 if length(x - start_x, y - start_y) < STRAIGHT * way - grid.layered.cell_m:
-                    return False
+                    return False, NO_PASSAGE
                 most = way + DEEP_M
-            if here[HALF_M] < narrowest:
-                narrowest = here[HALF_M]
-                out[:] = here
-                # Ways turn at its corners: both directions together lead through it.
-                through = (dx + last_dx) * out[THROUGH_X] + (dy + last_dy) * out[THROUGH_Y]
-                if through < 0.0:
-                    out[THROUGH_X] *= -1.0
-                    out[THROUGH_Y] *= -1.0
+            if here.half_m < narrowest:
+                narrowest = here.half_m
+                # Paths turn at its corners: both directions together lead through the passage.
+                through = (dx + last_dx) * here.along_x + (dy + last_dy) * here.along_y
+                sign = -1.0 if through < 0.0 else 1.0
+                passage = PassageShape(
+                    here.middle_x,
+                    here.middle_y,
+                    sign * here.along_x,
+                    sign * here.along_y,
+                    here.half_m,
+                    here.floor_m,
+                )
         elif narrowest < np.inf:
             break
         if leg == 0.0:
@@ -184,4 +212,4 @@ def find_passage(
         x += step * dx
         y += step * dy
         cell = follow(grid, cell, x, y)
-    return bool(narrowest < np.inf)
+    return bool(narrowest < np.inf), passage

@@ -1,4 +1,4 @@
-"""Where everyone is headed and who goes first, on bare arrays: before anybody decides."""
+"""Courses and priorities of agents on bare arrays, worked out before any of them decides."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +17,13 @@ from esplanade.planning.routes._potential_kernels import direction_at, potential
 from esplanade.planning.scene.heights import BODIES_OVERLAP_M
 
 HELD_UP_PART = 0.3
-"""Who is slower than this part of the preferred speed is held up."""
+"""An agent that is slower than this part of its preferred speed is held up."""
 SETTLED_M = 1.0
-"""Who is so near the goal lets everyone else pass."""
+"""Agents within this distance of their goal get the lowest priority."""
 JAM_M = 8.0
-"""Those held up no further away than that belong to the same jam."""
+"""Agents that are held up within this distance belong to the same jam."""
 JAM_ACTORS = 8
-"""So many who are held up and want against somebody make a jam."""
+"""Number of agents held up that makes a jam for an agent that goes in the opposite direction."""
 
 
 @kernel
@@ -34,16 +34,16 @@ def prepare(
     tick_s: float,
     order: NDArray[np.int64],
 ) -> None:
-    """Fill the reservations of a tick, and `order` (A,) with the actors, who goes first before all.
+    """Fill the reservations of a tick, and `order` (A,) with the agents by descending priority.
 
-    Of two with equal ways left the one of smaller rank goes first.
+    Of two agents with equal distances left, the one of smaller rank goes first.
     """
     r = world.reservations
     actors = len(order)
     continue_paths(world, potentials, crowd, tick_s, r.paths, r.heights)
     index_paths(r)
     left_m = np.empty(actors)
-    ways_left(potentials, crowd, left_m)
+    distances_left(potentials, crowd, left_m)
     find_courses(world.grid, potentials, crowd, left_m, r)
     empty_jams(left_m, r)
     if actors > OPPOSED:
@@ -64,10 +64,10 @@ def continue_paths(
     out: NDArray[np.float64],
     heights: NDArray[np.float64],
 ) -> None:
-    """Followed paths as seen from now: fill out (A, K, 2) and heights (A, K).
+    """Continue followed paths from now: fill `out` (A, K, 2) and `heights` (A, K), metres.
 
-    A path is read off `ages` ticks after its start, begins where the actor really is, and is
-    lengthened at its end down the potential. Who follows none is taken to stand.
+    A path is read `ages` ticks after its start, begins at the agent's real position, and is
+    extended at its end down the potential. An agent without a path is expected to stand.
     """
     slices = out.shape[1]
     ds = world.step_s / SUB
@@ -125,7 +125,7 @@ def _carry_on(
     y: float,
     seconds: float,
 ) -> tuple[float, float]:
-    """Where an actor gets from the end of its path, straight down the potential."""
+    """Position of an agent some seconds after the end of its path, down the potential."""
     slot = crowd.potential_rows[a]
     if slot < 0:
         return x, y
@@ -135,11 +135,13 @@ def _carry_on(
 
 
 @kernel
-def ways_left(potentials: NDArray[np.float32], crowd: Agents, out: NDArray[np.float64]) -> None:
-    """Fill (A,) with the metres that decide who goes first: who has the least way left.
+def distances_left(
+    potentials: NDArray[np.float32], crowd: Agents, out: NDArray[np.float64]
+) -> None:
+    """Fill `out` (A,) with the distance left of each agent, in metres: the least has priority.
 
-    Two do not change their order while one lets the other pass, since only the other gains.
-    Those who are about there, or have no way to go, have inf.
+    Two agents do not change their order while one lets the other pass, since only the other gets
+    nearer to its goal. Agents within `SETTLED_M` of their goal, or without a path, have inf.
     """
     for a in range(len(out)):
         out[a] = np.inf
@@ -159,7 +161,7 @@ def find_courses(
     left_m: NDArray[np.float64],
     reservations: Reservations,
 ) -> None:
-    """Fill `courses` and `held_up`; `left_m` (A,) is what `ways_left` gave."""
+    """Fill `courses` and `held_up` of the reservations; `left_m` (A,) is of `distances_left`."""
     r = reservations
     for a in range(len(left_m)):
         r.courses[a] = 0.0
@@ -176,12 +178,13 @@ def find_courses(
 
 @kernel
 def empty_jams(left_m: NDArray[np.float64], reservations: Reservations) -> None:
-    """Put into `left_m` (A,), for those in a jam, what decides who goes first there.
+    """Replace distances left in `left_m` (A,), which give priority, for agents in a jam.
 
-    The middle of a jam lies half-way between those held up who want where I want, with me, and
-    those against me. Who is beyond it goes first, the furthest before all; then those who still
-    have to come there, the nearest first; then everyone else. Places are summed in whole
-    micrometres, so that the order of actors does not matter.
+    The middle of a jam lies half-way between the agents held up that go in an agent's direction,
+    itself included, and those that go in the opposite direction. Agents beyond the middle go
+    first, the furthest of them before all; then those that still have to come there, the nearest
+    first; then all others. Positions are summed in whole micrometres, so that the result does not
+    depend on the order of agents.
     """
     r = reservations
     held_up = np.flatnonzero(r.held_up)
@@ -191,7 +194,7 @@ def empty_jams(left_m: NDArray[np.float64], reservations: Reservations) -> None:
         if left_m[a] == np.inf:
             continue
         left_m[a] += JAM_M
-        count = np.zeros(2, dtype=np.int64)  # with me, against me
+        count = np.zeros(2, dtype=np.int64)  # in the same direction, in the opposite direction
         place = np.zeros((2, 2), dtype=np.int64)
         count[0] = 1
         for o in held_up:

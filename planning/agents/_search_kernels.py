@@ -28,21 +28,35 @@ from esplanade.planning.routes._potential_kernels import Guide, direction_at
 FOUND = 0
 PARTIAL = 1
 NO_PATH = 2
-
+"""Statuses of a search, those of `SearchStatus`."""
 
 DEPTH_BONUS_S = 0.01
-"""Deeper nodes go first by at least so much a step: the path may cost that much more a step than
+"""Least bonus of a node for each step of its depth: the path may cost this much more a step than
 the best, and the search looks at a fraction of the nodes."""
 LIKELY_PART = 0.7
-"""Part of what the followed path costs beyond its time that any other is expected to cost too."""
+"""Part of the cost of the followed path beyond its time that any other path is expected to have."""
+
+NODE = np.dtype(
+    [
+        ("x", "f8"),
+        ("y", "f8"),
+        ("vx", "f8"),
+        ("vy", "f8"),
+        ("cost_s", "f8"),
+        ("half_x", "f8"),
+        ("half_y", "f8"),
+    ]
+)
+"""Position and velocity of a node, its cost so far in seconds, and the position half a step before;
+metres, metres a second."""
 
 
 class Moves(NamedTuple):
-    """The moves that a node branches into, besides staying put.
+    """The M moves that a node branches into, besides standing still.
 
-    `cosines` and `sines` (M,) are those of the heading, counted from the way down the potential
-    when `relative`, else from +x; `speeds` (M,) m/s. The first `straight` moves go straight down
-    and stop at the goal rather than beyond it.
+    `cosines` and `sines` (M,) are those of the heading, relative to the descent of the potential
+    if `relative`, else to +x; `speeds` (M,) are in metres a second. The first `straight` moves
+    descend the potential and stop at the goal rather than beyond it.
     """
 
     cosines: NDArray[np.float64]
@@ -53,18 +67,18 @@ class Moves(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """Memory of one search at a time; `node_*` rows are nodes in the order they were made.
+    """Memory of one search at a time; `node_*` (N,) are nodes in the order they were made.
 
-    `table_*` is a hash table of the best node so far in each cell and step. Best means the least
-    cost so far + way left: places differ within a cell, and less cost alone would favour whoever
-    has come less far.
+    `table_*` is a hash table of the best node so far in each cell and step. The best node has the
+    least sum of cost so far and cost left: positions differ within a cell, and the cost so far
+    alone would favour nodes that have made less progress.
     """
 
-    node_state: NDArray[np.float64]
-    """(N, 7): x, y, vx, vy at the node, cost so far, x, y half a step before."""
+    node_state: NDArray[np.void]
+    """(N,) of `NODE`."""
     node_cell: NDArray[np.int64]
     node_edge: NDArray[np.int64]
-    """Cells in a row at steps and edges."""
+    """Number of cells in a row at steps and edges."""
     node_parent: NDArray[np.int64]
     node_step: NDArray[np.int64]
     heap_keys: NDArray[np.float64]
@@ -74,14 +88,14 @@ class Workspace(NamedTuple):
     table_stamp: NDArray[np.int64]
     stamp: NDArray[np.int64]
     others: NDArray[np.int64]
-    """Actors near the node that is looked at."""
+    """Agents near the node that is expanded."""
     halfway: NDArray[np.int64]
     ahead: NDArray[np.int64]
     """People near it in the middle and at the end of its moves."""
 
 
 class Outcome(NamedTuple):
-    """What a search came to."""
+    """Result of a search: a status, its expansions, and the key of the last node in seconds."""
 
     status: int
     expansions: int
@@ -92,8 +106,8 @@ class Outcome(NamedTuple):
 def depth_bonus(excess: float, steps: int) -> float:
     """Seconds that each step ahead is expected to cost beyond its time.
 
-    A known path's excess over the bare time tells how hard the way is. Expecting a part of it of
-    every other path keeps the search from looking into all that begins well.
+    The excess of a known path over its bare time tells how crowded the route is. Since a part of it
+    is expected of every other path, the search ignores most nodes that merely begin well.
     """
     if excess < np.inf:
         return max(DEPTH_BONUS_S, LIKELY_PART * excess / steps)
@@ -102,13 +116,13 @@ def depth_bonus(excess: float, steps: int) -> float:
 
 @inlined
 def _cells_between(grid: GridArrays, ax: float, ay: float, bx: float, by: float) -> int:
-    """How many cells further b is than a, along rows or columns."""
+    """Number of cells from a to b, along rows or columns."""
     return int(max(abs(bx - ax), abs(by - ay)) / grid.layered.cell_m + 0.5)
 
 
 @inlined
 def _slot(workspace: Workspace, key: int) -> int:
-    """Row of the table for a key, found or fresh; -1 when the table is full."""
+    """Row of the table for a key, existing or new; -1 if the table is full."""
     size = len(workspace.table_key)
     stamp = workspace.stamp[0]
     h = (key * 0x9E3779B1) & (size - 1)
@@ -135,11 +149,11 @@ def search(
     workspace: Workspace,
     path: NDArray[np.float64],
 ) -> Outcome:
-    """Fill `path` (K, 2) with positions slice by slice, the start first.
+    """Fill `path` (K, 2) with positions slice by slice, the start first: Lei & Li, fig. 5.
 
-    With `accumulate` the key of a node is f = cost so far + way left, cost being time, risk and
-    what else is minded; without, it is the printed U(q') = potential(q') + Risk(q').
-    Nodes that cannot end below `bound` are left out.
+    With `accumulate` the key of a node is f = cost so far + cost left, where the cost is time plus
+    prices of risk, turning, haste and walls; otherwise it is the printed U(q') = potential(q') +
+    Risk(q'). Nodes that cannot end below `bound`, in seconds, are left out.
     """
     grid = world.grid
     risk = world.risk
@@ -160,11 +174,11 @@ def search(
     workspace.stamp[0] += 1
     path[:, 0] = task.x
     path[:, 1] = task.y
-    node[0, 0] = task.x
-    node[0, 1] = task.y
-    node[0, 2] = task.vx
-    node[0, 3] = task.vy
-    node[0, 4] = 0.0
+    node[0]["x"] = task.x
+    node[0]["y"] = task.y
+    node[0]["vx"] = task.vx
+    node[0]["vy"] = task.vy
+    node[0]["cost_s"] = 0.0
     workspace.node_cell[0] = task.cell
     workspace.node_edge[0] = 0
     workspace.node_parent[0] = -1
@@ -187,10 +201,10 @@ def search(
         size = heap_pop(workspace.heap_keys, workspace.heap_items, size)
         step = workspace.node_step[n]
         cell = workspace.node_cell[n]
-        x = node[n, 0]
-        y = node[n, 1]
-        vx = node[n, 2]
-        vy = node[n, 3]
+        x = node[n]["x"]
+        y = node[n]["y"]
+        vx = node[n]["vx"]
+        vy = node[n]["vy"]
         if n > 0 and accumulate:
             slot = _slot(workspace, step * cells + cell)
             if slot < 0 or workspace.table_worth[slot] < key + bonus * step - 1e-9:
@@ -224,14 +238,14 @@ def search(
             gy = 0.0
         price = risk_price(task, step * step_s) * ds
         k = step * SUB
-        feet_m = 0.0 if grid.flat else float(grid.layered.floors[cell])
+        floor_m = 0.0 if grid.flat else float(grid.layered.floors[cell])
         slice_m = max(task.max_speed_mps, length(vx, vy)) * ds
-        met, crowded = others_near(reservations, task.me, feet_m, k, x, y, slice_m, others)
-        halfway = people_near(risk, grid.flat, feet_m, k + 1, x, y, slice_m, workspace.halfway)
-        ahead = people_near(risk, grid.flat, feet_m, k + 2, x, y, 2.0 * slice_m, workspace.ahead)
-        # The clearance falls by no more than the way: far from walls no child has to be asked.
+        met, crowded = others_near(reservations, task.me, floor_m, k, x, y, slice_m, others)
+        halfway = people_near(risk, grid.flat, floor_m, k + 1, x, y, slice_m, workspace.halfway)
+        ahead = people_near(risk, grid.flat, floor_m, k + 2, x, y, 2.0 * slice_m, workspace.ahead)
+        # Clearance falls by no more than the distance: far from walls no child is checked.
         in_the_open = clearance_at(grid, task.body, cell, x, y) >= open_m
-        # What the rest of the way is bound to cost beyond its time, if it is like the path known.
+        # The rest of the path is expected to cost as much beyond its time as the known path.
         room_s = bound - bonus * (steps - step - 1) if accumulate else bound
         for m in range(len(moves.speeds) + 1):
             ux = 0.0
@@ -257,7 +271,7 @@ def search(
             left_m = metres_left(potential, task, end, ex, ey)
             left = way_left(task, left_m, end_speed)
             cost = (
-                node[n, 4]
+                node[n]["cost_s"]
                 + time_cost(task, left_m, length(ex - x, ey - y) * per_s, step_s)
                 + task.turn_weight * a_max * min(ramp, step_s)
             )
@@ -297,7 +311,7 @@ def search(
                 )
                 if blocked:
                     continue
-            # Risk is never negative: what cannot be worth it any more is not asked further.
+            # Risk is never negative, so a node that already costs too much is given up at once.
             most = min(room_s, least) - worth if accumulate else np.inf
             if price * soft >= most:
                 continue
@@ -338,13 +352,14 @@ def search(
             if count == capacity:
                 continue
             workspace.table_worth[slot] = worth
-            node[count, 0] = ex
-            node[count, 1] = ey
-            node[count, 2] = evx
-            node[count, 3] = evy
-            node[count, 4] = cost
-            node[count, 5] = hx
-            node[count, 6] = hy
+            new = node[count]
+            new["x"] = ex
+            new["y"] = ey
+            new["vx"] = evx
+            new["vy"] = evy
+            new["cost_s"] = cost
+            new["half_x"] = hx
+            new["half_y"] = hy
             workspace.node_cell[count] = end
             workspace.node_edge[count] = edge
             workspace.node_parent[count] = n
@@ -359,16 +374,16 @@ def search(
 
 @inlined
 def _trace(workspace: Workspace, last: int, path: NDArray[np.float64]) -> None:
-    """Write the way to a node; after its end the path stays where it is."""
+    """Write the path to a node; after the node it stays at the node's position."""
     k = workspace.node_step[last] * SUB
     node = workspace.node_state
-    path[k:, 0] = node[last, 0]
-    path[k:, 1] = node[last, 1]
+    path[k:, 0] = node[last]["x"]
+    path[k:, 1] = node[last]["y"]
     n = last
     while workspace.node_parent[n] >= 0:
         k = workspace.node_step[n] * SUB
-        path[k, 0] = node[n, 0]
-        path[k, 1] = node[n, 1]
-        path[k - 1, 0] = node[n, 5]
-        path[k - 1, 1] = node[n, 6]
+        path[k, 0] = node[n]["x"]
+        path[k, 1] = node[n]["y"]
+        path[k - 1, 0] = node[n]["half_x"]
+        path[k - 1, 1] = node[n]["half_y"]
         n = workspace.node_parent[n]

@@ -9,7 +9,7 @@ from esplanade.planning.agents.agents import GIVING_WAY, WAITING, Agents, Decisi
 from esplanade.planning.compiled.jit import kernel
 from esplanade.planning.grid._grid_kernels import clearance_at, floor_of, follow
 from esplanade.planning.grid._walking_kernels import walk
-from esplanade.planning.ground._geometry_kernels import SegmentIndex, closest_approach
+from esplanade.planning.ground._geometry_kernels import BarrierIndex, closest_approach
 from esplanade.planning.people._prediction_kernels import Prediction
 from esplanade.planning.scene.heights import BODIES_OVERLAP_M
 
@@ -187,7 +187,7 @@ def last_check(
 @kernel
 def resolve(
     world: World,
-    index: SegmentIndex,
+    index: BarrierIndex,
     agents: Agents,
     order: NDArray[np.int64],
     tick_s: float,

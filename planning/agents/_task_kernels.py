@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from esplanade.planning.agents._bottleneck_kernels import Lane, astray
+from esplanade.planning.agents._bottleneck_kernels import Lane, off_lane_m
 from esplanade.planning.agents._reservation_kernels import Reservations
 from esplanade.planning.compiled.jit import inlined
 from esplanade.planning.grid._grid_kernels import GridArrays, clearance_at, length
@@ -102,7 +102,7 @@ def metres_left(potential: Guide, task: Task, cell: int, x: float, y: float) -> 
     if task.hold:
         return length(x - task.goal_x, y - task.goal_y)
     left_m = potential_at(potential, cell, x, y)
-    return left_m + astray(task.lane, x, y) if task.lane.weight > 0.0 else left_m
+    return left_m + off_lane_m(task.lane, x, y) if task.lane.weight > 0.0 else left_m
 
 
 @inlined

@@ -14,7 +14,7 @@ from esplanade.planning.agents.agents import Agents, Decisions
 from esplanade.planning.compiled.handle import Handle
 from esplanade.planning.compiled.jit import kernel
 from esplanade.planning.grid._grid_kernels import floor_of, heights_along
-from esplanade.planning.ground._geometry_kernels import SegmentIndex
+from esplanade.planning.ground._geometry_kernels import BarrierIndex
 from esplanade.planning.people._prediction_kernels import Prediction
 from esplanade.planning.people._risk_kernels import index_people
 
@@ -27,7 +27,7 @@ class Zone(NamedTuple):
     """
 
     world: World
-    barriers: SegmentIndex
+    barriers: BarrierIndex
     potentials: NDArray[np.float32]
     no_potential: NDArray[np.float32]
     moves: Moves
@@ -147,5 +147,5 @@ def settle_all(zone: Handle[Zone], tick_s: float) -> None:
     layered = z.world.grid.layered
     for a in range(len(agents.cells)):
         cell = agents.cells[a]
-        agents.layers[a] = layered.places[cell, 0] if cell >= 0 else 0
+        agents.layers[a] = layered.places[cell]["layer"] if cell >= 0 else 0
         agents.heights[a] = floor_of(z.world.grid, cell)

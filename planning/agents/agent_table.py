@@ -245,7 +245,7 @@ def _no_agents(instants: int) -> Agents:
         followed=np.zeros((0, instants, 2)),
         left_m=np.zeros(0),
         behind_s=np.zeros(0),
-        passages=np.zeros((0, PASSAGE)),
+        passages=np.zeros(0, dtype=PASSAGE),
         headings=np.zeros(0),
         heights=np.zeros(0),
         layers=np.zeros(0, dtype=np.int64),

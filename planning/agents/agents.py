@@ -57,8 +57,8 @@ class Agents(NamedTuple):
     (A,) tells whether `followed` holds a path; `followed` (A, K, 2) m begins at the tick that
     `ages` (A,) ticks ago was. `left_m` (A,) is the distance that was left a tick ago, nan at first;
     `behind_s` (A,) the time lost since the goal was set and not made up yet; `passages`
-    (A, PASSAGE) are the narrow places ahead or just come through, and how one gets on there. The
-    kernels that decide write these three.
+    (A,) of `PASSAGE` are the narrow places ahead or just come through, and the progress there.
+    The kernels that decide write these three.
     """
 
     positions: NDArray[np.float64]
@@ -75,7 +75,7 @@ class Agents(NamedTuple):
     followed: NDArray[np.float64]
     left_m: NDArray[np.float64]
     behind_s: NDArray[np.float64]
-    passages: NDArray[np.float64]
+    passages: NDArray[np.void]
     headings: NDArray[np.float64]
     heights: NDArray[np.float64]
     layers: NDArray[np.int64]

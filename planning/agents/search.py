@@ -82,7 +82,7 @@ def make_workspace(max_expansions: int, branching: int) -> Workspace:
     nodes = max_expansions * branching + 2
     table = 1 << max(10, (2 * nodes - 1).bit_length())
     return Workspace(
-        np.zeros((nodes, 7)),
+        np.zeros(nodes, dtype=kernels.NODE),
         np.zeros(nodes, dtype=np.int64),
         np.zeros(nodes, dtype=np.int64),
         np.zeros(nodes, dtype=np.int64),

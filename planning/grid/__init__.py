@@ -1,1 +1,1 @@
-"""The grid that movement is checked against: clearances, lookups of cells, walking step by step."""
+"""The grid that movement is checked against: clearances, cells of points, walking bodies."""

@@ -1,7 +1,7 @@
-"""The ground of one zone on bare arrays: cells, what they are next to, lines of sight.
+"""The grid of one zone on bare arrays: cells, their neighbours and clearances, lines of sight.
 
-A point is looked up by the *cell* it is in: the number of a standing surface, which tells layer,
-row and column. From there `follow` finds the cell of a point nearby, up and down stairs and ramps.
+A point is known by its *cell*, the number of a standing surface, which tells layer, row and column.
+From there `follow` finds the cell of a point nearby, up and down stairs and ramps.
 """
 
 from typing import NamedTuple
@@ -12,34 +12,34 @@ from numpy.typing import NDArray
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.ground.layered import TILE, LayeredArrays, cell_index
 
-REACH_M = 1.0
-"""Surfaces that far apart in height are not mistaken for each other from one cell to the next."""
+FOLLOW_M = 1.0
+"""From one point to the next, `follow` goes to no surface further away in height than this."""
 
 
 class GridArrays(NamedTuple):
-    """What kernels know of a zone's ground and of the bodies on it."""
+    """The floors of a zone, with the clearances and edges of each kind of body."""
 
     layered: LayeredArrays
     clearance: NDArray[np.float32]
-    """(B, N) m: for each kind of body the distance from a cell's centre to what stops it, capped at
-    `CLEARANCE_CAP_M`."""
+    """(B, N): for each kind of body the distance from a cell's centre to the barriers that stop it,
+    metres, at most `CLEARANCE_CAP_M`."""
     edges: NDArray[np.bool_]
-    """(B, N): cells where a step or an edge lies within the radius of that kind of body."""
+    """(B, N): whether a step or an edge lies within the radius of a kind of body."""
     flat: bool
-    """There is one layer, all of it at height 0: heights need not be looked at. Cells inside
-    obstacles count as ground then, with negative clearance."""
+    """Whether there is only one layer, all of it at height 0, so that heights can be ignored. Cells
+    inside obstacles then count as ground, with negative clearance."""
 
 
 @inlined
 def length(x: float, y: float) -> float:
-    """Length of a vector; quicker than `np.hypot`, which guards against overflow."""
+    """Length of a vector; faster than `np.hypot`, which guards against overflow."""
     return float(np.sqrt(x * x + y * y))
 
 
 @inlined
 def row_and_column(grid: GridArrays, x: float, y: float) -> tuple[int, int]:
-    """Row and column of the column of cells that holds a point, clamped to the grid."""
-    per_m = 1.0 / grid.layered.cell_m  # the same for all: the compiler divides once
+    """Row and column that hold a point, clamped to the grid."""
+    per_m = 1.0 / grid.layered.cell_m  # the compiler divides only once for all points
     j = min(grid.layered.ny - 1, max(0, int((y - grid.layered.y0) * per_m)))
     i = min(grid.layered.nx - 1, max(0, int((x - grid.layered.x0) * per_m)))
     return j, i
@@ -47,15 +47,17 @@ def row_and_column(grid: GridArrays, x: float, y: float) -> tuple[int, int]:
 
 @inlined
 def _inside(grid: GridArrays, x: float, y: float) -> bool:
+    """Whether a point lies inside the bounds, or on them."""
     ground = grid.layered
     return bool(ground.x0 <= x <= ground.x1 and ground.y0 <= y <= ground.y1)
 
 
 @inlined
 def follow(grid: GridArrays, cell: int, x: float, y: float) -> int:
-    """Cell of a point near a cell, whatever its layer: the surface nearest in height; -1 if none.
+    """Cell of a point near a cell: on whatever layer, the surface nearest in height; -1 if none.
 
-    The two must not be further apart than one gets in a slice: what lies between is not looked at.
+    The point must be no further away than anyone gets in a time slice, since the cells in between
+    are not looked at.
     """
     if not _inside(grid, x, y):
         return -1
@@ -67,7 +69,7 @@ def follow(grid: GridArrays, cell: int, x: float, y: float) -> int:
         return -1
     floor = grid.layered.floors[cell]
     best = -1
-    least = REACH_M
+    least = FOLLOW_M
     for layer in range(len(grid.layered.pages)):
         other = cell_index(grid.layered, layer, j, i)
         if other >= 0:
@@ -94,16 +96,16 @@ def follow_path(
     first: int,
     last: int,
 ) -> None:
-    """Cells (K,) that a path (K, 2) is in after slice first up to slice last."""
+    """Fill the cells (K,) of a path (K, 2) after slice `first` up to slice `last`."""
     for k in range(first + 1, last + 1):
         cells[k] = follow(grid, cells[k - 1], path[k, 0], path[k, 1])
 
 
 @kernel
 def surface_at(grid: GridArrays, x: float, y: float, z: float) -> int:
-    """Cell of the standing surface nearest in height at a point or, if there is none, next to it.
+    """Cell of the standing surface nearest in height at a point, else up to two cells aside.
 
-    -1 where nobody can stand for two cells around.
+    It is -1 where nobody can stand there either.
     """
     j, i = row_and_column(grid, x, y)
     for ring in range(3):
@@ -128,8 +130,8 @@ def surface_at(grid: GridArrays, x: float, y: float, z: float) -> int:
 
 @inlined
 def neighbour(grid: GridArrays, cell: int, dj: int, di: int) -> int:
-    """Cell next to a cell, on whatever layer; itself where there is none."""
-    if grid.flat:  # within a tile neighbours need not be looked up
+    """The cell next to a cell, on whatever layer; the cell itself where there is none."""
+    if grid.flat:  # within a tile a neighbour can be computed
         j = ((cell >> 3) & 7) + dj
         i = (cell & 7) + di
         if 0 <= j < TILE and 0 <= i < TILE:
@@ -146,9 +148,9 @@ def neighbour(grid: GridArrays, cell: int, dj: int, di: int) -> int:
 
 @inlined
 def corners(grid: GridArrays, cell: int, x: float, y: float) -> tuple[int, int, int, float, float]:
-    """The three cells besides its own that a point lies between, and how far toward them.
+    """The three cells around a point besides its own, and its distances from the own centre.
 
-    (beside, above or below, across, u, v) with u, v in [0, 0.5] of a cell from the own centre.
+    (beside, above or below, across, u, v), with u and v in [0, 0.5] cells.
     """
     j, i = row_and_column(grid, x, y)
     per_m = 1.0 / grid.layered.cell_m
@@ -172,7 +174,7 @@ def corners(grid: GridArrays, cell: int, x: float, y: float) -> tuple[int, int, 
 
 @inlined
 def clearance_at(grid: GridArrays, body: int, cell: int, x: float, y: float) -> float:
-    """Distance to what stops a body, between the cells around; -inf without a cell."""
+    """Clearance of a body at a point, interpolated between cells, metres; -inf without a cell."""
     if cell < 0:
         return -np.inf
     beside, over, across, u, v = corners(grid, cell, x, y)
@@ -195,7 +197,7 @@ def line_is_clear(
 ) -> bool:
     """Whether a disc may move straight from a, in `cell`, to b; cheap in the open.
 
-    On one level it is sphere-traced; over several it may not go further than a cell at a time.
+    On flat ground the line is sphere-traced; elsewhere each piece is a cell long at most.
     """
     way = length(bx - ax, by - ay)
     shortest = 0.5 * grid.layered.cell_m
@@ -222,7 +224,7 @@ def clearance_many(
     positions: NDArray[np.float64],
     out: NDArray[np.float64],
 ) -> None:
-    """`clearance_at` for (N,), (N, 2) -> out (N,); -inf outside the bounds."""
+    """Fill `out` (N,) with `clearance_at` of cells (N,), positions (N, 2); -inf out of bounds."""
     for k in range(len(positions)):
         x = positions[k, 0]
         y = positions[k, 1]
@@ -238,14 +240,14 @@ def surfaces_at(
     heights: NDArray[np.float64],
     out: NDArray[np.int64],
 ) -> None:
-    """`surface_at` for (N, 2), (N,) -> out (N,)."""
+    """Fill `out` (N,) with `surface_at` of positions (N, 2) and heights (N,)."""
     for k in range(len(positions)):
         out[k] = surface_at(grid, positions[k, 0], positions[k, 1], heights[k])
 
 
 @kernel
 def heights_along(grid: GridArrays, cells: NDArray[np.int64], paths: NDArray[np.float64]) -> None:
-    """Write the heights of A paths (A, K, 3) that begin in cells (A,) and step by step go on."""
+    """Write the heights of A paths (A, K, 3) that begin in cells (A,), following them."""
     for a in range(len(cells)):
         cell = cells[a]
         for k in range(paths.shape[1]):

@@ -8,33 +8,35 @@ from numpy.typing import NDArray
 from esplanade.planning.compiled.handle import Handle
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.grid._grid_kernels import GridArrays, corners, follow, surface_at
+from esplanade.planning.ground._barrier_kernels import point_barrier_distance
 from esplanade.planning.ground._geometry_kernels import (
-    SegmentIndex,
-    Stance,
+    BarrierIndex,
+    Placement,
     point_segment_distance,
     slide,
+    stops,
 )
 from esplanade.planning.ground.layered import TILE
 
 
 class GroundArrays(NamedTuple):
-    """A zone's ground and what stops bodies on it."""
+    """The grid of a zone, and the barriers that stop bodies on it."""
 
     grid: GridArrays
-    barriers: SegmentIndex
+    barriers: BarrierIndex
 
 
 @kernel
 def cell_at(ground: Handle[GroundArrays], x: float, y: float, z: float) -> int:
-    """`surface_at`, for one place at a time."""
+    """`surface_at` for one place."""
     return surface_at(ground.value.grid, x, y, z)
 
 
 @inlined
-def _foothold(grid: GridArrays, cell: int, x: float, y: float, step_on_m: float) -> float:
+def _support(grid: GridArrays, cell: int, x: float, y: float, step_on_m: float) -> float:
     """Height of the highest floor around a point that a body in a cell can step on.
 
-    Stairs rise within a cell: who is nearly out of it may have a foot on the next tread already.
+    Stairs rise within a cell: a body at its border may have a foot on the next tread already.
     """
     floor = grid.layered.floors[cell]
     beside, over, across, _, _ = corners(grid, cell, x, y)
@@ -48,7 +50,7 @@ def _foothold(grid: GridArrays, cell: int, x: float, y: float, step_on_m: float)
 @inlined
 def walk(
     grid: GridArrays,
-    index: SegmentIndex,
+    index: BarrierIndex,
     height_m: float,
     step_on_m: float,
     cell: int,
@@ -58,21 +60,22 @@ def walk(
     dy: float,
     clearance: float,
 ) -> tuple[int, float, float]:
-    """Move a body by (dx, dy), sliding along what stops it, up and down what it can step on.
+    """Move a body by (dx, dy); it slides along barriers and steps up and down where it can.
 
-    Where there is nothing to stand on it stays. Over several levels the way is cut into pieces of
-    a cell at most, since what stops it depends on where it stands.
+    The body stays where there is no floor ahead. Unless the grid is flat, the movement is cut into
+    pieces of at most a cell, since it depends on the floor which barriers stop a body. Returns the
+    cell and position that the body comes to.
     """
     bounds = (grid.layered.x0, grid.layered.y0, grid.layered.x1, grid.layered.y1)
     if grid.flat:
-        stance = Stance(0.0, 0.0, height_m, step_on_m)
-        nx, ny = slide(index, stance, bounds, x, y, dx, dy, clearance)
+        placement = Placement(0.0, 0.0, height_m, step_on_m)
+        nx, ny = slide(index, placement, bounds, x, y, dx, dy, clearance)
         return follow(grid, cell, nx, ny), nx, ny
     pieces = max(1, int(np.ceil(np.hypot(dx, dy) / (0.8 * grid.layered.cell_m))))
     for _ in range(pieces):
-        foothold = _foothold(grid, cell, x, y, step_on_m)
-        stance = Stance(float(grid.layered.floors[cell]), foothold, height_m, step_on_m)
-        nx, ny = slide(index, stance, bounds, x, y, dx / pieces, dy / pieces, clearance)
+        support = _support(grid, cell, x, y, step_on_m)
+        placement = Placement(float(grid.layered.floors[cell]), support, height_m, step_on_m)
+        nx, ny = slide(index, placement, bounds, x, y, dx / pieces, dy / pieces, clearance)
         other = follow(grid, cell, nx, ny)
         if (
             other < 0
@@ -88,7 +91,7 @@ def walk(
 @kernel
 def walk_many(
     grid: GridArrays,
-    index: SegmentIndex,
+    index: BarrierIndex,
     height_m: float,
     step_on_m: float,
     cells: NDArray[np.int64],
@@ -96,7 +99,7 @@ def walk_many(
     displacements: NDArray[np.float64],
     clearance: float,
 ) -> None:
-    """`walk` for N bodies in place: cells (N,), positions (N, 2) by displacements (N, 2)."""
+    """`walk` for N bodies, in place: cells (N,), positions (N, 2), displacements (N, 2)."""
     for n in range(len(cells)):
         if cells[n] < 0 and not grid.flat:
             continue
@@ -117,34 +120,37 @@ def walk_many(
 @kernel
 def lower_to_barriers(
     grid: GridArrays,
-    index: SegmentIndex,
+    index: BarrierIndex,
     height_m: float,
     step_on_m: float,
     reach: float,
     box: tuple[float, float, float, float],
     field: NDArray[np.float32],
 ) -> None:
-    """Lower a field (N,), preset to `reach`, to the distances of cells from what stops a body.
+    """Lower a field (N,), preset to `reach`, to the distances of cells from barriers, in metres.
 
-    Only cells whose centres lie in `box` (x0, y0, x1, y1) are looked at.
+    Barriers that do not stop the body are ignored. Only cells whose centres lie in `box`
+    (x0, y0, x1, y1) are lowered.
     """
-    layered, segments = grid.layered, index.segments
+    layered, barriers = grid.layered, index.barriers
     pages, cell_m = layered.pages, layered.cell_m
     tile_m = TILE * cell_m
+    x0, y0, x1, y1 = box
     body = height_m, step_on_m
-    highest = np.full(len(layered.plain), reach, dtype=np.float32)
-    for s in range(len(segments)):
-        ax, ay, bx, by = segments[s, :4]
-        if step_on_m >= segments[s, 6]:
+    highest = np.full(len(layered.level_headroom), reach, dtype=np.float32)
+    for s in range(len(barriers)):
+        barrier = barriers[s]
+        if step_on_m >= barrier["climb_m"]:
             continue
-        i0 = max(0, int((max(box[0], min(ax, bx) - reach) - layered.x0) / cell_m) - 1)
-        i1 = min(layered.nx, int((min(box[2], max(ax, bx) + reach) - layered.x0) / cell_m) + 2)
-        j0 = max(0, int((max(box[1], min(ay, by) - reach) - layered.y0) / cell_m) - 1)
-        j1 = min(layered.ny, int((min(box[3], max(ay, by) + reach) - layered.y0) / cell_m) + 2)
+        ax, ay, bx, by = barrier["x0"], barrier["y0"], barrier["x1"], barrier["y1"]
+        i0 = max(0, int((max(x0, min(ax, bx) - reach) - layered.x0) / cell_m) - 1)
+        i1 = min(layered.nx, int((min(x1, max(ax, bx) + reach) - layered.x0) / cell_m) + 2)
+        j0 = max(0, int((max(y0, min(ay, by) - reach) - layered.y0) / cell_m) - 1)
+        j1 = min(layered.ny, int((min(y1, max(ay, by) + reach) - layered.y0) / cell_m) + 2)
         for tj in range(j0 // TILE, (j1 - 1) // TILE + 1):
             for ti in range(i0 // TILE, (i1 - 1) // TILE + 1):
                 x, y = layered.x0 + (ti + 0.5) * tile_m, layered.y0 + (tj + 0.5) * tile_m
-                nearest = point_segment_distance(x, y, ax, ay, bx, by)[0] - 0.71 * tile_m
+                nearest = point_segment_distance(x, y, ax, ay, bx, by) - 0.71 * tile_m
                 if nearest > reach:
                     continue
                 rows = max(j0, tj * TILE), min(j1, (tj + 1) * TILE)
@@ -153,14 +159,14 @@ def lower_to_barriers(
                     page = pages[layer, tj, ti]
                     tile = page // (TILE * TILE)
                     if page >= 0 and nearest < highest[tile]:
-                        _lower_tile(grid, segments[s], body, page, rows, columns, field)
+                        _lower_tile(grid, barrier, body, page, rows, columns, field)
                         highest[tile] = field[page : page + TILE * TILE].max()
 
 
 @inlined
 def _lower_tile(
     grid: GridArrays,
-    segment: NDArray[np.float64],
+    barrier: NDArray[np.void],
     body: tuple[float, float],
     page: int,
     rows: tuple[int, int],
@@ -174,10 +180,7 @@ def _lower_tile(
         for i in range(columns[0], columns[1]):
             cell = page + (j % TILE) * TILE + i % TILE
             floor = 0.0 if grid.flat else float(layered.floors[cell])
-            if segment[4] < floor + height_m and segment[5] > floor + step_on_m:
+            if stops(barrier, Placement(floor, floor, height_m, step_on_m)):
                 x = layered.x0 + (i + 0.5) * layered.cell_m
                 y = layered.y0 + (j + 0.5) * layered.cell_m
-                away = point_segment_distance(x, y, segment[0], segment[1], segment[2], segment[3])[
-                    0
-                ]
-                field[cell] = min(field[cell], away)
+                field[cell] = min(field[cell], point_barrier_distance(barrier, x, y))

@@ -1,4 +1,4 @@
-"""How far cells are from what stops a body, for each kind of body that a zone tells apart."""
+"""Clearances: the distance of each cell to the barriers that stop a kind of body."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from esplanade.planning.grid._grid_kernels import GridArrays
 from esplanade.planning.grid._walking_kernels import lower_to_barriers
-from esplanade.planning.ground._geometry_kernels import SegmentIndex
+from esplanade.planning.ground._geometry_kernels import BarrierIndex
 from esplanade.planning.ground.layered import TILE, LayeredArrays
 from esplanade.planning.scene.bodies import Body
 
 CLEARANCE_CAP_M = 3.0
-"""Distances to obstacles are kept up to here; further is as good as far."""
+"""Greatest clearance that is kept: anything further away makes no difference."""
 Box = tuple[float, float, float, float]
 """x0, y0, x1, y1 in metres."""
 
@@ -24,7 +24,7 @@ _ROUNDING_M = 1e-4
 
 
 def kind_of(body: Body) -> Body:
-    """The kind that a body counts as: radius and height rounded up to 5 cm, whatever its M."""
+    """The kind of a body: radius and height are rounded up to 5 cm, and M is ignored."""
     return replace(
         body,
         radius_m=math.ceil(body.radius_m / _BODY_STEP_M - 1e-9) * _BODY_STEP_M,
@@ -35,15 +35,16 @@ def kind_of(body: Body) -> Body:
 
 def write_clearance(
     arrays: GridArrays,
-    index: SegmentIndex,
+    index: BarrierIndex,
     body: Body,
     box: Box,
     cells: NDArray[np.int64],
     out: NDArray[np.float32],
 ) -> None:
-    """Write the distance to what stops a body into `out` (N,), for all cells of a box.
+    """Write the clearance of a body in all cells of a box into `out` (N,), metres.
 
-    It is negative in holes and under ceilings that are too low.
+    `cells` are the cells of the box. Clearance is negative in holes and under ceilings that are
+    too low.
     """
     out[cells] = CLEARANCE_CAP_M
     lower_to_barriers(arrays, index, body.height_m, body.step_on_m, CLEARANCE_CAP_M, box, out)
@@ -52,15 +53,18 @@ def write_clearance(
 
 
 def centres_of(layered: LayeredArrays) -> NDArray[np.float64]:
-    """Centres of the cells, float64 (N, 2)."""
-    rows_columns = layered.places[:, 1:].astype(np.float64) + 0.5
-    return np.ascontiguousarray(rows_columns[:, ::-1] * layered.cell_m + (layered.x0, layered.y0))
+    """Centres of the cells, float64 (N, 2), metres."""
+    places = layered.places
+    centres = np.empty((len(places), 2))
+    centres[:, 0] = (places["column"] + 0.5) * layered.cell_m + layered.x0
+    centres[:, 1] = (places["row"] + 0.5) * layered.cell_m + layered.y0
+    return centres
 
 
 def cells_within(
     layered: LayeredArrays, centres: NDArray[np.float64], box: Box
 ) -> NDArray[np.int64]:
-    """The cells, holes included, whose centres lie in a box."""
+    """The cells, holes included, whose centres lie in a box, int64 (K,)."""
     tile_m = TILE * layered.cell_m
     i0, i1 = (max(0, int((x - layered.x0) // tile_m)) for x in box[::2])
     j0, j1 = (max(0, int((y - layered.y0) // tile_m)) for y in box[1::2])

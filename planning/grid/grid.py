@@ -1,4 +1,4 @@
-"""The ground of a zone: where a body may stand, how it walks, and the ways to goals."""
+"""The grid of a zone: where a body may stand, its clearance there, and how it walks."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from esplanade.planning.grid.clearances import (
     write_clearance,
 )
 from esplanade.planning.ground import _geometry_kernels as geometry
-from esplanade.planning.ground._geometry_kernels import SegmentIndex, Stance
+from esplanade.planning.ground._geometry_kernels import BarrierIndex, Placement
 from esplanade.planning.ground.barriers import Barriers
 from esplanade.planning.ground.floors import Floors, floors_of_mesh, floors_of_scene
 from esplanade.planning.ground.layered import LayeredArrays
-from esplanade.planning.ground.meshes import Progress, unheard
+from esplanade.planning.ground.meshes import Progress, no_progress
 from esplanade.planning.ground.surfaces import Surfaces
 from esplanade.planning.scene.bodies import MOST_BODIES, Body
 from esplanade.planning.scene.doors import Doors
@@ -43,11 +43,12 @@ _EDGES = (Stability.UNSTABLE, Stability.UP_STAIR, Stability.DOWN_STAIR)
 
 
 class LayeredGrid:
-    """Cells of one zone, layer by layer, and what stops bodies from going where they like.
+    """The cells of one zone, layer by layer, and the barriers that stop bodies there.
 
-    Places are given by x, y and a height: the standing surface nearest in height is meant. A disc
-    of radius r may stand where the clearance of its kind of body is at least r: that set is the
-    complement of its C-obstacles. Memory is some 60 bytes a cell, 5 more for each kind of body.
+    Places are given by x, y and a height, in metres: the standing surface nearest in height is
+    meant. A disc of radius r may stand where the clearance of its kind of body is at least r; that
+    set is the complement of its C-obstacles. Memory is some 60 bytes a cell, and 5 more for each
+    kind of body.
     """
 
     def __init__(self, floors: Floors) -> None:
@@ -70,7 +71,9 @@ class LayeredGrid:
 
     @classmethod
     def from_scene(cls, scene: Scene, cell_m: float = 0.25) -> Self:
-        """Derive the grid of a scene. Cost O(surfaces + obstacles × cells near them).
+        """Derive the grid of a scene, with cells of `cell_m` metres.
+
+        Cost O(surfaces + obstacles × cells near them).
 
         Raises
         ------
@@ -83,34 +86,35 @@ class LayeredGrid:
 
     @classmethod
     def from_mesh(
-        cls, path: str | Path, cell_m: float = 0.25, up: Up = "y", progress: Progress = unheard
+        cls, path: str | Path, cell_m: float = 0.25, up: Up = "y", progress: Progress = no_progress
     ) -> Self:
-        """Derive the grid of a building: OBJ, glTF, or whatever else trimesh reads.
+        """Derive the grid of a building from an OBJ, glTF or any other file that trimesh reads.
 
         Parameters
         ----------
         up : "y" or "z"
             The file's axis that points up. With "y", its (x, y, z) becomes (x, -z, y).
-        progress : what is being done, share of the whole -> None
+        progress : Progress
+            Called as each piece of the work begins.
 
         Raises
         ------
         MeshError
-            The file is at fault; the message names it and says how.
+            The file is at fault; the message names the file and the fault.
         """
         return cls(floors_of_mesh(path, cell_m, up, progress))
 
     def row_of(self, body: Body) -> int:
-        """Row of a kind of body in `arrays.clearance`; derived when it is asked for first.
+        """Row of a kind of body in `arrays.clearance`, which is derived at the first call.
 
-        Bodies that differ by less than 5 cm in radius or height, or only in how long they may stay
-        on edges, share a row: that of the widest and tallest.
+        Bodies share a row, derived for the widest and tallest of them, if their radii and heights
+        round up to the same 5 cm, however long they may stay on edges.
 
         Raises
         ------
         ValueError
-            That would be more than `MOST_BODIES` kinds. Whoever walks here has a row, so that
-            none can be given to another.
+            That would be more than `MOST_BODIES` kinds. No row can be given to another kind, since
+            bodies that still walk here may use it.
         """
         body = kind_of(body)
         row = self._rows.get(body)
@@ -131,14 +135,14 @@ class LayeredGrid:
         return row
 
     def _edges(self, body: Body, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Of some cells those where a body is on an edge."""
+        """Whether a body is on an edge in each of some cells, bool (K,)."""
         if self.arrays.flat:
             return np.zeros(len(cells), dtype=np.bool_)
         return np.isin(self.traversability.of(body).classes[cells], _EDGES)
 
     @property
     def ground(self) -> Handle[GroundArrays]:
-        """`arrays` and `index` as kernels keep them, for what is asked often."""
+        """`arrays` and `index` as kernels keep them, for frequent calls."""
         arrays = self.arrays
         if self._held[0] is not arrays:
             self._held = arrays, make_handle(GroundArrays(arrays, self.index))
@@ -151,25 +155,29 @@ class LayeredGrid:
 
     @property
     def surfaces(self) -> Surfaces:
-        """Where one can stand."""
+        """The standing surfaces."""
         return self.floors.surfaces
 
     @property
     def barriers(self) -> Barriers:
-        """What stops bodies, doors included."""
+        """The barriers that stop bodies, doors included."""
         return self.floors.barriers
 
     @property
     def doors(self) -> Doors:
-        """What of the barriers opens and closes; use `set_door` to do so."""
+        """The barriers that open and close; `set_door` moves them."""
         return self.floors.doors
 
     def set_door(self, name: str, is_open: bool) -> None:
-        """Open or close a door. Only clearances within reach of it are derived again.
+        """Open or close a door; clearances near it are derived again.
 
-        Who reads `arrays` meanwhile, in another thread, keeps what was before.
-        Potentials made before lead through what is closed now: ask for them anew. KeyError when
-        there is no door of that name.
+        A thread that reads `arrays` meanwhile keeps the arrays from before. Potentials made before
+        do not know of the change and have to be made anew.
+
+        Raises
+        ------
+        KeyError
+            There is no door of that name.
         """
         x0, y0, x1, y1 = self.doors.set_open(name, is_open)
         reach = CLEARANCE_CAP_M
@@ -220,8 +228,8 @@ class LayeredGrid:
     ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """Positions float64 (N, 2) and the cells int64 (N,) that are stood in there.
 
-        The cell is that of the surface nearest in height, where need be up to two cells aside; -1
-        where nobody can stand.
+        The cell is that of the surface nearest in height, if need be up to two cells aside; it is
+        -1 where nobody can stand.
         """
         points, levels = self.as_points(positions, heights)
         cells = np.empty(len(points), dtype=np.int64)
@@ -229,13 +237,13 @@ class LayeredGrid:
         return points, cells
 
     def cell_at(self, position: tuple[float, float], height: float) -> int:
-        """The cell that is stood in at one place, -1 where nobody can; `on_ground` for many."""
+        """The cell of one place, -1 where nobody can stand; `on_ground` does this for many."""
         return walking.cell_at(self.ground, position[0], position[1], height)
 
     def with_heights(
         self, paths: NDArray[np.float64], cells: NDArray[np.int64]
     ) -> NDArray[np.float64]:
-        """Heights added to A paths (A, K, 2) that begin in cells (A,): float64 (A, K, 3)."""
+        """A paths (A, K, 2) that begin in cells (A,) with their heights, float64 (A, K, 3)."""
         out = np.zeros((*paths.shape[:2], 3))
         out[:, :, :2] = paths
         if not self.arrays.flat:
@@ -243,23 +251,23 @@ class LayeredGrid:
         return out
 
     def floor_at(self, position: tuple[float, float], height: float) -> float:
-        """Height of the standing surface there that is nearest in height; `height` if none is."""
+        """Height of the standing surface nearest in height; `height` itself if there is none."""
         cell = int(self.on_ground([position], [height])[1][0])
         return float(self.layered.floors[cell]) if cell >= 0 else height
 
     def layers_at(self, positions: ArrayLike, heights: ArrayLike) -> NDArray[np.int64]:
         """`layer_at` for (N, 2), (N,): int64 (N,)."""
         _, cells = self.on_ground(positions, heights)
-        return np.where(cells >= 0, self.layered.places[cells, 0], 0).astype(np.int64)
+        return np.where(cells >= 0, self.layered.places[cells]["layer"], 0).astype(np.int64)
 
     def layer_at(self, position: tuple[float, float], height: float) -> int:
-        """Layer of the standing surface there that is nearest in height; 0 if none is."""
+        """Layer of the standing surface nearest in height; 0 if there is none."""
         return int(self.layers_at([position], [height])[0])
 
     def clearance(
         self, positions: ArrayLike, heights: ArrayLike, body: Body = ADULT
     ) -> NDArray[np.float64]:
-        """Metres to what stops a body, float64 (N,); -inf where it cannot stand."""
+        """Metres to the barriers that stop a body, float64 (N,); -inf where it cannot stand."""
         row = self.row_of(body)
         points, cells = self.on_ground(positions, heights)
         out = np.empty(len(points))
@@ -273,7 +281,7 @@ class LayeredGrid:
         clearance_m: float,
         body: Body = ADULT,
     ) -> NDArray[np.bool_]:
-        """Whether a disc of that radius may stand there, bool (N,)."""
+        """Whether a disc of radius `clearance_m` may stand at each position, bool (N,)."""
         return np.asarray(self.clearance(positions, heights, body) >= clearance_m)
 
     def nearest_free(
@@ -285,9 +293,10 @@ class LayeredGrid:
     ) -> tuple[float, float] | None:
         """The position itself when free, else the centre of the nearest free cell on its level.
 
-        Within a metre a cell on this side of walls is taken before any beyond. Levels are told
-        apart by half a body's height; if there is none on this level, on any. A position in the
-        air is one on the floor below, one inside a building is none on its roof.
+        Within a metre, cells on this side of walls are preferred. Cells whose floors differ from
+        `height` by less than half the body's height are on its level; without a free cell on that
+        level, all levels are searched. A position in the air means the floor below; a position
+        inside a building does not mean its roof. Returns None if no cell is free.
         """
         a = self.layered
         level_m = 0.5 * body.height_m
@@ -303,9 +312,9 @@ class LayeredGrid:
                 away = np.hypot(*(self.centres[cells] - position).T) + apart[cells]
                 near = cells[away < 1.0][np.argsort(away[away < 1.0], kind="stable")]
                 floor = self.floor_at(position, height)
-                stance = Stance(floor, floor, body.height_m, body.step_on_m)
+                placement = Placement(floor, floor, body.height_m, body.step_on_m)
                 for x, y in self.centres[near].tolist():
-                    if not geometry.crosses_any(self.index, stance, *position, x, y):
+                    if not geometry.crosses_any(self.index, placement, *position, x, y):
                         return x, y
                 x, y = self.centres[cells[away.argmin()]].tolist()
                 return x, y
@@ -319,27 +328,29 @@ class LayeredGrid:
         clearance_m: float,
         body: Body = ADULT,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Move bodies, sliding along what stops them; no wall is ever crossed, no ledge left.
+        """Move bodies; they slide along barriers, never cross a wall and never leave a ledge.
 
         Parameters
         ----------
         positions, displacements : float (N, 2), metres
         heights : float (N,), metres
         clearance_m : float, metres
-            Distance that a centre keeps from walls, at most 1 m. Who starts closer is let out,
-            never further in.
+            Distance that a centre keeps from walls, at most 1 m. A body that starts closer may
+            leave, but gets no closer.
 
         Returns
         -------
-        float64 (N, 2) positions and float64 (N,) heights of the floor there.
+        positions : float64 (N, 2), metres
+        heights : float64 (N,), metres
+            Heights of the floors at those positions.
         """
         if not 0.0 <= clearance_m <= 1.0:
             raise ValueError(f"clearance_m must lie between 0 and 1 m, got {clearance_m}")
         points, cells = self.on_ground(positions, heights)
-        ways = np.ascontiguousarray(displacements, dtype=np.float64).reshape(-1, 2)
-        if ways.shape != points.shape:
-            raise ValueError(f"{len(points)} positions but {len(ways)} displacements")
-        if not np.isfinite(ways).all():
+        moves = np.ascontiguousarray(displacements, dtype=np.float64).reshape(-1, 2)
+        if moves.shape != points.shape:
+            raise ValueError(f"{len(points)} positions but {len(moves)} displacements")
+        if not np.isfinite(moves).all():
             raise ValueError("displacements must be finite")
         out = points.copy()
         walking.walk_many(
@@ -349,14 +360,14 @@ class LayeredGrid:
             body.step_on_m,
             cells,
             out,
-            ways,
+            moves,
             clearance_m,
         )
         levels = np.where(cells >= 0, self.layered.floors[cells], heights)
         return out, levels.astype(np.float64)
 
 
-def _index(barriers: Barriers, bounds: tuple[float, float, float, float]) -> SegmentIndex:
+def _index(barriers: Barriers, bounds: tuple[float, float, float, float]) -> BarrierIndex:
     x0, y0, x1, y1 = bounds
     nx = max(1, math.ceil((x1 - x0) / _BUCKET_M))
     ny = max(1, math.ceil((y1 - y0) / _BUCKET_M))
@@ -367,4 +378,4 @@ def _index(barriers: Barriers, bounds: tuple[float, float, float, float]) -> Seg
     starts[1:] = np.cumsum(starts[1:])
     members = np.empty(starts[-1], dtype=np.int64)
     geometry.list_by_bucket(barriers, place, reach, starts, members)
-    return SegmentIndex(barriers, starts, members, *place[:3], _BUCKET_REACH_M, nx, ny)
+    return BarrierIndex(barriers, starts, members, *place[:3], _BUCKET_REACH_M, nx, ny)

@@ -6,29 +6,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
-from esplanade.planning.ground._geometry_kernels import segments_cross
+from esplanade.planning.ground._geometry_kernels import point_segment_distance
 from esplanade.planning.ground.layered import LINK_M, LayeredArrays, cell_index
 
-HAIR_M = 1e-4
-"""Heights and lengths that differ by less are equal: floors are rounded to float32."""
+TOLERANCE_M = 1e-4
+"""Heights and lengths that differ by less are equal, since floors are rounded to float32."""
+
+LISTED = np.dtype([("barrier", "i4"), ("next", "i4")])
+"""An entry of a linked list: the row of a barrier, and the next entry of the same cell or -1."""
 
 
 class NearBarriers(NamedTuple):
-    """For each cell the barriers that pass near it: linked lists."""
+    """For each of N cells a linked list of the barriers that pass near it."""
 
-    barriers: NDArray[np.float64]
-    """(S, 7): x0, y0, x1, y1, z0, z1, rise, metres. It stops a body that stands at z iff
-    z0 < z + height and z1 > z + step-on and step-on < rise."""
+    barriers: NDArray[np.void]
+    """(S,) of `BARRIER`; a door that opens or closes changes its row in place."""
     first: NDArray[np.int32]
-    """(N,): a cell's first entry, -1: none."""
-    entries: NDArray[np.int32]
-    """(E, 2): row of a barrier, next entry of the same cell or -1."""
+    """(N,): the first entry of each cell, -1 without any."""
+    entries: NDArray[np.void]
+    """(E,) of `LISTED`."""
     reach_m: float
-    """Barriers that pass within so much of a cell's centre are listed."""
+    """A cell lists the barriers that pass within this distance of its centre."""
 
 
 class Measures(NamedTuple):
-    """A body's measures."""
+    """Measures of a `Body`, in metres."""
 
     radius_m: float
     height_m: float
@@ -37,69 +39,60 @@ class Measures(NamedTuple):
 
 
 @inlined
-def point_to_segment(px: float, py: float, ax: float, ay: float, bx: float, by: float) -> float:
-    """Distance from a point to a segment."""
-    dx = bx - ax
-    dy = by - ay
-    length2 = dx * dx + dy * dy
-    u = 0.0
-    if length2 > 0.0:
-        u = min(1.0, max(0.0, ((px - ax) * dx + (py - ay) * dy) / length2))
-    ex = px - ax - u * dx
-    ey = py - ay - u * dy
-    return float(np.sqrt(ex * ex + ey * ey))
+def point_barrier_distance(barrier: NDArray[np.void], x: float, y: float) -> float:
+    """Distance on the plan from a point to a barrier."""
+    return point_segment_distance(x, y, barrier["x0"], barrier["y0"], barrier["x1"], barrier["y1"])
 
 
 @inlined
-def to_raise(barrier: NDArray[np.float64], lowest: float, highest: float, height: float) -> float:
-    """How high a body must step to pass a barrier; 0: it passes below it, or nothing is there.
-
-    `lowest` and `highest` are the floors on either side.
-    """
-    if barrier[4] >= highest + height - HAIR_M:
-        return 0.0
-    return float(max(0.0, min(barrier[5] - lowest, barrier[6])))
-
-
-@inlined
-def crosses(barrier: NDArray[np.float64], ax: float, ay: float, bx: float, by: float) -> bool:
-    """Whether the way from a to b meets a barrier, touching included."""
-    return segments_cross(ax, ay, bx, by, barrier[0], barrier[1], barrier[2], barrier[3])
-
-
-@inlined
-def way_to_barrier(
-    barrier: NDArray[np.float64], ax: float, ay: float, bx: float, by: float
+def height_to_climb(
+    barrier: NDArray[np.void], lowest: float, highest: float, height: float
 ) -> float:
-    """Distance between a barrier and the way from a to b, which do not cross."""
-    px, py, qx, qy = barrier[0], barrier[1], barrier[2], barrier[3]
+    """Height that a body has to climb to pass a barrier, in metres.
+
+    It is 0 where the body passes below the barrier, and where the barrier is an open door.
+    `lowest` and `highest` are the heights of the floors on either side.
+    """
+    if barrier["bottom_m"] >= highest + height - TOLERANCE_M:
+        return 0.0
+    return float(max(0.0, min(barrier["top_m"] - lowest, barrier["climb_m"])))
+
+
+@inlined
+def segment_barrier_distance(
+    barrier: NDArray[np.void], ax: float, ay: float, bx: float, by: float
+) -> float:
+    """Distance on the plan between a barrier and the segment ab, if the two do not cross."""
+    px, py, qx, qy = barrier["x0"], barrier["y0"], barrier["x1"], barrier["y1"]
     return min(
-        point_to_segment(ax, ay, px, py, qx, qy),
-        point_to_segment(bx, by, px, py, qx, qy),
-        point_to_segment(px, py, ax, ay, bx, by),
-        point_to_segment(qx, qy, ax, ay, bx, by),
+        point_segment_distance(ax, ay, px, py, qx, qy),
+        point_segment_distance(bx, by, px, py, qx, qy),
+        point_segment_distance(px, py, ax, ay, bx, by),
+        point_segment_distance(qx, qy, ax, ay, bx, by),
     )
 
 
 @kernel
 def list_barriers(
     arrays: LayeredArrays,
-    barriers: NDArray[np.float64],
+    barriers: NDArray[np.void],
     body: Measures,
     reach: float,
     first: NDArray[np.int32],
-) -> NDArray[np.int32]:
-    """List for each cell the barriers within `reach` of its centre that might matter to a body.
+) -> NDArray[np.void]:
+    """List for each cell the barriers within `reach` of its centre that may matter to a body.
 
-    `first` (N,) must be preset to -1; returns the entries, int32 (E, 2).
+    `first` (N,) must be preset to -1. Returns the entries, (E,) of `LISTED`. Barriers that the
+    body can climb are left out, except open doors, since these may close.
     """
-    entries = np.empty((64 * len(barriers) + 8, 2), dtype=np.int32)
+    entries = np.empty(64 * len(barriers) + 8, dtype=LISTED)
     used = 0
     layers = arrays.pages.shape[0]
     cell_m = arrays.cell_m
     for s in range(len(barriers)):
-        ax, ay, bx, by, z0, z1, rise = barriers[s]
-        if 0.0 < rise <= body.step_on_m:
+        barrier = barriers[s]
+        ax, ay, bx, by = barrier["x0"], barrier["y0"], barrier["x1"], barrier["y1"]
+        if 0.0 < barrier["climb_m"] <= body.step_on_m:
             continue
         i0 = max(0, int((min(ax, bx) - reach - arrays.x0) / cell_m))
         i1 = min(arrays.nx - 1, int((max(ax, bx) + reach - arrays.x0) / cell_m))
@@ -109,21 +102,24 @@ def list_barriers(
             y = arrays.y0 + (j + 0.5) * cell_m
             for i in range(i0, i1 + 1):
                 x = arrays.x0 + (i + 0.5) * cell_m
-                if point_to_segment(x, y, ax, ay, bx, by) > reach:
+                if point_segment_distance(x, y, ax, ay, bx, by) > reach:
                     continue
                 for layer in range(layers):
                     cell = cell_index(arrays, layer, j, i)
                     if cell < 0:
                         continue
                     floor = arrays.floors[cell]
-                    if z0 >= floor + LINK_M + body.height_m or z1 <= floor:
+                    if (
+                        barrier["bottom_m"] >= floor + LINK_M + body.height_m
+                        or barrier["top_m"] <= floor
+                    ):
                         continue
                     if used == len(entries):
-                        wider = np.empty((2 * used, 2), dtype=np.int32)
+                        wider = np.empty(2 * used, dtype=LISTED)
                         wider[:used] = entries
                         entries = wider
-                    entries[used, 0] = s
-                    entries[used, 1] = first[cell]
+                    entries[used]["barrier"] = s
+                    entries[used]["next"] = first[cell]
                     first[cell] = used
                     used += 1
     return entries[:used].copy()

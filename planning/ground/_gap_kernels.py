@@ -1,43 +1,57 @@
 """Gaps in the floors of meshes that everybody steps across, on bare arrays.
 
 Floors are often drawn room by room, with a slit under each wall and threshold. Where the centre of
-a column falls into one, the floor is missing there; it is put back between two neighbours.
+a column falls into a slit, the floor is missing; it is put back between two neighbours.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.ground._ledge_kernels import LEAST_STEP_M
-from esplanade.planning.ground._surface_kernels import LOWEST_M, Raster
+from esplanade.planning.ground._surface_kernels import LEAST_HEADROOM_M, Raster
+
+GAP = np.dtype([("column", "i4"), ("floor", "f4"), ("ceiling", "f4")])
+"""A surface over a gap: its column of the grid, its floor and its ceiling in metres."""
+
+
+class ColumnSurfaces(NamedTuple):
+    """S standing surfaces by column (CSR), lowest first."""
+
+    starts: NDArray[np.int32]
+    """(columns + 1,): where the surfaces of each column begin."""
+    floors: NDArray[np.float32]
+    """(S,): heights of the floors, metres."""
+    ceilings: NDArray[np.float32]
+    """(S,): heights of the ceilings, metres."""
+
+
+class Hits(NamedTuple):
+    """Heights (H,) where the verticals through columns meet triangles, by column, lowest first."""
+
+    starts: NDArray[np.int64]
+    """(columns + 1,): where the hits of each column begin."""
+    heights: NDArray[np.float32]
 
 
 @inlined
 def _next_above(heights: NDArray[np.float32], first: int, last: int, z: float) -> float:
-    """What comes next above a gap at height z; -inf if anything is in it or close to it."""
+    """Height of the next hit above a gap at height z; -inf if a hit lies in the gap or near it."""
     for k in range(first, last):
-        if heights[k] > z - LOWEST_M:
-            return float(heights[k]) if heights[k] >= z + LOWEST_M else -np.inf
+        if heights[k] > z - LEAST_HEADROOM_M:
+            return float(heights[k]) if heights[k] >= z + LEAST_HEADROOM_M else -np.inf
     return np.inf
 
 
 @kernel
-def find_gaps(
-    raster: Raster,
-    hits: tuple[NDArray[np.int64], NDArray[np.float32]],
-    starts: NDArray[np.int32],
-    floors: NDArray[np.float32],
-    ceilings: NDArray[np.float32],
-    columns: NDArray[np.int32],
-    surfaces: NDArray[np.float32],
-) -> int:
-    """Where a column has nothing between two floors, west and east or south and north, on a level.
+def find_gaps(raster: Raster, hits: Hits, surfaces: ColumnSurfaces, out: NDArray[np.void]) -> int:
+    """Find columns that have nothing between two level floors, west and east or south and north.
 
-    `hits` (starts, heights) are what the vertical through each column meets, in order. Of
-    each gap `columns` (G,) receive the column, `surfaces` (G, 2) floor and ceiling; there is room
-    enough for two of each floor. Returns how many there are.
+    `out` (G,) of `GAP` has room for two gaps of each surface. Returns the number of gaps.
     """
-    hit_starts, heights = hits
+    starts, floors, ceilings = surfaces
     count = 0
     for c in range(raster.ny * raster.nx):
         j, i = c // raster.nx, c % raster.nx
@@ -52,45 +66,40 @@ def find_gaps(
                         z = 0.5 * (floors[a] + floors[b])
                         free = True
                         for k in range(since, count):
-                            free &= abs(surfaces[k, 0] - z) >= LOWEST_M
-                        above = _next_above(heights, hit_starts[c], hit_starts[c + 1], z)
+                            free &= abs(out[k]["floor"] - z) >= LEAST_HEADROOM_M
+                        above = _next_above(hits.heights, hits.starts[c], hits.starts[c + 1], z)
                         ceiling = min(above, ceilings[a], ceilings[b])
-                        if free and ceiling - z >= LOWEST_M:
-                            columns[count] = c
-                            surfaces[count] = (z, ceiling)
+                        if free and ceiling - z >= LEAST_HEADROOM_M:
+                            out[count]["column"] = c
+                            out[count]["floor"] = z
+                            out[count]["ceiling"] = ceiling
                             count += 1
     return count
 
 
 @kernel
-def put_in(
-    starts: NDArray[np.int32],
-    heights: tuple[NDArray[np.float32], NDArray[np.float32]],
-    columns: NDArray[np.int32],
-    surfaces: NDArray[np.float32],
-    new_starts: NDArray[np.int32],
-    new_heights: tuple[NDArray[np.float32], NDArray[np.float32]],
-) -> None:
-    """Put surfaces of `find_gaps` among (floors, ceilings) that are listed by column (CSR)."""
-    floors, ceilings = new_heights
+def insert_gaps(before: ColumnSurfaces, gaps: NDArray[np.void], after: ColumnSurfaces) -> None:
+    """Fill `after` with surfaces and with the gaps (G,) of `GAP` that `find_gaps` found."""
+    starts, floors, ceilings = after
     n = 0
     k = 0
     for c in range(len(starts) - 1):
-        new_starts[c] = n
-        for s in range(starts[c], starts[c + 1]):
-            floors[n] = heights[0][s]
-            ceilings[n] = heights[1][s]
+        starts[c] = n
+        for s in range(before.starts[c], before.starts[c + 1]):
+            floors[n] = before.floors[s]
+            ceilings[n] = before.ceilings[s]
             n += 1
-        while k < len(columns) and columns[k] == c:
+        while k < len(gaps) and gaps[k]["column"] == c:
+            floor = gaps[k]["floor"]
             m = n
-            while m > new_starts[c] and floors[m - 1] > surfaces[k, 0]:
+            while m > starts[c] and floors[m - 1] > floor:
                 floors[m] = floors[m - 1]
                 ceilings[m] = ceilings[m - 1]
                 m -= 1
-            floors[m] = surfaces[k, 0]
-            ceilings[m] = surfaces[k, 1]
-            if m > new_starts[c]:
-                ceilings[m - 1] = min(ceilings[m - 1], surfaces[k, 0])
+            floors[m] = floor
+            ceilings[m] = gaps[k]["ceiling"]
+            if m > starts[c]:
+                ceilings[m - 1] = min(ceilings[m - 1], floor)
             n += 1
             k += 1
-    new_starts[len(starts) - 1] = n
+    starts[len(starts) - 1] = n

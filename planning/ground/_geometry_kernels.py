@@ -1,4 +1,4 @@
-"""Plane geometry on bare arrays: points, segments, and a bucket index of barriers."""
+"""Plane geometry on bare arrays: points, segments, barriers, and a bucket index of barriers."""
 
 from typing import NamedTuple
 
@@ -7,20 +7,39 @@ from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
 
+BARRIER = np.dtype(
+    [
+        ("x0", "f8"),
+        ("y0", "f8"),
+        ("x1", "f8"),
+        ("y1", "f8"),
+        ("bottom_m", "f8"),
+        ("top_m", "f8"),
+        ("climb_m", "f8"),
+    ]
+)
+"""One barrier: a vertical strip over the segment from (x0, y0) to (x1, y1), in metres.
 
-class SegmentIndex(NamedTuple):
-    """Barriers, listed by square bucket (CSR).
+It reaches from `bottom_m` to `top_m`. `climb_m` is the greatest height that a body has to climb to
+get past it: infinite for a wall, the difference of the floors for a ledge, 0 for an open door.
+A barrier stops a body of a height and a step-on height that stands on a floor if and only if
+bottom_m < floor + height, top_m > floor + step-on height, and climb_m > step-on height.
+"""
 
-    A bucket lists every barrier that passes within `reach_m` of it, so that all within `reach_m`
-    of a point are in the point's own bucket.
+
+class BarrierIndex(NamedTuple):
+    """Barriers, listed by square bucket in CSR form.
+
+    A bucket lists every barrier that passes within `reach_m` of it, so that all barriers within
+    `reach_m` of a point are in the point's own bucket.
     """
 
-    segments: NDArray[np.float64]
-    """(S, 7): x0, y0, x1, y1, underside, top, rise; metres."""
+    barriers: NDArray[np.void]
+    """(S,) of `BARRIER`."""
     starts: NDArray[np.int64]
     """(ny * nx + 1,): where each bucket's list begins."""
     members: NDArray[np.int64]
-    """Row numbers of segments, bucket after bucket."""
+    """Row numbers of barriers, bucket after bucket."""
     x0: float
     y0: float
     bucket_m: float
@@ -29,41 +48,59 @@ class SegmentIndex(NamedTuple):
     ny: int
 
 
-class Stance(NamedTuple):
-    """How somebody stands at a place: what decides which barriers stop them."""
+class Placement(NamedTuple):
+    """A body at a place, as far as it decides which barriers stop the body; metres."""
 
     floor_m: float
-    foothold_m: float
-    """Height that its steps count from: of the highest floor that its feet are on."""
+    """Height of the floor under its centre."""
+    support_m: float
+    """Height of the highest floor that its feet can be on: its steps count from there."""
     height_m: float
+    """Height of the body."""
     step_on_m: float
+    """Greatest height that the body steps up or down."""
 
 
 @inlined
-def stops(index: SegmentIndex, s: int, stance: Stance) -> bool:
-    """Whether a barrier stops who stands like that: it is neither stepped over nor walked under.
-
-    An edge with a drop (`rise`) stops those whose step-on height is less.
-    """
-    segment = index.segments[s]
+def stops(barrier: NDArray[np.void], placement: Placement) -> bool:
+    """Whether a barrier stops a body that can neither step over it nor walk under it."""
     return bool(
-        segment[4] < stance.floor_m + stance.height_m
-        and segment[5] > stance.foothold_m + stance.step_on_m
-        and stance.step_on_m < segment[6]
+        barrier["bottom_m"] < placement.floor_m + placement.height_m
+        and barrier["top_m"] > placement.support_m + placement.step_on_m
+        and placement.step_on_m < barrier["climb_m"]
     )
 
 
-@kernel
+@inlined
+def _nearest_share(px: float, py: float, ax: float, ay: float, dx: float, dy: float) -> float:
+    """The part of a segment, from a on along (dx, dy), at which it is nearest to a point p."""
+    length2 = dx * dx + dy * dy
+    if length2 > 0.0:
+        return min(1.0, max(0.0, ((px - ax) * dx + (py - ay) * dy) / length2))
+    return 0.0
+
+
+@inlined
 def point_segment_distance(
     px: float, py: float, ax: float, ay: float, bx: float, by: float
-) -> tuple[float, float, float]:
-    """Distance from a point to a segment, and the closest point of the segment."""
+) -> float:
+    """Distance from a point p to the segment ab."""
     dx = bx - ax
     dy = by - ay
-    length2 = dx * dx + dy * dy
-    u = 0.0
-    if length2 > 0.0:
-        u = min(1.0, max(0.0, ((px - ax) * dx + (py - ay) * dy) / length2))
+    u = _nearest_share(px, py, ax, ay, dx, dy)
+    ex = px - ax - u * dx
+    ey = py - ay - u * dy
+    return float(np.sqrt(ex * ex + ey * ey))
+
+
+@inlined
+def nearest_on_segment(
+    px: float, py: float, ax: float, ay: float, bx: float, by: float
+) -> tuple[float, float, float]:
+    """Distance from a point p to the segment ab, and the nearest point of the segment."""
+    dx = bx - ax
+    dy = by - ay
+    u = _nearest_share(px, py, ax, ay, dx, dy)
     cx = ax + u * dx
     cy = ay + u * dy
     return np.hypot(px - cx, py - cy), cx, cy
@@ -75,9 +112,10 @@ def segments_cross(
 ) -> bool:
     """Whether segment ab meets segment cd, touching included.
 
-    A hair beyond the ends counts too: nothing slips between walls that share a corner.
+    Segments count as longer by one billionth of themselves, so that nothing slips between walls
+    that share a corner.
     """
-    hair = 1e-9
+    tolerance = 1e-9
     rx = bx - ax
     ry = by - ay
     sx = dx - cx
@@ -90,18 +128,26 @@ def segments_cross(
             return False
         length2 = rx * rx + ry * ry
         if length2 == 0.0:
-            return point_segment_distance(ax, ay, cx, cy, dx, dy)[0] < 1e-12
+            return point_segment_distance(ax, ay, cx, cy, dx, dy) < 1e-12
         t0 = (qx * rx + qy * ry) / length2
         t1 = t0 + (sx * rx + sy * ry) / length2
-        return max(min(t0, t1), 0.0) <= min(max(t0, t1), 1.0) + hair
+        return max(min(t0, t1), 0.0) <= min(max(t0, t1), 1.0) + tolerance
     t = (qx * sy - qy * sx) / den
     u = (qx * ry - qy * rx) / den
-    return -hair <= t <= 1.0 + hair and -hair <= u <= 1.0 + hair
+    return -tolerance <= t <= 1.0 + tolerance and -tolerance <= u <= 1.0 + tolerance
+
+
+@inlined
+def crosses(barrier: NDArray[np.void], ax: float, ay: float, bx: float, by: float) -> bool:
+    """Whether the segment ab meets a barrier, touching included."""
+    return segments_cross(
+        ax, ay, bx, by, barrier["x0"], barrier["y0"], barrier["x1"], barrier["y1"]
+    )
 
 
 @inlined
 def closest_approach(rx: float, ry: float, dx: float, dy: float) -> float:
-    """Smallest distance while a relative position (rx, ry) changes evenly by (dx, dy)."""
+    """Smallest length of a relative position (rx, ry) while it changes evenly by (dx, dy)."""
     length2 = dx * dx + dy * dy
     u = 0.0
     if length2 > 1e-12:
@@ -112,27 +158,30 @@ def closest_approach(rx: float, ry: float, dx: float, dy: float) -> float:
 
 
 @kernel
-def bucket_of(index: SegmentIndex, x: float, y: float) -> int:
-    """Bucket that holds a point; points outside fall to the nearest bucket."""
+def bucket_of(index: BarrierIndex, x: float, y: float) -> int:
+    """The bucket that holds a point; a point outside belongs to the nearest bucket."""
     i = min(index.nx - 1, max(0, int((x - index.x0) / index.bucket_m)))
     j = min(index.ny - 1, max(0, int((y - index.y0) / index.bucket_m)))
     return j * index.nx + i
 
 
 @kernel
-def nearest_segment(
-    index: SegmentIndex, stance: Stance, x: float, y: float
+def nearest_barrier(
+    index: BarrierIndex, placement: Placement, x: float, y: float
 ) -> tuple[float, float, float]:
-    """Distance to the nearest barrier of the point's bucket and its closest point; inf if none."""
+    """Distance to the nearest barrier that stops a body, and the barrier's nearest point.
+
+    Only the point's own bucket is searched; without a barrier there the distance is inf.
+    """
     best = np.inf
     bx = x
     by = y
-    b = bucket_of(index, x, y)
-    for k in range(index.starts[b], index.starts[b + 1]):
-        if not stops(index, index.members[k], stance):
+    bucket = bucket_of(index, x, y)
+    for k in range(index.starts[bucket], index.starts[bucket + 1]):
+        b = index.barriers[index.members[k]]
+        if not stops(b, placement):
             continue
-        s = index.segments[index.members[k]]
-        d, cx, cy = point_segment_distance(x, y, s[0], s[1], s[2], s[3])
+        d, cx, cy = nearest_on_segment(x, y, b["x0"], b["y0"], b["x1"], b["y1"])
         if d < best:
             best = d
             bx = cx
@@ -142,18 +191,16 @@ def nearest_segment(
 
 @kernel
 def crosses_any(
-    index: SegmentIndex, stance: Stance, ax: float, ay: float, bx: float, by: float
+    index: BarrierIndex, placement: Placement, ax: float, ay: float, bx: float, by: float
 ) -> bool:
-    """Whether the short way from a to b meets a barrier listed in the bucket of a.
+    """Whether a short segment ab meets a barrier that stops a body, in the bucket of a.
 
-    The way must be shorter than the index's reach.
+    The segment must be shorter than the index's `reach_m`.
     """
-    b = bucket_of(index, ax, ay)
-    for k in range(index.starts[b], index.starts[b + 1]):
-        if not stops(index, index.members[k], stance):
-            continue
-        s = index.segments[index.members[k]]
-        if segments_cross(ax, ay, bx, by, s[0], s[1], s[2], s[3]):
+    bucket = bucket_of(index, ax, ay)
+    for k in range(index.starts[bucket], index.starts[bucket + 1]):
+        barrier = index.barriers[index.members[k]]
+        if stops(barrier, placement) and crosses(barrier, ax, ay, bx, by):
             return True
     return False
 
@@ -171,8 +218,8 @@ def in_bounds(bounds: tuple[float, float, float, float], x: float, y: float) -> 
 
 @kernel
 def slide_step(
-    index: SegmentIndex,
-    stance: Stance,
+    index: BarrierIndex,
+    placement: Placement,
     bounds: tuple[float, float, float, float],
     x: float,
     y: float,
@@ -181,16 +228,16 @@ def slide_step(
     clearance: float,
     before: float,
 ) -> tuple[float, float]:
-    """Move a disc by a short step, pushed out of barriers; stays where it is when that fails.
+    """Move a disc by a short step and push it out of barriers; it stays if that fails.
 
-    `before` is how near the nearest barrier is. The bounds count before barriers do: a wall that
-    ends at them must not be rounded outside.
+    `before` is the distance to the nearest barrier at the start. The bounds are applied before the
+    barriers, so that nobody gets around the end of a wall outside of the bounds.
     """
     nx = _within(bounds[0], x + dx, bounds[2])
     ny = _within(bounds[1], y + dy, bounds[3])
     allowed = min(clearance, before) - 1e-9
     for pushes in range(5):
-        d, cx, cy = nearest_segment(index, stance, nx, ny)
+        d, cx, cy = nearest_barrier(index, placement, nx, ny)
         if d >= allowed:
             break
         if d < 1e-9 or pushes == 4:  # between barriers it may be pushed to and fro for ever
@@ -198,15 +245,15 @@ def slide_step(
         part = (min(clearance, before) - d) / d
         nx = _within(bounds[0], nx + (nx - cx) * part, bounds[2])
         ny = _within(bounds[1], ny + (ny - cy) * part, bounds[3])
-    if crosses_any(index, stance, x, y, nx, ny):
+    if crosses_any(index, placement, x, y, nx, ny):
         return x, y
     return nx, ny
 
 
 @kernel
 def slide(
-    index: SegmentIndex,
-    stance: Stance,
+    index: BarrierIndex,
+    placement: Placement,
     bounds: tuple[float, float, float, float],
     x: float,
     y: float,
@@ -214,47 +261,47 @@ def slide(
     dy: float,
     clearance: float,
 ) -> tuple[float, float]:
-    """Move a disc by (dx, dy) on one level, sliding along barriers and kept inside the bounds.
+    """Move a disc by (dx, dy) on one level; it slides along barriers and stays inside the bounds.
 
-    Near walls the way is cut into pieces of half the clearance, so that none is jumped over. Where
-    nothing is as near as the way is long, nothing has to be asked on it.
+    Near barriers the movement is cut into pieces of half the clearance, so that no barrier is
+    jumped over. Where no barrier is as near as the movement is long, it is made at once.
     """
     length = np.hypot(dx, dy)
     if length == 0.0:
         return x, y
     done = 0.0
     while done < length:
-        before = nearest_segment(index, stance, x, y)[0]
+        before = nearest_barrier(index, placement, x, y)[0]
         room = min(before, index.reach_m) - clearance
         if done == 0.0 and room > length and in_bounds(bounds, x + dx, y + dy):
             return x + dx, y + dy
         piece = min(length - done, max(room, 0.5 * clearance, 0.02))
         u = piece / length
-        x, y = slide_step(index, stance, bounds, x, y, dx * u, dy * u, clearance, before)
+        x, y = slide_step(index, placement, bounds, x, y, dx * u, dy * u, clearance, before)
         done += piece
     return x, y
 
 
 @kernel
 def list_by_bucket(
-    segments: NDArray[np.float64],
+    barriers: NDArray[np.void],
     place: tuple[float, float, float, int, int],
     reach: float,
     starts: NDArray[np.int64],
     members: NDArray[np.int64],
 ) -> None:
-    """List the segments within `reach` of each bucket's centre, in order.
+    """List the barriers within `reach` of each bucket's centre, in order.
 
-    `place` is x0, y0, edge of a bucket, columns, rows. Without room in `members` they are only
-    counted, into starts[1:]; else `starts` tells where each bucket's list begins.
+    `place` is x0, y0, edge of a bucket, columns, rows. If `members` is empty, barriers are only
+    counted, into starts[1:]; otherwise `starts` tells where each bucket's list begins.
     """
     x0, y0, bucket_m, nx, ny = place
     count = np.zeros(nx * ny, dtype=np.int64)
-    for s in range(len(segments)):
-        ax = segments[s, 0]
-        ay = segments[s, 1]
-        bx = segments[s, 2]
-        by = segments[s, 3]
+    for s in range(len(barriers)):
+        ax = barriers[s]["x0"]
+        ay = barriers[s]["y0"]
+        bx = barriers[s]["x1"]
+        by = barriers[s]["y1"]
         i0 = max(0, int((min(ax, bx) - reach - x0) / bucket_m))
         i1 = min(nx - 1, int((max(ax, bx) + reach - x0) / bucket_m))
         j0 = max(0, int((min(ay, by) - reach - y0) / bucket_m))
@@ -263,7 +310,7 @@ def list_by_bucket(
             for i in range(i0, i1 + 1):
                 cx = x0 + (i + 0.5) * bucket_m
                 cy = y0 + (j + 0.5) * bucket_m
-                if point_segment_distance(cx, cy, ax, ay, bx, by)[0] > reach:
+                if point_segment_distance(cx, cy, ax, ay, bx, by) > reach:
                     continue
                 b = j * nx + i
                 if len(members):

@@ -1,7 +1,4 @@
-"""Ledges on bare arrays: where floors end or change their height between neighbouring cells.
-
-A ledge is written as a barrier: x0, y0, x1, y1, z0, z1, rise.
-"""
+"""Ledges on bare arrays: barriers where floors end or change height between neighbouring cells."""
 
 from typing import NamedTuple
 
@@ -10,7 +7,12 @@ from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.ground._geometry_kernels import segments_cross
-from esplanade.planning.ground._surface_kernels import LOWEST_M, SolidArrays, SolidColumns, top_at
+from esplanade.planning.ground._surface_kernels import (
+    LEAST_HEADROOM_M,
+    SolidArrays,
+    SolidColumns,
+    top_at,
+)
 from esplanade.planning.ground.layered import (
     LINK_COLUMNS,
     LINK_M,
@@ -21,33 +23,52 @@ from esplanade.planning.ground.layered import (
 )
 
 LEAST_STEP_M = 0.1
-"""Floors that differ by less are as good as level: everybody steps that high."""
+"""Floors that differ by less count as level, since everybody steps that high."""
 _PIECE_RISE_M = 0.25
 """The side of a ramp is cut into pieces whose tops rise by no more than this."""
 _BELOW_M = 0.05
+"""The barrier of a ledge begins this far below its upper floor."""
 _ABOVE_M = 2.0
+"""The barrier of a ledge ends this far above its upper floor, or at the ceiling."""
 _LINTEL_M = 0.2
-"""More than what a body may lack under a lintel, less than what it steps on top of one."""
+"""Height of a lintel's barrier: more than the headroom that a body may lack under the lintel, less
+than the height of a step on top of it."""
 _HIGHEST_M = 2.5
 """Ceilings further above a floor than this hinder nobody."""
 _SAME_M = 1e-4
+"""Heights that differ by less are equal."""
+
+FACE = np.dtype(
+    [
+        ("x0", "f8"),
+        ("y0", "f8"),
+        ("x1", "f8"),
+        ("y1", "f8"),
+        ("bottom_m", "f8"),
+        ("top_m", "f8"),
+        ("column", "i8"),
+    ]
+)
+"""A piece of a steep face of a mesh within one column of the grid, seen from above as a segment
+from (x0, y0) to (x1, y1), in metres."""
 
 
 class Sides(NamedTuple):
-    """What is known beside floors: the solids of a scene, the steep faces of a mesh."""
+    """The solids of a scene and the steep faces of a mesh, which may stand beside floors."""
 
     solids: SolidColumns
     face_starts: NDArray[np.int64]
-    """(columns + 1,): the faces of each column (CSR)."""
-    faces: NDArray[np.float64]
-    """(R, 6): x0, y0, x1, y1, z0, z1 of the pieces of faces in a column, metres."""
+    """(columns + 1,): where the faces of each column begin (CSR)."""
+    faces: NDArray[np.void]
+    """(R,) of `FACE`, column by column."""
 
 
 @kernel
-def outlines(solids: SolidArrays, out: NDArray[np.float64]) -> int:
-    """The sides of solids, up to their tops; of what nobody climbs, higher than anyone steps.
+def outlines(solids: SolidArrays, out: NDArray[np.void]) -> int:
+    """Write the sides of solids, up to their tops, as barriers into `out`, (S,) of `BARRIER`.
 
-    Returns how many there are; those beyond the room in `out` are not written.
+    The sides of solids that carry nobody reach higher than anyone steps. Returns the number of
+    barriers; those beyond the room in `out` are not written.
     """
     count = 0
     for k in range(len(solids.bottoms)):
@@ -64,16 +85,30 @@ def outlines(solids: SolidArrays, out: NDArray[np.float64]) -> int:
                 px, py, qx, qy = ax + u * ux, ay + u * uy, ax + v * ux, ay + v * uy
                 top = max(least, top_at(solids, k, px, py), top_at(solids, k, qx, qy))
                 if count < len(out):
-                    out[count] = (px, py, qx, qy, solids.bottoms[k], top, np.inf)
+                    _write(out[count], (px, py, qx, qy), (solids.bottoms[k], top, np.inf))
                 count += 1
     return count
+
+
+@inlined
+def _write(
+    barrier: NDArray[np.void],
+    line: tuple[float, float, float, float],
+    heights: tuple[float, float, float],
+) -> None:
+    """Fill a barrier with its line (x0, y0, x1, y1) and its heights (bottom, top, climb)."""
+    barrier["x0"], barrier["y0"], barrier["x1"], barrier["y1"] = line
+    barrier["bottom_m"], barrier["top_m"], barrier["climb_m"] = heights
 
 
 @inlined
 def _common_edge(
     arrays: LayeredArrays, j: int, i: int, d: int
 ) -> tuple[float, float, float, float]:
-    """The edge between a cell and one of its four neighbours, from south to north, west to east."""
+    """The edge x0, y0, x1, y1 between a cell and its neighbour E, N, W or S.
+
+    It leads from south to north, or from west to east.
+    """
     dj, di = LINK_ROWS[d], LINK_COLUMNS[d]
     x = arrays.x0 + (i + 0.5 + 0.5 * di) * arrays.cell_m
     y = arrays.y0 + (j + 0.5 + 0.5 * dj) * arrays.cell_m
@@ -83,12 +118,12 @@ def _common_edge(
 
 @inlined
 def _solid_stops(columns: SolidColumns, c: int, x: float, y: float, floor: float) -> bool:
-    """Whether the side of a solid in a column stops everybody who stands beside it."""
+    """Whether the side of a solid in a column stops everybody on the floor beside it."""
     s = columns.solids
     for m in range(columns.starts[c], columns.starts[c + 1]):
         k = columns.members[m]
         top = top_at(s, k, x, y) + (0.0 if s.standable[k] else LINK_M)
-        if s.bottoms[k] < floor + LOWEST_M and top > floor + LINK_M:
+        if s.bottoms[k] < floor + LEAST_HEADROOM_M and top > floor + LINK_M:
             return True
     return False
 
@@ -98,22 +133,26 @@ def _face_between(
     sides: Sides, arrays: LayeredArrays, cell: int, d: int, low: float, high: float
 ) -> bool:
     """Whether one face between a cell and its neighbour reaches from `low` or less to `high`."""
-    j, i = arrays.places[cell, 1], arrays.places[cell, 2]
+    j, i = arrays.places[cell]["row"], arrays.places[cell]["column"]
     x = arrays.x0 + (i + 0.5) * arrays.cell_m
     y = arrays.y0 + (j + 0.5) * arrays.cell_m
     xx, yy = x + LINK_COLUMNS[d] * arrays.cell_m, y + LINK_ROWS[d] * arrays.cell_m
     own = j * arrays.nx + i
     for c in (own, own + LINK_ROWS[d] * arrays.nx + LINK_COLUMNS[d]):
         for f in range(sides.face_starts[c], sides.face_starts[c + 1]):
-            x0, y0, x1, y1, z0, z1 = sides.faces[f]
-            if z0 < low and z1 > high and segments_cross(x, y, xx, yy, x0, y0, x1, y1):
+            face = sides.faces[f]
+            if (
+                face["bottom_m"] < low
+                and face["top_m"] > high
+                and segments_cross(x, y, xx, yy, face["x0"], face["y0"], face["x1"], face["y1"])
+            ):
                 return True
     return False
 
 
 @inlined
 def _carrier(columns: SolidColumns, c: int, x: float, y: float, floor: float) -> int:
-    """The solid whose top is that floor; -1: the ground."""
+    """The solid whose top is a floor; -1 if the floor is the ground."""
     for m in range(columns.starts[c], columns.starts[c + 1]):
         k = columns.members[m]
         if columns.solids.standable[k] and abs(top_at(columns.solids, k, x, y) - floor) < _SAME_M:
@@ -125,9 +164,10 @@ def _carrier(columns: SolidColumns, c: int, x: float, y: float, floor: float) ->
 def _outline_between(
     solids: SolidArrays, k: int, axis: int, line: tuple[float, float, float, float]
 ) -> tuple[bool, tuple[float, float, float, float]]:
-    """Where a solid's outline really passes between two cells that differ along an axis.
+    """Where the outline of a solid passes between two cells that differ along an axis.
 
-    `line` is their common edge; it is returned as it is where no outline is within half a cell.
+    `line` is their common edge x0, y0, x1, y1. It is returned unchanged, with False, where no
+    outline passes within half a cell of it.
     """
     across = 1 - axis
     low, high = line[across], line[across + 2]
@@ -148,42 +188,43 @@ def _outline_between(
 
 
 @inlined
-def _put(
-    out: NDArray[np.float64],
+def _append(
+    out: NDArray[np.void],
     count: int,
     line: tuple[float, float, float, float],
     heights: tuple[float, float, float],
 ) -> int:
-    """Write a barrier, or lengthen the last one if it goes straight on; returns the new count.
+    """Append a barrier, or lengthen the last one if it goes straight on; returns the new count.
 
-    Barriers beyond the room in `out` are counted, not written.
+    `line` and `heights` are those of `_write`. Barriers beyond the room in `out` are counted, not
+    written.
     """
     x0, y0, x1, y1 = line
-    z0, z1, rise = heights
+    bottom, top, climb = heights
     if 0 < count <= len(out):
         last = out[count - 1]
-        ux, uy = last[2] - last[0], last[3] - last[1]
+        ux, uy = last["x1"] - last["x0"], last["y1"] - last["y0"]
         vx, vy = x1 - x0, y1 - y0
         if (
-            abs(last[2] - x0) + abs(last[3] - y0) < 1e-9
-            and abs(last[4] - z0) + abs(last[5] - z1) < _SAME_M
-            and (last[6] == rise or abs(last[6] - rise) < _SAME_M)
+            abs(last["x1"] - x0) + abs(last["y1"] - y0) < 1e-9
+            and abs(last["bottom_m"] - bottom) + abs(last["top_m"] - top) < _SAME_M
+            and (last["climb_m"] == climb or abs(last["climb_m"] - climb) < _SAME_M)
             and abs(ux * vy - uy * vx) < 1e-9
             and ux * vx + uy * vy > 0.0
         ):
-            last[2], last[3] = x1, y1
+            last["x1"], last["y1"] = x1, y1
             return count
     if count < len(out):
-        new = out[count]
-        new[0], new[1], new[2], new[3] = x0, y0, x1, y1
-        new[4], new[5], new[6] = z0, z1, rise
+        _write(out[count], line, heights)
     return count + 1
 
 
 @inlined
-def _passes(arrays: LayeredArrays, cell: int, d: int) -> bool:
-    """Whether nothing is to be written at a side: level ground, or a ledge found from the west
-    or south already."""
+def _has_no_ledge(arrays: LayeredArrays, cell: int, d: int) -> bool:
+    """Whether a side of a cell has no ledge of its own.
+
+    That is so on level ground, and towards W and S, where the neighbour writes the ledge.
+    """
     other = arrays.links[cell, d]
     return bool(
         other >= 0 and (d >= 4 or abs(arrays.floors[other] - arrays.floors[cell]) < LEAST_STEP_M)
@@ -192,7 +233,7 @@ def _passes(arrays: LayeredArrays, cell: int, d: int) -> bool:
 
 @inlined
 def _ceiling(arrays: LayeredArrays, cell: int, d: int, floor: float) -> float:
-    """The ceiling over a ledge: of the cell or, if that is the higher one, of its neighbour."""
+    """Height of the ceiling over a ledge: that of the cell or neighbour with the higher floor."""
     higher = cell
     if abs(arrays.floors[cell] - floor) > _SAME_M:
         higher = arrays.links[cell, d]
@@ -201,9 +242,9 @@ def _ceiling(arrays: LayeredArrays, cell: int, d: int, floor: float) -> float:
 
 @inlined
 def _ledge(arrays: LayeredArrays, sides: Sides, cell: int, d: int) -> tuple[bool, float, float]:
-    """Whether there is a ledge at a side of a cell that is not level, its floor and its rise."""
-    j = arrays.places[cell, 1] + LINK_ROWS[d]
-    i = arrays.places[cell, 2] + LINK_COLUMNS[d]
+    """Whether a side of a cell that is not level has a ledge, its upper floor, and its climb."""
+    j = arrays.places[cell]["row"] + LINK_ROWS[d]
+    i = arrays.places[cell]["column"] + LINK_COLUMNS[d]
     floor = float(arrays.floors[cell])
     other = arrays.links[cell, d]
     if other >= 0:
@@ -214,7 +255,7 @@ def _ledge(arrays: LayeredArrays, sides: Sides, cell: int, d: int) -> tuple[bool
     x = arrays.x0 + (i + 0.5) * arrays.cell_m
     y = arrays.y0 + (j + 0.5) * arrays.cell_m
     stopped = _solid_stops(sides.solids, j * arrays.nx + i, x, y, floor) or _face_between(
-        sides, arrays, cell, d, floor + LOWEST_M, floor + LINK_M
+        sides, arrays, cell, d, floor + LEAST_HEADROOM_M, floor + LINK_M
     )
     return not stopped, floor, np.inf
 
@@ -223,15 +264,18 @@ def _ledge(arrays: LayeredArrays, sides: Sides, cell: int, d: int) -> tuple[bool
 def _ledge_line(
     arrays: LayeredArrays, sides: Sides, cell: int, d: int, floor: float
 ) -> tuple[bool, tuple[float, float, float, float]]:
-    """Where a ledge is: on the outline of the solid that carries the floor, if one does."""
+    """The line of a ledge: the outline of the solid that carries the floor (True), if one does.
+
+    Otherwise it is the common edge of the two cells (False).
+    """
     axis = 0 if d in (0, 4) else 1
-    j, i = arrays.places[cell, 1], arrays.places[cell, 2]
+    j, i = arrays.places[cell]["row"], arrays.places[cell]["column"]
     if abs(arrays.floors[cell] - floor) > _SAME_M:
         j += LINK_ROWS[d]
         i += LINK_COLUMNS[d]
     x = arrays.x0 + (i + 0.5) * arrays.cell_m
     y = arrays.y0 + (j + 0.5) * arrays.cell_m
-    line = _common_edge(arrays, arrays.places[cell, 1], arrays.places[cell, 2], d)
+    line = _common_edge(arrays, arrays.places[cell]["row"], arrays.places[cell]["column"], d)
     k = _carrier(sides.solids, j * arrays.nx + i, x, y, floor)
     if k < 0:
         return False, line
@@ -247,15 +291,17 @@ def _cells_along(
     headroom: float,
     cells: NDArray[np.int32],
 ) -> int:
-    """The cells of a column (d = 0 or 4) or row of a layer in order, but for tiles that are plain
-    with so much headroom; returns how many are written."""
+    """Write the cells of a column (d = 0 or 4) or row of a layer in order; returns their number.
+
+    Tiles are left out that are level and have at least that headroom.
+    """
     count = 0
     by_column = d in (0, 4)
     length = arrays.ny if by_column else arrays.nx
     for first in range(0, length, TILE):
         tj, ti = (first // TILE, line // TILE) if by_column else (line // TILE, first // TILE)
         page = arrays.pages[layer, tj, ti]
-        if page < 0 or arrays.plain[page // (TILE * TILE)] >= headroom:
+        if page < 0 or arrays.level_headroom[page // (TILE * TILE)] >= headroom:
             continue
         for k in range(first, min(length, first + TILE)):
             j, i = (k, line) if by_column else (line, k)
@@ -267,40 +313,41 @@ def _cells_along(
 
 
 @kernel
-def ledges_towards(arrays: LayeredArrays, sides: Sides, d: int, out: NDArray[np.float64]) -> int:
-    """Ledges of every cell towards its neighbour E (d = 0), N (2), W (4) or S (6).
+def ledges_towards(arrays: LayeredArrays, sides: Sides, d: int, out: NDArray[np.void]) -> int:
+    """Write the ledges of every cell towards its neighbour E (d = 0), N (2), W (4) or S (6).
 
-    Linked cells have one if their floors differ, with the difference as its rise, but for slopes
-    up to 45 degrees. A cell whose neighbour is not linked has one of its own that nobody passes,
-    unless a solid or a face stops everybody there. Returns how many there are; those beyond the
-    room in `out` are not written.
+    Linked cells have a ledge if their floors differ, with the difference as its climb, except for
+    slopes up to 45 degrees. A cell whose neighbour is not linked has a ledge that nobody passes,
+    unless a solid or a face stops everybody there. `out` is (S,) of `BARRIER`. Returns the number
+    of ledges; those beyond the room in `out` are not written.
     """
     count = 0
     cells = np.empty(max(arrays.ny, arrays.nx), dtype=np.int32)
     for layer in range(arrays.pages.shape[0]):
         for line in range(arrays.nx if d in (0, 4) else arrays.ny):
             for cell in cells[: _cells_along(arrays, layer, line, d, 0.0, cells)]:
-                if _passes(arrays, cell, d):
+                if _has_no_ledge(arrays, cell, d):
                     continue
-                found, floor, rise = _ledge(arrays, sides, cell, d)
+                found, floor, climb = _ledge(arrays, sides, cell, d)
                 if not found:
                     continue
                 exact, edge = _ledge_line(arrays, sides, cell, d, floor)
-                slope = rise <= 1.001 * arrays.cell_m and not exact
-                middle = floor - 0.5 * rise
+                slope = climb <= 1.001 * arrays.cell_m and not exact
+                middle = floor - 0.5 * climb
                 if not slope or _face_between(sides, arrays, cell, d, middle, middle):
-                    # Nobody above the ceiling is concerned.
+                    # A barrier above the ceiling would concern nobody.
                     top = min(floor + _ABOVE_M, _ceiling(arrays, cell, d, floor))
-                    count = _put(out, count, edge, (floor - _BELOW_M, top, rise))
+                    count = _append(out, count, edge, (floor - _BELOW_M, top, climb))
     return count
 
 
 @kernel
-def lintels_between(arrays: LayeredArrays, d: int, out: NDArray[np.float64]) -> int:
-    """Where the ceiling changes its height between linked cells, low enough to hinder anyone.
+def lintels_between(arrays: LayeredArrays, d: int, out: NDArray[np.void]) -> int:
+    """Write barriers where ceilings change height between linked cells, low enough to hinder.
 
-    For the neighbours to the east (d = 0) or north (d = 2), as `ledges_towards`. Only meshes need
-    them: of polygons the exact outline is known.
+    Cells are compared with their neighbours to the east (d = 0) or north (d = 2); `out` and the
+    result are those of `ledges_towards`. Only meshes need lintels, since the exact outlines of
+    polygons are known.
     """
     count = 0
     cells = np.empty(max(arrays.ny, arrays.nx), dtype=np.int32)
@@ -314,6 +361,8 @@ def lintels_between(arrays: LayeredArrays, d: int, out: NDArray[np.float64]) -> 
                 low, high = min(above, beside), max(above, beside)
                 floor = max(arrays.floors[cell], arrays.floors[other])
                 if high - low >= LEAST_STEP_M and low < floor + _HIGHEST_M:
-                    edge = _common_edge(arrays, arrays.places[cell, 1], arrays.places[cell, 2], d)
-                    count = _put(out, count, edge, (low, low + _LINTEL_M, np.inf))
+                    edge = _common_edge(
+                        arrays, arrays.places[cell]["row"], arrays.places[cell]["column"], d
+                    )
+                    count = _append(out, count, edge, (low, low + _LINTEL_M, np.inf))
     return count

@@ -1,21 +1,25 @@
-"""Triangles on bare arrays: where they pass through columns, and faces too steep to stand on."""
+"""Triangles of a mesh on bare arrays: surfaces to stand on, and faces too steep for that."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import kernel
-from esplanade.planning.ground._surface_kernels import LOWEST_M, Raster
+from esplanade.planning.ground._surface_kernels import LEAST_HEADROOM_M, Raster
 
 STEEPEST = np.cos(np.pi / 4.0)
 """Up-component of the normal of the steepest face that carries anyone: 45 degrees."""
 _TOGETHER_M = 0.01
 """Faces of one column closer together than this are one."""
-_HAIR = 1e-9
+_TOLERANCE = 1e-9
 _HEADROOM_M = 2.5
+"""Faces further above a floor than this touch nobody."""
 _STEP_M = 0.05
+"""Faces that rise no higher above a floor than this are no obstacle."""
+_BUCKET_M = 0.1
+"""Surfaces wait in buckets of this height while a region grows."""
 
 DOWN, UP, STEEP = 0, 1, 2
-"""What a hit is: the underside of something, a top that carries, a top too steep for that."""
+"""Kinds of hits: an underside, a top that carries, a top that is too steep to carry."""
 
 
 @kernel
@@ -27,10 +31,10 @@ def hits_of_triangles(
     heights: NDArray[np.float32],
     kinds: NDArray[np.uint8],
 ) -> None:
-    """Where triangles (T, 3, 3) pass through the centres of columns.
+    """Find where triangles (T, 3, 3) meet the verticals through the centres of columns.
 
-    First without `fill`, to count the hits of column c in starts[c + 1]. When `starts` have been
-    summed, with `fill`: starts[c] then moves to the end of column c.
+    It is called first without `fill`, to count the hits of column c in starts[c + 1], then, once
+    `starts` have been summed, with `fill`: starts[c] then moves to the end of column c.
     """
     for t in range(len(triangles)):
         (ax, ay, az), (bx, by, bz), (cx, cy, cz) = triangles[t]
@@ -41,18 +45,18 @@ def hits_of_triangles(
             continue
         area = np.sqrt((uy * vz - uz * vy) ** 2 + (uz * vx - ux * vz) ** 2 + up * up)
         kind = DOWN if up < 0.0 else (UP if up >= STEEPEST * area else STEEP)
-        i0 = max(0, int(np.ceil((min(ax, bx, cx) - raster.x0) / raster.cell_m - 0.5 - _HAIR)))
-        j0 = max(0, int(np.ceil((min(ay, by, cy) - raster.y0) / raster.cell_m - 0.5 - _HAIR)))
-        i1 = int(np.floor((max(ax, bx, cx) - raster.x0) / raster.cell_m - 0.5 + _HAIR)) + 1
-        j1 = int(np.floor((max(ay, by, cy) - raster.y0) / raster.cell_m - 0.5 + _HAIR)) + 1
+        i0 = max(0, int(np.ceil((min(ax, bx, cx) - raster.x0) / raster.cell_m - 0.5 - _TOLERANCE)))
+        j0 = max(0, int(np.ceil((min(ay, by, cy) - raster.y0) / raster.cell_m - 0.5 - _TOLERANCE)))
+        i1 = int(np.floor((max(ax, bx, cx) - raster.x0) / raster.cell_m - 0.5 + _TOLERANCE)) + 1
+        j1 = int(np.floor((max(ay, by, cy) - raster.y0) / raster.cell_m - 0.5 + _TOLERANCE)) + 1
         for j in range(j0, min(raster.ny, j1)):
             y = raster.y0 + (j + 0.5) * raster.cell_m - ay
             for i in range(i0, min(raster.nx, i1)):
                 x = raster.x0 + (i + 0.5) * raster.cell_m - ax
-                # Shares of b and c; on an edge both its triangles count, so that none is missed.
+                # On an edge the triangles on both sides count, so that no hit is missed.
                 b = (x * vy - y * vx) / up
                 c = (ux * y - uy * x) / up
-                if b < -_HAIR or c < -_HAIR or b + c > 1.0 + _HAIR:
+                if b < -_TOLERANCE or c < -_TOLERANCE or b + c > 1.0 + _TOLERANCE:
                     continue
                 column = j * raster.nx + i
                 if fill:
@@ -65,6 +69,7 @@ def hits_of_triangles(
 
 @kernel
 def _sort_hits(heights: NDArray[np.float32], kinds: NDArray[np.uint8]) -> None:
+    """Sort the hits of a column by height, in place."""
     for a in range(1, len(heights)):
         z, kind = heights[a], kinds[a]
         b = a
@@ -85,11 +90,11 @@ def surfaces_of_hits(
     ceilings: NDArray[np.float32],
     surface_starts: NDArray[np.int32],
 ) -> int:
-    """The standing surfaces of every column, lowest first; returns how many.
+    """Find the standing surfaces of every column, lowest first; returns their number.
 
-    Hits close together are one. If it is a top and an underside at once, either something stands
-    on a floor or the floor is a plane with two faces: it is buried in the first case, where
-    the next hit above is a top alone.
+    Hits close together are one. A hit that is a top and an underside at once is either a floor
+    that something stands on, or a plane with two faces. In the first case the next hit above is a
+    top alone, and the floor is buried.
     """
     used = 0
     columns = len(starts) - 1
@@ -110,7 +115,7 @@ def surfaces_of_hits(
                 b += 1
             if below >= 0:
                 buried = two_faced and not down
-                if heights[a] - floors[below] < LOWEST_M or buried:
+                if heights[a] - floors[below] < LEAST_HEADROOM_M or buried:
                     used -= 1
                 else:
                     ceilings[below] = heights[a]
@@ -128,7 +133,7 @@ def surfaces_of_hits(
 
 @kernel
 def _cut(shape: NDArray[np.float64], count: int, axis: int, limit: float, sign: float) -> int:
-    """Keep what of a polygon (K, 3) lies where sign * (coordinate - limit) <= 0, in place."""
+    """Cut a polygon (K, 3) to where sign * (coordinate - limit) <= 0, in place; its new length."""
     kept = np.empty((12, 3))
     new = 0
     for a in range(count):
@@ -154,7 +159,7 @@ def _matters(
     low: float,
     high: float,
 ) -> bool:
-    """Whether anyone who stands near (row, column, cells around) could touch low .. high."""
+    """Whether a body that stands near (row, column, cells around) could touch low .. high."""
     j, i, reach = place
     for jj in range(max(0, j - reach), min(raster.ny, j + reach + 1)):
         row = jj * raster.nx
@@ -172,13 +177,13 @@ def steep_faces(
     triangles: NDArray[np.float64],
     starts: NDArray[np.int32],
     floors: NDArray[np.float32],
-    out: NDArray[np.float64],
+    out: NDArray[np.void],
 ) -> int:
-    """Cut triangles too steep to stand on into pieces, one a column.
+    """Cut triangles (T, 3, 3) that are too steep to stand on into pieces, one for each column.
 
-    `out` (R, 7) receives x0, y0, x1, y1, z0, z1 of each piece that anyone could touch, and its
-    column. Of what is not upright a piece is the level line through its middle.
-    Returns how many there are; those beyond the room are not written.
+    `out` (R,) of `FACE` receives each piece that anyone could touch. A piece that is not upright
+    is taken for the level line through its middle. Returns the number of pieces; those beyond the
+    room in `out` are not written.
     """
     count = 0
     cell = raster.cell_m
@@ -202,7 +207,7 @@ def steep_faces(
             for i in range(i0, i1 + 1):
                 x0, y0 = raster.x0 + i * cell, raster.y0 + j * cell
                 middle = (x0 + 0.5 * cell) * nx + (y0 + 0.5 * cell) * ny
-                half = 0.5 * cell * (abs(nx) + abs(ny)) + _HAIR
+                half = 0.5 * cell * (abs(nx) + abs(ny)) + _TOLERANCE
                 if middle + half < away.min() or middle - half > away.max():
                     continue
                 if not _matters(raster, starts, floors, (j, i, reach), low, high):
@@ -223,44 +228,51 @@ def steep_faces(
                 m = 0.5 * ((piece[:, 0] * nx + piece[:, 1] * ny).min())
                 m += 0.5 * ((piece[:, 0] * nx + piece[:, 1] * ny).max())
                 if count < len(out):
-                    out[count] = (
-                        m * nx - a * ny,
-                        m * ny + a * nx,
-                        m * nx - b * ny,
-                        m * ny + b * nx,
-                        z0,
-                        z1,
-                        float(j * raster.nx + i),
-                    )
+                    face = out[count]
+                    face["x0"] = m * nx - a * ny
+                    face["y0"] = m * ny + a * nx
+                    face["x1"] = m * nx - b * ny
+                    face["y1"] = m * ny + b * nx
+                    face["bottom_m"] = z0
+                    face["top_m"] = z1
+                    face["column"] = j * raster.nx + i
                 count += 1
     return count
 
 
 @kernel
-def join_faces(
-    starts: NDArray[np.int64], pieces: NDArray[np.float64], kept: NDArray[np.bool_]
-) -> None:
-    """Join pieces of one wall in one column: they lie on one line and touch above one another.
+def join_faces(starts: NDArray[np.int64], faces: NDArray[np.void], kept: NDArray[np.bool_]) -> None:
+    """Join faces of one wall in one column, which lie on one line and touch above one another.
 
-    `pieces` (R, 6) are listed by column (CSR) and joined in place; `kept` (R,) says which remain.
+    `faces` (R,) of `FACE` are listed by column (CSR) and joined in place; `kept` (R,) receives
+    which of them remain.
     """
     for column in range(len(starts) - 1):
         for a in range(starts[column], starts[column + 1]):
             kept[a] = True
             for b in range(starts[column], a):
-                if kept[b] and _same_line(pieces[a], pieces[b]):
-                    pieces[a, 4] = min(pieces[a, 4], pieces[b, 4])
-                    pieces[a, 5] = max(pieces[a, 5], pieces[b, 5])
+                if kept[b] and _same_line(faces[a], faces[b]):
+                    faces[a]["bottom_m"] = min(faces[a]["bottom_m"], faces[b]["bottom_m"])
+                    faces[a]["top_m"] = max(faces[a]["top_m"], faces[b]["top_m"])
                     kept[b] = False
 
 
 @kernel
-def _same_line(a: NDArray[np.float64], b: NDArray[np.float64]) -> bool:
+def _same_line(a: NDArray[np.void], b: NDArray[np.void]) -> bool:
+    """Whether two faces lie on one line, in either direction, and touch in height."""
     near = 1e-3
     straight = (
-        abs(a[0] - b[0]) + abs(a[1] - b[1]) < near and abs(a[2] - b[2]) + abs(a[3] - b[3]) < near
-    ) or (abs(a[0] - b[2]) + abs(a[1] - b[3]) < near and abs(a[2] - b[0]) + abs(a[3] - b[1]) < near)
-    return bool(straight and a[4] < b[5] + _TOGETHER_M and b[4] < a[5] + _TOGETHER_M)
+        abs(a["x0"] - b["x0"]) + abs(a["y0"] - b["y0"]) < near
+        and abs(a["x1"] - b["x1"]) + abs(a["y1"] - b["y1"]) < near
+    ) or (
+        abs(a["x0"] - b["x1"]) + abs(a["y0"] - b["y1"]) < near
+        and abs(a["x1"] - b["x0"]) + abs(a["y1"] - b["y0"]) < near
+    )
+    return bool(
+        straight
+        and a["bottom_m"] < b["top_m"] + _TOGETHER_M
+        and b["bottom_m"] < a["top_m"] + _TOGETHER_M
+    )
 
 
 @kernel
@@ -272,17 +284,18 @@ def grow_regions(
     order: NDArray[np.int64],
     layers: NDArray[np.int16],
 ) -> int:
-    """Group surfaces into layers; returns how many.
+    """Group S surfaces into `layers` (S,); returns the number of layers.
 
-    From the lowest surface on a region grows along links, the lowest first, wherever it does not
-    lie above or below itself. It goes to the first layer that has nothing above or below it.
+    From the lowest surface on, a region grows along links, its lowest surface first, wherever it
+    does not lie above or below itself. It goes to the first layer that has nothing above or below
+    it. `order` (S,) are the surfaces by height.
     """
     count = 0
     layers[:] = -1
     if len(floors) == 0:
         return 0
     base = floors[order[0]]
-    buckets = int((floors[order[-1]] - base) / 0.1) + 1
+    buckets = int((floors[order[-1]] - base) / _BUCKET_M) + 1
     heads = np.full(buckets, -1, dtype=np.int32)
     following = np.empty(len(floors), dtype=np.int32)
     waiting = np.zeros(len(floors), dtype=np.bool_)
@@ -292,7 +305,7 @@ def grow_regions(
         if layers[seed] >= 0:
             continue
         size = 0
-        bucket = int((floors[seed] - base) / 0.1)
+        bucket = int((floors[seed] - base) / _BUCKET_M)
         heads[bucket] = seed
         following[seed] = -1
         waiting[seed] = True
@@ -311,7 +324,7 @@ def grow_regions(
             for d in range(8):
                 t = links[s, d]
                 if t >= 0 and layers[t] < 0 and not waiting[t] and not taken[columns[t]]:
-                    k = int((floors[t] - base) / 0.1)
+                    k = int((floors[t] - base) / _BUCKET_M)
                     following[t] = heads[k]
                     heads[k] = t
                     waiting[t] = True

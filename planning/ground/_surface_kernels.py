@@ -1,7 +1,7 @@
 """Standing surfaces on bare arrays: columns of solids, links between columns, grouping.
 
-Columns are numbered row by row. What belongs to a column is listed in CSR form: the entries of
-column c are starts[c] .. starts[c + 1], surfaces in order of height.
+Columns are numbered row by row. Surfaces and solids are listed by column in CSR form: the entries
+of column c are starts[c] .. starts[c + 1], surfaces in order of height.
 """
 
 from typing import NamedTuple
@@ -12,14 +12,31 @@ from numpy.typing import NDArray
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.ground.layered import LINK_COLUMNS, LINK_M, LINK_ROOM_M, LINK_ROWS
 
-LOWEST_M = 1.0
-"""A surface with less headroom than this is none: nobody is that small."""
+LEAST_HEADROOM_M = 1.0
+"""A floor with less headroom than this is no surface, since nobody is that small."""
 _SAME_M = 1e-4
-_NEAREST_M = np.float32(0.5 * LOWEST_M - 0.01)
-"""Surfaces that differ by less are nearest to one another: those of a column lie further apart."""
+"""Heights that differ by less are equal."""
+_NEAREST_M = np.float32(0.5 * LEAST_HEADROOM_M - 0.01)
+"""Two surfaces that differ by less are nearest to each other, as those of a column lie further
+apart."""
 _ROOM_M = np.float32(LINK_ROOM_M)
-_RUN = 64
-"""Columns that are linked at once, if they can be."""
+_MOST_AT_ONCE = 64
+"""Greatest number of columns that are linked at once."""
+
+TOP = np.dtype(
+    [
+        ("height", "f8"),
+        ("slope_x", "f8"),
+        ("slope_y", "f8"),
+        ("lowest", "f8"),
+        ("highest", "f8"),
+    ]
+)
+"""The top of a solid: at (x, y) its height is height + slope_x * x + slope_y * y, but no lower than
+`lowest` and no higher than `highest`; metres."""
+
+RUN = np.dtype([("solid", "i4"), ("row", "i4"), ("first", "i4"), ("end", "i4")])
+"""Cells of a row whose centres lie in a solid: the columns from `first` up to before `end`."""
 
 
 class SolidArrays(NamedTuple):
@@ -30,13 +47,13 @@ class SolidArrays(NamedTuple):
     starts: NDArray[np.int64]
     """(K + 1,): where each ring begins."""
     bottoms: NDArray[np.float64]
-    """(K,): height of the underside."""
-    tops: NDArray[np.float64]
-    """(K, 5): the top at (x, y) is a + b x + c y, no lower and no higher than the last two."""
+    """(K,): height of the underside, metres."""
+    tops: NDArray[np.void]
+    """(K,) of `TOP`."""
     standable: NDArray[np.bool_]
     """(K,): whether the top carries anyone."""
     groups: NDArray[np.int16]
-    """(K,): which offset, counted from the ground (0)."""
+    """(K,): number of the solid's offset, counted upward from the ground, which is 0."""
 
 
 class SolidColumns(NamedTuple):
@@ -44,12 +61,13 @@ class SolidColumns(NamedTuple):
 
     solids: SolidArrays
     starts: NDArray[np.int32]
-    """(columns + 1,)"""
+    """(columns + 1,): where the solids of each column begin."""
     members: NDArray[np.int32]
+    """Numbers of solids, column after column."""
 
 
 class Raster(NamedTuple):
-    """The columns of a grid."""
+    """The columns of a grid: its south-west corner and edge of a cell in metres, rows, columns."""
 
     x0: float
     y0: float
@@ -60,14 +78,15 @@ class Raster(NamedTuple):
 
 @inlined
 def top_at(solids: SolidArrays, k: int, x: float, y: float) -> float:
-    """Height of a solid's top at a point."""
-    t = solids.tops
-    return float(min(t[k, 4], max(t[k, 3], t[k, 0] + t[k, 1] * x + t[k, 2] * y)))
+    """Height of a solid's top at a point, metres."""
+    t = solids.tops[k]
+    height = t["height"] + t["slope_x"] * x + t["slope_y"] * y
+    return float(min(t["highest"], max(t["lowest"], height)))
 
 
 @kernel
 def _crossings(ring: NDArray[np.float64], y: float, out: NDArray[np.float64]) -> int:
-    """Where a closed ring crosses a height on the map, in ascending order; returns how many."""
+    """Write the x where a closed ring (P, 2) crosses the line of a y, ascending; their number."""
     count = 0
     b = len(ring) - 1
     for a in range(len(ring)):
@@ -87,13 +106,13 @@ def _crossings(ring: NDArray[np.float64], y: float, out: NDArray[np.float64]) ->
 
 @kernel
 def runs_of_solids(
-    raster: Raster, solids: SolidArrays, runs: NDArray[np.int32], counts: NDArray[np.int32]
+    raster: Raster, solids: SolidArrays, runs: NDArray[np.void], counts: NDArray[np.int32]
 ) -> int:
-    """Rows of cells whose centres lie in each solid.
+    """Find the cells of each row whose centres lie in each solid.
 
-    `runs` (R, 4) receives solid, row, first and last column + 1, as far as it has room; `counts`
-    (columns + 1,) how many solids each column has, at its number + 1. Returns how many runs there
-    are: if more than R, nothing was counted in full and it has to be called again.
+    `runs` (R,) of `RUN` is filled as far as there is room; `counts` (columns + 1,), preset to 0,
+    receives the number of solids of column c at c + 1. Returns the number of runs; if it is more
+    than R, counts are incomplete and the call has to be repeated with more room.
     """
     used = 0
     for k in range(len(solids.bottoms)):
@@ -110,7 +129,10 @@ def runs_of_solids(
                 if i0 >= i1:
                     continue
                 if used < len(runs):
-                    runs[used] = (k, j, i0, i1)
+                    runs[used]["solid"] = k
+                    runs[used]["row"] = j
+                    runs[used]["first"] = i0
+                    runs[used]["end"] = i1
                     for i in range(i0, i1):
                         counts[j * raster.nx + i + 1] += 1
                 used += 1
@@ -120,16 +142,17 @@ def runs_of_solids(
 @kernel
 def fill_columns(
     nx: int,
-    runs: NDArray[np.int32],
+    runs: NDArray[np.void],
     starts: NDArray[np.int32],
     members: NDArray[np.int32],
 ) -> None:
-    """List the solids of each column: starts (columns + 1,) already summed -> members."""
+    """Fill `members` with the solids of each column; `starts` (columns + 1,) is summed already."""
     ends = starts[:-1].copy()
     for r in range(len(runs)):
-        k, j, i0, i1 = runs[r]
-        for c in range(j * nx + i0, j * nx + i1):
-            members[ends[c]] = k
+        run = runs[r]
+        row = run["row"] * nx
+        for c in range(row + run["first"], row + run["end"]):
+            members[ends[c]] = run["solid"]
             ends[c] += 1
 
 
@@ -143,11 +166,11 @@ def surfaces_of_columns(
     groups: NDArray[np.int16],
     surface_starts: NDArray[np.int32],
 ) -> int:
-    """The standing surfaces of every column, lowest first.
+    """Find the standing surfaces of every column, lowest first.
 
-    Writes `heights` (floors, ceilings), `places` (rows, columns) and `groups`.
-    Candidates are the ground, at height 0, and the tops that carry; what lies in another solid
-    or has too little headroom is dropped. Returns the number of surfaces.
+    Writes `heights` (floors, ceilings), `places` (rows, columns), `groups` and where each column
+    begins. Candidates are the ground, at height 0, and the tops that carry; those that lie in
+    another solid or have too little headroom are dropped. Returns the number of surfaces.
     """
     floors, ceilings = heights
     rows, cols = places
@@ -180,7 +203,7 @@ def surfaces_of_columns(
             for m in range(first, last):
                 if top_at(solids, members[m], x, y) > z + _SAME_M:
                     ceiling = min(ceiling, solids.bottoms[members[m]])
-            if ceiling - z < LOWEST_M - _SAME_M:
+            if ceiling - z < LEAST_HEADROOM_M - _SAME_M:
                 continue
             k = used
             while k > surface_starts[c] and floors[k - 1] > z:
@@ -202,7 +225,7 @@ def surfaces_of_columns(
 
 @inlined
 def _apart(floors: NDArray[np.float32], ceilings: NDArray[np.float32], a: int, b: int) -> float:
-    """Difference in height of two neighbouring floors; inf if there is no way between them."""
+    """Difference in height of two neighbouring floors; inf if too little headroom joins them."""
     room = min(ceilings[a], ceilings[b]) - max(floors[a], floors[b])
     return abs(floors[a] - floors[b]) - _SAME_M if room >= LINK_ROOM_M else np.inf
 
@@ -211,7 +234,7 @@ def _apart(floors: NDArray[np.float32], ceilings: NDArray[np.float32], a: int, b
 def _match(
     floors: NDArray[np.float32], ceilings: NDArray[np.float32], a: int, q0: int, q1: int
 ) -> int:
-    """The surface q0 .. q1 that is nearest in height to a, of those that it could be linked to."""
+    """The surface among q0 .. q1 nearest in height to a that a can be linked to; -1 if none."""
     best = -1
     least = LINK_M
     for q in range(q0, q1):
@@ -226,11 +249,11 @@ def _match(
 def _level_count(
     floors: NDArray[np.float32], ceilings: NDArray[np.float32], a: int, b: int, count: int
 ) -> int:
-    """How many surfaces from a on are nearly level with those from b on, one beside the other."""
+    """Number of surfaces from a on that are nearly level with those from b on, one by one."""
     floors_a, floors_b = floors[a : a + count], floors[b : b + count]
     ceilings_a, ceilings_b = ceilings[a : a + count], ceilings[b : b + count]
     apart = 0
-    for k in range(count):  # without a way out, so that it is done for several at once
+    for k in range(count):  # without a break, so that the compiler vectorises it
         room = min(ceilings_a[k], ceilings_b[k]) - max(floors_a[k], floors_b[k])
         apart += (abs(floors_a[k] - floors_b[k]) >= _NEAREST_M) | (room < _ROOM_M)
     if apart == 0:
@@ -250,10 +273,10 @@ def _link_level(
     d: int,
     links: NDArray[np.int32],
 ) -> int:
-    """Link a run (first column, its neighbour, columns) as far as it goes on levelly.
+    """Link a run (first column, its neighbour, columns) as far as all floors are nearly level.
 
-    That is nearly all there is: as many surfaces here as there, each beside its like. Returns
-    how many columns were linked.
+    In most columns there are as many surfaces as in the neighbour, each level with its
+    counterpart. Returns the number of columns that were linked.
     """
     c, other, count = run
     a, b = starts[c], starts[other]
@@ -279,7 +302,7 @@ def link_columns(
     ceilings: NDArray[np.float32],
     links: NDArray[np.int32],
 ) -> None:
-    """Link surfaces of neighbouring columns that are nearest to one another -> links (S, 8)."""
+    """Fill `links` (S, 8): surfaces of neighbouring columns that are nearest to one another."""
     for j in range(ny):
         for d in range(4):
             if j + LINK_ROWS[d] == ny:
@@ -288,7 +311,7 @@ def link_columns(
             while i < last:
                 c = j * nx + i
                 other = c + LINK_ROWS[d] * nx + LINK_COLUMNS[d]
-                run = c, other, min(last - i, _RUN)
+                run = c, other, min(last - i, _MOST_AT_ONCE)
                 done = _link_level(starts, floors, ceilings, run, d, links)
                 i += done
                 if done == run[2]:
@@ -305,7 +328,7 @@ def link_columns(
 
 @kernel
 def flood(links: NDArray[np.int32], seeds: NDArray[np.int64], reached: NDArray[np.bool_]) -> None:
-    """Mark every surface that links lead to from the seeds."""
+    """Mark in `reached` (S,) every surface that links lead to from the seeds."""
     stack = np.empty(len(links), dtype=np.int32)
     size = 0
     for seed in seeds:
@@ -328,7 +351,7 @@ def flood(links: NDArray[np.int32], seeds: NDArray[np.int64], reached: NDArray[n
 def keep_surfaces(
     kept: NDArray[np.bool_], links: NDArray[np.int32], renumbered: NDArray[np.int32]
 ) -> int:
-    """Move the links (S, 8) of surfaces that are kept to the front, in place; returns how many."""
+    """Move the links (S, 8) of surfaces that are kept to the front, in place; their number."""
     count = 0
     for s in range(len(kept)):
         renumbered[s] = -1
@@ -352,9 +375,10 @@ def relate_groups(
     overlap: NDArray[np.bool_],
     joined: NDArray[np.bool_],
 ) -> None:
-    """Which groups (G, G) lie above one another anywhere, and which are linked anywhere.
+    """Mark which groups lie above one another anywhere, and which are linked anywhere.
 
-    A group that has any surface is joined to itself. Surfaces of one column follow one another.
+    `overlap` and `joined` are (G, G). A group that has any surface is joined to itself. The
+    surfaces of a column follow one another.
     """
     for s in range(len(groups)):
         group = groups[s]

@@ -1,4 +1,4 @@
-"""The floors of a zone: where one can stand, and what is in the way."""
+"""The floors of a zone: its standing surfaces, its barriers and its doors."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.ground.meshes import (
     Progress,
     barriers_of_triangles,
+    no_progress,
     surfaces_of_triangles,
-    unheard,
 )
 from esplanade.planning.ground.surfaces import Surfaces, surfaces_of_scene
 from esplanade.planning.scene.doors import Doors
@@ -20,7 +20,7 @@ from esplanade.planning.scene.scene import Scene
 
 
 class Floors(NamedTuple):
-    """Everything that is derived from the shape of a zone alone, whatever the body."""
+    """Everything that is derived from the shape of a zone alone, without any body."""
 
     surfaces: Surfaces
     layered: LayeredArrays
@@ -38,14 +38,14 @@ def floors_of_scene(scene: Scene, cell_m: float = 0.25) -> Floors:
 
 
 def floors_of_mesh(
-    path: str | Path, cell_m: float = 0.25, up: Up = "y", progress: Progress = unheard
+    path: str | Path, cell_m: float = 0.25, up: Up = "y", progress: Progress = no_progress
 ) -> Floors:
     """The floors of a mesh file; see `read_triangles` and `surfaces_of_triangles`.
 
     Raises
     ------
     MeshError
-        The file is at fault; the message names it and says how.
+        The file is at fault; the message names the file and the fault.
     """
     progress("reading", 0.0)
     triangles = read_triangles(path, up)

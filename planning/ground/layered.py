@@ -1,4 +1,4 @@
-"""The one inner form of a scene: tiles of cells, layer by layer, on bare arrays."""
+"""The form that every scene is brought into: tiles of cells, layer by layer, on bare arrays."""
 
 from typing import NamedTuple
 
@@ -13,36 +13,39 @@ _SHIFT = 3
 _CELLS = TILE * TILE
 
 LINK_M = 1.2
-"""Greatest difference of floors between two cells that are linked: more than any body steps."""
+"""Greatest difference in height between the floors of two linked cells: more than anyone steps."""
 LINK_ROOM_M = 0.5
-"""Least free height that two linked cells have in common."""
+"""Least headroom that two linked cells have in common, in metres."""
 
 LINK_ROWS = (0, 1, 1, 1, 0, -1, -1, -1)
 LINK_COLUMNS = (1, 1, 0, -1, -1, -1, 0, 1)
-"""Where the eight neighbours lie: E, NE, N, NW, W, SW, S, SE; d + 4 is opposite to d."""
+"""Offsets to the eight neighbours E, NE, N, NW, W, SW, S, SE; d + 4 is opposite to d."""
+
+PLACE = np.dtype([("layer", "i4"), ("row", "i4"), ("column", "i4")])
+"""The place of a cell in its grid."""
 
 
 class LayeredArrays(NamedTuple):
-    """What kernels know of the floors of a zone. Memory grows with standing surface.
+    """The floors of a zone. Memory grows with the area that can be stood on.
 
-    Cells come in square tiles, row by row within one; a tile without any standing surface has no
-    cells. N = 64 x number of tiles.
+    Cells come in square tiles, row by row within a tile; a tile without any standing surface has
+    no cells. N is 64 times the number of tiles.
     """
 
     pages: NDArray[np.int32]
     """(L, tiles_y, tiles_x): first cell of each tile, -1 where the layer has no surface."""
     floors: NDArray[np.float32]
-    """(N,): height of the standing surface at the cell's centre, metres; nan: a hole."""
+    """(N,): height of the standing surface at the cell's centre, metres; nan in a hole."""
     ceilings: NDArray[np.float32]
-    """(N,): height of the underside above it, metres; inf: open sky; nan: a hole."""
+    """(N,): height of the underside above it, metres; inf under open sky, nan in a hole."""
     links: NDArray[np.int32]
-    """(N, 8): the neighbours in the order of `LINK_ROWS`, on whatever layer; -1: none.
-    If a links to b, then b to a."""
-    places: NDArray[np.int32]
-    """(N, 3): layer, row, column, also of holes."""
-    plain: NDArray[np.float32]
-    """(N / 64,): least headroom over a tile that is level and without holes, as are all tiles
-    around it on its layer, metres; -1 for other tiles. Most of a building is as plain as that."""
+    """(N, 8): the neighbours in the order of `LINK_ROWS`, on whatever layer; -1 where there is
+    none. If a links to b, then b links to a."""
+    places: NDArray[np.void]
+    """(N,) of `PLACE`, also of holes."""
+    level_headroom: NDArray[np.float32]
+    """(N / 64,): least headroom over a tile and those around it, metres, if all of them are level,
+    at one height and without holes; -1 for other tiles. Most tiles of a building are level."""
     x0: float
     y0: float
     x1: float
@@ -54,7 +57,7 @@ class LayeredArrays(NamedTuple):
 
 @inlined
 def cell_index(arrays: LayeredArrays, layer: int, j: int, i: int) -> int:
-    """The cell of a row and column; -1 outside, where the layer is missing, and for a hole."""
+    """The cell at a layer, row and column; -1 outside of the grid, and in a hole of the layer."""
     if not (0 <= layer < arrays.pages.shape[0] and 0 <= j < arrays.ny and 0 <= i < arrays.nx):
         return -1
     first = arrays.pages[layer, j >> _SHIFT, i >> _SHIFT]
@@ -66,7 +69,7 @@ def cell_index(arrays: LayeredArrays, layer: int, j: int, i: int) -> int:
 
 @inlined
 def cell_of(arrays: LayeredArrays, layer: int, x: float, y: float) -> int:
-    """The cell that holds a point; -1 outside the bounds and where nobody can stand."""
+    """The cell of a layer that holds a point; -1 outside the bounds and where nobody can stand."""
     if not (arrays.x0 <= x <= arrays.x1 and arrays.y0 <= y <= arrays.y1):
         return -1
     j = min(arrays.ny - 1, int((y - arrays.y0) / arrays.cell_m))
@@ -76,7 +79,7 @@ def cell_of(arrays: LayeredArrays, layer: int, x: float, y: float) -> int:
 
 @kernel
 def cell_near(arrays: LayeredArrays, x: float, y: float, z: float) -> int:
-    """Of the cells above and below a point, the one whose floor is nearest in height; -1: none."""
+    """The cell above or below a point whose floor is nearest in height; -1 if there is none."""
     best = -1
     away = np.inf
     for layer in range(arrays.pages.shape[0]):
@@ -88,13 +91,16 @@ def cell_near(arrays: LayeredArrays, x: float, y: float, z: float) -> int:
 
 
 @kernel
-def lay_pages(
+def number_tiles(
     pages: NDArray[np.int32],
     layers: NDArray[np.int16],
     rows: NDArray[np.int32],
     columns: NDArray[np.int32],
 ) -> int:
-    """Number the tiles that hold any surface, in pages preset to -1; returns their number."""
+    """Write the first cell of each tile that holds any surface; returns the number of tiles.
+
+    `pages` must be preset to -1; `layers`, `rows` and `columns` are those of the surfaces.
+    """
     for s in range(len(layers)):
         pages[layers[s], rows[s] >> _SHIFT, columns[s] >> _SHIFT] = 0
     tiles = 0
@@ -108,8 +114,8 @@ def lay_pages(
 
 
 @kernel
-def lay_places(pages: NDArray[np.int32], places: NDArray[np.int32]) -> None:
-    """Write layer, row and column of every cell."""
+def fill_places(pages: NDArray[np.int32], places: NDArray[np.void]) -> None:
+    """Fill `places` (N,) of `PLACE`."""
     for layer in range(pages.shape[0]):
         for tj in range(pages.shape[1]):
             for ti in range(pages.shape[2]):
@@ -117,13 +123,14 @@ def lay_places(pages: NDArray[np.int32], places: NDArray[np.int32]) -> None:
                 if first < 0:
                     continue
                 for k in range(_CELLS):
-                    places[first + k, 0] = layer
-                    places[first + k, 1] = (tj << _SHIFT) + (k >> _SHIFT)
-                    places[first + k, 2] = (ti << _SHIFT) + (k & (TILE - 1))
+                    place = places[first + k]
+                    place["layer"] = layer
+                    place["row"] = (tj << _SHIFT) + (k >> _SHIFT)
+                    place["column"] = (ti << _SHIFT) + (k & (TILE - 1))
 
 
 @kernel
-def lay_cells(
+def fill_cells(
     arrays: LayeredArrays,
     surfaces: tuple[NDArray[np.int16], NDArray[np.int32], NDArray[np.int32]],
     heights: tuple[NDArray[np.float32], NDArray[np.float32]],
@@ -152,10 +159,10 @@ def lay_cells(
 
 
 @kernel
-def find_plains(arrays: LayeredArrays) -> None:
-    """Write `arrays.plain` when everything else is there."""
-    floors = np.full(len(arrays.plain), np.nan, dtype=np.float32)
-    rooms = np.empty(len(arrays.plain), dtype=np.float32)
+def find_level_tiles(arrays: LayeredArrays) -> None:
+    """Fill `arrays.level_headroom`, once everything else is filled."""
+    floors = np.full(len(arrays.level_headroom), np.nan, dtype=np.float32)
+    rooms = np.empty(len(arrays.level_headroom), dtype=np.float32)
     for tile in range(len(floors)):
         first = tile * _CELLS
         floor, ceiling = arrays.floors[first], arrays.ceilings[first]
@@ -181,4 +188,4 @@ def find_plains(arrays: LayeredArrays) -> None:
                             room = np.float32(-1.0)
                         else:
                             room = min(room, rooms[other])
-                arrays.plain[tile] = room
+                arrays.level_headroom[tile] = room

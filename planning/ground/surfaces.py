@@ -1,4 +1,4 @@
-"""Where one can stand: the standing surfaces of a scene, linked and grouped into layers."""
+"""Standing surfaces of a scene: where a body can stand, linked and grouped into layers."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.ground._surface_kernels import (
+    RUN,
+    TOP,
     Raster,
     SolidArrays,
     SolidColumns,
@@ -22,26 +24,27 @@ from esplanade.planning.ground._surface_kernels import (
     surfaces_of_columns,
 )
 from esplanade.planning.ground.layered import (
+    PLACE,
     TILE,
     LayeredArrays,
-    find_plains,
-    lay_cells,
-    lay_pages,
-    lay_places,
+    fill_cells,
+    fill_places,
+    find_level_tiles,
+    number_tiles,
 )
 from esplanade.planning.scene.scene import Polygon, Scene
 
 MAX_COLUMNS = 43_000_000
-"""Columns of a grid: those of the largest scene with cells of 0.1 m."""
+"""Greatest number of columns of a grid: the largest scene has as many with cells of 0.1 m."""
 MAX_LAYERS = 255
-"""Layers are numbered by one byte on the wire."""
+"""Greatest number of layers: they are numbered by one byte on the wire."""
 
 
 @dataclass(frozen=True, eq=False)
 class Surfaces:
     """Standing surfaces, one row each, column by column and lowest first.
 
-    A surface is what one cell of one layer holds: a floor with at least `LOWEST_M` of headroom.
+    A surface is a floor in one cell of one layer, with at least `LEAST_HEADROOM_M` of headroom.
     """
 
     rows: NDArray[np.int32]
@@ -55,9 +58,9 @@ class Surfaces:
     layers: NDArray[np.int16]
     """(S,): no layer has two surfaces in one column."""
     links: NDArray[np.int32]
-    """(S, 8): the surfaces of the neighbouring columns that one can get to; -1: none."""
+    """(S, 8): the surfaces of the neighbouring columns that a body can get to; -1 if none."""
     solids: SolidColumns
-    """What carries them and stands on them; nothing where triangles do."""
+    """The solids that carry the surfaces and stand on them; none if triangles carry them."""
     bounds: tuple[float, float, float, float]
     """x0, y0, x1, y1 in metres."""
     cell_m: float
@@ -78,41 +81,41 @@ class Surfaces:
         return int(self.layers.max(initial=0)) + 1
 
     def layered(self) -> LayeredArrays:
-        """The same as tiles of cells."""
+        """The same surfaces as tiles of cells."""
         tiles_y, tiles_x = -(-self.ny // TILE), -(-self.nx // TILE)
         pages = np.full((self.layer_count, tiles_y, tiles_x), -1, dtype=np.int32)
-        cells = lay_pages(pages, self.layers, self.rows, self.columns) * TILE * TILE
+        cells = number_tiles(pages, self.layers, self.rows, self.columns) * TILE * TILE
         arrays = LayeredArrays(
             pages,
             np.full(cells, np.nan, dtype=np.float32),
             np.full(cells, np.nan, dtype=np.float32),
             np.full((cells, 8), -1, dtype=np.int32),
-            np.empty((cells, 3), dtype=np.int32),
+            np.empty(cells, dtype=PLACE),
             np.empty(cells // TILE**2, dtype=np.float32),
             *self.bounds,
             self.cell_m,
             self.ny,
             self.nx,
         )
-        lay_places(pages, arrays.places)
-        lay_cells(
+        fill_places(pages, arrays.places)
+        fill_cells(
             arrays,
             (self.layers, self.rows, self.columns),
             (self.floors, self.ceilings),
             self.links,
             np.empty(len(self), dtype=np.int32),
         )
-        find_plains(arrays)
+        find_level_tiles(arrays)
         return arrays
 
 
 def raster_of(bounds: tuple[float, float, float, float], cell_m: float) -> Raster:
-    """The columns over some bounds.
+    """The columns over the bounds x0, y0, x1, y1, with cells of `cell_m` metres.
 
     Raises
     ------
     ValueError
-        `cell_m` is not between 0.05 and 2 m, or so small that there would be too many columns.
+        `cell_m` is not between 0.05 and 2 m, or is so small that there are too many columns.
     """
     if not 0.05 <= cell_m <= 2.0:
         raise ValueError(f"cell_m must lie between 0.05 and 2 m, got {cell_m}")
@@ -130,9 +133,10 @@ def raster_of(bounds: tuple[float, float, float, float], cell_m: float) -> Raste
 def surfaces_of_scene(scene: Scene, cell_m: float = 0.25) -> Surfaces:
     """The standing surfaces of a scene of polygons.
 
-    Polygons of one offset form one layer, unless they only lie beside a lower layer that is
-    linked to them: then they belong to that. What nothing links to a spawn or a place is left
-    out, such as roofs, if the scene has any. Cost O(cells + surfaces).
+    Polygons of one offset form one layer; if they only lie beside a lower layer that is linked to
+    them, they belong to that layer. If the scene has spawns or places, surfaces that are not
+    linked to any of them, such as roofs, are left out. `cell_m` is the edge of a cell in metres.
+    Cost O(cells + surfaces).
 
     Raises
     ------
@@ -169,7 +173,7 @@ def linked(
     floors: NDArray[np.float32],
     ceilings: NDArray[np.float32],
 ) -> NDArray[np.int32]:
-    """Links (S, 8) of surfaces that are listed by column (CSR)."""
+    """Links, int32 (S, 8), of surfaces that are listed by column (CSR)."""
     links = np.full((len(floors), 8), -1, dtype=np.int32)
     link_columns(raster.ny, raster.nx, starts, floors, ceilings, links)
     return links
@@ -178,13 +182,13 @@ def linked(
 def solid_columns(scene: Scene, raster: Raster) -> SolidColumns:
     """The solids of a scene, and which of them each column goes through."""
     solids = _solid_arrays(scene)
-    runs = np.empty((4096, 4), dtype=np.int32)
+    runs = np.empty(4096, dtype=RUN)
     while True:
         starts = np.zeros(raster.ny * raster.nx + 1, dtype=np.int32)
         used = runs_of_solids(raster, solids, runs, starts)
         if used <= len(runs):
             break
-        runs = np.empty((used, 4), dtype=np.int32)
+        runs = np.empty(used, dtype=RUN)
     np.cumsum(starts, out=starts)
     members = np.empty(starts[-1], dtype=np.int32)
     fill_columns(raster.nx, runs[:used], starts, members)
@@ -199,7 +203,7 @@ def _solid_arrays(scene: Scene) -> SolidArrays:
         np.array([p for solid in solids for p in solid.points], dtype=np.float64).reshape(-1, 2),
         np.array(list(ends), dtype=np.int64),
         np.array([solid.offset_m for solid in solids], dtype=np.float64),
-        np.array([_top(solid) for solid in solids], dtype=np.float64).reshape(-1, 5),
+        np.array([_top(solid) for solid in solids], dtype=TOP),
         np.array([solid.carries for solid in solids], dtype=np.bool_),
         np.array([offsets.index(solid.offset_m) for solid in solids], dtype=np.int16),
     )

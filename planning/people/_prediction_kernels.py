@@ -9,7 +9,7 @@ from esplanade.planning.compiled.handle import Handle
 from esplanade.planning.compiled.jit import kernel
 from esplanade.planning.grid._grid_kernels import length, surface_at
 from esplanade.planning.grid._walking_kernels import GroundArrays, walk
-from esplanade.planning.ground._geometry_kernels import Stance, in_bounds, nearest_segment
+from esplanade.planning.ground._geometry_kernels import Placement, in_bounds, nearest_barrier
 
 PERSON_HEIGHT_M = 1.8
 PERSON_STEP_ON_M = 0.6
@@ -173,7 +173,7 @@ def extrapolate(
     """
     grid, index = ground.value
     bounds = (grid.layered.x0, grid.layered.y0, grid.layered.x1, grid.layered.y1)
-    stance = Stance(0.0, 0.0, PERSON_HEIGHT_M, PERSON_STEP_ON_M)
+    person = Placement(0.0, 0.0, PERSON_HEIGHT_M, PERSON_STEP_ON_M)
     people, slices = prediction.sigmas.shape
     for p in range(people):
         x = places[p, 0]
@@ -192,7 +192,7 @@ def extrapolate(
                 nx = x
                 ny = y
                 if grid.flat and free_m <= step_m:
-                    near_m = nearest_segment(index, stance, x, y)[0]
+                    near_m = nearest_barrier(index, person, x, y)[0]
                     free_m = min(near_m, index.reach_m) - wall_clearance
                 if grid.flat and free_m > step_m and in_bounds(bounds, x + dx, y + dy):
                     nx = x + dx  # nothing can be met in this slice

@@ -1,1 +1,1 @@
-"""Ways over static ground: potentials of goals, shortest paths, storeys."""
+"""Routes over static ground: potentials of goals, shortest paths, storeys."""

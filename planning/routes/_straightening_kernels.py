@@ -6,7 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
-from esplanade.planning.ground._barrier_kernels import HAIR_M, crosses, to_raise, way_to_barrier
+from esplanade.planning.ground._barrier_kernels import (
+    TOLERANCE_M,
+    height_to_climb,
+    segment_barrier_distance,
+)
+from esplanade.planning.ground._geometry_kernels import crosses
 from esplanade.planning.traversal._stability_kernels import FORBIDDEN, STABLE
 from esplanade.planning.traversal.traversability import Traversability
 
@@ -14,35 +19,35 @@ _CORNER_M = 1e-9
 
 
 class Line(NamedTuple):
-    """A way as points, at least one in every cell that it crosses."""
+    """A path as N points, at least one in every cell that it crosses."""
 
     xy: NDArray[np.float64]
-    """(N, 2), metres."""
+    """(N, 2): positions, metres."""
     cells: NDArray[np.int32]
-    """(N,)."""
+    """(N,): the cell of each point."""
     counts: NDArray[np.int32]
-    """(N,): cells on edges in a row."""
+    """(N,): cells on edges in a row, up to and with that of each point."""
 
 
 @inlined
 def is_clear(
     traversability: Traversability, cell: int, ax: float, ay: float, bx: float, by: float
 ) -> bool:
-    """Whether a body keeps its distance from barriers on a straight way within one cell."""
+    """Whether a body keeps its radius from barriers on the segment ab within one cell."""
     near, body = traversability.near, traversability.body
     floor = float(traversability.arrays.floors[cell])
     entry = near.first[cell]
     while entry >= 0:
-        barrier = near.barriers[near.entries[entry, 0]]
-        entry = near.entries[entry, 1]
-        step = to_raise(barrier, floor, floor, body.height_m)
-        if step <= body.step_on_m + HAIR_M:
+        barrier = near.barriers[near.entries[entry]["barrier"]]
+        entry = near.entries[entry]["next"]
+        step = height_to_climb(barrier, floor, floor, body.height_m)
+        if step <= body.step_on_m + TOLERANCE_M:
             continue
         if crosses(barrier, ax, ay, bx, by):
             return False
         if (
-            step > body.leg_length_m + HAIR_M
-            and way_to_barrier(barrier, ax, ay, bx, by) < body.radius_m - HAIR_M
+            step > body.leg_length_m + TOLERANCE_M
+            and segment_barrier_distance(barrier, ax, ay, bx, by) < body.radius_m - TOLERANCE_M
         ):
             return False
     return True
@@ -50,7 +55,7 @@ def is_clear(
 
 @inlined
 def _until(a: float, b: float, cell: int, last: int, origin: float, cell_m: float) -> float:
-    """The part of the way from a to b at which it leaves a row (or column) of cells."""
+    """The part of the coordinates from a to b at which they leave a row (or column) of cells."""
     if cell == last:
         return np.inf
     side = cell + 1 if last > cell else cell
@@ -61,17 +66,17 @@ def _until(a: float, b: float, cell: int, last: int, origin: float, cell_m: floa
 def trace(
     traversability: Traversability, line: Line, a: int, b: int, count: int, out: Line, used: int
 ) -> int:
-    """Walk straight from point a of a line to point b, of which `count` cells were on edges.
+    """Walk straight from point a of a line to point b, with a count of `count` at a.
 
-    Writes the points after a, one in every cell on the way, into `out` from `used` on; returns
-    how many are used then, or -1 if the body may not walk so.
+    Writes the points after a, one in every cell in between, into `out` from `used` on. Returns the
+    number of points in `out`, or -1 if the body may not walk there.
     """
     arrays = traversability.arrays
     ax, ay = line.xy[a]
     bx, by = line.xy[b]
     cell, last = line.cells[a], line.cells[b]
-    j, i = arrays.places[cell, 1], arrays.places[cell, 2]
-    last_j, last_i = arrays.places[last, 1], arrays.places[last, 2]
+    j, i = arrays.places[cell]["row"], arrays.places[cell]["column"]
+    last_j, last_i = arrays.places[last]["row"], arrays.places[last]["column"]
     x, y, done = ax, ay, 0.0
     while True:
         u = _until(ax, bx, i, last_i, arrays.x0, arrays.cell_m)
@@ -110,6 +115,7 @@ def trace(
 
 @inlined
 def _link_toward(dj: int, di: int) -> int:
+    """The link that leads one row and column on, by -1, 0 or 1 each."""
     if dj == 0:
         return 0 if di > 0 else 4
     if dj > 0:
@@ -119,10 +125,11 @@ def _link_toward(dj: int, di: int) -> int:
 
 @kernel
 def straighten(traversability: Traversability, line: Line, out: Line) -> int:
-    """Replace stretches of a line by straight ones, longest first; returns the points in `out`.
+    """Replace stretches of a line by straight ones as long as possible; the points in `out`.
 
-    A stretch is taken if it may be walked and ends with no higher count than before, so that
-    what follows stays legal. How far one can go straight is found by doubling, then halving.
+    A straight stretch is legal if the body may walk it and it ends with no higher count than
+    before, so that the rest of the line stays legal. Its greatest length is found by doubling,
+    then by halving.
     """
     n = len(line.cells)
     out.xy[0] = line.xy[0]
@@ -158,7 +165,7 @@ def straighten(traversability: Traversability, line: Line, out: Line) -> int:
 
 @kernel
 def recount(traversability: Traversability, line: Line) -> bool:
-    """Count cells on edges anew, from the first point on; whether M allows the line."""
+    """Count cells on edges again, from the first point on; returns whether M allows the line."""
     line.counts[0] = 0
     for k in range(1, len(line.cells)):
         count = line.counts[k - 1]

@@ -1,16 +1,17 @@
-"""One way for one body through a layered scene: Huang & Li, from reachability to headings."""
+"""A path for one body through a layered scene: Huang & Li, from reachability to headings."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.planning.routes._standing_kernels import stand
+from esplanade.planning.grid.grid import LayeredGrid
+from esplanade.planning.routes._snapping_kernels import snap
 from esplanade.planning.routes.stable_bfp import stable_bfp
 from esplanade.planning.routes.straightening import headings, line_of_cells, straighten
 from esplanade.planning.scene.bodies import Body
@@ -18,21 +19,18 @@ from esplanade.planning.traversal._stability_kernels import FORBIDDEN
 from esplanade.planning.traversal.traversability import Traversability
 from esplanade.planning.traversal.wavefront import spread_toward
 
-if TYPE_CHECKING:
-    from esplanade.planning.grid.grid import LayeredGrid
-
 Point3 = tuple[float, float, float]
 _LONGER = (1.0, 1.05, 1.2, math.inf)
-"""By how much the way that M allows may be longer than what is shortest without M: mostly it is
-as short, and the less is looked at the better."""
+"""Limits for the path that M allows, in lengths of the shortest path without M. They are tried in
+turn, since most paths are as short and a low limit saves work."""
 
 
 class PathStatus(IntEnum):
-    """How the search for a way ended."""
+    """How the search for a path ended."""
 
     FOUND = 0
     NO_WAY = 1
-    """The body fits at start and goal, but no legal way leads from one to the other."""
+    """The body fits at start and goal, but no legal path leads from one to the other."""
     START_BLOCKED = 2
     """The body fits nowhere within half a metre of the start."""
     GOAL_BLOCKED = 3
@@ -41,7 +39,7 @@ class PathStatus(IntEnum):
 
 @dataclass(frozen=True, eq=False)
 class LayeredPath:
-    """A way over floors, with a point in every cell that it crosses; empty unless found."""
+    """A path over floors, with a point in every cell that it crosses; empty unless found."""
 
     status: PathStatus
     points: NDArray[np.float64]
@@ -49,13 +47,13 @@ class LayeredPath:
     layers: NDArray[np.int64]
     """(N,): the layer of each point."""
     headings: NDArray[np.float64]
-    """(N,): where the body looks, radians from east toward north."""
+    """(N,): headings of the body, radians from east toward north."""
     expansions: int = 0
-    """States that the search looked at."""
+    """Number of states that the search looked at."""
 
     @property
     def length_m(self) -> float:
-        """Length of the way, up and down included; 0 if there is none."""
+        """Length of the path in metres, up and down included; 0 if there is no path."""
         return float(np.linalg.norm(np.diff(self.points, axis=0), axis=1).sum())
 
 
@@ -79,13 +77,13 @@ def _checked(name: str, point: Point3, grid: LayeredGrid) -> Point3:
 def find_path(
     grid: LayeredGrid, start: Point3, goal: Point3, body: Body | None = None
 ) -> LayeredPath:
-    """The shortest way that a body may walk from one point to another, on whatever floors.
+    """The shortest path that a body may walk from one point to another, on whatever floors.
 
     Parameters
     ----------
     start, goal : x, y, z in metres
-        z says which floor: the nearest one above or below, within 1 m. Where the body does not
-        fit, it is moved by half a metre at most; through a wall only if it fits nowhere on this
+        z tells the floor: the nearest one above or below, within 1 m. Where the body does not fit
+        it is moved by half a metre at most, and through a wall only if it fits nowhere on this
         side, as inside a hollow wall.
     body : Body
         An adult if not given.
@@ -93,7 +91,7 @@ def find_path(
     Returns
     -------
     LayeredPath
-        Its status says why there is none.
+        Its status tells why there is none.
 
     Raises
     ------
@@ -103,14 +101,14 @@ def find_path(
     body = Body.adult() if body is None else body
     start, goal = _checked("start", start, grid), _checked("goal", goal, grid)
     traversability = grid.traversability.of(body)
-    first, last = find_end(traversability, start), find_end(traversability, goal)
+    first, last = find_endpoint(traversability, start), find_endpoint(traversability, goal)
     if first is None:
         return _no_path(PathStatus.START_BLOCKED)
     if last is None:
         return _no_path(PathStatus.GOAL_BLOCKED)
     regions = grid.traversability.regions_of(body)
     if regions[first.cell] != regions[last.cell]:
-        # An end that has to be moved anyway may be moved to where the other is.
+        # An endpoint that has to be moved anyway may be moved to the region of the other.
         first = _moved(traversability, start, first, regions == regions[last.cell]) or first
     if regions[first.cell] != regions[last.cell]:
         last = _moved(traversability, goal, last, regions == regions[first.cell]) or last
@@ -119,8 +117,8 @@ def find_path(
     return find_route(traversability, first, last)
 
 
-class End(NamedTuple):
-    """Where a way begins or ends."""
+class Endpoint(NamedTuple):
+    """A start or goal: a cell, and a position in it where the body can stand, in metres."""
 
     cell: int
     x: float
@@ -129,50 +127,53 @@ class End(NamedTuple):
     """Whether the body was moved through a wall, as it fits nowhere on the point's side."""
 
 
-def find_end(traversability: Traversability, point: Point3) -> End | None:
-    """Where a body stands that is said to be at a point; None: it fits nowhere near.
+def find_endpoint(traversability: Traversability, point: Point3) -> Endpoint | None:
+    """The nearest endpoint to a point; None if the body fits nowhere near.
 
-    It stays on its side of walls if it fits there; else the point is inside of something.
+    The body stays on its side of walls if it fits there; otherwise the point is inside of an
+    obstacle, and the body is moved out of it.
     """
-    return _stand(traversability, point, False) or _stand(traversability, point, True)
+    return _snapped(traversability, point, False) or _snapped(traversability, point, True)
 
 
-def _stand(
+def _snapped(
     traversability: Traversability,
     point: Point3,
     through: bool,
     among: NDArray[np.bool_] | None = None,
-) -> End | None:
+) -> Endpoint | None:
+    """The nearest endpoint to a point, among all cells or some, bool (N,)."""
     classes = traversability.classes
     if among is not None:
         classes = np.where(among, classes, np.uint8(FORBIDDEN))
-    cell, x, y = stand(traversability, classes, *point, through)
-    return End(cell, x, y, through) if cell >= 0 else None
+    cell, x, y = snap(traversability, classes, *point, through)
+    return Endpoint(cell, x, y, through) if cell >= 0 else None
 
 
 def _moved(
-    traversability: Traversability, point: Point3, end: End, among: NDArray[np.bool_]
-) -> End | None:
-    """Another end, among some cells; None if the body fits at the point itself, or in none."""
+    traversability: Traversability, point: Point3, end: Endpoint, among: NDArray[np.bool_]
+) -> Endpoint | None:
+    """Another endpoint among some cells; None if the body fits at the point itself or in none."""
     if (end.x, end.y) == point[:2]:
         return None
-    return _stand(traversability, point, end.through, among)
+    return _snapped(traversability, point, end.through, among)
 
 
-def find_route(traversability: Traversability, first: End, last: End) -> LayeredPath:
-    """The shortest way from end to end that M allows.
+def find_route(traversability: Traversability, first: Endpoint, last: Endpoint) -> LayeredPath:
+    """The shortest path between two endpoints that M allows.
 
-    Cost O(cells on ways that are no longer): in the open little more than the way itself.
+    Cost O(cells on paths that are no longer); in the open these are few besides the path itself.
     """
     for longer in _LONGER:
-        left = spread_toward(traversability, last.cell, first.cell, longer)
-        way = stable_bfp(traversability, left, first.cell, last.cell, longer)
-        if len(way.cells):
+        distances = spread_toward(traversability, last.cell, first.cell, longer)
+        path = stable_bfp(traversability, distances, first.cell, last.cell, longer)
+        if len(path.cells):
             break
     else:
-        return _no_path(PathStatus.NO_WAY, way.expansions)
-    line = line_of_cells(traversability, way.cells, way.counts, first[1:3], last[1:3])
+        return _no_path(PathStatus.NO_WAY, path.expansions)
+    start, goal = (first.x, first.y), (last.x, last.y)
+    line = line_of_cells(traversability, path.cells, path.counts, start, goal)
     line = straighten(traversability, line)
     points = np.column_stack([line.xy, traversability.arrays.floors[line.cells].astype(np.float64)])
-    layers = traversability.arrays.places[line.cells, 0].astype(np.int64)
-    return LayeredPath(PathStatus.FOUND, points, layers, headings(line.xy), way.expansions)
+    layers = traversability.arrays.places["layer"][line.cells].astype(np.int64)
+    return LayeredPath(PathStatus.FOUND, points, layers, headings(line.xy), path.expansions)

@@ -1,8 +1,7 @@
-"""STABLE_BFP: best-first search for a way that stays on edges only briefly.
+"""STABLE_BFP: best-first search for a path that stays on edges only briefly.
 
-Huang & Li, sec. 4.3, fig. 6. A body that is Unstable, or on an Up- or Down-stair, carries the
-count of such cells in a row, and may go on while that is below M. It sets out with a count of 0,
-wherever it stands.
+Huang & Li, sec. 4.3, fig. 6. The search counts the cells in a row that are Unstable, Up-stair or
+Down-stair; the count has to stay below M. It is 0 at the start, wherever the body stands.
 """
 
 from __future__ import annotations
@@ -19,33 +18,42 @@ from esplanade.planning.traversal.traversability import Traversability
 
 @dataclass(frozen=True)
 class CellPath:
-    """A way from cell to cell, and how it was found."""
+    """A path from cell to cell, and the work of the search."""
 
     cells: NDArray[np.int32]
-    """(K,), from start to goal; none if there is no way."""
+    """(K,): cells from start to goal; K is 0 if there is no path."""
     counts: NDArray[np.int32]
-    """(K,): cells on edges in a row, up to and with this one."""
+    """(K,): cells on edges in a row, up to and with each cell."""
     expansions: int
+    """Number of states that the search looked at."""
 
 
 def stable_bfp(
     traversability: Traversability,
-    left: NDArray[np.int32],
+    distances: NDArray[np.int32],
     start: int,
     goal: int,
     longer: float = math.inf,
 ) -> CellPath:
-    """Search the way from one cell to another; `left` is the goal's potential.
+    """Search a path from one cell to another.
 
-    With `longer` only ways are looked at that are at most so many times as long as the shortest
-    that there would be without M: as far as `spread_toward` knows the potential.
+    Parameters
+    ----------
+    traversability : Traversability
+    distances : int32 (N,), in 1/70 of a cell
+        The goal's potential, of `spread_wave` or `spread_toward`.
+    start, goal : cells
+    longer : float
+        Only paths are considered that are at most so many times as long as the shortest path
+        without M; `spread_toward` knows the potential for these.
 
     Notes
     -----
-    Our departure from fig. 6: states are ordered by way so far + potential, not by potential
-    alone. Where M forbids nothing the two find the same; where it does, ours is the shortest way
+    Our departure from fig. 6: states are ordered by distance so far + potential, not by potential
+    alone. Where M forbids nothing the two find the same path; otherwise ours is the shortest path
     that M allows. The search is complete: it fails only if every state that can be reached was
-    seen, or could do no more than another that was. Cost O(states log states), in most cases
-    O(length of the way).
+    looked at, or could do no more than another that was. Cost O(states log states), in most cases
+    O(length of the path).
     """
-    return CellPath(*kernels.search(traversability, left, start, goal, longer * float(left[start])))
+    longest = longer * float(distances[start])
+    return CellPath(*kernels.search(traversability, distances, start, goal, longest))

@@ -1,4 +1,4 @@
-"""The storeys of a building as people count them: heights with much ground, one above the other."""
+"""Storeys of a building as people count them: heights with much floor, one above the other."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from esplanade.planning.scene.heights import LEVEL_M, STOREYS_APART_M
 from esplanade.planning.traversal.wavefront import UNREACHED, spread_wave
 
 LANDING_M2: Final = 6.0
-"""What is smaller is a landing."""
+"""A floor with a smaller area is a landing, not a storey."""
 
 
 def storeys_of(grid: LayeredGrid, ground: NDArray[np.bool_]) -> tuple[float, ...]:
     """Heights of the storeys in metres, the lowest first; at least one.
 
-    Of the `ground`, bool (N,), only cells count that lie above or below others of it: hills have
-    no storeys. A storey's height is the median of its floors.
+    `ground`, bool (N,), are the cells to consider. Only cells count that lie above or below others
+    of them, so that hills have no storeys. A storey's height is the median of its floors.
     """
     a = grid.layered
     cells = np.flatnonzero(ground & np.isfinite(a.floors))
     floors = a.floors[cells].astype(np.float64)
     if not len(floors):
         return (0.0,)
-    columns = a.places[cells, 1].astype(np.int64) * a.nx + a.places[cells, 2]
+    columns = a.places["row"][cells].astype(np.int64) * a.nx + a.places["column"][cells]
     order = np.lexsort((floors, columns))
     over = (np.diff(columns[order]) == 0) & (np.diff(floors[order]) >= STOREYS_APART_M)
     stacked = np.zeros(len(cells), dtype=np.bool_)
@@ -49,9 +49,9 @@ def storeys_of(grid: LayeredGrid, ground: NDArray[np.bool_]) -> tuple[float, ...
 def reached_from(
     grid: LayeredGrid, starts: Sequence[tuple[float, float, float]], body: Body = ADULT
 ) -> NDArray[np.bool_]:
-    """Cells where a body gets to from any of some places x, y, z in metres, bool (N,).
+    """Whether a body gets to each cell from any of some places x, y, z in metres, bool (N,).
 
-    Without any place to start from, all cells.
+    Without any place to start from, it is True in all cells.
     """
     traversability = grid.traversability.of(body)
     reached = np.full(len(traversability.steps), not starts)

@@ -1,7 +1,4 @@
-"""After the search: straight stretches instead of steps from cell to cell, then headings.
-
-Huang & Li, sec. 4.4.
-"""
+"""Straightening of a path of cells, and its headings (Huang & Li, sec. 4.4)."""
 
 from __future__ import annotations
 
@@ -20,23 +17,26 @@ def line_of_cells(
     start: tuple[float, float],
     goal: tuple[float, float],
 ) -> Line:
-    """The way over the centres of cells, from a start in the first to a goal in the last."""
+    """The line over the centres of cells (K,), from a start in the first to a goal in the last.
+
+    `counts` (K,) are those of the cells; `start` and `goal` are x, y in metres.
+    """
     arrays = traversability.arrays
     around = np.concatenate([cells[:1], cells, cells[-1:]])
     xy = np.empty((len(around), 2))
-    xy[:, 0] = arrays.x0 + (arrays.places[around, 2] + 0.5) * arrays.cell_m
-    xy[:, 1] = arrays.y0 + (arrays.places[around, 1] + 0.5) * arrays.cell_m
+    xy[:, 0] = arrays.x0 + (arrays.places[around]["column"] + 0.5) * arrays.cell_m
+    xy[:, 1] = arrays.y0 + (arrays.places[around]["row"] + 0.5) * arrays.cell_m
     xy[0], xy[-1] = start, goal
     return Line(xy, around, np.concatenate([counts[:1], counts, counts[-1:]]))
 
 
 def straighten(traversability: Traversability, line: Line) -> Line:
-    """Make a way shorter by straight stretches that are legal for the body, M included.
+    """Shorten a line by straight stretches that are legal for the body, M included.
 
-    Straight stretches are walked on the floors, from cell to cell, with the body's exact distance
-    to walls; from the start, then from the goal, since from a corner one sees less far along the
-    way than toward it. The result has a point in every cell that it crosses, so that it follows
-    the floor up and down. Cost O(points x log points).
+    Straight stretches are checked on the floors, from cell to cell, with the body's exact distance
+    to walls. This is done from the start, then from the goal, since the two directions find
+    different corners. The result has a point in every cell that it crosses, so that it follows the
+    floor up and down. Cost O(points x log points).
     """
     line = _from_start(traversability, line)
     back = _reversed(line)
@@ -58,9 +58,9 @@ def _reversed(line: Line) -> Line:
 
 
 def headings(xy: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Where a body looks that walks a way (N, 2): radians from east, toward north, float64 (N,).
+    """Headings of a body that walks along points (N, 2): radians from east toward north, (N,).
 
-    The tangent at each point, along the line between its neighbours.
+    The heading at a point is the direction of the line between its neighbours.
     """
     if len(xy) < 2:
         return np.zeros(len(xy))

@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 class Doors:
     """The doors of a zone by name, as the first rows of its barriers.
 
-    An open door has a rise of 0, so that it stops nobody.
+    The barrier of an open door has a climb of 0, so that it stops nobody.
     """
 
-    barriers: NDArray[np.float64]
-    """All barriers of the zone, see `esplanade.planning.ground.barriers.Barriers`; not a copy."""
+    barriers: NDArray[np.void]
+    """(S,): the `Barriers` of the zone; shared, not copied."""
     rows: Mapping[str, int]
+    """The row of each door among the barriers."""
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.rows)
@@ -28,21 +29,21 @@ class Doors:
         return len(self.rows)
 
     def is_open(self, name: str) -> bool:
-        """Whether a door is open; KeyError when there is none of that name."""
-        return bool(self.barriers[self.rows[name], 6] == 0.0)
+        """Whether a door is open; raises KeyError if there is no door of that name."""
+        return bool(self.barriers["climb_m"][self.rows[name]] == 0.0)
 
     def set_open(self, name: str, is_open: bool) -> tuple[float, float, float, float]:
-        """Open or close a door, in place.
+        """Open or close a door, in place; returns its rectangle x0, y0, x1, y1 in metres.
 
-        Floors and links stay as they are. What was derived from barriers changes only within
-        reach of the rectangle that is returned: x0, y0, x1, y1 in metres.
+        Floors and links stay as they are. Whatever was derived from barriers changes only near the
+        rectangle.
 
         Raises
         ------
         KeyError
             There is no door of that name.
         """
-        row = self.barriers[self.rows[name]]
-        row[6] = 0.0 if is_open else math.inf
-        x0, y0, x1, y1 = (float(v) for v in row[:4])
+        row = self.rows[name]
+        self.barriers["climb_m"][row] = 0.0 if is_open else math.inf
+        x0, y0, x1, y1 = self.barriers[["x0", "y0", "x1", "y1"]][row].tolist()
         return min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)

@@ -1,1 +1,1 @@
-"""Where one kind of body may go: links it can follow, edges it must respect, regions, waves."""
+"""Where one kind of body may go: reachability, stability, regions, and wave fronts over them."""

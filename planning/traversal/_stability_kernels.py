@@ -1,23 +1,27 @@
-"""The five classes of cells on bare arrays, tile by tile."""
+"""The five classes of cells of Huang & Li, sec. 4.2, on bare arrays, tile by tile."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.ground._barrier_kernels import (
-    HAIR_M,
+    TOLERANCE_M,
     Measures,
     NearBarriers,
-    point_to_segment,
-    to_raise,
+    height_to_climb,
+    point_barrier_distance,
 )
 from esplanade.planning.ground.layered import LINK_ROOM_M, TILE, LayeredArrays, cell_index
-from esplanade.planning.traversal._reachability_kernels import Box
+from esplanade.planning.traversal._reachability_kernels import TileBox
 
 FORBIDDEN, STABLE, UNSTABLE, UP_STAIR, DOWN_STAIR = range(5)
 
 RAMP_SLOPE = 0.35
-"""Ground that rises by less than this (19 degrees) is flat; what rises more is an edge."""
+"""Ground that rises by less than this part of its length (19 degrees) is flat; steeper ground
+counts as an edge."""
+
+OFFSET = np.dtype([("rows", "i8"), ("columns", "i8")])
+"""The offset from a cell to another."""
 
 
 @kernel
@@ -25,31 +29,34 @@ def classify(
     arrays: LayeredArrays,
     near: NearBarriers,
     body: Measures,
-    offsets: NDArray[np.int64],
-    box: Box,
+    offsets: NDArray[np.void],
+    box: TileBox,
     out: NDArray[np.uint8],
 ) -> None:
-    """Write the class of each cell of some tiles.
+    """Write the class of each cell of some tiles into `out` (N,).
 
-    `offsets` (K, 2) are rows and columns from a cell to the others that the body touches.
+    `offsets` (K,) of `OFFSET` lead from a cell to the others that the body's disc touches.
     """
     reach = 0
     for k in range(len(offsets)):
-        reach = max(reach, abs(offsets[k, 0]), abs(offsets[k, 1]))
+        reach = max(reach, abs(offsets[k]["rows"]), abs(offsets[k]["columns"]))
     side = TILE + 2 * reach
     floors = np.empty((side, side), dtype=np.float32)
     ceilings = np.empty((side, side), dtype=np.float32)
     edges = np.empty(len(offsets), dtype=np.float32)
     for k in range(len(offsets)):
-        edges[k] = RAMP_SLOPE * arrays.cell_m * np.hypot(offsets[k, 0], offsets[k, 1]) + HAIR_M
+        edges[k] = (
+            RAMP_SLOPE * arrays.cell_m * np.hypot(offsets[k]["rows"], offsets[k]["columns"])
+            + TOLERANCE_M
+        )
     for layer in range(arrays.pages.shape[0]):
-        for tj in range(box[0], box[2]):
-            for ti in range(box[1], box[3]):
+        for tj in range(box.first_row, box.end_row):
+            for ti in range(box.first_column, box.end_column):
                 page = arrays.pages[layer, tj, ti]
                 if page < 0:
                     continue
-                plain = arrays.plain[page // (TILE * TILE)]
-                if reach <= TILE and plain >= body.height_m - HAIR_M:
+                headroom = arrays.level_headroom[page // (TILE * TILE)]
+                if reach <= TILE and headroom >= body.height_m - TOLERANCE_M:
                     out[page : page + TILE * TILE] = STABLE
                 else:
                     _gather(arrays, layer, tj * TILE, ti * TILE, reach, floors, ceilings)
@@ -72,8 +79,10 @@ def _gather(
     floors: NDArray[np.float32],
     ceilings: NDArray[np.float32],
 ) -> None:
-    """Copy a tile and what lies around it. What lies outside the grid is inf: no obstacle. A
-    hole is nan."""
+    """Copy the heights of a tile and of the cells around it, up to `reach` cells away.
+
+    Heights outside of the grid are inf, which is no obstacle; those of holes are nan.
+    """
     tiles_y, tiles_x = arrays.pages.shape[1:]
     side = TILE + 2 * reach
     for tj in range((j0 - reach) // TILE, (j0 + TILE - 1 + reach) // TILE + 1):
@@ -106,25 +115,26 @@ def _class_by_heights(
     body: Measures,
     layer: int,
     cell: int,
-    offsets: NDArray[np.int64],
+    offsets: NDArray[np.void],
     edges: NDArray[np.float32],
     floors: NDArray[np.float32],
     ceilings: NDArray[np.float32],
     reach: int,
 ) -> int:
-    j, i = arrays.places[cell, 1], arrays.places[cell, 2]
+    """The class of a cell by the heights around it, without regard to barriers."""
+    j, i = arrays.places[cell]["row"], arrays.places[cell]["column"]
     v = (j & (TILE - 1)) + reach
     u = (i & (TILE - 1)) + reach
     floor = floors[v, u]
-    leg = np.float32(body.leg_length_m + HAIR_M)
-    room = np.float32(body.height_m - HAIR_M)
+    leg = np.float32(body.leg_length_m + TOLERANCE_M)
+    room = np.float32(body.height_m - TOLERANCE_M)
     if np.isnan(floor) or np.isinf(floor) or ceilings[v, u] - floor < room:
         return FORBIDDEN
     is_edge = False
     is_obstacle = False
     for k in range(len(offsets)):
-        b = v + offsets[k, 0]
-        a = u + offsets[k, 1]
+        b = v + offsets[k]["rows"]
+        a = u + offsets[k]["columns"]
         other = floors[b, a]
         if other == np.inf:
             continue
@@ -156,11 +166,11 @@ def _is_within_leg(
     i: int,
     floor: np.float32,
     leg: np.float32,
-    offsets: NDArray[np.int64],
+    offsets: NDArray[np.void],
 ) -> bool:
-    """Whether a layer has a floor around a cell that is no more than a leg higher or lower."""
+    """Whether a layer has a floor around a cell that differs in height by leg length at most."""
     for k in range(len(offsets)):
-        cell = cell_index(arrays, layer, j + offsets[k, 0], i + offsets[k, 1])
+        cell = cell_index(arrays, layer, j + offsets[k]["rows"], i + offsets[k]["columns"])
         if cell >= 0 and abs(arrays.floors[cell] - floor) <= leg:
             return True
     return False
@@ -170,22 +180,21 @@ def _is_within_leg(
 def _class_by_barriers(
     arrays: LayeredArrays, near: NearBarriers, body: Measures, cell: int, by_heights: int
 ) -> int:
-    """The class of a cell once barriers within the body's radius are seen too."""
+    """The class of a cell when barriers within the body's radius are taken into account too."""
     found = by_heights
     floor = float(arrays.floors[cell])
-    x = arrays.x0 + (arrays.places[cell, 2] + 0.5) * arrays.cell_m
-    y = arrays.y0 + (arrays.places[cell, 1] + 0.5) * arrays.cell_m
+    x = arrays.x0 + (arrays.places[cell]["column"] + 0.5) * arrays.cell_m
+    y = arrays.y0 + (arrays.places[cell]["row"] + 0.5) * arrays.cell_m
     entry = near.first[cell]
     while entry >= 0:
-        barrier = near.barriers[near.entries[entry, 0]]
-        entry = near.entries[entry, 1]
-        step = to_raise(barrier, floor, floor, body.height_m)
-        if step <= RAMP_SLOPE * arrays.cell_m + HAIR_M:
+        barrier = near.barriers[near.entries[entry]["barrier"]]
+        entry = near.entries[entry]["next"]
+        step = height_to_climb(barrier, floor, floor, body.height_m)
+        if step <= RAMP_SLOPE * arrays.cell_m + TOLERANCE_M:
             continue
-        away = point_to_segment(x, y, barrier[0], barrier[1], barrier[2], barrier[3])
-        if away >= body.radius_m - HAIR_M:
+        if point_barrier_distance(barrier, x, y) >= body.radius_m - TOLERANCE_M:
             continue
-        if step > body.leg_length_m + HAIR_M:
+        if step > body.leg_length_m + TOLERANCE_M:
             return FORBIDDEN
         if found == STABLE:
             found = UNSTABLE

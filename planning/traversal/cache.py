@@ -1,4 +1,4 @@
-"""The floors of a zone as one body finds them: derived once, and anew around doors."""
+"""Traversability of a zone for each body: derived once, and again around doors that move."""
 
 from __future__ import annotations
 
@@ -13,17 +13,18 @@ from esplanade.planning.ground.barriers import Barriers
 from esplanade.planning.ground.floors import Floors
 from esplanade.planning.ground.layered import TILE, LayeredArrays
 from esplanade.planning.scene.bodies import MOST_BODIES, Body
+from esplanade.planning.traversal._reachability_kernels import TileBox
 from esplanade.planning.traversal.reachability import measures_of, near_barriers, reachable_steps
 from esplanade.planning.traversal.stability import classify
 from esplanade.planning.traversal.traversability import Traversability
 from esplanade.planning.traversal.wavefront import number_regions
 
 _KEPT = 2 * MOST_BODIES
-"""As many bodies as a zone tells apart, and as they really measure."""
+"""Number of bodies that are kept: those that a zone tells apart, each also as it measures."""
 
 
 def find_traversability(arrays: LayeredArrays, barriers: Barriers, body: Body) -> Traversability:
-    """Derive everything about where a body may go. Cost O(cells)."""
+    """Derive where a body may go on some floors. Cost O(cells)."""
     near = near_barriers(arrays, barriers, body)
     return Traversability(
         arrays,
@@ -38,16 +39,16 @@ def find_traversability(arrays: LayeredArrays, barriers: Barriers, body: Body) -
 def renew_traversability(
     traversability: Traversability, body: Body, around: tuple[float, float, float, float]
 ) -> Traversability:
-    """Derive again what depends on barriers within x0, y0, x1, y1, metres.
+    """Derive again all that depends on barriers within `around` (x0, y0, x1, y1), metres.
 
-    For doors: their rows among the barriers are the same, with another rise. Whoever still reads
-    the traversability as it was is not disturbed.
+    It is meant for doors, whose rows among the barriers have changed in place. The traversability
+    that is given stays as it is for other threads.
     """
     arrays, reach = traversability.arrays, traversability.near.reach_m
     tile_m = TILE * arrays.cell_m
     x0, y0, x1, y1 = around
     tiles_y, tiles_x = arrays.pages.shape[1:]
-    box = (
+    box = TileBox(
         max(0, math.floor((y0 - reach - arrays.y0) / tile_m)),
         max(0, math.floor((x0 - reach - arrays.x0) / tile_m)),
         min(int(tiles_y), math.floor((y1 + reach - arrays.y0) / tile_m) + 1),
@@ -61,17 +62,17 @@ def renew_traversability(
 
 @dataclass
 class _Known:
-    """A traversability, the doors' rises it was derived from, and its regions once asked for."""
+    """A traversability, the climbs of doors it was derived from, and its regions if known."""
 
     traversability: Traversability
-    rises: NDArray[np.float64]
+    door_climbs: NDArray[np.float64]
     regions: NDArray[np.int32] | None = None
 
 
 class TraversabilityCache:
-    """What bodies find of the floors of one zone, for each of the latest bodies.
+    """The traversability of one zone for each of the bodies that were asked for last.
 
-    It is derived when first asked for, and anew around doors that have opened or closed since.
+    It is derived at the first call, and again around doors that have opened or closed since.
     """
 
     def __init__(self, floors: Floors) -> None:
@@ -79,11 +80,11 @@ class TraversabilityCache:
         self._known: OrderedDict[Body, _Known] = OrderedDict()
 
     def of(self, body: Body) -> Traversability:
-        """The floors of the zone as this body finds them."""
+        """The traversability of the zone for a body."""
         return self._up_to_date(body).traversability
 
     def regions_of(self, body: Body) -> NDArray[np.int32]:
-        """`number_regions` of the same, kept as long."""
+        """`number_regions` of the traversability for a body, kept as long as that."""
         known = self._up_to_date(body)
         if known.regions is None:
             known.regions = number_regions(known.traversability)
@@ -92,17 +93,18 @@ class TraversabilityCache:
     def _up_to_date(self, body: Body) -> _Known:
         floors = self._floors
         doors = floors.barriers[: len(floors.doors)]
-        rises = doors[:, 6]
+        climbs = doors["climb_m"].copy()
         known = self._known.get(body)
         if known is None:
             found = find_traversability(floors.layered, floors.barriers, body)
-            known = _Known(found, rises.copy())
-        elif not np.array_equal(rises, known.rises):
-            found, now = known.traversability, rises.copy()
-            for x0, y0, x1, y1 in doors[now != known.rises, :4]:
+            known = _Known(found, climbs)
+        elif not np.array_equal(climbs, known.door_climbs):
+            found = known.traversability
+            moved = doors[climbs != known.door_climbs]
+            for x0, y0, x1, y1 in moved[["x0", "y0", "x1", "y1"]].tolist():
                 around = min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)
                 found = renew_traversability(found, body, around)
-            known = _Known(found, now)
+            known = _Known(found, climbs)
         self._known[body] = known
         self._known.move_to_end(body)
         if len(self._known) > _KEPT:

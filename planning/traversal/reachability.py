@@ -1,8 +1,8 @@
-"""Reachability: from which cell a body may step to which (Huang & Li, sec. 4.1).
+"""Reachability: the neighbours that a body may step to from each cell (Huang & Li, sec. 4.1).
 
 A cell reaches its neighbour if the body can step over the difference in height and has room for
-its height above both. What the paper has no need for, as its obstacles are cells: no wall may
-stand between them.
+its height above both. Our departure: no wall may stand between the two, since our walls are lines,
+while the obstacles of the paper are cells.
 """
 
 from __future__ import annotations
@@ -17,26 +17,26 @@ from esplanade.planning.ground.barriers import Barriers
 from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.scene.bodies import Body
 from esplanade.planning.traversal import _reachability_kernels as kernels
-from esplanade.planning.traversal._reachability_kernels import Box
+from esplanade.planning.traversal._reachability_kernels import TileBox
 
 
 def measures_of(body: Body) -> Measures:
-    """A body for kernels."""
+    """The measures of a body, for kernels."""
     return Measures(
         float(body.radius_m), float(body.height_m), float(body.step_on_m), float(body.leg_length_m)
     )
 
 
-def whole(arrays: LayeredArrays) -> Box:
+def all_tiles(arrays: LayeredArrays) -> TileBox:
     """The box of all tiles."""
-    return 0, 0, int(arrays.pages.shape[1]), int(arrays.pages.shape[2])
+    return TileBox(0, 0, int(arrays.pages.shape[1]), int(arrays.pages.shape[2]))
 
 
 def near_barriers(arrays: LayeredArrays, barriers: Barriers, body: Body) -> NearBarriers:
     """For each cell the barriers that a body in it could touch, or cross on a step out of it.
 
-    Cost O(barriers x cells near one). The rows of `barriers` are seen, not copied: a door that
-    opens or closes changes its row in place, with a rise of 0 while it is open.
+    Cost O(barriers x cells near one). `barriers` (S,) are shared, not copied: a door that opens or
+    closes changes its row in place, with a climb of 0 while it is open.
     """
     half_diagonal = math.sqrt(0.5) * arrays.cell_m + 1e-3
     reach = max(body.radius_m + half_diagonal, 2.0 * half_diagonal)
@@ -50,21 +50,21 @@ def reachable_steps(
     near: NearBarriers,
     body: Body,
     out: NDArray[np.uint8] | None = None,
-    box: Box | None = None,
+    box: TileBox | None = None,
 ) -> NDArray[np.uint8]:
     """The links that a body may follow, uint8 (N,): bit d of a cell is its link d.
 
-    With `box`, only those tiles of `out` are written anew. Cost O(cells).
+    With `box`, only those tiles of `out` are written again. Cost O(cells).
     """
     steps = np.zeros(len(arrays.floors), dtype=np.uint8) if out is None else out
-    kernels.step_bits(arrays, near, measures_of(body), box or whole(arrays), steps)
+    kernels.step_bits(arrays, near, measures_of(body), box or all_tiles(arrays), steps)
     return steps
 
 
 def reachable_from(
     arrays: LayeredArrays, steps: NDArray[np.uint8], cells: NDArray[np.int64]
 ) -> NDArray[np.bool_]:
-    """Which cells steps lead to from some cells, bool (N,)."""
+    """Whether steps lead to each cell from any of some cells (K,), bool (N,)."""
     reached = np.zeros(len(steps), dtype=np.bool_)
     kernels.flood(arrays.links, steps, np.asarray(cells, dtype=np.int64).reshape(-1), reached)
     return reached

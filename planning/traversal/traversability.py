@@ -1,4 +1,4 @@
-"""Everything that decides where one body may go, together, for kernels."""
+"""Traversability: everything that decides where one body may go, for kernels."""
 
 from typing import NamedTuple
 
@@ -10,13 +10,13 @@ from esplanade.planning.ground.layered import LayeredArrays
 
 
 class Traversability(NamedTuple):
-    """The floors of a zone as one body finds them."""
+    """The floors of a zone, and where one body may go on them."""
 
     arrays: LayeredArrays
     near: NearBarriers
     body: Measures
     steps: NDArray[np.uint8]
-    """(N,): the links that the body may follow; bit d is link d."""
+    """(N,): the links that the body may follow; bit d stands for link d."""
     classes: NDArray[np.uint8]
     """(N,): `Stability` of each cell."""
     edge_cells: int

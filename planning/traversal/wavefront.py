@@ -1,8 +1,8 @@
-"""The potential of a goal for a body on its feet: NF1 over what is reachable, across layers.
+"""The potential of a goal cell: NF1 over the cells that a body can reach, across layers.
 
 Huang & Li, sec. 4.1, after Barraquand & Latombe. A diagonal step counts the square root of two
-straight ones, and the wave keeps off Forbidden cells, so that going down the potential is the
-shortest way as long as M does not forbid it.
+straight ones, and the wave keeps off Forbidden cells, so that the steepest descent of the
+potential is the shortest path as long as M does not forbid it.
 """
 
 from __future__ import annotations
@@ -17,36 +17,36 @@ UNREACHED = kernels.UNREACHED
 
 
 def spread_wave(traversability: Traversability, goal: int) -> NDArray[np.int32]:
-    """The way left from every cell to a goal, int32 (N,), in 1/70 of a cell; `UNREACHED`: no way.
+    """Distance from every cell to a goal cell, int32 (N,), in 1/70 of a cell.
 
-    Cost O(cells reached).
+    It is `UNREACHED` where no path leads to the goal. Cost O(cells reached).
     """
-    left = np.empty(len(traversability.steps), dtype=np.int32)
+    distances = np.empty(len(traversability.steps), dtype=np.int32)
     kernels.spread(
-        traversability.arrays.links, traversability.steps, traversability.classes, goal, left
+        traversability.arrays.links, traversability.steps, traversability.classes, goal, distances
     )
-    return left
+    return distances
 
 
 def spread_toward(
     traversability: Traversability, goal: int, start: int, longer: float = 1.0
 ) -> NDArray[np.int32]:
-    """The same for one start: exact there and along a shortest way from it to the goal.
+    """`spread_wave` for one start: exact there and along a shortest path from it to the goal.
 
-    With `longer` > 1 it is exact on all ways from the start that are at most so many times as
-    long as the shortest. Elsewhere it is exact, too much or `UNREACHED`. In the open little else
-    than the way itself is looked at.
+    With `longer` > 1 it is exact along all paths from the start that are at most `longer` times as
+    long as the shortest. Elsewhere it is exact, too much or `UNREACHED`. In the open few cells are
+    looked at besides those of the path.
     """
-    left = np.empty(len(traversability.steps), dtype=np.int32)
-    kernels.spread_toward(traversability, goal, start, longer, left)
-    return left
+    distances = np.empty(len(traversability.steps), dtype=np.int32)
+    kernels.spread_toward(traversability, goal, start, longer, distances)
+    return distances
 
 
 def number_regions(traversability: Traversability) -> NDArray[np.int32]:
-    """Numbers of the regions that steps hold together, int32 (N,); -1: Forbidden.
+    """Numbers of the regions that steps connect, int32 (N,); -1 in Forbidden cells.
 
-    A way leads from cell to cell, as far as M allows, if and only if both are of one region.
-    Cost O(cells).
+    A path leads from one cell to another, as far as M allows, if and only if both are in one
+    region. Cost O(cells).
     """
     regions = np.empty(len(traversability.steps), dtype=np.int32)
     kernels.number_regions(
@@ -55,8 +55,9 @@ def number_regions(traversability: Traversability) -> NDArray[np.int32]:
     return regions
 
 
-def metres(traversability: Traversability, left: NDArray[np.int32]) -> NDArray[np.float32]:
-    """The same in metres, float32 (N,), inf where no way leads."""
-    ways = left.astype(np.float32) * np.float32(traversability.arrays.cell_m / kernels.STRAIGHT)
-    ways[left == UNREACHED] = np.inf
-    return ways
+def metres(traversability: Traversability, distances: NDArray[np.int32]) -> NDArray[np.float32]:
+    """Distances (N,) of `spread_wave` in metres, float32 (N,); inf where no path leads."""
+    unit_m = np.float32(traversability.arrays.cell_m / kernels.STRAIGHT)
+    in_metres = distances.astype(np.float32) * unit_m
+    in_metres[distances == UNREACHED] = np.inf
+    return in_metres

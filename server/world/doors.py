@@ -42,7 +42,7 @@ class Doors:
     def _in_the_way(self, name: str) -> bool:
         """Whether the leaf would touch anybody."""
         state = self._state
-        x0, y0, x1, y1, foot, top, _ = self._grid.barriers[self._grid.doors.rows[name]]
+        x0, y0, x1, y1, foot, top, _ = self._grid.barriers[self._grid.doors.rows[name]].tolist()
         slots = state.live()
         heights = state.heights[slots]
         level = (heights < top) & (heights > foot - BODIES_OVERLAP_M)

@@ -10,15 +10,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning import Body
-from esplanade.planning.ground.layered import LINK_ROOM_M, LayeredArrays
+from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.traversal.stability import Stability
 from tests.naive.geometry import Point, point_segment_distance, segment_distance
 from tests.naive.waves import dijkstra
 
-Barrier = NDArray[np.float64]
+Barrier = NDArray[np.void]
 COMPASS = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))
 HAIR = 1e-4
 FLAT_SLOPE = 0.35
+LINK_ROOM_M = 0.5
+
+
+def line_of(barrier: Barrier) -> tuple[Point, Point]:
+    """The two ends of a barrier on the plan."""
+    x0, y0, x1, y1 = (float(barrier[name]) for name in ("x0", "y0", "x1", "y1"))
+    return (x0, y0), (x1, y1)
 
 
 class Floors:
@@ -43,18 +50,17 @@ class Floors:
         a = self.arrays
         return a.x0 + (i + 0.5) * a.cell_m, a.y0 + (j + 0.5) * a.cell_m
 
-    def to_raise(self, barrier: Barrier, *floors: float) -> float:
-        """How high the body must step to get past a barrier."""
-        z0, z1, rise = barrier[4:].tolist()
-        if z0 >= max(floors) + self.body.height_m - HAIR:
+    def height_to_climb(self, barrier: Barrier, *floors: float) -> float:
+        """Height that the body has to climb to get past a barrier."""
+        if barrier["bottom_m"] >= max(floors) + self.body.height_m - HAIR:
             return 0.0
-        return max(0.0, min(z1 - min(floors), rise))
+        return max(0.0, min(float(barrier["top_m"]) - min(floors), float(barrier["climb_m"])))
 
     def stops_at(self, position: Point, floor: float, step_m: float) -> Iterator[float]:
         """Distances to barriers that stop whoever can step no higher than that."""
         for barrier in self.barriers:
-            if self.to_raise(barrier, floor) > step_m + HAIR:
-                yield point_segment_distance(position, tuple(barrier[:2]), tuple(barrier[2:4]))
+            if self.height_to_climb(barrier, floor) > step_m + HAIR:
+                yield point_segment_distance(position, *line_of(barrier))
 
     def may_step(self, a: int, b: int) -> bool:
         """Reachability of sec. 4.1 between two linked cells."""
@@ -66,11 +72,11 @@ class Floors:
         return not any(self._bars(barrier, a, b) for barrier in self.barriers)
 
     def _bars(self, barrier: Barrier, a: int, b: int) -> bool:
-        step = self.to_raise(barrier, self.floor(a), self.floor(b))
+        step = self.height_to_climb(barrier, self.floor(a), self.floor(b))
         if step <= self.body.step_on_m + HAIR:
             return False
         way = self.centre(a), self.centre(b)
-        line = tuple(barrier[:2].tolist()), tuple(barrier[2:4].tolist())
+        line = line_of(barrier)
         touched = self.body.radius_m - HAIR
         away = segment_distance(*way, *line)
         ends = min(point_segment_distance(p, *line) for p in way)
@@ -106,11 +112,11 @@ class Floors:
         flat = FLAT_SLOPE * self.arrays.cell_m + HAIR
         found = by_heights
         for barrier in self.barriers:
-            line = tuple(barrier[:2]), tuple(barrier[2:4])
+            line = line_of(barrier)
             if point_segment_distance(self.centre(cell), *line) >= self.body.radius_m - HAIR:
                 continue
-            step = self.to_raise(barrier, floor)
-            if 0.0 < barrier[6] <= self.body.step_on_m:
+            step = self.height_to_climb(barrier, floor)
+            if 0.0 < barrier["climb_m"] <= self.body.step_on_m:
                 continue
             if step > leg:
                 return Stability.FORBIDDEN
@@ -119,7 +125,7 @@ class Floors:
         return found
 
     def _by_heights(self, cell: int) -> Stability:
-        layer = int(self.arrays.places[cell, 0])
+        layer = int(self.arrays.places["layer"][cell])
         floor, ceiling = self.floor(cell), self.ceiling(cell)
         height, leg = self.body.height_m - HAIR, self.body.leg_length_m + HAIR
         if ceiling - floor < height:

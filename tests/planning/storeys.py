@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from esplanade.planning import Body, LayeredGrid, LayeredPath, Polygon, Scene, Stairs, Wall
 from esplanade.planning.traversal.cache import find_traversability
-from tests.naive.floors import Floors
+from tests.naive.floors import Floors, line_of
 from tests.naive.geometry import segment_distance
 from tests.planning.worlds import UPPER_M
 
@@ -108,14 +108,14 @@ def walk_through(path: LayeredPath, grid: LayeredGrid, body: Body) -> None:
         assert abs(pz - qz) <= body.step_on_m + 1e-3
         assert math.hypot(qx - px, qy - py) <= 2.2 * a.cell_m
         for barrier in grid.barriers:
-            line = tuple(barrier[:2]), tuple(barrier[2:4])
-            if floors.to_raise(barrier, pz, qz) > body.step_on_m + 1e-3:
+            line = line_of(barrier)
+            if floors.height_to_climb(barrier, pz, qz) > body.step_on_m + 1e-3:
                 assert not _meet((px, py), (qx, qy), *line), f"{barrier} is crossed"
     leg = body.leg_length_m + 1e-3
     for (px, py, pz), (qx, qy, qz) in pairwise(path.points):
         for barrier in grid.barriers:
-            if min(floors.to_raise(barrier, pz), floors.to_raise(barrier, qz)) > leg:
-                line = tuple(barrier[:2]), tuple(barrier[2:4])
+            if min(floors.height_to_climb(barrier, pz), floors.height_to_climb(barrier, qz)) > leg:
+                line = line_of(barrier)
                 away = segment_distance((px, py), (qx, qy), *line)
                 assert away >= body.radius_m - 1e-3, f"{barrier} is only {away} m away"
 

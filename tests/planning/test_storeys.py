@@ -115,7 +115,8 @@ def test_random_walks_stay_on_floors_and_away_from_ledges(body) -> None:
         assert (cells >= 0).all()
         assert grid.layered.floors[cells] == pytest.approx(heights, abs=1e-5)
         i, j = np.minimum((positions / grid.cell_m).astype(int), (63, 47)).T
-        assert (grid.layered.places[cells, 1:] == np.stack([j, i], axis=1)).all()
+        assert (grid.layered.places["row"][cells] == j).all()
+        assert (grid.layered.places["column"][cells] == i).all()
         assert (grid.layered.ceilings[cells] - heights >= body.height_m - 1e-4).all()
         for x, y in positions[heights > UPPER_M - 1e-3]:
             away = min(point_segment_distance((x, y), *ledge) for ledge in ledges(body))

@@ -72,9 +72,9 @@ def as_rows(grid: LayeredGrid, values: NDArray[np.generic], layer: int = 0) -> N
     """Values by cell (N,) as rows and columns (ny, nx) of a layer."""
     a = grid.layered
     out = np.empty((a.ny, a.nx), dtype=values.dtype)
-    of_layer = (a.places[:, 0] == layer) & (a.places[:, 1] < a.ny) & (a.places[:, 2] < a.nx)
+    of_layer = (a.places["layer"] == layer) & (a.places["row"] < a.ny) & (a.places["column"] < a.nx)
     assert of_layer.sum() == out.size, "the layer has tiles that nobody can stand in"
-    out[tuple(a.places[of_layer, 1:].T)] = values[of_layer]
+    out[a.places["row"][of_layer], a.places["column"][of_layer]] = values[of_layer]
     return out
 
 

@@ -18,16 +18,20 @@ def barriers(**parts) -> np.ndarray:
 
 def stops(rows: np.ndarray, z: float, height_m: float, step_on_m: float) -> np.ndarray:
     """Which rows stop a body that stands at that height."""
-    return (rows[:, 4] < z + height_m) & (rows[:, 5] > z + step_on_m) & (step_on_m < rows[:, 6])
+    return (
+        (rows["bottom_m"] < z + height_m)
+        & (rows["top_m"] > z + step_on_m)
+        & (step_on_m < rows["climb_m"])
+    )
 
 
 def length(rows: np.ndarray) -> float:
-    return float(np.hypot(rows[:, 2] - rows[:, 0], rows[:, 3] - rows[:, 1]).sum())
+    return float(np.hypot(rows["x1"] - rows["x0"], rows["y1"] - rows["y0"]).sum())
 
 
 def test_walls_reach_from_their_foot_to_their_top() -> None:
     wall = Wall(start=(1, 1), end=(1, 5), height_m=1.0, offset_m=3.0)
-    assert barriers(walls=(wall,)).tolist() == [[1, 1, 1, 5, 3.0, 4.0, math.inf]]
+    assert barriers(walls=(wall,)).tolist() == [(1, 1, 1, 5, 3.0, 4.0, math.inf)]
 
 
 def test_a_tall_solid_has_its_outline_and_nothing_else() -> None:
@@ -36,7 +40,7 @@ def test_a_tall_solid_has_its_outline_and_nothing_else() -> None:
     assert length(house) == pytest.approx(4 * 2.2)
     assert stops(house, 0.0, 1.8, 0.6).all()
     on_the_roof = rows[4:]
-    assert (on_the_roof[:, 4] > 2.9).all()
+    assert (on_the_roof["bottom_m"] > 2.9).all()
     assert not stops(on_the_roof, 0.0, 1.8, 0.6).any()
 
 
@@ -47,8 +51,9 @@ def test_a_low_block_is_stepped_on_by_who_can() -> None:
     assert length(rows[stops(rows, 0.0, 1.3, 0.3)]) == pytest.approx(2 * 4 * 2.2, abs=0.8)
     ledges = rows[stops(rows, 0.45, 1.3, 0.3)]
     assert length(ledges) == pytest.approx(4 * 2.2, abs=0.4)
-    assert ledges[:, 6] == pytest.approx(0.45)
-    on_outline = np.abs(ledges[:, :4, None] - (1.1, 3.3)).min(axis=2) < 1e-9
+    assert ledges["climb_m"] == pytest.approx(0.45)
+    ends = np.array(ledges[["x0", "y0", "x1", "y1"]].tolist())
+    on_outline = np.abs(ends[:, :, None] - (1.1, 3.3)).min(axis=2) < 1e-9
     assert on_outline.any(axis=1).all()
 
 
@@ -56,7 +61,7 @@ def test_nobody_falls_off_a_slab_or_is_stopped_below_it() -> None:
     rows = barriers(polygons=(box(1.1, 1.1, 3.3, 3.3, 0.2, 2.8),))
     above = rows[stops(rows, 3.0, 1.8, 0.6)]
     assert length(above) == pytest.approx(4 * 2.2, abs=0.6)
-    assert np.isinf(above[:, 6]).all()
+    assert np.isinf(above["climb_m"]).all()
     assert not stops(rows, 0.0, 1.8, 0.6).any()
     assert length(rows[stops(rows, 0.0, 2.9, 0.6)]) > 4.0
 
@@ -79,19 +84,19 @@ def test_ramps_stop_only_beside_what_is_too_high() -> None:
     ramp = Ramp(start=(1.0, 2.0), end=(5.0, 2.0))
     rows = barriers(polygons=(box(1, 2, 5, 4, 2.0).model_copy(update={"ramp": ramp}),))
     met = rows[stops(rows, 0.0, 1.8, 0.6)]
-    assert met[:, [0, 2]].min() >= 1.0 + 2 * 0.5
-    assert met[:, [0, 2]].max() == 5.0
-    along = rows[(rows[:, 1] != rows[:, 3]) & (np.abs(rows[:, 0] - rows[:, 2]) < 1e-9)]
-    assert not ((along[:, 0] > 1.1) & (along[:, 0] < 4.9)).any()
+    assert min(met["x0"].min(), met["x1"].min()) >= 1.0 + 2 * 0.5
+    assert max(met["x0"].max(), met["x1"].max()) == 5.0
+    along = rows[(rows["y0"] != rows["y1"]) & (np.abs(rows["x0"] - rows["x1"]) < 1e-9)]
+    assert not ((along["x0"] > 1.1) & (along["x0"] < 4.9)).any()
 
 
 def test_stairs_are_climbed_by_who_steps_so_high() -> None:
     stairs = Stairs(start=(1, 3), end=(4, 3), width_m=2, top_m=2.5, steps=10)
     rows = barriers(stairs=(stairs,))
-    across = rows[np.abs(rows[:, 0] - rows[:, 2]) < 1e-9]
+    across = rows[np.abs(rows["x0"] - rows["x1"]) < 1e-9]
     for k in range(10):
         x = 1.0 + 0.3 * k
-        riser = across[np.abs(across[:, 0] - x) < 1e-6]
+        riser = across[np.abs(across["x0"] - x) < 1e-6]
         assert not stops(riser, 0.25 * k, 1.3, 0.3).any()
         assert stops(riser, 0.25 * k, 1.3, 0.2).any()
         assert stops(riser, 0.25 * (k + 1), 1.3, 0.2).any()

@@ -17,8 +17,9 @@ spots = points(-3.0, 3.0)
 @given(spots, spots, spots)
 @holds(200, 100)
 def test_distance_to_a_segment(p, a, b) -> None:
-    distance, x, y = kernels.point_segment_distance(*p, *a, *b)
+    distance, x, y = kernels.nearest_on_segment(*p, *a, *b)
     assert distance == pytest.approx(naive.point_segment_distance(p, a, b), abs=1e-9)
+    assert kernels.point_segment_distance(*p, *a, *b) == pytest.approx(distance, abs=1e-12)
     assert math.dist(p, (x, y)) == pytest.approx(distance, abs=1e-12)
     assert naive.point_segment_distance((x, y), a, b) < 1e-9
 
@@ -43,10 +44,10 @@ def test_closest_approach(relative, change) -> None:
 
 @given(lines(0.0, 6.0, 8), points(0.0, 6.0))
 @holds(60, 15)
-def test_the_index_finds_the_nearest_segment_within_its_reach(walls, p) -> None:
+def test_the_index_finds_the_nearest_barrier_within_its_reach(walls, p) -> None:
     grid = open_grid(6.0, walls)
-    stance = kernels.Stance(0.0, 0.0, 1.8, 0.6)
-    found = kernels.nearest_segment(grid.index, stance, *p)[0]
+    placement = kernels.Placement(0.0, 0.0, 1.8, 0.6)
+    found = kernels.nearest_barrier(grid.index, placement, *p)[0]
     nearest = min([math.inf, *(naive.point_segment_distance(p, *wall) for wall in walls)])
     if nearest <= grid.index.reach_m:
         assert found == pytest.approx(nearest, abs=1e-9)
@@ -155,24 +156,25 @@ def test_a_walk_names_what_is_wrong(positions, heights, displacements, clearance
 @example((1.8, 1.0), math.inf, (0.0, 1.8, 0.6))
 @example((0.0, 2.0), 0.3, (0.0, 1.8, 0.3))
 @holds(200, 60)
-def test_what_stops_whom(barrier, rise, stance) -> None:
-    """Who can step over it, pass under it, or step down where it drops, is not stopped."""
-    underside, height = barrier
-    floor, tall, step = stance
-    row = np.array([[2.0, 0.0, 2.0, 5.0, underside, underside + height, rise]])
-    index = open_grid(5.0).index._replace(segments=row)
-    steps_over = underside + height - floor <= step
-    passes_under = underside - floor >= tall
-    steps_down = rise <= step
-    edge = min(abs(underside + height - floor - step), abs(underside - floor - tall))
-    assume(edge > 1e-9 or stance == (0.0, 1.8, 0.6))
+def test_which_barriers_stop_which_bodies(barrier, climb, placement) -> None:
+    """A body passes if it can step over, pass under, or step down where the floor drops."""
+    bottom, height = barrier
+    floor, tall, step = placement
+    row = np.array([(2.0, 0.0, 2.0, 5.0, bottom, bottom + height, climb)], dtype=kernels.BARRIER)
+    steps_over = bottom + height - floor <= step
+    passes_under = bottom - floor >= tall
+    steps_down = climb <= step
+    edge = min(abs(bottom + height - floor - step), abs(bottom - floor - tall))
+    assume(edge > 1e-9 or placement == (0.0, 1.8, 0.6))
     free = steps_over or passes_under or steps_down
-    assert kernels.stops(index, 0, kernels.Stance(floor, floor, tall, step)) == (not free)
+    assert kernels.stops(row[0], kernels.Placement(floor, floor, tall, step)) == (not free)
 
 
-def test_steps_count_from_the_foothold_and_heads_from_the_floor() -> None:
-    row = np.array([[2.0, 0.0, 2.0, 5.0, 0.0, 0.4, math.inf], [3.0, 0.0, 3.0, 5.0, 1.85, 9.0, 9.0]])
-    index = open_grid(5.0).index._replace(segments=row)
-    for foothold, stopped in ((0.0, True), (0.1, False)):
-        assert kernels.stops(index, 0, kernels.Stance(0.0, foothold, 1.8, 0.3)) == stopped
-    assert not kernels.stops(index, 1, kernels.Stance(0.0, 0.1, 1.8, 0.3))
+def test_steps_count_from_the_support_and_heads_from_the_floor() -> None:
+    low, high = np.array(
+        [(2.0, 0.0, 2.0, 5.0, 0.0, 0.4, math.inf), (3.0, 0.0, 3.0, 5.0, 1.85, 9.0, 9.0)],
+        dtype=kernels.BARRIER,
+    )
+    for support, stopped in ((0.0, True), (0.1, False)):
+        assert kernels.stops(low, kernels.Placement(0.0, support, 1.8, 0.3)) == stopped
+    assert not kernels.stops(high, kernels.Placement(0.0, 0.1, 1.8, 0.3))

@@ -108,8 +108,10 @@ def test_walls_thinner_than_a_cell_stop_everybody(tmp_path) -> None:
 def test_a_doorway_is_as_wide_as_it_is(tmp_path) -> None:
     grid = LayeredGrid.from_mesh(written(tmp_path, house()), up="z")
     rows = grid.barriers
-    jambs = rows[(rows[:, 4] < 1.0) & (rows[:, 5] > 1.5) & (np.abs(rows[:, 0] - 4.075) < 0.08)]
-    ys = np.sort(jambs[:, [1, 3]].ravel())
+    jambs = rows[
+        (rows["bottom_m"] < 1.0) & (rows["top_m"] > 1.5) & (np.abs(rows["x0"] - 4.075) < 0.08)
+    ]
+    ys = np.sort(np.concatenate([jambs["y0"], jambs["y1"]]))
     assert ys[ys < 1.5].max() == pytest.approx(1.1, abs=1e-6)
     assert ys[ys > 1.5].min() == pytest.approx(2.0, abs=1e-6)
 

@@ -16,7 +16,7 @@ def same(a, b) -> bool:
     return np.array_equal(a.steps, b.steps) and np.array_equal(a.classes, b.classes)
 
 
-def test_a_footing_is_kept_for_each_body() -> None:
+def test_a_traversability_is_kept_for_each_body() -> None:
     grid = grid_of(4.0)
     adult = grid.traversability.of(Body.adult())
     assert grid.traversability.of(Body()) is adult
@@ -30,9 +30,10 @@ def test_a_door_that_closes_and_opens_changes_only_what_is_near() -> None:
     grid.doors.set_open("gate", False)
     closed = grid.traversability.of(body)
     assert same(closed, find_traversability(grid.layered, grid.barriers, body))
-    changed = grid.layered.places[closed.steps != open_before.steps, 1:]
+    changed = grid.layered.places[closed.steps != open_before.steps]
     assert len(changed)
-    assert (np.abs(changed - 16) <= 4).all()
+    assert (np.abs(changed["row"] - 16) <= 4).all()
+    assert (np.abs(changed["column"] - 16) <= 4).all()
     grid.doors.set_open("gate", True)
     assert same(grid.traversability.of(body), open_before)
 

@@ -39,7 +39,10 @@ def test_classes_are_those_of_the_long_way(grid, body) -> None:
 def test_a_disc_touches_the_cells_it_overlaps(radius_m, cells) -> None:
     offsets = touched_cells(radius_m, 0.25)
     assert len(offsets) == cells
-    assert all(math.hypot(*np.maximum(0, np.abs(o) - 0.5)) * 0.25 < radius_m for o in offsets)
+    assert all(
+        math.hypot(*(max(0.0, abs(v) - 0.5) for v in offset)) * 0.25 < radius_m
+        for offset in offsets.tolist()
+    )
 
 
 def test_open_ground_is_stable_up_to_its_bounds() -> None:

@@ -1,10 +1,11 @@
-"""Where a body stands that is said to be at some point, on bare arrays."""
+"""Snapping a point to the nearest place where a body can stand, on bare arrays."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import kernel
-from esplanade.planning.ground._barrier_kernels import HAIR_M, crosses, to_raise
+from esplanade.planning.ground._barrier_kernels import TOLERANCE_M, height_to_climb
+from esplanade.planning.ground._geometry_kernels import crosses
 from esplanade.planning.ground.layered import cell_index, cell_near
 from esplanade.planning.routes._straightening_kernels import is_clear
 from esplanade.planning.scene.heights import SAME_SURFACE_M
@@ -12,13 +13,13 @@ from esplanade.planning.traversal._stability_kernels import FORBIDDEN
 from esplanade.planning.traversal.traversability import Traversability
 
 SNAP_M = 0.5
-"""A body may be moved so far to where it can stand."""
+"""Greatest distance that a body may be moved to where it can stand."""
 _INSIDE_M = 1e-3
-"""How far from its border a place is that is surely in a cell."""
+"""Places this far inside the border of a cell certainly lie in the cell."""
 
 
 @kernel
-def stand(
+def snap(
     traversability: Traversability,
     classes: NDArray[np.uint8],
     x: float,
@@ -26,12 +27,12 @@ def stand(
     z: float,
     through: bool,
 ) -> tuple[int, float, float]:
-    """The cell where a body stands that is said to be at (x, y, z), and its place; -1: nowhere.
+    """The cell and place where a body can stand that is nearest to (x, y, z); cell -1 if none.
 
-    The point itself, if the body fits there. Else the nearest place within `SNAP_M`: in a cell
-    that is not Forbidden by `classes`, at its side next to the point or in its centre. From a
-    floor it must lie within one straight step, though with `through` that may lead through
-    walls; from a hole it may lie anywhere.
+    It is the point itself if the body fits there, else the nearest place within `SNAP_M`: in a
+    cell that is not Forbidden by `classes` (N,), at its side next to the point or in its centre.
+    If there is a floor at the point, the place must lie within one straight step of it, which may
+    lead through walls only with `through`; otherwise it may lie anywhere.
     """
     arrays, body = traversability.arrays, traversability.body
     own = cell_near(arrays, x, y, z)
@@ -39,9 +40,9 @@ def stand(
         own = -1
     floor, highest = z, SAME_SURFACE_M
     if own >= 0:
-        floor, highest = float(arrays.floors[own]), body.step_on_m + HAIR_M
-        cx = arrays.x0 + (arrays.places[own, 2] + 0.5) * arrays.cell_m
-        cy = arrays.y0 + (arrays.places[own, 1] + 0.5) * arrays.cell_m
+        floor, highest = float(arrays.floors[own]), body.step_on_m + TOLERANCE_M
+        cx = arrays.x0 + (arrays.places[own]["column"] + 0.5) * arrays.cell_m
+        cy = arrays.y0 + (arrays.places[own]["row"] + 0.5) * arrays.cell_m
         if classes[own] != FORBIDDEN and is_clear(traversability, own, x, y, cx, cy):
             return own, x, y
     best, found, found_x, found_y = np.inf, -1, x, y
@@ -76,13 +77,13 @@ def stand(
 def _is_one_step(
     traversability: Traversability, own: int, cell: int, x: float, y: float, cx: float, cy: float
 ) -> bool:
-    """Whether no barrier stops a body on the straight way from a point to another in a cell."""
+    """Whether no barrier stops a body between a point and another in a cell, in a straight line."""
     floors, body = traversability.arrays.floors, traversability.body
     lowest = float(min(floors[own], floors[cell]))
     highest = float(max(floors[own], floors[cell]))
     for s in range(len(traversability.near.barriers)):
         barrier = traversability.near.barriers[s]
-        step = to_raise(barrier, lowest, highest, body.height_m)
-        if step > body.step_on_m + HAIR_M and crosses(barrier, x, y, cx, cy):
+        step = height_to_climb(barrier, lowest, highest, body.height_m)
+        if step > body.step_on_m + TOLERANCE_M and crosses(barrier, x, y, cx, cy):
             return False
     return True
