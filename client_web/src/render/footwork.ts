@@ -17,11 +17,11 @@ import {
   OctahedronGeometry,
   Shape,
   ShapeGeometry,
+  type Vector3Like,
 } from "three";
 import type { Limb } from "../world/body";
 import { FOOT } from "../world/skeleton";
 import type { Step } from "../world/steps";
-import type { Vector } from "../world/vectors";
 import type { Walker } from "../world/walker";
 import type { Avatar } from "../world/world";
 
@@ -135,19 +135,19 @@ export class Footwork {
     if (pointing.target) this.bone(pointing.hand(body), pointing.target);
   }
 
-  private pair(before: Vector, after: Vector): void {
+  private pair(before: Vector3Like, after: Vector3Like): void {
     this.point(before, 0.038, BEFORE);
     this.point(after, 0.026, AFTER);
   }
 
-  private point({ x, y, z }: Vector, sizeM: number, color: Color): void {
+  private point({ x, y, z }: Vector3Like, sizeM: number, color: Color): void {
     if (this.pointCount === MOST_POINTS) return;
     this.matrix.makeScale(sizeM, sizeM, sizeM).setPosition(x, y, z);
     this.points.setMatrixAt(this.pointCount, this.matrix);
     this.points.setColorAt(this.pointCount++, color);
   }
 
-  private bone(from: Vector, to: Vector): void {
+  private bone(from: Vector3Like, to: Vector3Like): void {
     if (this.boneCount === MOST_BONES) return;
     this.ends.set([from.x, from.y, from.z, to.x, to.y, to.z], this.boneCount++ * 6);
   }

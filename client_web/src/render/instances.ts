@@ -7,9 +7,10 @@ import {
   InstancedBufferAttribute,
   InstancedMesh,
   type Material,
+  type QuaternionLike,
+  type Vector3Like,
 } from "three";
 import type { Foot, Limb } from "../world/body";
-import type { Rotation, Vector } from "../world/vectors";
 
 /** Instances beyond the first are made room for in such lots. */
 const LOT = 64;
@@ -43,7 +44,13 @@ export class Instances {
   }
 
   /** At a place, turned and scaled. */
-  put(wearer: number, color: Color, at: Vector, { w, x, y, z }: Rotation, scale: number): void {
+  put(
+    wearer: number,
+    color: Color,
+    at: Vector3Like,
+    { w, x, y, z }: QuaternionLike,
+    scale: number,
+  ): void {
     this.write(
       this.next(wearer, color),
       (1 - 2 * (y * y + z * z)) * scale,
@@ -60,7 +67,14 @@ export class Instances {
   }
 
   /** Hanging from a joint towards another one. */
-  hang(wearer: number, color: Color, from: Vector, to: Vector, axis: Vector, scale: number): void {
+  hang(
+    wearer: number,
+    color: Color,
+    from: Vector3Like,
+    to: Vector3Like,
+    axis: Vector3Like,
+    scale: number,
+  ): void {
     const x = from.x - to.x;
     const y = from.y - to.y;
     const z = from.z - to.z;
@@ -93,7 +107,7 @@ export class Instances {
   stand(
     wearer: number,
     color: Color,
-    at: Vector,
+    at: Vector3Like,
     { heading }: Foot,
     pitch: number,
     scale: number,
@@ -143,7 +157,7 @@ export class Instances {
     ux: number,
     uy: number,
     uz: number,
-    at: Vector,
+    at: Vector3Like,
   ): void {
     const { matrices } = this;
     const i = index * 16;

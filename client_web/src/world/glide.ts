@@ -3,11 +3,12 @@
  * everybody for a moment until their steps are known.
  */
 
+import { Quaternion, type Vector3 } from "three";
 import { cyclePosture, stepAt } from "./cycle";
 import { copyPose, type Pose } from "./motion";
 import type { FootPosture, Posture } from "./posture";
 import type { Build } from "./skeleton";
-import { headed, rotation, set, times, type Vector } from "./vectors";
+import { UP } from "./rotations";
 
 /** Heights are drawn evened out over this time, so that nobody hops from tread to tread. */
 const LIFT_S = 0.09;
@@ -54,8 +55,7 @@ export class Glide {
   pose(out: Posture): void {
     const { x, y, z, heading } = this.place;
     cyclePosture(this.phase, stepAt(this.pace), out);
-    headed(heading, turn);
-    times(turn, out.pelvis, out.pelvis);
+    out.pelvis.premultiply(turn.setFromAxisAngle(UP, heading));
     this.bring(out.root, x, y, z, heading);
     this.step(out.left, x, y, z, heading);
     this.step(out.right, x, y, z, heading);
@@ -67,15 +67,15 @@ export class Glide {
   }
 
   /** From a body of leg length 1 that faces +x over the origin to where it is. */
-  private bring(point: Vector, x: number, y: number, z: number, heading: number): void {
+  private bring(point: Vector3, x: number, y: number, z: number, heading: number): void {
     const { legM } = this.build;
     const c = Math.cos(heading) * legM;
     const s = Math.sin(heading) * legM;
-    set(point, x + c * point.x - s * point.y, y + s * point.x + c * point.y, z + legM * point.z);
+    point.set(x + c * point.x - s * point.y, y + s * point.x + c * point.y, z + legM * point.z);
   }
 }
 
-const turn = rotation();
+const turn = new Quaternion();
 
 /** The height on the way from the one that was drawn to the one that is right. */
 function lifted(drawnM: number, rightM: number, frameS: number): number {

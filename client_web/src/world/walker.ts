@@ -3,6 +3,7 @@
  * along its snapshots with the common cycle. One takes over from the other by fading, never by a jump.
  */
 
+import { Quaternion } from "three";
 import type { StepRecord } from "../net/steps";
 import { mixAngles, wrapAngle } from "./angles";
 import { type Body, body, solve } from "./body";
@@ -10,9 +11,9 @@ import { Glide } from "./glide";
 import { copyPose, type Pose } from "./motion";
 import { mixPostures, type Posture, posture } from "./posture";
 import { Pointing } from "./pointing";
+import { headingOf, UP } from "./rotations";
 import type { Build } from "./skeleton";
 import { readyToDraw, smooth, type Step, underWay } from "./steps";
-import { headed, headingOf, rotation, times } from "./vectors";
 
 /** As many steps are kept: what is drawn lies a little in the past. */
 const MOST_STEPS = 6;
@@ -32,7 +33,7 @@ const SAME_M = 1e-3;
 const LOOK_RAD = 1.1;
 const LOOK_S = 0.12;
 
-const turned = rotation();
+const turned = new Quaternion();
 
 /** A step and the time at which it begins and ends. */
 interface Timed {
@@ -129,8 +130,7 @@ export class Walker {
     const wanted = target ? Math.atan2(target.y - neck.y, target.x - neck.x) : heading;
     const aside = Math.max(-LOOK_RAD, Math.min(LOOK_RAD, wrapAngle(wanted - headingOf(chest))));
     this.gaze += (aside - this.gaze) * (1 - Math.exp(-frameS / LOOK_S));
-    headed(this.gaze, turned);
-    times(turned, head, head);
+    head.premultiply(turned.setFromAxisAngle(UP, this.gaze));
   }
 
   private chosen(snapshots: Readonly<Pose>): Timed | null {
@@ -153,8 +153,7 @@ export class Walker {
     this.drawn = next;
     if (before && next && joins(before, next)) return;
     this.show(next, this.from);
-    const { x, y, z } = this.posture.root;
-    const leapM = Math.hypot(this.from.root.x - x, this.from.root.y - y, this.from.root.z - z);
+    const leapM = this.from.root.distanceTo(this.posture.root);
     this.fading = before;
     this.fadeLeftS = leapM < JUMP_M ? FADE_S : 0;
   }

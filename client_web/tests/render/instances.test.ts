@@ -4,7 +4,7 @@ import { Instances } from "../../src/render/instances";
 
 const RED = new Color("#ff0000");
 const BLUE = new Color("#0000ff");
-const LEFT = { x: 0, y: 1, z: 0 };
+const LEFT = new Vector3(0, 1, 0);
 
 let part: Instances;
 
@@ -35,8 +35,8 @@ describe("instances of a part", () => {
   });
 
   it("go on from the end of a limb", () => {
-    const limb = { start: { x: 0, y: 0, z: 0 }, hinge: { x: 0, y: 0, z: 2 }, axis: LEFT };
-    part.extend(1, RED, { ...limb, end: { x: 0, y: 0, z: 1 } }, 1);
+    const limb = { start: new Vector3(), hinge: new Vector3(0, 0, 2), axis: LEFT };
+    part.extend(1, RED, { ...limb, end: new Vector3(0, 0, 1) }, 1);
     expectNear(placed(0, 0, -1), [0, 0, 0]);
   });
 

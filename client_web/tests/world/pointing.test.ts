@@ -53,17 +53,14 @@ describe("pointing", () => {
     const walker = new Walker(buildOf(0.9, 1.7), HERE);
     advance(walker, FRAME_S);
     const { end } = walker.body.left.arm;
-    const hanging = { ...end };
+    const hanging = end.clone();
     walker.pointing.target = { x: 5, y: 2, z: 1.5 };
     let before = hanging;
     let farthest = 0;
     const watch = (): void => {
       walker.advance(0, HERE, FRAME_S);
-      farthest = Math.max(
-        farthest,
-        Math.hypot(end.x - before.x, end.y - before.y, end.z - before.z),
-      );
-      before = { ...end };
+      farthest = Math.max(farthest, end.distanceTo(before));
+      before = end.clone();
     };
     for (let i = 0; i < 120; i++) watch();
     walker.pointing.target = null;
