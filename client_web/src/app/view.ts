@@ -12,12 +12,12 @@ import { Plans } from "../render/plans";
 import { type Choice, QualityControl } from "../render/quality";
 import { Stage } from "../render/stage";
 import { buildTown, type Town } from "../render/town";
+import { STOREYS_APART_M } from "../world/heights";
 import type { Triangles } from "../world/mesh";
 import type { Avatar, World } from "../world/world";
 import { Cost } from "./cost";
 
-/** Names of people so far above or below are dimmed. */
-const STOREY_M = 1.8;
+/** How strongly the names of people on other storeys are drawn. */
 const DIMMED = 0.45;
 
 export class View {
@@ -110,7 +110,7 @@ export class View {
     this.plans.show(world.plan, world.floors);
     this.stage.draw();
     this.labels.update(avatars, this.stage.camera, (avatar) => {
-      const apart = own !== null && Math.abs(avatar.pose.z - own.pose.z) > STOREY_M;
+      const apart = own !== null && Math.abs(avatar.pose.z - own.pose.z) > STOREYS_APART_M;
       return this.shown(avatar) * (apart ? DIMMED : 1);
     });
     if (this.control.frame(frameS)) this.applyQuality();

@@ -7,13 +7,13 @@ import type { Doors, SceneData } from "../net/messages";
 import { type Barrier, barriersOf, STEP_ON_M, type Vec2 } from "./barriers";
 import { Buckets } from "./buckets";
 import { Floors } from "./floors";
+import { BODIES_OVERLAP_M } from "./heights";
 
 /** Where the feet are. */
 export type Vec3 = readonly [x: number, y: number, z: number];
 
 /** Bodies may be as wide as this. */
 const LARGEST_RADIUS_M = 0.75;
-const HEIGHT_M = 1.8;
 const STEP_M = 0.1;
 const PUSHES = 4;
 /** Floors are looked for so far around: the server's cells reach beyond edges by as much. */
@@ -110,7 +110,7 @@ export class Obstacles {
       .at(x, y)
       .filter(
         ({ bottomM, topM, door }) =>
-          bottomM < z + HEIGHT_M &&
+          bottomM < z + BODIES_OVERLAP_M &&
           topM > z + STEP_ON_M &&
           (door === null || this.doors[door] === false),
       );
