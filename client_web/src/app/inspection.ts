@@ -25,7 +25,7 @@ export interface Inspection {
 }
 
 /** An avatar as it is drawn, with the feet it walks on. */
-interface Seen extends Omit<Avatar, "walker"> {
+interface Seen extends Omit<Avatar, "animator"> {
   readonly feet: { readonly left: Foot; readonly right: Foot };
   /** Which foot its step stands on, and when it began; null while a body is drawn without steps. */
   readonly step: { readonly stands: "left" | "right"; readonly tick: number } | null;
@@ -33,10 +33,10 @@ interface Seen extends Omit<Avatar, "walker"> {
   readonly pointing: boolean;
 }
 
-function seen({ id, kind, name, radius, own, pose, walker }: Avatar): Seen {
-  const { left, right } = walker.body;
-  const pointing = walker.pointing.target !== null;
-  const drawn = walker.planted ? walker.step : null;
+function seen({ id, kind, name, radius, own, pose, animator }: Avatar): Seen {
+  const { left, right } = animator.body;
+  const pointing = animator.pointing.target !== null;
+  const drawn = animator.planted ? animator.step : null;
   const step = drawn && {
     stands: drawn.rightStands ? ("right" as const) : ("left" as const),
     tick: drawn.tick,
@@ -78,7 +78,7 @@ export function offerInspection(session: Session, view: View): void {
       return view.qualityLevel;
     },
     get scriptMs() {
-      return { moving: session.moving.ms, figures: view.dressing.ms };
+      return { moving: session.moving.ms, figures: view.placing.ms };
     },
     get delayS() {
       return session.world?.delayS ?? null;

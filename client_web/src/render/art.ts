@@ -8,7 +8,7 @@ import {
   TorusGeometry,
 } from "three";
 import { type Block, within } from "./blocks";
-import { artOf, CANVAS, FRAME, MARBLE, sculptureOf } from "./decor";
+import { artOf, CANVAS, FRAME, MARBLE, sculptureOf } from "./interiorpalette";
 import { scatter } from "./palette";
 import { column, painted } from "./shapes";
 

@@ -1,7 +1,7 @@
 /** The camera that follows the own avatar: turned by dragging, kept out of buildings. */
 
 import { type Mesh, type PerspectiveCamera, Raycaster, Vector3 } from "three";
-import type { Pose } from "../world/motion";
+import type { Pose } from "../world/interpolation";
 import { type Cutaway, cutOf, givesWay } from "./cutaway";
 
 const NEAREST_M = 2;

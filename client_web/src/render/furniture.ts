@@ -4,7 +4,7 @@ import type { BufferGeometry } from "three";
 import type { ScenePolygon } from "../net/messages";
 import { painting, sculpture } from "./art";
 import { type Block, blockOf, within } from "./blocks";
-import { bookOf, GLASS, MARBLE } from "./decor";
+import { bookOf, GLASS, MARBLE } from "./interiorpalette";
 import { IRON, scatter, WOOD } from "./palette";
 import { orientation } from "./shapes";
 

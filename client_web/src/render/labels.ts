@@ -71,7 +71,7 @@ export class Labels {
   }
 
   /** Where a label hangs. */
-  private head({ walker: { body, build } }: Avatar): Vector3 {
+  private head({ animator: { body, build } }: Avatar): Vector3 {
     crown(body, build, this.at);
     this.at.z += ABOVE_M;
     return this.at;

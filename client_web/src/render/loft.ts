@@ -5,7 +5,7 @@ import { BufferGeometry, Color, Float32BufferAttribute } from "three";
 type Point = readonly [x: number, y: number, z: number];
 
 /** A closed ring of points, with the colour of the skin there. */
-export interface Hoop {
+export interface Section {
   readonly points: readonly Point[];
   readonly color: Color;
 }
@@ -27,7 +27,7 @@ export interface Oval {
 export function oval(
   { z, depth, width, x = 0, roundness = 1, color = WHITE }: Oval,
   corners: number,
-): Hoop {
+): Section {
   const points = Array.from({ length: corners }, (_, i): Point => {
     const angle = (2 * Math.PI * i) / corners;
     return [
@@ -48,13 +48,13 @@ export function loft(ovals: readonly Oval[], corners: number): BufferGeometry {
 }
 
 /** The skin over hoops of equally many points, closed at both ends by their middles. */
-export function skin(all: readonly Hoop[]): BufferGeometry {
+export function skin(all: readonly Section[]): BufferGeometry {
   const corners = all[0]?.points.length ?? 0;
-  const hoops =
+  const sections =
     corners < FEW_CORNERS ? all.filter((_, i) => i % 2 === 0 || i === all.length - 1) : all;
   const position: number[] = [];
   const colors: number[] = [];
-  for (const { points, color } of [end(hoops[0]), ...hoops, end(hoops.at(-1))]) {
+  for (const { points, color } of [end(sections[0]), ...sections, end(sections.at(-1))]) {
     for (const point of points) {
       position.push(...point);
       colors.push(color.r, color.g, color.b);
@@ -62,13 +62,13 @@ export function skin(all: readonly Hoop[]): BufferGeometry {
   }
   const last = position.length / 3 - 1;
   const index: number[] = [];
-  for (let ring = 0; ring < hoops.length; ring++) {
+  for (let ring = 0; ring < sections.length; ring++) {
     for (let i = 0; i < corners; i++) {
       const next = (i + 1) % corners;
       const a = 1 + ring * corners + i;
       const b = 1 + ring * corners + next;
       if (ring === 0) index.push(0, a, b);
-      if (ring === hoops.length - 1) index.push(last, b, a);
+      if (ring === sections.length - 1) index.push(last, b, a);
       else index.push(a, a + corners, b, b, a + corners, b + corners);
     }
   }
@@ -81,13 +81,13 @@ export function skin(all: readonly Hoop[]): BufferGeometry {
 }
 
 /** A hoop drawn together to its middle. */
-function end(hoop: Hoop | undefined): Hoop {
-  if (!hoop) throw new RangeError("a skin goes over at least one hoop");
-  const n = hoop.points.length;
+function end(section: Section | undefined): Section {
+  if (!section) throw new RangeError("a skin goes over at least one section");
+  const n = section.points.length;
   const middle = ([0, 1, 2] as const).map(
-    (axis) => hoop.points.reduce((sum, point) => sum + point[axis], 0) / n,
+    (axis) => section.points.reduce((sum, point) => sum + point[axis], 0) / n,
   ) as unknown as Point;
-  return { points: [middle], color: hoop.color };
+  return { points: [middle], color: section.color };
 }
 
 function rounded(value: number, roundness: number): number {

@@ -11,7 +11,7 @@ import {
   MeshBasicMaterial,
   RingGeometry,
 } from "three";
-import type { Pose } from "../world/motion";
+import type { Pose } from "../world/interpolation";
 import type { Avatar } from "../world/world";
 import { ACCENT, ACTOR } from "./palette";
 

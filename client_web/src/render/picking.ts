@@ -53,7 +53,7 @@ export class Picking {
       if (avatar.own) continue;
       const { x, y, z } = avatar.pose;
       this.foot.set(x, y, z);
-      crown(avatar.walker.body, avatar.walker.build, this.head);
+      crown(avatar.animator.body, avatar.animator.build, this.head);
       const besideSq = this.ray.ray.distanceSqToSegment(
         this.foot,
         this.head,

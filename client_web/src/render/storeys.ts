@@ -3,7 +3,7 @@
 import type { BufferGeometry } from "three";
 import type { ScenePolygon, SceneStairs, SceneWall } from "../net/messages";
 import { topOf, treadsOf } from "../world/solids";
-import { CEILING, PARQUET, TERRAZZO } from "./decor";
+import { CEILING, PARQUET, TERRAZZO } from "./interiorpalette";
 import { DARK_STONE, FLOOR, IRON, STONE, TREAD } from "./palette";
 import { box, cap, sides, underside } from "./shapes";
 import type { Pieces } from "./structures";

@@ -5,7 +5,7 @@
 
 import type { Doors, SceneData } from "../net/messages";
 import { type Barrier, barriersOf, STEP_ON_M, type Vec2 } from "./barriers";
-import { Buckets } from "./buckets";
+import { SpatialGrid } from "./spatialgrid";
 import { Floors } from "./floors";
 import { BODIES_OVERLAP_M } from "./heights";
 
@@ -31,7 +31,7 @@ type Built = Pick<SceneData, "bounds" | "polygons" | "walls" | "stairs" | "doors
 export class Obstacles {
   /** Doors of which nothing is said stand open. */
   doors: Readonly<Doors> = {};
-  private readonly barriers = new Buckets<Barrier>();
+  private readonly barriers = new SpatialGrid<Barrier>();
   private readonly bounds: SceneData["bounds"];
 
   constructor(

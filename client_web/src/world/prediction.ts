@@ -7,7 +7,7 @@
  * differs from what is shown, the difference fades away instead of jumping.
  */
 
-import type { Pose } from "./motion";
+import type { Pose } from "./interpolation";
 import type { Vec2 } from "./barriers";
 import type { Obstacles, Vec3 } from "./obstacles";
 

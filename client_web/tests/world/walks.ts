@@ -1,7 +1,7 @@
 /** Steps of a walk along +x, as a server would send them. */
 
 import { KEY_NUMBERS, KeyNumber, STEP_KEYS, type StepRecord } from "../../src/net/steps";
-import type { Pose } from "../../src/world/motion";
+import type { Pose } from "../../src/world/interpolation";
 
 export const STEP_S = 0.5;
 export const STEP_M = 0.6;

@@ -5,7 +5,7 @@
 
 import { Quaternion, type Vector3 } from "three";
 import { cyclePosture, stepAt } from "./cycle";
-import { copyPose, type Pose } from "./motion";
+import { copyPose, type Pose } from "./interpolation";
 import type { FootPosture, Posture } from "./posture";
 import type { Build } from "./skeleton";
 import { UP } from "./rotations";
@@ -18,7 +18,7 @@ const PACE_S = 0.15;
 /** A larger step in one frame is no walking. */
 const JUMP_M = 1;
 
-export class Glide {
+export class CycleAnimation {
   /** Where the body is, its height evened out. */
   readonly place: Pose;
   private phase: number;

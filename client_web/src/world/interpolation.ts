@@ -32,7 +32,7 @@ const KEPT = 40;
 /** How long a walk goes on by itself when snapshots stay away. */
 const COAST_S = 0.25;
 
-export class Motion {
+export class Interpolator {
   private readonly samples: Sample[] = [];
   private readonly here: Pose;
 
@@ -56,7 +56,7 @@ export class Motion {
 
   get last(): Sample {
     const last = this.samples.at(-1);
-    if (!last) throw new Error("a motion begins with a sample");
+    if (!last) throw new Error("an interpolator begins with a sample");
     return last;
   }
 

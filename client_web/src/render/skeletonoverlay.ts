@@ -22,14 +22,14 @@ import {
 import type { Limb } from "../world/body";
 import { FOOT } from "../world/skeleton";
 import type { Step } from "../world/steps";
-import type { Walker } from "../world/walker";
+import type { Animator } from "../world/animator";
 import type { Avatar } from "../world/world";
 
 const MOST_PRINTS = 600;
 const MOST_POINTS = 2400;
 const MOST_BONES = 1200;
 /** Only of so many is it shown, the first in view. */
-const MOST_WALKERS = 60;
+const MOST_FIGURES = 60;
 const ABOVE_M = 0.012;
 
 const LEFT = new Color("#2f6fb5");
@@ -38,7 +38,7 @@ const JOINT = new Color("#ffffff");
 const BEFORE = new Color("#ff9d2e");
 const AFTER = new Color("#1fc46b");
 
-export class Footwork {
+export class SkeletonOverlay {
   readonly group = new Group();
   private readonly prints = overlay(sole(), 0.75, MOST_PRINTS);
   private readonly points = overlay(new OctahedronGeometry(1), 1, MOST_POINTS);
@@ -72,12 +72,12 @@ export class Footwork {
   update(avatars: ReadonlyMap<number, Avatar>): void {
     if (!this.group.visible) return;
     this.pointCount = this.boneCount = 0;
-    let walkers = 0;
-    for (const { id, walker } of avatars.values()) {
-      if (walkers++ === MOST_WALKERS) break;
-      this.print(id, walker);
-      this.skeleton(walker);
-      this.reaching(walker);
+    let figures = 0;
+    for (const { id, animator } of avatars.values()) {
+      if (figures++ === MOST_FIGURES) break;
+      this.print(id, animator);
+      this.skeleton(animator);
+      this.reaching(animator);
     }
     this.prints.count = Math.min(this.printCount, MOST_PRINTS);
     this.points.count = this.pointCount;
@@ -90,7 +90,7 @@ export class Footwork {
   }
 
   /** The footprint that a new step leads to; the oldest ones go when there are too many. */
-  private print(id: number, { step, build }: Walker): void {
+  private print(id: number, { step, build }: Animator): void {
     if (!step || this.printed.get(id) === step) return;
     this.printed.set(id, step);
     const { x, y, z, heading } = step.landing;
@@ -101,7 +101,7 @@ export class Footwork {
     this.prints.setColorAt(index, step.rightStands ? LEFT : RIGHT);
   }
 
-  private skeleton({ body }: Walker): void {
+  private skeleton({ body }: Animator): void {
     const { root, lumbar, neck, left, right } = body;
     this.bone(root, lumbar);
     this.bone(lumbar, neck);
@@ -124,7 +124,7 @@ export class Footwork {
   }
 
   /** Orange is what is asked for, green what has become of it. */
-  private reaching({ posture, body, pointing }: Walker): void {
+  private reaching({ posture, body, pointing }: Animator): void {
     this.pair(posture.root, body.root);
     this.pair(posture.left.heel, body.left.leg.end);
     this.pair(posture.right.heel, body.right.leg.end);

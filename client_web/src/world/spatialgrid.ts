@@ -2,7 +2,7 @@
 
 const BUCKET_M = 2;
 
-export class Buckets<T> {
+export class SpatialGrid<T> {
   private readonly buckets = new Map<string, T[]>();
 
   /** What was put where (x, y) lies. */

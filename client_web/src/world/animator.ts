@@ -7,8 +7,8 @@ import { Quaternion } from "three";
 import type { StepRecord } from "../net/steps";
 import { mixAngles, wrapAngle } from "./angles";
 import { type Body, body, solve } from "./body";
-import { Glide } from "./glide";
-import { copyPose, type Pose } from "./motion";
+import { CycleAnimation } from "./cycleanimation";
+import { copyPose, type Pose } from "./interpolation";
 import { mixPostures, type Posture, posture } from "./posture";
 import { Pointing } from "./pointing";
 import { headingOf, UP } from "./rotations";
@@ -44,13 +44,13 @@ interface Timed {
   readonly missed: boolean;
 }
 
-export class Walker {
+export class Animator {
   readonly body: Body = body();
   /** What the joints were solved from. */
   readonly posture: Posture = posture();
   readonly pointing = new Pointing();
   private readonly steps: Timed[] = [];
-  private readonly glide: Glide;
+  private readonly cycle: CycleAnimation;
   private readonly from: Posture = posture();
   /** What is drawn; null is the glide. */
   private drawn: Timed | null = null;
@@ -68,9 +68,9 @@ export class Walker {
     readonly build: Build,
     start: Pose,
   ) {
-    this.glide = new Glide(build, start);
+    this.cycle = new CycleAnimation(build, start);
     this.place = { ...start };
-    this.glide.pose(this.posture);
+    this.cycle.pose(this.posture);
     solve(this.posture, build, this.body);
   }
 
@@ -106,7 +106,7 @@ export class Walker {
     const fresh = this.timeS === -Infinity;
     this.lagS = Math.max(0, this.lagS - HURRY * frameS);
     this.timeS = timeS - this.lagS;
-    this.glide.advance(snapshots, frameS);
+    this.cycle.advance(snapshots, frameS);
     const next = this.chosen(snapshots);
     if (fresh) this.drawn = next;
     else this.choose(next);
@@ -160,7 +160,7 @@ export class Walker {
 
   private show(what: Timed | null, out: Posture): void {
     if (!what) {
-      this.glide.pose(out);
+      this.cycle.pose(out);
       return;
     }
     const { step, beginS, endS } = what;
@@ -176,7 +176,7 @@ export class Walker {
     place.speed = snapshots.speed;
     place.reason = snapshots.reason;
     if (!drawn) {
-      copyPose(this.glide.place, place);
+      copyPose(this.cycle.place, place);
       return place;
     }
     const { standing, landing } = drawn.step;
