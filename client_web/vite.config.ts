@@ -3,7 +3,7 @@ import { defineConfig } from "vitest/config";
 export default defineConfig({
   base: "./",
   build: {
-    outDir: "../server/client_assets",
+    outDir: "../src/esplanade/server/client_assets",
     emptyOutDir: true,
     // The server answers with a strict content security policy: nothing may be inlined.
     assetsInlineLimit: 0,
