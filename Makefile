@@ -5,8 +5,9 @@ PYTHON ?= python3
 VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) -m pip install --quiet --disable-pip-version-check
-# Nothing is installed but what uv.lock names; what was installed by hand stays.
-SYNC := UV_PROJECT_ENVIRONMENT=$(VENV) $(VENV)/bin/uv sync --quiet --locked --inexact
+# Nothing is installed but what uv.lock names, what builds the package included (extra `client`).
+SYNC := UV_PROJECT_ENVIRONMENT=$(VENV) $(VENV)/bin/uv sync --quiet --locked --inexact \
+  --no-build-isolation-package esplanade
 NPM := $(RUN) tools/npm.py
 PYTEST := $(RUN) -m pytest
 
