@@ -11,7 +11,7 @@ const walls = {
   ui: ["render", "input", "app"],
 };
 
-/** Of three.js `render` may use everything, `world` the vectors, which need no WebGL. */
+/** `render` may use all of three.js; `world` may use its vectors, which need no WebGL. */
 function threeIn(folder) {
   if (folder === "render") return [];
   const group = ["three", "three/**"];

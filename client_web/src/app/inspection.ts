@@ -1,4 +1,4 @@
-/** `window.esplanade`: what the page knows, read-only, for tests and curious people. See docs/client.md. */
+/** `window.esplanade`: the page's state, read-only, for tests and the curious. See docs/client.md. */
 
 import type { ConnectionState } from "../net/connection";
 import type { Doors, Plan } from "../net/messages";
@@ -27,7 +27,7 @@ export interface Inspection {
 /** An avatar as it is drawn, with the feet it walks on. */
 interface Seen extends Omit<Avatar, "animator"> {
   readonly feet: { readonly left: Foot; readonly right: Foot };
-  /** Which foot its step stands on, and when it began; null while a body is drawn without steps. */
+  /** The foot that its step stands on, and the tick at which it began; null without steps. */
   readonly step: { readonly stands: "left" | "right"; readonly tick: number } | null;
   /** Whether it points at something. */
   readonly pointing: boolean;

@@ -17,14 +17,14 @@ import type { Triangles } from "../world/mesh";
 import type { Avatar, World } from "../world/world";
 import { Cost } from "./cost";
 
-/** How strongly the names of people on other storeys are drawn. */
+/** The names of people on other storeys are drawn with this opacity. */
 const DIMMED = 0.45;
 
 export class View {
   readonly camera: FollowCamera;
   readonly marks: Marks;
   readonly skeletons = new SkeletonOverlay();
-  /** Of putting every part of every figure in its place. */
+  /** The cost of placing every part of every figure. */
   readonly placing = new Cost();
   private readonly renderer: Renderer;
   private readonly figures = new Figures();
@@ -32,7 +32,7 @@ export class View {
   private readonly labels: Labels;
   private readonly picking: Picking;
   private readonly cutaway = new Cutaway();
-  /** Who is drawn in this frame: all but those on floors that are cut away. */
+  /** The avatars that are drawn in this frame: all but those on floors that are cut away. */
   private readonly drawn = new Map<number, Avatar>();
   private control: QualityControl;
   private readonly software = drawsInSoftware();
@@ -60,7 +60,7 @@ export class View {
     }).observe(canvas);
   }
 
-  /** The world that is shown from now on. */
+  /** Show this world from now on. */
   enter(world: World, mesh: Triangles | null = null): void {
     this.town = buildTown(world, this.cutaway, mesh);
     this.renderer.show(this.town, world.scene);
@@ -76,7 +76,7 @@ export class View {
     this.labels.say(avatar, text);
   }
 
-  /** What is at a point of the screen; doors only for those who may move them. */
+  /** The thing at a point of the screen; doors are found only for those who may move them. */
   pick(
     at: ScreenPoint,
     doors: boolean,
@@ -123,7 +123,7 @@ export class View {
     return this.control.level;
   }
 
-  /** How much is left of somebody when what is above the own avatar is cut away. */
+  /** The share of somebody that is left while floors above the own avatar are cut away. */
   private shown({ own, pose: { x, y, z } }: Avatar): number {
     return own ? 1 : this.cutaway.shown(x, y, z);
   }

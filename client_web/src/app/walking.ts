@@ -9,7 +9,7 @@ import { byId } from "../ui/dom";
 import { SAME_FLOOR_M } from "../world/heights";
 import type { World } from "../world/world";
 
-/** This near a walk to a point counts as done, metres. */
+/** A walk to a point ends this near to it. */
 const THERE_M = 0.4;
 const TURN_PER_S = 1.8;
 
@@ -62,7 +62,7 @@ export class Walking {
     this.setTarget(null);
   }
 
-  /** How fast the keys turn the camera, radians a second. */
+  /** The speed at which the keys turn the camera, radians a second. */
   get turnPerS(): number {
     return this.keys.wish.turn * TURN_PER_S;
   }

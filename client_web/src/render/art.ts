@@ -1,4 +1,4 @@
-/** What a gallery shows: framed pictures and sculptures, a different one for every place. */
+/** The exhibits of a gallery: framed pictures and sculptures, a different one for every place. */
 
 import {
   type BufferGeometry,

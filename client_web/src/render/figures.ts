@@ -10,13 +10,13 @@ import { type PartName, PARTS } from "./parts";
 /** Corners around a limb, of figures near by and far away. */
 const FINE_CORNERS = 12;
 const COARSE_CORNERS = 6;
-/** Who was coarse is so again until this much nearer, so that nobody flickers. */
+/** A coarse figure stays coarse until it is this much nearer, so that it does not flicker. */
 const NEARER = 0.88;
 
-/** What so many wear is remembered, those who have left among them. */
+/** The clothes of this many avatars are remembered, including some that have left. */
 const MOST_KNOWN = 2000;
 
-/** A figure and what it carries, from its hips; and its shadow on the ground, where that is drawn. */
+/** A figure reaches this far from its hips, and its shadow on the ground this far. */
 const FIGURE_M = 1.3;
 const SHADOW_M = 5;
 

@@ -1,4 +1,4 @@
-/** Heads: a face that shows where it looks, hair in three fashions, and what actors wear. */
+/** Heads: a face that shows where it looks, hair in three fashions, and the hat of actors. */
 
 import { type BufferGeometry, Color, ConeGeometry, SphereGeometry } from "three";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";

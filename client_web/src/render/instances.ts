@@ -12,7 +12,7 @@ import {
 } from "three";
 import type { Foot, Limb } from "../world/body";
 
-/** Instances beyond the first are made room for in such lots. */
+/** Room for instances grows by this many at a time. */
 const LOT = 64;
 
 export class Instances {
@@ -20,7 +20,7 @@ export class Instances {
   private count = 0;
   private matrices = new Float32Array(0);
   private colors = new Float32Array(0);
-  /** Who wears each instance: a colour stays until somebody else does. */
+  /** The avatar of each instance: colours are written only when that changes. */
   private owners = new Float64Array(0);
   private repainted = false;
 
@@ -43,7 +43,7 @@ export class Instances {
     this.repainted = false;
   }
 
-  /** At a place, turned and scaled. */
+  /** Place a part, turned and scaled. */
   put(
     owner: number,
     color: Color,
@@ -66,7 +66,7 @@ export class Instances {
     );
   }
 
-  /** Hanging from a joint towards another one. */
+  /** Place a part that hangs from a joint towards another one. */
   hang(
     owner: number,
     color: Color,
@@ -94,7 +94,7 @@ export class Instances {
     );
   }
 
-  /** On from the end of a limb's second bone. */
+  /** Place a part at the end of a limb's second bone, in line with it. */
   extend(owner: number, color: Color, { hinge, end, axis }: Limb, scale: number): void {
     this.hang(owner, color, hinge, end, axis, scale);
     const at = (this.count - 1) * 16;
@@ -103,7 +103,7 @@ export class Instances {
     this.matrices[at + 14] = end.z;
   }
 
-  /** A foot, or its toes, at a place of the sole. */
+  /** Place a foot, or its toes, at a place of the sole. */
   stand(
     owner: number,
     color: Color,
@@ -131,7 +131,7 @@ export class Instances {
     );
   }
 
-  /** Index of the next instance, in its wearer's colour. */
+  /** Index of the next instance, in its owner's colour. */
   private next(owner: number, color: Color): number {
     if (this.count === this.owners.length) this.grow();
     const index = this.count++;

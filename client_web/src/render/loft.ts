@@ -1,10 +1,10 @@
-/** Rounded shapes: a skin over rings of points, which is how limbs, shoes and heads are made. */
+/** Lofts: surfaces through a row of cross sections, of which limbs, shoes and heads are made. */
 
 import { BufferGeometry, Color, Float32BufferAttribute } from "three";
 
 type Point = readonly [x: number, y: number, z: number];
 
-/** A closed ring of points, with the colour of the skin there. */
+/** A cross section: a closed ring of points, with the colour of the surface there. */
 export interface Section {
   readonly points: readonly Point[];
   readonly color: Color;
@@ -39,15 +39,15 @@ export function oval(
   return { points, color };
 }
 
-/** Shapes with fewer corners are seen from afar: every second hoop is enough for them. */
+/** Shapes with fewer corners are seen from afar: every second section is enough for them. */
 const FEW_CORNERS = 8;
 
-/** The skin over ovals from the top down, closed at both ends. */
+/** The surface through ovals from the top down, closed at both ends. */
 export function loft(ovals: readonly Oval[], corners: number): BufferGeometry {
   return skin(ovals.map((each) => oval(each, corners)));
 }
 
-/** The skin over hoops of equally many points, closed at both ends by their middles. */
+/** The surface through sections of equally many points, closed at both ends by their middles. */
 export function skin(all: readonly Section[]): BufferGeometry {
   const corners = all[0]?.points.length ?? 0;
   const sections =
@@ -80,7 +80,7 @@ export function skin(all: readonly Section[]): BufferGeometry {
   return geometry;
 }
 
-/** A hoop drawn together to its middle. */
+/** A section that is drawn together to its middle. */
 function end(section: Section | undefined): Section {
   if (!section) throw new RangeError("a skin goes over at least one section");
   const n = section.points.length;

@@ -1,4 +1,4 @@
-/** Marks on the floor: soft discs under the feet, the own ring, the chosen one's, the goal of a walk. */
+/** Marks on the floor: discs under feet, rings of the own and the chosen avatar, the walk's goal. */
 
 import {
   CircleGeometry,
@@ -43,7 +43,7 @@ export class Marks {
     this.feet.visible = show;
   }
 
-  /** Where a click sends the own avatar; null when it has arrived or was called off. */
+  /** Mark the place that the own avatar walks to; null when it has arrived or was called off. */
   walkTarget(at: { x: number; y: number; z: number } | null): void {
     this.target.visible = at !== null;
     if (at) this.target.position.set(at.x, at.y, at.z + 0.03);

@@ -1,4 +1,4 @@
-/** The renderer, its light and sky, and how finely it draws. */
+/** The WebGL renderer with its scene, camera, light and sky. */
 
 import {
   AmbientLight,
@@ -28,7 +28,7 @@ const SKY_M = 900;
 const SHADOW_PIXELS = 2048;
 /** The shadow map covers at most this much to every side of the middle. */
 const SHADOW_REACH_M = 45;
-/** What is in shadow is not without sun altogether: walls all around throw light back. */
+/** Shadows are not black: walls all around throw light back. */
 const SHADOW = 0.72;
 const SUN = { x: -0.55, y: -0.62, z: 0.95 };
 
@@ -97,7 +97,7 @@ export class Renderer {
     const { clientWidth, clientHeight } = this.canvas;
     this.webgl.setSize(clientWidth, clientHeight, false);
     this.camera.aspect = clientWidth / Math.max(1, clientHeight);
-    // Upright screens see as much to the sides as is bearable.
+    // A wider angle on upright screens shows more to the sides.
     this.camera.fov = this.camera.aspect < 1 ? 68 : 55;
     this.camera.updateProjectionMatrix();
   }

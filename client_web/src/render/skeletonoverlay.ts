@@ -1,6 +1,6 @@
 /**
- * What there is behind the figures, for those who want to see it: footprints, joints and bones, and
- * what legs and a pointing arm reach for, before and after their joints are solved.
+ * The debug overlay of skeletons: footprints, joints and bones, and the targets of legs and of a
+ * pointing arm, before and after their joints are solved.
  */
 
 import {
@@ -28,7 +28,7 @@ import type { Avatar } from "../world/world";
 const MOST_PRINTS = 600;
 const MOST_POINTS = 2400;
 const MOST_BONES = 1200;
-/** Only of so many is it shown, the first in view. */
+/** It is shown for this many avatars, the first in view. */
 const MOST_FIGURES = 60;
 const ABOVE_M = 0.012;
 
@@ -89,7 +89,7 @@ export class SkeletonOverlay {
     this.bones.geometry.getAttribute("position").needsUpdate = true;
   }
 
-  /** The footprint that a new step leads to; the oldest ones go when there are too many. */
+  /** Draw the footprint that a new step leads to; the oldest ones go when there are too many. */
   private print(id: number, { step, build }: Animator): void {
     if (!step || this.printed.get(id) === step) return;
     this.printed.set(id, step);
@@ -123,7 +123,7 @@ export class SkeletonOverlay {
     for (const joint of [start, hinge]) this.point(joint, 0.02, JOINT);
   }
 
-  /** Orange is what is asked for, green what has become of it. */
+  /** A target is orange, the solved joint green. */
   private reaching({ posture, body, pointing }: Animator): void {
     this.pair(posture.root, body.root);
     this.pair(posture.left.heel, body.left.leg.end);

@@ -1,4 +1,4 @@
-/** What leads up and carries people there: slabs, ramps, stairs and railings. */
+/** The parts of storeys: slabs, ramps, stairs and railings. */
 
 import type { BufferGeometry } from "three";
 import type { ScenePolygon, SceneStairs, SceneWall } from "../net/messages";

@@ -1,4 +1,4 @@
-/** The help dialog with its settings: how finely the world is drawn, and whether its walking is shown. */
+/** The help dialog with its settings: the fineness of drawing, and the overlay of skeletons. */
 
 import { byId } from "./dom";
 

@@ -1,4 +1,4 @@
-/** The joints of a body in the world, from its posture: the twin of `actors/locomotion/reference/posing.py`. */
+/** The joints of a body from its posture: the twin of `actors/locomotion/reference/posing.py`. */
 
 import { Quaternion, Vector3 } from "three";
 import type { ArmPosture, FootPosture, Posture } from "./posture";
@@ -38,7 +38,7 @@ export interface Foot {
   toe: Vector3;
   pitch: number;
   heading: number;
-  /** How far the toes bend up against the foot, radians. */
+  /** The angle by which the toes bend up against the foot, radians. */
   bend: number;
 }
 
@@ -51,11 +51,11 @@ export interface Side {
 export interface Body {
   root: Vector3;
   pelvis: Quaternion;
-  /** Where the spine bends. */
+  /** The joint of the spine. */
   lumbar: Vector3;
   chest: Quaternion;
   neck: Vector3;
-  /** More upright than the chest, and turned to what is looked at. */
+  /** It is more upright than the chest, and turned to the target of the gaze. */
   head: Quaternion;
   readonly left: Side;
   readonly right: Side;
@@ -64,7 +64,7 @@ export interface Body {
 /** A heel is raised no further on its toe. */
 const STEEPEST_RAD = -1.3;
 const STRAIGHT_M = 1e-9;
-/** How much of the trunk's leaning the neck takes back. */
+/** The neck takes back this share of the trunk's lean. */
 const HEAD_UPRIGHT = 0.75;
 
 const upright = new Quaternion();
@@ -96,13 +96,13 @@ export function body(): Body {
   };
 }
 
-/** Where the ankle is, seen from the toe, of a foot that is pitched and headed so. */
+/** From the toe to the ankle of a foot with this pitch and heading. */
 export function heelFromToe(pitch: number, heading: number, footM: number, out: Vector3): void {
   const level = footM * Math.cos(pitch);
   out.set(-level * Math.cos(heading), -level * Math.sin(heading), -footM * Math.sin(pitch));
 }
 
-/** All joints of `out`; legs that are too short raise the heel, and what is left lowers the hips. */
+/** Solve all joints of `out`; a leg that is too short raises the heel, and lowers the hips if it must. */
 export function solve(from: Posture, build: Build, out: Body): void {
   out.root.copy(from.root);
   out.pelvis.copy(from.pelvis);
@@ -123,7 +123,7 @@ export function solve(from: Posture, build: Build, out: Body): void {
   hangOnChest(from, build, out);
 }
 
-/** Neck, head and arms where the chest has them. */
+/** Place neck, head and arms on the chest. */
 export function hangOnChest(from: Posture, build: Build, out: Body): void {
   const { lumbar, chest, neck, head } = out;
   transformPoint(lumbar, chest, 0, 0, SHOULDER_UP * build.trunkM, neck);
@@ -153,7 +153,7 @@ const heelOffset = new Vector3();
 /** The hip joint, seen from the toe. */
 const hip = new Vector3();
 
-/** Where the leg is too short for a foot on its toe, turn the foot about the toe. */
+/** Turn a foot on its toe about the toe if the leg is too short for it. */
 function raiseHeel({ raised }: FootPosture, { leg, foot }: Side, { legM }: Build): void {
   const { heel, toe, heading } = foot;
   const footM = FOOT * legM;
@@ -175,7 +175,7 @@ function raiseHeel({ raised }: FootPosture, { leg, foot }: Side, { legM }: Build
   leg.end.copy(heel);
 }
 
-/** How far the hip has to come down for the leg to reach its foot. */
+/** The hip has to come down this far for the leg to reach its foot. */
 function dropFor({ leg: { start, end } }: Side, { legM }: Build): number {
   const x = start.x - end.x;
   const y = start.y - end.y;

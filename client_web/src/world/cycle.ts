@@ -32,15 +32,15 @@ interface Key {
 
 const STAND = read(cycle.stand);
 const KEYS: readonly Key[] = cycle.keys.map((key) => ({ phase: key.phase, posture: read(key) }));
-/** Longer steps than this, against those of the cycle, are not drawn: legs would not reach. */
+/** Steps are drawn at most this much longer than those of the cycle: legs would not reach. */
 const LONGEST = 1.18;
 
-/** How long a step is at a speed, in leg lengths and leg lengths a second. */
+/** The length of a step at a speed, in leg lengths and leg lengths a second. */
 export function stepAt(speed: number): number {
   return Math.min(Math.sqrt(cycle.timing * speed), cycle.step * LONGEST);
 }
 
-/** The posture at a phase, a fraction of a cycle, of somebody whose steps are so long. */
+/** The posture at a phase, a fraction of a cycle, for steps of this length. */
 export function cyclePosture(phase: number, step: number, out: Posture): void {
   const share = Math.min(1, step / cycle.step);
   let before = KEYS.length - 1;

@@ -1,6 +1,6 @@
 /**
- * A body that goes along its snapshots without steps of its own: those who are far away, and
- * everybody for a moment until their steps are known.
+ * A body that follows its snapshots with the common gait cycle, without steps of its own: everybody
+ * far away, and everybody else for a moment until their steps are known.
  */
 
 import { Quaternion, type Vector3 } from "three";
@@ -19,7 +19,7 @@ const PACE_S = 0.15;
 const JUMP_M = 1;
 
 export class CycleAnimation {
-  /** Where the body is, its height evened out. */
+  /** The place of the body, its height evened out. */
   readonly place: Pose;
   private phase: number;
   /** Leg lengths a second. */
@@ -34,7 +34,7 @@ export class CycleAnimation {
     this.phase = Math.abs(7.13 * start.x + 3.71 * start.y) % 1;
   }
 
-  /** Go where the snapshots have it; the phase follows the distance, so that feet hardly slide. */
+  /** Follow the snapshots; the phase follows the distance, so that feet hardly slide. */
   advance(snapshots: Readonly<Pose>, frameS: number): void {
     const { place, build } = this;
     const dx = snapshots.x - place.x;
@@ -66,7 +66,7 @@ export class CycleAnimation {
     foot.heading = heading;
   }
 
-  /** From a body of leg length 1 that faces +x over the origin to where it is. */
+  /** Bring a point of a body of leg length 1 that faces +x over the origin to its place. */
   private bring(point: Vector3, x: number, y: number, z: number, heading: number): void {
     const { legM } = this.build;
     const c = Math.cos(heading) * legM;

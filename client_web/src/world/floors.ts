@@ -1,4 +1,4 @@
-/** Where one can stand, and how high: the ground and the tops of what stands on it. */
+/** The surfaces that one can stand on: the ground, and the tops of solids. */
 
 import type { SceneData } from "../net/messages";
 import { SpatialGrid } from "./spatialgrid";
@@ -6,13 +6,13 @@ import { isInside, type Solid, solidsOf } from "./solids";
 
 /** With less room above it nobody stands on a surface. */
 const LOWEST_M = 1;
-/** What begins this high above the feet is a ceiling. */
+/** A solid that begins this high above the feet is a ceiling. */
 const CEILING_M = 1.2;
 const SAME_M = 1e-6;
 
 export class Floors {
   readonly solids: readonly Solid[];
-  /** Where the ground is walked on; nowhere in a building that comes as a mesh. */
+  /** The ground that is walked on; null in a building that is a mesh. */
   private readonly ground: SceneData["bounds"] | null;
   private readonly grid = new SpatialGrid<Solid>();
 

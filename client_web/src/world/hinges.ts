@@ -11,11 +11,11 @@ const { clamp } = MathUtils;
 
 /** Hinges of a limb: three at its root, and the elbow. */
 const LIMB = 4;
-/** So many other turns of the limb are tried when the present one breaks a limit. */
+/** The number of other turns of the limb that are tried when the present one breaks a limit. */
 const YAWS = 8;
 
 export interface Hinge {
-  /** In the frame that the hinges before it have turned. */
+  /** The axis in the frame that the hinges before it have turned. */
   readonly axis: Vector3;
   /** From here to the next hinge; the last leads to the hand. */
   readonly offset: Vector3;
@@ -25,9 +25,9 @@ export interface Hinge {
 
 export class Chain {
   readonly angles: Float64Array;
-  /** Where each hinge is, and the hand. */
+  /** The places of the hinges, and last of the hand. */
   readonly pivots: readonly Vector3[];
-  /** How the hinges before each one have turned it, and all of them the hand. */
+  /** The rotations of the hinges by those before them, and last of the hand by all. */
   readonly frames: readonly Quaternion[];
   private readonly trunk: number;
   private readonly axis = new Vector3();
@@ -48,7 +48,7 @@ export class Chain {
     this.frames = this.pivots.map(() => new Quaternion());
   }
 
-  /** Where everything is at the present angles. */
+  /** Place hinges and hand by the present angles. */
   place(): void {
     this.hinges.forEach(({ axis, offset }, k) => {
       const frame = this.frame(k + 1);
@@ -61,7 +61,7 @@ export class Chain {
     });
   }
 
-  /** Bring the hand to a target from the present angles; says how far off it is in the end. */
+  /** Bring the hand to a target from the present angles; returns the distance that is left. */
   reach(target: Vector3, tolerance: number, sweeps: number): number {
     this.place();
     for (let sweep = 0; sweep < sweeps; sweep++) {

@@ -1,4 +1,4 @@
-/** A body that points at something: the arm first, then the trunk, blended with what the gait does. */
+/** A body that points at something: first the arm, then the trunk, both blended with the gait. */
 
 import { Quaternion, Vector3, type Vector3Like } from "three";
 import { type Body, hangOnChest, type Limb } from "./body";
@@ -22,7 +22,7 @@ const RAISE_S = 0.6;
 const FOLLOW_S = 0.25;
 /** A pointing arm is not quite straight. */
 const STRAIGHT = 0.985;
-/** The other arm is taken when the target is so far on its side, radians. */
+/** The other arm is taken when the target is this far on its side, radians. */
 const OTHER_ARM = 0.4;
 /** Further round than this nobody points without turning the feet, radians. */
 const SIDEWAYS = 2;
@@ -48,7 +48,7 @@ const ASIDE: Limits = [-30, 90];
 const FLEXION: Limits = [-50, 170];
 const ELBOW: Limits = [0, 145];
 
-/** Hinges of the chain from which these hang. */
+/** Indices in the chain of the first hinge of each joint, and of the hand. */
 const AT_CHEST = 3;
 const AT_SHOULDER = 6;
 const AT_ELBOW = 9;
@@ -68,15 +68,15 @@ const goal = new Vector3();
 const solved = new Float64Array(10);
 
 export class Pointing {
-  /** What is pointed at; null lets the arm down. */
+  /** The target; null lets the arm down. */
   target: Vector3Like | null = null;
-  /** In the world: where the gait has the hand, and where it is to be. */
+  /** The places in the world where the gait has the hand, and where it is to be. */
   readonly before = new Vector3();
   readonly wanted = new Vector3();
   private readonly chains = { left: new Chain(arm(1)), right: new Chain(arm(-1)) };
   private side: "left" | "right" = "left";
   private raised = 0;
-  /** Where it points, from the foot of the spine: left, up, forward. */
+  /** The direction from the foot of the spine to the target: left, up, forward. */
   private readonly direction = new Vector3();
 
   /** Whether any of it is to be seen. */
@@ -125,7 +125,7 @@ export class Pointing {
     this.raised = Math.max(0, Math.min(1, this.raised + (up ? step : -step)));
   }
 
-  /** Solve for a hand that is stretched out towards what is pointed at; writes `goal`. */
+  /** Solve for a hand that is stretched out towards the target; writes `goal`. */
   private stretchOut(chain: Chain): void {
     const { direction } = this;
     chain.place();
@@ -140,7 +140,7 @@ export class Pointing {
   }
 }
 
-/** Where the gait has trunk and arm, as far as `part` says. */
+/** Blend trunk and arm with the gait's, by the share `part`. */
 function relax(chain: Chain, { shoulder, elbow }: ArmPosture, side: number, part: number): void {
   const { angles } = chain;
   for (let k = 0; k < angles.length; k++) angles[k] = (angles[k] ?? 0) * (1 - part);
@@ -150,7 +150,7 @@ function relax(chain: Chain, { shoulder, elbow }: ArmPosture, side: number, part
   chain.place();
 }
 
-/** The body as the chain has it: first the chest, and what hangs on it, then the arm. */
+/** Write the chain's pose into the body: first the chest and everything on it, then the arm. */
 function takeOver(
   { pivots, frames }: Chain,
   body: Body,
@@ -184,7 +184,7 @@ function inBody(point: Vector3Like, { trunkM }: Build, out: Vector3): void {
   out.set(out.y, out.z, out.x).divideScalar(trunkM);
 }
 
-/** From the axes of the chain, which are left, up, forward, to those of bodies: forward, left, up. */
+/** From the chain's axes, which are left, up, forward, to a body's: forward, left, up. */
 function forwardsFirst({ x, y, z }: Vector3, out: Vector3): Vector3 {
   return out.set(z, x, y);
 }

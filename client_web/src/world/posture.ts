@@ -1,6 +1,6 @@
 /**
- * What is known of a body before its joints are solved: where its trunk and feet are. This is what
- * steps and the cycle of far figures say, and what is blended when one takes over from the other.
+ * A body before its joints are solved: the places of its trunk and feet. Steps and the cycle of far
+ * figures give postures, and postures are blended when one takes over from the other.
  */
 
 import { Quaternion, Vector3 } from "three";
@@ -12,9 +12,9 @@ export interface FootPosture {
   heel: Vector3;
   /** Radians, toe up is positive. */
   pitch: number;
-  /** Where the toes point on the ground. */
+  /** The direction of the toes on the ground. */
   heading: number;
-  /** How far it stands on its toe, 0 to 1: then the heel may be raised for a leg that is short. */
+  /** The degree to which it stands on its toe, 0 to 1: the heel may be raised if the leg is short. */
   raised: number;
 }
 

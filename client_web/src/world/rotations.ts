@@ -1,4 +1,4 @@
-/** What three.js lacks for rotations of bodies: x points forwards, y to the left, z up. */
+/** Operations on rotations that three.js lacks. Bodies have x forwards, y to the left and z up. */
 
 import { type Quaternion, Vector3 } from "three";
 

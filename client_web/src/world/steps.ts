@@ -13,7 +13,7 @@ import { type Build, FOOT } from "./skeleton";
 
 /** Share of a step in which a foot that has left the ground comes over to its curve. */
 const SETTLE = 0.1;
-/** A standing foot whose pitch is so much below level rises on its toe where the leg is short. */
+/** A standing foot whose toe is down by this angle rises on its toe if the leg is too short. */
 const EASE_RAD = 0.1;
 const LANDING = [
   KeyNumber.ANKLE,
@@ -32,7 +32,7 @@ const onCurve = new Vector3();
 
 /** A step that is ready to be drawn: neighbouring quaternions have the same sign. */
 export interface Step extends StepRecord {
-  /** Where the swing foot's toe is at first, from the landing footprint. */
+  /** From the landing footprint to the swing foot's toe at the beginning. */
   readonly firstToe: Vector3;
 }
 
@@ -77,7 +77,7 @@ export function smooth(share: number): number {
   return s * s * (3 - 2 * s);
 }
 
-/** On its heel while the toe is up, else on its toe. */
+/** A foot stands on its heel while the toe is up, else on its toe. */
 function stand({ standing }: Step, { legM }: Build, foot: FootPosture): void {
   const { heading } = standing;
   foot.pitch = number(key, KeyNumber.STANDING_PITCH);
@@ -98,7 +98,7 @@ function keepOnToe(step: Step, share: number, { legM }: Build, foot: FootPosture
   foot.heel.addScaledVector(onToe.sub(onCurve.fromArray(key, KeyNumber.ANKLE)), foot.raised);
 }
 
-/** What lies between the keys at a share of the step, into `key`; all numbers go along alike. */
+/** Interpolate the keys at a share of the step, into `key`, all numbers with the same weights. */
 function between(keys: Float64Array, share: number): void {
   weigh(share);
   key.fill(0);
@@ -126,7 +126,7 @@ function comeToRest(keys: Float64Array, share: number): void {
   }
 }
 
-/** How much each key counts: cubic Hermite curves, parabolas at the ends. */
+/** The weight of each key: cubic Hermite curves, parabolas at the ends. */
 function weigh(share: number): void {
   weights.fill(0);
   const place = share * (STEP_KEYS - 1);

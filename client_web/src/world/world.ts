@@ -1,4 +1,4 @@
-/** Everything in view as this client knows it: who is here, where they are drawn, and the plans. */
+/** Everything in view as this client knows it: avatars, the poses that are drawn, and the plan. */
 
 import type {
   Doors,
@@ -26,7 +26,7 @@ export interface Avatar {
   readonly name: string;
   readonly radius: number;
   readonly own: boolean;
-  /** How its body is drawn. */
+  /** The animation of its body. */
   readonly animator: Animator;
   pose: Pose;
 }
@@ -75,12 +75,12 @@ export class World {
     return this.avatars_.get(this.ownId) ?? null;
   }
 
-  /** How far the own avatar is from where the server will have it, metres. */
+  /** The distance from the own avatar to where the server will have it, metres. */
   get correctionM(): number {
     return this.prediction?.correctionM ?? 0;
   }
 
-  /** How far behind the server's time the others are drawn, seconds. */
+  /** The others are drawn this far behind the server's time, seconds. */
   get delayS(): number {
     return this.playout.delayS;
   }
@@ -143,7 +143,7 @@ export class World {
     }
   }
 
-  /** What somebody points at from now on; null for nothing. */
+  /** Somebody points at a place from now on, or, if it is null, at nothing. */
   point(id: number, target: Place | null): void {
     const animator = this.avatars_.get(id)?.animator;
     if (!animator) return;
@@ -151,7 +151,7 @@ export class World {
     animator.pointing.target = target && { x, y, z };
   }
 
-  /** Which doors stand open; false if closed. */
+  /** Whether each door stands open, by name. */
   get doors(): Readonly<Doors> {
     return this.obstacles.doors;
   }

@@ -13,7 +13,7 @@ beforeEach(() => {
   part.begin();
 });
 
-/** Where the first instance has a point of its shape. */
+/** The place in the world of a point of an instance's shape. */
 function placed(x: number, y: number, z: number, index = 0): number[] {
   const matrix = new Matrix4();
   part.mesh.getMatrixAt(index, matrix);
@@ -52,7 +52,7 @@ describe("instances of a part", () => {
     expectNear(placed(1, 0, 0), [0, Math.cos(Math.PI / 6), 0.5]);
   });
 
-  it("keep their colours until somebody else wears them", () => {
+  it("keep their colours until they belong to somebody else", () => {
     part.put(1, RED, LEFT, { w: 1, x: 0, y: 0, z: 0 }, 1);
     part.finish();
     part.begin();

@@ -111,7 +111,7 @@ describe("a walker", () => {
     });
     expect(animator.step).toBeNull();
     expect(animator.body.root.x).toBeCloseTo(placeAt(timeS).x, 0);
-    // What was missed in the meantime is walked in the time of the fading.
+    // The missed part is walked in the time of the fading.
     expect(hips()).toBeLessThan(0.12);
     expect(heel()).toBeLessThan(0.2);
   });

@@ -9,7 +9,7 @@ const BUILD = buildOf(0.9, 1.7);
 const FRAME_S = 1 / 60;
 const START: Pose = { x: 2, y: 3, z: 0, layer: 0, heading: 0, speed: 0, reason: 0 };
 
-/** What is drawn while somebody goes along x at a speed. */
+/** The frames that are drawn while somebody goes along x at a speed. */
 function frames(speed: number, count: number): ReturnType<typeof body>[] {
   const cycle = new CycleAnimation(BUILD, START);
   return Array.from({ length: count }, (_, i) => {
