@@ -6,9 +6,11 @@ being imported: an exception in the midst of that is printed by whatever was imp
 
 import os
 import signal
+import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import FrameType
+from typing import NoReturn
 
 from esplanade.commandline import exit_codes
 
@@ -17,6 +19,18 @@ def end_quietly() -> None:
     """From now on Ctrl-C ends the process at once, unless whoever started it ignores Ctrl-C."""
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, _end)
+
+
+def end() -> NoReturn:
+    """End the process here, as one that Ctrl-C has ended.
+
+    A `KeyboardInterrupt` that has gone through `exec` makes Python kill itself by a signal at its
+    end, whatever exit code there is; and threads that work on would be waited for.
+    """
+    with suppress(OSError, ValueError):
+        sys.stdout.flush()
+        sys.stderr.flush()
+    os._exit(exit_codes.INTERRUPTED)
 
 
 @contextmanager
