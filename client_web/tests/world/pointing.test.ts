@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Pose } from "../../src/world/interpolation";
-import { buildOf } from "../../src/world/skeleton";
+import { buildOf, FOREARM, UPPER_ARM } from "../../src/world/skeleton";
 import { Animator } from "../../src/world/animator";
 
 const FRAME_S = 1 / 60;
@@ -34,6 +34,15 @@ describe("pointing", () => {
     const dot = along.reduce((sum, value, i) => sum + value * (there[i] ?? 0), 0);
     const cosine = dot / (Math.hypot(...along) * Math.hypot(...there));
     expect(cosine).toBeGreaterThan(Math.cos(0.1));
+  });
+
+  it("keeps the bones of the arm as long as they are while it hangs", () => {
+    const build = buildOf(0.9, 1.7);
+    const { left, right } = pointingAt([5, 2, 1.5]).body;
+    for (const { arm } of [left, right]) {
+      expect(arm.start.distanceTo(arm.hinge)).toBeCloseTo(UPPER_ARM * build.trunkM);
+      expect(arm.hinge.distanceTo(arm.end)).toBeCloseTo(FOREARM * build.trunkM);
+    }
   });
 
   it("turns the trunk when the arm alone does not reach round", () => {
