@@ -6,6 +6,7 @@ import pytest
 from esplanade.commandline.errors import UsageError
 from esplanade.planning.scene.bodies import Body
 from esplanade.planning.traversal.stability import Stability
+from esplanade.scenery.layer_maps import layer_maps
 from esplanade.scenery.pictures import LayerMap
 from esplanade.scenery.values import Where
 from tests.scenery.worlds import loft
