@@ -69,7 +69,7 @@ def test_a_disagreement_is_drawn(tmp_path, monkeypatch) -> None:
     assert code == 0
     assert figures["only ours"] > 0
     for refusal in figures["disagreements"]:
-        assert (refusal["who"], refusal["why"]) == ("only ours", "step")
+        assert (refusal["finders"], refusal["why"]) == ("only ours", "step")
         assert refusal["gap"][0] == pytest.approx(6.0, abs=0.6)
     (picture,) = (tmp_path / "new").iterdir()
     assert picture.name == "terrace-only_ours-step.png"
