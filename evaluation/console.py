@@ -42,6 +42,6 @@ def walk(trials: Sequence[Trial], options: Namespace) -> list[TrialResult]:
         except KeyboardInterrupt:
             if options.score_cache is not None:
                 shown.console.print(
-                    f"interrupted; the same command continues with the scores in {options.score_cache}"
+                    f"interrupted; the same command continues from {options.score_cache}"
                 )
             raise

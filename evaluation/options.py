@@ -202,9 +202,7 @@ def check(options: Namespace) -> None:
     if options.candidates is not None and not options.tune:
         raise UsageError("--candidates is for --tune")
     if studies and options.score_cache is None:
-        raise UsageError(
-            "a study takes long: name a file that keeps its scores with --score-cache FILE"
-        )
+        raise UsageError("a study takes long: keep its scores with --score-cache FILE")
     if options.tune and not (options.vary or options.candidates):
         raise UsageError("--tune needs candidates: --vary NAME=V1,V2,.. or --candidates FILE")
     if options.tune and not all("=" in text for text in options.vary):

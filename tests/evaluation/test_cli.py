@@ -194,6 +194,6 @@ def test_no_limit_of_acceleration(tmp_path: Path, plaza: Path) -> None:
     assert json.loads(target.read_text())["settings"]["max_acceleration_mps2"] is None
 
 
-def test_the_help_names_every_policy_with_its_summary() -> None:
-    """It has a table of its own, since the policies need numpy."""
-    assert {name: entry.summary for name, entry in policies.POLICIES.items()} == options.POLICIES
+def test_the_help_names_every_policy() -> None:
+    """The help has its own table, because the policies import numpy."""
+    assert list(policies.POLICIES) == list(options.POLICIES)

@@ -61,7 +61,7 @@ def test_candidates_are_compared(
 @pytest.mark.parametrize(
     ("arguments", "fault"),
     [
-        (["--sensitivity"], "name a file that keeps its scores with --score-cache FILE"),
+        (["--sensitivity"], "keep its scores with --score-cache FILE"),
         (["--sensitivity", "--tune"], "not allowed with argument --sensitivity"),
         (
             ["--sensitivity", "--score-cache=done", "--vary=tempo"],
