@@ -83,11 +83,7 @@ def test_while_a_module_is_imported(module: str, words: str) -> None:
 def test_at_several_moments_after_the_entry(after_s: float) -> None:
     """Whatever it is doing then; before the entry Python itself is starting."""
     process = subprocess.Popen(
-        [
-            sys.executable,
-            "-c",
-            f"try:\n    {program}\nexcept KeyboardInterrupt:\n    sys.exit(130)",
-        ],
+        [sys.executable, "-c", ENTERED],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
