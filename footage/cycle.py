@@ -11,21 +11,19 @@ from collections.abc import Iterator
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from esplanade.actors.locomotion.curves import smooth
-from esplanade.actors.locomotion.durations import step_duration_s
+from esplanade.actors.locomotion.gait.curves import smooth
+from esplanade.actors.locomotion.gait.durations import step_duration_s
 from esplanade.actors.locomotion.reference.keyframes import (
     CHEST,
     ELBOWS,
     PELVIS,
     SHOULDERS,
     exact,
+    feet_of,
     key_phases,
-    legs_of,
 )
-
-Floats = NDArray[np.float64]
+from esplanade.planning.compiled.arrays import Floats
 
 STEP: Final = 0.55
 """Leg lengths that a step of the cycle covers."""
@@ -65,7 +63,7 @@ def as_text(value: object, indent: int = 0) -> str:
 
 def _postures(step_length: float, phases: Floats) -> Iterator[dict[str, Any]]:
     frames = exact(step_length, phases)
-    legs = legs_of(frames)
+    legs = feet_of(frames)
     on_ground = np.abs(legs.toes[..., 2]) < _ON_GROUND
     raised = np.where(on_ground, smooth(-legs.pitches / _ON_TOE_RAD), 0.0)
     arms = {

@@ -8,7 +8,7 @@ import numpy as np
 
 from esplanade.actors.locomotion.reference.posing import Pose
 from esplanade.actors.locomotion.reference.rotations import rotate
-from esplanade.footage.camera import Floats
+from esplanade.planning.compiled.arrays import Floats
 
 SKIN: Final = "#e3b08a"
 HAIR: Final = "#4a3222"

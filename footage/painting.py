@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 from PIL import Image, ImageColor, ImageDraw, ImageFont
 
-from esplanade.actors.locomotion.skeleton import FOOT
-from esplanade.footage.camera import Camera, Floats
+from esplanade.actors.locomotion.body.skeleton import FOOT
+from esplanade.footage.camera import Camera
 from esplanade.footage.figure import Part
-from esplanade.footage.recording import Footprint
+from esplanade.footage.film import FilmedFootprint
 from esplanade.planning import Polygon, Scene
+from esplanade.planning.compiled.arrays import Floats
 
 Colour = str | tuple[int, int, int]
 
@@ -74,7 +75,7 @@ class Canvas:
         ring = np.column_stack((radius_m * _CIRCLE, np.zeros(len(_CIRCLE)))) + place
         self._fill(ring, SHADOW)
 
-    def paint_footprint(self, footprint: Footprint, leg_m: float) -> None:
+    def paint_footprint(self, footprint: FilmedFootprint, leg_m: float) -> None:
         x, y, z, heading = footprint.place.tolist()
         ahead = np.array([math.cos(heading), math.sin(heading)])
         aside = np.array([-ahead[1], ahead[0]])

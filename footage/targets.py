@@ -6,10 +6,10 @@ from typing import Final
 
 import numpy as np
 
-from esplanade.actors.locomotion._ccd_kernels import LIMB
-from esplanade.actors.locomotion._hinge_kernels import Hinges
-from esplanade.actors.locomotion.two_stage import effector
-from esplanade.footage.camera import Floats
+from esplanade.actors.locomotion.reaching._ccd_kernels import LIMB
+from esplanade.actors.locomotion.reaching._hinge_kernels import Hinges
+from esplanade.actors.locomotion.reaching.two_stage import effector
+from esplanade.planning.compiled.arrays import Floats
 
 SHARES: Final = {"limb is enough": 0.0, "half and half": 0.5, "all of the chain": 1.0}
 """How many of the targets ask for another pose of the trunk too."""

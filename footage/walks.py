@@ -6,11 +6,9 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from esplanade.planning import Polygon, Scene, Stairs
-
-Floats = NDArray[np.float64]
+from esplanade.planning.compiled.arrays import Floats
 
 TICK_S: Final = 0.05
 """As the server's."""

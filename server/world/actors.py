@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from esplanade.actors import ActorState, Explanation, Population
-from esplanade.actors.locomotion.aims import AHEAD, AHEAD_S
+from esplanade.actors.locomotion.footsteps.course import AHEAD, AHEAD_S
 from esplanade.server.world.routes import Point
 from esplanade.server.world.state import ACTOR, Floats, State
 
