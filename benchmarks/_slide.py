@@ -1,4 +1,4 @@
-"""How well feet stand that are drawn from footage, 60 times a second."""
+"""Judges how well feet stand that are drawn from a log of steps, 60 times a second."""
 
 from dataclasses import dataclass, fields
 from itertools import pairwise
@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from benchmarks._footage import Floats, Seen
+from benchmarks._step_log import Floats, Seen
 
 from esplanade.actors.locomotion.body.sizes import BodySizes
 from esplanade.actors.locomotion.motion.key_poses import Steps
@@ -15,7 +15,7 @@ from esplanade.server.world.step_records import from_records
 
 FRAMES_PER_SECOND: Final = 60
 PHASE: Final = 0.37
-"""Frames are so much of a frame away from ticks, as they are in a browser."""
+"""Share of a frame by which frames are away from ticks, as they are in a browser."""
 
 FLAT_RAD: Final = 1e-3
 """A foot that is pitched by less lies flat."""

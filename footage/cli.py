@@ -13,7 +13,7 @@ EXIT_USAGE: Final = 2
 
 
 def run(argv: Sequence[str]) -> int:
-    """Do what the command line says; returns the exit code."""
+    """Do what the command line says, and return the exit code."""
     options = parser().parse_args(argv)
     try:
         return _COMMANDS[options.command](options)

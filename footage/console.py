@@ -1,4 +1,4 @@
-"""What the commands share: faults that end them, files, progress."""
+"""What the commands share: errors that end them, files, progress."""
 
 from importlib import import_module
 from pathlib import Path
@@ -13,7 +13,7 @@ class UsageError(Exception):
 
 
 def part_that_needs(library: str, module: str) -> Any:
-    """A module of ours that draws.
+    """Import a module of ours that draws.
 
     Raises
     ------
@@ -30,12 +30,12 @@ def part_that_needs(library: str, module: str) -> Any:
 
 
 def made_folder(path: Path) -> Path:
-    """The folder, which is there from now on.
+    """Make a folder unless it is there.
 
     Raises
     ------
     UsageError
-        It cannot be made.
+        The folder cannot be made.
     """
     try:
         path.mkdir(parents=True, exist_ok=True)
@@ -45,7 +45,7 @@ def made_folder(path: Path) -> Path:
 
 
 def progress() -> Progress:
-    """A bar on the error output, gone when all is done."""
+    """A bar on the error output that goes away at the end."""
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),

@@ -7,7 +7,7 @@ from typing import Final
 
 WALKS: Final = ("flat", "curve", "stairs", "start-stop")
 FRAMES_A_SECOND: Final = (10, 20, 25, 50)
-"""GIF counts in hundredths of a second."""
+"""Rates that GIF can show: it counts in hundredths of a second."""
 DEFAULT_FRAMES_A_SECOND: Final = 20
 
 DESCRIPTION: Final = """\
@@ -70,7 +70,7 @@ def _render(commands: "_Commands[argparse.ArgumentParser]") -> argparse.Argument
         metavar="N",
         type=_whole(0, 2**32 - 1),
         default=0,
-        help="whose body: size and build of walking [default: 0]",
+        help="whose body walks: its sizes and its cadence [default: 0]",
     )
     made.add_argument(
         "--fps",

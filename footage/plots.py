@@ -50,7 +50,7 @@ _PHASES: Final = np.linspace(0.0, 1.0, 161)
 
 @contextmanager
 def _figure(path: Path, columns: int, height_in: float = 2.5) -> Iterator[Any]:
-    """Axes side by side, saved when all is drawn; the same file from the same code."""
+    """Axes side by side, which are saved at the end; the same code writes the same file."""
     with mpl.rc_context(_STYLE):
         figure = Figure(figsize=(7.6, height_in), layout="constrained")
         yield figure.subplots(1, columns)
@@ -286,4 +286,4 @@ PLOTS: Final[dict[str, Callable[[Path], None]]] = {
     "keyframes": key_poses,
     "reaching": reaching,
 }
-"""By the names of their files."""
+"""All plots by the names of their files."""

@@ -1,4 +1,4 @@
-"""Strips, trails and films of a recorded walk."""
+"""Strips, trails and GIFs of a walk that was filmed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from esplanade.footage.painting import Canvas
 from esplanade.planning.compiled.arrays import Floats
 
 PANELS: Final = 9
-"""Pictures in a row of a strip."""
+"""Number of pictures in a row of a strip."""
 
 _PANEL: Final = (170, 270)
 _PANEL_SCALE: Final = 124.0
@@ -24,19 +24,19 @@ _FILM: Final = (340, 290)
 _FILM_SCALE: Final = 122.0
 _COLOURS: Final = 96
 _METHOD: Final = Image.Quantize.MAXCOVERAGE
-"""Footprints are small, and keep their colours."""
+"""With this method footprints, which are small, keep their colours."""
 _TRAIL_WIDTH: Final = 1500
 _TRAIL_MARGIN: Final = 70
 _TRAIL_SCALE: Final = 170.0
 _APART_M: Final = 0.62
-"""Bodies of a trail are drawn so far apart."""
+"""Distance between the bodies of a trail."""
 _FOLLOWED_S: Final = 0.8
-"""The camera goes where the body is on average over so long."""
+"""The camera follows the mean place of the body over this time."""
 _SHADOW_M: Final = 0.19
 
 
 def draw_strip(film: Film, path: Path) -> None:
-    """Pictures at even times, a row for each of the walk's spans; the camera goes along."""
+    """Write pictures at even times, a row for each span of the walk; the camera goes along."""
     followed = _followed(film)
     spans = film.walk.spans_s
     strip = Image.new("RGB", (_PANEL[0] * PANELS, _PANEL[1] * len(spans)))
@@ -50,7 +50,7 @@ def draw_strip(film: Film, path: Path) -> None:
 
 
 def draw_trail(film: Film, path: Path) -> None:
-    """The whole way in one picture: bodies where they were, and all footprints."""
+    """Write the whole path in one picture: the body where it was, and all footprints."""
     walk, poses = film.walk, film.poses
     frames = _spread_out(film)
     points = np.concatenate([poses.head[frames], poses.toes[frames].reshape(-1, 3)])
@@ -75,7 +75,7 @@ def draw_trail(film: Film, path: Path) -> None:
 
 
 def draw_film(film: Film, path: Path, advance: Callable[[], None]) -> None:
-    """A GIF of all frames; `advance` is called after each of them."""
+    """Write a GIF of all frames; `advance` is called after each of them."""
     followed = _followed(film)
     pictures = []
     for frame, seconds in enumerate(film.times_s.tolist()):
@@ -99,13 +99,13 @@ def draw_film(film: Film, path: Path, advance: Callable[[], None]) -> None:
 
 
 def _save(picture: Image.Image, path: Path) -> None:
-    """As PNG; with fewer colours than that nobody notices, files are a third as large."""
+    """Write a PNG with 256 colours: the loss cannot be seen, and files are a third as large."""
     palette = picture.quantize(256, _METHOD)
     picture.quantize(palette=palette, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
 def _frame(film: Film, frame: int, target: Floats, size: tuple[int, int], scale: float) -> Canvas:
-    """One frame, the camera on a target (3,)."""
+    """Paint one frame, the camera on a target (3,), metres."""
     walk = film.walk
     x, y, z = target.tolist()
     canvas = Canvas(Camera((x, y, z), *walk.view, scale, size))
@@ -119,7 +119,7 @@ def _frame(film: Film, frame: int, target: Floats, size: tuple[int, int], scale:
 
 
 def _followed(film: Film) -> Floats:
-    """Where the camera looks, (F, 3): bodies sway, cameras should not."""
+    """Points (F, 3) that the camera looks at: bodies sway, but the camera must not."""
     root, times = film.poses.root, film.times_s
     half = max(1, round(0.5 * _FOLLOWED_S / float(times[1] - times[0])))
     padded = np.pad(root, ((half, half), (0, 0)), mode="edge")
@@ -128,16 +128,16 @@ def _followed(film: Film) -> Floats:
 
 
 def _paint_shadow(canvas: Canvas, film: Film, frame: int) -> None:
-    """Below the hips, on level ground only."""
+    """Paint a shadow below the hips, on level ground only."""
     if not film.walk.scene.solids():
         x, y, _ = film.poses.root[frame].tolist()
         canvas.paint_shadow(np.array([x, y, 0.0]), _SHADOW_M)
 
 
 def _spread_out(film: Film) -> list[int]:
-    """Frames in which the body has come some way since the one before, ends included."""
+    """Frames between which the body has moved by an even distance, ends included."""
     root = film.poses.root
-    gone = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(root, axis=0), axis=1))))
-    count = max(2, round(float(gone[-1]) / _APART_M) + 1)
-    frames = np.searchsorted(gone, np.linspace(0.0, gone[-1] - 1e-9, count))
+    travelled = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(root, axis=0), axis=1))))
+    count = max(2, round(float(travelled[-1]) / _APART_M) + 1)
+    frames = np.searchsorted(travelled, np.linspace(0.0, travelled[-1] - 1e-9, count))
     return sorted(set(map(int, frames)))

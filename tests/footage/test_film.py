@@ -33,7 +33,7 @@ def test_feet_that_rest_flat_do_not_slide(name: str):
     ankles, toes = film.poses.ankles, film.poses.toes
     flat = np.abs(film.poses.pitches) < 1e-6
     level = np.abs(ankles[..., 2] - toes[..., 2]) < 1e-6
-    # A swinging foot may be level too, but then it is on its way up or down.
+    # A swing foot may be level too, but then it is on its way up or down.
     resting = (flat & level)[1:] & (flat & level)[:-1] & (np.diff(ankles[..., 2], axis=0) == 0.0)
     moved = np.linalg.norm(np.diff(ankles, axis=0), axis=2)
     in_place = resting & (moved < 0.02)

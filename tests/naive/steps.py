@@ -125,11 +125,11 @@ def _feet(
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """Ankles (N, 2, 3), pitches, headings (N, 2), and how far each stands on its toe (N, 2)."""
     standing = standing_ankles(steps.standing, key[:, STANDING_PITCH], sizes.foot_m)
-    swinging = steps.landing[:, :3] + key[:, ANKLE]
+    swing = steps.landing[:, :3] + key[:, ANKLE]
     right = steps.on_right.astype(np.int64)
     rows = np.arange(len(right))
     ankles = np.empty((len(right), 2, 3))
-    ankles[rows, right], ankles[rows, 1 - right] = standing, swinging
+    ankles[rows, right], ankles[rows, 1 - right] = standing, swing
     pitches, headings, raised = (np.empty((len(right), 2)) for _ in range(3))
     pitches[rows, right], pitches[rows, 1 - right] = key[:, STANDING_PITCH], key[:, SWING_PITCH]
     headings[rows, right] = steps.standing[:, 3]

@@ -1,4 +1,4 @@
-"""Walkers without a world: bodies that are told where to go, and what a client would draw."""
+"""Walkers without a world: bodies that are told where to go, and what a client draws of them."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ Slots = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Begun:
-    """Steps that began in one tick, as everyone was told."""
+    """Steps that began in one tick, as everyone gets them."""
 
     tick: int
     slots: Slots
@@ -72,7 +72,7 @@ class Parade:
         self.places.append(self.positions.copy())
 
     def go(self, velocity: Floats | tuple[float, float], ticks: int = 1, turn: bool = True) -> None:
-        """Everyone goes on at velocities (N, 2) or one for all, as people do: at once."""
+        """Let everyone go on at velocities (N, 2), or one for all, which change at once."""
         for _ in range(ticks):
             velocities = np.broadcast_to(np.asarray(velocity, dtype=np.float64), (self.count, 2))
             self.positions[:, :2] += velocities * TICK_S
@@ -83,7 +83,7 @@ class Parade:
             self.update(self._course(velocities))
 
     def follow(self, places: Floats) -> None:
-        """Bodies are at places (N, T, 3) in turn, a tick each, and know their ways ahead."""
+        """Let bodies be at places (N, T, 3), one for each tick; their paths ahead are known."""
         last = places.shape[1] - 1
         steps = np.rint(np.arange(AHEAD) * AHEAD_S / TICK_S).astype(np.int64)
         for now in range(last + 1):

@@ -119,8 +119,10 @@ def _standing_ankle(footprints: StepFootprints, targets: Targets) -> Floats:
     pitch = np.minimum(targets.standing_pitch, 0.0)
     heading = footprints.standing[:, 3, None]
     foot = FOOT * footprints.leg_m[:, None]
-    drawn = foot * (1.0 - np.cos(pitch))
-    moved = np.stack([drawn * np.cos(heading), drawn * np.sin(heading), -foot * np.sin(pitch)], -1)
+    heel_forward = foot * (1.0 - np.cos(pitch))
+    moved = np.stack(
+        [heel_forward * np.cos(heading), heel_forward * np.sin(heading), -foot * np.sin(pitch)], -1
+    )
     return footprints.standing[:, None, :3] + moved
 
 

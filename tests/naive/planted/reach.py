@@ -26,8 +26,8 @@ def drawn_to_hip(hip: Floats, ankle: Floats) -> Floats:
     leg = ankle - hip
     distance = np.sqrt(np.sum(leg * leg, axis=-1))
     shrink = soft_reach(distance) / np.maximum(distance, 1e-9)
-    drawn: Floats = hip + leg * shrink[..., None]
-    return drawn
+    moved: Floats = hip + leg * shrink[..., None]
+    return moved
 
 
 def raised_heel(hip: Floats, toe: Floats, heading: Floats, pitch: Floats) -> Floats:

@@ -21,7 +21,7 @@ SETTLED_S = 1.0
 
 def ways(crowd: Crowd) -> tuple[Floats, NDArray[np.bool_]]:
     """Places (N, T, 2) of the recording's first people, tick by tick, and (N, T) whether they
-    have been there for a while. Who is not there yet, or has gone, stands at the track's end."""
+    have been there for a while. Others stand at the beginning or the end of their tracks."""
     times = crowd.start_s + np.arange(0.0, SECONDS, TICK_S)
     tracks = [t for t in crowd.tracks if t.end_s - t.start_s > 5.0][:PEOPLE]
     there = np.array([(times >= t.start_s + SETTLED_S) & (times <= t.end_s) for t in tracks])

@@ -46,7 +46,7 @@ def keyboard(count: int, seed: int) -> Floats:
     return velocities
 
 
-def test_who_stands_takes_no_step() -> None:
+def test_a_body_that_stands_takes_no_step() -> None:
     parade = Parade(3)
     parade.stand()
     parade.go((0.0, 0.0), ticks=100)
@@ -158,8 +158,8 @@ def test_sudden_turns_and_stops_are_drawn_without_a_jump() -> None:
     assert parade.walkers.lost == 0
 
 
-def test_who_changes_its_mind_in_every_tick_still_walks() -> None:
-    """Each re-aim leaves less of a step: rests of rests must not come to nothing."""
+def test_a_body_that_turns_in_every_tick_still_walks() -> None:
+    """Each re-aiming leaves less of a step, and the rest must not come to nothing."""
     parade = Parade(16)
     parade.stand()
     random = np.random.default_rng(5)
@@ -219,7 +219,7 @@ def test_feet_are_put_on_treads() -> None:
         assert np.nanmin(under, initial=0.0) > -0.05
 
 
-def test_who_jumps_stands_anew_there() -> None:
+def test_a_body_that_jumps_stands_anew_there() -> None:
     parade = Parade(2)
     parade.stand()
     parade.go((1.3, 0.0), ticks=30)

@@ -28,7 +28,7 @@ SHARE_OF_FULL = {"limb": 0.0, "mixed": 0.5, "full": 1.0}
 
 
 @cache
-def drawn(chain_name: str, kind: str):
+def random_targets(chain_name: str, kind: str):
     """Random starts and targets within the limits; limb targets keep the trunk where it starts."""
     chain = CHAINS[chain_name]
     random = np.random.default_rng(11)
@@ -40,13 +40,13 @@ def drawn(chain_name: str, kind: str):
 
 @cache
 def two_stage(chain_name: str, kind: str) -> Reach:
-    starts, targets = drawn(chain_name, kind)
+    starts, targets = random_targets(chain_name, kind)
     return reach(CHAINS[chain_name], targets, starts, np.random.default_rng(12))
 
 
 @cache
 def plain(chain_name: str, kind: str) -> Reach:
-    starts, targets = drawn(chain_name, kind)
+    starts, targets = random_targets(chain_name, kind)
     return reach_by_ccd(CHAINS[chain_name], targets, starts)
 
 
@@ -73,7 +73,7 @@ def test_most_joint_updates_of_plain_ccd_are_saved(kind: str, saved: float):
 @pytest.mark.parametrize("chain_name", CHAINS)
 def test_limits_are_never_violated(chain_name: str, kind: str):
     chain = CHAINS[chain_name]
-    starts, targets = drawn(chain_name, kind)
+    starts, targets = random_targets(chain_name, kind)
     for found in (
         two_stage(chain_name, kind),
         plain(chain_name, kind),
@@ -85,7 +85,7 @@ def test_limits_are_never_violated(chain_name: str, kind: str):
 
 def test_what_is_reported_is_where_the_effector_is():
     chain = CHAINS["right hand"]
-    _, targets = drawn("right hand", "full")
+    _, targets = random_targets("right hand", "full")
     found = two_stage("right hand", "full")
     missed = np.linalg.norm(effector(chain, found.angles) - targets, axis=1)
     assert np.allclose(found.left, missed, atol=1e-12)
@@ -93,7 +93,7 @@ def test_what_is_reported_is_where_the_effector_is():
 
 
 def test_the_trunk_rests_while_the_limb_is_enough():
-    starts, _ = drawn("left hand", "limb")
+    starts, _ = random_targets("left hand", "limb")
     found = two_stage("left hand", "limb")
     at_rest = np.all(found.angles[:, :TRUNK] == starts[:, :TRUNK], axis=1)
     assert at_rest.mean() > 0.95
@@ -101,7 +101,7 @@ def test_the_trunk_rests_while_the_limb_is_enough():
 
 def test_ccd_agrees_with_its_twin():
     chain = CHAINS["left heel"]
-    starts, targets = (values[:25] for values in drawn("left heel", "full"))
+    starts, targets = (values[:25] for values in random_targets("left heel", "full"))
     found = reach_by_ccd(chain, targets, starts, sweeps=4)
     for n in range(25):
         angles, turned = ccd(chain, starts[n], targets[n], 1e-3, 4)
@@ -111,7 +111,7 @@ def test_ccd_agrees_with_its_twin():
 
 def test_forward_kinematics_agree_with_their_twin():
     for name, chain in CHAINS.items():
-        poses = drawn(name, "full")[0][:20]
+        poses = random_targets(name, "full")[0][:20]
         tips = [hinges_and_tip(chain, pose)[2] for pose in poses]
         assert np.allclose(effector(chain, poses), tips, atol=1e-12)
 
@@ -131,7 +131,7 @@ def test_chains_hang_where_the_body_has_its_heels_and_hands():
 def test_sides_mirror_each_other():
     mirror = np.array([-1.0, 1.0, 1.0])
     signs = np.array([-1, 1, -1, -1, 1, -1, -1, -1, 1, 1])
-    starts, targets = drawn("left heel", "limb")
+    starts, targets = random_targets("left heel", "limb")
     right = CHAINS["right heel"]
     found = reach_by_ccd(right, targets * mirror, starts * signs)
     assert np.allclose(
@@ -150,7 +150,7 @@ def test_a_hand_points_at_what_is_out_of_reach():
 
 
 def test_the_same_seed_gives_the_same_pose():
-    starts, targets = drawn("left heel", "full")
+    starts, targets = random_targets("left heel", "full")
     once = two_stage("left heel", "full")
     again = reach(CHAINS["left heel"], targets, starts, np.random.default_rng(12))
     assert np.array_equal(once.angles, again.angles)

@@ -1,4 +1,4 @@
-"""What one client sees of everyone's steps, kept for judging: all that came over its connection."""
+"""Everyone's steps as one client sees them, kept for judging."""
 
 from collections import defaultdict
 from dataclasses import dataclass, field
@@ -15,7 +15,7 @@ from esplanade.protocol.steps import STEP, StepRecords
 Floats = npt.NDArray[np.float64]
 
 WALKS_ON_S: Final = 2.0
-"""Whoever begins no other step for so long stands."""
+"""A walker that begins no other step for this long stands."""
 
 
 @dataclass
@@ -27,11 +27,11 @@ class Seen:
     records: list[np.void] = field(default_factory=list)
     """Its steps in the order in which they came."""
     heard: list[int] = field(default_factory=list)
-    """Ticks of the messages in which they came."""
+    """Ticks of the messages in which the steps came."""
     places: list[tuple[int, float, float]] = field(default_factory=list)
     """(tick, x, y) of the snapshots that have it."""
     until: int = 0
-    """Tick at which it went out of view, or the last of all."""
+    """Tick at which it went out of view, or the last tick of all."""
 
     @property
     def steps(self) -> StepRecords:
@@ -40,9 +40,9 @@ class Seen:
 
     @property
     def goes_on(self) -> npt.NDArray[np.bool_]:
-        """Which records go on from the one before, (N,).
+        """Whether each record joins the one before, (N,).
 
-        The others come when somebody comes near again, or stands anew after having been moved.
+        The others come when an avatar comes near again, or stands anew after it was moved.
         """
         steps = self.steps
         before, now = steps[:-1], steps[1:]
@@ -51,34 +51,34 @@ class Seen:
 
     @property
     def shown_ticks(self) -> int:
-        """For how long it was near: without the time before it came near again."""
+        """Number of ticks for which it was near, without those before it came near again."""
         steps, heard = self.steps, np.array(self.heard)
         ends = np.minimum(steps["tick"][:-1] + steps["ticks"][:-1].astype(np.int64), heard[1:])
         away = np.where(self.goes_on[1:], 0, heard[1:] - ends)
         return int(self.until - heard[0] - away.sum())
 
     def place_at(self, ticks: Floats) -> Floats:
-        """Where it was according to snapshots, (N, 2); who is in none stands still."""
+        """Its places (N, 2), metres, by snapshots at ticks (N,)."""
         known = np.array(self.places)
         row = np.searchsorted(known[:, 0], ticks, side="right") - 1
         after = np.minimum(row + 1, len(known) - 1)
         row = np.maximum(row, 0)
-        # Absent from a snapshot means unchanged, so only neighbouring ticks are a way between.
+        # An avatar absent from a snapshot has not moved, so only neighbouring ticks are joined.
         way = known[after, 0] - known[row, 0] == 1.0
         share = np.where(way, ticks - known[row, 0], 0.0)[:, None]
         return np.asarray((1.0 - share) * known[row, 1:] + share * known[after, 1:])
 
 
-class Footage:
-    """Fills up while a bot's events are passed to it."""
+class StepLog:
+    """Collects what a bot sees, while the bot's events are passed to it."""
 
     def __init__(self, bot: Bot) -> None:
         self.tick_rate = bot.welcome.tick_rate
         self.step_bytes = 0
         self.step_messages = 0
         self.skipped_ticks = 0
-        """Ticks whose snapshot never came: this client was too slow."""
-        self.gone: list[Seen] = []
+        """Number of ticks whose snapshot never came, because this client was too slow."""
+        self.left_view: list[Seen] = []
         self._own_id = bot.id
         self._seen: dict[int, Seen] = {
             i: Seen(other.leg_m, other.stature_m) for i, other in bot.others.items()
@@ -86,7 +86,7 @@ class Footage:
         self._tick: int | None = None
 
     def take(self, event: object) -> None:
-        """Note what an event says of others' feet."""
+        """Keep what an event says of the feet of others."""
         match event:
             case Enter():
                 for entity in event.entities:
@@ -102,10 +102,10 @@ class Footage:
                 self._take_places(event)
 
     def end(self) -> list[Seen]:
-        """Everyone whose steps were seen, those included who are still in view."""
+        """Everyone whose steps were seen, those still in view included."""
         for avatar_id in list(self._seen):
             self._leave(avatar_id, self._tick or 0)
-        return [seen for seen in self.gone if seen.records]
+        return [seen for seen in self.left_view if seen.records]
 
     def _take_steps(self, event: StepsEvent) -> None:
         self.step_messages += 1
@@ -129,40 +129,40 @@ class Footage:
         seen = self._seen.pop(avatar_id, None)
         if seen is not None:
             seen.until = tick
-            self.gone.append(seen)
+            self.left_view.append(seen)
 
 
 @dataclass(frozen=True)
 class Cost:
-    """What steps cost one viewer, bytes of messages a second."""
+    """Costs of steps for one viewer."""
 
     step_bytes: int
     steps: int
     for_each_visible: float
-    """Of everyone whose steps it is shown, standing or walking."""
+    """Bytes a second for each avatar whose steps it is shown, standing or walking."""
     for_each_walking: float
-    """Of who walks: from step to step, no more than 2 s between them."""
+    """Bytes a second for each avatar that walks: it begins its next step within 2 s."""
     visible_at_once: float
-    """How many it is shown, on average over the time."""
+    """Mean number of avatars whose steps it is shown."""
 
 
-def cost_of(footage: Footage, everyone: list[Seen], seconds: float) -> Cost:
+def cost_of(log: StepLog, everyone: list[Seen], seconds: float) -> Cost:
     visible = walking = 0.0
     for seen in everyone:
-        visible += seen.shown_ticks / footage.tick_rate
-        between = np.diff(seen.steps["tick"].astype(np.int64)) / footage.tick_rate
+        visible += seen.shown_ticks / log.tick_rate
+        between = np.diff(seen.steps["tick"].astype(np.int64)) / log.tick_rate
         walking += float(between[(between > 0.0) & (between <= WALKS_ON_S)].sum())
     return Cost(
-        footage.step_bytes,
+        log.step_bytes,
         sum(len(seen.records) for seen in everyone),
-        footage.step_bytes / max(visible, 1e-9),
-        footage.step_bytes / max(walking, 1e-9),
+        log.step_bytes / max(visible, 1e-9),
+        log.step_bytes / max(walking, 1e-9),
         visible / seconds,
     )
 
 
 def kinds_of(everyone: list[Seen]) -> dict[str, int]:
-    """How many records are whole steps, re-aimed ones, and of somebody who just stands."""
+    """Numbers of records that are whole steps, re-aimed ones, and of avatars that just stand."""
     counts: dict[str, int] = defaultdict(int)
     for seen in everyone:
         for record in seen.records:
