@@ -2,30 +2,12 @@ import numpy as np
 import pytest
 
 from esplanade.actors.locomotion.body.skeleton import TRACK_HALF_WIDTH
-from esplanade.actors.locomotion.footsteps.course import AHEAD, AHEAD_S, Course, desired_headings
+from esplanade.actors.locomotion.footsteps.course import Course
 from esplanade.actors.locomotion.footsteps.footholds import Footholds, choose_footholds
-from esplanade.actors.locomotion.footsteps.timing import (
-    CLOSING_S,
-    SHORTEST_S,
-    SHORTEST_UP_S,
-    durations_s,
-)
 from esplanade.planning import Polygon, Scene
 from esplanade.planning.compiled.arrays import Floats
+from tests.actors.locomotion.courses import LEG, course, standing_on
 from tests.actors.locomotion.parade import FIELD, Parade
-
-LEG = np.array([0.9])
-
-
-def course(velocity: tuple[float, float], heading: float = 0.0, rise_mps: float = 0.0) -> Course:
-    """From the origin, straight on."""
-    times = np.arange(AHEAD) * AHEAD_S
-    ahead = np.stack([velocity[0] * times, velocity[1] * times, rise_mps * times], axis=1)
-    return Course(np.array([heading]), ahead[None])
-
-
-def standing_on(x: float, y: float, heading: float = 0.0, z: float = 0.0) -> Floats:
-    return np.array([[x, y, z, heading]])
 
 
 def chosen(
@@ -34,48 +16,6 @@ def chosen(
     ground = Parade(1, scene).ground
     seconds = np.array([whole_s])
     return choose_footholds(way, np.array([right]), footprint, LEG, seconds, seconds, ground)
-
-
-def test_a_course_is_followed_and_stays_at_its_end() -> None:
-    way = course((1.0, -0.5))
-    np.testing.assert_allclose(way.at(np.array([0.33])), [[0.33, -0.165, 0.0]])
-    np.testing.assert_allclose(way.at(np.array([9.0])), way.ahead[:, -1])
-    for seconds in (0.0, 0.1, 0.77):
-        np.testing.assert_allclose(way.velocity(np.array([seconds])), [[1.0, -0.5]])
-    np.testing.assert_allclose(way.velocity(np.array([9.0])), [[0.0, 0.0]], atol=1e-12)
-
-
-def test_bodies_that_walk_face_ahead_and_others_as_they_did() -> None:
-    still, walking = course((0.0, -0.2), 0.7), course((0.0, -1.0), 0.7)
-    assert desired_headings(still, np.array([[0.0, -0.2]])).tolist() == [0.7]
-    assert desired_headings(walking, np.array([[0.0, -1.0]])).tolist() == [-np.pi / 2.0]
-
-
-@pytest.mark.parametrize("speed", [0.8, 1.0, 1.3, 1.8])
-def test_faster_bodies_take_longer_and_quicker_steps(speed: float) -> None:
-    under = standing_on(0.3, -0.09)
-    slower, faster = (
-        float(durations_s(course((v, 0.0)), under, LEG, np.ones(1))[0])
-        for v in (speed, 1.2 * speed)
-    )
-    assert faster < slower
-    assert 1.2 * speed * faster > speed * slower - 1e-9
-    assert speed * slower <= 0.73 * 0.9
-
-
-def test_a_step_that_goes_nowhere_draws_the_other_foot_up() -> None:
-    under = standing_on(0.0, -0.09)
-    assert durations_s(course((0.0, 0.0)), under, LEG, np.ones(1)).tolist() == [CLOSING_S]
-
-
-def test_a_start_is_quick_and_stairs_are_not() -> None:
-    under = standing_on(0.0, -0.09)
-    start = durations_s(course((1.6, 0.0)), under, LEG, np.ones(1))
-    walking = durations_s(course((1.6, 0.0)), standing_on(0.35, -0.09), LEG, np.ones(1))
-    assert SHORTEST_S <= start[0] < walking[0]
-    level = durations_s(course((0.9, 0.0)), standing_on(0.1, 0.0), LEG, np.ones(1))
-    up = durations_s(course((0.9, 0.0), rise_mps=0.6), standing_on(0.1, 0.0), LEG, np.ones(1))
-    assert SHORTEST_UP_S <= up[0] < 0.75 * level[0]
 
 
 def test_feet_land_half_a_step_ahead_on_their_own_side() -> None:
