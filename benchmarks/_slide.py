@@ -6,10 +6,11 @@ from typing import Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from benchmarks._footage import Floats, Seen
+from benchmarks._step_log import Floats, Seen
 
-from esplanade.actors.locomotion.motion import Steps
-from esplanade.actors.locomotion.reference.posing import Build, Pose, pose
+from esplanade.actors.locomotion.body.sizes import BodySizes
+from esplanade.actors.locomotion.motion.key_poses import Steps
+from esplanade.actors.locomotion.reference.posing import Pose, pose
 from esplanade.server.world.step_records import from_records
 
 FRAMES_PER_SECOND: Final = 60
@@ -91,8 +92,8 @@ def _shares(steps: Steps, rows: Rows, ticks: Floats) -> Floats:
 
 def _draw(steps: Steps, rows: Rows, shares: Floats, seen: Seen) -> Pose:
     count = len(rows)
-    build = Build(np.full(count, seen.leg_m), np.full(count, seen.stature_m))
-    return pose(steps.take(rows), shares, build)
+    sizes = BodySizes(np.full(count, seen.leg_m), np.full(count, seen.stature_m))
+    return pose(steps.take(rows), shares, sizes)
 
 
 # --- planted feet -----------------------------------------------------------------------------
@@ -113,7 +114,7 @@ def _planted(steps: Steps, rows: Rows, shares: Floats) -> Planted:
     The standing foot is always planted. The swing foot is planted until its toe lifts, and again
     from the end of its step.
     """
-    swings = np.arange(len(rows)), 1 - steps.right[rows].astype(np.int64)
+    swings = np.arange(len(rows)), 1 - steps.on_right[rows].astype(np.int64)
     lift = steps.lift[rows]
     at_all = np.ones((len(rows), 2), dtype=np.bool_)
     on_toe = np.zeros((len(rows), 2), dtype=np.bool_)
@@ -180,7 +181,7 @@ def _landings(steps: Steps, seen: Seen) -> Floats:
     whole = np.append(steps.start[1:] >= (steps.start + steps.ticks)[:-1], True)
     rows = np.flatnonzero(whole & (steps.ticks > 0))
     ended = _draw(steps, rows, np.ones(len(rows)), seen)
-    foot = 1 - steps.right[rows].astype(np.int64)
+    foot = 1 - steps.on_right[rows].astype(np.int64)
     here = np.arange(len(rows))
     landing = steps.landing[rows]
     along = np.stack([np.cos(landing[:, 3]), np.sin(landing[:, 3]), np.zeros(len(rows))], axis=1)
@@ -198,10 +199,10 @@ def _strides(steps: Steps, seen: Seen) -> tuple[Floats, Floats]:
     during which the body speeds up or slows down are left out, because the feet then run ahead
     of the body or fall behind.
     """
-    starts = np.flatnonzero(~steps.again)
+    starts = np.flatnonzero(~steps.re_aimed)
     lasts = np.append(starts[1:], len(steps.start)) - 1
     begin, end = steps.start[starts], (steps.start + steps.ticks)[lasts]
-    walks_on = (begin[1:] == end[:-1]) & (steps.right[starts[1:]] != steps.right[starts[:-1]])
+    walks_on = (begin[1:] == end[:-1]) & (steps.on_right[starts[1:]] != steps.on_right[starts[:-1]])
     travel = seen.place_at(end.astype(float)) - seen.place_at(begin.astype(float))
     speed = np.hypot(travel[:, 0], travel[:, 1]) / np.maximum(end - begin, 1)
     pairs = np.arange(3, len(starts) - 2)

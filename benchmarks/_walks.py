@@ -1,4 +1,4 @@
-"""What became of actors on their ways, measured from where they were at each tick."""
+"""Verdicts on actors on their way to goals, from their places at each tick."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -12,19 +12,18 @@ from esplanade.planning.routes.potential import Potential
 Floats = NDArray[np.float64]
 
 STUCK_S: Final = 20.0
-"""Who comes no nearer to the goal in this time,"""
 PROGRESS_M: Final = 0.5
-"""by this much of the way left, is stuck."""
+"""An actor is stuck if it comes less than this nearer to its goal in the time above."""
 
 
 @dataclass(frozen=True)
 class Walks:
-    """Where A actors were at T + 1 ticks, and how far they had to go; everyone walks alike."""
+    """Places of A actors at T + 1 ticks, and the distances left to their goals."""
 
     positions: Floats
     """(T + 1, A, 2), metres."""
     left_m: Floats
-    """(T + 1, A), way left to each one's goal, around walls."""
+    """(T + 1, A), metres: length of the path left to each one's goal, around walls."""
     tick_s: float
     radius_m: float
     speed_mps: float
@@ -32,9 +31,9 @@ class Walks:
 
     @property
     def clearances_m(self) -> Floats:
-        """(A, A): smallest distance, skin to skin, of every two at any time; inf on the diagonal.
+        """(A, A), metres: smallest distance of any two, skin to skin; inf for oneself.
 
-        Everyone goes straight from tick to tick, so that the nearest is found between them too.
+        Everyone goes straight from tick to tick, so distances are smallest between ticks as well.
         """
         rows, columns = np.triu_indices(self.positions.shape[1], 1)
         nearest = np.full(len(rows), np.inf)
@@ -51,18 +50,18 @@ class Walks:
 
     @property
     def arrivals_s(self) -> Floats:
-        """(A,): when each first came within the tolerance of its goal; inf if never."""
+        """(A,): time at which each first came within the tolerance of its goal; inf if never."""
         there = self.left_m <= self.tolerance_m
         return np.where(there.any(axis=0), there.argmax(axis=0) * self.tick_s, np.inf)
 
     @property
     def time_ratios(self) -> Floats:
-        """(A,): time against that of the same way alone at the preferred speed; inf if never."""
+        """(A,): ratio of the time to that of an actor alone at preferred speed; inf if never."""
         return np.asarray(self.arrivals_s * self.speed_mps / self.left_m[0])
 
     @property
     def stuck(self) -> NDArray[np.bool_]:
-        """(A,): who made no progress for too long before arriving."""
+        """(A,): whether each made no progress for too long before it arrived."""
         window = round(STUCK_S / self.tick_s)
         best = np.minimum.accumulate(self.left_m, axis=0)
         slow = best[:-window] - best[window:] < PROGRESS_M
@@ -72,18 +71,18 @@ class Walks:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a scene came to."""
+    """The figures of one scene."""
 
     actors: int
     contacts: int
-    """Pairs whose discs ever overlapped."""
+    """Number of pairs whose discs ever overlapped."""
     clearance_m: float
-    """Smallest, skin to skin."""
+    """Smallest distance, skin to skin."""
     arrived_percent: float
     last_s: float | None
-    """When the last arrived; None when somebody did not."""
+    """Time at which the last one arrived; None if not all did."""
     time_ratio: float | None
-    """Mean of those who arrived; None when nobody did."""
+    """Mean over those that arrived; None if none did."""
     worst_time_ratio: float | None
     stuck: int
     tick_p50_ms: float
@@ -91,7 +90,7 @@ class Verdict:
 
 
 def judge(walks: Walks, tick_ms: Floats) -> Verdict:
-    """Put the measures of one scene together; milliseconds are of its ticks."""
+    """Judge one scene, whose ticks took tick_ms, milliseconds."""
     clearances = walks.clearances_m
     arrived = np.isfinite(walks.arrivals_s)
     ratios = walks.time_ratios[arrived]
@@ -110,7 +109,7 @@ def judge(walks: Walks, tick_ms: Floats) -> Verdict:
 
 
 def ways_left(grid: LayeredGrid, positions: Floats, goals: Floats, radius_m: float) -> Floats:
-    """(T, A): way from each of (T, A, 2) positions to the actor's goal, (A, 2), around walls."""
+    """Lengths (T, A) of the paths around walls from positions (T, A, 2) to goals (A, 2), metres."""
     floors = np.zeros(len(positions), dtype=np.int64)
     columns = [
         Potential(grid, (x, y), 0, radius_m).distance(positions[:, a], floors)

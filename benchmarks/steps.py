@@ -1,13 +1,13 @@
-"""What a client sees of real steps: whether feet slide, and what that costs on the wire.
+"""Measures real steps as a client sees them: whether feet slide, and what steps cost on the wire.
 
     python -m benchmarks.steps                          20 visitors who wander among 10 actors
     python -m benchmarks.steps --crowd zara1.csv        a recorded crowd, replayed as it was
     python -m benchmarks.steps --crowd zara1.csv --seconds 120 --json figures.json
 
-A server is started, a crowd of bots walks about, and one more bot stands in the middle and looks
-on. From what that one is sent, steps and snapshots and nothing else, everyone is drawn 60 times a
-second, and it is measured how far planted feet move, how well one step goes on from the other, and
-how many bytes a second each walker costs.
+The benchmark starts a server and a crowd of bots that walk about; one more bot stands in the middle
+and looks on. From the steps and snapshots that this one is sent, and nothing else, everyone is
+drawn 60 times a second. Measured is how far planted feet move, how well one step joins the next,
+and how many bytes a second each walker costs.
 """
 
 import argparse
@@ -20,8 +20,8 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from benchmarks._footage import Cost, Footage, Seen, cost_of, kinds_of
 from benchmarks._slide import Findings, Floats, judge
+from benchmarks._step_log import Cost, Seen, StepLog, cost_of, kinds_of
 from rich.console import Console
 from rich.table import Table
 
@@ -36,7 +36,7 @@ from esplanade.server.settings import ServerSettings
 
 VISITORS: Final = 20
 JOINING_S: Final = 2.0
-"""The onlooker looks only at who is there after this time."""
+"""The onlooker begins to look after this time, when everyone has joined."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -51,8 +51,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     logs.configure(settings)
     crowd = None if options.crowd is None else read_crowd(options.crowd)
-    footage, everyone, seconds = asyncio.run(watch(settings, crowd, options.seconds))
-    findings, cost = judge(everyone, footage.tick_rate), cost_of(footage, everyone, seconds)
+    log, everyone, seconds = asyncio.run(watch(settings, crowd, options.seconds))
+    findings, cost = judge(everyone, log.tick_rate), cost_of(log, everyone, seconds)
     show(Console(), findings, cost)
     if options.json is not None:
         found = figures(findings, cost, kinds_of(everyone))
@@ -71,8 +71,8 @@ def parser() -> argparse.ArgumentParser:
 
 async def watch(
     settings: ServerSettings, crowd: Crowd | None, seconds: float
-) -> tuple[Footage, list[Seen], float]:
-    """What somebody sees who stands in the middle of a crowd for so many seconds of the world."""
+) -> tuple[StepLog, list[Seen], float]:
+    """What an onlooker in the middle of a crowd sees for some seconds of the world's time."""
     async with running(settings) as server:
         url = f"ws://127.0.0.1:{server.port}"
         x0, y0, x1, y1 = server.world.scene.bounds
@@ -82,18 +82,18 @@ async def watch(
         walking = asyncio.create_task(job.run(Tally(), stop))
         await asyncio.sleep(JOINING_S)
         async with bots.connect(url, name="Onlooker", at=middle) as bot:
-            footage = Footage(bot)
+            log = StepLog(bot)
             first = bot.tick
             async for event in bot.events():
-                footage.take(event)
-                if bot.tick - first >= seconds * footage.tick_rate:
+                log.take(event)
+                if bot.tick - first >= seconds * log.tick_rate:
                     break
             if bot.dropped_events:
                 raise RuntimeError(f"{bot.dropped_events} events were lost: too busy a machine")
         stop.set()
         with suppress(asyncio.CancelledError):
             await walking
-    return footage, footage.end(), seconds
+    return log, log.end(), seconds
 
 
 def _crowd(url: str, crowd: Crowd | None, seconds: float) -> LoadJob | ReplayJob:
@@ -103,11 +103,11 @@ def _crowd(url: str, crowd: Crowd | None, seconds: float) -> LoadJob | ReplayJob
 
 
 def busiest(crowd: Crowd, seconds: float) -> tuple[Track, ...]:
-    """Who is there in the stretch of time, so many seconds long, in which most walk."""
+    """The tracks that begin in that stretch of a number of seconds in which most people walk."""
     tracks = [track for track in crowd.tracks if len(track.times) > 1]
     begins = np.array([track.start_s for track in tracks])
     ends = np.array([track.end_s for track in tracks])
-    # Replays begin with the first start of a track, so only starts are looked at.
+    # A replay begins with the start of its first track, so only starts are tried.
     crowded = [
         np.clip(np.minimum(ends, t + seconds) - np.maximum(begins, t), 0.0, None)[begins >= t].sum()
         for t in begins
@@ -129,7 +129,7 @@ MILLIMETRES: Final = (
 
 
 def figures(findings: Findings, cost: Cost, kinds: dict[str, int]) -> dict[str, Any]:
-    """Everything, for JSON; distances in millimetres."""
+    """All figures, for JSON; distances are in millimetres."""
     return {
         "frames": int(findings.frames.sum()),
         "walkers": len(findings.frames),
@@ -142,12 +142,12 @@ def figures(findings: Findings, cost: Cost, kinds: dict[str, int]) -> dict[str, 
 
 
 def step_errors(findings: Findings) -> Floats:
-    """By how much steps are longer or shorter than what the body covers meanwhile, metres."""
+    """Differences between the lengths of steps and what the body covers meanwhile, metres."""
     return np.abs(findings.step_m - findings.travel_m)
 
 
 def spread(metres: Floats) -> dict[str, float] | None:
-    """Percentiles and the worst, millimetres."""
+    """Percentiles, the worst and the number of some distances, millimetres; None without any."""
     if not len(metres):
         return None
     values = {f"p{p}": float(np.percentile(metres, p)) for p in (50, 99)}

@@ -1,14 +1,15 @@
-"""What walking costs, how limbs reach, and Table 3 of the paper that steps go back to.
+"""Measures what walking costs, how limbs reach, and how well Table 3 of the paper is reproduced.
 
     python -m benchmarks.walking                                  everything, a minute
     python -m benchmarks.walking --avatars 10 1000 --ticks 400 --json walking.json
 
-Cost: everyone walks in circles of their own at 1.3 m/s; measured is what a tick of the server
-spends on their feet (`Walkers.update`), against the 50 ms of a tick, and what one frame of posing
-all of them costs in Python. Reaching: 1000 seeded targets of a heel's chain, plain CCD against
-both ways of two stages. Table 3: as printed, as its equation has it, as the source's curves have
-it, and with the offset that was fitted. Exit code 1 if a tick of the most avatars takes more than
-20 ms at the median, or reaching or the table fall short of what docs/walking.md says.
+Cost: all avatars walk in circles of their own at 1.3 m/s. The benchmark measures what a tick of
+the server spends on their feet (`Walkers.update`), against the 50 ms of a tick, and what posing all
+of them once costs in Python. Reaching: 1000 seeded targets of a heel's chain are reached for by
+plain CCD and by both ways of two stages. Table 3 is shown as printed, by its own equation, by the
+source's curves, and with the offset that was fitted. The exit code is 1 if a tick of the most
+avatars takes more than 20 ms at the median, or if reaching or the table fall short of what
+docs/walking.md says.
 """
 
 import argparse
@@ -20,25 +21,25 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from rich import box
 from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
-from esplanade.actors.locomotion import two_stage
-from esplanade.actors.locomotion.aims import AHEAD, AHEAD_S, Course
-from esplanade.actors.locomotion.builds import physique_of
-from esplanade.actors.locomotion.ground import Ground
-from esplanade.actors.locomotion.motion import Steps
+from esplanade.actors.locomotion.body.sizes import BodySizes
+from esplanade.actors.locomotion.body.traits import traits_of
+from esplanade.actors.locomotion.footsteps.course import AHEAD, AHEAD_S, Course
+from esplanade.actors.locomotion.footsteps.ground import Ground
+from esplanade.actors.locomotion.footsteps.walkers import Walkers
+from esplanade.actors.locomotion.motion.key_poses import Steps
+from esplanade.actors.locomotion.reaching import two_stage
+from esplanade.actors.locomotion.reaching.two_stage import Reach
 from esplanade.actors.locomotion.reference import rotations
 from esplanade.actors.locomotion.reference import table3 as third
 from esplanade.actors.locomotion.reference.posing import pose
-from esplanade.actors.locomotion.stance import Build
-from esplanade.actors.locomotion.two_stage import Reach
-from esplanade.actors.locomotion.walkers import Walkers
 from esplanade.footage.targets import SHARES, random_targets
 from esplanade.planning import LayeredGrid, Scene
+from esplanade.planning.compiled.arrays import Floats, Ints
 
 TICK_S: Final = 0.05
 TICK_LIMIT_MS: Final = 20.0
@@ -48,11 +49,9 @@ TRUNK_DOF: Final = 6
 PRODUCT: Final = "... and restarts"
 LEAST_SAVED: Final = {"limb is enough": 0.80, "half and half": 0.60, "all of the chain": 0.40}
 
-Floats = NDArray[np.float64]
-
 
 class Cost(NamedTuple):
-    """Of so many avatars."""
+    """What the feet of a number of avatars cost."""
 
     avatars: int
     tick_p50_ms: float
@@ -61,15 +60,15 @@ class Cost(NamedTuple):
     us_an_avatar_and_tick: float
     us_a_step: float
     frame_ms: float
-    """All of them posed once."""
+    """Posing all of them once."""
 
 
 class Work(NamedTuple):
-    """What a way of reaching did for `TARGETS` targets."""
+    """What one method of reaching did for `TARGETS` targets."""
 
     reached_percent: float
     turned: float
-    """Mean number of hinges turned for a target."""
+    """Mean number of turns of hinges for a target."""
     most_sweeps: int
     trunk_deg: float
     """Mean angle by which the trunk has turned in the end."""
@@ -104,7 +103,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def parser() -> argparse.ArgumentParser:
-    """The options."""
+    """The parser of the options."""
     made = argparse.ArgumentParser(prog="python -m benchmarks.walking", description=__doc__)
     made.formatter_class = argparse.RawDescriptionHelpFormatter
     made.add_argument("--avatars", type=int, nargs="+", default=[10, 100, 1000], metavar="N")
@@ -118,13 +117,13 @@ def parser() -> argparse.ArgumentParser:
 
 
 def cost_of(avatars: int, ticks: int) -> Cost:
-    """Walk so many avatars in circles for some ticks."""
+    """Let a number of avatars walk in circles for some ticks."""
     random = np.random.default_rng(1)
     scene = Scene(bounds=(-200.0, -200.0, 200.0, 200.0))
     ground = Ground(scene, LayeredGrid.from_scene(scene, 2.0))
     begun = 0
 
-    def carry(steps: Steps, slots: NDArray[np.int64]) -> Steps:
+    def publish(steps: Steps, slots: Ints) -> Steps:
         nonlocal begun
         begun += len(slots)
         return steps
@@ -142,13 +141,13 @@ def cost_of(avatars: int, ticks: int) -> Cost:
         ahead[..., 1] = centres[:, 1:] + radius_m[:, None] * np.sin(turned)
         return Course(turned[:, 0] + 0.5 * np.pi, ahead)
 
-    physiques = [physique_of(0, avatar) for avatar in range(avatars)]
-    build = Build(
-        np.array([each.leg_m for each in physiques]),
-        np.array([each.stature_m for each in physiques]),
+    traits = [traits_of(0, avatar) for avatar in range(avatars)]
+    sizes = BodySizes(
+        np.array([each.leg_m for each in traits]),
+        np.array([each.stature_m for each in traits]),
     )
-    walkers = Walkers(avatars, ground, TICK_S, carry)
-    walkers.join(0, slots, physiques, course(0))
+    walkers = Walkers(avatars, ground, TICK_S, publish)
+    walkers.join(0, slots, traits, course(0))
     settled = round(3.0 / TICK_S)
     tick_ms = []
     for tick in track(
@@ -168,7 +167,7 @@ def cost_of(avatars: int, ticks: int) -> Cost:
     frames_ms = []
     for k in range(10):
         start = time.perf_counter()
-        pose(walkers.steps, walkers.steps.share(settled + ticks - 1 + 0.1 * k), build)
+        pose(walkers.steps, walkers.steps.share(settled + ticks - 1 + 0.1 * k), sizes)
         frames_ms.append(1e3 * (time.perf_counter() - start))
     return Cost(
         avatars,
@@ -185,7 +184,7 @@ def cost_of(avatars: int, ticks: int) -> Cost:
 
 
 def compare_reaching(trunk_share: float, seed: int) -> dict[str, Work]:
-    """The same targets by each way."""
+    """Reach for the same targets by each method."""
     chain = two_stage.heel_chain(left=True)
     random = np.random.default_rng(seed)
     starts, targets = random_targets(chain, trunk_share, TARGETS, random)
@@ -213,19 +212,19 @@ def compare_reaching(trunk_share: float, seed: int) -> dict[str, Work]:
     return found
 
 
-def _work(reach: Reach, starts: Floats, ms: float) -> Work:
-    before, after = (_trunk_turn(angles) for angles in (starts, reach.angles))
+def _work(found: Reach, starts: Floats, ms: float) -> Work:
+    before, after = (_trunk_turn(angles) for angles in (starts, found.angles))
     return Work(
-        100.0 * float(reach.reached.mean()),
-        float(reach.turned.mean()),
-        int(reach.sweeps[reach.reached].max(initial=0)),
+        100.0 * float(found.reached.mean()),
+        float(found.turned.mean()),
+        int(found.sweeps[found.reached].max(initial=0)),
         float(np.degrees(rotations.angle_between(before, after)).mean()),
         ms,
     )
 
 
 def _trunk_turn(angles: Floats) -> Floats:
-    """How the sub-root is turned against the root, quaternions (N, 4)."""
+    """Rotations of the sub-root against the root, quaternions (N, 4)."""
     joints = rotations.from_euler(angles[:, :TRUNK_DOF].reshape(-1, 2, 3))
     return rotations.multiply(joints[:, 0], joints[:, 1])
 
@@ -234,7 +233,7 @@ def _trunk_turn(angles: Floats) -> Floats:
 
 
 def falls_short(costs: Sequence[Cost], reaching: dict[str, dict[str, Work]]) -> bool:
-    """Whether anything is worse than the documents say."""
+    """Whether any figure is worse than the documents say."""
     slow = costs[-1].tick_p50_ms > TICK_LIMIT_MS
     unsaved = any(saved(ways, PRODUCT) < LEAST_SAVED[kind] for kind, ways in reaching.items())
     missed = any(ways[PRODUCT].reached_percent < 99.0 for ways in reaching.values())
@@ -242,7 +241,7 @@ def falls_short(costs: Sequence[Cost], reaching: dict[str, dict[str, Work]]) -> 
 
 
 def saved(ways: dict[str, Work], way: str) -> float:
-    """Share of plain CCD's turns that a way does without."""
+    """Share of the turns of plain CCD that a method does without."""
     return 1.0 - ways[way].turned / ways["plain CCD"].turned
 
 
@@ -304,7 +303,7 @@ def show_table3(console: Console, rows: dict[str, third.Reproduced]) -> None:
 
 
 def _solved(found: third.Reproduced, row: int) -> bool:
-    """Whether there is a step of that length at all."""
+    """Whether any step has that length."""
     return bool(found.halvings[row] < found.halvings.max() or found.halvings.max() < 20)
 
 

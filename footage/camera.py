@@ -1,4 +1,4 @@
-"""Where points of the world are on a picture; parallel lines stay parallel."""
+"""Places of points of the world on a picture, in parallel projection."""
 
 from __future__ import annotations
 
@@ -6,21 +6,21 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Floats = NDArray[np.float64]
+from esplanade.planning.compiled.arrays import Floats
 
 
 @dataclass(frozen=True)
 class Camera:
-    """Looks at a point from a direction."""
+    """A camera that looks at a point from a direction."""
 
     target: tuple[float, float, float]
-    """What is amid the picture, metres."""
+    """The point in the middle of the picture, metres."""
     azimuth_deg: float
-    """From where it looks, counter-clockwise from the east."""
+    """Direction that it looks from, counter-clockwise from the east."""
     elevation_deg: float
-    """How far above the ground it stands."""
+    """Angle that it looks down by."""
     scale: float
     """Pixels a metre."""
     size: tuple[int, int]
@@ -28,7 +28,7 @@ class Camera:
 
     @property
     def axes(self) -> Floats:
-        """(3, 3): to the right, up, and towards the camera; unit rows."""
+        """(3, 3): unit vectors to the right, up, and towards the camera."""
         a, e = math.radians(self.azimuth_deg), math.radians(self.elevation_deg)
         right = (-math.sin(a), math.cos(a), 0.0)
         up = (-math.cos(a) * math.sin(e), -math.sin(a) * math.sin(e), math.cos(e))
@@ -36,11 +36,11 @@ class Camera:
         return np.array((right, up, towards))
 
     def seen(self, points: ArrayLike) -> Floats:
-        """Metres (N, 3) to the right, up and nearer than the target, of points (N, 3)."""
+        """Points (N, 3) from the target: float64 (N, 3), metres, to the right, up, nearer."""
         return np.asarray((np.asarray(points, dtype=np.float64) - self.target) @ self.axes.T)
 
     def pixels(self, points: ArrayLike) -> Floats:
-        """Pixels (N, 2) of points (N, 3), from the upper left corner."""
+        """Pixels of points (N, 3), metres, from the upper left corner: float64 (N, 2)."""
         seen = self.seen(points)
         across = 0.5 * self.size[0] + self.scale * seen[:, 0]
         down = 0.5 * self.size[1] - self.scale * seen[:, 1]

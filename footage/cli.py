@@ -14,14 +14,14 @@ from esplanade.footage.options import WALKS
 def render(options: Namespace) -> int:
     """Draw walks: strips, trails and films."""
     strips = _part_that_needs("PIL", "esplanade.footage.strips")
-    recording = _part_that_needs("PIL", "esplanade.footage.recording")
+    films = _part_that_needs("PIL", "esplanade.footage.film")
     walks = _part_that_needs("PIL", "esplanade.footage.walks").walks()
     folder = made_folder("--out", options.out)
     files = []
     with progress() as shown:
         for name in WALKS if options.walk == "all" else (options.walk,):
             task = shown.add_task(name, total=None)
-            taken = recording.record(walks[name], options.fps, options.seed)
+            taken = films.film_walk(walks[name], options.fps, options.seed)
             frames = 0 if options.no_film else len(taken.times_s)
             shown.update(task, total=frames + 2)
             for kind, draw in (("strip", strips.draw_strip), ("trail", strips.draw_trail)):

@@ -1,7 +1,8 @@
 """The cycle of figures that are far away: eight keys of a walking body, shared by all of them.
 
-Nobody tells a browser the steps of who is far away; there it mixes these keys by the way gone.
-Lengths are shares of the leg's, from the point on the ground that goes along at a steady pace.
+Browsers get no steps of figures that are far away. They mix these keys by the distance that a
+figure has gone. Lengths are shares of the leg's, from a point on the ground that moves along at a
+steady pace.
 """
 
 from __future__ import annotations
@@ -11,33 +12,34 @@ from collections.abc import Iterator
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from esplanade.actors.locomotion.curves import smooth
-from esplanade.actors.locomotion.durations import step_duration_s
+from esplanade.actors.locomotion.gait.curves import smooth
+from esplanade.actors.locomotion.gait.durations import step_duration_s
 from esplanade.actors.locomotion.reference.keyframes import (
     CHEST,
     ELBOWS,
     PELVIS,
     SHOULDERS,
     exact,
+    feet_of,
     key_phases,
-    legs_of,
 )
-
-Floats = NDArray[np.float64]
+from esplanade.planning.compiled.arrays import Floats
 
 STEP: Final = 0.55
-"""Leg lengths that a step of the cycle covers."""
+"""Length of a step of the cycle, leg lengths."""
 
 _DIGITS: Final = 4
 _ON_TOE_RAD: Final = 0.1
-"""A foot stands on its toe alone when its heel is raised by so much."""
+"""A foot stands on its toe alone from this pitch on."""
 _ON_GROUND: Final = 1e-6
 
 
 def cycle(step_length: float = STEP) -> dict[str, Any]:
-    """What a client needs to know of the cycle, as JSON has it."""
+    """The cycle as clients need it, in values that JSON has.
+
+    The length of its steps is in leg lengths.
+    """
     phases = key_phases(step_length)
     keys = [
         {"phase": _rounded(phase), **posture}
@@ -52,7 +54,7 @@ def cycle(step_length: float = STEP) -> dict[str, Any]:
 
 
 def as_text(value: object, indent: int = 0) -> str:
-    """JSON with an entry a line, and numbers in a row side by side."""
+    """JSON with an entry on each line, and the numbers of a row side by side."""
     inner = " " * (indent + 2)
     if isinstance(value, dict):
         entries = [f"{inner}{json.dumps(k)}: {as_text(v, indent + 2)}" for k, v in value.items()]
@@ -64,8 +66,9 @@ def as_text(value: object, indent: int = 0) -> str:
 
 
 def _postures(step_length: float, phases: Floats) -> Iterator[dict[str, Any]]:
+    """The body at phases (N,) of the cycle."""
     frames = exact(step_length, phases)
-    legs = legs_of(frames)
+    legs = feet_of(frames)
     on_ground = np.abs(legs.toes[..., 2]) < _ON_GROUND
     raised = np.where(on_ground, smooth(-legs.pitches / _ON_TOE_RAD), 0.0)
     arms = {
@@ -90,5 +93,5 @@ def _postures(step_length: float, phases: Floats) -> Iterator[dict[str, Any]]:
 
 
 def _rounded(values: Floats | float) -> Any:
-    """As numbers of Python, without a minus before zero."""
+    """Values as numbers of Python, without a minus before zero."""
     return (np.round(values, _DIGITS) + 0.0).tolist()

@@ -1,4 +1,4 @@
-"""A body as rounded parts, from its joints."""
+"""A body made of rounded parts, from its joints."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import numpy as np
 
 from esplanade.actors.locomotion.reference.posing import Pose
 from esplanade.actors.locomotion.reference.rotations import rotate
-from esplanade.footage.camera import Floats
+from esplanade.planning.compiled.arrays import Floats
 
 SKIN: Final = "#e3b08a"
 HAIR: Final = "#4a3222"
 SHIRT: Final = "#c8573b"
 TROUSERS: Final = ("#3f5f82", "#2c4059")
-"""Of the left and the right leg, so that they are told apart."""
+"""Colours of the left and the right leg, which differ so that they are told apart."""
 SLEEVES: Final = ("#d2694a", "#a8452d")
 SHOES: Final = ("#4a3a2e", "#332820")
 
@@ -22,7 +22,7 @@ _HEAD_M: Final = 0.105
 
 
 class Part(NamedTuple):
-    """The hull of some balls."""
+    """A part of a body: the convex hull of some balls."""
 
     centres: Floats
     """(K, 3), metres."""
@@ -32,7 +32,7 @@ class Part(NamedTuple):
 
 
 def parts_of(poses: Pose, frame: int) -> list[Part]:
-    """What a body of one frame is drawn from."""
+    """The parts of a body in one frame."""
     joints = Pose._make(values[frame] for values in poses)
     up = rotate(joints.chest, [0.0, 0.0, 1.0])
     forward = rotate(joints.chest, [1.0, 0.0, 0.0])

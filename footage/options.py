@@ -8,7 +8,7 @@ from esplanade.commandline.readers import SEED_LIMIT, Folder, OutputFile, Whole
 
 WALKS: Final = ("flat", "curve", "stairs", "start-stop")
 FRAMES_A_SECOND: Final = (10, 20, 25, 50)
-"""GIF counts in hundredths of a second."""
+"""Rates that GIF can show: it counts in hundredths of a second."""
 DEFAULT_FRAMES_A_SECOND: Final = 20
 
 DESCRIPTION: Final = """\
@@ -63,7 +63,7 @@ def _render(commands: "SubParsers[Parser]") -> Parser:
         metavar="N",
         type=Whole(0, SEED_LIMIT),
         default=0,
-        help="whose body: size and build of walking [default: 0]",
+        help="whose body walks: its sizes and its cadence [default: 0]",
     )
     made.add_argument(
         "--fps",

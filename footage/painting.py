@@ -10,16 +10,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 from PIL import Image, ImageColor, ImageDraw, ImageFont
 
-from esplanade.actors.locomotion.skeleton import FOOT
-from esplanade.footage.camera import Camera, Floats
+from esplanade.actors.locomotion.body.skeleton import FOOT
+from esplanade.footage.camera import Camera
 from esplanade.footage.figure import Part
-from esplanade.footage.recording import Footprint
+from esplanade.footage.film import FilmedFootprint
 from esplanade.planning import Polygon, Scene
+from esplanade.planning.compiled.arrays import Floats
 
 Colour = str | tuple[int, int, int]
 
 SMOOTHING: Final = 3
-"""Pictures are painted so many times as large, and then shrunk."""
+"""Pictures are painted larger by this factor, and then shrunk."""
 SKY: Final = "#eef2f4"
 GROUND: Final = "#d9d3c6"
 GRID: Final = "#bfb7a6"
@@ -29,7 +30,7 @@ EDGE: Final = "#8d8373"
 SHADOW: Final = "#b5ad9e"
 INK: Final = "#2f3640"
 FOOTPRINTS: Final = ("#3f7fbf", "#c0562f")
-"""Of left and right feet."""
+"""Colours of footprints of left and right feet."""
 
 _GRID_M: Final = 0.5
 _ROUND: Final = np.linspace(0.0, 2.0 * math.pi, 20, endpoint=False)
@@ -53,10 +54,11 @@ class Canvas:
         self._draw = ImageDraw.Draw(self._image)
 
     def picture(self) -> Image.Image:
+        """What has been painted so far, in the size of the camera."""
         return self._image.resize(self._size, Image.Resampling.LANCZOS)
 
     def paint_scene(self, scene: Scene) -> None:
-        """Ground with a grid of half metres, and what stands on it."""
+        """Paint the ground with a grid of half metres, and what stands on it."""
         x0, y0, x1, y1 = scene.bounds
         corners = [(x0, y0, 0.0), (x1, y0, 0.0), (x1, y1, 0.0), (x0, y1, 0.0)]
         self._fill(corners, GROUND)
@@ -70,11 +72,12 @@ class Canvas:
             self._paint_solid(solid, towards)
 
     def paint_shadow(self, place: Floats, radius_m: float) -> None:
-        """Below a body; place x, y, z of the ground."""
+        """Paint a shadow on the ground at a place (3,), metres."""
         ring = np.column_stack((radius_m * _CIRCLE, np.zeros(len(_CIRCLE)))) + place
         self._fill(ring, SHADOW)
 
-    def paint_footprint(self, footprint: Footprint, leg_m: float) -> None:
+    def paint_footprint(self, footprint: FilmedFootprint, leg_m: float) -> None:
+        """Paint a sole, for a leg of a length in metres."""
         x, y, z, heading = footprint.place.tolist()
         ahead = np.array([math.cos(heading), math.sin(heading)])
         aside = np.array([-ahead[1], ahead[0]])
@@ -85,13 +88,14 @@ class Canvas:
         self._fill(ring3, FOOTPRINTS[int(footprint.right)])
 
     def paint_body(self, parts: Sequence[Part]) -> None:
+        """Paint the parts of a body from the farthest to the nearest."""
         towards = self._camera.axes[2]
-        # A part is as near as its nearest ball: sleeves lie on the shirt, hair on the head.
+        # Balls of a part count by their mean: so sleeves lie on the shirt, and hair on the head.
         for part in sorted(parts, key=lambda part: float(np.mean(part.centres @ towards))):
             self._paint_part(part)
 
     def write(self, text: str, at: tuple[float, float], size: float, colour: str = INK) -> None:
-        """Write at a place in pixels from the upper left."""
+        """Write text at a place in pixels from the upper left corner."""
         font = ImageFont.load_default(size * SMOOTHING)
         self._draw.text((at[0] * SMOOTHING, at[1] * SMOOTHING), text, fill=colour, font=font)
 
@@ -141,13 +145,13 @@ def _middle(solid: Polygon) -> Floats:
 
 
 def _balls(centres: Floats, radii: Floats) -> Floats:
-    """Points (K x 20, 2) around balls."""
+    """Points (20 K, 2) around K balls."""
     points: Floats = (centres[:, None] + radii[:, None, None] * _CIRCLE).reshape(-1, 2)
     return points
 
 
 def _hull(points: Floats) -> list[tuple[float, float]]:
-    """Convex hull in order, by Andrew's monotone chain."""
+    """The corners of the convex hull of points (N, 2), by Andrew's monotone chain."""
     ordered = sorted(set(map(tuple, points.tolist())))
 
     def half(row: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:

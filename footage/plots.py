@@ -11,18 +11,15 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from esplanade.actors.locomotion import two_stage
-from esplanade.actors.locomotion.curves import leg_angles
-from esplanade.actors.locomotion.durations import boundary_rates, step_duration_s, step_phase
-from esplanade.actors.locomotion.planner import plan_steps
+from esplanade.actors.locomotion.footsteps.planner import plan_steps
+from esplanade.actors.locomotion.gait.curves import leg_angles
+from esplanade.actors.locomotion.gait.durations import step_duration_s
+from esplanade.actors.locomotion.gait.step_length import sl_planted, solve_relative_velocity
+from esplanade.actors.locomotion.reaching import two_stage
 from esplanade.actors.locomotion.reference import bezier, keyframes, paper_gait, rotations, table3
-from esplanade.actors.locomotion.step_length import (
-    sl_noslide,
-    sl_paper,
-    sl_planted,
-    solve_relative_velocity,
-)
-from esplanade.footage.recording import record
+from esplanade.actors.locomotion.reference.published_lengths import sl_noslide, sl_paper
+from esplanade.actors.locomotion.reference.step_phase import boundary_rates, step_phase
+from esplanade.footage.film import film_walk
 from esplanade.footage.targets import SHARES, random_targets
 from esplanade.footage.walks import walks
 
@@ -53,7 +50,7 @@ _PHASES: Final = np.linspace(0.0, 1.0, 161)
 
 @contextmanager
 def _figure(path: Path, columns: int, height_in: float = 2.5) -> Iterator[Any]:
-    """Axes side by side, saved when all is drawn; the same file from the same code."""
+    """Axes side by side, which are saved at the end; the same code writes the same file."""
     with mpl.rc_context(_STYLE):
         figure = Figure(figsize=(7.6, height_in), layout="constrained")
         yield figure.subplots(1, columns)
@@ -104,9 +101,9 @@ def planted(path: Path) -> None:
         left.axhline(0.0, color="#3a3f45", lw=0.8)
         left.set(xlabel="steps", title="left foot above the ground, legs")
         left.legend()
-        gone = 2.0 * length * phases
+        travelled = 2.0 * length * phases
         right.plot(steps, toes[0, :, 0, 0], color=_GREY, label="published")
-        right.plot(steps, legs.toes[:, 0, 0] + gone, color=_RED, label="planted")
+        right.plot(steps, legs.toes[:, 0, 0] + travelled, color=_RED, label="planted")
         right.set(xlabel="steps", title="left toe along the way, legs")
         right.legend()
 
@@ -157,7 +154,7 @@ def blending(path: Path) -> None:
 
 
 def bends(path: Path) -> None:
-    taken = record(walks()["curve"], 20)
+    taken = film_walk(walks()["curve"], 20)
     with _figure(path, 2, 3.0) as (left, right):
         for footprint in taken.footprints:
             x, y, _, heading = footprint.place.tolist()
@@ -178,7 +175,7 @@ def bends(path: Path) -> None:
 
 
 def stairs(path: Path) -> None:
-    taken = record(walks()["stairs"], 40)
+    taken = film_walk(walks()["stairs"], 40)
     scene = taken.walk.scene
     with _figure(path, 1, 2.8) as axis:
         for solid in scene.solids():
@@ -222,7 +219,7 @@ def key_poses(path: Path) -> None:
     length = 0.5
     phases = keyframes.key_phases(length)
     truth = keyframes.exact(length, _PHASES)
-    slerped = keyframes.between(keyframes.exact(length, phases), phases, _PHASES)
+    slerped = keyframes.interpolate(keyframes.exact(length, phases), phases, _PHASES)
     mended = keyframes.repaired(slerped, length, _PHASES)
     with _figure(path, 2) as (left, right):
         for frames, colour, label in (
@@ -234,7 +231,7 @@ def key_poses(path: Path) -> None:
             knee = frames.joints[:, keyframes.KNEES][:, 0]
             bent = np.degrees(rotations.angle_between(knee, rotations.IDENTITY))
             left.plot(_PHASES, bent, style, color=colour, label=label)
-            heel = keyframes.legs_of(frames).ankles[:, 0, 2]
+            heel = keyframes.feet_of(frames).ankles[:, 0, 2]
             right.plot(_PHASES, heel, style, color=colour)
         left.plot(phases, np.interp(phases, _PHASES, _knee_deg(truth)), "o", color=_RED, ms=4)
         left.set(xlabel="phase", title="left knee, degrees")
@@ -289,4 +286,4 @@ PLOTS: Final[dict[str, Callable[[Path], None]]] = {
     "keyframes": key_poses,
     "reaching": reaching,
 }
-"""By the names of their files."""
+"""All plots by the names of their files."""

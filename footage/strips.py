@@ -1,4 +1,4 @@
-"""Strips, trails and films of a recorded walk."""
+"""Strips, trails and GIFs of a walk that was filmed."""
 
 from __future__ import annotations
 
@@ -9,13 +9,14 @@ from typing import Final
 import numpy as np
 from PIL import Image
 
-from esplanade.footage.camera import Camera, Floats
+from esplanade.footage.camera import Camera
 from esplanade.footage.figure import parts_of
+from esplanade.footage.film import Film
 from esplanade.footage.painting import Canvas
-from esplanade.footage.recording import Recording
+from esplanade.planning.compiled.arrays import Floats
 
 PANELS: Final = 9
-"""Pictures in a row of a strip."""
+"""Number of pictures in a row of a strip."""
 
 _PANEL: Final = (170, 270)
 _PANEL_SCALE: Final = 124.0
@@ -23,35 +24,35 @@ _FILM: Final = (340, 290)
 _FILM_SCALE: Final = 122.0
 _COLOURS: Final = 96
 _METHOD: Final = Image.Quantize.MAXCOVERAGE
-"""Footprints are small, and keep their colours."""
+"""With this method footprints, which are small, keep their colours."""
 _TRAIL_WIDTH: Final = 1500
 _TRAIL_MARGIN: Final = 70
 _TRAIL_SCALE: Final = 170.0
 _APART_M: Final = 0.62
-"""Bodies of a trail are drawn so far apart."""
+"""Distance between the bodies of a trail."""
 _FOLLOWED_S: Final = 0.8
-"""The camera goes where the body is on average over so long."""
+"""The camera follows the mean place of the body over this time."""
 _SHADOW_M: Final = 0.19
 
 
-def draw_strip(recording: Recording, path: Path) -> None:
-    """Pictures at even times, a row for each of the walk's spans; the camera goes along."""
-    followed = _followed(recording)
-    spans = recording.walk.spans_s
+def draw_strip(film: Film, path: Path) -> None:
+    """Write pictures at even times, a row for each span of the walk; the camera goes along."""
+    followed = _followed(film)
+    spans = film.walk.spans_s
     strip = Image.new("RGB", (_PANEL[0] * PANELS, _PANEL[1] * len(spans)))
     for row, span in enumerate(spans):
         for column, seconds in enumerate(np.linspace(*span, PANELS).tolist()):
-            frame = int(np.argmin(np.abs(recording.times_s - seconds)))
-            canvas = _frame(recording, frame, followed[frame], _PANEL, _PANEL_SCALE)
-            canvas.write(f"{recording.times_s[frame]:.2f} s", (9, _PANEL[1] - 22), 12)
+            frame = int(np.argmin(np.abs(film.times_s - seconds)))
+            canvas = _frame(film, frame, followed[frame], _PANEL, _PANEL_SCALE)
+            canvas.write(f"{film.times_s[frame]:.2f} s", (9, _PANEL[1] - 22), 12)
             strip.paste(canvas.picture(), (column * _PANEL[0], row * _PANEL[1]))
     _save(strip, path)
 
 
-def draw_trail(recording: Recording, path: Path) -> None:
-    """The whole way in one picture: bodies where they were, and all footprints."""
-    walk, poses = recording.walk, recording.poses
-    frames = _spread_out(recording)
+def draw_trail(film: Film, path: Path) -> None:
+    """Write the whole path in one picture: the body where it was, and all footprints."""
+    walk, poses = film.walk, film.poses
+    frames = _spread_out(film)
     points = np.concatenate([poses.head[frames], poses.toes[frames].reshape(-1, 3)])
     probe = Camera((0.0, 0.0, 0.0), *walk.view, 1.0, (0, 0))
     seen = probe.seen(points)
@@ -62,10 +63,10 @@ def draw_trail(recording: Recording, path: Path) -> None:
     camera = Camera((x, y, z), *walk.view, scale, (width, height))
     canvas = Canvas(camera)
     canvas.paint_scene(walk.scene)
-    for footprint in recording.footprints:
-        canvas.paint_footprint(footprint, float(recording.build.leg_m[0]))
+    for footprint in film.footprints:
+        canvas.paint_footprint(footprint, float(film.sizes.leg_m[0]))
     for frame in frames:
-        _paint_shadow(canvas, recording, frame)
+        _paint_shadow(canvas, film, frame)
     nearness = poses.root[frames] @ camera.axes[2]
     for k in np.argsort(nearness, kind="stable").tolist():
         canvas.paint_body(parts_of(poses, frames[k]))
@@ -73,20 +74,20 @@ def draw_trail(recording: Recording, path: Path) -> None:
     _save(canvas.picture(), path)
 
 
-def draw_film(recording: Recording, path: Path, advance: Callable[[], None]) -> None:
-    """A GIF of all frames; `advance` is called after each of them."""
-    followed = _followed(recording)
+def draw_film(film: Film, path: Path, advance: Callable[[], None]) -> None:
+    """Write a GIF of all frames; `advance` is called after each of them."""
+    followed = _followed(film)
     pictures = []
-    for frame, seconds in enumerate(recording.times_s.tolist()):
-        canvas = _frame(recording, frame, followed[frame], _FILM, _FILM_SCALE)
-        canvas.write(recording.walk.caption, (12, 8), 14)
+    for frame, seconds in enumerate(film.times_s.tolist()):
+        canvas = _frame(film, frame, followed[frame], _FILM, _FILM_SCALE)
+        canvas.write(film.walk.caption, (12, 8), 14)
         canvas.write(f"{seconds:.2f} s", (12, _FILM[1] - 26), 14)
         pictures.append(canvas.picture())
         advance()
     # One palette for all frames: colours that change from frame to frame would flicker.
     palette = pictures[len(pictures) // 2].quantize(_COLOURS, _METHOD)
     indexed = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
-    frame_s = float(recording.times_s[1] - recording.times_s[0])
+    frame_s = float(film.times_s[1] - film.times_s[0])
     indexed[0].save(
         path,
         save_all=True,
@@ -98,47 +99,45 @@ def draw_film(recording: Recording, path: Path, advance: Callable[[], None]) -> 
 
 
 def _save(picture: Image.Image, path: Path) -> None:
-    """As PNG; with fewer colours than that nobody notices, files are a third as large."""
+    """Write a PNG with 256 colours: the loss cannot be seen, and files are a third as large."""
     palette = picture.quantize(256, _METHOD)
     picture.quantize(palette=palette, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
-def _frame(
-    recording: Recording, frame: int, target: Floats, size: tuple[int, int], scale: float
-) -> Canvas:
-    """One frame, the camera on a target (3,)."""
-    walk = recording.walk
+def _frame(film: Film, frame: int, target: Floats, size: tuple[int, int], scale: float) -> Canvas:
+    """Paint one frame, the camera on a target (3,), metres."""
+    walk = film.walk
     x, y, z = target.tolist()
     canvas = Canvas(Camera((x, y, z), *walk.view, scale, size))
     canvas.paint_scene(walk.scene)
-    for footprint in recording.footprints:
-        if footprint.since_s <= recording.times_s[frame]:
-            canvas.paint_footprint(footprint, float(recording.build.leg_m[0]))
-    _paint_shadow(canvas, recording, frame)
-    canvas.paint_body(parts_of(recording.poses, frame))
+    for footprint in film.footprints:
+        if footprint.since_s <= film.times_s[frame]:
+            canvas.paint_footprint(footprint, float(film.sizes.leg_m[0]))
+    _paint_shadow(canvas, film, frame)
+    canvas.paint_body(parts_of(film.poses, frame))
     return canvas
 
 
-def _followed(recording: Recording) -> Floats:
-    """Where the camera looks, (F, 3): bodies sway, cameras should not."""
-    root, times = recording.poses.root, recording.times_s
+def _followed(film: Film) -> Floats:
+    """Points (F, 3) that the camera looks at: bodies sway, but the camera must not."""
+    root, times = film.poses.root, film.times_s
     half = max(1, round(0.5 * _FOLLOWED_S / float(times[1] - times[0])))
     padded = np.pad(root, ((half, half), (0, 0)), mode="edge")
     window = np.ones(2 * half + 1) / (2 * half + 1)
     return np.stack([np.convolve(axis, window, mode="valid") for axis in padded.T], axis=1)
 
 
-def _paint_shadow(canvas: Canvas, recording: Recording, frame: int) -> None:
-    """Below the hips, on level ground only."""
-    if not recording.walk.scene.solids():
-        x, y, _ = recording.poses.root[frame].tolist()
+def _paint_shadow(canvas: Canvas, film: Film, frame: int) -> None:
+    """Paint a shadow below the hips, on level ground only."""
+    if not film.walk.scene.solids():
+        x, y, _ = film.poses.root[frame].tolist()
         canvas.paint_shadow(np.array([x, y, 0.0]), _SHADOW_M)
 
 
-def _spread_out(recording: Recording) -> list[int]:
-    """Frames in which the body has come some way since the one before, ends included."""
-    root = recording.poses.root
-    gone = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(root, axis=0), axis=1))))
-    count = max(2, round(float(gone[-1]) / _APART_M) + 1)
-    frames = np.searchsorted(gone, np.linspace(0.0, gone[-1] - 1e-9, count))
+def _spread_out(film: Film) -> list[int]:
+    """Frames between which the body has moved by an even distance, ends included."""
+    root = film.poses.root
+    travelled = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(root, axis=0), axis=1))))
+    count = max(2, round(float(travelled[-1]) / _APART_M) + 1)
+    frames = np.searchsorted(travelled, np.linspace(0.0, travelled[-1] - 1e-9, count))
     return sorted(set(map(int, frames)))

@@ -1,4 +1,4 @@
-"""The walks that are filmed: where a body is at every tick, in a scene of its own."""
+"""The walks that are filmed: the places of a body at every tick, in a scene of its own."""
 
 from __future__ import annotations
 
@@ -6,43 +6,41 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from esplanade.planning import Polygon, Scene, Stairs
-
-Floats = NDArray[np.float64]
+from esplanade.planning.compiled.arrays import Floats
 
 TICK_S: Final = 0.05
-"""As the server's."""
-_STEP_RISE_M: Final = 0.17
+"""Duration of a tick, as the server has it."""
+_RISE_M: Final = 0.17
 _TREAD_M: Final = 0.29
-_STEPS: Final = 6
-_FOOT_M: Final = 1.6
-"""Where the flight begins."""
+_TREADS: Final = 6
+_FLIGHT_FROM_M: Final = 1.6
+"""Distance from the beginning of the walk to that of the stairs."""
 _LANDING_M: Final = 1.3
 
 
 @dataclass(frozen=True)
 class Walk:
-    """One body's way."""
+    """The path of one body."""
 
     name: str
     caption: str
     scene: Scene
     places: Floats
-    """(T, 2), metres: where it is at each tick."""
+    """(T, 2), metres: its places at the ticks."""
     headings: Floats
-    """(T,), radians: where it faces while it stands."""
+    """(T,), radians: the headings that it has while it stands."""
     planned: bool
-    """Its way is known ahead, as an actor's; else what comes is guessed from how it moves."""
+    """Whether its path is known ahead, as an actor's is; else it is guessed from its velocity."""
     view: tuple[float, float]
-    """From where it is seen: degrees counter-clockwise from the east, and above the ground."""
+    """Azimuth and elevation of the camera, degrees."""
     spans_s: tuple[tuple[float, float], ...]
-    """What strips show, seconds: a row for each."""
+    """Spans of time that strips show, seconds; each has a row."""
 
 
 def walks() -> dict[str, Walk]:
-    """All of them by name."""
+    """All walks by name."""
     return {walk.name: walk for walk in (_flat(), _curve(), _stairs(), _start_stop())}
 
 
@@ -75,19 +73,19 @@ def _curve() -> Walk:
 
 
 def _stairs() -> Walk:
-    run, top = _STEPS * _TREAD_M, _STEPS * _STEP_RISE_M
-    head = _FOOT_M + run
+    run, top = _TREADS * _TREAD_M, _TREADS * _RISE_M
+    head = _FLIGHT_FROM_M + run
     far = head + _LANDING_M
     flights = [
-        Stairs(start=(start, 0.0), end=(end, 0.0), width_m=1.2, top_m=top, steps=_STEPS)
-        for start, end in ((_FOOT_M, head), (far + run, far))
+        Stairs(start=(start, 0.0), end=(end, 0.0), width_m=1.2, top_m=top, steps=_TREADS)
+        for start, end in ((_FLIGHT_FROM_M, head), (far + run, far))
     ]
     landing = Polygon(
         points=((head, -0.6), (far, -0.6), (far, 0.6), (head, 0.6)), height_m=top, kind="floor"
     )
     scene = _ground(stairs=tuple(flights), polygons=(landing,))
-    places = _along(np.array([[0.0, 0.0], [far + run + _FOOT_M, 0.0]]), 0.75)
-    caption = f"{_STEPS} steps of {_STEP_RISE_M * 100:.0f} cm up and down, 0.75 m/s"
+    places = _along(np.array([[0.0, 0.0], [far + run + _FLIGHT_FROM_M, 0.0]]), 0.75)
+    caption = f"{_TREADS} steps of {_RISE_M * 100:.0f} cm up and down, 0.75 m/s"
     return _walk(
         "stairs",
         caption,
@@ -136,29 +134,30 @@ def _walk(
 
 
 def _along(line: Floats, speed_mps: float, ramp_s: float = 0.6) -> Floats:
-    """Places (T, 2) at ticks along a line (P, 2), with even speeding up and slowing down."""
+    """Places (T, 2) at ticks along a line (P, 2), metres; speed changes evenly at its ends."""
     lengths = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))))
     whole = lengths[-1]
     seconds = whole / speed_mps + ramp_s
     t = np.arange(0.0, seconds + TICK_S, TICK_S)
     speeding = np.clip(t, 0.0, ramp_s) ** 2 / (2.0 * ramp_s) + np.maximum(t - ramp_s, 0.0)
     slowing = np.maximum(t - (seconds - ramp_s), 0.0) ** 2 / (2.0 * ramp_s)
-    gone = np.minimum(speed_mps * (speeding - slowing), whole)
-    gone[t >= seconds] = whole
-    return np.stack([np.interp(gone, lengths, axis) for axis in line.T], axis=1)
+    travelled = np.minimum(speed_mps * (speeding - slowing), whole)
+    travelled[t >= seconds] = whole
+    return np.stack([np.interp(travelled, lengths, axis) for axis in line.T], axis=1)
 
 
 def _with_rests(places: Floats, begin_s: float = 0.4, end_s: float = 1.2) -> Floats:
+    """Places (T, 2) with times of rest put before and after."""
     before = np.repeat(places[:1], round(begin_s / TICK_S), axis=0)
     after = np.repeat(places[-1:], round(end_s / TICK_S), axis=0)
     return np.concatenate((before, places, after))
 
 
 def _headings(places: Floats) -> Floats:
-    """Where a body faces that keeps facing where it last went, (T,)."""
+    """Headings (T,) of a body that keeps facing where it last went."""
     moved = np.diff(places, axis=0, append=places[-1:])
     going = np.hypot(moved[:, 0], moved[:, 1]) > 1e-4
-    ways = np.arctan2(moved[:, 1], moved[:, 0])
+    directions = np.arctan2(moved[:, 1], moved[:, 0])
     latest = np.maximum.accumulate(np.where(going, np.arange(len(places)), -1))
     first = int(np.argmax(going))
-    return np.asarray(ways[np.where(latest < 0, first, latest)])
+    return np.asarray(directions[np.where(latest < 0, first, latest)])

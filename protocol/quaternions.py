@@ -1,6 +1,6 @@
 """Rotations in few bytes. Quaternions are w, x, y, z in the last axis, of length 1.
 
-q and -q are one rotation: what comes back may have the other sign.
+q and -q are the same rotation: what is unpacked may have the other sign.
 """
 
 from typing import Final
@@ -11,7 +11,7 @@ import numpy.typing as npt
 Floats = npt.NDArray[np.float64]
 
 SMALLEST_THREE: Final = np.sqrt(0.5) / 16383.0
-"""Quantum of three components that are each at most the root of 1/2, in 15 bits with a sign."""
+"""Quantum of components that are at most the root of 1/2, in 15 bits with a sign."""
 
 NEAR_IDENTITY: Final = 0.5 / 127.0
 """Quantum of x, y, z of a small rotation in 8 bits with a sign."""
@@ -19,15 +19,15 @@ NEAR_IDENTITY: Final = 0.5 / 127.0
 _ZERO: Final = 0x4000
 _VALUE_BITS: Final = 0x7FFF
 _OTHERS: Final = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])
-"""The components beside the largest, by the place of the largest."""
+"""The three other components, by the place of the largest one."""
 
 
 def pack_smallest_three(quaternions: Floats) -> npt.NDArray[np.uint16]:
-    """Any rotations, (..., 4), as three words each, uint16 (..., 3); at most 0.01 degrees off.
+    """Pack any rotations, float64 (..., 4), into three words each, uint16 (..., 3).
 
-    Of the four components the largest is left out. The low 15 bits of each word are one of the
-    others, in their order, plus 0x4000; the top bits of the first and second word are the low and
-    the high bit of the place of the one left out.
+    They are at most 0.01 degrees off. The largest of the four components is left out. The low 15
+    bits of each word are one of the others, in their order, plus 0x4000. The top bits of the first
+    and the second word are the low and the high bit of the place of the one left out.
     """
     place = np.abs(quaternions).argmax(axis=-1)[..., None]
     largest = np.take_along_axis(quaternions, place, axis=-1)
@@ -40,7 +40,7 @@ def pack_smallest_three(quaternions: Floats) -> npt.NDArray[np.uint16]:
 
 
 def unpack_smallest_three(words: npt.NDArray[np.uint16]) -> Floats:
-    """Rotations that `pack_smallest_three` made, float64 (..., 4)."""
+    """Unpack what `pack_smallest_three` made: rotations, float64 (..., 4)."""
     place = ((words[..., 0] >> 15) | (words[..., 1] >> 15 << 1)).astype(np.int64)
     others = ((words & _VALUE_BITS).astype(np.int64) - _ZERO) * SMALLEST_THREE
     quaternions = np.empty((*words.shape[:-1], 4))
@@ -50,10 +50,10 @@ def unpack_smallest_three(words: npt.NDArray[np.uint16]) -> Floats:
 
 
 def pack_near_identity(quaternions: Floats) -> npt.NDArray[np.int8]:
-    """Small rotations, (..., 4), as their x, y, z with w >= 0, int8 (..., 3).
+    """Pack small rotations, float64 (..., 4), into their x, y, z with w >= 0, int8 (..., 3).
 
-    Each of x, y, z may be up to 0.5 (60 degrees about one axis), and is clamped there; within
-    that at most 0.7 degrees off, and below 0.5 degrees for rotations of up to 60 degrees.
+    Each of x, y, z is clamped to 0.5, which is a turn by 60 degrees about one axis. Within that
+    rotations are at most 0.7 degrees off, and below 0.5 degrees if they are up to 60 degrees.
     """
     upward = quaternions[..., 1:] * np.where(quaternions[..., :1] < 0.0, -1.0, 1.0)
     packed: npt.NDArray[np.int8] = np.rint(upward / NEAR_IDENTITY).clip(-0x7F, 0x7F).astype(np.int8)
@@ -61,13 +61,13 @@ def pack_near_identity(quaternions: Floats) -> npt.NDArray[np.int8]:
 
 
 def unpack_near_identity(vectors: npt.NDArray[np.int8]) -> Floats:
-    """Rotations that `pack_near_identity` made, float64 (..., 4)."""
+    """Unpack what `pack_near_identity` made: rotations, float64 (..., 4)."""
     others: Floats = vectors.astype(np.float64) * NEAR_IDENTITY
     return _unit(np.concatenate([_missing(others), others], axis=-1))
 
 
 def _missing(others: Floats) -> Floats:
-    """The component that makes the length 1, not negative."""
+    """The component, never negative, that makes the length 1."""
     rest: Floats = 1.0 - np.square(others).sum(axis=-1, keepdims=True)
     return np.sqrt(np.maximum(rest, 0.0))
 

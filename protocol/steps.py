@@ -5,7 +5,7 @@ its landing footprint, on which it stands during the next step. A footprint is t
 heel on the ground, with the heading of the toe. Between the six keys, at even shares of the step's
 duration, the pose is interpolated.
 
-Who walks quantises a step once and goes on from what the record holds: the landing footprint of
+The server quantises a step once and goes on from what the record holds: the landing footprint of
 one step is the standing footprint of the next, bit for bit.
 """
 
@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from esplanade.protocol.quaternions import (
+    Floats,
     pack_near_identity,
     pack_smallest_three,
     unpack_near_identity,
@@ -26,7 +27,7 @@ KEYS: Final = 6
 """Keys of a step, at the shares 0, 0.2, 0.4, 0.6, 0.8 and 1 of its duration."""
 
 FOOTPRINT = np.dtype([("position", "<i4", 3), ("heading", "<u2")])
-"""14 bytes. Tenths of a millimetre in the world; 1/65536 turns from +x."""
+"""A footprint, 14 bytes: the place in 0.1 mm, the heading in 1/65536 turns from +x."""
 
 KEY = np.dtype(
     [
@@ -40,7 +41,7 @@ KEY = np.dtype(
         ("arms", "i1", 4),
     ]
 )
-"""31 bytes. Root and ankle in 0.1 mm from the standing and from the landing footprint."""
+"""A key, 31 bytes: root and ankle in 0.1 mm from the standing and from the landing footprint."""
 
 STEP = np.dtype(
     [
@@ -54,11 +55,14 @@ STEP = np.dtype(
         ("keys", KEY, KEYS),
     ]
 )
-"""225 bytes."""
+"""A step, 225 bytes."""
 
 STANDS_ON_RIGHT: Final = 1
+"""Flag of a step during which the right foot stands."""
 RE_AIMED: Final = 2
+"""Flag of a step that takes the place of the rest of one under way."""
 
+# Quanta of the fields.
 FOOTPRINT_M: Final = 1e-4
 FOOTPRINT_RAD: Final = 2.0 * np.pi / 65536.0
 KEY_M: Final = 1e-4
@@ -67,14 +71,13 @@ ARM_RAD: Final = 1.0 / 40.0
 MAX_TICKS: Final = 255
 
 StepRecords = npt.NDArray[np.void]
-Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 Flags = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
 class Footprints:
-    """Where N feet stand: float64 (N, 3) metres in the world, float64 (N,) radians from +x."""
+    """N footprints: places (N, 3), metres in the world, and headings (N,), radians from +x."""
 
     positions_m: Floats
     headings_rad: Floats
@@ -85,21 +88,21 @@ class Keys:
     """Poses of N walkers at the K keys of a step, in world axes. Quaternions are w, x, y, z."""
 
     roots_m: Floats
-    """Centre between the hips, (N, K, 3), metres in the world."""
+    """(N, K, 3): the middle between the hip joints, metres in the world."""
     pelvises: Floats
-    """From the axes forward, left, up of a body with heading 0 to the pelvis, (N, K, 4)."""
+    """(N, K, 4): from the axes forward, left, up of a body with heading 0 to the pelvis."""
     ankles_m: Floats
-    """Ankle of the swing foot, (N, K, 3), metres in the world."""
+    """(N, K, 3): ankle of the swing foot, metres in the world."""
     swing_pitches_rad: Floats
-    """Pitch of the swing foot, toe-up positive, (N, K)."""
+    """(N, K): pitch of the swing foot, positive with the toe up."""
     standing_pitches_rad: Floats
-    """Pitch of the standing foot, toe-up positive, (N, K)."""
+    """(N, K): pitch of the standing foot, positive with the toe up."""
     swing_headings_rad: Floats
-    """Heading of the swing foot, (N, K), within half a turn of the landing footprint's."""
+    """(N, K): heading of the swing foot, within half a turn of the landing footprint's."""
     chests: Floats
-    """From the pelvis to the chest, (N, K, 4); no component of x, y, z beyond 0.5."""
+    """(N, K, 4): from the pelvis to the chest; none of x, y, z is beyond 0.5."""
     arms_rad: Floats
-    """Flexion of shoulder left, shoulder right, elbow left, elbow right, (N, K, 4)."""
+    """(N, K, 4): flexion of shoulder left, shoulder right, elbow left, elbow right."""
 
 
 @dataclass(frozen=True)
@@ -108,16 +111,17 @@ class Steps:
 
     ids: Integers
     on_right: Flags
-    """Whether the standing foot is the right one."""
+    """(N,): whether the standing foot is the right one."""
     re_aimed: Flags
-    """Whether it takes the place of the rest of a step that is under way."""
+    """(N,): whether the step takes the place of the rest of one that is under way."""
     begin_ticks: Integers
     durations_ticks: Integers
-    """0 for a walker that just stands, in the pose of all its keys."""
+    """(N,): 0 for a walker that just stands, in the pose of all its keys."""
     standing: Footprints
     landing: Footprints
     lifts: Floats
-    """Share of the duration, (N,), until which the swing foot's toe stays where key 0 has it."""
+    """(N,): toe-off, the share of the duration until which the swing foot's toe stays where key 0
+    has it."""
     keys: Keys
 
 
@@ -126,8 +130,10 @@ def pack_steps(steps: Steps) -> StepRecords:
 
     Returns
     -------
-    STEP (N,). What lies outside a field's range is clamped to its edge. Errors in the pose are at
-    most 0.05 mm and 0.01 degrees for what legs hang on, and below 1 degree for chest and arms.
+    STEP (N,)
+        Values outside the range of a field are clamped to its edge. The pose is off by at most
+        0.05 mm and 0.01 degrees in root, pelvis and feet, and by less than 1 degree in chest and
+        arms.
     """
     keys = steps.keys
     records = np.zeros(len(steps.ids), dtype=STEP)
@@ -138,7 +144,7 @@ def pack_steps(steps: Steps) -> StepRecords:
     records["lift"] = np.rint(np.clip(steps.lifts, 0.0, 1.0) * 0xFF)
     _pack_footprints(records["standing"], steps.standing)
     _pack_footprints(records["landing"], steps.landing)
-    # Against the quantised footprints, which are what the keys come back on.
+    # Keys are relative to the quantised footprints, which readers add to them.
     standing, landing = _footprints(records["standing"]), _footprints(records["landing"])
     packed = records["keys"]
     packed["root"] = _short(keys.roots_m - standing.positions_m[:, None], KEY_M)
@@ -154,7 +160,7 @@ def pack_steps(steps: Steps) -> StepRecords:
 
 
 def unpack_steps(records: StepRecords) -> Steps:
-    """What N records say, in world coordinates."""
+    """The steps of records (N,), in world coordinates."""
     standing, landing = _footprints(records["standing"]), _footprints(records["landing"])
     packed = records["keys"]
     return Steps(
@@ -180,15 +186,16 @@ def unpack_steps(records: StepRecords) -> Steps:
 
 
 def step_records(block: bytes) -> StepRecords:
-    """Records of a block, as a read-only view.
+    """The records of a block, as a read-only view.
 
     Raises
     ------
     ValueError
-        The block's length is no multiple of the record's.
+        The length of the block is no multiple of that of a record.
     """
     if len(block) % STEP.itemsize:
-        raise ValueError(f"block of {len(block)} bytes of steps is no multiple of {STEP.itemsize}")
+        size = STEP.itemsize
+        raise ValueError(f"a block of steps must be a multiple of {size} bytes, got {len(block)}")
     return np.frombuffer(block, dtype=STEP)
 
 
@@ -202,5 +209,6 @@ def _footprints(packed: StepRecords) -> Footprints:
 
 
 def _short(values: Floats, quantum: float) -> Floats:
+    """Multiples of a quantum, clamped to 16 bits."""
     rounded: Floats = np.clip(np.rint(values / quantum), -0x7FFF, 0x7FFF)
     return rounded

@@ -5,7 +5,7 @@ from collections.abc import Hashable, Mapping
 import numpy as np
 
 from esplanade.actors import Explanation, ObservedPeople, Population
-from esplanade.actors.locomotion.aims import AHEAD, AHEAD_S
+from esplanade.actors.locomotion.footsteps.course import AHEAD, AHEAD_S
 from esplanade.server.world.routes import Point
 from esplanade.server.world.state import ACTOR, Floats, Slots, State
 

@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from esplanade.actors.locomotion.aims import AHEAD, AHEAD_S
+from esplanade.actors.locomotion.footsteps.course import AHEAD, AHEAD_S
 from esplanade.planning import LayeredGrid
 from esplanade.server.world.inputs import Follow, Steer
 from esplanade.server.world.routes import Point

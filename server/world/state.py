@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from esplanade.actors.locomotion.aims import AHEAD
+from esplanade.actors.locomotion.footsteps.course import AHEAD
 from esplanade.protocol import Kind
 
 Floats = npt.NDArray[np.float64]

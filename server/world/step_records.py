@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from esplanade.actors.locomotion import motion
+from esplanade.actors.locomotion.motion import key_poses as motion
 from esplanade.protocol import steps as wire
 from esplanade.protocol.steps import Footprints, Keys, StepRecords, pack_steps, unpack_steps
 from esplanade.server.world.state import Slots
@@ -14,8 +14,8 @@ def to_records(steps: motion.Steps, ids: Slots) -> StepRecords:
     return pack_steps(
         wire.Steps(
             ids=ids,
-            on_right=steps.right,
-            re_aimed=steps.again,
+            on_right=steps.on_right,
+            re_aimed=steps.re_aimed,
             begin_ticks=steps.start,
             durations_ticks=steps.ticks,
             standing=Footprints(steps.standing[:, :3], steps.standing[:, 3]),

@@ -1,13 +1,13 @@
-"""Everyone's feet: whoever is in the world walks with real steps after where it is."""
+"""Everyone's feet: they follow the bodies in the world with real steps."""
 
 import numpy as np
 import structlog
 
-from esplanade.actors.locomotion import motion
-from esplanade.actors.locomotion.aims import AHEAD, Course
-from esplanade.actors.locomotion.builds import physique_of
-from esplanade.actors.locomotion.ground import Ground
-from esplanade.actors.locomotion.walkers import Walkers
+from esplanade.actors.locomotion.body.traits import traits_of
+from esplanade.actors.locomotion.footsteps.course import AHEAD, Course
+from esplanade.actors.locomotion.footsteps.ground import Ground
+from esplanade.actors.locomotion.footsteps.walkers import Walkers
+from esplanade.actors.locomotion.motion.key_poses import Steps
 from esplanade.server.world.state import Slots, State
 from esplanade.server.world.step_interest import LatestSteps
 from esplanade.server.world.step_records import from_records, to_records
@@ -16,7 +16,7 @@ log = structlog.get_logger(__name__)
 
 
 class Feet:
-    """Begins the steps of a tick, and keeps the latest of everyone as it is sent."""
+    """Begins the steps of a tick, and keeps the latest step of everyone as it is sent."""
 
     def __init__(
         self, state: State, latest: LatestSteps, ground: Ground, tick_s: float, seed: int
@@ -28,33 +28,33 @@ class Feet:
         self._failed = -1
         self._ids = np.zeros(state.capacity, dtype=np.int64)
         _warm_up(ground, tick_s)
-        self._walkers = Walkers(state.capacity, ground, tick_s, self._carry)
+        self._walkers = Walkers(state.capacity, ground, tick_s, self._publish)
         self.begun = 0
-        """Steps so far, those included that only went on otherwise."""
+        """Number of steps so far, those included that were only re-aimed."""
         self.failures = 0
-        """Ticks in which no step could be found for anyone."""
+        """Number of ticks in which no steps could be found."""
 
     @property
     def lost(self) -> int:
-        """How often somebody was too far from its feet and stood anew."""
+        """How often a body was too far from its feet and stood anew."""
         return self._walkers.lost
 
     def update(self, tick: int) -> None:
-        """Take in where everyone is and is going; who is new stands."""
+        """Begin and re-aim steps after where everyone is and is going; newcomers stand."""
         self._tick = tick
         state = self._state
         live = state.live()
         new = live[self._ids[live] != state.ids[live]]
-        physiques = [physique_of(self._seed, avatar) for avatar in state.ids[new].tolist()]
-        state.legs_m[new] = [each.leg_m for each in physiques]
-        state.statures_m[new] = [each.stature_m for each in physiques]
+        traits = [traits_of(self._seed, avatar) for avatar in state.ids[new].tolist()]
+        state.legs_m[new] = [each.leg_m for each in traits]
+        state.statures_m[new] = [each.stature_m for each in traits]
         try:
             if len(new):
-                self._walkers.join(tick, new, physiques, self._course(new))
+                self._walkers.join(tick, new, traits, self._course(new))
                 self._ids[new] = state.ids[new]
             self._walkers.update(tick, live, self._course(live))
         except Exception:
-            # Everyone stands anew in the next tick; the world goes on meanwhile.
+            # In the next tick everyone stands anew; meanwhile the world goes on.
             if self._failed != tick - 1:
                 log.exception("no steps found", tick=tick)
             self._failed = tick
@@ -64,7 +64,7 @@ class Feet:
     def _course(self, slots: Slots) -> Course:
         return Course(self._state.headings[slots], self._state.ahead[slots])
 
-    def _carry(self, steps: motion.Steps, slots: Slots) -> motion.Steps:
+    def _publish(self, steps: Steps, slots: Slots) -> Steps:
         records = to_records(steps, self._state.ids[slots])
         self._latest.begin(slots, records, self._tick)
         self.begun += len(slots)
@@ -72,10 +72,10 @@ class Feet:
 
 
 def _warm_up(ground: Ground, tick_s: float) -> None:
-    """Compile what a tick would have to wait for: somebody walks, turns and stops."""
+    """Compile what a tick would have to wait for, by a body that walks, turns and stops."""
     one = Walkers(1, ground, tick_s, lambda steps, _: steps)
     slots, ahead = np.zeros(1, dtype=np.int64), np.zeros((1, AHEAD, 3))
-    one.join(0, slots, [physique_of(0, 0)], Course(np.zeros(1), ahead))
+    one.join(0, slots, [traits_of(0, 0)], Course(np.zeros(1), ahead))
     ahead[0, :, 0] = np.linspace(0.0, 1.0, AHEAD)
     for tick in range(1, 12):
         one.update(tick, slots, Course(np.zeros(1), ahead if tick < 5 else -ahead))

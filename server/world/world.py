@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from esplanade.actors import Explanation, ObservedPeople, Population
-from esplanade.actors.locomotion.ground import Ground
+from esplanade.actors.locomotion.footsteps.ground import Ground
 from esplanade.actors.people import NOBODY
 from esplanade.planning import LayeredGrid, Scene
 from esplanade.server.world.actors import ActorAvatars

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from benchmarks import steps as benchmark
-from benchmarks._footage import Seen, cost_of
 from benchmarks._slide import judge
+from benchmarks._step_log import Seen, cost_of
 
 from esplanade.protocol.steps import RE_AIMED
 from esplanade.recordings import Crowd, Track, read_crowd
@@ -106,8 +106,8 @@ def test_a_recorded_crowd_is_seen_to_walk_without_sliding() -> None:
     settings = ServerSettings(
         crowd=path, actors=5, host="127.0.0.1", port=0, private_port=0, log_level="error"
     )
-    footage, everyone, seconds = asyncio.run(benchmark.watch(settings, read_crowd(path), 12.0))
-    found, cost = judge(everyone, footage.tick_rate), cost_of(footage, everyone, seconds)
+    log, everyone, seconds = asyncio.run(benchmark.watch(settings, read_crowd(path), 12.0))
+    found, cost = judge(everyone, log.tick_rate), cost_of(log, everyone, seconds)
     assert cost.steps > 200
     assert cost.visible_at_once > 10
     assert np.percentile(found.slide, 99) < 0.2e-3

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from esplanade.actors.locomotion.two_stage import arm_chain, effector, reach
+from esplanade.actors.locomotion.reaching.two_stage import arm_chain, effector, reach
 
 FIXTURE: Final = Path(__file__).parents[2] / "client_web" / "tests" / "fixtures" / "reach.json"
 

@@ -27,4 +27,4 @@ def test_nobody_is_taller_than_the_build():
     film = filmed("flat")
     parts = parts_of(film.poses, 0)
     top = max(float(np.max(part.centres[:, 2] + part.radii_m)) for part in parts)
-    assert top < float(film.build.stature_m[0]) + 0.03
+    assert top < float(film.sizes.stature_m[0]) + 0.03

@@ -7,8 +7,8 @@ from PIL import ImageColor
 from esplanade.footage import painting
 from esplanade.footage.camera import Camera
 from esplanade.footage.figure import Part
+from esplanade.footage.film import FilmedFootprint
 from esplanade.footage.painting import Canvas
-from esplanade.footage.recording import Footprint
 from esplanade.planning import Polygon, Scene
 
 ABOVE = Camera((0.0, 0.0, 0.0), -90.0, 90.0, 50.0, (100, 100))
@@ -40,7 +40,7 @@ def test_solids_show_their_tops_from_above_and_their_sides_from_aside():
 @pytest.mark.parametrize("right", [False, True])
 def test_footprints_reach_from_heel_to_toe_in_the_colour_of_their_side(right: bool):
     canvas = Canvas(ABOVE)
-    canvas.paint_footprint(Footprint(np.array([0.0, 0.0, 0.0, 0.0]), right, 0.0), leg_m=4.0)
+    canvas.paint_footprint(FilmedFootprint(np.array([0.0, 0.0, 0.0, 0.0]), right, 0.0), leg_m=4.0)
     expected = ImageColor.getrgb(painting.FOOTPRINTS[right])
     # Shrinking overshoots a little beside edges.
     assert colour_at(canvas, 70, 50) == pytest.approx(expected, abs=15)

@@ -7,12 +7,12 @@ import numpy as np
 from PIL import Image
 
 from esplanade.actors.locomotion.reference.posing import Pose
-from esplanade.footage.recording import Recording
+from esplanade.footage.film import Film
 from esplanade.footage.strips import PANELS, draw_film, draw_strip, draw_trail
 from tests.footage.films import filmed
 
 
-def beginning(frames: int) -> Recording:
+def beginning(frames: int) -> Film:
     film = filmed("stairs")
     poses = Pose._make(values[:frames] for values in film.poses)
     return replace(film, times_s=film.times_s[:frames], poses=poses)

@@ -37,7 +37,7 @@ def test_spans_of_strips_lie_within_the_walk(name: str):
     assert all(0.0 <= first < last <= end_s for first, last in walk.spans_s)
 
 
-def test_who_stands_faces_where_it_went_last():
+def test_a_body_that_stands_faces_where_it_went_last():
     walk = walks()["start-stop"]
     first_stop = round((0.4 + 2.3 / 1.4 + 0.6) / TICK_S)
     assert walk.headings[0] == pytest.approx(0.0)

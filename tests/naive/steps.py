@@ -1,11 +1,14 @@
-"""Steps drawn and begun, whole arrays at a time: what kernels are held to."""
+"""Steps drawn and begun, whole arrays at a time; tests hold the kernels to them."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.actors.locomotion._stance_kernels import EASE_RAD, STEEPEST_RAD
-from esplanade.actors.locomotion.footfalls import Footfalls, Targets
-from esplanade.actors.locomotion.motion import (
+from esplanade.actors.locomotion.body.headings import wrap_angle
+from esplanade.actors.locomotion.body.sizes import BodySizes
+from esplanade.actors.locomotion.body.skeleton import TRACK_HALF_WIDTH
+from esplanade.actors.locomotion.gait.curves import smooth
+from esplanade.actors.locomotion.motion._leg_pose_kernels import EASE_RAD, STEEPEST_RAD
+from esplanade.actors.locomotion.motion.key_poses import (
     ANKLE,
     CHEST,
     ELBOWS,
@@ -18,16 +21,17 @@ from esplanade.actors.locomotion.motion import (
     SWING_HEADING,
     SWING_PITCH,
     WIDTH,
-    Floats,
     Steps,
     heel_from_toe,
-    smooth,
     standing_ankles,
 )
+from esplanade.actors.locomotion.motion.leg_poses import REACH, LegPoses
+from esplanade.actors.locomotion.motion.transitions import CurrentPose
+from esplanade.actors.locomotion.planted.footprints import StepFootprints
+from esplanade.actors.locomotion.planted.targets import Targets
+from esplanade.actors.locomotion.reference.posing import left_and_right
 from esplanade.actors.locomotion.reference.rotations import about, multiply, normalise, rotate
-from esplanade.actors.locomotion.skeleton import TRACK_HALF_WIDTH
-from esplanade.actors.locomotion.stance import REACH, Build, Legs, both_sides
-from esplanade.actors.locomotion.strides import Drawn, wrapped
+from esplanade.planning.compiled.arrays import Floats
 
 LANDING = [7, 8, 9, 10, 12]
 
@@ -63,13 +67,13 @@ def weights(u: Floats) -> Floats:
     )
 
 
-def between(keys: Floats, u: Floats) -> Floats:
+def interpolate(keys: Floats, u: Floats) -> Floats:
     """Keys (N, KEYS, WIDTH) at shares u (N,): (N, WIDTH).
 
     Quaternions follow the same curves, component by component, and are made unit again: keys of
     one step are some degrees apart, where that is as good as going along great circles. Neighbours
-    among the keys must have the same sign (`align`). What moves the swinging foot comes to rest at
-    the end: there its curves are level.
+    among the keys must have the same sign (`align`). The swing foot comes to rest at the end, so
+    there its curves are level.
     """
     out = np.einsum("nk,nkd->nd", weights(u), keys)
     s = np.clip(u * (KEYS - 1) - (KEYS - 2), 0.0, 1.0)
@@ -80,13 +84,13 @@ def between(keys: Floats, u: Floats) -> Floats:
     return np.asarray(out)
 
 
-def under_way(steps: Steps, u: Floats, foot_m: Floats) -> Floats:
-    """What is drawn of steps at shares u (N,): keys (N, WIDTH), the swinging ankle as it is.
+def sample_keys(steps: Steps, u: Floats, foot_m: Floats) -> Floats:
+    """What is drawn of steps at shares u (N,): keys (N, WIDTH).
 
-    Until it lifts, the swinging foot turns on its toe, which stays where key 0 has it; then what
-    is missing to its curve fades.
+    Until toe-off the swing foot turns about its toe, which stays where key 0 has it; after that the
+    difference to its curve fades.
     """
-    out = between(steps.keys, u)
+    out = interpolate(steps.keys, u)
     pinned = steps.lift > 0.0
     if not pinned.any():
         return out
@@ -96,36 +100,36 @@ def under_way(steps: Steps, u: Floats, foot_m: Floats) -> Floats:
         first[:, SWING_PITCH], first[:, SWING_HEADING] + heading, foot_m
     )
     here = np.minimum(u[pinned], lift)
-    at = between(steps.keys[pinned], here)
+    at = interpolate(steps.keys[pinned], here)
     ankle = toe + heel_from_toe(at[:, SWING_PITCH], at[:, SWING_HEADING] + heading, foot_m)
     fade = 1.0 - smooth((u[pinned] - lift) / SETTLE)
     out[pinned, ANKLE] += fade[:, None] * (ankle - at[:, ANKLE])
     return out
 
 
-def stance(steps: Steps, u: Floats, key: Floats, build: Build) -> Legs:
-    """The legs of N steps at shares u (N,), where `under_way` has given keys (N, WIDTH)."""
+def leg_poses(steps: Steps, u: Floats, key: Floats, sizes: BodySizes) -> LegPoses:
+    """Legs of N steps at shares u (N,), where `sample_keys` has given keys (N, WIDTH)."""
     root = steps.standing[:, :3] + key[:, ROOT]
-    ankles, pitches, headings, raised = _feet(steps, u, key, build)
+    ankles, pitches, headings, raised = _feet(steps, u, key, sizes)
     hips = root[:, None] + rotate(
         key[:, None, PELVIS],
-        both_sides(TRACK_HALF_WIDTH * build.leg_m, np.zeros_like(build.leg_m)),
+        left_and_right(TRACK_HALF_WIDTH * sizes.leg_m, np.zeros_like(sizes.leg_m)),
     )
-    _raise_heels(hips, ankles, pitches, headings, raised, build)
-    root, hips = _lower(root, hips, ankles, build)
-    return Legs(root, hips, ankles, pitches, headings)
+    _raise_heels(hips, ankles, pitches, headings, raised, sizes)
+    root, hips = _lower(root, hips, ankles, sizes)
+    return LegPoses(root, hips, ankles, pitches, headings)
 
 
 def _feet(
-    steps: Steps, u: Floats, key: Floats, build: Build
+    steps: Steps, u: Floats, key: Floats, sizes: BodySizes
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """Ankles (N, 2, 3), pitches, headings (N, 2), and how far each stands on its toe (N, 2)."""
-    standing = standing_ankles(steps.standing, key[:, STANDING_PITCH], build.foot_m)
-    swinging = steps.landing[:, :3] + key[:, ANKLE]
-    right = steps.right.astype(np.int64)
+    standing = standing_ankles(steps.standing, key[:, STANDING_PITCH], sizes.foot_m)
+    swing = steps.landing[:, :3] + key[:, ANKLE]
+    right = steps.on_right.astype(np.int64)
     rows = np.arange(len(right))
     ankles = np.empty((len(right), 2, 3))
-    ankles[rows, right], ankles[rows, 1 - right] = standing, swinging
+    ankles[rows, right], ankles[rows, 1 - right] = standing, swing
     pitches, headings, raised = (np.empty((len(right), 2)) for _ in range(3))
     pitches[rows, right], pitches[rows, 1 - right] = key[:, STANDING_PITCH], key[:, SWING_PITCH]
     headings[rows, right] = steps.standing[:, 3]
@@ -142,14 +146,14 @@ def _raise_heels(
     pitches: Floats,
     headings: Floats,
     raised: Floats,
-    build: Build,
+    sizes: BodySizes,
 ) -> None:
     """Where a leg is too short for a foot on its toe, turn the foot about the toe; in place."""
-    reach = REACH * build.leg_m[:, None]
+    reach = REACH * sizes.leg_m[:, None]
     short = (np.linalg.norm(ankles - hips, axis=2) > reach) & (raised > 0.0)
     if not short.any():
         return
-    foot = np.broadcast_to(build.foot_m[:, None], short.shape)[short]
+    foot = np.broadcast_to(sizes.foot_m[:, None], short.shape)[short]
     reach = np.broadcast_to(reach, short.shape)[short]
     pitch, heading = pitches[short], headings[short]
     toe = ankles[short] - heel_from_toe(pitch, heading, foot)
@@ -166,10 +170,10 @@ def _raise_heels(
     ankles[short] = toe + heel_from_toe(pitch, heading, foot)
 
 
-def _lower(root: Floats, hips: Floats, ankles: Floats, build: Build) -> tuple[Floats, Floats]:
+def _lower(root: Floats, hips: Floats, ankles: Floats, sizes: BodySizes) -> tuple[Floats, Floats]:
     """Bring the hips down until both legs reach their feet."""
     legs = hips - ankles
-    reach = REACH * build.leg_m[:, None]
+    reach = REACH * sizes.leg_m[:, None]
     level2 = np.minimum(legs[..., 0] ** 2 + legs[..., 1] ** 2, reach**2)
     drop = np.maximum(legs[..., 2] - np.sqrt(reach**2 - level2), 0.0).max(axis=1)
     down = np.zeros_like(root)
@@ -177,21 +181,21 @@ def _lower(root: Floats, hips: Floats, ankles: Floats, build: Build) -> tuple[Fl
     return root + down, hips + down[:, None]
 
 
-def go_on(
+def inertialise(
     keys: Floats,
-    now: Drawn,
-    goes_on: NDArray[np.bool_],
+    now: CurrentPose,
+    re_aimed: NDArray[np.bool_],
     ticks: NDArray[np.int64],
     aside: Floats,
 ) -> Floats:
-    """Keys that begin with what is drawn, in value and speed, and end aside."""
+    """Keys that begin with the current pose, in value and speed, and end aside."""
     keys, first, speed = keys.copy(), now.key.copy(), now.speed.copy()
     for part in (PELVIS, CHEST):
         other = np.einsum("nd,nd->n", first[:, part], keys[:, 0, part]) < 0.0
         first[other, part] *= -1.0
         speed[other, part] *= -1.0
     missing = first - keys[:, 0]
-    missing[:, SWING_HEADING] = wrapped(missing[:, SWING_HEADING])
+    missing[:, SWING_HEADING] = wrap_angle(missing[:, SWING_HEADING])
     share = smooth(np.linspace(0.0, 1.0, KEYS))
     keys += (1.0 - share)[None, :, None] * missing[:, None]
     keys[..., :2] += share[None, :, None] * aside[:, None]
@@ -200,23 +204,23 @@ def go_on(
     body = np.ones(WIDTH, dtype=np.bool_)
     body[ANKLE] = False
     body[[SWING_PITCH, STANDING_PITCH, SWING_HEADING]] = False
-    keys[:, 1] = np.where(body | goes_on[:, None], second, keys[:, 1])
+    keys[:, 1] = np.where(body | re_aimed[:, None], second, keys[:, 1])
     for part in (PELVIS, CHEST):
         keys[..., part] = normalise(keys[..., part])
     return keys
 
 
-def keys_of(targets: Targets, falls: Footfalls) -> Floats:
+def keys_of(targets: Targets, footprints: StepFootprints) -> Floats:
     """Keys (N, K, WIDTH) of targets."""
     keys = np.empty((*targets.yaw.shape, WIDTH))
-    keys[..., ROOT] = targets.root - falls.standing[:, None, :3]
+    keys[..., ROOT] = targets.root - footprints.standing[:, None, :3]
     forward, left, up = np.eye(3)
     pelvis = multiply(about(up, targets.yaw), about(left, targets.lean))
     keys[..., PELVIS] = multiply(pelvis, about(forward, targets.roll))
-    keys[..., ANKLE] = targets.swing_ankle - falls.landing[:, None, :3]
+    keys[..., ANKLE] = targets.swing_ankle - footprints.landing[:, None, :3]
     keys[..., SWING_PITCH] = targets.swing_pitch
     keys[..., STANDING_PITCH] = targets.standing_pitch
-    heading = targets.swing_heading - falls.landing[:, None, 3]
+    heading = targets.swing_heading - footprints.landing[:, None, 3]
     turns = np.round(heading[:, -1:] / (2.0 * np.pi))
     keys[..., SWING_HEADING] = heading - 2.0 * np.pi * turns
     keys[..., CHEST] = multiply(about(forward, -targets.roll), about(up, targets.torsion))

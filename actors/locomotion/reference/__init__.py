@@ -1,1 +1,1 @@
-"""Reference only: the published gait, and poses for films and tests. The server imports none."""
+"""Reference code: films, plots, tests and the twins of the client use it, the server never."""

@@ -1,4 +1,4 @@
-"""A walking cycle as eight key poses, what lies between them, and its repair (Chen et al. 2012).
+"""A walking cycle as eight key poses, the poses between them, and their repair (Chen et al. 2012).
 
 Between keys every joint turns along a great arc (sec. 3). That alone leaves feet a little beside
 where they should be; so the legs are bent anew, in closed form, onto root and feet of the gait
@@ -13,27 +13,25 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.actors.locomotion.curves import support_share
-from esplanade.actors.locomotion.motion import standing_ankles
-from esplanade.actors.locomotion.planted import Footfalls, Targets, step_targets
+from esplanade.actors.locomotion.body.skeleton import FOOT, SHIN, THIGH, TRACK_HALF_WIDTH
+from esplanade.actors.locomotion.gait.curves import support_share
+from esplanade.actors.locomotion.gait.step_length import solve_relative_velocity
+from esplanade.actors.locomotion.motion.key_poses import standing_ankles
+from esplanade.actors.locomotion.planted.footprints import StepFootprints
+from esplanade.actors.locomotion.planted.step import step_targets
+from esplanade.actors.locomotion.planted.targets import Targets
 from esplanade.actors.locomotion.reference import rotations
 from esplanade.actors.locomotion.reference.limbs import leg_ik
-from esplanade.actors.locomotion.skeleton import (
-    FOOT,
-    SHIN,
-    THIGH,
-    TRACK_HALF_WIDTH,
-    Floats,
-)
-from esplanade.actors.locomotion.step_length import solve_relative_velocity
+from esplanade.planning.compiled.arrays import Floats
 
 KEYS: Final = 8
+"""Number of key poses of a cycle."""
 
 # Joints of a frame; pairs are left, right.
 PELVIS: Final = 0
-"""In the world: forward, left, up."""
+"""Rotation in the world, axes forward, left, up."""
 CHEST: Final = 1
-"""Relative to the pelvis."""
+"""Rotation relative to the pelvis."""
 HIPS: Final = slice(2, 4)
 KNEES: Final = slice(4, 6)
 ANKLES: Final = slice(6, 8)
@@ -50,26 +48,27 @@ class Frames(NamedTuple):
     """N poses."""
 
     root: Floats
-    """(N, 3): hip centre, from the point on the ground that goes along at a steady pace."""
+    """(N, 3): hip centre, from a point on the ground that moves along at a steady pace."""
     joints: Floats
-    """(N, JOINTS, 4): each relative to the joint nearer to the pelvis."""
+    """(N, JOINTS, 4): quaternions, each relative to the joint nearer to the pelvis."""
 
 
-class Legs(NamedTuple):
-    """Where the legs of N poses are; pairs are left, right."""
+class Feet(NamedTuple):
+    """Where the feet of N poses are; pairs are left, right."""
 
     ankles: Floats
-    """(N, 2, 3): also the heels."""
+    """(N, 2, 3): ankles, which are the heels."""
     toes: Floats
     """(N, 2, 3)."""
     pitches: Floats
-    """(N, 2): toe up positive, radians."""
+    """(N, 2), radians: positive with the toe up."""
 
 
 def key_phases(step_length: float) -> Floats:
-    """When keys are taken, (KEYS,): heel strike, toe off, amid the swing and near its end; twice.
+    """Phases of the keys of a gait with steps of a length (leg lengths): float64 (KEYS,), cycles.
 
-    Phase 0 is the left heel's strike; half a cycle later it is the right one's.
+    They are heel strike, toe-off, the middle of the swing and a moment near its end, for each side.
+    Phase 0 is the heel strike of the left foot, phase 0.5 that of the right one.
     """
     rv = solve_relative_velocity(np.array([step_length]))
     both_down = float(support_share(rv)[0]) - 0.5
@@ -78,7 +77,7 @@ def key_phases(step_length: float) -> Floats:
 
 
 def exact(step_length: float, phase: Floats) -> Frames:
-    """The planted gait at phases (N,), as joint rotations."""
+    """The planted gait at phases (N,), cycles, as rotations of joints."""
     targets = _targets(step_length, phase)
     joints = np.empty((len(phase), JOINTS, 4))
     yaw, lean, roll = targets.yaw[:, 0], targets.lean[:, 0], targets.roll[:, 0]
@@ -91,9 +90,22 @@ def exact(step_length: float, phase: Floats) -> Frames:
     return repaired(Frames(np.zeros((len(phase), 3)), joints), step_length, phase)
 
 
-def between(keys: Frames, phases: Floats, at: Floats) -> Frames:
-    """What lies between keys of ascending phases (K,) at phases (N,); the cycle goes round.
+def interpolate(keys: Frames, phases: Floats, at: Floats) -> Frames:
+    """Poses between keys.
 
+    Parameters
+    ----------
+    keys : K poses
+    phases : float64 (K,), cycles, ascending
+    at : float64 (N,), cycles
+        Phases of the poses asked for; the cycle goes round.
+
+    Returns
+    -------
+    Frames of N poses
+
+    Notes
+    -----
     Chen et al. 2012, sec. 3: joints by slerp, roots along straight lines.
     """
     count = len(phases)
@@ -106,9 +118,9 @@ def between(keys: Frames, phases: Floats, at: Floats) -> Frames:
 
 
 def repaired(frames: Frames, step_length: float, phase: Floats) -> Frames:
-    """Poses with the gait's root, and legs bent so that both feet are where the gait has them.
+    """Poses with the root of the gait, and legs bent so that both feet are where the gait has them.
 
-    Pelvis, trunk and arms stay as they are.
+    Pelvis, trunk and arms stay as they are. Chen et al. 2012, sec. 4.
     """
     root, wanted = walked(step_length, phase)
     joints = frames.joints.copy()
@@ -125,8 +137,8 @@ def repaired(frames: Frames, step_length: float, phase: Floats) -> Frames:
     return Frames(root, joints)
 
 
-def legs_of(frames: Frames) -> Legs:
-    """Forward kinematics of both legs."""
+def feet_of(frames: Frames) -> Feet:
+    """Feet of poses, by forward kinematics of both legs."""
     joints = frames.joints
     pelvis = joints[:, None, PELVIS]
     thighs = rotations.multiply(pelvis, joints[:, HIPS])
@@ -136,11 +148,11 @@ def legs_of(frames: Frames) -> Legs:
     knees = hips - THIGH * rotations.rotate(thighs, _UP)
     ankles = knees - SHIN * rotations.rotate(shins, _UP)
     ahead = rotations.rotate(feet, _FORWARD)
-    return Legs(ankles, ankles + FOOT * ahead, np.arcsin(np.clip(ahead[..., 2], -1.0, 1.0)))
+    return Feet(ankles, ankles + FOOT * ahead, np.arcsin(np.clip(ahead[..., 2], -1.0, 1.0)))
 
 
-def walked(step_length: float, phase: Floats) -> tuple[Floats, Legs]:
-    """Root (N, 3) and legs of the planted gait at phases (N,)."""
+def walked(step_length: float, phase: Floats) -> tuple[Floats, Feet]:
+    """Root, float64 (N, 3), and feet of the planted gait at phases (N,), cycles."""
     targets = _targets(step_length, phase)
     right = _right_stands(phase)
     rows = np.arange(len(phase))
@@ -153,29 +165,30 @@ def walked(step_length: float, phase: Floats) -> tuple[Floats, Legs]:
     )
     ankles[rows, 1 - right] = targets.swing_ankle[:, 0]
     root = targets.root[:, 0].copy()
-    gone = 2.0 * step_length * (phase % 1.0) + _lead(step_length)
-    root[:, 0] -= gone
-    ankles[:, :, 0] -= gone[:, None]
+    travelled = 2.0 * step_length * (phase % 1.0) + _lead(step_length)
+    root[:, 0] -= travelled
+    ankles[:, :, 0] -= travelled[:, None]
     toes = ankles.copy()
     toes[..., 0] += FOOT * np.cos(pitches)
     toes[..., 2] += FOOT * np.sin(pitches)
-    return root, Legs(ankles, toes, pitches)
+    return root, Feet(ankles, toes, pitches)
 
 
 @cache
 def _lead(step_length: float) -> float:
-    """How far the root is ahead of a steady pace from x = 0 on, on average over a cycle."""
+    """Mean distance of the root ahead of a steady pace from x = 0 on, over a cycle."""
     phase = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
     root = _targets(step_length, phase).root[:, 0, 0]
     return float(np.mean(root - 2.0 * step_length * phase))
 
 
 def _right_stands(phase: Floats) -> NDArray[np.intp]:
+    """1 where the right foot stands, else 0."""
     return (phase % 1.0 >= 0.5).astype(np.intp)
 
 
 def _footprints(step_length: float, phase: Floats) -> tuple[Floats, Floats, Floats]:
-    """Footprints (N, 4) lifted, standing and landing: the left foot's first one is at x = 0."""
+    """Footprints (N, 4) lifted, standing and landing; the first left one is at x = 0."""
     right = _right_stands(phase)
     side = np.where(right, -TRACK_HALF_WIDTH, TRACK_HALF_WIDTH)
     made = np.zeros((3, len(phase), 4))
@@ -186,10 +199,10 @@ def _footprints(step_length: float, phase: Floats) -> tuple[Floats, Floats, Floa
 
 def _targets(step_length: float, phase: Floats) -> Targets:
     lifted, standing, landing = _footprints(step_length, phase)
-    falls = Footfalls(
+    footprints = StepFootprints(
         _right_stands(phase).astype(np.bool_), lifted, standing, landing, np.ones(len(phase))
     )
-    return step_targets(falls, (2.0 * phase % 1.0)[:, None])
+    return step_targets(footprints, (2.0 * phase % 1.0)[:, None])
 
 
 def _about(*axes_and_angles: Floats) -> Floats:

@@ -1,11 +1,11 @@
-"""Walking as published (Jing et al. 2015): the reference that the planted step is measured against.
+"""Walking as published (Jing et al. 2015): the reference for the planted step.
 
-A step's length decides its relative velocity (eq. (10), algorithm 1); poses go from one step's to
-the next one's by Bezier weights (eq. (14)); the root moves so that the heel, later the toe, of the
-supporting foot stays where it is (eqs. (6), (9)). Two flaws remain, and they are why nobody walks
-so in the world: where support changes feet, the new heel is some hundredths of a leg length off the
-ground; and the toe of the foot behind slides until it leaves the ground. Steps of next to no length
-make it jitter.
+The length of a step decides its relative velocity (eq. (10), algorithm 1). Poses change from one
+step to the next by Bezier weights (eq. (14)). The root moves so that the heel, later the toe, of
+the standing foot stays where it is (eqs. (6), (9)). Because of two flaws nobody walks so in the
+world: where the feet change parts, the new heel is some hundredths of a leg length off the ground;
+and the toe of the foot behind slides until it leaves the ground. Steps of next to no length make
+the gait jitter.
 """
 
 from __future__ import annotations
@@ -14,39 +14,41 @@ from collections.abc import Callable
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from esplanade.actors.locomotion.curves import joint_angles
+from esplanade.actors.locomotion.body.skeleton import leg_points
+from esplanade.actors.locomotion.gait.curves import joint_angles
+from esplanade.actors.locomotion.gait.step_length import RV_LONGEST
 from esplanade.actors.locomotion.reference.bezier import blend_level
-from esplanade.actors.locomotion.skeleton import Floats, leg_points
-from esplanade.actors.locomotion.step_length import RV_LONGEST, sl_noslide
+from esplanade.actors.locomotion.reference.published_lengths import sl_noslide
+from esplanade.planning.compiled.arrays import Bools, Floats, Ints
 
 FLAT: Final = 0.004
-"""Heel and toe closer in height than this: the foot is flat, leg lengths (eq. (6))."""
+"""A foot whose heel and toe are closer in height is flat, leg lengths (eq. (6))."""
 FRAMES_A_STEP: Final = 40
-"""Half of a cycle of 1.346 s at 60 frames a second."""
+"""Frames in half of a cycle of 1.346 s at 60 frames a second."""
 TOLERANCE: Final = 1e-6
-"""The paper stops at .01; one hundredth of a leg length a step adds up."""
+"""The paper stops at .01, but a hundredth of a leg length adds up from step to step."""
 
 _MOST_HALVINGS: Final = 60
 
 
 class PaperWalk(NamedTuple):
-    """N walkers over F frames; the first frame is that in which the first step ends."""
+    """N walkers over F frames; the first frame is the pose that the first step begins with."""
 
     root: Floats
-    """(N, F, 2): forward and up, leg lengths; hips from where the first supporting heel is."""
+    """(N, F, 2), leg lengths: hips forward and up from the first standing heel."""
     angles: Floats
-    """(N, F, 2, 3): hip, knee, ankle of left and right leg, radians"""
-    on_toe: NDArray[np.bool_]
-    """(N, F): supported by the toe, not the heel"""
-    right: NDArray[np.bool_]
-    """(F,): supported by the right foot"""
-    ends: NDArray[np.int64]
-    """(S,): the frame in which each step ends: both feet down, the next foot takes over"""
+    """(N, F, 2, 3), radians: hip, knee, ankle of the left and the right leg."""
+    on_toe: Bools
+    """(N, F): whether the foot stands on its toe, not on its heel."""
+    on_right: Bools
+    """(F,): whether the right foot stands."""
+    ends: Ints
+    """(S,): the frames between steps, with both feet down."""
 
     def feet(self) -> tuple[Floats, Floats]:
-        """Heels and toes of both feet, each (N, F, 2 feet, 2): forward and up."""
+        """Heels and toes of both feet, each float64 (N, F, 2 feet, 2), forward and up."""
         _, heels, toes = leg_points(self.angles)
         return self.root[:, :, None] + heels, self.root[:, :, None] + toes
 
@@ -57,11 +59,21 @@ def halve(
     tolerance: float,
     *,
     high: float = RV_LONGEST,
-) -> tuple[Floats, NDArray[np.int64]]:
-    """Relative velocities (N,) of step lengths (N,), and how often each interval was halved.
+) -> tuple[Floats, Ints]:
+    """Solve for relative velocities by halving intervals: Jing et al. 2015, algorithm 1.
 
-    Jing et al. 2015, algorithm 1, for any growing function of the velocity. What has no solution
-    ends at the nearer border.
+    Parameters
+    ----------
+    length_of : any growing function of the relative velocity
+    lengths : float64 (N,), leg lengths
+    tolerance : leg lengths, at which a length counts as met
+    high : upper end of the first interval
+
+    Returns
+    -------
+    float64 (N,), relative velocities
+        A length without a solution gives the nearer end of the interval.
+    int64 (N,), how often each interval was halved
     """
     wanted = np.asarray(lengths, dtype=np.float64)
     low, top = np.zeros_like(wanted), np.full_like(wanted, high)
@@ -80,13 +92,13 @@ def halve(
 
 
 def walk(step_lengths: ArrayLike, frames: int = FRAMES_A_STEP) -> PaperWalk:
-    """Walk steps of given lengths, each in so many frames.
+    """Walk steps of given lengths as published.
 
     Parameters
     ----------
     step_lengths : float64 (N, S), leg lengths, in [0, .76]
         The first is that of the pose to begin with: S - 1 steps are walked.
-    frames : frames a step
+    frames : frames of each step, at least 2
 
     Returns
     -------
@@ -95,11 +107,13 @@ def walk(step_lengths: ArrayLike, frames: int = FRAMES_A_STEP) -> PaperWalk:
     Raises
     ------
     ValueError
-        Fewer than two steps, or a length that no step has.
+        There are fewer than two lengths or frames, or no step has such a length.
     """
     lengths = np.asarray(step_lengths, dtype=np.float64)
     if lengths.ndim != 2 or lengths.shape[1] < 2 or frames < 2:
-        raise ValueError(f"at least two lengths a walker and two frames a step: {lengths.shape}")
+        raise ValueError(
+            f"a walk needs at least two lengths and two frames a step, got {lengths.shape}"
+        )
     longest = float(sl_noslide(RV_LONGEST))
     if not np.all((lengths >= 0.0) & (lengths <= longest)):
         raise ValueError(f"step lengths must lie between 0 and {longest:.4f} leg lengths")
@@ -117,14 +131,14 @@ def walk(step_lengths: ArrayLike, frames: int = FRAMES_A_STEP) -> PaperWalk:
     root = -heel
     for step in range(steps):
         root = _walk_step(made, step, frames, rv[:, step], rv[:, step + 1], root)
-    made.right[-1] = steps % 2 == 1
+    made.on_right[-1] = steps % 2 == 1
     return made
 
 
 def _walk_step(
     made: PaperWalk, step: int, frames: int, before: Floats, after: Floats, root: Floats
 ) -> Floats:
-    """Fill in one step that begins with the root at (N, 2); returns where it ends."""
+    """Write one step that begins with the root at (N, 2); the result is the root at its end."""
     first = step * frames
     right = step % 2 == 1
     on_toe = np.zeros(len(root), dtype=np.bool_)
@@ -142,16 +156,16 @@ def _walk_step(
         made.angles[:, first + frame] = angles
         if frame < frames:
             made.on_toe[:, first + frame] = on_toe
-            made.right[first + frame] = right
+            made.on_right[first + frame] = right
     return root
 
 
 def _blended(before: Floats, after: Floats, share: float, right: bool) -> Floats:
-    """Angles (N, 2, 3) of both legs a share into a step that this foot supports."""
+    """Angles (N, 2, 3) of both legs at a share of a step on the left or right foot."""
     u = np.full(len(before), share)
     legs = []
-    for supports in (not right, right):
-        phase = 0.5 * u + (0.0 if supports else 0.5)
+    for stands in (not right, right):
+        phase = 0.5 * u + (0.0 if stands else 0.5)
         legs.append(
             blend_level(
                 joint_angles(before, phase, faded=False), joint_angles(after, phase, faded=False), u

@@ -1,6 +1,6 @@
 /**
  * A chain of hinges that reaches for a target in two stages, the limb at its end in closed form and
- * then the trunk by cyclic coordinate descent: the twin of `actors/locomotion/two_stage.py`.
+ * then the trunk by cyclic coordinate descent: the twin of `actors/locomotion/reaching/two_stage.py`.
  *
  * Axes are left, up, forward; lengths are shares of the body's.
  */

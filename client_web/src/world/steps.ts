@@ -1,5 +1,5 @@
 /**
- * The posture of a body in the midst of a step: the twin of `actors/locomotion/motion.py`.
+ * The posture of a body in the midst of a step: the twin of `actors/locomotion/motion/key_poses.py`.
  *
  * The standing foot follows from its footprint and its pitch alone, so it cannot slide at any frame
  * rate; all else goes along curves through the keys of the step.

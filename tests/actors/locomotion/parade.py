@@ -1,4 +1,4 @@
-"""Walkers without a world: bodies that are told where to go, and what a client would draw."""
+"""Walkers without a world: bodies that are told where to go, and what a client draws of them."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -6,14 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.actors.locomotion.aims import AHEAD, AHEAD_S, Course
-from esplanade.actors.locomotion.builds import physique_of
-from esplanade.actors.locomotion.ground import Ground
-from esplanade.actors.locomotion.motion import Floats, Steps, no_steps
+from esplanade.actors.locomotion.body.sizes import BodySizes
+from esplanade.actors.locomotion.body.traits import traits_of
+from esplanade.actors.locomotion.footsteps.course import AHEAD, AHEAD_S, Course
+from esplanade.actors.locomotion.footsteps.ground import Ground
+from esplanade.actors.locomotion.footsteps.walkers import Walkers
+from esplanade.actors.locomotion.motion.key_poses import Steps, no_steps
 from esplanade.actors.locomotion.reference.posing import Pose, pose
-from esplanade.actors.locomotion.stance import Build
-from esplanade.actors.locomotion.walkers import Walkers
 from esplanade.planning import LayeredGrid, Scene
+from esplanade.planning.compiled.arrays import Floats
 from esplanade.server.world.step_records import from_records, to_records
 
 TICK_S = 0.05
@@ -24,7 +25,7 @@ Slots = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Begun:
-    """Steps that began in one tick, as everyone was told."""
+    """Steps that began in one tick, as everyone gets them."""
 
     tick: int
     slots: Slots
@@ -55,23 +56,23 @@ class Parade:
         self.ground = Ground(scene, LayeredGrid.from_scene(scene))
         self.positions = np.zeros((count, 3))
         self.headings = np.zeros(count)
-        self.walkers = Walkers(count, self.ground, TICK_S, self._carry)
+        self.walkers = Walkers(count, self.ground, TICK_S, self._publish)
         self.begun: list[Begun] = []
         self.places: list[Floats] = []
-        self._physiques = [physique_of(seed, number) for number in range(count)]
-        self.build = Build(
-            np.array([build.leg_m for build in self._physiques]),
-            np.array([build.stature_m for build in self._physiques]),
+        self._traits = [traits_of(seed, number) for number in range(count)]
+        self.sizes = BodySizes(
+            np.array([sizes.leg_m for sizes in self._traits]),
+            np.array([sizes.stature_m for sizes in self._traits]),
         )
 
     def stand(self) -> None:
         """Everyone comes in."""
         slots = np.arange(self.count)
-        self.walkers.join(self.tick, slots, self._physiques, self._course(None))
+        self.walkers.join(self.tick, slots, self._traits, self._course(None))
         self.places.append(self.positions.copy())
 
     def go(self, velocity: Floats | tuple[float, float], ticks: int = 1, turn: bool = True) -> None:
-        """Everyone goes on at velocities (N, 2) or one for all, as people do: at once."""
+        """Let everyone go on at velocities (N, 2), or one for all, which change at once."""
         for _ in range(ticks):
             velocities = np.broadcast_to(np.asarray(velocity, dtype=np.float64), (self.count, 2))
             self.positions[:, :2] += velocities * TICK_S
@@ -82,7 +83,7 @@ class Parade:
             self.update(self._course(velocities))
 
     def follow(self, places: Floats) -> None:
-        """Bodies are at places (N, T, 3) in turn, a tick each, and know their ways ahead."""
+        """Let bodies be at places (N, T, 3), one for each tick; their paths ahead are known."""
         last = places.shape[1] - 1
         steps = np.rint(np.arange(AHEAD) * AHEAD_S / TICK_S).astype(np.int64)
         for now in range(last + 1):
@@ -107,21 +108,21 @@ class Parade:
             tick = number / a_second / TICK_S
             while after is not None and after.tick <= tick:
                 landed = after.slots[drawn.share(after.tick)[after.slots] >= 1.0]
-                stood[landed, 1 - drawn.right[landed].astype(np.int64)] = drawn.landing[landed]
+                stood[landed, 1 - drawn.on_right[landed].astype(np.int64)] = drawn.landing[landed]
                 drawn.put(after.slots, after.steps)
                 rows = np.arange(len(after.slots))
-                side = after.steps.right.astype(np.int64)
+                side = after.steps.on_right.astype(np.int64)
                 stood[after.slots, side[rows]] = after.steps.standing
                 new = after.steps.ticks == 0
                 stood[after.slots[new], 1 - side[new]] = after.steps.landing[new]
                 after = next(told)
             share = drawn.share(tick)
-            body = pose(drawn, share, self.build)
+            body = pose(drawn, share, self.sizes)
             before, rest = int(tick), tick - int(tick)
             places = (1.0 - rest) * self.places[before] + rest * self.places[before + 1]
             landed = np.flatnonzero(share >= 1.0)
-            stood[landed, 1 - drawn.right[landed].astype(np.int64)] = drawn.landing[landed]
-            slide_m = _slide(drawn, share, body, stood, self.build)
+            stood[landed, 1 - drawn.on_right[landed].astype(np.int64)] = drawn.landing[landed]
+            slide_m = _slide(drawn, share, body, stood, self.sizes)
             yield Frame(tick, drawn, share, body, places, slide_m)
 
     def jumps(self) -> tuple[Floats, Floats, Floats]:
@@ -133,9 +134,9 @@ class Parade:
         for begun in self.begun:
             rows = np.flatnonzero(known[begun.slots] & (begun.steps.ticks > 0))
             slots, new = begun.slots[rows], begun.steps.take(rows)
-            old, build = drawn.take(slots), self.build.take(slots)
-            before = pose(old, old.share(begun.tick), build)
-            after = pose(new, new.share(begun.tick), build)
+            old, sizes = drawn.take(slots), self.sizes.take(slots)
+            before = pose(old, old.share(begun.tick), sizes)
+            after = pose(new, new.share(begun.tick), sizes)
             out.append(
                 (
                     np.linalg.norm(after.root - before.root, axis=1),
@@ -155,19 +156,19 @@ class Parade:
             ahead[..., :2] += velocities[:, None] * times[:, None]
         return Course(self.headings, ahead)
 
-    def _carry(self, steps: Steps, slots: Slots) -> Steps:
+    def _publish(self, steps: Steps, slots: Slots) -> Steps:
         told = from_records(to_records(steps, slots))
         self.begun.append(Begun(self.tick, slots.copy(), told))
         return told
 
 
-def _slide(steps: Steps, share: Floats, body: Pose, stood: Floats, build: Build) -> Floats:
+def _slide(steps: Steps, share: Floats, body: Pose, stood: Floats, sizes: BodySizes) -> Floats:
     """(N, 2) metres: heels of feet with the toe up and toes of others, from where they stood."""
     rows = np.arange(len(share))
-    right = steps.right.astype(np.int64)
+    right = steps.on_right.astype(np.int64)
     ahead = np.stack([np.cos(stood[..., 3]), np.sin(stood[..., 3])], axis=-1)
     toes = stood[..., :3].copy()
-    toes[..., :2] += build.foot_m[:, None, None] * ahead
+    toes[..., :2] += sizes.foot_m[:, None, None] * ahead
     off_heel = np.linalg.norm(body.ankles - stood[..., :3], axis=2)
     off_toe = np.linalg.norm(body.toes - toes, axis=2)
     out = np.full((len(share), 2), np.nan)

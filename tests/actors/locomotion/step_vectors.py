@@ -1,6 +1,6 @@
 """Steps as the wire carries them, with the joints they stand for, for the web client's tests.
 
-Write them anew with `python -m tests.actors.locomotion.step_vectors`.
+`python -m tests.actors.locomotion.step_vectors` writes them anew.
 """
 
 import json
@@ -9,7 +9,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from esplanade.actors.locomotion import motion, skeleton, stance
+from esplanade.actors.locomotion.body import skeleton
+from esplanade.actors.locomotion.body.sizes import STATURE, BodySizes
+from esplanade.actors.locomotion.motion import key_poses as motion
+from esplanade.actors.locomotion.motion.leg_poses import REACH
 from esplanade.actors.locomotion.reference import posing
 from esplanade.actors.locomotion.reference.rotations import (
     from_euler,
@@ -25,33 +28,36 @@ DIGITS: Final = 10
 
 
 def vectors() -> dict[str, Any]:
-    """Everything that the fixture holds, as plain JSON values."""
-    steps, build = sample_steps()
-    ids = np.arange(len(steps.right)) + 7
+    """All values of the fixture, as JSON has them."""
+    steps, sizes = sample_steps()
+    ids = np.arange(len(steps.on_right)) + 7
     records = to_records(steps, ids)
     known = from_records(records)
     return {
         "skeleton": {
-            name: getattr(module, name)
-            for module, names in (
-                (skeleton, ("THIGH", "SHIN", "FOOT", "TRACK_HALF_WIDTH", "HIP_DEPTH", "HEAD_TOP")),
-                (stance, ("REACH", "STATURE")),
-                (
-                    posing,
-                    ("SHOULDER_UP", "SHOULDER_ASIDE", "UPPER_ARM", "FOREARM", "ARMS_OUT"),
-                ),
-            )
-            for name in names
+            "THIGH": skeleton.THIGH,
+            "SHIN": skeleton.SHIN,
+            "FOOT": skeleton.FOOT,
+            "TRACK_HALF_WIDTH": skeleton.TRACK_HALF_WIDTH,
+            "HIP_DEPTH": skeleton.HIP_DEPTH,
+            "HEAD_TOP": skeleton.HEAD_TOP,
+            "REACH": REACH,
+            "STATURE": STATURE,
+            "SHOULDER_UP": skeleton.HANGING_ARMS.shoulder_height,
+            "SHOULDER_ASIDE": skeleton.HANGING_ARMS.shoulder_aside,
+            "UPPER_ARM": skeleton.HANGING_ARMS.upper_arm,
+            "FOREARM": skeleton.HANGING_ARMS.forearm,
+            "ARMS_OUT": skeleton.ARMS_OUT_RAD,
         },
         "settle": motion.SETTLE,
         "cases": [
             {
                 "record": records[row].tobytes().hex(),
-                "leg_m": float(build.leg_m[row]),
-                "stature_m": float(build.stature_m[row]),
+                "leg_m": float(sizes.leg_m[row]),
+                "stature_m": float(sizes.stature_m[row]),
                 "lift": float(known.lift[row]),
                 "ticks": int(known.ticks[row]),
-                "poses": [_pose(known, build, row, share) for share in SHARES],
+                "poses": [_pose(known, sizes, row, share) for share in SHARES],
             }
             for row in range(len(ids))
         ],
@@ -63,31 +69,31 @@ def text() -> str:
     return json.dumps(vectors()).replace('{"record"', '\n{"record"') + "\n"
 
 
-def _pose(steps: motion.Steps, build: stance.Build, row: int, share: float) -> dict[str, Any]:
+def _pose(steps: motion.Steps, sizes: BodySizes, row: int, share: float) -> dict[str, Any]:
     rows = np.array([row])
-    one = stance.Build(build.leg_m[rows], build.stature_m[rows])
+    one = BodySizes(sizes.leg_m[rows], sizes.stature_m[rows])
     joints = posing.pose(steps.take(rows), np.array([share]), one)
     named = {name: np.round(values[0], DIGITS) for name, values in joints._asdict().items()}
     return {"u": share, **{name: values.tolist() for name, values in named.items()}}
 
 
-def sample_steps() -> tuple[motion.Steps, stance.Build]:
+def sample_steps() -> tuple[motion.Steps, BodySizes]:
     """Steps of every kind: along, aside, back, up and down, with knees at their limit, standing."""
     random = np.random.default_rng(3)
     count = 12
     steps = motion.no_steps(count)
-    build = stance.Build(random.uniform(0.75, 1.0, count), random.uniform(1.5, 1.9, count))
+    sizes = BodySizes(random.uniform(0.75, 1.0, count), random.uniform(1.5, 1.9, count))
     heading = random.uniform(-7.0, 7.0, count)
     heading[0] = 0.0
-    steps.right[:] = np.arange(count) % 2 == 0
-    steps.again[:] = np.arange(count) % 5 == 4
+    steps.on_right[:] = np.arange(count) % 2 == 0
+    steps.re_aimed[:] = np.arange(count) % 5 == 4
     steps.start[:] = random.integers(0, 2**31, count)
     steps.ticks[:] = random.integers(5, 20, count)
     steps.ticks[-1] = 0
     steps.lift[:] = np.where(np.arange(count) % 3 == 0, 0.0, random.uniform(0.05, 0.4, count))
     steps.standing[:, :3] = random.uniform(-40.0, 40.0, (count, 3))
     steps.standing[:, 3] = heading
-    side = np.where(steps.right, 1.0, -1.0)
+    side = np.where(steps.on_right, 1.0, -1.0)
     ahead = random.uniform(-0.4, 0.75, count)
     aside = side * random.uniform(0.1, 0.35, count)
     rise = np.where(np.arange(count) % 4 == 1, random.uniform(-0.19, 0.19, count), 0.0)
@@ -99,7 +105,7 @@ def sample_steps() -> tuple[motion.Steps, stance.Build]:
     steps.landing[:, 3] = heading + random.uniform(-0.5, 0.5, count)
     shares = np.linspace(0.0, 1.0, motion.KEYS)
     for row in range(count):
-        size = build.leg_m[row]
+        size = sizes.leg_m[row]
         height = size * random.uniform(0.92, 1.02) + 0.02 * np.sin(6.0 * shares)
         middle = 0.5 * reach[row] * (2.0 * shares[:, None] - 1.0) + 0.5 * aside[row] * left[row]
         steps.keys[row, :, motion.ROOT] = middle + height[:, None] * up
@@ -116,7 +122,7 @@ def sample_steps() -> tuple[motion.Steps, stance.Build]:
         steps.keys[row, :, motion.CHEST] = normalise(small)
         steps.keys[row, :, motion.ARMS] = random.uniform(-0.5, 1.0, (motion.KEYS, 4))
     steps.keys[-1] = steps.keys[-1, :1]
-    return steps, build
+    return steps, sizes
 
 
 if __name__ == "__main__":

@@ -5,19 +5,21 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.actors.locomotion.planted import Footfalls, Targets, step_targets
+from esplanade.actors.locomotion.body.skeleton import FOOT, TRACK_HALF_WIDTH
+from esplanade.actors.locomotion.planted.footprints import StepFootprints
+from esplanade.actors.locomotion.planted.step import step_targets
+from esplanade.actors.locomotion.planted.targets import Targets
 from esplanade.actors.locomotion.reference.limbs import LegAngles, leg_ends, leg_ik
-from esplanade.actors.locomotion.skeleton import FOOT, TRACK_HALF_WIDTH
 
 Floats = NDArray[np.float64]
 
 
-def footfalls(prints, *, right_lifts=True, leg_m=1.0) -> Footfalls:
+def step_footprints(prints, *, right_lifts=True, leg_m=1.0) -> StepFootprints:
     """Steps through footprints (x, y, z, heading) of alternating feet; the first one lifts."""
     prints = np.array(prints, dtype=float)
     count = len(prints) - 2
     right = np.arange(count) % 2 == (1 if right_lifts else 0)
-    return Footfalls(right, prints[:-2], prints[1:-1], prints[2:], np.full(count, leg_m))
+    return StepFootprints(right, prints[:-2], prints[1:-1], prints[2:], np.full(count, leg_m))
 
 
 def aside(k: int) -> float:
@@ -25,54 +27,54 @@ def aside(k: int) -> float:
     return -TRACK_HALF_WIDTH if k % 2 == 0 else TRACK_HALF_WIDTH
 
 
-def straight(lengths) -> Footfalls:
+def straight(lengths) -> StepFootprints:
     """From standing along +x by given step lengths."""
     ahead = np.concatenate([[0.0, 0.0], np.cumsum(lengths)])
-    return footfalls([(x, aside(k), 0.0, 0.0) for k, x in enumerate(ahead)])
+    return step_footprints([(x, aside(k), 0.0, 0.0) for k, x in enumerate(ahead)])
 
 
-def arc(radius: float, length: float, steps: int) -> Footfalls:
+def arc(radius: float, length: float, steps: int) -> StepFootprints:
     """Round a bend to the left, steady from the first step."""
     prints = []
     for k in range(steps + 2):
         turned = k * length / radius
         out = radius - aside(k)
         prints.append((out * np.sin(turned), radius - out * np.cos(turned), 0.0, turned))
-    return footfalls(prints)
+    return step_footprints(prints)
 
 
-def staircase(rise: float, tread: float, steps: int) -> Footfalls:
+def staircase(rise: float, tread: float, steps: int) -> StepFootprints:
     """One tread a step; downstairs when the rise is negative."""
-    return footfalls([(k * tread, aside(k), k * rise, 0.0) for k in range(steps + 2)])
+    return step_footprints([(k * tread, aside(k), k * rise, 0.0) for k in range(steps + 2)])
 
 
-def backward(length: float, steps: int) -> Footfalls:
-    return footfalls([(-k * length, aside(k), 0.0, 0.0) for k in range(steps + 2)])
+def backward(length: float, steps: int) -> StepFootprints:
+    return step_footprints([(-k * length, aside(k), 0.0, 0.0) for k in range(steps + 2)])
 
 
-def sideways(length: float, steps: int) -> Footfalls:
+def sideways(length: float, steps: int) -> StepFootprints:
     """To the left: the left foot goes, the right one closes."""
     prints = [(0.0, TRACK_HALF_WIDTH, 0.0, 0.0), (0.0, -TRACK_HALF_WIDTH, 0.0, 0.0)]
     for k in range(steps):
         place = length * (k // 2 + 1)
         prints.append((0.0, place + (TRACK_HALF_WIDTH if k % 2 == 0 else -TRACK_HALF_WIDTH), 0, 0))
-    return footfalls(prints, right_lifts=False)
+    return step_footprints(prints, right_lifts=False)
 
 
-def on_the_spot(degrees: float, steps: int) -> Footfalls:
+def on_the_spot(degrees: float, steps: int) -> StepFootprints:
     """Turning to the left: the left foot goes, the right one follows."""
     prints = [(0.0, TRACK_HALF_WIDTH, 0.0, 0.0), (0.0, -TRACK_HALF_WIDTH, 0.0, 0.0)]
     for k in range(steps):
         turned = np.radians(degrees) * (k // 2 + 1)
         out = TRACK_HALF_WIDTH if k % 2 == 0 else -TRACK_HALF_WIDTH
         prints.append((-out * np.sin(turned), out * np.cos(turned), 0.0, turned))
-    return footfalls(prints, right_lifts=False)
+    return step_footprints(prints, right_lifts=False)
 
 
 class Walked(NamedTuple):
-    """Legs of N steps at K shares; of a pair the standing leg comes first."""
+    """LegPoses of N steps at K shares; of a pair the standing leg comes first."""
 
-    falls: Footfalls
+    footprints: StepFootprints
     targets: Targets
     joints: Floats
     """(N, K, 2, 5): hip yaw, abduction, flexion, knee, ankle; radians."""
@@ -84,20 +86,22 @@ class Walked(NamedTuple):
     """(N, K, 2, 3)."""
 
 
-def walk(falls: Footfalls, samples: int = 2000) -> Walked:
+def walk(footprints: StepFootprints, samples: int = 2000) -> Walked:
     """Solve both legs at so many shares of each step, and put the feet where the angles say."""
-    targets = step_targets(falls, np.linspace(0.0, 1.0, samples + 1))
-    leg_m = falls.leg_m[:, None]
+    targets = step_targets(footprints, np.linspace(0.0, 1.0, samples + 1))
+    leg_m = footprints.leg_m[:, None]
     pelvis = _pelvis(targets.yaw, targets.lean, targets.roll)
-    standing = _standing_ankle(falls, targets)
-    heading = np.broadcast_to(falls.standing[:, 3, None], targets.yaw.shape)
+    standing = _standing_ankle(footprints, targets)
+    heading = np.broadcast_to(footprints.standing[:, 3, None], targets.yaw.shape)
     feet = (
         (1.0, standing, targets.standing_pitch, heading),
         (-1.0, targets.swing_ankle, targets.swing_pitch, targets.swing_heading),
     )
-    first = np.where(falls.right, -1.0, 1.0)[:, None]
+    first = np.where(footprints.on_right, -1.0, 1.0)[:, None]
     seen = [_leg(targets, pelvis, first * which, leg_m, *foot) for which, *foot in feet]
-    return Walked(falls, targets, *(np.stack(part, axis=2) for part in zip(*seen, strict=True)))
+    return Walked(
+        footprints, targets, *(np.stack(part, axis=2) for part in zip(*seen, strict=True))
+    )
 
 
 def _pelvis(yaw: Floats, lean: Floats, roll: Floats) -> Floats:
@@ -110,14 +114,16 @@ def _pelvis(yaw: Floats, lean: Floats, roll: Floats) -> Floats:
     return np.einsum("ijnk,jlnk,lmnk->nkim", turned, bowed, rolled)
 
 
-def _standing_ankle(falls: Footfalls, targets: Targets) -> Floats:
+def _standing_ankle(footprints: StepFootprints, targets: Targets) -> Floats:
     """On its heel while the toe is up, else as its toe on the footprint has it."""
     pitch = np.minimum(targets.standing_pitch, 0.0)
-    heading = falls.standing[:, 3, None]
-    foot = FOOT * falls.leg_m[:, None]
-    drawn = foot * (1.0 - np.cos(pitch))
-    moved = np.stack([drawn * np.cos(heading), drawn * np.sin(heading), -foot * np.sin(pitch)], -1)
-    return falls.standing[:, None, :3] + moved
+    heading = footprints.standing[:, 3, None]
+    foot = FOOT * footprints.leg_m[:, None]
+    heel_forward = foot * (1.0 - np.cos(pitch))
+    moved = np.stack(
+        [heel_forward * np.cos(heading), heel_forward * np.sin(heading), -foot * np.sin(pitch)], -1
+    )
+    return footprints.standing[:, None, :3] + moved
 
 
 def _leg(targets, pelvis, side, leg_m, ankle, pitch, heading):
@@ -140,8 +146,8 @@ def _leg(targets, pelvis, side, leg_m, ankle, pitch, heading):
 def slide(walked: Walked) -> float:
     """How far, in metres, any point moves that should rest on the ground."""
     pitch = walked.targets.standing_pitch
-    footprint = walked.falls.standing
-    toe = footprint[:, :3] + FOOT * walked.falls.leg_m[:, None] * np.stack(
+    footprint = walked.footprints.standing
+    toe = footprint[:, :3] + FOOT * walked.footprints.leg_m[:, None] * np.stack(
         [np.cos(footprint[:, 3]), np.sin(footprint[:, 3]), np.zeros(len(footprint))], axis=1
     )
     on_heel = np.linalg.norm(walked.heels[:, :, 0] - footprint[:, None, :3], axis=2)
@@ -156,7 +162,7 @@ def slide(walked: Walked) -> float:
 
 def landing_error(walked: Walked) -> float:
     """Metres between where feet come down and their footprints."""
-    return np.abs(walked.heels[:, -1, 1] - walked.falls.landing[:, :3]).max()
+    return np.abs(walked.heels[:, -1, 1] - walked.footprints.landing[:, :3]).max()
 
 
 def gaps(walked: Walked) -> tuple[float, float]:

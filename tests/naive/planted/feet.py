@@ -5,23 +5,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from esplanade.actors.locomotion.curves import joint_angles, smooth
-from esplanade.actors.locomotion.skeleton import (
-    FOOT,
-    TRACK_HALF_WIDTH,
-    Floats,
-    ankle_over_toe,
-    foot_pitch,
-    leg_points,
-)
-from esplanade.actors.locomotion.step_length import RV_LONGEST, sl_planted
+from esplanade.actors.locomotion.body.skeleton import FOOT, TRACK_HALF_WIDTH, foot_pitch, leg_points
+from esplanade.actors.locomotion.gait.curves import joint_angles, smooth
+from esplanade.actors.locomotion.gait.step_length import RV_LONGEST, sl_planted
+from esplanade.planning.compiled.arrays import Floats
 from tests.naive.planted import stairs
+from tests.naive.planted.double_support import (
+    DoubleSupportPose,
+    ankle_over_toe,
+    double_support_pose,
+    forward_and_left,
+)
 from tests.naive.planted.hips import Hips, hips_at, mix
 from tests.naive.planted.reach import FULL, drawn_to_hip, hip_ceiling, raised_heel
-from tests.naive.planted.turning import BothDown, both_down, forward_and_left
 
 _AT_ENDS = 0.04
-"""Share of a step at its ends in which a foot is where the footprint has it, whatever the leg."""
+"""Share of a step at its ends in which the footprint alone says where a foot is."""
 
 _TABLE_SIDE = 26
 _SPARE = 0.004
@@ -37,37 +36,42 @@ class Foot(NamedTuple):
     heading: Floats
 
 
-def standing_foot(before: BothDown, after: BothDown, hips: Hips, u: Floats) -> Foot:
-    """Down on the heel, flat, up on the toe; where the leg is too short the heel rises more."""
+def standing_foot(
+    before: DoubleSupportPose, after: DoubleSupportPose, hips: Hips, u: Floats
+) -> Foot:
+    """The standing foot: it rolls from its heel to the flat sole and rises on its toe.
+
+    Where the leg is too short, the heel rises more.
+    """
     down = before.strike * (1.0 - smooth(u / 0.2))
     up = np.arcsin(after.heel * smooth((u - 0.55) / 0.45) / FOOT)
     pitch = down - up
     footprint = np.zeros((*u.shape, 4))
     toe = np.zeros((*u.shape, 3))
     toe[..., 0] = FOOT
-    raised = raised_heel(hips.root + hips.aside, toe, footprint[..., 3], pitch)
+    raised = raised_heel(hips.root + hips.joint, toe, footprint[..., 3], pitch)
     pitch = np.where(pitch > 0.0, pitch, mix(pitch, raised, smooth(u / _AT_ENDS)))
     return Foot(ankle_over_toe(footprint, np.minimum(pitch, 0.0)), pitch, footprint[..., 3])
 
 
-def swinging_foot(
-    before: BothDown,
-    after: BothDown,
+def swing_foot(
+    before: DoubleSupportPose,
+    after: DoubleSupportPose,
     lifted: Floats,
     landing: Floats,
     hips: Hips,
     u: Floats,
-    lift_by: Floats,
+    raise_by: Floats,
 ) -> Foot:
-    """On its toe until it lifts, then along the curves, then down on its footprint.
+    """The swing foot: on its toe until toe-off, then along the curves, then down on its footprint.
 
-    lifted and landing are footprints (N, 1, 4); lift_by (N, 1) comes from `clearance`.
+    lifted and landing are footprints (N, 1, 4); raise_by (N, 1) comes from `clearance`.
     """
     swung = _swung(hips, u)
     pinned, angles = _pinned_foot(before, lifted, hips, u)
     under = mix(lifted[..., 2], landing[..., 2], smooth(swung))
     level = _level_swing(after, pinned, angles, under, landing, hips, u)
-    height = level.ankle[..., 2] + lift_by * _bump(swung)
+    height = level.ankle[..., 2] + raise_by * _bump(swung)
     level.ankle[..., 2] = np.maximum(height, under + _needed(level.pitch))
 
     top = np.maximum(np.maximum(lifted[..., 2], landing[..., 2]), 0.0)
@@ -75,7 +79,7 @@ def swinging_foot(
     uneven = stairs.unevenness(top - bottom)
     over = stairs.swing_over(pinned.ankle, landing[..., :3], top, swung)
     ankle = mix(level.ankle, over, uneven[..., None])
-    in_reach = drawn_to_hip(hips.root - hips.aside, ankle)
+    in_reach = drawn_to_hip(hips.root - hips.joint, ankle)
     free = smooth(swung / 0.1) * (1.0 - smooth((u - 1.0 + _AT_ENDS) / _AT_ENDS))
     return Foot(
         mix(ankle, in_reach, free[..., None]),
@@ -84,20 +88,22 @@ def swinging_foot(
     )
 
 
-def lowered_to(hips: Hips, standing: Foot, swinging: Foot) -> Floats:
+def lowered_to(hips: Hips, standing: Foot, swing: Foot) -> Floats:
     """Root (N, K, 3), lower where the leg of a foot on the ground would still be too short."""
     root = hips.root.copy()
-    hip = root + hips.aside
+    hip = root + hips.joint
     root[..., 2] -= np.maximum(hip[..., 2] - hip_ceiling(hip, standing.ankle, FULL), 0.0)
-    hip = root - hips.aside
-    root[..., 2] -= np.maximum(hip[..., 2] - hip_ceiling(hip, swinging.ankle, FULL), 0.0)
+    hip = root - hips.joint
+    root[..., 2] -= np.maximum(hip[..., 2] - hip_ceiling(hip, swing.ankle, FULL), 0.0)
     return root
 
 
-def clearance(before: BothDown, after: BothDown, lifted: Floats, landing: Floats) -> Floats:
+def clearance(
+    before: DoubleSupportPose, after: DoubleSupportPose, lifted: Floats, landing: Floats
+) -> Floats:
     """How far a foot is lifted beyond the curves, (N, 1): so that it clears the ground.
 
-    Feet that hardly move are hardly lifted.
+    Feet that hardly move are hardly raised.
     """
     table = _clearance_table()
     spacing = RV_LONGEST / (_TABLE_SIDE - 1)
@@ -131,19 +137,21 @@ def _bump(swung: Floats) -> Floats:
     return shape
 
 
-def _pinned_foot(before: BothDown, lifted: Floats, hips: Hips, u: Floats) -> tuple[Foot, Floats]:
-    """The other foot as if its toe stayed down, and its leg's angles by the curves (N, K, 3)."""
+def _pinned_foot(
+    before: DoubleSupportPose, lifted: Floats, hips: Hips, u: Floats
+) -> tuple[Foot, Floats]:
+    """The swing foot as if its toe stayed down, and angles (N, K, 3) of its leg by the curves."""
     angles = joint_angles(hips.rv, 0.5 + 0.5 * u)
     pitch = mix(-np.arcsin(before.heel / FOOT), foot_pitch(angles), smooth(u / hips.lift))
     footprint = np.broadcast_to(lifted, (*u.shape, 4))
     toe = footprint[..., :3].copy()
     toe[..., :2] += FOOT * forward_and_left(footprint[..., 3])[0]
-    pitch = raised_heel(hips.root - hips.aside, toe, footprint[..., 3], pitch)
+    pitch = raised_heel(hips.root - hips.joint, toe, footprint[..., 3], pitch)
     return Foot(ankle_over_toe(footprint, pitch), pitch, footprint[..., 3]), angles
 
 
 def _level_swing(
-    after: BothDown,
+    after: DoubleSupportPose,
     pinned: Foot,
     angles: Floats,
     under: Floats,
@@ -151,13 +159,13 @@ def _level_swing(
     hips: Hips,
     u: Floats,
 ) -> Foot:
-    """From the toe over to the curves, under hips that go straight ahead, and to the landing.
+    """The swing foot on level ground: from its toe it comes over to the curves, then lands.
 
     under (N, K) is the height of the ground below the foot.
     """
     _, heel, _ = leg_points(angles)
-    forward, left = forward_and_left(hips.way)
-    level = hips.place + heel[..., :1] * forward - TRACK_HALF_WIDTH * left
+    forward, left = forward_and_left(hips.heading)
+    level = hips.unswayed + heel[..., :1] * forward - TRACK_HALF_WIDTH * left
     height = under + hips.height + heel[..., 1]
     curve = np.concatenate([level, height[..., None]], axis=-1)
     release = smooth((u - hips.lift) / 0.35)
@@ -173,9 +181,9 @@ def _level_swing(
 
 @cache
 def _clearance_table() -> Floats:
-    """What straight steps need on level ground, by relative velocities at both ends.
+    """What straight steps must be raised by on level ground, by relative velocities at both ends.
 
-    (_TABLE_SIDE, _TABLE_SIDE), leg lengths: the largest lift that any moment of a step asks for.
+    (_TABLE_SIDE, _TABLE_SIDE), leg lengths: the largest that any moment of a step asks for.
     """
     rv = np.linspace(0.0, RV_LONGEST, _TABLE_SIDE)
     first, last = (axis.reshape(-1, 1) for axis in np.meshgrid(rv, rv, indexing="ij"))
@@ -184,7 +192,7 @@ def _clearance_table() -> Floats:
     lifted[..., 0], landing[..., 0] = -sl_planted(first), sl_planted(last)
     here = np.zeros_like(lifted)
     one = np.ones_like(first)
-    before, after = both_down(lifted, here, one), both_down(here, landing, -one)
+    before, after = double_support_pose(lifted, here, one), double_support_pose(here, landing, -one)
     u = np.broadcast_to(np.linspace(0.4, 0.99, 60), (len(first), 60))
     hips = hips_at(before, after, u)
     pinned, angles = _pinned_foot(before, lifted, hips, u)

@@ -7,16 +7,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from esplanade.actors.locomotion.curves import pelvis_motion, smooth, support_share
-from esplanade.actors.locomotion.skeleton import TRACK_HALF_WIDTH, Floats
+from esplanade.actors.locomotion.body.skeleton import TRACK_HALF_WIDTH
+from esplanade.actors.locomotion.gait.curves import smooth, support_share
+from esplanade.actors.locomotion.reference.body_curves import pelvis_motion
+from esplanade.planning.compiled.arrays import Floats
 from tests.naive.planted import stairs
-from tests.naive.planted.turning import CROUCH, BothDown, forward_and_left, hips_under_way
+from tests.naive.planted.double_support import (
+    CROUCH,
+    DoubleSupportPose,
+    forward_and_left,
+    hips_under_way,
+)
 
 _CREST = 0.35
-"""The wave of the hips starts so far after its trough, as that of Boulic's pelvis does."""
+"""Share of a step from the trough of the hips' wave, as Boulic's pelvis has it."""
 
 _ASIDE = 0.15
-"""Relative velocity of shifts that are no longer taken for a step ahead."""
+"""A shift whose relative velocity is above this is no longer taken for a step ahead."""
 
 
 class Hips(NamedTuple):
@@ -27,11 +34,11 @@ class Hips(NamedTuple):
     yaw: Floats
     lean: Floats
     roll: Floats
-    aside: Floats
+    joint: Floats
     """(N, K, 3): from the root to the joint of the standing (left) leg."""
-    place: Floats
-    """(N, K, 2): root without its sway; feet swing beside this."""
-    way: Floats
+    unswayed: Floats
+    """(N, K, 2): root without its sway; the swing foot passes beside it."""
+    heading: Floats
     """(N, K): heading without the pelvis' own twist."""
     height: Floats
     """(N, K): of the root above level ground as the curves have it."""
@@ -47,26 +54,26 @@ def mix(before: Floats, after: Floats, share: Floats) -> Floats:
     return mixed
 
 
-def hips_at(before: BothDown, after: BothDown, u: Floats) -> Hips:
+def hips_at(before: DoubleSupportPose, after: DoubleSupportPose, u: Floats) -> Hips:
     """Hips at shares u (N, K) between two poses (N, 1)."""
     s = smooth(u)
     rv = mix(before.rv, after.rv, s)
-    place, way = hips_under_way(before, after, u)
+    unswayed, heading = hips_under_way(before, after, u)
     motion = pelvis_motion(rv, 0.5 * u)
-    _, left = forward_and_left(way)
-    level = place + motion.left[..., None] * left
+    _, left = forward_and_left(heading)
+    level = unswayed + motion.left[..., None] * left
     height = _height(before, after, u)
-    ground = stairs.ground_under_way(before.ground, after.ground, u)
+    ground = stairs.ground_during_step(before.ground, after.ground, u)
     lowered = mix(before.lowered, after.lowered, s)
-    yaw = way + motion.yaw
+    yaw = heading + motion.yaw
     return Hips(
         root=np.concatenate([level, (ground + height - lowered)[..., None]], axis=-1),
         yaw=yaw,
         lean=motion.lean,
         roll=motion.roll,
-        aside=_aside(yaw, motion.lean, motion.roll),
-        place=place,
-        way=way,
+        joint=_joint(yaw, motion.lean, motion.roll),
+        unswayed=unswayed,
+        heading=heading,
         height=height,
         rv=rv,
         pace=mix(before.pace, after.pace, s),
@@ -75,14 +82,14 @@ def hips_at(before: BothDown, after: BothDown, u: Floats) -> Hips:
 
 
 def _lift(rv: Floats, pace: Floats) -> Floats:
-    """When the toe leaves the ground: earlier when going aside or back, where no toe pushes off."""
+    """Share of the step at toe-off: it is earlier in steps aside or back, without a push-off."""
     aside = smooth((pace - rv) / _ASIDE)
     lift: Floats = (2.0 * support_share(pace) - 1.0) * (1.0 - 0.5 * aside)
     return lift
 
 
-def _height(before: BothDown, after: BothDown, u: Floats) -> Floats:
-    """Above the ground: highest when the standing leg is upright, the same at both ends."""
+def _height(before: DoubleSupportPose, after: DoubleSupportPose, u: Floats) -> Floats:
+    """Height above the ground, which is largest while the standing leg is upright."""
     turn = 2.0 * np.pi
     wave = np.sin(turn * (u - _CREST)) + np.sin(turn * _CREST)
     low, high = (
@@ -92,7 +99,7 @@ def _height(before: BothDown, after: BothDown, u: Floats) -> Floats:
     return mix(low, high, smooth(u))
 
 
-def _aside(yaw: Floats, lean: Floats, roll: Floats) -> Floats:
+def _joint(yaw: Floats, lean: Floats, roll: Floats) -> Floats:
     """From the root to the left hip joint, (..., 3)."""
     forward, left = forward_and_left(yaw)
     up = np.sin(roll)

@@ -1,20 +1,21 @@
-"""What a leg does that is too short: ease up to its length, raise the heel, bring the hip down."""
+"""Legs that are too short: they slow down near full length, raise the heel, and lower the hip."""
 
 import numpy as np
 
-from esplanade.actors.locomotion.skeleton import FOOT, Floats
+from esplanade.actors.locomotion.body.skeleton import FOOT
+from esplanade.planning.compiled.arrays import Floats
 
 FULL = 0.9999
-"""Legs are never stretched further: a knee that locks moves with infinite speed."""
+"""Legs are stretched to this at most, because a knee that locks moves with infinite speed."""
 
 _ZONE = 0.006
-"""Before that they are slowed down over so much."""
+"""Length before FULL over which legs are slowed down."""
 
 _STEEPEST = np.radians(75.0)
 
 
-def eased(distance: Floats) -> Floats:
-    """A distance that stays below FULL: as it is up to a zone before, then ever closer."""
+def soft_reach(distance: Floats) -> Floats:
+    """A distance that stays below FULL: it is kept up to a zone before, then comes ever closer."""
     over = np.maximum(distance - (FULL - _ZONE), 0.0) / _ZONE
     kept: Floats = np.minimum(distance, FULL - _ZONE * np.exp(-np.minimum(over, 700.0)))
     return kept
@@ -24,16 +25,16 @@ def drawn_to_hip(hip: Floats, ankle: Floats) -> Floats:
     """Ankles (..., 3) of feet in the air, along the leg into reach."""
     leg = ankle - hip
     distance = np.sqrt(np.sum(leg * leg, axis=-1))
-    shrink = eased(distance) / np.maximum(distance, 1e-9)
-    drawn: Floats = hip + leg * shrink[..., None]
-    return drawn
+    shrink = soft_reach(distance) / np.maximum(distance, 1e-9)
+    moved: Floats = hip + leg * shrink[..., None]
+    return moved
 
 
 def raised_heel(hip: Floats, toe: Floats, heading: Floats, pitch: Floats) -> Floats:
     """Pitch at which a foot that turns about its toe brings the ankle into reach of the hip.
 
-    The ankle moves on a circle about the toe; where its distance from the hip is the eased one is
-    a closed form. Pitches are negative with the heel up, and only ever get more so.
+    The ankle moves on a circle about the toe; a closed form says where its distance from the hip is
+    the soft reach. Pitches are negative with the heel up, and only ever get more so.
     """
     to_hip = hip - toe
     back = -(np.cos(heading) * to_hip[..., 0] + np.sin(heading) * to_hip[..., 1])
@@ -45,7 +46,7 @@ def raised_heel(hip: Floats, toe: Floats, heading: Floats, pitch: Floats) -> Flo
             square + FOOT**2 - 2.0 * FOOT * (back * np.cos(raised) + up * np.sin(raised)), 0.0
         )
     )
-    wanted = eased(distance)
+    wanted = soft_reach(distance)
     projected = (square + FOOT**2 - wanted**2) / (2.0 * FOOT)
     nearest = np.arctan2(up, back)
     spread = np.arccos(np.clip(projected / np.maximum(np.hypot(back, up), 1e-9), -1.0, 1.0))

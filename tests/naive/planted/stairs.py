@@ -5,25 +5,26 @@ Lengths are shares of the leg's; heights are those of footprints.
 
 import numpy as np
 
-from esplanade.actors.locomotion.curves import smooth
-from esplanade.actors.locomotion.skeleton import FOOT, Floats
+from esplanade.actors.locomotion.body.skeleton import FOOT
+from esplanade.actors.locomotion.gait.curves import smooth
+from esplanade.planning.compiled.arrays import Floats
 
 CLEARANCE = 0.09
-"""A foot passes so far over the highest of the three footprints."""
+"""Height of the swing foot over the highest of the three footprints as it passes."""
 
 _LEVEL_BELOW = 0.08
 _HIGHEST_HEEL = 0.92 * FOOT
 
 
 def unevenness(rise: Floats) -> Floats:
-    """How far a rise calls for stairs rather than the level gait: 0 to 1."""
+    """Weight of the gait on stairs against the level one, 0 to 1, for a rise between footprints."""
     return smooth(np.abs(rise) / _LEVEL_BELOW)
 
 
 def ground_height(rear: Floats, front: Floats) -> Floats:
-    """What stands for level ground when both feet are down.
+    """Height that stands for level ground in double support.
 
-    Going up, the middle between both feet; going down, a little above the lower one.
+    Upstairs it is midway between both feet, downstairs a little above the lower one.
     """
     rise = front - rear
     height: Floats = np.where(rise > 0.0, rear + 0.5 * rise, front - 0.15 * rise)
@@ -31,11 +32,11 @@ def ground_height(rear: Floats, front: Floats) -> Floats:
 
 
 def heel_height(raised: Floats, ground: Floats, rear: Floats) -> Floats:
-    """Height of the rear heel above its footprint: raised as on the level, more when going up."""
+    """Height of the rear heel above its footprint: as on level ground, and more when going up."""
     return np.minimum(raised + np.maximum(ground - rear, 0.0), _HIGHEST_HEEL)
 
 
-def ground_under_way(before: Floats, after: Floats, u: Floats) -> Floats:
+def ground_during_step(before: Floats, after: Floats, u: Floats) -> Floats:
     """Ground height during a step: the body rises or sinks only once it comes over its foot."""
     height: Floats = before + (after - before) * smooth((u - 0.3) / 0.7)
     return height

@@ -23,9 +23,9 @@ def probe(falls):
 ASK = """
 import numpy as np
 from esplanade.actors.locomotion._probe_kernels import probe
-from esplanade.actors.locomotion.footfalls import Footfalls
+from esplanade.actors.locomotion.planted.footprints import StepFootprints
 feet = [np.full((1, 4), float(k)) for k in range(3)]
-print(probe(Footfalls(np.ones(1, np.bool_), *feet, np.ones(1))))
+print(probe(StepFootprints(np.ones(1, np.bool_), *feet, np.ones(1))))
 """
 PACKAGE = Path(esplanade.__file__).parent
 
@@ -85,7 +85,7 @@ def test_kernels_are_compiled_anew_when_a_helper_changes(tmp_path) -> None:
     (copy / "actors" / "locomotion" / "_probe_kernels.py").write_text(PROBE)
     at = {"PYTHONPATH": str(tmp_path), "HOME": str(tmp_path)}
     assert python(ASK, **at) == "2.0"
-    helper = copy / "actors" / "locomotion" / "footfalls.py"
+    helper = copy / "actors" / "locomotion" / "planted" / "footprints.py"
     text = helper.read_text()
     swapped = text.replace("lifted: Floats", "_: Floats").replace(
         "landing: Floats", "lifted: Floats"

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from esplanade import scenes
-from esplanade.actors.locomotion.motion import Steps, no_steps
+from esplanade.actors.locomotion.body.sizes import BodySizes
+from esplanade.actors.locomotion.motion.key_poses import Steps, no_steps
 from esplanade.actors.locomotion.reference.posing import pose
-from esplanade.actors.locomotion.stance import Build
 from esplanade.planning import LayeredGrid
 from esplanade.planning.scene.scene_file import read_scene
 from esplanade.protocol.steps import RE_AIMED
@@ -23,8 +23,8 @@ def drawn(world: World) -> tuple[Floats, Floats]:
     """Hips as a client draws them at the end of this tick, and places of everyone, (N, 2) each."""
     slots = world.state.live()
     steps = from_records(world.steps.records[slots])
-    build = Build(world.state.legs_m[slots], world.state.statures_m[slots])
-    hips = pose(steps, steps.share(world.tick), build).root[:, :2]
+    sizes = BodySizes(world.state.legs_m[slots], world.state.statures_m[slots])
+    hips = pose(steps, steps.share(world.tick), sizes).root[:, :2]
     return hips, world.state.positions[slots]
 
 

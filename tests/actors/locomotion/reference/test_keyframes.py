@@ -21,7 +21,7 @@ def joint_errors_deg(frames: keyframes.Frames, length: float = LENGTH) -> np.nda
 
 
 def interpolated(phases: np.ndarray, length: float = LENGTH) -> keyframes.Frames:
-    return keyframes.between(keyframes.exact(length, phases), phases, PHASES)
+    return keyframes.interpolate(keyframes.exact(length, phases), phases, PHASES)
 
 
 def test_there_are_eight_keys_in_two_mirrored_halves():
@@ -33,7 +33,7 @@ def test_there_are_eight_keys_in_two_mirrored_halves():
 
 @pytest.mark.parametrize("length", [0.1, 0.3, 0.5, 0.65])
 def test_joint_rotations_hold_the_gait_exactly(length: float):
-    legs = keyframes.legs_of(keyframes.exact(length, PHASES))
+    legs = keyframes.feet_of(keyframes.exact(length, PHASES))
     _, wanted = keyframes.walked(length, PHASES)
     assert np.max(np.abs(legs.ankles - wanted.ankles)) < 1e-9
     assert np.max(np.abs(legs.toes - wanted.toes)) < 1e-9
@@ -42,7 +42,7 @@ def test_joint_rotations_hold_the_gait_exactly(length: float):
 def test_keys_are_passed_exactly():
     phases = keyframes.key_phases(LENGTH)
     keys = keyframes.exact(LENGTH, phases)
-    passed = keyframes.between(keys, phases, phases)
+    passed = keyframes.interpolate(keys, phases, phases)
     assert np.allclose(passed.root, keys.root, atol=1e-12)
     assert np.max(rotations.angle_between(passed.joints, keys.joints)) < 1e-7
 
@@ -57,7 +57,7 @@ def test_twice_the_keys_are_closer_to_the_gait():
 
 def test_repair_restores_both_feet():
     frames = keyframes.repaired(interpolated(keyframes.key_phases(LENGTH)), LENGTH, PHASES)
-    legs = keyframes.legs_of(frames)
+    legs = keyframes.feet_of(frames)
     _, wanted = keyframes.walked(LENGTH, PHASES)
     assert np.max(np.abs(legs.ankles - wanted.ankles)) < 1e-9
     assert np.max(np.abs(legs.toes - wanted.toes)) < 1e-9
@@ -66,7 +66,7 @@ def test_repair_restores_both_feet():
 
 
 def test_without_repair_flat_feet_nearly_stay_but_swinging_ones_are_off():
-    legs = keyframes.legs_of(interpolated(keyframes.key_phases(LENGTH)))
+    legs = keyframes.feet_of(interpolated(keyframes.key_phases(LENGTH)))
     _, wanted = keyframes.walked(LENGTH, PHASES)
     flat = (PHASES > 0.1) & (PHASES < 0.25)
     heel = legs.ankles[flat, 0, 0] + 2.0 * LENGTH * PHASES[flat]

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from esplanade.actors.locomotion.body.skeleton import SHIN, THIGH, leg_points
 from esplanade.actors.locomotion.reference import limbs
-from esplanade.actors.locomotion.skeleton import SHIN, THIGH, leg_points
 
 
 def drawn_angles(count, seed=2):

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from esplanade.actors.locomotion.curves import support_share
+from esplanade.actors.locomotion.gait.curves import support_share
 from esplanade.actors.locomotion.reference.paper_gait import FRAMES_A_STEP, PaperWalk, halve, walk
-from esplanade.actors.locomotion.step_length import sl_noslide, sl_paper
+from esplanade.actors.locomotion.reference.published_lengths import sl_noslide, sl_paper
 
 
 def heel_prints(made: PaperWalk) -> np.ndarray:
@@ -36,10 +36,12 @@ def test_changing_steps_are_as_long_as_asked_for():
 def test_what_supports_does_not_slide():
     made = walk(np.random.default_rng(3).uniform(0.05, 0.7, (20, 8)))
     heels, toes = made.feet()
-    right = made.right.astype(int)[None, :, None, None]
+    right = made.on_right.astype(int)[None, :, None, None]
     heel, toe = (np.take_along_axis(points, right, axis=2)[:, :, 0] for points in (heels, toes))
     supporting = np.where(made.on_toe[..., None], toe, heel)
-    same_foot = (made.right[1:] == made.right[:-1]) & (made.on_toe[:, 1:] == made.on_toe[:, :-1])
+    same_foot = (made.on_right[1:] == made.on_right[:-1]) & (
+        made.on_toe[:, 1:] == made.on_toe[:, :-1]
+    )
     slides = np.linalg.norm(np.diff(supporting, axis=1), axis=-1)[same_foot]
     assert slides.max() < 1e-14
 

@@ -1,37 +1,44 @@
 import numpy as np
 
-from esplanade.actors.locomotion.motion import ANKLE, STANDING_PITCH, SWING_PITCH, Floats, under_way
-from esplanade.actors.locomotion.reference.posing import FOREARM, UPPER_ARM, Pose, pose
-from esplanade.actors.locomotion.skeleton import FOOT, SHIN, THIGH
-from esplanade.actors.locomotion.stance import REACH, Build, stance
+from esplanade.actors.locomotion.body.sizes import BodySizes
+from esplanade.actors.locomotion.body.skeleton import FOOT, HANGING_ARMS, SHIN, THIGH
+from esplanade.actors.locomotion.motion.key_poses import (
+    ANKLE,
+    STANDING_PITCH,
+    SWING_PITCH,
+    sample_keys,
+)
+from esplanade.actors.locomotion.motion.leg_poses import REACH, leg_poses
+from esplanade.actors.locomotion.reference.posing import Pose, pose
+from esplanade.planning.compiled.arrays import Floats
 from tests.actors.locomotion.step_vectors import sample_steps
 from tests.naive import steps as naive
 
 SHARES = np.linspace(0.0, 1.0, 41)
 
 
-def poses() -> list[tuple[Floats, Pose, Build]]:
-    steps, build = sample_steps()
+def poses() -> list[tuple[Floats, Pose, BodySizes]]:
+    steps, sizes = sample_steps()
     count = len(steps.lift)
-    return [(np.full(count, u), pose(steps, np.full(count, u), build), build) for u in SHARES]
+    return [(np.full(count, u), pose(steps, np.full(count, u), sizes), sizes) for u in SHARES]
 
 
 def test_bones_keep_their_lengths() -> None:
-    for _, joints, build in poses():
-        leg, trunk = build.leg_m[:, None], build.trunk_m[:, None]
+    for _, joints, sizes in poses():
+        leg, trunk = sizes.leg_m[:, None], sizes.trunk_m[:, None]
         for a, b, length in (
             (joints.hips, joints.knees, THIGH * leg),
             (joints.ankles, joints.toes, FOOT * leg),
-            (joints.shoulders, joints.elbows, UPPER_ARM * trunk),
-            (joints.elbows, joints.hands, FOREARM * trunk),
+            (joints.shoulders, joints.elbows, HANGING_ARMS.upper_arm * trunk),
+            (joints.elbows, joints.hands, HANGING_ARMS.forearm * trunk),
         ):
             bone = np.linalg.norm(a - b, axis=2)
             np.testing.assert_allclose(bone, np.broadcast_to(length, bone.shape), atol=1e-12)
 
 
 def test_shins_reach_the_feet_where_hips_can_come_down_to_them() -> None:
-    for _, joints, build in poses():
-        leg = build.leg_m[:, None]
+    for _, joints, sizes in poses():
+        leg = sizes.leg_m[:, None]
         apart = np.linalg.norm((joints.hips - joints.ankles)[..., :2], axis=2)
         near = apart <= REACH * leg
         shin = np.linalg.norm(joints.knees - joints.ankles, axis=2)
@@ -39,7 +46,7 @@ def test_shins_reach_the_feet_where_hips_can_come_down_to_them() -> None:
 
 
 def test_knees_bend_forward() -> None:
-    for _, joints, build in poses():
+    for _, joints, sizes in poses():
         w, x, y, z = joints.pelvis.T
         forward = np.stack([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z)], axis=1)
         line = joints.ankles - joints.hips
@@ -47,16 +54,16 @@ def test_knees_bend_forward() -> None:
         along = np.einsum("nsd,nsd->ns", joints.knees - joints.hips, line) / length2
         bend = (joints.knees - joints.hips - along[..., None] * line)[..., :2]
         ahead = np.einsum("nsd,nd->ns", bend, forward)
-        assert (ahead > -0.02 * build.leg_m[:, None]).all()
+        assert (ahead > -0.02 * sizes.leg_m[:, None]).all()
 
 
 def test_legs_agree_with_their_plain_twin() -> None:
-    steps, build = sample_steps()
+    steps, sizes = sample_steps()
     raised = lowered = 0
     for u in SHARES:
         share = np.full(len(steps.lift), u)
-        key = under_way(steps, share, build.foot_m)
-        legs, plain = stance(steps, share, key, build), naive.stance(steps, share, key, build)
+        key = sample_keys(steps, share, sizes.foot_m)
+        legs, plain = leg_poses(steps, share, key, sizes), naive.leg_poses(steps, share, key, sizes)
         for one, other in zip(legs, plain, strict=True):
             np.testing.assert_allclose(one, other, atol=1e-9)
         asked = np.stack([key[:, STANDING_PITCH], key[:, SWING_PITCH]], axis=1)
@@ -67,23 +74,23 @@ def test_legs_agree_with_their_plain_twin() -> None:
 
 
 def test_a_short_leg_raises_the_heel_of_the_foot_it_stands_on_and_not_its_toe() -> None:
-    steps, build = sample_steps()
+    steps, sizes = sample_steps()
     share = np.ones(len(steps.lift))
-    key = under_way(steps, share, build.foot_m)
+    key = sample_keys(steps, share, sizes.foot_m)
     key[:, 2] += 0.05
-    legs = stance(steps, share, key, build)
+    legs = leg_poses(steps, share, key, sizes)
     rows = np.arange(len(share))
-    stands = steps.right.astype(np.int64)
+    stands = steps.on_right.astype(np.int64)
     pitch = legs.pitches[rows, stands]
     assert (pitch <= key[:, STANDING_PITCH] + 1e-12).all()
-    level = build.foot_m * np.cos(pitch)
+    level = sizes.foot_m * np.cos(pitch)
     heading = steps.standing[:, 3]
     toe = legs.ankles[rows, stands] + np.stack(
-        [level * np.cos(heading), level * np.sin(heading), build.foot_m * np.sin(pitch)], axis=1
+        [level * np.cos(heading), level * np.sin(heading), sizes.foot_m * np.sin(pitch)], axis=1
     )
     flat = steps.standing[:, :3].copy()
-    flat[:, 0] += build.foot_m * np.cos(heading)
-    flat[:, 1] += build.foot_m * np.sin(heading)
+    flat[:, 0] += sizes.foot_m * np.cos(heading)
+    flat[:, 1] += sizes.foot_m * np.sin(heading)
     on_toe = pitch <= 0.0
     assert on_toe.sum() > 8
     np.testing.assert_allclose(toe[on_toe], flat[on_toe], atol=1e-12)
@@ -93,9 +100,9 @@ def test_a_short_leg_raises_the_heel_of_the_foot_it_stands_on_and_not_its_toe() 
 
 
 def test_a_tall_trunk_stands_on_the_same_legs() -> None:
-    steps, build = sample_steps()
-    taller = Build(build.leg_m, build.stature_m + 0.2)
+    steps, sizes = sample_steps()
+    taller = BodySizes(sizes.leg_m, sizes.stature_m + 0.2)
     share = np.full(len(steps.lift), 0.4)
-    one, other = pose(steps, share, build), pose(steps, share, taller)
+    one, other = pose(steps, share, sizes), pose(steps, share, taller)
     np.testing.assert_array_equal(one.knees, other.knees)
     assert (other.head[:, 2] > one.head[:, 2] + 0.15).all()

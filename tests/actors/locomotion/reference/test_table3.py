@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from esplanade.actors.locomotion.curves import joint_angles
+from esplanade.actors.locomotion.body.skeleton import leg_points
+from esplanade.actors.locomotion.gait.curves import joint_angles
 from esplanade.actors.locomotion.reference import table3
-from esplanade.actors.locomotion.skeleton import leg_points
 
 
 def test_all_rows_are_reproduced_with_the_fitted_offset():

@@ -1,0 +1,1 @@
+"""The body: lengths of its segments, sizes of people, and which way it faces."""

@@ -1,0 +1,37 @@
+"""Where bodies will be on their courses, one body after the other."""
+
+from __future__ import annotations
+
+from esplanade.planning.compiled.arrays import Floats
+from esplanade.planning.compiled.jit import inlined, kernel
+
+AHEAD_S = 0.2
+AHEAD = 7
+
+
+@inlined
+def _along(ahead: Floats, seconds: float, axis: int) -> float:
+    """A coordinate of a course (AHEAD, 3) after a time, linear between its places."""
+    place = min(max(seconds / AHEAD_S, 0.0), AHEAD - 1.0)
+    k = min(int(place), AHEAD - 2)
+    return float(ahead[k, axis] + (place - k) * (ahead[k + 1, axis] - ahead[k, axis]))
+
+
+@kernel
+def fill_places(ahead: Floats, seconds: Floats, out: Floats) -> None:
+    """Write the places (N, 3) on courses (N, AHEAD, 3) after times (N,)."""
+    for i in range(len(seconds)):
+        for axis in range(3):
+            out[i, axis] = _along(ahead[i], seconds[i], axis)
+
+
+@kernel
+def fill_velocities(ahead: Floats, seconds: Floats, out: Floats) -> None:
+    """Write the velocities (N, 2) on courses about times (N,), taken over AHEAD_S at most."""
+    half = 0.5 * AHEAD_S
+    for i in range(len(seconds)):
+        before = min(half, max(seconds[i], 0.0))
+        for axis in range(2):
+            moved = _along(ahead[i], seconds[i] + half, axis)
+            moved -= _along(ahead[i], seconds[i] - before, axis)
+            out[i, axis] = moved / (half + before)

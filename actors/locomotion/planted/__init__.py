@@ -1,0 +1,1 @@
+"""The planted step: how hips and both feet move between footprints."""

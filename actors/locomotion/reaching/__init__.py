@@ -1,0 +1,1 @@
+"""Reaching: inverse kinematics of a limb and the trunk it hangs on."""
