@@ -152,8 +152,8 @@ def test_actors_on_their_ways_are_drawn_where_they_are(name: str) -> None:
 def test_records_keep_what_steps_are() -> None:
     random = np.random.default_rng(2)
     steps = no_steps(3)
-    steps.right[:] = [True, False, True]
-    steps.again[:] = [False, False, True]
+    steps.on_right[:] = [True, False, True]
+    steps.re_aimed[:] = [False, False, True]
     steps.start[:], steps.ticks[:] = [3, 70000, 12], [9, 0, 12]
     steps.standing[:], steps.landing[:] = random.uniform(-3.0, 3.0, (2, 3, 4))
     steps.lift[:] = [0.0, 1.0, 51 / 255]
@@ -164,7 +164,7 @@ def test_records_keep_what_steps_are() -> None:
     records = to_records(steps, np.array([4, 5, 6]))
     known = from_records(records)
     assert records["id"].tolist() == [4, 5, 6]
-    for name in ("right", "again", "start", "ticks", "lift"):
+    for name in ("on_right", "re_aimed", "start", "ticks", "lift"):
         np.testing.assert_array_equal(getattr(known, name), getattr(steps, name))
     np.testing.assert_allclose(known.keys[..., :3], steps.keys[..., :3], atol=1.5e-4)
     np.testing.assert_allclose(known.keys[..., 7:10], steps.keys[..., 7:10], atol=1.5e-4)
