@@ -89,9 +89,11 @@ class Listener:
             self._sessions -= 1
 
     def _answer(self, _: ServerConnection, request: Request) -> Response | None:
-        if request.method != "GET":
+        if request.method not in {"GET", "HEAD"}:
             return respond(
-                HTTPStatus.METHOD_NOT_ALLOWED, b"only GET is answered here\n", {"Allow": "GET"}
+                HTTPStatus.METHOD_NOT_ALLOWED,
+                b"only GET and HEAD are answered here\n",
+                {"Allow": "GET, HEAD"},
             )
         if path_of(request) != SOCKET_PATH:
             return self._assets.answer(request)
