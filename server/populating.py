@@ -1,4 +1,4 @@
-"""The population that a scene gets: wanderers, and where there are places a patrol and a guide."""
+"""Populates a scene: with wanderers, and where there are places with a patrol and a guide."""
 
 from collections.abc import Hashable
 from typing import Final
@@ -30,12 +30,12 @@ def populate(
     *,
     person_radius_m: float = 0.25,
 ) -> tuple[Population, dict[Hashable, str]]:
-    """A population of so many actors among people of that radius, and what each is called.
+    """Make a population of `count` actors among people of that radius, and name each.
 
     Raises
     ------
     ValueError
-        The scene has no room for so many.
+        The scene has no room for them.
     """
     random = np.random.default_rng([seed, count])
     population = Population(grid, scene, tick_s=tick_s, seed=seed, person_radius_m=person_radius_m)
