@@ -5,9 +5,9 @@ from collections.abc import Hashable, Mapping
 import numpy as np
 
 from esplanade.actors import Explanation, ObservedPeople, Population
-from esplanade.actors.locomotion.footsteps.course import AHEAD, AHEAD_S
+from esplanade.actors.locomotion.footsteps.course import planned_places
 from esplanade.server.world.routes import Point
-from esplanade.server.world.state import ACTOR, Floats, Slots, State
+from esplanade.server.world.state import ACTOR, Slots, State
 
 
 class ActorAvatars:
@@ -71,7 +71,7 @@ class ActorAvatars:
         state.radii[slots] = agents.parameters["radius_m"]
         places = np.column_stack([agents.positions, agents.heights])
         slice_s = self._population.navigator.plan.slice_s
-        state.ahead[slots] = course(agents.planned, slice_s, self._tick_s, places)
+        state.ahead[slots] = planned_places(agents.planned, slice_s, self._tick_s, places)
         return self._point()
 
     def explain(self, avatar_id: int) -> Explanation:
@@ -120,19 +120,3 @@ class ActorAvatars:
         avatar_id = int(self._state.ids[slot])
         self._avatars[actor_id] = avatar_id
         self._actor_ids[avatar_id] = actor_id
-
-
-def course(planned: Floats, slice_s: float, now_s: float, places: Floats) -> Floats:
-    """Places of A actors from now on, (A, AHEAD, 3) m.
-
-    Their paths (A, K, 3) were planned for `now_s` ago. They are where limits of speed and of what
-    stands there let them be, (A, 3), and get back to their paths within a second.
-    """
-    times = np.arange(AHEAD) * AHEAD_S
-    at = np.minimum((now_s + times) / slice_s, planned.shape[1] - 1.0)
-    k = np.minimum(at.astype(np.int64), max(planned.shape[1] - 2, 0))
-    share = (at - k)[:, None]
-    last = np.minimum(k + 1, planned.shape[1] - 1)
-    expected = (1.0 - share) * planned[:, k] + share * planned[:, last]
-    fade = np.maximum(1.0 - times, 0.0)[:, None]
-    return np.asarray(expected + fade * (places - expected[:, 0])[:, None])

@@ -35,3 +35,30 @@ def fill_velocities(ahead: Floats, seconds: Floats, out: Floats) -> None:
             moved = _along(ahead[i], seconds[i] + half, axis)
             moved -= _along(ahead[i], seconds[i] - before, axis)
             out[i, axis] = moved / (half + before)
+
+
+@kernel
+def follow_plans(
+    planned: Floats, slice_s: float, now_s: float, places: Floats, out: Floats
+) -> None:
+    """Write courses (N, AHEAD, 3) of bodies at `places` (N, 3) whose plans (N, K, 3) are older.
+
+    The plans have a place every `slice_s` seconds and began `now_s` seconds ago. A body that is
+    not where its plan has it gets back to the plan within a second.
+    """
+    last = planned.shape[1] - 1
+    for k in range(AHEAD):
+        at = min((now_s + k * AHEAD_S) / slice_s, float(last))
+        before = min(int(at), max(last - 1, 0))
+        after = min(before + 1, last)
+        share = at - before
+        for n in range(len(planned)):
+            for axis in range(3):
+                out[n, k, axis] = (1.0 - share) * planned[n, before, axis] + share * planned[
+                    n, after, axis
+                ]
+    for n in range(len(planned)):
+        for axis in range(3):
+            off = places[n, axis] - out[n, 0, axis]
+            for k in range(AHEAD):
+                out[n, k, axis] += max(1.0 - k * AHEAD_S, 0.0) * off

@@ -43,6 +43,26 @@ class Course(NamedTuple):
         return out
 
 
+def planned_places(planned: Floats, slice_s: float, now_s: float, places: Floats) -> Floats:
+    """Places of bodies from now on that follow plans, as in `Course.ahead`.
+
+    Parameters
+    ----------
+    planned : float64 (N, K, 3), metres, `slice_s` seconds apart
+    slice_s : seconds between the places of a plan
+    now_s : seconds since the plans began
+    places : float64 (N, 3), metres: where the bodies are, wherever limits of speed have let them
+        get; within a second they are back on their plans
+
+    Returns
+    -------
+    float64 (N, AHEAD, 3), metres
+    """
+    out = np.empty((len(planned), AHEAD, 3))
+    kernels.follow_plans(planned, slice_s, now_s, places, out)
+    return out
+
+
 def desired_headings(course: Course, velocity: Floats) -> Floats:
     """Where bodies want to face: in the direction they walk, else as their courses say.
 

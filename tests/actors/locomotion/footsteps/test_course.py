@@ -1,6 +1,12 @@
 import numpy as np
+import pytest
 
-from esplanade.actors.locomotion.footsteps.course import desired_headings
+from esplanade.actors.locomotion.footsteps.course import (
+    AHEAD,
+    AHEAD_S,
+    desired_headings,
+    planned_places,
+)
 from tests.actors.locomotion.courses import course
 
 
@@ -17,3 +23,27 @@ def test_bodies_that_walk_face_ahead_and_others_as_they_did() -> None:
     still, walking = course((0.0, -0.2), 0.7), course((0.0, -1.0), 0.7)
     assert desired_headings(still, np.array([[0.0, -0.2]])).tolist() == [0.7]
     assert desired_headings(walking, np.array([[0.0, -1.0]])).tolist() == [-np.pi / 2.0]
+
+
+def as_arrays_do(planned, slice_s, now_s, places):
+    """The plain twin of `planned_places`."""
+    times = np.arange(AHEAD) * AHEAD_S
+    last = planned.shape[1] - 1
+    at = np.minimum((now_s + times) / slice_s, float(last))
+    before = np.minimum(at.astype(np.int64), max(last - 1, 0))
+    share = (at - before)[:, None]
+    after = np.minimum(before + 1, last)
+    expected = (1.0 - share) * planned[:, before] + share * planned[:, after]
+    fade = np.maximum(1.0 - times, 0.0)[:, None]
+    return expected + fade * (places - expected[:, 0])[:, None]
+
+
+@pytest.mark.parametrize("instants", [1, 2, 19])
+def test_bodies_get_back_to_their_plans_within_a_second(instants) -> None:
+    rng = np.random.default_rng(instants)
+    planned, places = rng.normal(size=(30, instants, 3)), rng.normal(size=(30, 3))
+    found = planned_places(planned, 0.2, 0.05, places)
+    np.testing.assert_array_equal(found, as_arrays_do(planned, 0.2, 0.05, places))
+    np.testing.assert_allclose(found[:, 0], places, atol=1e-12)
+    on_plan = planned_places(planned, 0.2, 0.05, planned[:, 0])
+    np.testing.assert_allclose(found[:, 5:], on_plan[:, 5:], atol=1e-12)
