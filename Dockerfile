@@ -1,9 +1,15 @@
 # Built once with everything that takes, run with nothing but what it needs.
 FROM python:3.12-slim AS build
 WORKDIR /source
-RUN python -m venv /opt/esplanade
+ENV PATH=/opt/build/bin:$PATH UV_PYTHON_DOWNLOADS=never UV_NO_CACHE=1
+COPY tools/uv.txt tools/uv.txt
+RUN python -m venv /opt/build && pip install --no-cache-dir --require-hashes -r tools/uv.txt
 COPY . .
-RUN /opt/esplanade/bin/pip install --no-cache-dir .
+# Versions are those of uv.lock: of what builds the wheel, and of what it runs on.
+RUN UV_PROJECT_ENVIRONMENT=/opt/build uv sync --locked --inexact --no-install-project --extra client \
+  && uv build --wheel --no-build-isolation --python /opt/build/bin/python --out-dir /opt/wheel
+RUN UV_PROJECT_ENVIRONMENT=/opt/esplanade uv sync --locked --no-install-project \
+  && uv pip install --python /opt/esplanade/bin/python --no-deps /opt/wheel/*.whl
 
 FROM python:3.12-slim
 RUN useradd --create-home --uid 10001 esplanade

@@ -5,6 +5,9 @@ PYTHON ?= python3
 VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) -m pip install --quiet --disable-pip-version-check
+# Nothing is installed but what uv.lock names, what builds the package included (extra `client`).
+SYNC := UV_PROJECT_ENVIRONMENT=$(VENV) $(VENV)/bin/uv sync --quiet --locked --inexact \
+  --no-build-isolation-package esplanade
 NPM := $(RUN) tools/npm.py
 PYTEST := $(RUN) -m pytest
 
@@ -14,7 +17,8 @@ BENCHMARKS ?= $(patsubst benchmarks/%.py,%,$(wildcard benchmarks/[a-z]*.py))
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help serve test test-boundscheck test-nojit check bench format client clean
+.PHONY: help serve test test-boundscheck test-nojit test-lowest test-pythons
+.PHONY: check release-check audit bench format lock client clean
 
 help:  ## show what there is to do
 	@echo "Esplanade: people and computer-run actors walk among each other."
@@ -40,7 +44,20 @@ test-nojit: $(VENV)/.test  ## run the planning tests uncompiled, for branch cove
 	NUMBA_DISABLE_JIT=1 $(RUN) -m coverage run -m pytest tests/planning $(ARGS)
 	$(RUN) -m coverage report
 
+test-lowest: $(VENV)/.test  ## run tests with the oldest releases that pyproject.toml allows
+	$(RUN) -m tools.lowest
+
+test-pythons: $(VENV)/.test  ## run an installed wheel on every Python that there is
+	$(RUN) -m tools.pythons
+
+audit: $(VENV)/.test  ## ask for known faults of what uv.lock names
+	$(RUN) -m tools.audit
+
+release-check: $(VENV)/.test  ## what takes too long for every change: lowest, pythons, audit
+	$(RUN) -m tools.release_check
+
 check: $(VENV)/.dev client_web/node_modules/.installed  ## lint, types, import arrows; the client's too
+	$(VENV)/bin/uv lock --quiet --check
 	$(RUN) -m ruff check
 	$(RUN) -m ruff format --check
 	$(RUN) -m mypy
@@ -60,6 +77,9 @@ format: $(VENV)/.dev client_web/node_modules/.installed  ## format all sources
 	$(RUN) -m ruff format
 	$(NPM) run --silent format
 
+lock: $(VENV)/.installer  ## write uv.lock anew, with the newest releases that pyproject.toml allows
+	$(VENV)/bin/uv lock --upgrade
+
 client: $(CLIENT)  ## build the web client
 
 clean:  ## remove what was built, and the virtual environment
@@ -73,20 +93,24 @@ $(VENV)/.created:
 	@$(PYTHON) tools/create_venv.py $(VENV)
 	@touch $@
 
+$(VENV)/.installer: $(VENV)/.created tools/uv.txt
+	@$(PIP) --require-hashes --requirement tools/uv.txt
+	@touch $@
+
 # The environment grows as it is needed: for running, for testing, for developing.
-$(VENV)/.serve: $(VENV)/.created pyproject.toml hatch_build.py
+$(VENV)/.serve: $(VENV)/.installer pyproject.toml uv.lock hatch_build.py
 	@echo "Installing Esplanade and what it runs on ..."
-	@$(PIP) --editable '.[client]'
+	@$(SYNC) --extra client
 	@touch $@
 
 $(VENV)/.test: $(VENV)/.serve
 	@echo "Installing what the tests take ..."
-	@$(PIP) --editable '.[test]'
+	@$(SYNC) --extra test
 	@touch $@
 
 $(VENV)/.dev: $(VENV)/.test
 	@echo "Installing linters and type checkers ..."
-	@$(PIP) --editable '.[dev]'
+	@$(SYNC) --extra dev
 	@touch $@
 
 # An editable install does not build the web client: here is its own step.

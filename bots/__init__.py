@@ -1,9 +1,16 @@
-"""People made of code: a client library for scripts, load tests, replay of recorded crowds."""
+"""People made of code: a client library for scripts, load tests, replay of recorded crowds.
 
-from esplanade.bots.bot import Bot, connect
-from esplanade.bots.errors import BotError, Disconnected, Refused, Unreachable
-from esplanade.bots.events import Event, SnapshotEvent, StepsEvent
-from esplanade.bots.view import Avatar
+Names are imported when they are first asked for: the command explains its options without them.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from esplanade.bots.bot import Bot, connect
+    from esplanade.bots.errors import BotError, Disconnected, Refused, Unreachable
+    from esplanade.bots.events import Event, SnapshotEvent, StepsEvent
+    from esplanade.bots.view import Avatar
 
 __all__ = [
     "Avatar",
@@ -17,3 +24,23 @@ __all__ = [
     "Unreachable",
     "connect",
 ]
+
+_MODULES = {
+    "bot": ("Bot", "connect"),
+    "errors": ("BotError", "Disconnected", "Refused", "Unreachable"),
+    "events": ("Event", "SnapshotEvent", "StepsEvent"),
+    "view": ("Avatar",),
+}
+
+
+def __getattr__(name: str) -> Any:
+    for module, names in _MODULES.items():
+        if name in names:
+            found = getattr(import_module(f"{__name__}.{module}"), name)
+            globals()[name] = found
+            return found
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return __all__

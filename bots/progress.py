@@ -1,51 +1,26 @@
 """What is to be seen while the bots are there: one line that changes, or lines now and then."""
 
 import time
-from types import TracebackType
-from typing import Final, Self
 
 from rich.console import Console
-from rich.live import Live
-from rich.text import Text
 
 from esplanade.bots.tally import Tally
+from esplanade.commandline.progress import StatusLine
 
-PLAIN_EVERY_S: Final = 5.0
 
-
-class Progress:
-    """Shows tallies as they come in: live on a terminal, else a plain line every few seconds."""
+class Progress(StatusLine):
+    """Shows tallies as they come in."""
 
     def __init__(self, console: Console) -> None:
-        self._console = console
-        self._live = Live(console=console, auto_refresh=False) if console.is_terminal else None
-        self._began_s = self._printed_s = self._then_s = time.monotonic()
+        super().__init__(console)
+        self._began_s = self._then_s = time.monotonic()
         self._bytes_then = 0
         self._bytes_per_s = 0.0
 
-    def __enter__(self) -> Self:
-        if self._live is not None:
-            self._live.start()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        if self._live is not None:
-            self._live.stop()
-
-    def show(self, tally: Tally) -> None:
+    def show_tally(self, tally: Tally) -> None:
         now_s = time.monotonic()
         self._update_rate(tally, now_s)
-        line = self._line(tally, now_s)
-        if self._live is not None:
-            self._live.update(Text(line), refresh=True)
-        elif now_s - self._printed_s >= PLAIN_EVERY_S:
-            self._printed_s = now_s
-            self._console.print(line, highlight=False, soft_wrap=True)
+        self.show(self._line(tally, now_s))
 
     def _update_rate(self, tally: Tally, now_s: float) -> None:
         if now_s - self._then_s >= 1.0:

@@ -11,6 +11,16 @@ const walls = {
   ui: ["render", "input", "app"],
 };
 
+/** `render` may use all of three.js; `world` may use its vectors, which need no WebGL. */
+function threeIn(folder) {
+  if (folder === "render") return [];
+  const group = ["three", "three/**"];
+  const math = ["MathUtils", "Quaternion", "Vector3", "Vector3Like"];
+  return folder === "world"
+    ? [{ group, allowImportNames: math, message: "world/ reckons, render/ draws." }]
+    : [{ group, message: "Only render/ draws." }];
+}
+
 export default defineConfig(
   { ignores: ["node_modules/", "dist/"] },
   js.configs.recommended,
@@ -38,9 +48,7 @@ export default defineConfig(
               ],
               message: `${folder}/ stands apart.`,
             },
-            ...(folder === "render"
-              ? []
-              : [{ group: ["three", "three/**"], message: "Only render/ draws." }]),
+            ...threeIn(folder),
           ],
         },
       ],

@@ -3,11 +3,13 @@ import { defineConfig } from "vitest/config";
 export default defineConfig({
   base: "./",
   build: {
-    outDir: "../server/client_assets",
+    outDir: "../src/esplanade/server/client_assets",
     emptyOutDir: true,
     // The server answers with a strict content security policy: nothing may be inlined.
     assetsInlineLimit: 0,
     modulePreload: { polyfill: false },
+    // Whose code is in the bundle, with the licences of all of it; the page links to it.
+    license: { fileName: "licences.txt" },
     sourcemap: false,
     target: "es2022",
     chunkSizeWarningLimit: 900,

@@ -1,23 +1,16 @@
 """`esplanade evaluate`: how actors, or predictions, do among recorded people."""
 
-import argparse
-import sys
+from argparse import Namespace
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Final
 
+from esplanade.commandline import exit_codes
+from esplanade.commandline.errors import UsageError
+from esplanade.commandline.output import console, made_folder, write_json
+from esplanade.commandline.progress import progress
 from esplanade.evaluation import forecast_report, plotting, report
-from esplanade.evaluation.console import (
-    UsageError,
-    check_targets,
-    named_sources,
-    output,
-    progress,
-    walk,
-    write_json,
-)
+from esplanade.evaluation.console import named_sources, walk
 from esplanade.evaluation.ledger import LedgerError
-from esplanade.evaluation.options import parser
 from esplanade.evaluation.policies import PolicyError
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.runner import Result, ready_policy
@@ -26,16 +19,10 @@ from esplanade.evaluation.studies import command
 from esplanade.evaluation.trials import Source, plan_trials
 from esplanade.recordings import RecordingError
 
-EXIT_WELL: Final = 0
-EXIT_FAILED: Final = 1
-EXIT_USAGE: Final = 2
 
-
-def run(argv: Sequence[str]) -> int:
-    """Evaluate as the command line says; returns the exit code."""
-    options = parser().parse_args(argv)
+def run(options: Namespace) -> int:
+    """Evaluate as the options say; returns the exit code."""
     try:
-        _check_studies(options)
         if options.sensitivity:
             command.show_sensitivity(options)
         elif options.tune:
@@ -43,68 +30,53 @@ def run(argv: Sequence[str]) -> int:
         elif options.prediction or options.fit:
             _forecasts(options)
         elif _trips(options) and options.strict:
-            return EXIT_FAILED
-    except (UsageError, SettingError, LedgerError, RecordingError, PolicyError) as error:
-        print(f"esplanade evaluate: {error}", file=sys.stderr)
-        return EXIT_USAGE
-    return EXIT_WELL
+            return exit_codes.FAILED
+    except (SettingError, LedgerError, RecordingError, PolicyError) as error:
+        raise UsageError(str(error)) from None
+    return exit_codes.OK
 
 
-def _check_studies(options: argparse.Namespace) -> None:
-    """Nothing is asked for that would be left aside."""
-    if options.vary and not (options.sensitivity or options.tune):
-        raise UsageError("--vary is for --sensitivity and --tune")
-    if options.candidates is not None and not options.tune:
-        raise UsageError("--candidates is for --tune")
-
-
-def _trips(options: argparse.Namespace) -> bool:
+def _trips(options: Namespace) -> bool:
     """Walk all episodes, show and write what came of them; returns whether one failed."""
     settings = read_changes(options.set)
     names = named_sources(options)
-    check_targets(options)
     if options.plots is not None:
+        made_folder("--plots", options.plots)
         plotting.require_matplotlib()
     rules = Rules(max_acceleration_mps2=options.a_max)
     policies = list(dict.fromkeys(options.policy))
     trials = plan_trials(list(names), policies, rules, options.episodes, options.seed, settings)
-    fewest = min(len(trial.episodes) for trial in trials)
-    drawn = _numbers(options.plot_episodes, fewest)
+    _check_numbers(options.plot_episodes, min(len(trial.episodes) for trial in trials))
     results = walk(trials, options)
     rows = report.summaries(results, names)
-    report.show(output(), rows)
+    report.show(console(), rows)
     if options.json is not None:
         told = {**rules.__dict__, "seed": options.seed, "interpolation": options.interp}
-        write_json(options.json, report.figures(results, rows, names, {**told, **settings}))
+        figures = report.figures(results, rows, names, {**told, **settings})
+        write_json("--json", options.json, figures)
     if options.plots is not None:
-        _draw(options.plots, drawn, results, names)
+        _draw(options.plots, options.plot_episodes, results, names)
     return any(score.failed for result in results for score in result.scores)
 
 
-def _forecasts(options: argparse.Namespace) -> None:
+def _forecasts(options: Namespace) -> None:
     """Hold predictions against what people did."""
     names = named_sources(options)
-    check_targets(options)
     crowds = [(name, *source.read()) for source, name in names.items()]
     rows, fits = forecast_report.measure(crowds, options.sample_s, fit=options.fit)
     if not rows:
         raise UsageError("nobody in it is followed for long enough to judge a prediction")
-    forecast_report.show(output(), rows, fits)
+    forecast_report.show(console(), rows, fits)
     if options.json is not None:
-        write_json(options.json, forecast_report.figures(rows, fits, options.sample_s))
+        figures = forecast_report.figures(rows, fits, options.sample_s)
+        write_json("--json", options.json, figures)
 
 
-def _numbers(text: str, count: int) -> frozenset[int] | None:
-    """Numbers of episodes to draw; None for those that failed."""
-    if text == "failed":
-        return None
-    try:
-        numbers = frozenset(int(part) for part in text.split(","))
-    except ValueError:
-        raise UsageError(f"--plot-episodes: {text!r} is neither `failed` nor numbers") from None
-    if not numbers <= set(range(count)):
-        raise UsageError(f"--plot-episodes: {text}, but there are episodes 0 to {count - 1}")
-    return numbers
+def _check_numbers(numbers: frozenset[int] | None, count: int) -> None:
+    """Whether there are episodes of these numbers."""
+    if numbers is not None and not numbers <= set(range(count)):
+        told = ",".join(map(str, sorted(numbers)))
+        raise UsageError(f"--plot-episodes: {told}, but there are episodes 0 to {count - 1}")
 
 
 def _draw(

@@ -1,11 +1,30 @@
-"""The options of `esplanade evaluate`."""
+"""The options of `esplanade evaluate`, without anything that evaluates."""
 
-import argparse
-import math
-from pathlib import Path
+from argparse import ArgumentTypeError, Namespace
 from typing import Any, Final
 
-from esplanade.evaluation.policies import POLICIES
+from esplanade.commandline.errors import UsageError
+from esplanade.commandline.parser import Parser
+from esplanade.commandline.readers import (
+    SEED_LIMIT,
+    Folder,
+    InputFile,
+    Number,
+    OutputFile,
+    Whole,
+)
+
+POLICIES: Final = {
+    "esplanade": "the project's own actor",
+    "straight": "straight on, whoever is in the way",
+    "discs": "constant velocities, hard discs, space-time A*",
+    "clairvoyant": "the same, shown the true future",
+    "human": "the recorded pedestrian's own way",
+    "jupedsim-speed": "JuPedSim, collision-free speed",
+    "jupedsim-anticipation": "JuPedSim, anticipation velocity",
+    "jupedsim-forces": "JuPedSim, social forces",
+}
+"""Names and summaries of `esplanade.evaluation.policies`, which imports numpy."""
 
 EXAMPLES: Final = """\
 examples:
@@ -24,25 +43,29 @@ exit code: 0 all went well, 1 with --strict: somebody was touched or a goal not 
 """
 
 
-def parser() -> argparse.ArgumentParser:
+def parser() -> Parser:
     """All options, in groups."""
-    made = argparse.ArgumentParser(
-        prog="esplanade evaluate",
+    made = Parser(
+        "esplanade evaluate",
+        run="esplanade.evaluation.cli:run",
+        check=check,
         description="Put an actor among recorded people who do not react, each time in the place "
-        "of one of them, and measure how it gets to where that one went; or measure how well "
-        "people are predicted.",
+        "of one\nof them, and measure how it gets to where that one went; or measure how well "
+        "people\nare predicted.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
     )
-    made.add_argument("crowds", metavar="CROWD", nargs="+", type=Path, help="recorded crowd")
+    made.add_argument("crowds", metavar="CROWD", nargs="+", type=InputFile(), help="recorded crowd")
     files = made.add_argument_group("recordings")
     files.add_argument(
-        "--walls", metavar="FILE", type=Path, help="walls [default: NAME.walls.json beside it]"
+        "--walls",
+        metavar="FILE",
+        type=InputFile(),
+        help="walls [default: NAME.walls.json beside it]",
     )
     files.add_argument(
         "--fps",
-        type=_number(1e-3, 1e6),
+        metavar="X",
+        type=Number(1e-3, 1e6),
         help="frames a second, where a file counts frames [default: 15 for obsmat.txt; what the "
         "scenes say for .ndjson]",
     )
@@ -57,14 +80,24 @@ def parser() -> argparse.ArgumentParser:
         "--policy",
         metavar="NAME",
         nargs="+",
-        choices=list(POLICIES),
+        choices=tuple(POLICIES),
         default=["esplanade"],
-        help="; ".join(f"{name}: {entry.summary}" for name, entry in POLICIES.items()),
+        help="; ".join(f"{name}: {summary}" for name, summary in POLICIES.items()),
     )
     trips.add_argument(
-        "--episodes", metavar="N", type=_whole(1, 100_000), default=100, help="[default: 100]"
+        "--episodes",
+        metavar="N",
+        type=Whole(1, 100_000),
+        default=100,
+        help="most episodes of each recording [default: 100]",
     )
-    trips.add_argument("--seed", metavar="N", type=_whole(0, 2**32 - 1), default=0, help="[0]")
+    trips.add_argument(
+        "--seed",
+        metavar="N",
+        type=Whole(0, SEED_LIMIT),
+        default=0,
+        help="seed of everything drawn by chance [default: 0]",
+    )
     trips.add_argument(
         "--a-max",
         metavar="M/S²",
@@ -75,12 +108,19 @@ def parser() -> argparse.ArgumentParser:
     trips.add_argument(
         "--set",
         metavar="NAME=VALUE",
+        type=_change,
         action="append",
         default=[],
         help="change a setting of our actor: a parameter, risk.NAME, prediction.NAME or plan.NAME; "
         "may be given several times",
     )
-    trips.add_argument("--processes", metavar="N", type=_whole(1, 64), default=2, help="[2]")
+    trips.add_argument(
+        "--processes",
+        metavar="N",
+        type=Whole(1, 64),
+        default=2,
+        help="processes that share the episodes [default: 2]",
+    )
     trips.add_argument("--strict", action="store_true", help="exit with 1 if an episode failed")
     _add_studies(made.add_argument_group("settings of our actor"))
     forecasts = made.add_argument_group("prediction")
@@ -98,17 +138,22 @@ def parser() -> argparse.ArgumentParser:
         help="time between the places that are seen [default: 0.4]",
     )
     results = made.add_argument_group("results")
-    results.add_argument("--json", metavar="FILE", type=Path, help="write every episode there")
+    results.add_argument(
+        "--json", metavar="FILE", type=OutputFile(), help="write every episode there"
+    )
     results.add_argument(
         "--ledger",
         metavar="FILE",
-        type=Path,
+        type=OutputFile(),
         help="keep scores there as they come; what is there is not walked again",
     )
-    results.add_argument("--plots", metavar="FOLDER", type=Path, help="draw episodes there, as PNG")
+    results.add_argument(
+        "--plots", metavar="FOLDER", type=Folder(), help="draw episodes there, as PNG"
+    )
     results.add_argument(
         "--plot-episodes",
         metavar="failed|N,N,..",
+        type=_episode_numbers,
         default="failed",
         help="which ones [default: failed]",
     )
@@ -138,33 +183,50 @@ def _add_studies(studies: Any) -> None:
     studies.add_argument(
         "--candidates",
         metavar="FILE",
-        type=Path,
+        type=InputFile(),
         help='more candidates for --tune, a line each: {"risk_weight": 12, "risk.comfort": 0.1}',
     )
 
 
-def _number(least: float, most: float) -> Any:
-    def read(text: str) -> float:
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if not least <= value <= most:
-            raise argparse.ArgumentTypeError(f"{text!r} is no number from {least:g} to {most:g}")
-        return value
+def check(options: Namespace) -> None:
+    """Whether these options fit together; nothing is asked for that would be left aside.
 
-    return read
+    Raises
+    ------
+    UsageError
+        They do not.
+    """
+    studies = options.sensitivity or options.tune
+    if options.vary and not studies:
+        raise UsageError("--vary is for --sensitivity and --tune")
+    if options.candidates is not None and not options.tune:
+        raise UsageError("--candidates is for --tune")
+    if studies and options.ledger is None:
+        raise UsageError("this takes long: say with --ledger FILE where to keep what is done")
+    if options.tune and not (options.vary or options.candidates):
+        raise UsageError("--tune needs candidates: --vary NAME=V1,V2,.. or --candidates FILE")
+    if options.tune and not all("=" in text for text in options.vary):
+        raise UsageError("--vary: --tune needs values, as NAME=V1,V2,..")
+    if options.walls is not None and len(options.crowds) > 1:
+        raise UsageError("--walls belongs to one recording; name them NAME.walls.json beside each")
 
 
-def _whole(least: int, most: int) -> Any:
-    def read(text: str) -> int:
-        if not (text.isdecimal() and least <= int(text) <= most):
-            raise argparse.ArgumentTypeError(f"{text!r} is no number from {least} to {most}")
-        return int(text)
-
-    return read
+def _change(text: str) -> str:
+    if "=" not in text:
+        raise ArgumentTypeError(f"{text!r} is not NAME=VALUE")
+    return text
 
 
 def _acceleration(text: str) -> float | None:
-    limit: float | None = None if text == "none" else _number(0.2, 20.0)(text)
+    limit: float | None = None if text == "none" else Number(0.2, 20.0)(text)
     return limit
+
+
+def _episode_numbers(text: str) -> frozenset[int] | None:
+    """Numbers of episodes; None for those that failed."""
+    if text == "failed":
+        return None
+    try:
+        return frozenset(int(part) for part in text.split(","))
+    except ValueError:
+        raise ArgumentTypeError(f"{text!r} is neither `failed` nor numbers") from None

@@ -1,6 +1,5 @@
 """Settings of our own actor by name: its parameters, and those of the models it plans with."""
 
-import difflib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields
@@ -9,6 +8,8 @@ from typing import Any, Final
 from pydantic import TypeAdapter, ValidationError
 
 from esplanade.actors import ActorParameters
+from esplanade.commandline.fields import in_words
+from esplanade.commandline.parser import suggestion
 from esplanade.planning import PlanModel, PredictionModel, RiskModel
 
 MODELS: Final[Mapping[str, type]] = {
@@ -109,9 +110,9 @@ def _validated(prefix: str, adapter: TypeAdapter[Any], values: Mapping[str, Any]
     try:
         made = adapter.validate_python(values)
     except ValidationError as error:
-        fault = error.errors(include_url=False)[0]
-        where = ".".join(map(str, fault["loc"])) or ", ".join(values)
-        raise SettingError(f"{prefix}{where}: {fault['msg']}") from None
+        told = in_words(error)
+        where = "" if error.errors()[0]["loc"] else f"{', '.join(values)}: "
+        raise SettingError(f"{prefix}{where}{told}") from None
     found = {prefix + name: getattr(made, name) for name in values}
     for name, value in found.items():
         if not value >= 0:
@@ -129,9 +130,7 @@ def _parted(text: str) -> tuple[str, str]:
 def _require_known(name: str) -> None:
     if name in DEFAULTS:
         return
-    near = difflib.get_close_matches(name, DEFAULTS, n=1)
-    hint = f"; did you mean {near[0]}?" if near else ""
-    raise SettingError(f"{name}: there is no such setting{hint}")
+    raise SettingError(f"{name}: there is no such setting{suggestion(name, DEFAULTS)}")
 
 
 @contextmanager

@@ -1,32 +1,22 @@
 """`esplanade gait`: pictures and films of walking, the cycle of far figures, plots."""
 
-import argparse
-import sys
-from collections.abc import Callable, Sequence
-from typing import Final
+from argparse import Namespace
+from importlib import import_module
+from typing import Any
 
-from esplanade.footage.console import UsageError, made_folder, part_that_needs, progress
-from esplanade.footage.options import WALKS, parser
-
-EXIT_WELL: Final = 0
-EXIT_USAGE: Final = 2
-
-
-def run(argv: Sequence[str]) -> int:
-    """Do what the command line says; returns the exit code."""
-    options = parser().parse_args(argv)
-    try:
-        return _COMMANDS[options.command](options)
-    except UsageError as error:
-        print(f"esplanade gait {options.command}: {error}", file=sys.stderr)
-        return EXIT_USAGE
+from esplanade.commandline import exit_codes
+from esplanade.commandline.errors import UsageError
+from esplanade.commandline.output import made_folder
+from esplanade.commandline.progress import progress
+from esplanade.footage.options import WALKS
 
 
-def _render(options: argparse.Namespace) -> int:
-    strips = part_that_needs("PIL", "esplanade.footage.strips")
-    recording = part_that_needs("PIL", "esplanade.footage.recording")
-    walks = part_that_needs("PIL", "esplanade.footage.walks").walks()
-    folder = made_folder(options.out)
+def render(options: Namespace) -> int:
+    """Draw walks: strips, trails and films."""
+    strips = _part_that_needs("PIL", "esplanade.footage.strips")
+    recording = _part_that_needs("PIL", "esplanade.footage.recording")
+    walks = _part_that_needs("PIL", "esplanade.footage.walks").walks()
+    folder = made_folder("--out", options.out)
     files = []
     with progress() as shown:
         for name in WALKS if options.walk == "all" else (options.walk,):
@@ -42,35 +32,47 @@ def _render(options: argparse.Namespace) -> int:
                 files.append(folder / f"{name}.gif")
                 strips.draw_film(taken, files[-1], lambda task=task: shown.advance(task))
     print(*files, sep="\n")
-    return EXIT_WELL
+    return exit_codes.OK
 
 
-def _cycle(options: argparse.Namespace) -> int:
-    cycle = part_that_needs("numpy", "esplanade.footage.cycle")
+def cycle(options: Namespace) -> int:
+    """Write the cycle of figures that are far away."""
+    made = import_module("esplanade.footage.cycle")
     try:
-        options.out.write_text(cycle.as_text(cycle.cycle()) + "\n", encoding="utf-8")
+        options.out.write_text(made.as_text(made.cycle()) + "\n", encoding="utf-8")
     except OSError as error:
         raise UsageError(f"--out: {error}") from None
     print(options.out)
-    return EXIT_WELL
+    return exit_codes.OK
 
 
-def _plots(options: argparse.Namespace) -> int:
-    plots = part_that_needs("matplotlib", "esplanade.footage.plots").PLOTS
-    folder = made_folder(options.out)
+def plots(options: Namespace) -> int:
+    """Draw the plots of docs/walking.md."""
+    drawn = _part_that_needs("matplotlib", "esplanade.footage.plots").PLOTS
+    folder = made_folder("--out", options.out)
     files = []
     with progress() as shown:
-        task = shown.add_task("drawing", total=len(plots))
-        for name, plot in plots.items():
+        task = shown.add_task("drawing", total=len(drawn))
+        for name, plot in drawn.items():
             files.append(folder / f"walking-{name}.svg")
             plot(files[-1])
             shown.advance(task)
     print(*files, sep="\n")
-    return EXIT_WELL
+    return exit_codes.OK
 
 
-_COMMANDS: Final[dict[str, Callable[[argparse.Namespace], int]]] = {
-    "render": _render,
-    "cycle": _cycle,
-    "plots": _plots,
-}
+def _part_that_needs(library: str, module: str) -> Any:
+    """A module of ours that draws.
+
+    Raises
+    ------
+    UsageError
+        The library that it draws with is not installed.
+    """
+    try:
+        import_module(library)
+    except ImportError:
+        raise UsageError(
+            f"pictures need {library}: pip install matplotlib, or `pip install '.[gait]'`"
+        ) from None
+    return import_module(module)

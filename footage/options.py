@@ -1,9 +1,10 @@
 """The options of `esplanade gait`."""
 
-import argparse
-from collections.abc import Callable
-from pathlib import Path
+from argparse import _SubParsersAction as SubParsers  # argparse names the type nowhere else
 from typing import Final
+
+from esplanade.commandline.parser import Parser
+from esplanade.commandline.readers import SEED_LIMIT, Folder, OutputFile, Whole
 
 WALKS: Final = ("flat", "curve", "stairs", "start-stop")
 FRAMES_A_SECOND: Final = (10, 20, 25, 50)
@@ -32,14 +33,9 @@ exit code: 0 all is well, 2 wrong usage, or a file that cannot be written
 """
 
 
-def parser() -> argparse.ArgumentParser:
+def parser() -> Parser:
     """The three commands; the help of the whole shows how each is called."""
-    made = argparse.ArgumentParser(
-        prog="esplanade gait",
-        description=DESCRIPTION,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
-    )
+    made = Parser("esplanade gait", description=DESCRIPTION)
     commands = made.add_subparsers(dest="command", metavar="COMMAND", required=True)
     parts = [_render(commands), _cycle(commands), _plots(commands)]
     usages = "".join(part.format_usage().replace("usage: ", "  ") for part in parts)
@@ -47,16 +43,13 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
-_Commands = argparse._SubParsersAction  # noqa: SLF001 - argparse names the type nowhere else
-
-
-def _render(commands: "_Commands[argparse.ArgumentParser]") -> argparse.ArgumentParser:
+def _render(commands: "SubParsers[Parser]") -> Parser:
     made = commands.add_parser(
         "render",
+        run="esplanade.footage.cli:render",
         help="draw walks: strips, trails and films",
         description="Walk on level ground, round bends, up and down stairs, and with sudden stops "
-        "and starts; draw each walk as PNG strips and a GIF.",
-        allow_abbrev=False,
+        "and\nstarts; draw each walk as PNG strips and a GIF.",
     )
     _add_folder(made)
     made.add_argument(
@@ -68,13 +61,13 @@ def _render(commands: "_Commands[argparse.ArgumentParser]") -> argparse.Argument
     made.add_argument(
         "--seed",
         metavar="N",
-        type=_whole(0, 2**32 - 1),
+        type=Whole(0, SEED_LIMIT),
         default=0,
         help="whose body: size and build of walking [default: 0]",
     )
     made.add_argument(
         "--fps",
-        type=int,
+        type=Whole(1, max(FRAMES_A_SECOND)),
         choices=FRAMES_A_SECOND,
         default=DEFAULT_FRAMES_A_SECOND,
         help=f"frames a second of films [default: {DEFAULT_FRAMES_A_SECOND}]",
@@ -83,45 +76,36 @@ def _render(commands: "_Commands[argparse.ArgumentParser]") -> argparse.Argument
     return made
 
 
-def _cycle(commands: "_Commands[argparse.ArgumentParser]") -> argparse.ArgumentParser:
+def _cycle(commands: "SubParsers[Parser]") -> Parser:
     made = commands.add_parser(
         "cycle",
+        run="esplanade.footage.cli:cycle",
         help="write the cycle of figures that are far away",
         description="Write the eight key poses that browsers mix for figures too far away to be "
-        "told steps of, as JSON.",
-        allow_abbrev=False,
+        "told\nsteps of, as JSON.",
     )
-    made.add_argument("--out", metavar="FILE", type=Path, required=True, help="the file to write")
+    made.add_argument(
+        "--out", metavar="FILE", type=OutputFile(), required=True, help="the file to write"
+    )
     return made
 
 
-def _plots(commands: "_Commands[argparse.ArgumentParser]") -> argparse.ArgumentParser:
+def _plots(commands: "SubParsers[Parser]") -> Parser:
     made = commands.add_parser(
         "plots",
+        run="esplanade.footage.cli:plots",
         help="draw the plots of docs/walking.md",
         description="Draw the plots of docs/walking.md anew, as SVG.",
-        allow_abbrev=False,
     )
     _add_folder(made)
     return made
 
 
-def _add_folder(made: argparse.ArgumentParser) -> None:
+def _add_folder(made: Parser) -> None:
     made.add_argument(
         "--out",
         metavar="DIR",
-        type=Path,
-        default=Path(),
+        type=Folder(),
+        default=".",
         help="where the pictures go [default: here]",
     )
-
-
-def _whole(least: int, most: int) -> Callable[[str], int]:
-    def parse(text: str) -> int:
-        if not (text.isdecimal() and least <= int(text) <= most):
-            raise argparse.ArgumentTypeError(
-                f"{text!r} is not a whole number from {least} to {most}"
-            )
-        return int(text)
-
-    return parse

@@ -1,78 +1,63 @@
 """`esplanade scene`: check a scene, draw it, make one of a mesh."""
 
-import argparse
 import json
 import sys
-from collections.abc import Callable, Sequence
-from typing import Final
+from argparse import Namespace
+from pathlib import Path
 
-from rich.console import Console
-
-from esplanade.planning.scene.scene_file import SceneError
+from esplanade.commandline import exit_codes
+from esplanade.commandline.errors import UsageError
+from esplanade.commandline.output import console, made_folder
+from esplanade.commandline.progress import progress
+from esplanade.planning import Scene
+from esplanade.planning.scene.scene_file import SceneError, read_scene
 from esplanade.scenery import inventory, pictures
-from esplanade.scenery.console import UsageError, open_scene, progress
+from esplanade.scenery.bodies import made_body
 from esplanade.scenery.download import local_file
 from esplanade.scenery.importing import import_mesh
-from esplanade.scenery.options import parser
 from esplanade.scenery.views import layer_views
 
-EXIT_WELL: Final = 0
-EXIT_WRONG: Final = 1
-EXIT_USAGE: Final = 2
 
-
-def run(argv: Sequence[str]) -> int:
-    """Do what the command line says; returns the exit code."""
-    options = parser().parse_args(argv)
+def check(options: Namespace) -> int:
+    """Say what is wrong with a scene and where, or what it holds."""
     try:
-        return _COMMANDS[options.command](options)
+        scene = _read(options.scene)
     except SceneError as error:
-        print(error, file=sys.stderr)
-        return EXIT_WRONG
-    except UsageError as error:
-        print(f"esplanade scene {options.command}: {error}", file=sys.stderr)
-        return EXIT_USAGE
-
-
-def _check(options: argparse.Namespace) -> int:
-    try:
-        scene = open_scene(options.scene)
-    except SceneError as error:
-        if not options.json:
-            raise
-        print(json.dumps({"faults": error.faults}, indent=1))
-        return EXIT_WRONG
+        if options.json:
+            print(json.dumps({"faults": error.faults}, indent=1))
+        return exit_codes.FAILED if options.json else _refuse(error)
     found = inventory.take_inventory(scene, options.cell)
     if options.json:
         print(json.dumps(found.figures(), indent=1))
     else:
-        inventory.show(Console(), found)
+        inventory.show(console(), found)
         for fault in found.faults:
             print(f"{options.scene}: {fault}", file=sys.stderr)
-    return EXIT_WRONG if found.faults else EXIT_WELL
+    return exit_codes.FAILED if found.faults else exit_codes.OK
 
 
-def _render(options: argparse.Namespace) -> int:
+def render(options: Namespace) -> int:
+    """Draw every layer of a scene."""
     pictures.require_matplotlib()
-    scene = open_scene(options.scene)
+    body = made_body(options.body)
     try:
-        options.out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UsageError(f"--out: {error}") from None
-    views = layer_views(scene, options.cell, options.body, options.start, options.goal)
+        scene = _read(options.scene)
+    except SceneError as error:
+        return _refuse(error)
+    folder = made_folder("--out", options.out)
+    views = layer_views(scene, options.cell, body, options.start, options.goal)
     files = []
     with progress() as shown:
         task = shown.add_task("drawing", total=len(views))
         for view in views:
-            files += pictures.draw_layer(view, options.out)
+            files += pictures.draw_layer(view, folder)
             shown.advance(task)
     print(*files, sep="\n")
-    return EXIT_WELL
+    return exit_codes.OK
 
 
-def _import(options: argparse.Namespace) -> int:
-    if options.out.suffix != ".json":
-        raise UsageError(f"--out: a scene is a .json file, not {options.out.name}")
+def import_(options: Namespace) -> int:
+    """Make a scene of a mesh."""
     with progress(share=True) as shown:
         task = shown.add_task("", total=1.0)
 
@@ -94,11 +79,17 @@ def _import(options: argparse.Namespace) -> int:
     print(
         f"{options.out}: {len(scene.places)} places; run it: esplanade serve --scene {options.out}"
     )
-    return EXIT_WELL
+    return exit_codes.OK
 
 
-_COMMANDS: Final[dict[str, Callable[[argparse.Namespace], int]]] = {
-    "check": _check,
-    "render": _render,
-    "import": _import,
-}
+def _read(path: Path) -> Scene:
+    try:
+        return read_scene(path)
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read: {error.strerror or error}") from None
+
+
+def _refuse(error: SceneError) -> int:
+    """Every fault in a line of its own, with the file that it is in."""
+    print(error, file=sys.stderr)
+    return exit_codes.FAILED

@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 from typing import Final
 from urllib.parse import unquote, urlsplit
 
-from esplanade.scenery.console import UsageError
+from esplanade.commandline.errors import UsageError
 
 SCHEMES: Final = ("http", "https")
 MAX_BYTES: Final = 256 * 2**20

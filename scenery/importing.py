@@ -19,7 +19,7 @@ from esplanade.planning.traversal.stability import Stability
 from esplanade.planning.traversal.traversability import Traversability
 from esplanade.planning.traversal.wavefront import UNREACHED, metres, spread_wave
 from esplanade.scenery.compass import Ground
-from esplanade.scenery.console import UsageError
+from esplanade.commandline.errors import UsageError
 from esplanade.scenery.meshes import as_glb
 from esplanade.scenery.reach import cell_near, centres, largest_region
 from esplanade.scenery.values import Point

@@ -9,8 +9,8 @@ from rich.console import Console
 from rich.table import Table
 
 from esplanade.planning import LayeredGrid, Scene
+from esplanade.scenery.bodies import PRESETS
 from esplanade.scenery.reach import Reach, reach_of
-from esplanade.scenery.values import PRESETS
 
 _PARTS: Final = ("polygons", "walls", "stairs", "doors", "spawns", "places")
 

@@ -1,10 +1,11 @@
 """The options of `esplanade scene`."""
 
-import argparse
-from pathlib import Path
+from argparse import _SubParsersAction as SubParsers  # argparse names the type nowhere else
 from typing import Final
 
-from esplanade.scenery.values import body, number, point, where, whole
+from esplanade.commandline.parser import Parser
+from esplanade.commandline.readers import Folder, InputFile, Number, OutputFile, Whole
+from esplanade.scenery.values import body, point, where
 
 DEFAULT_CELL_M: Final = 0.25
 """What the server takes."""
@@ -26,14 +27,9 @@ cannot be read or written
 """
 
 
-def parser() -> argparse.ArgumentParser:
+def parser() -> Parser:
     """The three commands; the help of the whole shows how each is called."""
-    made = argparse.ArgumentParser(
-        prog="esplanade scene",
-        description=DESCRIPTION,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
-    )
+    made = Parser("esplanade scene", description=DESCRIPTION)
     commands = made.add_subparsers(dest="command", metavar="COMMAND", required=True)
     parts = [_check(commands), _render(commands), _import(commands)]
     usages = "".join(part.format_usage().replace("usage: ", "  ") for part in parts)
@@ -41,34 +37,31 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
-_Commands = argparse._SubParsersAction  # noqa: SLF001 - argparse names the type nowhere else
-
-
-def _check(commands: "_Commands[argparse.ArgumentParser]") -> argparse.ArgumentParser:
+def _check(commands: "SubParsers[Parser]") -> Parser:
     made = commands.add_parser(
         "check",
+        run="esplanade.scenery.cli:check",
         help="say what is wrong and where, or what the scene holds",
         description="Say what is wrong with a scene and where, or what it holds: its extent, "
-        "layers, cells, and who gets where from its spawns.",
-        allow_abbrev=False,
+        "layers,\ncells, and who gets where from its spawns.",
     )
-    made.add_argument("scene", metavar="FILE", type=Path, help="scene, a JSON file")
+    made.add_argument("scene", metavar="FILE", type=InputFile(), help="scene, a JSON file")
     made.add_argument("--json", action="store_true", help="print it as JSON")
     _add_cell(made)
     return made
 
 
-def _render(commands: "_Commands[argparse.ArgumentParser]") -> argparse.ArgumentParser:
+def _render(commands: "SubParsers[Parser]") -> Parser:
     made = commands.add_parser(
         "render",
+        run="esplanade.scenery.cli:render",
         help="draw every layer: heights, reachability, classes, a path",
         description="Draw every layer of a scene as a body finds it, as PNG: heights, "
-        "reachability, the five classes, and potential and path between two points.",
-        allow_abbrev=False,
+        "reachability,\nthe five classes, and potential and path between two points.",
     )
-    made.add_argument("scene", metavar="FILE", type=Path, help="scene, a JSON file")
+    made.add_argument("scene", metavar="FILE", type=InputFile(), help="scene, a JSON file")
     made.add_argument(
-        "--out", metavar="DIR", type=Path, required=True, help="where the pictures go"
+        "--out", metavar="DIR", type=Folder(), required=True, help="where the pictures go"
     )
     made.add_argument(
         "--body",
@@ -89,19 +82,23 @@ def _render(commands: "_Commands[argparse.ArgumentParser]") -> argparse.Argument
     return made
 
 
-def _import(commands: "_Commands[argparse.ArgumentParser]") -> argparse.ArgumentParser:
+def _import(commands: "SubParsers[Parser]") -> Parser:
     made = commands.add_parser(
         "import",
+        run="esplanade.scenery.cli:import_",
         help="make a scene of a mesh: OBJ, glTF, GLB",
         description="Make a scene of a mesh. The mesh is kept beside it as SCENE.glb, which the "
-        "scene names: keep the two together.",
-        allow_abbrev=False,
+        "scene\nnames: keep the two together.",
     )
     made.add_argument(
         "mesh", metavar="MESH", help="OBJ, glTF or GLB: a file, or an address of the web"
     )
     made.add_argument(
-        "--out", metavar="SCENE.json", type=Path, required=True, help="the scene to write"
+        "--out",
+        metavar="SCENE.json",
+        type=OutputFile(".json"),
+        required=True,
+        help="the scene to write",
     )
     made.add_argument(
         "--up", choices=("y", "z"), default="y", help="the mesh's axis that is up [default: y]"
@@ -109,7 +106,7 @@ def _import(commands: "_Commands[argparse.ArgumentParser]") -> argparse.Argument
     made.add_argument(
         "--scale",
         metavar="M",
-        type=number(1e-6, 1e6),
+        type=Number(1e-6, 1e6),
         default=1.0,
         help="metres in one unit of the mesh [default: 1]",
     )
@@ -123,7 +120,7 @@ def _import(commands: "_Commands[argparse.ArgumentParser]") -> argparse.Argument
     made.add_argument(
         "--places",
         metavar="N",
-        type=whole(0, 64),
+        type=Whole(0, 64),
         default=8,
         help="places to spread over what can be reached [default: 8]",
     )
@@ -131,11 +128,11 @@ def _import(commands: "_Commands[argparse.ArgumentParser]") -> argparse.Argument
     return made
 
 
-def _add_cell(made: argparse.ArgumentParser) -> None:
+def _add_cell(made: Parser) -> None:
     made.add_argument(
         "--cell",
         metavar="M",
-        type=number(0.05, 2.0),
+        type=Number(0.05, 2.0),
         default=DEFAULT_CELL_M,
         help=f"edge of a cell in metres [default: {DEFAULT_CELL_M}]",
     )

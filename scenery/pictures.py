@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.scenery.console import UsageError
+from esplanade.commandline.errors import UsageError
 
 Floats = NDArray[np.float64]
 

@@ -1,14 +1,10 @@
-"""What words on the command line mean: bodies, points, numbers."""
+"""What words on the command line mean: bodies and points."""
 
 import argparse
 import math
-from collections.abc import Callable
-from dataclasses import replace
-from typing import Final
+from typing import Final, NamedTuple
 
-from esplanade.planning.scene.bodies import Body
-
-PRESETS: Final = {"adult": Body.adult, "child": Body.child}
+PRESETS: Final = ("adult", "child")
 _MEASURES: Final = {
     "radius": "radius_m",
     "height": "height_m",
@@ -23,7 +19,14 @@ Where = str | Point
 """The name of a place, or a point."""
 
 
-def body(text: str) -> Body:
+class BodyWish(NamedTuple):
+    """A preset, and the measures that differ from it; `esplanade.scenery.bodies` makes the body."""
+
+    preset: str
+    changes: dict[str, float | int]
+
+
+def body(text: str) -> BodyWish:
     """A preset, or measures that differ from it."""
     first, *others = text.split(",")
     preset, measures = ("adult", [first, *others]) if "=" in first else (first, others)
@@ -40,10 +43,7 @@ def body(text: str) -> Body:
             changes[_MEASURES[name]] = int(number) if name == "edge" else float(number)
         except ValueError:
             raise argparse.ArgumentTypeError(f"{name}: {number!r} is no number") from None
-    try:
-        return replace(PRESETS[preset](), **changes)  # type: ignore[arg-type]
-    except ValueError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
+    return BodyWish(preset, changes)
 
 
 def where(text: str) -> Where:
@@ -60,29 +60,3 @@ def point(text: str) -> Point:
     if not all(math.isfinite(part) for part in (x, y, z)):
         raise argparse.ArgumentTypeError(f"{text!r} is not finite")
     return x, y, z
-
-
-def number(least: float, most: float) -> Callable[[str], float]:
-    """Of a number within limits."""
-
-    def read(text: str) -> float:
-        value = float(text)
-        if not least <= value <= most:
-            raise argparse.ArgumentTypeError(f"must lie between {least:g} and {most:g}")
-        return value
-
-    read.__name__ = "number"
-    return read
-
-
-def whole(least: int, most: int) -> Callable[[str], int]:
-    """Of a whole number within limits."""
-
-    def read(text: str) -> int:
-        value = int(text)
-        if not least <= value <= most:
-            raise argparse.ArgumentTypeError(f"must lie between {least} and {most}")
-        return value
-
-    read.__name__ = "whole number"
-    return read

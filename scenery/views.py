@@ -10,7 +10,7 @@ from esplanade.planning.routes.find_path import LayeredPath, PathStatus, find_pa
 from esplanade.planning.scene.bodies import Body
 from esplanade.planning.traversal.traversability import Traversability
 from esplanade.planning.traversal.wavefront import metres, spread_wave
-from esplanade.scenery.console import UsageError
+from esplanade.commandline.errors import UsageError
 from esplanade.scenery.pictures import LayerView, Mark
 from esplanade.scenery.reach import cell_near, centres, reached_cells, spawn_cells
 from esplanade.scenery.values import Point, Where

@@ -108,7 +108,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         guiding = asyncio.create_task(route_requests.run(hub.route_found))
         ready = True
         try:
-            yield Running(_port(listener), _port(private), world, metrics, ticking)
+            yield Running(_port(listener), private, world, metrics, ticking)
         finally:
             ready = False
             guiding.cancel()

@@ -38,10 +38,11 @@ _TYPES: Final = {
     ".json": "application/json",
     ".map": "application/json",
     ".svg": "image/svg+xml",
+    ".txt": "text/plain; charset=utf-8",
     ".webmanifest": "application/manifest+json",
     ".woff2": "font/woff2",
 }
-_COMPRESSED: Final = {".bin", ".css", ".html", ".js", ".json", ".map", ".svg", ".webmanifest"}
+_COMPRESSED: Final = {*_TYPES} - {".woff2"}
 _HASHED_PATH: Final = re.compile(r"/assets/[^/]+-[A-Za-z0-9_-]{8}\.\w+")
 """These names hold the content's hash, as Vite makes them; a changed file is another file."""
 

@@ -6,6 +6,7 @@ import signal
 
 import structlog
 
+from esplanade.commandline import interrupts
 from esplanade.server import logs
 from esplanade.server.app import Running, running
 from esplanade.server.settings import ServerSettings
@@ -36,8 +37,8 @@ async def _serve(settings: ServerSettings) -> None:
     loop = asyncio.get_running_loop()
     stop = asyncio.Event()
     # Until people can come in there is nothing to put in order, but a thread that compiles for
-    # a minute or two and cannot be interrupted: Ctrl-C ends the process as SIGTERM does.
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    # a minute or two and cannot be interrupted: Ctrl-C ends the process at once.
+    interrupts.end_quietly()
 
     def on_signal(number: int) -> None:
         log.info("stopping", signal=signal.Signals(number).name)

@@ -12,13 +12,19 @@ import pytest
 import yaml
 from hatch_build import PAGE, SKIP_VARIABLE, ClientBuildHook
 from hatchling.bridge.app import Application
+from websockets.datastructures import Headers
+from websockets.http11 import Request
 
 from esplanade.cli import COMMANDS
+from esplanade.server.assets import CLIENT_ASSETS, Assets
 from esplanade.server.settings import ServerSettings
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "src" / "esplanade"
 SCENES = ("gallery.json", "pavilion.json", "pavilion.obj", "plaza.json")
+
+HOLDERS = ("three.js authors", "The MessagePack Community")
+"""Whose code the web client bundles."""
 
 NPM_THAT_BUILDS = """
 import sys
@@ -97,14 +103,40 @@ def build(target: str, folder: Path) -> Path:
 def test_wheel_carries_every_package_and_the_scenes(tmp_path: Path) -> None:
     with zipfile.ZipFile(build("wheel", tmp_path)) as wheel:
         names = wheel.namelist()
+        (metadata,) = (wheel.read(name).decode() for name in names if name.endswith("/METADATA"))
+        licences = [wheel.read(name).decode() for name in names if "/licenses/" in name]
     tops = {name.split("/")[0] for name in names if ".dist-info/" not in name}
     assert tops == {"esplanade"}
     sources = {f"esplanade/{path.relative_to(PACKAGE)}" for path in source_files()}
     assert len(sources) > 250
     assert sources <= set(names)
     assert {f"esplanade/scenes/{name}" for name in SCENES} <= set(names)
+    assert "esplanade/py.typed" in names
+    assert "License-Expression: Apache-2.0 AND ISC AND MIT\n" in metadata
+    for holder in ("Apache License", *HOLDERS):
+        assert any(holder in text for text in licences)
     built = sorted((PACKAGE / "server" / "client_assets").glob("**/*.*"))
     assert {f"esplanade/{path.relative_to(PACKAGE)}" for path in built} <= set(names)
+
+
+def test_licences_of_the_bundle_are_behind_a_link_in_the_page() -> None:
+    if not (CLIENT_ASSETS / "index.html").is_file():
+        pytest.fail("the web client is not built; run: make client")
+    assets = Assets.load()
+    page = assets.answer(Request("/", Headers())).body.decode()
+    assert 'href="./licences.txt"' in page
+    answer = assets.answer(Request("/licences.txt", Headers()))
+    assert answer.headers["Content-Type"] == "text/plain; charset=utf-8"
+    text = answer.body.decode()
+    assert all(holder in text for holder in HOLDERS)
+    assert text == (ROOT / "client_web" / "licences.txt").read_text("utf-8"), (
+        "the libraries have changed: cp server/client_assets/licences.txt client_web/licences.txt"
+    )
+
+
+def test_lock_file_names_public_addresses_only() -> None:
+    addresses = set(re.findall(r"https?://[^/\"]+", (ROOT / "uv.lock").read_text("utf-8")))
+    assert addresses == {"https://files.pythonhosted.org", "https://pypi.org"}
 
 
 def test_source_archive_can_build_the_client(tmp_path: Path) -> None:
@@ -137,7 +169,15 @@ def test_image_gets_everything_that_the_wheel_is_built_from() -> None:
         for line in (ROOT / ".dockerignore").read_text().splitlines()
         if line.startswith("!")
     }
-    needed = {"pyproject.toml", "hatch_build.py", "README.md", "LICENSE", "client_web", "tools"}
+    needed = {
+        "pyproject.toml",
+        "uv.lock",
+        "hatch_build.py",
+        "README.md",
+        "LICENSE",
+        "client_web",
+        "tools",
+    }
     linked = {path.name for path in PACKAGE.iterdir() if path.is_symlink()}
     assert {*needed, *linked, "src"} <= admitted
 

@@ -35,7 +35,7 @@ setUpHelp(
     view.choose(choice);
   },
   (shown) => {
-    view.footwork.show(shown);
+    view.skeletons.show(shown);
   },
 );
 // A button that was clicked gives the keys back to walking and talking.

@@ -4,15 +4,10 @@ import argparse
 from collections.abc import Mapping
 from typing import Any
 
+from esplanade.commandline.errors import UsageError
+from esplanade.commandline.output import console, made_folder, write_json
 from esplanade.evaluation import plotting
-from esplanade.evaluation.console import (
-    UsageError,
-    check_targets,
-    named_sources,
-    output,
-    walk,
-    write_json,
-)
+from esplanade.evaluation.console import named_sources, walk
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.settings import read_changes, read_choices
 from esplanade.evaluation.studies import report, sensitivity, sensitivity_plot, tuning
@@ -33,10 +28,10 @@ def show_sensitivity(options: argparse.Namespace) -> None:
     trials = trials_of(variants, list(names), options.episodes, options.seed)
     tables = tables_of(walk(trials, options))
     found = sensitivity.curves(values, base, rules, tables, options.seed)
-    report.show_curves(output(), found)
+    report.show_curves(console(), found)
     if options.json is not None:
         told = {"settings": _settings(options, names, base), "points": sensitivity.figures(found)}
-        write_json(options.json, told)
+        write_json("--json", options.json, told)
     if options.plots is not None:
         sensitivity_plot.draw(options.plots / "sensitivity.svg", found)
 
@@ -46,31 +41,27 @@ def show_tuning(options: argparse.Namespace) -> None:
     names, base, rules = _begin(options)
     choices = read_choices(options.vary)
     grid = {name: values for name, values in choices.items() if values is not None}
-    if set(grid) != set(choices):
-        raise UsageError("--vary: --tune needs values, as NAME=V1,V2,..")
     listed = [] if options.candidates is None else tuning.read_candidates(options.candidates)
     if not grid and not listed:
-        raise UsageError("--tune needs candidates: --vary NAME=V1,V2,.. or --candidates FILE")
+        raise UsageError(f"--candidates: {options.candidates} has none")
     if len(names) < 2:
         raise UsageError("--tune needs two recordings: one to be held against what others chose")
     variants = [Variant.of(rules, found) for found in tuning.candidates(grid, listed, base)]
     trials = trials_of(variants, list(names), options.episodes, options.seed)
     tables = tables_of(walk(trials, options))
     found = tuning.tune(tables, variants[0], options.seed)
-    report.show_tuning(output(), found, names)
+    report.show_tuning(console(), found, names)
     if options.json is not None:
         told = {"settings": _settings(options, names, base), **tuning.figures(found, names)}
-        write_json(options.json, told)
+        write_json("--json", options.json, told)
 
 
 def _begin(options: argparse.Namespace) -> tuple[dict[Source, str], dict[str, Any], Rules]:
     """Recordings with their names, the settings that all variants share, and the rules."""
     base = read_changes(options.set)
-    if options.ledger is None:
-        raise UsageError("this takes long: say with --ledger FILE where to keep what is done")
     names = named_sources(options)
-    check_targets(options)
     if options.plots is not None:
+        made_folder("--plots", options.plots)
         plotting.require_matplotlib()
     return names, base, Rules(max_acceleration_mps2=options.a_max)
 

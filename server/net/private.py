@@ -1,67 +1,67 @@
 """The private port: is the server alive, is it ready, what does it count."""
 
-import logging
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from http import HTTPStatus
 from typing import Final
 
-from websockets.asyncio.server import Server, ServerConnection, serve
-from websockets.http11 import Request, Response
+from fastapi import FastAPI, Request, Response
+from fastapi.responses import PlainTextResponse
 
-from esplanade.server.assets import path_of, respond
 from esplanade.server.metrics import Metrics
-from esplanade.server.net.connections import Connections
+from esplanade.server.net.asgi import MAX_BODY_BYTES, serving
 from esplanade.server.settings import ServerSettings
 
 METRICS_TYPE: Final = "text/plain; version=0.0.4; charset=utf-8"
 
 
-MAX_CONNECTIONS: Final = 64
-
-
 @asynccontextmanager
 async def private_port(
     settings: ServerSettings, metrics: Metrics, ready: Callable[[], bool]
-) -> AsyncIterator[Server]:
-    """Listen for operators. Answers GET /healthz, /readyz and /metrics; upgrades nothing.
+) -> AsyncIterator[int]:
+    """Listen for operators, and yield the number of the port.
 
     Raises
     ------
     OSError
         The address cannot be had.
     """
+    app = operators_api(metrics, ready)
+    async with serving(app, settings.private_host, settings.private_port) as port:
+        yield port
 
-    def answer(_: ServerConnection, request: Request) -> Response:
-        if request.method != "GET":
-            return respond(HTTPStatus.METHOD_NOT_ALLOWED, b"only GET\n", {"Allow": "GET"})
-        match path_of(request):
-            case "/healthz":
-                return respond(HTTPStatus.OK, b"alive\n")
-            case "/readyz" if ready():
-                return respond(HTTPStatus.OK, b"ready\n")
-            case "/readyz":
-                return respond(HTTPStatus.SERVICE_UNAVAILABLE, b"starting or stopping\n")
-            case "/metrics":
-                return respond(HTTPStatus.OK, metrics.exposition(), {"Content-Type": METRICS_TYPE})
-        return respond(HTTPStatus.NOT_FOUND, b"/healthz, /readyz, /metrics\n")
 
-    connections = Connections(MAX_CONNECTIONS)
-    server = await serve(
-        _never,
-        settings.private_host,
-        settings.private_port,
-        process_request=answer,
-        server_header=None,
-        logger=logging.getLogger("esplanade.server.websockets"),
-        create_connection=connections.factory,
+def operators_api(metrics: Metrics, ready: Callable[[], bool]) -> FastAPI:
+    """The application behind the private port; it answers /healthz, /readyz and /metrics."""
+    app = FastAPI(
+        openapi_url=None,
+        redirect_slashes=False,
+        max_body_size=MAX_BODY_BYTES,
+        exception_handlers={HTTPStatus.NOT_FOUND: _nothing_here},
     )
-    try:
-        yield server
-    finally:
-        await connections.shut(server)
+
+    # Routes of Starlette answer HEAD as well as GET; those of FastAPI do not.
+    async def alive(_: Request) -> Response:
+        return PlainTextResponse("alive\n", headers=_UNCACHED)
+
+    async def is_ready(_: Request) -> Response:
+        if ready():
+            return PlainTextResponse("ready\n", headers=_UNCACHED)
+        return PlainTextResponse(
+            "starting or stopping\n", HTTPStatus.SERVICE_UNAVAILABLE, _UNCACHED
+        )
+
+    async def exposition(_: Request) -> Response:
+        return Response(metrics.exposition(), headers=_UNCACHED, media_type=METRICS_TYPE)
+
+    app.add_route("/healthz", alive)
+    app.add_route("/readyz", is_ready)
+    app.add_route("/metrics", exposition)
+    return app
 
 
-async def _never(connection: ServerConnection) -> None:
-    """No request gets this far: every one is answered above."""
-    await connection.close()
+_UNCACHED: Final = {"Cache-Control": "no-cache"}
+
+
+async def _nothing_here(_: Request, __: Exception) -> Response:
+    return PlainTextResponse("/healthz, /readyz, /metrics\n", HTTPStatus.NOT_FOUND, _UNCACHED)

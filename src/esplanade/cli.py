@@ -1,33 +1,40 @@
 """The command `esplanade`: picks the part that is asked for and hands it the rest of the line."""
 
-import difflib
 import sys
 from collections.abc import Callable, Sequence
-from importlib import import_module
-from typing import Final, NamedTuple, cast
+from typing import Final, NamedTuple
 
-from esplanade import __version__
+from esplanade.commandline import exit_codes
+from esplanade.commandline.parser import Parser, suggestion
+from esplanade.commandline.running import imported, run
 
 
 class Command(NamedTuple):
-    """One subcommand: the module whose `run(argv)` does it, imported only when it is called."""
+    """One subcommand: where its parser is made, imported only when it is called."""
 
-    module: str
+    parser: str
     summary: str
 
 
 COMMANDS: Final = {
-    "serve": Command("esplanade.server.cli", "run a world for people and actors"),
-    "bots": Command("esplanade.bots.cli", "send people made of code: load, or a recorded crowd"),
-    "evaluate": Command("esplanade.evaluation.cli", "measure actors among recorded people"),
-    "scene": Command("esplanade.scenery.cli", "check a scene, draw it, make one of a mesh"),
-    "gait": Command("esplanade.footage.cli", "draw and film how everyone walks"),
-    "demo": Command("esplanade.demo", "run the demo world with actors and a few visitors"),
+    "serve": Command("esplanade.server.options:parser", "run a world for people and actors"),
+    "bots": Command(
+        "esplanade.bots.options:parser", "send people made of code: load, or a recorded crowd"
+    ),
+    "evaluate": Command(
+        "esplanade.evaluation.options:parser", "measure actors among recorded people"
+    ),
+    "scene": Command(
+        "esplanade.scenery.options:parser", "check a scene, draw it, make one of a mesh"
+    ),
+    "gait": Command("esplanade.footage.options:parser", "draw and film how everyone walks"),
+    "demo": Command("esplanade.options:demo", "run the demo world with actors and a few visitors"),
+    "completion": Command(
+        "esplanade.options:completion", "complete commands and options in bash, zsh or fish"
+    ),
 }
 
 USAGE: Final = "usage: esplanade [-h] [--version] COMMAND ..."
-EXIT_USAGE: Final = 2
-EXIT_INTERRUPTED: Final = 130
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -36,18 +43,22 @@ def main(argv: Sequence[str] | None = None) -> int:
     name = arguments[0] if arguments else "--help"
     if name in {"-h", "--help", "help"}:
         print(_help())
-        return 0
+        return exit_codes.OK
     if name in {"-V", "--version"}:
+        from esplanade import __version__  # noqa: PLC0415 (it is looked up only when asked for)
+
         print(f"esplanade {__version__}")
-        return 0
+        return exit_codes.OK
     if name not in COMMANDS:
         print(_refusal(name), file=sys.stderr)
-        return EXIT_USAGE
-    run = cast(Callable[[Sequence[str]], int], import_module(COMMANDS[name].module).run)
-    try:
-        return run(arguments[1:])
-    except KeyboardInterrupt:
-        return EXIT_INTERRUPTED
+        return exit_codes.USAGE
+    return run(parser_of(name), arguments[1:])
+
+
+def parser_of(name: str) -> Parser:
+    """The parser of this command."""
+    make: Callable[[], Parser] = imported(COMMANDS[name].parser)
+    return make()
 
 
 def _help() -> str:
@@ -57,7 +68,7 @@ def _help() -> str:
         "A shared place where people and computer-run actors walk among each other.",
         "",
         "commands:",
-        *(f"  {name:<8} {command.summary}" for name, command in COMMANDS.items()),
+        *(f"  {name:<10} {command.summary}" for name, command in COMMANDS.items()),
         "",
         "options:",
         "  -h, --help     show this help",
@@ -70,6 +81,7 @@ def _help() -> str:
         "  esplanade evaluate zara1.csv --policy esplanade straight",
         "  esplanade scene check my.json",
         "  esplanade gait render --out pictures",
+        "  esplanade completion bash                then see `esplanade completion --help`",
         "",
         "`esplanade COMMAND --help` explains a command and all its options.",
     ]
@@ -77,7 +89,6 @@ def _help() -> str:
 
 
 def _refusal(name: str) -> str:
-    near = difflib.get_close_matches(name, COMMANDS, n=1)
     kind = "option" if name.startswith("-") else "command"
-    suggestion = f" Did you mean `{near[0]}`?" if near else ""
-    return f"{USAGE}\nesplanade: unknown {kind} {name!r}.{suggestion} See `esplanade --help`."
+    told = f"esplanade: there is no {kind} {name}{suggestion(name, COMMANDS)}"
+    return f"{told}{'' if told.endswith('?') else ';'} see `esplanade --help`"

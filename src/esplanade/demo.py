@@ -4,44 +4,41 @@ The server runs in this process and owns its signals. A thread waits until peopl
 says so, and then sends the visitors: real clients over real sockets, ended with the server.
 """
 
-import argparse
 import contextlib
 import http.client
 import socket
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Sequence
+from argparse import Namespace
+from collections.abc import Callable
 from http import HTTPStatus
-from importlib import import_module
-from typing import Final, cast
+from typing import Final
 
 from rich.console import Console
 from rich.panel import Panel
 
-EXIT_FAILED: Final = 1
+from esplanade.commandline.errors import CommandError
+from esplanade.commandline.running import imported
+
 POLL_S: Final = 0.25
 GRACE_S: Final = 2.0
 END_LIMIT_S: Final = 5.0
 
 
-def run(argv: Sequence[str]) -> int:
+def run(options: Namespace) -> int:
     """Run the demo until the server ends, and return the server's exit code."""
-    options, passed_on = parser().parse_known_args(argv)
     for port in (options.port, options.private_port):
         if not _is_free(port):
-            print(
-                f"esplanade demo: port {port} is taken, perhaps by another world. "
-                "Others can be given by --port and --private-port.",
-                file=sys.stderr,
+            raise CommandError(
+                f"port {port} is taken, perhaps by another world; others can be given by --port "
+                "and --private-port"
             )
-            return EXIT_FAILED
     visitors = Visitors(options)
     visitors.start()
     try:
-        return cast(
-            int, import_module("esplanade.server.cli").run(server_arguments(options, passed_on))
-        )
+        serve: Callable[[Namespace], int] = imported("esplanade.server.cli:run")
+        return serve(options)
     finally:
         visitors.end()
 
@@ -49,7 +46,7 @@ def run(argv: Sequence[str]) -> int:
 class Visitors:
     """A few wandering bots that come when the world is ready and go when it ends."""
 
-    def __init__(self, options: argparse.Namespace) -> None:
+    def __init__(self, options: Namespace) -> None:
         self._options = options
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._come, name="visitors", daemon=True)
@@ -102,17 +99,7 @@ class Visitors:
             )
 
 
-def server_arguments(options: argparse.Namespace, passed_on: Sequence[str]) -> list[str]:
-    return [
-        f"--port={options.port}",
-        f"--private-port={options.private_port}",
-        f"--actors={options.actors}",
-        f"--seed={options.seed}",
-        *passed_on,
-    ]
-
-
-def bots_arguments(options: argparse.Namespace) -> list[str]:
+def bots_arguments(options: Namespace) -> list[str]:
     return [
         f"--url=ws://localhost:{options.port}",
         f"--count={options.visitors}",
@@ -148,36 +135,3 @@ def _announce(port: int) -> None:
             border_style="green",
         )
     )
-
-
-def parser() -> argparse.ArgumentParser:
-    """Options of the demo itself; what it does not know is the server's."""
-    options = argparse.ArgumentParser(
-        prog="esplanade demo",
-        description="Run the demo world with actors, and with a few visitors made of code.",
-        epilog="All other options go to the server: see `esplanade serve --help`.",
-        formatter_class=argparse.ArgumentDefaultsHelpFormatter,
-        allow_abbrev=False,
-    )
-    port, amount = _number(1, 65535), _number(0, 500)
-    options.add_argument("--port", type=port, default=8080, help="port for people")
-    options.add_argument(
-        "--private-port", type=port, default=8081, help="port for health and metrics"
-    )
-    options.add_argument("--actors", type=amount, default=12, help="number of actors")
-    options.add_argument("--visitors", type=amount, default=6, help="number of wandering bots")
-    options.add_argument(
-        "--seed", type=_number(0, 2**32 - 1), default=1, help="seed of everything drawn by chance"
-    )
-    return options
-
-
-def _number(least: int, most: int) -> Callable[[str], int]:
-    """Reads a whole number within these limits."""
-
-    def read(text: str) -> int:
-        if not (text.isdecimal() and least <= int(text) <= most):
-            raise argparse.ArgumentTypeError(f"{text!r} is no number from {least} to {most}")
-        return int(text)
-
-    return read

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from esplanade.bots.cli import parser, run
+from esplanade.bots.options import parser
+from esplanade.cli import main
 from esplanade.protocol import ErrorCode
 from esplanade.protocol.messages import Error
 from tests.bots.scripted import scripted_server, until
@@ -17,6 +18,14 @@ PROJECT = Path(__file__).resolve().parents[2]
 RECORDING = "t,id,x,y\n" + "".join(
     f"{t / 10:.1f},ann,{t / 10:.2f},0\n{t / 10:.1f},bob,5,{-t / 20:.2f}\n" for t in range(0, 21, 4)
 )
+
+
+def run(arguments: list[str]) -> object:
+    """The exit code, whether the parser refuses or the command."""
+    try:
+        return main(["bots", *arguments])
+    except SystemExit as end:
+        return end.code
 
 
 async def start(*arguments: str) -> asyncio.subprocess.Process:
@@ -135,7 +144,7 @@ async def test_refused_bots_are_a_failure() -> None:
 @pytest.mark.parametrize(
     ("arguments", "fault"),
     [
-        (["--count", "none"], "--count: Input should be a valid integer"),
+        (["--count", "none"], "--count: 'none' is no whole number from 1 to 10000"),
         (["--url", "ftp://x"], "--url: url 'ftp://x': unknown scheme"),
         (["--limit", "3"], "limit: belongs to a replay"),
         (["--replay", "absent.csv"], "absent.csv: cannot be read: No such file"),
@@ -167,9 +176,7 @@ def test_a_recording_of_single_samples_has_nobody_to_send(
 
 
 def test_unknown_options_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as caught:
-        run(["--visitors", "3"])
-    assert caught.value.code == 2
+    assert run(["--visitors", "3"]) == 2
     assert "--visitors" in capsys.readouterr().err
 
 

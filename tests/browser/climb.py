@@ -83,7 +83,7 @@ async def _climb(browser: Browser, url: str, joints: bool) -> list[Image.Image]:
     page = visitor.page
     if joints:
         await page.click("#help-open")
-        await page.check("#footwork")
+        await page.check("#skeletons")
         await page.click("#help-close")
     await page.evaluate(_HIDE)
     await _look_from_the_side(page)

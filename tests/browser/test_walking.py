@@ -72,7 +72,7 @@ async def test_footprints_and_joints_are_shown_on_demand(url: str, profile: Brow
     ann = await Visitor.arrive(profile, url)
     await ann.join("Ann")
     await ann.page.click("#help-open")
-    await ann.page.check("#footwork")
+    await ann.page.check("#skeletons")
     await ann.page.click("#help-close")
     before = (await ann.look())["frames"]
     await ann.until(lambda view: view["frames"] > before + 10)

@@ -13,6 +13,11 @@ from pathlib import Path
 import pytest
 
 from esplanade import demo
+from esplanade import options as demo_options
+from esplanade.cli import main
+from esplanade.commandline import exit_codes
+from esplanade.commandline.settings import given_settings
+from esplanade.server.options import SETTINGS
 
 START_LIMIT_S = 180.0
 END_LIMIT_S = 20.0
@@ -91,16 +96,29 @@ def test_visitors_come_and_one_signal_ends_everything(
 
 
 def test_other_options_go_to_the_server() -> None:
-    options, passed_on = demo.parser().parse_known_args(["--actors=3", "--tick-rate", "10"])
-    arguments = demo.server_arguments(options, passed_on)
-    assert "--actors=3" in arguments
-    assert arguments[-2:] == ["--tick-rate", "10"]
+    options = demo_options.demo().parse_args(["--actors=3", "--tick-rate", "10"])
+    assert given_settings(options, SETTINGS) == {
+        "port": 8080,
+        "private_port": 8081,
+        "actors": 3,
+        "seed": 1,
+        "tick_rate": 10,
+    }
+
+
+def test_variables_of_the_server_count_but_for_what_the_demo_sets(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("ESPLANADE_TICK_RATE", "30")
+    monkeypatch.setenv("ESPLANADE_ACTORS", "7")
+    options = demo_options.demo().parse_args([])
+    assert (options.tick_rate, options.actors) == (30, 12)
 
 
 def test_no_visitors_before_the_world_is_ready() -> None:
     """A server that never gets ready leaves nothing behind."""
     (port,) = free_ports(1)
-    options = demo.parser().parse_args([f"--private-port={port}"])
+    options = demo_options.demo().parse_args([f"--private-port={port}"])
     visitors = demo.Visitors(options)
     visitors.start()
     visitors.end()
@@ -112,14 +130,15 @@ def test_numbers_out_of_range_are_refused(
     argument: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(SystemExit, match="2"):
-        demo.run([argument])
+        main(["demo", argument])
     option, _, value = argument.partition("=")
-    assert f"argument {option}: '{value}' is no number from" in capsys.readouterr().err
+    assert f"esplanade demo: {option}: '{value}' is no whole number from" in capsys.readouterr().err
 
 
 def test_taken_port_is_told_at_once(capsys: pytest.CaptureFixture[str]) -> None:
     (free,) = free_ports(1)
     with socket.create_server(("", 0)) as taken:
         port = taken.getsockname()[1]
-        assert demo.run([f"--port={free}", f"--private-port={port}"]) == demo.EXIT_FAILED
+        arguments = ["demo", f"--port={free}", f"--private-port={port}"]
+        assert main(arguments) == exit_codes.FAILED
     assert f"port {port} is taken" in capsys.readouterr().err

@@ -7,7 +7,9 @@ from typing import Any
 
 import pytest
 
-from esplanade.evaluation import cli
+from esplanade.cli import main
+from esplanade.commandline import exit_codes
+from esplanade.evaluation import options, policies
 from tests.evaluation.worlds import busy_plaza, crowd, walk, write_csv
 
 
@@ -17,7 +19,7 @@ def plaza(tmp_path: Path) -> Path:
 
 
 def run(*arguments: object) -> int:
-    return cli.run(["--processes=1", *map(str, arguments)])
+    return main(["evaluate", "--processes=1", *map(str, arguments)])
 
 
 def refused(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
@@ -26,7 +28,7 @@ def refused(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
         code: object = run(*arguments)
     except SystemExit as end:  # how the parser of options refuses
         code = end.code
-    assert code == cli.EXIT_USAGE
+    assert code == exit_codes.USAGE
     shown = capsys.readouterr()
     assert shown.out == ""
     assert "Traceback" not in shown.err
@@ -37,7 +39,7 @@ def test_a_table_for_every_recording_and_one_for_all(
     tmp_path: Path, plaza: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     other = write_csv(tmp_path, busy_plaza(), "market")
-    assert run(plaza, other, "--policy", "straight", "human", "--episodes", 4) == cli.EXIT_WELL
+    assert run(plaza, other, "--policy", "straight", "human", "--episodes", 4) == exit_codes.OK
     shown = capsys.readouterr().out
     assert [line for line in shown.split("\n") if line.strip() in {"plaza", "market"}]
     assert "all together" in shown
@@ -47,7 +49,7 @@ def test_a_table_for_every_recording_and_one_for_all(
 
 def test_every_episode_and_summary_is_in_the_json(tmp_path: Path, plaza: Path) -> None:
     target = tmp_path / "all.json"
-    assert run(plaza, "--policy", "straight", "--episodes", 6, "--json", target) == cli.EXIT_WELL
+    assert run(plaza, "--policy", "straight", "--episodes", 6, "--json", target) == exit_codes.OK
     found: dict[str, Any] = json.loads(target.read_text())
     assert found["settings"]["max_acceleration_mps2"] == 2.0
     (summary,) = found["summaries"]
@@ -74,8 +76,8 @@ def test_what_did_not_arrive_has_no_time_in_the_json(tmp_path: Path) -> None:
 
 
 def test_strict_fails_where_somebody_was_touched(plaza: Path) -> None:
-    assert run(plaza, "--policy", "straight", "--episodes", 20) == cli.EXIT_WELL
-    assert run(plaza, "--policy", "straight", "--episodes", 20, "--strict") == cli.EXIT_FAILED
+    assert run(plaza, "--policy", "straight", "--episodes", 20) == exit_codes.OK
+    assert run(plaza, "--policy", "straight", "--episodes", 20, "--strict") == exit_codes.FAILED
 
 
 @pytest.mark.skipif(find_spec("matplotlib") is None, reason="matplotlib is absent")
@@ -106,7 +108,7 @@ def test_predictions_are_measured_and_fitted(
 ) -> None:
     other = write_csv(tmp_path, busy_plaza(), "market")
     target = tmp_path / "all.json"
-    assert run(plaza, other, "--fit", "--json", target) == cli.EXIT_WELL
+    assert run(plaza, other, "--fit", "--json", target) == exit_codes.OK
     shown = capsys.readouterr().out
     assert "Prediction, default" in shown
     assert "Prediction, eq. (1) as printed" in shown
@@ -121,7 +123,7 @@ def test_nothing_is_cut_off_in_a_file_or_pipe(
     plaza: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("COLUMNS", "20")
-    assert run(plaza, "--prediction") == cli.EXIT_WELL
+    assert run(plaza, "--prediction") == exit_codes.OK
     shown = capsys.readouterr().out
     assert "neg. log-likelihood" in shown
     assert "…" not in shown
@@ -129,7 +131,7 @@ def test_nothing_is_cut_off_in_a_file_or_pipe(
 
 def test_one_recording_is_fitted_as_a_whole(plaza: Path, tmp_path: Path) -> None:
     target = tmp_path / "all.json"
-    assert run(plaza, "--fit", "--json", target) == cli.EXIT_WELL
+    assert run(plaza, "--fit", "--json", target) == exit_codes.OK
     found = json.loads(target.read_text())
     assert [row["left_out"] for row in found["fitted_deviations"]] == [None]
 
@@ -140,15 +142,15 @@ def test_recordings_of_one_name_are_told_apart_by_their_paths(
     folder = tmp_path / "other"
     folder.mkdir()
     other = write_csv(folder, busy_plaza())
-    assert run(plaza, other, "--policy=straight", "--episodes=2") == cli.EXIT_WELL
+    assert run(plaza, other, "--policy=straight", "--episodes=2") == exit_codes.OK
     assert "other/plaza" in capsys.readouterr().out.replace("\n", "")
 
 
 @pytest.mark.parametrize(
     ("arguments", "fault"),
     [
-        (["--policy", "magic"], "invalid choice: 'magic'"),
-        (["--episodes", "0"], "'0' is no number from 1"),
+        (["--policy", "magic"], "--policy: 'magic' is no choice; there are esplanade, straight"),
+        (["--episodes", "0"], "--episodes: '0' is no whole number from 1 to 100000"),
         (["--a-max", "fast"], "'fast' is no number from 0.2 to 20"),
         (["--fps", "nan"], "'nan' is no number"),
         (["--set", "tempo=3"], "--set tempo: there is no such setting"),
@@ -159,8 +161,8 @@ def test_recordings_of_one_name_are_told_apart_by_their_paths(
         (["--plot-episodes", "1,500"], "but there are episodes 0 to"),
         (["--walls", "nowhere.json"], "nowhere.json: cannot be read"),
         (["missing.csv"], "missing.csv: cannot be read"),
-        (["missing.csv", "--walls", "w.json"], "--walls belongs to one recording"),
-        (["--prediction", "--sample-s", "0.3"], "invalid choice: 0.3"),
+        ([__file__, "--walls", __file__], "--walls belongs to one recording"),
+        (["--prediction", "--sample-s", "0.3"], "'0.3' is no choice; there are 0.1, 0.2, 0.4"),
     ],
 )
 def test_wrong_usage(
@@ -190,3 +192,8 @@ def test_no_limit_of_acceleration(tmp_path: Path, plaza: Path) -> None:
     target = tmp_path / "all.json"
     run(plaza, "--policy=straight", "--episodes=1", "--a-max=none", "--json", target)
     assert json.loads(target.read_text())["settings"]["max_acceleration_mps2"] is None
+
+
+def test_the_help_names_every_policy_with_its_summary() -> None:
+    """It has a table of its own, since the policies need numpy."""
+    assert {name: entry.summary for name, entry in policies.POLICIES.items()} == options.POLICIES

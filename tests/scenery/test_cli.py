@@ -6,14 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from esplanade.scenery import cli
+from esplanade.cli import main
+from esplanade.commandline import exit_codes
 from tests.scenery.worlds import LOFT, write, write_building
 
 needs_matplotlib = pytest.mark.skipif(find_spec("matplotlib") is None, reason="no matplotlib")
 
 
 def run(*arguments: object) -> int:
-    return cli.run([str(argument) for argument in arguments])
+    return main(["scene", *map(str, arguments)])
 
 
 def refused(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
@@ -22,7 +23,7 @@ def refused(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
         code: object = run(*arguments)
     except SystemExit as end:  # how the parser of options refuses
         code = end.code
-    assert code == cli.EXIT_USAGE
+    assert code == exit_codes.USAGE
     shown = capsys.readouterr()
     assert shown.out == ""
     assert "Traceback" not in shown.err
@@ -30,7 +31,7 @@ def refused(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
 
 
 def test_check_says_what_a_scene_holds(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run("check", write(tmp_path, LOFT)) == cli.EXIT_WELL
+    assert run("check", write(tmp_path, LOFT)) == exit_codes.OK
     shown = capsys.readouterr()
     assert "Loft" in shown.out
     assert "but not den" in shown.out
@@ -42,11 +43,11 @@ def test_check_says_what_is_wrong_and_where(
 ) -> None:
     polygons = [*LOFT["polygons"][:3], {**LOFT["polygons"][3], "height_m": -1}]
     path = write(tmp_path, {**LOFT, "polygons": polygons})
-    assert run("check", path) == cli.EXIT_WRONG
+    assert run("check", path) == exit_codes.FAILED
     shown = capsys.readouterr()
     assert shown.err == f"{path}: polygons.3.height_m: must be > 0, got -1\n"
     assert shown.out == ""
-    assert run("check", path, "--json") == cli.EXIT_WRONG
+    assert run("check", path, "--json") == exit_codes.FAILED
     faults = json.loads(capsys.readouterr().out)["faults"]
     assert faults == ["polygons.3.height_m: must be > 0, got -1"]
 
@@ -55,7 +56,7 @@ def test_check_names_places_that_nobody_reaches(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = write(tmp_path, {**LOFT, "walls": [{"start": [3, 6], "end": [4.5, 6]}]})
-    assert run("check", path) == cli.EXIT_WRONG
+    assert run("check", path) == exit_codes.FAILED
     shown = capsys.readouterr()
     assert shown.err == f"{path}: place 'den': nobody gets there from the spawns\n"
     assert "Loft" in shown.out
@@ -63,7 +64,7 @@ def test_check_names_places_that_nobody_reaches(
 
 def test_check_gives_figures_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = write(tmp_path, LOFT)
-    assert run("check", path, "--json", "--cell", "0.5") == cli.EXIT_WELL
+    assert run("check", path, "--json", "--cell", "0.5") == exit_codes.OK
     figures = json.loads(capsys.readouterr().out)
     assert figures["cell_m"] == 0.5
     assert figures["layers"][1]["cells"] == 8 * 16
@@ -74,7 +75,7 @@ def test_check_gives_figures_as_json(tmp_path: Path, capsys: pytest.CaptureFixtu
 def test_render_draws_every_layer(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "made" / "here"
     arguments = ["--body", "child,height=1.2", "--from", "den", "--to", "10,4,3", "--out", out]
-    assert run("render", write(tmp_path, LOFT), *arguments) == cli.EXIT_WELL
+    assert run("render", write(tmp_path, LOFT), *arguments) == exit_codes.OK
     files = sorted(file.name for file in out.iterdir())
     subjects = ("classes", "heights", "path", "reachability")
     assert files == [f"layer-{n}-{subject}.png" for n in (0, 1) for subject in subjects]
@@ -87,9 +88,10 @@ def test_render_draws_every_layer(tmp_path: Path, capsys: pytest.CaptureFixture[
     ("arguments", "message"),
     [
         (["--to", "moon"], "--to: no place named 'moon'"),
-        (["--body", "giant"], "'giant' is no body"),
+        (["--body", "giant"], "--body: 'giant' is no body"),
+        (["--body", "height=9"], "--body: height_m must lie between"),
         (["--from", "1,2,x"], "is not X,Y,Z"),
-        (["--cell", "9"], "must lie between 0.05 and 2"),
+        (["--cell", "9"], "--cell: '9' is no number from 0.05 to 2"),
     ],
 )
 def test_render_refuses_what_it_cannot_draw(
@@ -112,7 +114,7 @@ def test_a_file_that_is_not_there_is_refused(
 ) -> None:
     more = ["--out", tmp_path] if command == "render" else []
     said = refused(capsys, command, tmp_path / "none.json", *more)
-    assert f"esplanade scene {command}: {tmp_path / 'none.json'}: cannot be read" in said
+    assert f"esplanade scene {command}: FILE: {tmp_path / 'none.json'}: cannot be read" in said
 
 
 def test_the_help_of_the_whole_names_all_options(capsys: pytest.CaptureFixture[str]) -> None:
@@ -131,9 +133,9 @@ def test_import_makes_a_scene_that_check_accepts(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     target = tmp_path / "house.json"
-    assert run("import", write_building(tmp_path), "--out", target) == cli.EXIT_WELL
+    assert run("import", write_building(tmp_path), "--out", target) == exit_codes.OK
     assert f"esplanade serve --scene {target}" in capsys.readouterr().out
-    assert run("check", target) == cli.EXIT_WELL
+    assert run("check", target) == exit_codes.OK
     assert "8 places" in capsys.readouterr().out
 
 
@@ -141,5 +143,7 @@ def test_import_refuses_what_is_no_mesh_and_no_scene(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     mesh = write_building(tmp_path)
-    assert "is a .json file" in refused(capsys, "import", mesh, "--out", tmp_path / "a.glb")
+    assert "--out: a.glb is no .json file" in refused(
+        capsys, "import", mesh, "--out", tmp_path / "a.glb"
+    )
     assert "none.obj" in refused(capsys, "import", tmp_path / "none.obj", "--out", "a.json")

@@ -7,8 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from esplanade.scenery import cli, download
-from esplanade.scenery.console import UsageError
+from esplanade.cli import main
+from esplanade.commandline import exit_codes
+from esplanade.commandline.errors import UsageError
+from esplanade.scenery import download
 from esplanade.scenery.download import local_file
 from tests.scenery.worlds import write_building
 
@@ -77,8 +79,8 @@ def test_one_command_makes_a_world_of_an_address(
     address = f"{site}/{write_building(tmp_path).name}"
     target = tmp_path / "made" / "house.json"
     target.parent.mkdir()
-    assert cli.run(["import", address, "--out", str(target)]) == cli.EXIT_WELL
+    assert main(["scene", "import", address, "--out", str(target)]) == exit_codes.OK
     assert f"esplanade serve --scene {target}" in capsys.readouterr().out
-    assert cli.run(["check", str(target)]) == cli.EXIT_WELL
-    assert cli.run(["import", f"{site}/no.obj", "--out", str(target)]) == cli.EXIT_USAGE
+    assert main(["scene", "check", str(target)]) == exit_codes.OK
+    assert main(["scene", "import", f"{site}/no.obj", "--out", str(target)]) == exit_codes.USAGE
     assert "404" in capsys.readouterr().err

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from esplanade.commandline.errors import UsageError
 from esplanade.planning import LayeredGrid, Scene
 from esplanade.planning.routes.find_path import PathStatus, find_path
 from esplanade.planning.scene.bodies import Body
 from esplanade.planning.scene.scene_file import read_scene
-from esplanade.scenery.console import UsageError
 from esplanade.scenery.importing import import_mesh
 from tests.scenery.worlds import write_building
 

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from esplanade.commandline.errors import UsageError
 from esplanade.planning.traversal.stability import Stability
 from esplanade.scenery import pictures
-from esplanade.scenery.console import UsageError
 from esplanade.scenery.pictures import CLASSES, LayerView, Mark, draw_layer
 
 needs_matplotlib = pytest.mark.skipif(find_spec("matplotlib") is None, reason="no matplotlib")

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from esplanade.commandline.errors import UsageError
 from esplanade.planning.scene.bodies import Body
 from esplanade.planning.traversal.stability import Stability
-from esplanade.scenery.console import UsageError
 from esplanade.scenery.pictures import LayerView
 from esplanade.scenery.values import Where
 from esplanade.scenery.views import layer_views

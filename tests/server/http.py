@@ -13,13 +13,19 @@ class Answer:
 
 
 async def get(
-    port: int, path: str, headers: Mapping[str, str] | None = None, method: str = "GET"
+    port: int,
+    path: str,
+    headers: Mapping[str, str] | None = None,
+    method: str = "GET",
+    body: bytes = b"",
 ) -> Answer:
-    """One request; the path goes out exactly as it is."""
+    """Send one request and read to the end of the connection; the path goes out as it is."""
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
-    fields = {"Host": "localhost", **(headers or {})}
+    fields = {"Host": "localhost", "Connection": "close", **(headers or {})}
+    if body:
+        fields["Content-Length"] = str(len(body))
     lines = [f"{method} {path} HTTP/1.1", *(f"{name}: {value}" for name, value in fields.items())]
-    writer.write("\r\n".join([*lines, "", ""]).encode())
+    writer.write("\r\n".join([*lines, "", ""]).encode() + body)
     async with asyncio.timeout(20.0):
         received = await reader.read()
     writer.close()

@@ -3,15 +3,23 @@ from pathlib import Path
 
 import pytest
 
+from esplanade.cli import main
+from esplanade.commandline.settings import given_settings
 from esplanade.server import app
-from esplanade.server.cli import parser, run
+from esplanade.server.options import SETTINGS, parser
 from esplanade.server.settings import ServerSettings
 
 
+def run(arguments: list[str]) -> object:
+    """The exit code, whether the parser refuses or the command."""
+    try:
+        return main(["serve", *arguments])
+    except SystemExit as end:
+        return end.code
+
+
 def test_help_explains_every_setting_in_its_group(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as end:
-        run(["--help"])
-    assert end.value.code == 0
+    assert run(["--help"]) == 0
     text = " ".join(capsys.readouterr().out.split())
     for name, field in ServerSettings.model_fields.items():
         assert "--" + name.replace("_", "-") in text
@@ -23,19 +31,24 @@ def test_help_explains_every_setting_in_its_group(capsys: pytest.CaptureFixture[
 
 
 def test_options_become_settings() -> None:
-    given = vars(parser().parse_args(["--tick-rate", "30", "--scene", "x.json"]))
-    settings = ServerSettings(**given)
-    assert (settings.tick_rate, settings.scene) == (30, Path("x.json"))
+    options = parser().parse_args(["--tick-rate", "30", "--scene", __file__])
+    settings = ServerSettings(**given_settings(options, SETTINGS))
+    assert (settings.tick_rate, settings.scene) == (30, Path(__file__))
 
 
 @pytest.mark.parametrize(
     ("argv", "fault"),
     [
-        (["--port", "many"], "--port: Input should be a valid integer"),
-        (["--tick-rate", "1000"], "--tick-rate: Input should be less than or equal to 60"),
-        (["--scene", "a", "--crowd", "b"], "scene and crowd: give one of them, not both"),
-        (["--scene", "no such file.json"], "no such file.json: cannot be read: No such file"),
-        (["--crowd", "no such file.csv"], "no such file.csv: cannot be read"),
+        (["--port", "many"], "--port: 'many' is no whole number from 0 to 65535; see"),
+        (["--tick-rate", "1000"], "--tick-rate: '1000' is no whole number from 5 to 60; see"),
+        (["--prot", "80"], "there is no option --prot; did you mean --port? see"),
+        (["--scene", __file__, "--crowd", __file__], "scene and crowd: give one of them, not both"),
+        (["--walls", __file__], "walls: they belong to a crowd, but none is given"),
+        (["--drop-bytes", "2048"], "drop_bytes: must be greater than slow_bytes"),
+        (["--scene", "no such file.json"], "--scene: no such file.json: cannot be read: No such"),
+        (["--crowd", "no such file.csv"], "--crowd: no such file.csv: cannot be read"),
+        (["--log-level", "inof"], "--log-level: 'inof' is no choice; did you mean info? see"),
+        (["--scene", __file__], f"{__file__}: "),
     ],
 )
 def test_bad_options_end_with_one_clear_line(
@@ -52,7 +65,8 @@ def test_a_bad_variable_is_named_as_such(
 ) -> None:
     monkeypatch.setenv("ESPLANADE_ACTORS", "-3")
     assert run([]) == 2
-    assert "esplanade serve: ESPLANADE_ACTORS: Input should be greater" in capsys.readouterr().err
+    fault = "esplanade serve: ESPLANADE_ACTORS: '-3' is no whole number from 0 to 500; see"
+    assert capsys.readouterr().err.startswith(fault)
 
 
 @pytest.mark.parametrize("option", ["--port", "--private-port"])

@@ -11,6 +11,7 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
+from esplanade.commandline import exit_codes
 from esplanade.protocol import CloseCode
 from tests.server.client import joined
 
@@ -23,11 +24,11 @@ async def started(room_file: Path, **environment: str) -> AsyncIterator[Process]
     """A server's process; killed at the end if it still runs."""
     process = await asyncio.create_subprocess_exec(
         sys.executable,
-        "-c",
-        "import sys; from server.cli import run; raise SystemExit(run(sys.argv[1:]))",
+        *("-m", "esplanade", "serve"),
         *("--scene", str(room_file), "--host", "127.0.0.1", "--port", "0", "--private-port", "0"),
         *("--actors", "1", "--log-format", "json"),
         stderr=asyncio.subprocess.PIPE,
+        preexec_fn=_hear_interrupts,
         env={**os.environ, **environment},
     )
     try:
@@ -39,6 +40,11 @@ async def started(room_file: Path, **environment: str) -> AsyncIterator[Process]
             await process.wait()
 
 
+def _hear_interrupts() -> None:
+    """Tests that run in the background of a shell ignore SIGINT, and so would their children."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 async def test_ctrl_c_ends_a_start_at_once(room_file: Path, tmp_path: Path) -> None:
     # In an empty home there are no kernels yet: this start would compile for a long time.
     async with started(room_file, HOME=str(tmp_path)) as process:
@@ -46,7 +52,7 @@ async def test_ctrl_c_ends_a_start_at_once(room_file: Path, tmp_path: Path) -> N
         assert b"compiling" in await process.stderr.readline()
         process.send_signal(signal.SIGINT)
         assert await process.stderr.read() == b""
-        assert await process.wait() == -signal.SIGINT
+        assert await process.wait() == exit_codes.INTERRUPTED
 
 
 async def test_a_signal_ends_the_process_in_good_order(room_file: Path) -> None:

@@ -1,4 +1,4 @@
-/** How long a piece of every frame's work takes: a running mean over about a second. */
+/** The time that a piece of every frame's work takes: a running mean over about a second. */
 export class Cost {
   ms = 0;
 

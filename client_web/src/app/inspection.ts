@@ -1,4 +1,4 @@
-/** `window.esplanade`: what the page knows, read-only, for tests and curious people. See docs/client.md. */
+/** `window.esplanade`: the page's state, read-only, for tests and the curious. See docs/client.md. */
 
 import type { ConnectionState } from "../net/connection";
 import type { Doors, Plan } from "../net/messages";
@@ -25,18 +25,18 @@ export interface Inspection {
 }
 
 /** An avatar as it is drawn, with the feet it walks on. */
-interface Seen extends Omit<Avatar, "walker"> {
+interface Seen extends Omit<Avatar, "animator"> {
   readonly feet: { readonly left: Foot; readonly right: Foot };
-  /** Which foot its step stands on, and when it began; null while a body is drawn without steps. */
+  /** The foot that its step stands on, and the tick at which it began; null without steps. */
   readonly step: { readonly stands: "left" | "right"; readonly tick: number } | null;
   /** Whether it points at something. */
   readonly pointing: boolean;
 }
 
-function seen({ id, kind, name, radius, own, pose, walker }: Avatar): Seen {
-  const { left, right } = walker.body;
-  const pointing = walker.pointing.target !== null;
-  const drawn = walker.planted ? walker.step : null;
+function seen({ id, kind, name, radius, own, pose, animator }: Avatar): Seen {
+  const { left, right } = animator.body;
+  const pointing = animator.pointing.target !== null;
+  const drawn = animator.planted ? animator.step : null;
   const step = drawn && {
     stands: drawn.rightStands ? ("right" as const) : ("left" as const),
     tick: drawn.tick,
@@ -78,7 +78,7 @@ export function offerInspection(session: Session, view: View): void {
       return view.qualityLevel;
     },
     get scriptMs() {
-      return { moving: session.moving.ms, figures: view.dressing.ms };
+      return { moving: session.moving.ms, figures: view.placing.ms };
     },
     get delayS() {
       return session.world?.delayS ?? null;

@@ -1,4 +1,4 @@
-/** One visit: joins, passes what the server says to the world and the page, and draws the frames. */
+/** One visit: it joins, passes messages to the world and the page, and draws the frames. */
 
 import { unpackBlock } from "../net/codec";
 import { unpackSteps } from "../net/steps";
@@ -27,7 +27,7 @@ export class Session {
   world: World | null = null;
   chosenId: number | null = null;
   frames = 0;
-  /** Of moving everybody and solving their joints. */
+  /** The cost of moving everybody and solving their joints. */
   readonly moving = new Cost();
   readonly connection: Connection;
   private welcome: Welcome | null = null;
@@ -46,7 +46,7 @@ export class Session {
     private readonly view: View,
     private readonly seats: Seats,
     socketUrl: string,
-    /** The operator key, for those who have it. */
+    /** The operator key; null for people without one. */
     private readonly operator: string | null,
   ) {
     this.connection = new Connection(() => new WebSocket(socketUrl), {
@@ -78,7 +78,7 @@ export class Session {
     });
   }
 
-  /** Straight back in after a reload, else to the door. */
+  /** Rejoin at once after a reload; otherwise ask for a name. */
   async start(): Promise<void> {
     window.setInterval(() => {
       if (this.connection.state.phase === "live") this.seats.touch();

@@ -4,63 +4,66 @@ import { Cutaway } from "../render/cutaway";
 import { FollowCamera } from "../render/follow";
 import { Figures } from "../render/figures";
 import { drawsInSoftware } from "../render/hardware";
-import { Footwork } from "../render/footwork";
+import { SkeletonOverlay } from "../render/skeletonoverlay";
 import { Labels } from "../render/labels";
 import { Marks } from "../render/marks";
 import { Picking, type Place, type ScreenPoint } from "../render/picking";
 import { Plans } from "../render/plans";
 import { type Choice, QualityControl } from "../render/quality";
-import { Stage } from "../render/stage";
+import { Renderer } from "../render/renderer";
 import { buildTown, type Town } from "../render/town";
+import { STOREYS_APART_M } from "../world/heights";
 import type { Triangles } from "../world/mesh";
 import type { Avatar, World } from "../world/world";
 import { Cost } from "./cost";
 
-/** Names of people so far above or below are dimmed. */
-const STOREY_M = 1.8;
+/** The names of people on other storeys are drawn with this opacity. */
 const DIMMED = 0.45;
 
 export class View {
   readonly camera: FollowCamera;
   readonly marks: Marks;
-  readonly footwork = new Footwork();
-  /** Of putting every part of every figure in its place. */
-  readonly dressing = new Cost();
-  private readonly stage: Stage;
+  readonly skeletons = new SkeletonOverlay();
+  /** The cost of placing every part of every figure. */
+  readonly placing = new Cost();
+  private readonly renderer: Renderer;
   private readonly figures = new Figures();
   private readonly plans = new Plans();
   private readonly labels: Labels;
   private readonly picking: Picking;
   private readonly cutaway = new Cutaway();
-  /** Who is drawn in this frame: all but those on floors that are cut away. */
+  /** The avatars that are drawn in this frame: all but those on floors that are cut away. */
   private readonly drawn = new Map<number, Avatar>();
   private control: QualityControl;
   private readonly software = drawsInSoftware();
   private town: Town | null = null;
 
   constructor(canvas: HTMLCanvasElement, labelLayer: HTMLElement, choice: Choice, calm: boolean) {
-    this.stage = new Stage(canvas, choice === "fine" || (choice === "automatic" && !this.software));
-    this.camera = new FollowCamera(this.stage.camera);
+    this.renderer = new Renderer(
+      canvas,
+      choice === "fine" || (choice === "automatic" && !this.software),
+    );
+    this.camera = new FollowCamera(this.renderer.camera);
     this.marks = new Marks(calm);
     this.labels = new Labels(labelLayer);
-    this.picking = new Picking(this.stage.camera);
+    this.picking = new Picking(this.renderer.camera);
     this.control = new QualityControl(choice, this.software);
-    this.stage.scene.add(
+    this.renderer.scene.add(
       this.figures.group,
-      this.footwork.group,
+      this.skeletons.group,
       this.marks.group,
       this.plans.group,
     );
     this.applyQuality();
     new ResizeObserver(() => {
-      this.stage.resize();
+      this.renderer.resize();
     }).observe(canvas);
   }
 
-  /** The world that is shown from now on. */
+  /** Show this world from now on. */
   enter(world: World, mesh: Triangles | null = null): void {
     this.town = buildTown(world, this.cutaway, mesh);
-    this.stage.show(this.town, world.scene);
+    this.renderer.show(this.town, world.scene);
     this.marks.walkTarget(null);
   }
 
@@ -73,7 +76,7 @@ export class View {
     this.labels.say(avatar, text);
   }
 
-  /** What is at a point of the screen; doors only for those who may move them. */
+  /** The thing at a point of the screen; doors are found only for those who may move them. */
   pick(
     at: ScreenPoint,
     doors: boolean,
@@ -95,22 +98,22 @@ export class View {
       const { x, y, z } = own.pose;
       const hidden = this.camera.update(own.pose, this.town.occluders, this.cutaway, frameS);
       const covered = world.floors.covered(x, y, z);
-      this.cutaway.update(own.pose, this.stage.camera.position, hidden || covered, frameS);
+      this.cutaway.update(own.pose, this.renderer.camera.position, hidden || covered, frameS);
     }
     this.town?.doors.update(world.doors, frameS);
     this.drawn.clear();
     for (const avatar of avatars.values()) {
       if (this.shown(avatar) > 0.5) this.drawn.set(avatar.id, avatar);
     }
-    this.dressing.of(() => {
-      this.figures.update(this.drawn, this.stage.camera);
+    this.placing.of(() => {
+      this.figures.update(this.drawn, this.renderer.camera);
     });
-    this.footwork.update(this.drawn);
+    this.skeletons.update(this.drawn);
     this.marks.update(this.drawn, own?.pose, chosen, frameS);
     this.plans.show(world.plan, world.floors);
-    this.stage.draw();
-    this.labels.update(avatars, this.stage.camera, (avatar) => {
-      const apart = own !== null && Math.abs(avatar.pose.z - own.pose.z) > STOREY_M;
+    this.renderer.render();
+    this.labels.update(avatars, this.renderer.camera, (avatar) => {
+      const apart = own !== null && Math.abs(avatar.pose.z - own.pose.z) > STOREYS_APART_M;
       return this.shown(avatar) * (apart ? DIMMED : 1);
     });
     if (this.control.frame(frameS)) this.applyQuality();
@@ -120,14 +123,14 @@ export class View {
     return this.control.level;
   }
 
-  /** How much is left of somebody when what is above the own avatar is cut away. */
+  /** The share of somebody that is left while floors above the own avatar are cut away. */
   private shown({ own, pose: { x, y, z } }: Avatar): number {
     return own ? 1 : this.cutaway.shown(x, y, z);
   }
 
   private applyQuality(): void {
     const { quality } = this.control;
-    this.stage.apply(quality);
+    this.renderer.apply(quality);
     this.figures.castShadows(quality.livingShadows);
     this.figures.fineUpTo(quality.fineFiguresM);
     this.marks.softShadows(!quality.livingShadows);

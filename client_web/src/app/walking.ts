@@ -6,12 +6,11 @@ import { listenToKeys, WalkKeys } from "../input/keyboard";
 import { headingOf, Steering } from "../input/steering";
 import type { Place } from "../render/picking";
 import { byId } from "../ui/dom";
+import { SAME_FLOOR_M } from "../world/heights";
 import type { World } from "../world/world";
 
-/** This near a walk to a point counts as done, metres. */
+/** A walk to a point ends this near to it. */
 const THERE_M = 0.4;
-/** One floor above or below it does not. */
-const STOREY_M = 1.5;
 const TURN_PER_S = 1.8;
 
 export class Walking {
@@ -63,7 +62,7 @@ export class Walking {
     this.setTarget(null);
   }
 
-  /** How fast the keys turn the camera, radians a second. */
+  /** The speed at which the keys turn the camera, radians a second. */
   get turnPerS(): number {
     return this.keys.wish.turn * TURN_PER_S;
   }
@@ -86,5 +85,5 @@ export class Walking {
 
 function isThere(here: Place, target: Place): boolean {
   const apartM = Math.hypot(here.x - target.x, here.y - target.y);
-  return apartM < THERE_M && Math.abs(here.z - target.z) < STOREY_M;
+  return apartM < THERE_M && Math.abs(here.z - target.z) < SAME_FLOOR_M;
 }

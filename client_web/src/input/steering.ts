@@ -18,7 +18,7 @@ const SAME_SPEED_MPS = 0.03;
 /** The stick's middle, where it rests. */
 const DEAD = 0.18;
 
-/** Where the keys or the stick lead when the camera looks along `cameraYaw`. */
+/** The direction of the keys or the stick while the camera looks along `cameraYaw`. */
 export function headingOf(
   keys: Wish,
   stick: { x: number; y: number } | null,
@@ -42,7 +42,7 @@ export class Steering {
 
   constructor(private readonly send: (heading: Heading) => void) {}
 
-  /** What was sent before no longer holds: the avatar walks to a point, or is a new one. */
+  /** The last message no longer holds: the avatar walks to a point, or is a new one. */
   reset(): void {
     this.sent = { direction: 0, speed: 0 };
   }

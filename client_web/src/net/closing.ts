@@ -1,4 +1,4 @@
-/** What the end of a connection means: a sentence for the person, and whether to come back. */
+/** The meaning of a connection's end: a sentence for the person, and whether to connect again. */
 
 import { CloseCode } from "./codes";
 

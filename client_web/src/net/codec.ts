@@ -45,8 +45,8 @@ export function encodeClient(message: ClientMessage): Uint8Array<ArrayBuffer> {
 }
 
 /**
- * What the server sent; null for a message code that this client does not know, so that the
- * server may learn new ones.
+ * The message of a frame; null for a code that this client does not know, so that the server may
+ * learn new ones.
  *
  * The fields are those of our own server, whose models check them; they are not checked again.
  */

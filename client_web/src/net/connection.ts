@@ -23,11 +23,11 @@ export type Socket = Pick<
 
 export interface ConnectionEvents {
   state(state: ConnectionState): void;
-  /** Everything but pongs. The welcome comes before `live`. */
+  /** Every message but pongs is passed on. The welcome comes before `live`. */
   message(message: ServerMessage): void;
 }
 
-/** Who comes in: the name, the token of an avatar that is to be taken up again, the operator key. */
+/** The first message: a name, the token of an avatar to take up again, and the operator key. */
 export interface Greeting {
   name: string;
   resume: string | null;
@@ -36,7 +36,7 @@ export interface Greeting {
 
 const OPEN = 1;
 const PULSE_MS = 1000;
-/** Without any frame for so long the connection is taken for dead. */
+/** The connection is taken for dead after this long without a frame. */
 const SILENCE_MS = 8000;
 const GREETING_MS = 10000;
 
@@ -65,7 +65,7 @@ export class Connection {
     return this.state_;
   }
 
-  /** Come in. Later attempts use the token that the last welcome gave. */
+  /** Join the world. Later attempts use the token that the last welcome gave. */
   join(greeting: Greeting): void {
     this.leave();
     this.greeting = greeting;

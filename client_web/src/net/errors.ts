@@ -1,2 +1,2 @@
-/** The server sent what cannot be read. */
+/** The server sent something that cannot be read. */
 export class WireError extends Error {}

@@ -1,5 +1,5 @@
 /**
- * What travels on the wire, as `protocol/messages.py` defines it. Metres, radians, seconds; z is
+ * The messages on the wire, as `protocol/messages.py` defines them. Metres, radians, seconds; z is
  * the height of the feet above the scene's ground.
  */
 
@@ -74,7 +74,7 @@ export interface SceneData {
   places: ScenePlace[];
   /** Heights of the storeys, metres, the lowest first. */
   storeys: number[];
-  /** Where the triangles are to be had, seen from the page; only of a building that is a mesh. */
+  /** The address of the triangles, relative to the page; only a building that is a mesh has one. */
   mesh?: string;
 }
 
@@ -110,7 +110,7 @@ export interface EntityInfo {
   /** Length of a leg from hip to ankle. */
   leg_m: number;
   stature_m: number;
-  /** What an actor that explains points at. */
+  /** The place that an actor which explains points at. */
   points_at: Place | null;
 }
 

@@ -1,5 +1,5 @@
 /**
- * Which avatar belongs to which tab.
+ * This says which avatar belongs to which tab.
  *
  * A seat is a name and a resume token. The tab remembers the id of its seat (`sessionStorage`
  * survives a reload and a restored tab); the browser profile remembers the seats themselves
@@ -12,11 +12,11 @@ export interface Seat {
   id: string;
   name: string;
   token: string;
-  /** When its page was last alive, milliseconds since 1970. */
+  /** The time at which its page was last alive, milliseconds since 1970. */
   seenMs: number;
 }
 
-/** How long the server keeps an avatar whose connection is gone. */
+/** The server keeps an avatar whose connection is gone for this long. */
 export const KEPT_MS = 30_000;
 
 const SEATS_KEY = "esplanade.seats";
@@ -71,7 +71,7 @@ export class Seats {
     this.tab.setItem(MINE_KEY, this.mine.id);
   }
 
-  /** Give the seat up: whoever comes next is somebody new. */
+  /** Give the seat up: the next person to join gets a new avatar. */
   forget(): void {
     if (!this.mine) return;
     const { id } = this.mine;

@@ -1,4 +1,4 @@
-/** The mesh of a building, as the server hands it out: 32-bit floats, little-endian, nine a triangle. */
+/** The mesh of a building from the server: 32-bit floats, little-endian, nine a triangle. */
 
 const TRIANGLE_BYTES = 36;
 

@@ -1,4 +1,4 @@
-/** What a gallery shows: framed pictures and sculptures, a different one for every place. */
+/** The exhibits of a gallery: framed pictures and sculptures, a different one for every place. */
 
 import {
   type BufferGeometry,
@@ -8,7 +8,7 @@ import {
   TorusGeometry,
 } from "three";
 import { type Block, within } from "./blocks";
-import { artOf, CANVAS, FRAME, MARBLE, sculptureOf } from "./decor";
+import { artOf, CANVAS, FRAME, MARBLE, sculptureOf } from "./interiorpalette";
 import { scatter } from "./palette";
 import { column, painted } from "./shapes";
 

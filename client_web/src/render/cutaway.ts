@@ -1,33 +1,33 @@
 /**
- * What hides the own avatar gives way. What is above it dissolves: slabs overhead and all that
- * stands on them, around the avatar and on the way from there to the camera. Walls on the camera's
- * side of it are cut down to stubs.
+ * Everything that hides the own avatar gives way. Slabs overhead dissolve with all that stands on
+ * them, around the avatar and on the way from there to the camera. Walls on the camera's side of the
+ * avatar are cut down to stubs.
  *
- * Every piece of the town knows the height at which it begins (attribute `base`), so that a tall
- * house on the ground stays whole while the room upstairs goes away as one; and how much of it is
- * left above the avatar's feet where it is cut (attribute `stub`). Dissolving is leaving out
- * pixels in a fixed pattern, so that nothing needs to be sorted.
+ * Every piece of the town carries the height at which it begins (attribute `base`), so that a tall
+ * house on the ground stays whole while the room upstairs goes away as one, and the height that is
+ * left of it above the avatar's feet (attribute `stub`). Pieces dissolve by leaving out pixels in a
+ * fixed pattern, so that nothing needs to be sorted.
  */
 
 import { BufferAttribute, type BufferGeometry, type Material, Vector2 } from "three";
 
-/** What begins less far above the feet stays, what begins farther above goes. */
+/** A piece that begins lower above the feet stays, one that begins higher goes. */
 const STAYS_M = 1.7;
 const GOES_M = 2.4;
-/** All of it goes so near to the line from the avatar to the camera, and nothing beyond. */
+/** Pieces go altogether this near to the line from the avatar to the camera, and stay beyond. */
 const NEAR_M = 22;
 const FAR_M = 30;
 const FADE_S = 0.18;
-/** So far towards the camera walls begin to be cut. */
+/** Walls are cut from this far towards the camera. */
 const BEFORE_M = { from: 0.05, to: 0.4 };
-/** And so far to both sides of the line from the avatar to the camera; crowns of trees as a whole. */
+/** They are cut this far to both sides of the line to the camera; crowns of trees go as a whole. */
 const BESIDE_M = { from: 8, to: 11 };
 const CROWN_BESIDE_M = { from: 2.2, to: 3.4 };
 /** The cut is as sharp as this. */
 const EDGE_M = 0.04;
-/** `stub` of what is never cut. */
+/** `stub` of a piece that is never cut. */
 const WHOLE_M = 1000;
-/** Once gone, it stays away for so long, so that passing a beam does not flicker. */
+/** A piece that is gone stays away for this long, so that passing a beam does not flicker. */
 const LINGER_S = 0.7;
 
 interface Spot {
@@ -45,7 +45,7 @@ export class Cutaway {
   };
   private sinceS = LINGER_S;
 
-  /** Once a frame; `hidden` says whether anything is above the avatar or before it. */
+  /** Call this once a frame; `hidden` says whether anything is above the avatar or before it. */
   update(feet: Spot, camera: Spot, hidden: boolean, frameS: number): void {
     const { cutFeet, cutStrength, cutFrom, cutTo } = this.uniforms;
     cutFeet.value = feet.z;
@@ -56,12 +56,12 @@ export class Cutaway {
     cutStrength.value += (wanted - cutStrength.value) * (1 - Math.exp(-frameS / FADE_S));
   }
 
-  /** Whether what begins at this height is high enough above the avatar to be taken away. */
+  /** Whether a piece that begins at this height is high enough above the avatar to go. */
   isAbove(baseM: number): boolean {
     return baseM > this.uniforms.cutFeet.value + (STAYS_M + GOES_M) / 2;
   }
 
-  /** How much is left of a piece at a point: 1 all, 0 nothing. */
+  /** The share of a piece that is left at a point: 1 is all, 0 nothing. */
   remains({ x, y, z }: Spot, { baseM, stubM }: Cut): number {
     const { cutFeet, cutFrom, cutTo } = this.uniforms;
     const [a, b] = [cutFrom.value, cutTo.value];
@@ -76,7 +76,7 @@ export class Cutaway {
     return this.shown(x, y, baseM) * (1 - cut);
   }
 
-  /** How much is left of what stands at (x, y) and begins at this height: 1 all, 0 nothing. */
+  /** The share that is left at (x, y) of a piece that begins at this height: 1 is all, 0 nothing. */
   shown(x: number, y: number, baseM: number): number {
     const { cutFeet, cutStrength, cutFrom, cutTo } = this.uniforms;
     const high = smoothstep(STAYS_M, GOES_M, baseM - cutFeet.value);
@@ -112,7 +112,7 @@ export class Cutaway {
   }
 }
 
-/** Where a piece begins, and how much of it is left above the feet where it is cut. */
+/** The height at which a piece begins, and what is left of it above the feet where it is cut. */
 export interface Cut {
   baseM: number;
   stubM: number;
@@ -145,7 +145,7 @@ export function gathered(
   return geometry;
 }
 
-/** How the piece that a corner belongs to is cut. */
+/** The cut of the piece that a corner belongs to. */
 export function cutOf(geometry: BufferGeometry, corner: number): Cut {
   const [base, stub] = [geometry.getAttribute("base"), geometry.getAttribute("stub")];
   return { baseM: base.getX(corner), stubM: stub.getX(corner) };

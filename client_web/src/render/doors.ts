@@ -12,13 +12,13 @@ const LEAF_M = 0.06;
 const HANDLE_M = 1.05;
 /** A wider door has two leaves. */
 const ONE_LEAF_M = 1.3;
-/** How far an open leaf is swung aside, radians. */
+/** An open leaf is swung aside by this angle, radians. */
 const SWUNG = 1.65;
 const SWING_S = 0.25;
 
 interface Leaf {
   hinge: Group;
-  /** Angle of the closed leaf, and which way it opens. */
+  /** The angle of the closed leaf, and the sense in which it opens. */
   closed: number;
   side: number;
   swing: number;
@@ -37,7 +37,7 @@ export class DoorLeaves {
     this.doors = doors.map((door) => ({ name: door.name, leaves: this.leaves(door, material) }));
   }
 
-  /** Swing towards how the doors are; those of which nothing is said stand open. */
+  /** Swing the leaves towards the state of the doors; doors that are not listed stand open. */
   update(open: Readonly<Open>, frameS: number): void {
     for (const { name, leaves } of this.doors) {
       const wanted = open[name] === false ? 0 : 1;

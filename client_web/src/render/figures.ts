@@ -10,23 +10,23 @@ import { type PartName, PARTS } from "./parts";
 /** Corners around a limb, of figures near by and far away. */
 const FINE_CORNERS = 12;
 const COARSE_CORNERS = 6;
-/** Who was coarse is so again until this much nearer, so that nobody flickers. */
+/** A coarse figure stays coarse until it is this much nearer, so that it does not flicker. */
 const NEARER = 0.88;
 
-/** What so many wear is remembered, those who have left among them. */
+/** The clothes of this many avatars are remembered, including some that have left. */
 const MOST_KNOWN = 2000;
 
-/** A figure and what it carries, from its hips; and its shadow on the ground, where that is drawn. */
+/** A figure reaches this far from its hips, and its shadow on the ground this far. */
 const FIGURE_M = 1.3;
 const SHADOW_M = 5;
 
-type Wardrobe = Record<PartName, Instances>;
+type PartMeshes = Record<PartName, Instances>;
 
 export class Figures {
   readonly group = new Group();
   private readonly material = new MeshLambertMaterial({ vertexColors: true });
-  private readonly fine = this.wardrobe(FINE_CORNERS);
-  private readonly coarse = this.wardrobe(COARSE_CORNERS);
+  private readonly fine = this.partMeshes(FINE_CORNERS);
+  private readonly coarse = this.partMeshes(COARSE_CORNERS);
   private readonly all = [...Object.values(this.fine), ...Object.values(this.coarse)];
   private readonly clothes = new Map<number, Clothing>();
   private readonly view = new Frustum();
@@ -46,7 +46,7 @@ export class Figures {
     for (const avatar of avatars.values()) {
       if (!this.isSeen(avatar)) continue;
       const parts = this.isCoarse(avatar, camera) ? this.coarse : this.fine;
-      dress(parts, avatar, this.clothesOf(avatar.id));
+      placeParts(parts, avatar, this.clothesOf(avatar.id));
     }
     for (const part of this.all) part.finish();
   }
@@ -67,7 +67,7 @@ export class Figures {
     this.view.setFromProjectionMatrix(this.projection);
   }
 
-  private isSeen({ walker: { body } }: Avatar): boolean {
+  private isSeen({ animator: { body } }: Avatar): boolean {
     const { x, y, z } = body.root;
     this.room.center.set(x, y, z);
     return this.view.intersectsSphere(this.room);
@@ -76,7 +76,7 @@ export class Figures {
   private isCoarse(
     {
       id,
-      walker: {
+      animator: {
         body: { root },
       },
     }: Avatar,
@@ -98,21 +98,21 @@ export class Figures {
     return clothes;
   }
 
-  private wardrobe(corners: number): Wardrobe {
+  private partMeshes(corners: number): PartMeshes {
     const parts = Object.entries(PARTS).map(([name, shape]) => {
       const part = new Instances(shape(corners), this.material);
       this.group.add(part.mesh);
       return [name, part] as const;
     });
-    return Object.fromEntries(parts) as Wardrobe;
+    return Object.fromEntries(parts) as PartMeshes;
   }
 }
 
-function dress(parts: Wardrobe, { id, kind, walker }: Avatar, clothes: Clothing): void {
+function placeParts(parts: PartMeshes, { id, kind, animator }: Avatar, clothes: Clothing): void {
   const {
     body,
     build: { legM, trunkM },
-  } = walker;
+  } = animator;
   parts.pelvis.put(id, clothes.trousers, body.root, body.pelvis, legM);
   parts.torso.put(id, clothes.shirt, body.lumbar, body.chest, trunkM);
   parts.head.put(id, clothes.skin, body.neck, body.head, trunkM);
@@ -123,7 +123,7 @@ function dress(parts: Wardrobe, { id, kind, walker }: Avatar, clothes: Clothing)
 }
 
 function limbs(
-  parts: Wardrobe,
+  parts: PartMeshes,
   id: number,
   { arm, leg, foot }: Side,
   { shirt, forearm, skin, trousers, shin, shoes }: Clothing,

@@ -1,14 +1,14 @@
 /** The camera that follows the own avatar: turned by dragging, kept out of buildings. */
 
 import { type Mesh, type PerspectiveCamera, Raycaster, Vector3 } from "three";
-import type { Pose } from "../world/motion";
+import type { Pose } from "../world/interpolation";
 import { type Cutaway, cutOf, givesWay } from "./cutaway";
 
 const NEAREST_M = 2;
 const FARTHEST_M = 30;
 const LOWEST = 0.08;
 const HIGHEST = 1.35;
-/** What it looks at, above the feet: the hips from near by, over the head from far away. */
+/** It looks at this height above the feet: at the hips from near by, over the head from afar. */
 const LOOK_NEAR_M = 1.0;
 const LOOK_FAR_M = 1.9;
 const FAR_M = 8;
@@ -41,7 +41,7 @@ export class FollowCamera {
     this.distanceM = Math.max(NEAREST_M, Math.min(FARTHEST_M, this.distanceM * factor));
   }
 
-  /** How far the camera is from what it looks at, metres. */
+  /** The distance of the camera from the point that it looks at, metres. */
   get reachM(): number {
     return Math.min(this.distanceM, this.freeM);
   }

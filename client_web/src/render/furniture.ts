@@ -1,10 +1,10 @@
-/** Furniture: what a prism of that kind looks like follows from its measures. */
+/** Furniture: the looks of a prism of that kind follow from its measures. */
 
 import type { BufferGeometry } from "three";
 import type { ScenePolygon } from "../net/messages";
 import { painting, sculpture } from "./art";
 import { type Block, blockOf, within } from "./blocks";
-import { bookOf, GLASS, MARBLE } from "./decor";
+import { bookOf, GLASS, MARBLE } from "./interiorpalette";
 import { IRON, scatter, WOOD } from "./palette";
 import { orientation } from "./shapes";
 
@@ -13,7 +13,7 @@ const TABLE_M = 0.9;
 const SHOWCASE_M = 1.25;
 /** Thinner panels hang on a wall. */
 const PICTURE_M = 0.2;
-/** What is so much longer than wide stands like a wall. */
+/** A piece that is this much longer than wide stands like a wall. */
 const SLENDER = 1.8;
 const SHELVES_M = 2.5;
 const BOARD_M = 0.04;

@@ -1,4 +1,4 @@
-/** What draws the picture: a graphics card, or the processor in its place. */
+/** Tells whether a graphics card draws the picture, or the processor in its place. */
 
 const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
 

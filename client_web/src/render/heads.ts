@@ -1,8 +1,8 @@
-/** Heads: a face that shows where it looks, hair in three fashions, and what actors wear. */
+/** Heads: a face that shows where it looks, hair in three fashions, and the hat of actors. */
 
 import { type BufferGeometry, Color, ConeGeometry, SphereGeometry } from "three";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
-import { type Hoop, loft, oval, type Oval, skin, WHITE } from "./loft";
+import { type Section, loft, oval, type Oval, skin, WHITE } from "./loft";
 import { painted } from "./shapes";
 
 type HairName = "short" | "long" | "bun";
@@ -107,7 +107,7 @@ export function hat(corners: number): BufferGeometry {
   return merge([crown, peak]);
 }
 
-function sloped({ slope = 0, ...rest }: Curl, corners: number): Hoop {
+function sloped({ slope = 0, ...rest }: Curl, corners: number): Section {
   const { points, color } = oval(rest, corners);
   return { points: points.map(([x, y, z]) => [x, y, z + slope * x] as const), color };
 }

@@ -7,11 +7,12 @@ import {
   InstancedBufferAttribute,
   InstancedMesh,
   type Material,
+  type QuaternionLike,
+  type Vector3Like,
 } from "three";
 import type { Foot, Limb } from "../world/body";
-import type { Rotation, Vector } from "../world/vectors";
 
-/** Instances beyond the first are made room for in such lots. */
+/** Room for instances grows by this many at a time. */
 const LOT = 64;
 
 export class Instances {
@@ -19,8 +20,8 @@ export class Instances {
   private count = 0;
   private matrices = new Float32Array(0);
   private colors = new Float32Array(0);
-  /** Who wears each instance: a colour stays until somebody else does. */
-  private wearers = new Float64Array(0);
+  /** The avatar of each instance: colours are written only when that changes. */
+  private owners = new Float64Array(0);
   private repainted = false;
 
   constructor(geometry: BufferGeometry, material: Material) {
@@ -42,10 +43,16 @@ export class Instances {
     this.repainted = false;
   }
 
-  /** At a place, turned and scaled. */
-  put(wearer: number, color: Color, at: Vector, { w, x, y, z }: Rotation, scale: number): void {
+  /** Place a part, turned and scaled. */
+  put(
+    owner: number,
+    color: Color,
+    at: Vector3Like,
+    { w, x, y, z }: QuaternionLike,
+    scale: number,
+  ): void {
     this.write(
-      this.next(wearer, color),
+      this.next(owner, color),
       (1 - 2 * (y * y + z * z)) * scale,
       2 * (x * y + w * z) * scale,
       2 * (x * z - w * y) * scale,
@@ -59,14 +66,21 @@ export class Instances {
     );
   }
 
-  /** Hanging from a joint towards another one. */
-  hang(wearer: number, color: Color, from: Vector, to: Vector, axis: Vector, scale: number): void {
+  /** Place a part that hangs from a joint towards another one. */
+  hang(
+    owner: number,
+    color: Color,
+    from: Vector3Like,
+    to: Vector3Like,
+    axis: Vector3Like,
+    scale: number,
+  ): void {
     const x = from.x - to.x;
     const y = from.y - to.y;
     const z = from.z - to.z;
     const part = scale / Math.max(1e-9, Math.hypot(x, y, z));
     this.write(
-      this.next(wearer, color),
+      this.next(owner, color),
       (axis.y * z - axis.z * y) * part,
       (axis.z * x - axis.x * z) * part,
       (axis.x * y - axis.y * x) * part,
@@ -80,20 +94,20 @@ export class Instances {
     );
   }
 
-  /** On from the end of a limb's second bone. */
-  extend(wearer: number, color: Color, { hinge, end, axis }: Limb, scale: number): void {
-    this.hang(wearer, color, hinge, end, axis, scale);
+  /** Place a part at the end of a limb's second bone, in line with it. */
+  extend(owner: number, color: Color, { hinge, end, axis }: Limb, scale: number): void {
+    this.hang(owner, color, hinge, end, axis, scale);
     const at = (this.count - 1) * 16;
     this.matrices[at + 12] = end.x;
     this.matrices[at + 13] = end.y;
     this.matrices[at + 14] = end.z;
   }
 
-  /** A foot, or its toes, at a place of the sole. */
+  /** Place a foot, or its toes, at a place of the sole. */
   stand(
-    wearer: number,
+    owner: number,
     color: Color,
-    at: Vector,
+    at: Vector3Like,
     { heading }: Foot,
     pitch: number,
     scale: number,
@@ -103,7 +117,7 @@ export class Instances {
     const cp = Math.cos(pitch);
     const sp = Math.sin(pitch);
     this.write(
-      this.next(wearer, color),
+      this.next(owner, color),
       cp * ch * scale,
       cp * sh * scale,
       sp * scale,
@@ -117,12 +131,12 @@ export class Instances {
     );
   }
 
-  /** Index of the next instance, in its wearer's colour. */
-  private next(wearer: number, color: Color): number {
-    if (this.count === this.wearers.length) this.grow();
+  /** Index of the next instance, in its owner's colour. */
+  private next(owner: number, color: Color): number {
+    if (this.count === this.owners.length) this.grow();
     const index = this.count++;
-    if (this.wearers[index] !== wearer) {
-      this.wearers[index] = wearer;
+    if (this.owners[index] !== owner) {
+      this.owners[index] = owner;
       this.colors[index * 3] = color.r;
       this.colors[index * 3 + 1] = color.g;
       this.colors[index * 3 + 2] = color.b;
@@ -143,7 +157,7 @@ export class Instances {
     ux: number,
     uy: number,
     uz: number,
-    at: Vector,
+    at: Vector3Like,
   ): void {
     const { matrices } = this;
     const i = index * 16;
@@ -166,10 +180,10 @@ export class Instances {
   }
 
   private grow(): void {
-    const capacity = this.wearers.length + LOT;
+    const capacity = this.owners.length + LOT;
     this.matrices = wider(this.matrices, new Float32Array(capacity * 16));
     this.colors = wider(this.colors, new Float32Array(capacity * 3));
-    this.wearers = wider(this.wearers, new Float64Array(capacity).fill(-1));
+    this.owners = wider(this.owners, new Float64Array(capacity).fill(-1));
     this.repainted = true;
     // The buffers on the graphics card are of the old size.
     this.mesh.dispose();

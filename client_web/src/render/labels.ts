@@ -9,7 +9,7 @@ const FAR_M = 26;
 const FADE_M = 8;
 const ABOVE_M = 0.22;
 const SPOKEN_MS = 7000;
-/** What is fainter is not shown at all. */
+/** A fainter label is not shown at all. */
 const FAINT = 0.05;
 
 interface Label {
@@ -70,8 +70,8 @@ export class Labels {
     }
   }
 
-  /** Where a label hangs. */
-  private head({ walker: { body, build } }: Avatar): Vector3 {
+  /** The place of a label. */
+  private head({ animator: { body, build } }: Avatar): Vector3 {
     crown(body, build, this.at);
     this.at.z += ABOVE_M;
     return this.at;

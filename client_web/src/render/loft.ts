@@ -1,11 +1,11 @@
-/** Rounded shapes: a skin over rings of points, which is how limbs, shoes and heads are made. */
+/** Lofts: surfaces through a row of cross sections, of which limbs, shoes and heads are made. */
 
 import { BufferGeometry, Color, Float32BufferAttribute } from "three";
 
 type Point = readonly [x: number, y: number, z: number];
 
-/** A closed ring of points, with the colour of the skin there. */
-export interface Hoop {
+/** A cross section: a closed ring of points, with the colour of the surface there. */
+export interface Section {
   readonly points: readonly Point[];
   readonly color: Color;
 }
@@ -27,7 +27,7 @@ export interface Oval {
 export function oval(
   { z, depth, width, x = 0, roundness = 1, color = WHITE }: Oval,
   corners: number,
-): Hoop {
+): Section {
   const points = Array.from({ length: corners }, (_, i): Point => {
     const angle = (2 * Math.PI * i) / corners;
     return [
@@ -39,22 +39,22 @@ export function oval(
   return { points, color };
 }
 
-/** Shapes with fewer corners are seen from afar: every second hoop is enough for them. */
+/** Shapes with fewer corners are seen from afar: every second section is enough for them. */
 const FEW_CORNERS = 8;
 
-/** The skin over ovals from the top down, closed at both ends. */
+/** The surface through ovals from the top down, closed at both ends. */
 export function loft(ovals: readonly Oval[], corners: number): BufferGeometry {
   return skin(ovals.map((each) => oval(each, corners)));
 }
 
-/** The skin over hoops of equally many points, closed at both ends by their middles. */
-export function skin(all: readonly Hoop[]): BufferGeometry {
+/** The surface through sections of equally many points, closed at both ends by their middles. */
+export function skin(all: readonly Section[]): BufferGeometry {
   const corners = all[0]?.points.length ?? 0;
-  const hoops =
+  const sections =
     corners < FEW_CORNERS ? all.filter((_, i) => i % 2 === 0 || i === all.length - 1) : all;
   const position: number[] = [];
   const colors: number[] = [];
-  for (const { points, color } of [end(hoops[0]), ...hoops, end(hoops.at(-1))]) {
+  for (const { points, color } of [end(sections[0]), ...sections, end(sections.at(-1))]) {
     for (const point of points) {
       position.push(...point);
       colors.push(color.r, color.g, color.b);
@@ -62,13 +62,13 @@ export function skin(all: readonly Hoop[]): BufferGeometry {
   }
   const last = position.length / 3 - 1;
   const index: number[] = [];
-  for (let ring = 0; ring < hoops.length; ring++) {
+  for (let ring = 0; ring < sections.length; ring++) {
     for (let i = 0; i < corners; i++) {
       const next = (i + 1) % corners;
       const a = 1 + ring * corners + i;
       const b = 1 + ring * corners + next;
       if (ring === 0) index.push(0, a, b);
-      if (ring === hoops.length - 1) index.push(last, b, a);
+      if (ring === sections.length - 1) index.push(last, b, a);
       else index.push(a, a + corners, b, b, a + corners, b + corners);
     }
   }
@@ -80,14 +80,14 @@ export function skin(all: readonly Hoop[]): BufferGeometry {
   return geometry;
 }
 
-/** A hoop drawn together to its middle. */
-function end(hoop: Hoop | undefined): Hoop {
-  if (!hoop) throw new RangeError("a skin goes over at least one hoop");
-  const n = hoop.points.length;
+/** A section that is drawn together to its middle. */
+function end(section: Section | undefined): Section {
+  if (!section) throw new RangeError("a skin goes over at least one section");
+  const n = section.points.length;
   const middle = ([0, 1, 2] as const).map(
-    (axis) => hoop.points.reduce((sum, point) => sum + point[axis], 0) / n,
+    (axis) => section.points.reduce((sum, point) => sum + point[axis], 0) / n,
   ) as unknown as Point;
-  return { points: [middle], color: hoop.color };
+  return { points: [middle], color: section.color };
 }
 
 function rounded(value: number, roundness: number): number {

@@ -1,4 +1,4 @@
-/** Marks on the floor: soft discs under the feet, the own ring, the chosen one's, the goal of a walk. */
+/** Marks on the floor: discs under feet, rings of the own and the chosen avatar, the walk's goal. */
 
 import {
   CircleGeometry,
@@ -11,7 +11,7 @@ import {
   MeshBasicMaterial,
   RingGeometry,
 } from "three";
-import type { Pose } from "../world/motion";
+import type { Pose } from "../world/interpolation";
 import type { Avatar } from "../world/world";
 import { ACCENT, ACTOR } from "./palette";
 
@@ -43,7 +43,7 @@ export class Marks {
     this.feet.visible = show;
   }
 
-  /** Where a click sends the own avatar; null when it has arrived or was called off. */
+  /** Mark the place that the own avatar walks to; null when it has arrived or was called off. */
   walkTarget(at: { x: number; y: number; z: number } | null): void {
     this.target.visible = at !== null;
     if (at) this.target.position.set(at.x, at.y, at.z + 0.03);

@@ -4,7 +4,7 @@ import { BufferAttribute, BufferGeometry, Color } from "three";
 import type { Triangles } from "../world/mesh";
 import { FLOOR, PLASTER } from "./palette";
 
-/** What is left of walls, and of what lies level like table tops, above the feet. */
+/** Heights above the feet that are left of walls, and of level things like table tops. */
 const STUB_M = { upright: 0.35, level: 1.2 };
 const LEVEL = 0.7;
 /** Walls that face north and south are drawn darker, so that corners show in the shade too. */

@@ -1,4 +1,4 @@
-/** The colours of the world, and which ones an avatar wears. */
+/** The colours of the world and of avatars' clothes. */
 
 import { Color } from "three";
 
@@ -38,7 +38,7 @@ const SHOES = ["#3a2a20", "#26262b", "#e6e2da", "#6d4a2f", "#8c2f2b", "#2f4a63"]
 
 /** Fashions of hair, as parts of figures are named. */
 const HAIRDOS = ["short", "short", "short", "long", "long", "bun"] as const;
-/** How many wear short sleeves, and how many short trousers. */
+/** The shares of avatars with short sleeves and with short trousers. */
 const SHORT_SLEEVES = 0.45;
 const SHORT_TROUSERS = 0.15;
 
@@ -54,7 +54,7 @@ export interface Clothing {
   hairdo: (typeof HAIRDOS)[number];
 }
 
-/** Always the same for the same id. */
+/** The clothes of an avatar, always the same for the same id. */
 export function clothingOf(id: number): Clothing {
   const shirt = pick(SHIRTS, id, 1);
   const trousers = pick(TROUSERS, id, 2);

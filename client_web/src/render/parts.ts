@@ -6,7 +6,7 @@
 import { type BufferGeometry, Color } from "three";
 import { FOOT, FOREARM, SHIN, THIGH, UPPER_ARM } from "../world/skeleton";
 import { hair, hat, head } from "./heads";
-import { type Hoop, loft, skin, WHITE } from "./loft";
+import { type Section, loft, skin, WHITE } from "./loft";
 
 const BELT = new Color("#4a4038");
 const HEM = new Color("#b9b9b9");
@@ -179,7 +179,7 @@ function toes(corners: number): BufferGeometry {
 function slice(
   { x, width, bottom, top }: { x: number; width: number; bottom: number; top: number },
   corners: number,
-): Hoop {
+): Section {
   const arch = corners - 4;
   const rim = Math.min(bottom + 0.016, (bottom + top) / 2);
   const points = Array.from({ length: arch + 1 }, (_, i) => {

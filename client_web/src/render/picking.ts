@@ -1,4 +1,4 @@
-/** What is under a point of the screen: an avatar, a door, or a place to walk to. */
+/** Finds the avatar, the door or the place to walk to under a point of the screen. */
 
 import { type Mesh, type PerspectiveCamera, Plane, Raycaster, Vector2, Vector3 } from "three";
 import { crown } from "../world/body";
@@ -22,16 +22,16 @@ export interface Place {
 interface Hit {
   point: Vector3;
   distance: number;
-  /** Where the piece that is hit begins. */
+  /** The height at which the piece that is hit begins. */
   baseM: number;
   /** Upward part of the face's normal: 1 is level. */
   slope: number;
 }
 
-/** What slopes more is no floor: 45 degrees. */
+/** A face that slopes more is no floor: 45 degrees. */
 const LEVEL = Math.SQRT1_2;
 const REACH_M = 60;
-/** How far beside a figure one may click, metres in the world plus a part of the screen's height. */
+/** One may click this far beside a figure: metres plus a part of the screen's height. */
 const BESIDE_M = 0.3;
 const BESIDE_SCREEN = 0.015;
 const GROUND = new Plane(new Vector3(0, 0, 1), 0);
@@ -53,7 +53,7 @@ export class Picking {
       if (avatar.own) continue;
       const { x, y, z } = avatar.pose;
       this.foot.set(x, y, z);
-      crown(avatar.walker.body, avatar.walker.build, this.head);
+      crown(avatar.animator.body, avatar.animator.build, this.head);
       const besideSq = this.ray.ray.distanceSqToSegment(
         this.foot,
         this.head,
@@ -78,8 +78,8 @@ export class Picking {
   }
 
   /**
-   * The place on the floor that is seen there; at the foot of what cannot be stood on. What is cut
-   * away is passed through. Null for the sky.
+   * The place on the floor that is seen there, or at the foot of a thing that nobody can stand on.
+   * Rays pass through pieces that are cut away. It is null for the sky.
    */
   floor(at: ScreenPoint, occluders: readonly Mesh[], cutaway: Cutaway): Place | null {
     this.aim(at);

@@ -1,4 +1,4 @@
-/** The overlay of an actor's plan: its path with a dot each second, its goal, and where people may be. */
+/** The overlay of an actor's plan: a path with a dot each second, the goal, predicted circles. */
 
 import {
   BufferGeometry,
@@ -21,16 +21,16 @@ import { ACTOR } from "./palette";
 import { painted } from "./shapes";
 
 const PATH_HALF_M = 0.06;
-/** Above the floor, so that it is not lost in it. */
+/** The overlay lies this far above the floor, so that it does not sink into it. */
 const RIBBON_M = 0.045;
-/** Where it rises more from point to point it is laid in pieces. */
+/** A path that rises more from point to point is laid in pieces. */
 const LEVEL_M = 0.03;
 const PIECE_M = 0.1;
 const MOST_DOTS = 128;
 const MOST_CIRCLES = 512;
 const SOON = new Color("#e2483d");
 const LATE = new Color("#f4b942");
-/** Of all predicted circles of a person so many are drawn, evenly spread. */
+/** This many of the predicted circles of a person are drawn, evenly spread. */
 const DRAWN_CIRCLES = 6;
 
 export class Plans {

@@ -1,4 +1,4 @@
-/** How finely the world is drawn: chosen by how long frames take, or by the person. */
+/** The fineness of drawing: chosen by the duration of frames, or by the person. */
 
 export interface Quality {
   /** Pixels drawn for one CSS pixel, at most. */
@@ -29,7 +29,7 @@ const WINDOW = 30;
 const FEW = 4;
 const LONG_S = 1;
 const SLOW_S = 1 / 28;
-/** This slow goes down two levels at once. */
+/** Frames that are slower than this go down two levels at once. */
 const VERY_SLOW_S = 1 / 10;
 /** A longer pause says nothing of the drawing: the page was hidden. */
 const PAUSE_S = 3;
@@ -37,7 +37,7 @@ const QUICK_S = 1 / 55;
 /** Quick windows in a row before something finer is tried. */
 const PATIENCE = 12;
 
-/** Goes to a faster level after one slow window of frames, and back with patience. */
+/** It goes to a faster level after one slow window of frames, and back after many quick ones. */
 export class QualityControl {
   level: number;
   private sumS = 0;

@@ -88,7 +88,7 @@ export function underside(ring: Ring, z: number, color: Color): BufferGeometry {
   return geometry;
 }
 
-/** The sides of a ring; `uv` counts bays along and floors up when their sizes are given, else metres. */
+/** The sides of a ring; `uv` counts bays and floors when their sizes are given, else metres. */
 export function sides(
   ring: Ring,
   z0: number,

@@ -18,7 +18,7 @@ const HEIGHT_M = 0.55;
 const ROW_PIXELS = 64;
 const ROW_WIDTH = (ROW_PIXELS * WIDTH_M) / HEIGHT_M;
 const LETTERS_PIXELS = 40;
-/** So that the floor does not shine through. */
+/** Names lie above the floor, so that it does not shine through. */
 const ABOVE_M = 0.015;
 const INK = "rgb(60 44 30 / 75%)";
 

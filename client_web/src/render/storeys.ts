@@ -1,9 +1,9 @@
-/** What leads up and carries people there: slabs, ramps, stairs and railings. */
+/** The parts of storeys: slabs, ramps, stairs and railings. */
 
 import type { BufferGeometry } from "three";
 import type { ScenePolygon, SceneStairs, SceneWall } from "../net/messages";
 import { topOf, treadsOf } from "../world/solids";
-import { CEILING, PARQUET, TERRAZZO } from "./decor";
+import { CEILING, PARQUET, TERRAZZO } from "./interiorpalette";
 import { DARK_STONE, FLOOR, IRON, STONE, TREAD } from "./palette";
 import { box, cap, sides, underside } from "./shapes";
 import type { Pieces } from "./structures";

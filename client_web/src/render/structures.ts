@@ -1,4 +1,4 @@
-/** Buildings, walls and basins: what each kind of prism looks like. */
+/** The looks of buildings, walls and basins. */
 
 import { BoxGeometry, type BufferGeometry } from "three";
 import type { ScenePolygon, SceneWall } from "../net/messages";
@@ -90,7 +90,7 @@ function kiosk({ points, height_m, offset_m }: ScenePolygon, index: number): Buf
 
 export function masonry({ points, height_m, offset_m }: ScenePolygon): BufferGeometry[] {
   const top = offset_m + height_m;
-  // What stands on a slab reaches into it a little, or light shines through the seam.
+  // A wall on a slab reaches into it a little, or light shines through the seam.
   const foot = Math.max(0, offset_m - SEAM_M);
   const parts = [
     sides(points, foot, top - COPING_M, PLASTER),

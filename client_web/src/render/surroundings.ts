@@ -1,4 +1,4 @@
-/** What lies around the bounds, where nobody walks: meadows with trees, more of them farther off. */
+/** The land around the bounds, where nobody walks: meadows with trees, more of them farther off. */
 
 import type { BufferGeometry } from "three";
 import type { SceneData, ScenePolygon } from "../net/messages";

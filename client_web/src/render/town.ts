@@ -29,13 +29,13 @@ import { basin, building, masonry, type Pieces, thinWall } from "./structures";
 const SLAB_M = 1.5;
 /** The pattern of boards repeats itself after so much. */
 const BOARDS_M = 1.6;
-/** What is left of walls, and of furniture, where they are cut before the own avatar. */
+/** Heights that are left of walls, and of furniture, where they are cut before the own avatar. */
 const WALL_STUB_M = 0.35;
 const TABLE_STUB_M = 1.2;
 
 export interface Town {
   readonly group: Group;
-  /** What hides the view of the camera. */
+  /** The meshes that hide the view of the camera. */
   readonly occluders: readonly Mesh[];
   readonly doors: DoorLeaves;
   dispose(): void;

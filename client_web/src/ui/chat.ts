@@ -1,4 +1,4 @@
-/** What people say: a log, a line to write in, and on small screens a button that opens both. */
+/** The chat: a log, a line to write in, and on small screens a button that opens both. */
 
 import { MAX_CHAT_CHARS } from "../net/codes";
 import { byId, element } from "./dom";

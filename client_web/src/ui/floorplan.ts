@@ -1,4 +1,4 @@
-/** One storey from above, drawn once: what stands on it, and what leads up or down. */
+/** One storey from above, drawn once, with everything that stands on it and leads up or down. */
 
 import type { SceneData, ScenePolygon, SceneStairs } from "../net/messages";
 import type { MeshParts } from "../world/mesh";
@@ -12,14 +12,14 @@ const COLORS = {
   plant: "#86a667",
   water: "#6fb3cf",
 } as const;
-/** What one would fall into. */
+/** The colour of places that one would fall into. */
 const VOID = "#cbc4b6";
 const DEEPER = "#bcb4a5";
 const STEP = "#b9ae9b";
 const SLOPE = "#ddd3c1";
-/** What begins lower than this above a floor stands on it, or in the way. */
+/** A piece that begins lower than this above a floor stands on it, or in the way. */
 const HEADROOM_M = 2;
-/** What rises less above a floor is part of it. */
+/** A piece that rises less above a floor is part of it. */
 const KERB_M = 0.3;
 const NEAR_M = 0.9;
 
@@ -68,7 +68,7 @@ export function drawFloorplan(
   pen.stroke();
 }
 
-/** The same of a building that comes as a mesh; what lies deeper shows through. */
+/** Draws the same for a building that is a mesh; deeper parts show through. */
 export function drawMesh(
   pen: CanvasRenderingContext2D,
   { solids, steep }: MeshParts,
@@ -102,7 +102,7 @@ export function drawMesh(
   pen.stroke();
 }
 
-/** Whether what reaches from `bottomM` to `topM` is in the way of those on the floor. */
+/** Whether a piece from `bottomM` to `topM` is in the way of people on the floor. */
 export function stands(bottomM: number, topM: number, floorM: number): boolean {
   return bottomM < floorM + HEADROOM_M && topM > floorM + KERB_M;
 }

@@ -1,4 +1,4 @@
-/** The help dialog with its settings: how finely the world is drawn, and whether its walking is shown. */
+/** The help dialog with its settings: the fineness of drawing, and the overlay of skeletons. */
 
 import { byId } from "./dom";
 
@@ -13,7 +13,7 @@ export function storedChoice(): DrawingChoice {
 
 export function setUpHelp(
   changed: (choice: DrawingChoice) => void,
-  footwork: (shown: boolean) => void,
+  skeletons: (shown: boolean) => void,
 ): void {
   const dialog = byId("help", HTMLDialogElement);
   const drawing = byId("drawing", HTMLSelectElement);
@@ -22,9 +22,9 @@ export function setUpHelp(
     localStorage.setItem(CHOICE_KEY, drawing.value);
     changed(storedChoice());
   });
-  const shown = byId("footwork", HTMLInputElement);
+  const shown = byId("skeletons", HTMLInputElement);
   shown.addEventListener("change", () => {
-    footwork(shown.checked);
+    skeletons(shown.checked);
   });
   byId("help-open", HTMLButtonElement).addEventListener("click", () => {
     dialog.showModal();

@@ -1,4 +1,4 @@
-/** The dialog at the door: a name, and why one is outside. */
+/** The dialog before one joins: it asks for a name, and says why one is not in the world. */
 
 import { MAX_NAME_CHARS } from "../net/codes";
 import { byId } from "./dom";
@@ -41,12 +41,12 @@ export class JoinDialog {
     this.dialog.close();
   }
 
-  /** Why it takes long to come in. */
+  /** Say why joining takes long. */
   wait(reason: string): void {
     this.reason.textContent = `${reason} Trying again…`;
   }
 
-  /** While the server is being asked. */
+  /** Show that the server is being asked. */
   busy(busy: boolean): void {
     this.button.disabled = busy;
     this.button.textContent = busy ? "Coming in…" : "Come in";

@@ -1,4 +1,4 @@
-/** The world from above, north up: one storey, who walks on it, and what the own camera sees. */
+/** The world from above, north up: one storey, everybody in view, and the own camera's cone. */
 
 import type { Doors, Plan, SceneData } from "../net/messages";
 import { type MeshParts, meshParts, type Triangles } from "../world/mesh";
@@ -12,7 +12,7 @@ const PERSON = "#2563c9";
 const ACTOR = "#0b8279";
 const OWN = "#e08a00";
 const DOOR = "#a4551e";
-/** How strongly those on other storeys are drawn. */
+/** Avatars on other storeys are drawn with this opacity. */
 const ELSEWHERE = 0.25;
 const CONE_M = 14;
 const CONE_HALF = 0.5;
@@ -71,7 +71,7 @@ export class Minimap {
     pen.globalAlpha = 1;
   }
 
-  /** Fit the scene into the canvas as large as it is shown, and draw what never moves. */
+  /** Fit the scene into the canvas as large as it is shown, and draw everything that never moves. */
   private layOut(): void {
     if (!this.scene) return;
     const { canvas, still, scene } = this;
@@ -98,7 +98,7 @@ export class Minimap {
     return storeyAt(this.scene?.storeys ?? [], z) === this.choice.shown;
   }
 
-  /** Closed ones across their way, open ones swung aside. */
+  /** Closed doors are drawn across their way, open ones swung aside. */
   private drawDoors(
     pen: CanvasRenderingContext2D,
     { doors }: SceneData,

@@ -1,4 +1,4 @@
-/** Who is in view, and how many the whole world holds. */
+/** The list of people and actors in view, and how many the whole world holds. */
 
 import type { Avatar } from "../world/world";
 import { byId, element } from "./dom";
@@ -15,7 +15,7 @@ export class PeopleList {
     this.total.textContent = `${plural(people, "person", "people")} and ${plural(actors, "actor", "actors")} in the world`;
   }
 
-  /** Cheap when nobody came or went. */
+  /** Costs little when nobody came or went. */
   update(avatars: ReadonlyMap<number, Avatar>, chosenId: number | null): void {
     const key = `${[...avatars.keys()].join()}:${chosenId ?? ""}`;
     if (key === this.shown) return;

@@ -1,4 +1,4 @@
-/** The panel of the chosen actor: what it is about, and why it does what it does. */
+/** The panel of the chosen actor: its behaviour, its goal and the reason for its last step. */
 
 import { Reason } from "../net/codes";
 import type { Plan } from "../net/messages";
@@ -49,7 +49,7 @@ export class PlanPanel {
   }
 }
 
-/** Only on change, so that screen readers are not told the same again. */
+/** Write a text only when it changes, so that screen readers do not say the same again. */
 function set(target: HTMLElement, text: string): void {
   if (target.textContent !== text) target.textContent = text;
 }

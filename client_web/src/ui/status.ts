@@ -1,4 +1,4 @@
-/** How the connection is: a chip at the top, and a banner while it is being restored. */
+/** The state of the connection: a chip at the top, and a banner while it is being restored. */
 
 import type { ConnectionState } from "../net/connection";
 import { byId } from "./dom";

@@ -1,4 +1,4 @@
-/** Which storey the map shows: the own avatar's, or for a while another that was chosen. */
+/** The choice of the storey on the map: the own avatar's, or for a while another one. */
 
 import { byId, element } from "./dom";
 
@@ -11,7 +11,7 @@ export class StoreySwitch {
 
   constructor(private readonly changed: () => void) {}
 
-  /** A new world with so many storeys; one alone needs no switch. */
+  /** Offer the storeys of a new world; one alone needs no switch. */
   offer(count: number): void {
     this.own = this.shown = 0;
     this.buttons = Array.from({ length: count }, (_, storey) => this.button(storey));

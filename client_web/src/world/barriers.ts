@@ -1,4 +1,4 @@
-/** What stops a walking body: sides of solids, walls, closed doors, and edges to fall from. */
+/** Barriers stop a walking body: sides of solids, walls, closed doors, and edges to fall from. */
 
 import type { Point, SceneData } from "../net/messages";
 import type { Floors } from "./floors";
@@ -14,20 +14,20 @@ export interface Barrier {
   topM: number;
   /** The door that it is, and that does not stop anybody while it stands open. */
   door: string | null;
-  /** Of an edge to fall from: where its floor is. Who is beyond it already may come back. */
+  /** The direction to the floor of an edge to fall from. A body beyond the edge may come back. */
   inward?: Vec2;
 }
 
-/** A person can step up or down so far. */
+/** A person can step up or down this far. */
 export const STEP_ON_M = 0.6;
 
-/** What nobody climbs, such as furniture, stops people however low it is. */
+/** Things that nobody climbs, such as furniture, stop people however low they are. */
 const UNCLIMBED_M = 1.2;
 
 const PIECE_M = 0.25;
 /** Floors are looked up this far to both sides of an edge. */
 const ASIDE_M = 0.05;
-/** A ledge stops whoever stands at its height, about. */
+/** A ledge stops bodies whose feet are between these heights below and above it. */
 const LEDGE_BELOW_M = 0.05;
 const LEDGE_ABOVE_M = 2;
 

@@ -5,7 +5,6 @@
 
 import cycle from "./cycle.json";
 import { mixPostures, type Posture, posture } from "./posture";
-import { set, setRotation } from "./vectors";
 
 type Numbers = readonly number[];
 
@@ -33,15 +32,15 @@ interface Key {
 
 const STAND = read(cycle.stand);
 const KEYS: readonly Key[] = cycle.keys.map((key) => ({ phase: key.phase, posture: read(key) }));
-/** Longer steps than this, against those of the cycle, are not drawn: legs would not reach. */
+/** Steps are drawn at most this much longer than those of the cycle: legs would not reach. */
 const LONGEST = 1.18;
 
-/** How long a step is at a speed, in leg lengths and leg lengths a second. */
+/** The length of a step at a speed, in leg lengths and leg lengths a second. */
 export function stepAt(speed: number): number {
   return Math.min(Math.sqrt(cycle.timing * speed), cycle.step * LONGEST);
 }
 
-/** The posture at a phase, a fraction of a cycle, of somebody whose steps are so long. */
+/** The posture at a phase, a fraction of a cycle, for steps of this length. */
 export function cyclePosture(phase: number, step: number, out: Posture): void {
   const share = Math.min(1, step / cycle.step);
   let before = KEYS.length - 1;
@@ -56,14 +55,14 @@ export function cyclePosture(phase: number, step: number, out: Posture): void {
 
 function read(data: PostureData): Posture {
   const read = posture();
-  set(read.root, at(data.root, 0), at(data.root, 1), at(data.root, 2));
+  read.root.set(at(data.root, 0), at(data.root, 1), at(data.root, 2));
   for (const part of ["pelvis", "chest"] as const) {
     const q = data[part];
-    setRotation(read[part], at(q, 0), at(q, 1), at(q, 2), at(q, 3));
+    read[part].set(at(q, 1), at(q, 2), at(q, 3), at(q, 0));
   }
   for (const side of ["left", "right"] as const) {
     const { heel, pitch, raised } = data[side];
-    set(read[side].heel, at(heel, 0), at(heel, 1), at(heel, 2));
+    read[side].heel.set(at(heel, 0), at(heel, 1), at(heel, 2));
     Object.assign(read[side], { pitch, raised });
   }
   Object.assign(read.leftArm, data.leftArm);

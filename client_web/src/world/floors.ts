@@ -1,20 +1,20 @@
-/** Where one can stand, and how high: the ground and the tops of what stands on it. */
+/** The surfaces that one can stand on: the ground, and the tops of solids. */
 
 import type { SceneData } from "../net/messages";
-import { Buckets } from "./buckets";
+import { SpatialGrid } from "./spatialgrid";
 import { isInside, type Solid, solidsOf } from "./solids";
 
 /** With less room above it nobody stands on a surface. */
 const LOWEST_M = 1;
-/** What begins this high above the feet is a ceiling. */
+/** A solid that begins this high above the feet is a ceiling. */
 const CEILING_M = 1.2;
 const SAME_M = 1e-6;
 
 export class Floors {
   readonly solids: readonly Solid[];
-  /** Where the ground is walked on; nowhere in a building that comes as a mesh. */
+  /** The ground that is walked on; null in a building that is a mesh. */
   private readonly ground: SceneData["bounds"] | null;
-  private readonly buckets = new Buckets<Solid>();
+  private readonly grid = new SpatialGrid<Solid>();
 
   constructor(
     scene: Pick<SceneData, "bounds" | "polygons" | "stairs" | "mesh">,
@@ -25,7 +25,7 @@ export class Floors {
     for (const solid of this.solids) {
       const xs = solid.ring.map(([x]) => x);
       const ys = solid.ring.map(([, y]) => y);
-      this.buckets.put(solid, [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)]);
+      this.grid.put(solid, [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)]);
     }
   }
 
@@ -51,7 +51,7 @@ export class Floors {
   }
 
   private column(x: number, y: number): Solid[] {
-    return this.buckets.at(x, y).filter(({ ring }) => isInside(ring, x, y));
+    return this.grid.at(x, y).filter(({ ring }) => isInside(ring, x, y));
   }
 }
 

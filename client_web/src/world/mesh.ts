@@ -1,4 +1,4 @@
-/** A building that comes as a mesh: what of it carries people, and what stands in their way. */
+/** A building that is a mesh: its faces that carry people, and those that stand in their way. */
 
 import type { Barrier } from "./barriers";
 import type { Solid } from "./solids";
@@ -14,9 +14,9 @@ export interface MeshParts {
 
 type Corner = readonly [x: number, y: number, z: number];
 
-/** On what is steeper than 45 degrees nobody stands. */
+/** Nobody stands on a face that is steeper than 45 degrees. */
 const STANDING = Math.SQRT1_2;
-/** What is nearer to upright has no extent on the ground to speak of. */
+/** A face that is nearer to upright has next to no extent on the ground. */
 const UPRIGHT = 0.05;
 /** Sheets are taken for slabs this thick. */
 const THICK_M = 0.02;

@@ -1,22 +1,22 @@
 /**
- * Where a walking body gets to: it slides along what is in the way, goes up and down steps, and
+ * Collision of a walking body with the scene: it slides along barriers, goes up and down steps, and
  * stays where there is nothing to step on.
  */
 
 import type { Doors, SceneData } from "../net/messages";
 import { type Barrier, barriersOf, STEP_ON_M, type Vec2 } from "./barriers";
-import { Buckets } from "./buckets";
+import { SpatialGrid } from "./spatialgrid";
 import { Floors } from "./floors";
+import { BODIES_OVERLAP_M } from "./heights";
 
-/** Where the feet are. */
+/** The place of the feet. */
 export type Vec3 = readonly [x: number, y: number, z: number];
 
 /** Bodies may be as wide as this. */
 const LARGEST_RADIUS_M = 0.75;
-const HEIGHT_M = 1.8;
 const STEP_M = 0.1;
 const PUSHES = 4;
-/** Floors are looked for so far around: the server's cells reach beyond edges by as much. */
+/** Floors are looked for this far around: the server's cells reach beyond edges by as much. */
 const CRACK_M = 0.13;
 const NEAR_BY = [
   [0, 0],
@@ -29,9 +29,9 @@ const NEAR_BY = [
 type Built = Pick<SceneData, "bounds" | "polygons" | "walls" | "stairs" | "doors">;
 
 export class Obstacles {
-  /** Doors of which nothing is said stand open. */
+  /** Doors that are not listed stand open. */
   doors: Readonly<Doors> = {};
-  private readonly barriers = new Buckets<Barrier>();
+  private readonly barriers = new SpatialGrid<Barrier>();
   private readonly bounds: SceneData["bounds"];
 
   constructor(
@@ -43,14 +43,14 @@ export class Obstacles {
     for (const barrier of [...barriersOf(scene, floors), ...more]) this.add(barrier);
   }
 
-  /** Where a body gets to that wants to move by (dx, dy). */
+  /** The place that a body reaches which wants to move by (dx, dy). */
   walk(from: Vec3, dx: number, dy: number, radiusM: number): Vec3 {
     const steps = Math.max(1, Math.ceil(Math.hypot(dx, dy) / STEP_M));
     let at = from;
     for (let i = 0; i < steps; i++) {
       const next = this.pushOut([at[0] + dx / steps, at[1] + dy / steps, at[2]], radiusM);
       const foothold = this.foothold(next);
-      // Who is in the air already, as while a building is fetched, is not held there.
+      // A body in the air, as while a building is fetched, is not held there.
       if (foothold === null && this.foothold(at) !== null) break;
       at = [next[0], next[1], foothold ?? next[2]];
     }
@@ -104,19 +104,19 @@ export class Obstacles {
     return [Math.min(x1, Math.max(x0, x)), Math.min(y1, Math.max(y0, y)), z];
   }
 
-  /** What can be touched from here and reaches between the highest step and the head. */
+  /** Barriers that can be touched from here and reach between the highest step and the head. */
   private near([x, y, z]: Vec3): Barrier[] {
     return this.barriers
       .at(x, y)
       .filter(
         ({ bottomM, topM, door }) =>
-          bottomM < z + HEIGHT_M &&
+          bottomM < z + BODIES_OVERLAP_M &&
           topM > z + STEP_ON_M &&
           (door === null || this.doors[door] === false),
       );
   }
 
-  /** Into every square from which the barrier can be touched. */
+  /** Add a barrier to every square from which it can be touched. */
   private add(barrier: Barrier): void {
     const { a, b } = barrier;
     const reach = LARGEST_RADIUS_M;
@@ -136,7 +136,7 @@ export class Obstacles {
   }
 }
 
-/** Whether somebody so far from an edge is not on its floor. */
+/** Whether a body at this offset from an edge is not on its floor. */
 function isBeyond({ inward }: Barrier, [dx, dy]: Vec2): boolean {
   return inward !== undefined && inward[0] * dx + inward[1] * dy < 0;
 }

@@ -1,4 +1,4 @@
-/** How far behind the server's time the others are drawn, so that there is a snapshot to both sides. */
+/** The playout delay: avatars are drawn behind the server's time, between two snapshots. */
 
 /** The least time behind the usual arrival of a snapshot. */
 const LEAST_S = 0.1;
@@ -8,7 +8,7 @@ const DEVIATIONS = 3;
 const WEIGHT = 0.05;
 /** Time is stretched by at most this part to reach its aim, so that nobody seems to jump. */
 const STRETCH = 0.1;
-/** So far ahead of its aim, because the server has fallen behind, it goes at half its pace. */
+/** This far ahead of its aim, because the server has fallen behind, it goes at half its pace. */
 const AHEAD_S = 0.25;
 const SLOW = 0.5;
 /** Forwards it jumps this far, backwards only to a server that has begun anew. */
@@ -38,7 +38,7 @@ export class Playout {
     this.deviation += WEIGHT * (Math.abs(off) - this.deviation);
   }
 
-  /** How far the drawn time is to be behind the server's. */
+  /** The drawn time is to be this far behind the server's. */
   get delayS(): number {
     const behindS = Math.min(MOST_S, this.cushionS + DEVIATIONS * this.deviation);
     return (this.lateness ?? 0) + Math.max(this.leastS, behindS);

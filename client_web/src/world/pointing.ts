@@ -1,7 +1,9 @@
-/** A body that points at something: the arm first, then the trunk, blended with what the gait does. */
+/** A body that points at something: first the arm, then the trunk, both blended with the gait. */
 
+import { Quaternion, Vector3, type Vector3Like } from "three";
 import { type Body, hangOnChest, type Limb } from "./body";
-import { Chain, type Frame, type Hinge } from "./hinges";
+import { Chain, type Hinge } from "./hinges";
+import { transformPoint } from "./rotations";
 import { smooth } from "./steps";
 import type { ArmPosture, Posture } from "./posture";
 import {
@@ -13,17 +15,6 @@ import {
   SHOULDER_UP,
   UPPER_ARM,
 } from "./skeleton";
-import {
-  carried,
-  copy,
-  copyRotation,
-  rotation,
-  set,
-  setRotation,
-  times,
-  type Vector,
-  vector,
-} from "./vectors";
 
 /** Time to raise the arm, and to let it down. */
 const RAISE_S = 0.6;
@@ -31,7 +22,7 @@ const RAISE_S = 0.6;
 const FOLLOW_S = 0.25;
 /** A pointing arm is not quite straight. */
 const STRAIGHT = 0.985;
-/** The other arm is taken when the target is so far on its side, radians. */
+/** The other arm is taken when the target is this far on its side, radians. */
 const OTHER_ARM = 0.4;
 /** Further round than this nobody points without turning the feet, radians. */
 const SIDEWAYS = 2;
@@ -57,36 +48,36 @@ const ASIDE: Limits = [-30, 90];
 const FLEXION: Limits = [-50, 170];
 const ELBOW: Limits = [0, 145];
 
-/** Hinges of the chain from which these hang. */
+/** Indices in the chain of the first hinge of each joint, and of the hand. */
 const AT_CHEST = 3;
 const AT_SHOULDER = 6;
 const AT_ELBOW = 9;
 const AT_HAND = 10;
 
-const X = { x: 1, y: 0, z: 0 };
-const Y = { x: 0, y: 1, z: 0 };
-const Z = { x: 0, y: 0, z: 1 };
-const MINUS_X = { x: -1, y: 0, z: 0 };
-const NOWHERE = { x: 0, y: 0, z: 0 };
+const X = new Vector3(1, 0, 0);
+const Y = new Vector3(0, 1, 0);
+const Z = new Vector3(0, 0, 1);
+const MINUS_X = new Vector3(-1, 0, 0);
+const NOWHERE = new Vector3();
 
-const lumbar = vector();
-const chest = rotation();
-const turned = rotation();
-const seen = vector();
-const goal = vector();
+const lumbar = new Vector3();
+const chest = new Quaternion();
+const turned = new Quaternion();
+const seen = new Vector3();
+const goal = new Vector3();
 const solved = new Float64Array(10);
 
 export class Pointing {
-  /** What is pointed at; null lets the arm down. */
-  target: Vector | null = null;
-  /** In the world: where the gait has the hand, and where it is to be. */
-  readonly before = vector();
-  readonly wanted = vector();
+  /** The target; null lets the arm down. */
+  target: Vector3Like | null = null;
+  /** The places in the world where the gait has the hand, and where it is to be. */
+  readonly before = new Vector3();
+  readonly wanted = new Vector3();
   private readonly chains = { left: new Chain(arm(1)), right: new Chain(arm(-1)) };
   private side: "left" | "right" = "left";
   private raised = 0;
-  /** Where it points, from the foot of the spine: left, up, forward. */
-  private readonly direction = vector();
+  /** The direction from the foot of the spine to the target: left, up, forward. */
+  private readonly direction = new Vector3();
 
   /** Whether any of it is to be seen. */
   get active(): boolean {
@@ -94,19 +85,19 @@ export class Pointing {
   }
 
   /** The hand that points, or last did. */
-  hand(body: Body): Vector {
+  hand(body: Body): Vector3 {
     return body[this.side].arm.end;
   }
 
   /** Move the trunk, the arm and the head of a body whose other joints are solved. */
   apply(body: Body, posture: Posture, build: Build, frameS: number): void {
-    copy(body.lumbar, lumbar);
-    copyRotation(body.chest, chest);
+    lumbar.copy(body.lumbar);
+    chest.copy(body.chest);
     this.follow(build, frameS);
     const chain = this.chains[this.side];
     const left = this.side === "left";
     const limb = body[this.side].arm;
-    copy(limb.end, this.before);
+    this.before.copy(limb.end);
     this.stretchOut(chain);
     inWorld(goal, build, this.wanted);
     solved.set(chain.angles);
@@ -126,36 +117,30 @@ export class Pointing {
       if (this.raised === 0) {
         this.side = aside > 0 ? "left" : "right";
         this.chains[this.side].angles.fill(0);
-        copy(seen, this.direction);
+        this.direction.copy(seen);
       } else if (wrong) up = false;
-      const part = 1 - Math.exp(-frameS / FOLLOW_S);
-      const { direction } = this;
-      direction.x += (seen.x - direction.x) * part;
-      direction.y += (seen.y - direction.y) * part;
-      direction.z += (seen.z - direction.z) * part;
+      this.direction.lerp(seen, 1 - Math.exp(-frameS / FOLLOW_S));
     }
     const step = frameS / RAISE_S;
     this.raised = Math.max(0, Math.min(1, this.raised + (up ? step : -step)));
   }
 
-  /** Solve for a hand that is stretched out towards what is pointed at; writes `goal`. */
+  /** Solve for a hand that is stretched out towards the target; writes `goal`. */
   private stretchOut(chain: Chain): void {
     const { direction } = this;
     chain.place();
     const shoulder = chain.pivots[AT_SHOULDER] ?? NOWHERE;
     const level = Math.hypot(direction.x, direction.z);
     const aside = Math.max(-SIDEWAYS, Math.min(SIDEWAYS, Math.atan2(direction.x, direction.z)));
-    const x = level * Math.sin(aside) - shoulder.x;
-    const y = direction.y - shoulder.y;
-    const z = level * Math.cos(aside) - shoulder.z;
-    const far = Math.max(1e-6, Math.hypot(x, y, z));
+    goal.set(level * Math.sin(aside), direction.y, level * Math.cos(aside)).sub(shoulder);
+    const far = Math.max(1e-6, goal.length());
     const part = Math.min(far, STRAIGHT * (UPPER_ARM + FOREARM)) / far;
-    set(goal, shoulder.x + x * part, shoulder.y + y * part, shoulder.z + z * part);
+    goal.multiplyScalar(part).add(shoulder);
     chain.reach(goal, TOLERANCE, SWEEPS);
   }
 }
 
-/** Where the gait has trunk and arm, as far as `part` says. */
+/** Blend trunk and arm with the gait's, by the share `part`. */
 function relax(chain: Chain, { shoulder, elbow }: ArmPosture, side: number, part: number): void {
   const { angles } = chain;
   for (let k = 0; k < angles.length; k++) angles[k] = (angles[k] ?? 0) * (1 - part);
@@ -165,7 +150,7 @@ function relax(chain: Chain, { shoulder, elbow }: ArmPosture, side: number, part
   chain.place();
 }
 
-/** The body as the chain has it: first the chest, and what hangs on it, then the arm. */
+/** Write the chain's pose into the body: first the chest and everything on it, then the arm. */
 function takeOver(
   { pivots, frames }: Chain,
   body: Body,
@@ -176,62 +161,53 @@ function takeOver(
   const [joint, upper, elbow] = [pivots[AT_CHEST], frames[AT_SHOULDER], frames[AT_ELBOW]];
   const [start, hinge, end] = [pivots[AT_SHOULDER], pivots[AT_ELBOW], pivots[AT_HAND]];
   if (!joint || !upper || !elbow || !start || !hinge || !end) return;
-  turnOf(upper);
-  times(chest, turned, body.chest);
+  turned.set(upper.z, upper.x, upper.y, upper.w);
+  body.chest.multiplyQuaternions(chest, turned);
   // The spine bends in two places; the chest is drawn from where the upper one has it.
   inWorld(joint, build, body.lumbar);
-  carried(body.lumbar, body.chest, 0, 0, -CHEST_UP * build.trunkM, body.lumbar);
+  transformPoint(body.lumbar, body.chest, 0, 0, -CHEST_UP * build.trunkM, body.lumbar);
   hangOnChest(posture, build, body);
   inWorld(start, build, limb.start);
   inWorld(hinge, build, limb.hinge);
   inWorld(end, build, limb.end);
-  const [{ x, y, z }] = elbow;
-  carried(NOWHERE, chest, z, x, y, limb.axis);
+  forwardsFirst(limb.axis.copy(X).applyQuaternion(elbow), limb.axis).applyQuaternion(chest);
 }
 
 /** A point of the chain in the world. */
-function inWorld({ x, y, z }: Vector, { trunkM }: Build, out: Vector): void {
-  carried(lumbar, chest, z * trunkM, x * trunkM, y * trunkM, out);
+function inWorld(point: Vector3, { trunkM }: Build, out: Vector3): void {
+  forwardsFirst(point, out).multiplyScalar(trunkM).applyQuaternion(chest).add(lumbar);
 }
 
 /** A point of the world as the chain sees it. */
-function inBody({ x, y, z }: Vector, { trunkM }: Build, out: Vector): void {
-  setRotation(turned, chest.w, -chest.x, -chest.y, -chest.z);
-  carried(NOWHERE, turned, x - lumbar.x, y - lumbar.y, z - lumbar.z, out);
-  set(out, out.y / trunkM, out.z / trunkM, out.x / trunkM);
+function inBody(point: Vector3Like, { trunkM }: Build, out: Vector3): void {
+  out.subVectors(point, lumbar).applyQuaternion(turned.copy(chest).conjugate());
+  out.set(out.y, out.z, out.x).divideScalar(trunkM);
 }
 
-/** The rotation of a frame that is less than half turned, into `turned`. */
-function turnOf([left, up, forward]: Frame): void {
-  const w = Math.sqrt(Math.max(1e-6, 1 + forward.z + left.x + up.y)) / 2;
-  setRotation(
-    turned,
-    w,
-    (left.y - up.x) / (4 * w),
-    (up.z - forward.y) / (4 * w),
-    (forward.x - left.z) / (4 * w),
-  );
+/** From the chain's axes, which are left, up, forward, to a body's: forward, left, up. */
+function forwardsFirst({ x, y, z }: Vector3, out: Vector3): Vector3 {
+  return out.set(z, x, y);
 }
 
 /** From the foot of the spine by the chest to the hand; `side` is 1 for the left one. */
 function arm(side: number): Hinge[] {
   const mirrored = ([low, high]: Limits): Limits => (side > 0 ? [low, high] : [-high, -low]);
-  const spine = ([turn, lean, aside]: readonly Limits[], offset: Vector): Hinge[] => [
+  const spine = ([turn, lean, aside]: readonly Limits[], offset: Vector3): Hinge[] => [
     hinge(Y, turn),
     hinge(X, lean),
     hinge(Z, aside, offset),
   ];
   return [
-    ...spine(LUMBAR, { x: 0, y: CHEST_UP, z: 0 }),
-    ...spine(CHEST, { x: side * SHOULDER_ASIDE, y: SHOULDER_UP - CHEST_UP, z: 0 }),
+    ...spine(LUMBAR, new Vector3(0, CHEST_UP, 0)),
+    ...spine(CHEST, new Vector3(side * SHOULDER_ASIDE, SHOULDER_UP - CHEST_UP, 0)),
     hinge(Y, mirrored(TURN)),
     hinge(Z, mirrored(ASIDE)),
-    hinge(MINUS_X, FLEXION, { x: 0, y: -UPPER_ARM, z: 0 }),
-    hinge(MINUS_X, ELBOW, { x: 0, y: -FOREARM, z: 0 }),
+    hinge(MINUS_X, FLEXION, new Vector3(0, -UPPER_ARM, 0)),
+    hinge(MINUS_X, ELBOW, new Vector3(0, -FOREARM, 0)),
   ];
 }
 
-function hinge(axis: Vector, limits: Limits | undefined, offset: Vector = NOWHERE): Hinge {
+function hinge(axis: Vector3, limits: Limits | undefined, offset: Vector3 = NOWHERE): Hinge {
   const [low, high] = limits ?? [0, 0];
   return { axis, offset, low: (low * Math.PI) / 180, high: (high * Math.PI) / 180 };
 }

@@ -1,19 +1,20 @@
 /**
- * What is known of a body before its joints are solved: where its trunk and feet are. This is what
- * steps and the cycle of far figures say, and what is blended when one takes over from the other.
+ * A body before its joints are solved: the places of its trunk and feet. Steps and the cycle of far
+ * figures give postures, and postures are blended when one takes over from the other.
  */
 
+import { Quaternion, Vector3 } from "three";
 import { mixAngles } from "./angles";
-import { mix, mixRotations, type Rotation, rotation, type Vector, vector } from "./vectors";
+import { nlerp } from "./rotations";
 
 export interface FootPosture {
   /** The back of the sole, below the ankle. */
-  heel: Vector;
+  heel: Vector3;
   /** Radians, toe up is positive. */
   pitch: number;
-  /** Where the toes point on the ground. */
+  /** The direction of the toes on the ground. */
   heading: number;
-  /** How far it stands on its toe, 0 to 1: then the heel may be raised for a leg that is short. */
+  /** The degree to which it stands on its toe, 0 to 1: the heel may be raised if the leg is short. */
   raised: number;
 }
 
@@ -25,10 +26,10 @@ export interface ArmPosture {
 
 export interface Posture {
   /** The middle between the hip joints. */
-  root: Vector;
-  pelvis: Rotation;
+  root: Vector3;
+  pelvis: Quaternion;
   /** Relative to the pelvis. */
-  chest: Rotation;
+  chest: Quaternion;
   left: FootPosture;
   right: FootPosture;
   leftArm: ArmPosture;
@@ -36,11 +37,11 @@ export interface Posture {
 }
 
 export function posture(): Posture {
-  const foot = (): FootPosture => ({ heel: vector(), pitch: 0, heading: 0, raised: 0 });
+  const foot = (): FootPosture => ({ heel: new Vector3(), pitch: 0, heading: 0, raised: 0 });
   return {
-    root: vector(),
-    pelvis: rotation(),
-    chest: rotation(),
+    root: new Vector3(),
+    pelvis: new Quaternion(),
+    chest: new Quaternion(),
     left: foot(),
     right: foot(),
     leftArm: { shoulder: 0, elbow: 0 },
@@ -50,9 +51,9 @@ export function posture(): Posture {
 
 /** On the way from one posture to another; `out` may be one of them. */
 export function mixPostures(from: Posture, to: Posture, part: number, out: Posture): void {
-  mix(from.root, to.root, part, out.root);
-  mixRotations(from.pelvis, to.pelvis, part, out.pelvis);
-  mixRotations(from.chest, to.chest, part, out.chest);
+  out.root.lerpVectors(from.root, to.root, part);
+  nlerp(from.pelvis, to.pelvis, part, out.pelvis);
+  nlerp(from.chest, to.chest, part, out.chest);
   mixFeet(from.left, to.left, part, out.left);
   mixFeet(from.right, to.right, part, out.right);
   mixArms(from.leftArm, to.leftArm, part, out.leftArm);
@@ -60,7 +61,7 @@ export function mixPostures(from: Posture, to: Posture, part: number, out: Postu
 }
 
 function mixFeet(from: FootPosture, to: FootPosture, part: number, out: FootPosture): void {
-  mix(from.heel, to.heel, part, out.heel);
+  out.heel.lerpVectors(from.heel, to.heel, part);
   out.pitch = from.pitch + (to.pitch - from.pitch) * part;
   out.heading = mixAngles(from.heading, to.heading, part);
   out.raised = from.raised + (to.raised - from.raised) * part;

@@ -2,12 +2,12 @@
  * The own avatar, ahead of the server: it answers at once and is corrected gently.
  *
  * Every command has a sequence number, and every snapshot says which was the last one applied
- * (`ack`). The server's position is then played forward by what it has not played yet: the rest of
- * the acknowledged command and all later ones, each for as long as it has lasted here. Where that
- * differs from what is shown, the difference fades away instead of jumping.
+ * (`ack`). The server's position is then played forward by the commands that it has not played yet:
+ * the rest of the acknowledged one and all later ones, each for as long as it has lasted here. If
+ * that differs from the shown position, the difference fades away instead of jumping.
  */
 
-import type { Pose } from "./motion";
+import type { Pose } from "./interpolation";
 import type { Vec2 } from "./barriers";
 import type { Obstacles, Vec3 } from "./obstacles";
 
@@ -63,13 +63,13 @@ export class Prediction {
     this.heading = start.heading;
   }
 
-  /** What was just sent to the server. */
+  /** A command that was just sent to the server. */
   command(command: Command): void {
     this.pending.push({ command, playedS: 0 });
     if (this.pending.length > MOST_PENDING) this.pending.shift();
   }
 
-  /** The own record of a snapshot. */
+  /** Correct the prediction by the own record of a snapshot. */
   reconcile(tick: number, ack: number, server: Pose): void {
     const acked = this.pending.findIndex(({ command }) => command.seq === ack);
     if (acked > 0) {
@@ -90,7 +90,7 @@ export class Prediction {
     this.offset = Math.hypot(...off) > JUMP_M ? [0, 0] : off;
   }
 
-  /** One frame later. */
+  /** Advance by one frame. */
   advance(frameS: number): void {
     const current = this.pending.at(-1);
     if (!current) return;
@@ -110,7 +110,7 @@ export class Prediction {
     return { x, y, z, layer, heading: this.heading, speed, reason };
   }
 
-  /** Distance between what is shown and what is predicted, metres. */
+  /** Distance between the shown and the predicted position, metres. */
   get correctionM(): number {
     return Math.hypot(...this.offset);
   }

@@ -10,9 +10,9 @@ export const HIP_ASIDE = 0.1;
 /** Knees that lock straighten with a jerk: a leg is stretched no further. */
 export const REACH = 0.9995;
 
-/** Shares of the trunk's scale. Where the spine bends, above the middle of the hips. */
+/** Shares of the trunk's scale. The spine bends this far above the middle of the hips. */
 export const LUMBAR_UP = 0.178;
-/** Where the chest bends on the spine, above there. */
+/** The chest bends on the spine this far above there. */
 export const CHEST_UP = 0.2;
 /** Shoulders and foot of the neck above there, and the crown of the head. */
 export const SHOULDER_UP = 0.35;
@@ -20,9 +20,9 @@ export const HEAD_UP = 0.674;
 export const SHOULDER_ASIDE = 0.215;
 export const UPPER_ARM = 0.345;
 export const FOREARM = 0.27;
-/** Arms hang so far from the body, radians. */
+/** Hanging arms are spread by this angle, radians. */
 export const ARMS_OUT = 0.12;
-/** Of a body whose trunk fits its legs; its leg is 1. */
+/** The stature of a body whose trunk fits its legs, in lengths of its leg. */
 const STATURE = 1 + LUMBAR_UP + HEAD_UP;
 
 /** The sizes of one body, metres. */

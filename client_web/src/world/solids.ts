@@ -1,4 +1,4 @@
-/** What fills space in a scene: prisms with level or sloping tops, and the treads of stairs. */
+/** The solids of a scene: prisms with level or sloping tops, and the treads of stairs. */
 
 import type { Point, SceneData, ScenePolygon, SceneStairs } from "../net/messages";
 

@@ -5,15 +5,15 @@
  * rate; all else goes along curves through the keys of the step.
  */
 
+import { type Quaternion, Vector3 } from "three";
 import { KEY_NUMBERS, KeyNumber, STEP_KEYS, type StepRecord } from "../net/steps";
 import { heelFromToe } from "./body";
 import type { FootPosture, Posture } from "./posture";
 import { type Build, FOOT } from "./skeleton";
-import { normalise, type Rotation, set, setRotation, type Vector, vector } from "./vectors";
 
 /** Share of a step in which a foot that has left the ground comes over to its curve. */
 const SETTLE = 0.1;
-/** A standing foot whose pitch is so much below level rises on its toe where the leg is short. */
+/** A standing foot whose toe is down by this angle rises on its toe if the leg is too short. */
 const EASE_RAD = 0.1;
 const LANDING = [
   KeyNumber.ANKLE,
@@ -25,13 +25,15 @@ const LANDING = [
 
 const key = new Float64Array(KEY_NUMBERS);
 const weights = new Float64Array(STEP_KEYS);
-const offset = vector();
-const level = vector();
+const offset = new Vector3();
+const level = new Vector3();
+const onToe = new Vector3();
+const onCurve = new Vector3();
 
 /** A step that is ready to be drawn: neighbouring quaternions have the same sign. */
 export interface Step extends StepRecord {
-  /** Where the swing foot's toe is at first, from the landing footprint. */
-  readonly firstToe: Vector;
+  /** From the landing footprint to the swing foot's toe at the beginning. */
+  readonly firstToe: Vector3;
 }
 
 export function readyToDraw(record: StepRecord, build: Build): Step {
@@ -42,11 +44,7 @@ export function readyToDraw(record: StepRecord, build: Build): Step {
   return {
     ...record,
     keys,
-    firstToe: {
-      x: number(keys, KeyNumber.ANKLE) - offset.x,
-      y: number(keys, KeyNumber.ANKLE + 1) - offset.y,
-      z: number(keys, KeyNumber.ANKLE + 2) - offset.z,
-    },
+    firstToe: new Vector3().fromArray(keys, KeyNumber.ANKLE).sub(offset),
   };
 }
 
@@ -56,12 +54,7 @@ export function underWay(step: Step, u: number, build: Build, out: Posture): voi
   const share = Math.max(0, Math.min(1, u));
   between(step.keys, share);
   const at = KeyNumber;
-  set(
-    out.root,
-    standing.x + number(key, at.ROOT),
-    standing.y + number(key, at.ROOT + 1),
-    standing.z + number(key, at.ROOT + 2),
-  );
+  out.root.fromArray(key, at.ROOT).add(standing);
   turn(key, at.PELVIS, out.pelvis);
   turn(key, at.CHEST, out.chest);
   out.leftArm.shoulder = number(key, at.ARMS);
@@ -72,12 +65,7 @@ export function underWay(step: Step, u: number, build: Build, out: Posture): voi
   const swing = rightStands ? out.left : out.right;
   swing.pitch = number(key, at.SWING_PITCH);
   swing.heading = landing.heading + number(key, at.SWING_HEADING);
-  set(
-    swing.heel,
-    landing.x + number(key, at.ANKLE),
-    landing.y + number(key, at.ANKLE + 1),
-    landing.z + number(key, at.ANKLE + 2),
-  );
+  swing.heel.fromArray(key, at.ANKLE).add(landing);
   swing.raised = lift > 0 ? 1 - smooth((share - lift) / SETTLE) : 0;
   if (swing.raised > 0) keepOnToe(step, share, build, swing);
   swing.raised *= smooth(-swing.pitch / EASE_RAD);
@@ -89,7 +77,7 @@ export function smooth(share: number): number {
   return s * s * (3 - 2 * s);
 }
 
-/** On its heel while the toe is up, else on its toe. */
+/** A foot stands on its heel while the toe is up, else on its toe. */
 function stand({ standing }: Step, { legM }: Build, foot: FootPosture): void {
   const { heading } = standing;
   foot.pitch = number(key, KeyNumber.STANDING_PITCH);
@@ -97,12 +85,7 @@ function stand({ standing }: Step, { legM }: Build, foot: FootPosture): void {
   foot.raised = smooth(-foot.pitch / EASE_RAD);
   heelFromToe(Math.min(foot.pitch, 0), heading, FOOT * legM, offset);
   heelFromToe(0, heading, FOOT * legM, level);
-  set(
-    foot.heel,
-    standing.x + offset.x - level.x,
-    standing.y + offset.y - level.y,
-    standing.z + offset.z - level.z,
-  );
+  foot.heel.addVectors(standing, offset).sub(level);
 }
 
 /** Until it lifts the swing foot turns on its toe; then what is missing to its curve fades. */
@@ -111,12 +94,11 @@ function keepOnToe(step: Step, share: number, { legM }: Build, foot: FootPosture
   between(keys, Math.min(share, lift));
   const heading = landing.heading + number(key, KeyNumber.SWING_HEADING);
   heelFromToe(number(key, KeyNumber.SWING_PITCH), heading, FOOT * legM, offset);
-  foot.heel.x += foot.raised * (step.firstToe.x + offset.x - number(key, KeyNumber.ANKLE));
-  foot.heel.y += foot.raised * (step.firstToe.y + offset.y - number(key, KeyNumber.ANKLE + 1));
-  foot.heel.z += foot.raised * (step.firstToe.z + offset.z - number(key, KeyNumber.ANKLE + 2));
+  onToe.addVectors(step.firstToe, offset);
+  foot.heel.addScaledVector(onToe.sub(onCurve.fromArray(key, KeyNumber.ANKLE)), foot.raised);
 }
 
-/** What lies between the keys at a share of the step, into `key`; all numbers go along alike. */
+/** Interpolate the keys at a share of the step, into `key`, all numbers with the same weights. */
 function between(keys: Float64Array, share: number): void {
   weigh(share);
   key.fill(0);
@@ -144,7 +126,7 @@ function comeToRest(keys: Float64Array, share: number): void {
   }
 }
 
-/** How much each key counts: cubic Hermite curves, parabolas at the ends. */
+/** The weight of each key: cubic Hermite curves, parabolas at the ends. */
 function weigh(share: number): void {
   weights.fill(0);
   const place = share * (STEP_KEYS - 1);
@@ -187,15 +169,11 @@ function align(keys: Float64Array, at: number): void {
   }
 }
 
-function turn(from: Float64Array, at: number, out: Rotation): void {
-  setRotation(
-    out,
-    number(from, at),
-    number(from, at + 1),
-    number(from, at + 2),
-    number(from, at + 3),
-  );
-  normalise(out);
+/** The quaternion w, x, y, z that stands there. */
+function turn(from: Float64Array, at: number, out: Quaternion): void {
+  out
+    .set(number(from, at + 1), number(from, at + 2), number(from, at + 3), number(from, at))
+    .normalize();
 }
 
 /** An element that is known to be there. */

@@ -1,4 +1,4 @@
-/** Everything in view as this client knows it: who is here, where they are drawn, and the plans. */
+/** Everything in view as this client knows it: avatars, the poses that are drawn, and the plan. */
 
 import type {
   Doors,
@@ -11,13 +11,13 @@ import type {
 } from "../net/messages";
 import { Floors } from "./floors";
 import { meshParts, type Triangles } from "./mesh";
-import { Motion, type Pose } from "./motion";
+import { Interpolator, type Pose } from "./interpolation";
 import { Obstacles } from "./obstacles";
 import { Playout } from "./playout";
 import { Prediction, type Command } from "./prediction";
 import type { StepRecord } from "../net/steps";
 import { buildOf } from "./skeleton";
-import { Walker } from "./walker";
+import { Animator } from "./animator";
 
 /** An avatar in view. `pose` is where it is drawn in this frame. */
 export interface Avatar {
@@ -26,8 +26,8 @@ export interface Avatar {
   readonly name: string;
   readonly radius: number;
   readonly own: boolean;
-  /** How its body is drawn. */
-  readonly walker: Walker;
+  /** The animation of its body. */
+  readonly animator: Animator;
   pose: Pose;
 }
 
@@ -35,7 +35,7 @@ export interface Avatar {
 const OWN_LEAST_S = 0.02;
 
 interface Followed extends Avatar {
-  readonly motion: Motion;
+  readonly interpolator: Interpolator;
 }
 
 export class World {
@@ -75,12 +75,12 @@ export class World {
     return this.avatars_.get(this.ownId) ?? null;
   }
 
-  /** How far the own avatar is from where the server will have it, metres. */
+  /** The distance from the own avatar to where the server will have it, metres. */
   get correctionM(): number {
     return this.prediction?.correctionM ?? 0;
   }
 
-  /** How far behind the server's time the others are drawn, seconds. */
+  /** The others are drawn this far behind the server's time, seconds. */
   get delayS(): number {
     return this.playout.delayS;
   }
@@ -95,17 +95,17 @@ export class World {
       const own = info.id === this.ownId;
       const { x, y, z, layer, heading } = info;
       const pose = { x, y, z, layer, heading, speed: 0, reason: 0 };
-      const walker = new Walker(buildOf(info.leg_m, info.stature_m), pose);
-      const motion = new Motion(this.timeOf(tick), pose);
+      const animator = new Animator(buildOf(info.leg_m, info.stature_m), pose);
+      const interpolator = new Interpolator(this.timeOf(tick), pose);
       this.avatars_.set(info.id, {
         id: info.id,
         kind: info.kind,
         name: info.name,
         radius: info.radius,
         own,
-        walker,
+        animator,
         pose,
-        motion,
+        interpolator,
       });
       this.point(info.id, info.points_at);
       if (own) this.prediction ??= this.predict(pose, info.radius);
@@ -124,9 +124,9 @@ export class World {
     const timeS = this.timeOf(tick);
     for (const record of records) {
       const { id, ...pose } = record;
-      const motion = this.avatars_.get(id)?.motion;
-      motion?.hold(this.heardS);
-      motion?.add(timeS, pose);
+      const interpolator = this.avatars_.get(id)?.interpolator;
+      interpolator?.hold(this.heardS);
+      interpolator?.add(timeS, pose);
       if (id === this.ownId) this.prediction?.reconcile(tick, ack, pose);
     }
     this.playout.arrived(timeS, serverNowS);
@@ -139,19 +139,19 @@ export class World {
     for (const record of records) {
       const beginS = this.timeOf(record.tick);
       const endS = this.timeOf(record.tick + record.ticks);
-      this.avatars_.get(record.id)?.walker.add(record, beginS, endS);
+      this.avatars_.get(record.id)?.animator.add(record, beginS, endS);
     }
   }
 
-  /** What somebody points at from now on; null for nothing. */
+  /** Somebody points at a place from now on, or, if it is null, at nothing. */
   point(id: number, target: Place | null): void {
-    const walker = this.avatars_.get(id)?.walker;
-    if (!walker) return;
+    const animator = this.avatars_.get(id)?.animator;
+    if (!animator) return;
     const [x, y, z] = target ?? [0, 0, 0];
-    walker.pointing.target = target && { x, y, z };
+    animator.pointing.target = target && { x, y, z };
   }
 
-  /** Which doors stand open; false if closed. */
+  /** Whether each door stands open, by name. */
   get doors(): Readonly<Doors> {
     return this.obstacles.doors;
   }
@@ -178,11 +178,11 @@ export class World {
     const ownS = this.ownPlayout.advance(serverNowS, frameS);
     this.prediction?.advance(frameS);
     for (const avatar of this.avatars_.values()) {
-      const { walker, motion, own } = avatar;
+      const { animator, interpolator, own } = avatar;
       avatar.pose =
         own && this.prediction
-          ? walker.advance(ownS, this.prediction.shown, frameS)
-          : walker.advance(timeS, motion.at(timeS, this.heardS), frameS);
+          ? animator.advance(ownS, this.prediction.shown, frameS)
+          : animator.advance(timeS, interpolator.at(timeS, this.heardS), frameS);
     }
   }
 

@@ -12,7 +12,7 @@ export class FakeSocket implements Socket {
   onopen: Socket["onopen"] = null;
   onclose: Socket["onclose"] = null;
   onmessage: Socket["onmessage"] = null;
-  /** What the client sent, as [code, fields]. */
+  /** The messages that the client sent, as [code, fields]. */
   readonly received: [number, Record<string, unknown>][] = [];
   closedWith: number | "no code" | null = null;
 

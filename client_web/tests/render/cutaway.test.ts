@@ -9,7 +9,7 @@ const UPSTAIRS = { baseM: 3.5, stubM: 0.35 };
 const cutaway = new Cutaway();
 cutaway.update({ x: 0, y: 0, z: 0 }, { x: 0, y: -9, z: 6 }, false, 0);
 
-describe("what stands between camera and avatar", () => {
+describe("a piece between camera and avatar", () => {
   it.each<[string, [number, number, number], number]>([
     ["is cut above a stub", [0, -2, 1.5], 0],
     ["keeps the stub", [0, -2, 0.3], 1],

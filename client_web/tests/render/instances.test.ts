@@ -4,7 +4,7 @@ import { Instances } from "../../src/render/instances";
 
 const RED = new Color("#ff0000");
 const BLUE = new Color("#0000ff");
-const LEFT = { x: 0, y: 1, z: 0 };
+const LEFT = new Vector3(0, 1, 0);
 
 let part: Instances;
 
@@ -13,7 +13,7 @@ beforeEach(() => {
   part.begin();
 });
 
-/** Where the first instance has a point of its shape. */
+/** The place in the world of a point of an instance's shape. */
 function placed(x: number, y: number, z: number, index = 0): number[] {
   const matrix = new Matrix4();
   part.mesh.getMatrixAt(index, matrix);
@@ -35,8 +35,8 @@ describe("instances of a part", () => {
   });
 
   it("go on from the end of a limb", () => {
-    const limb = { start: { x: 0, y: 0, z: 0 }, hinge: { x: 0, y: 0, z: 2 }, axis: LEFT };
-    part.extend(1, RED, { ...limb, end: { x: 0, y: 0, z: 1 } }, 1);
+    const limb = { start: new Vector3(), hinge: new Vector3(0, 0, 2), axis: LEFT };
+    part.extend(1, RED, { ...limb, end: new Vector3(0, 0, 1) }, 1);
     expectNear(placed(0, 0, -1), [0, 0, 0]);
   });
 
@@ -52,7 +52,7 @@ describe("instances of a part", () => {
     expectNear(placed(1, 0, 0), [0, Math.cos(Math.PI / 6), 0.5]);
   });
 
-  it("keep their colours until somebody else wears them", () => {
+  it("keep their colours until they belong to somebody else", () => {
     part.put(1, RED, LEFT, { w: 1, x: 0, y: 0, z: 0 }, 1);
     part.finish();
     part.begin();

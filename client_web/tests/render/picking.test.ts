@@ -16,7 +16,7 @@ let camera: PerspectiveCamera;
 let cutaway: Cutaway;
 let picking: Picking;
 
-/** Where a point of the world is on the screen. */
+/** The place on the screen of a point of the world. */
 const screen = (x: number, y: number, z: number): { x: number; y: number } =>
   camera.position.clone().set(x, y, z).project(camera);
 

@@ -1,12 +1,12 @@
+import { Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import { Chain } from "../../src/world/hinges";
-import type { Vector } from "../../src/world/vectors";
 import vectors from "../fixtures/reach.json";
 
 const TOLERANCE = 1e-3;
 const NEAR = 6;
 
-const point = ([x = NaN, y = NaN, z = NaN]: number[]): Vector => ({ x, y, z });
+const point = ([x = NaN, y = NaN, z = NaN]: number[]): Vector3 => new Vector3(x, y, z);
 
 describe.each(["left", "right"] as const)("the %s arm", (side) => {
   const { axes, offsets, lows, highs, start, targets, angles, left_over } = vectors[side];

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import type { Pose } from "../../src/world/motion";
+import type { Pose } from "../../src/world/interpolation";
 import { Obstacles } from "../../src/world/obstacles";
 import { bare, twoFloors, wall } from "../scenes";
 import { type Command, Prediction, WALK_MPS } from "../../src/world/prediction";

@@ -1,18 +1,18 @@
+import type { Quaternion, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import { unpackSteps } from "../../src/net/steps";
 import { type Body, body, solve } from "../../src/world/body";
 import { posture } from "../../src/world/posture";
 import * as skeleton from "../../src/world/skeleton";
 import { readyToDraw, underWay } from "../../src/world/steps";
-import type { Rotation, Vector } from "../../src/world/vectors";
 import vectors from "../fixtures/steps.json";
 
 const NEAR = 8;
 
 const bytes = (hex: string): Uint8Array =>
   Uint8Array.from(hex.match(/../g) ?? [], (pair) => parseInt(pair, 16));
-const numbers = ({ x, y, z }: Vector): number[] => [x, y, z];
-const unsigned = ({ w, x, y, z }: Rotation): number[] =>
+const numbers = ({ x, y, z }: Vector3): number[] => [x, y, z];
+const unsigned = ({ w, x, y, z }: Quaternion): number[] =>
   [w, x, y, z].map((value) => value * Math.sign(w));
 const both = <T>({ left, right }: Body, part: (side: Body["left"]) => T): [T, T] => [
   part(left),

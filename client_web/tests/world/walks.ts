@@ -1,7 +1,7 @@
 /** Steps of a walk along +x, as a server would send them. */
 
 import { KEY_NUMBERS, KeyNumber, STEP_KEYS, type StepRecord } from "../../src/net/steps";
-import type { Pose } from "../../src/world/motion";
+import type { Pose } from "../../src/world/interpolation";
 
 export const STEP_S = 0.5;
 export const STEP_M = 0.6;
@@ -27,7 +27,7 @@ export function stepAlong(index: number, change: Partial<StepRecord> = {}): Step
   return { ...record, lift: 0, keys, ...change };
 }
 
-/** Where snapshots have the walker at a time after it began. */
+/** The pose in snapshots at a time after the walk began. */
 export function placeAt(timeS: number): Pose {
   const x = SPEED_MPS * timeS - STEP_M / 2;
   return { x, y: 0, z: 0, layer: 0, heading: 0, speed: SPEED_MPS, reason: 0 };

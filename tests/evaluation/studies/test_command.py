@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from esplanade.evaluation import cli
+from esplanade.cli import main
+from esplanade.commandline import exit_codes
 from tests.evaluation.worlds import busy_plaza, write_csv
 
 
@@ -16,7 +17,7 @@ def crowds(tmp_path: Path) -> list[Path]:
 
 
 def run(*arguments: object) -> int:
-    return cli.run(["--processes=1", "--episodes=2", *map(str, arguments)])
+    return main(["evaluate", "--processes=1", "--episodes=2", *map(str, arguments)])
 
 
 @pytest.mark.skipif(find_spec("matplotlib") is None, reason="matplotlib is absent")
@@ -27,7 +28,7 @@ def test_one_setting_after_the_other_is_varied(
     ledger = tmp_path / "done.jsonl"
     study = [*crowds, "--sensitivity", "--vary=risk_weight=2,20", "--vary=risk.comfort=0.2"]
     study += ["--ledger", ledger, "--json", target, "--plots", folder]
-    assert run(*study) == cli.EXIT_WELL
+    assert run(*study) == exit_codes.OK
     shown = capsys.readouterr().out
     assert "risk_weight" in shown
     assert shown.count("as is") == 3
@@ -37,7 +38,7 @@ def test_one_setting_after_the_other_is_varied(
     assert [path.name for path in folder.iterdir()] == ["sensitivity.svg"]
     walked = len(ledger.read_text().splitlines())
     assert walked == 2 * 4 * 2  # recordings, variants, episodes
-    assert run(*study) == cli.EXIT_WELL
+    assert run(*study) == exit_codes.OK
     assert len(ledger.read_text().splitlines()) == walked
     assert capsys.readouterr().out == shown
 
@@ -48,7 +49,7 @@ def test_candidates_are_compared(
     listed, target = tmp_path / "candidates.jsonl", tmp_path / "all.json"
     listed.write_text('{"foresight_s": 2}\n')
     study = [*crowds, "--tune", "--vary", "risk_weight=2,20", "--candidates", listed]
-    assert run(*study, "--ledger", tmp_path / "done.jsonl", "--json", target) == cli.EXIT_WELL
+    assert run(*study, "--ledger", tmp_path / "done.jsonl", "--json", target) == exit_codes.OK
     shown = capsys.readouterr().out
     assert "Chosen without one recording" in shown
     assert "Chosen on all recordings: " in shown
@@ -88,7 +89,7 @@ def test_wrong_usage(
         code: object = run(crowds[0], *arguments)
     except SystemExit as end:  # how the parser of options refuses
         code = end.code
-    assert code == cli.EXIT_USAGE
+    assert code == exit_codes.USAGE
     shown = capsys.readouterr()
     assert fault in shown.err
     assert shown.out == ""

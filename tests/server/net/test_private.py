@@ -1,4 +1,6 @@
 import pytest
+from websockets.asyncio.client import connect
+from websockets.exceptions import InvalidStatus
 
 from tests.server.client import joined
 from tests.server.conftest import Serving
@@ -13,14 +15,20 @@ async def test_alive_and_ready_are_told_apart_from_unknown_paths(serving: Servin
         assert (await get(server.private_port, "/healthz", method="PUT")).status == 405
 
 
+async def test_head_tells_what_get_would_without_the_body(serving: Serving) -> None:
+    async with serving() as server:
+        told, sent = [
+            await get(server.private_port, "/metrics", method=method) for method in ("HEAD", "GET")
+        ]
+        assert (told.status, told.body) == (200, b"")
+        assert told.headers["content-type"] == sent.headers["content-type"]
+
+
 async def test_the_private_port_upgrades_nothing(serving: Serving) -> None:
     async with serving() as server:
-        answer = await get(
-            server.private_port,
-            "/ws",
-            headers={"Connection": "Upgrade", "Upgrade": "websocket"},
-        )
-        assert answer.status == 404
+        for path in ("/ws", "/healthz"):
+            with pytest.raises(InvalidStatus, match="403"):
+                await connect(f"ws://127.0.0.1:{server.private_port}{path}")
 
 
 async def test_metrics_tell_what_goes_on(serving: Serving) -> None:

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { body, solve } from "../../src/world/body";
-import { Glide } from "../../src/world/glide";
-import type { Pose } from "../../src/world/motion";
+import { CycleAnimation } from "../../src/world/cycleanimation";
+import type { Pose } from "../../src/world/interpolation";
 import { posture } from "../../src/world/posture";
 import { buildOf } from "../../src/world/skeleton";
 
@@ -9,13 +9,13 @@ const BUILD = buildOf(0.9, 1.7);
 const FRAME_S = 1 / 60;
 const START: Pose = { x: 2, y: 3, z: 0, layer: 0, heading: 0, speed: 0, reason: 0 };
 
-/** What is drawn while somebody goes along x at a speed. */
+/** The frames that are drawn while somebody goes along x at a speed. */
 function frames(speed: number, count: number): ReturnType<typeof body>[] {
-  const glide = new Glide(BUILD, START);
+  const cycle = new CycleAnimation(BUILD, START);
   return Array.from({ length: count }, (_, i) => {
-    glide.advance({ ...START, x: START.x + speed * i * FRAME_S }, FRAME_S);
+    cycle.advance({ ...START, x: START.x + speed * i * FRAME_S }, FRAME_S);
     const [from, joints] = [posture(), body()];
-    glide.pose(from);
+    cycle.pose(from);
     solve(from, BUILD, joints);
     return joints;
   });
@@ -53,12 +53,12 @@ describe("a body without steps of its own", () => {
   });
 
   it("is lifted from tread to tread without a jump", () => {
-    const glide = new Glide(BUILD, START);
+    const cycle = new CycleAnimation(BUILD, START);
     let before = 0;
     for (let i = 0; i < 240; i++) {
-      glide.advance({ ...START, z: Math.floor(i / 20) * 0.17 }, FRAME_S);
-      expect(glide.place.z - before).toBeLessThan(0.04);
-      before = glide.place.z;
+      cycle.advance({ ...START, z: Math.floor(i / 20) * 0.17 }, FRAME_S);
+      expect(cycle.place.z - before).toBeLessThan(0.04);
+      before = cycle.place.z;
     }
   });
 });

@@ -1,13 +1,14 @@
 /**
- * A body that goes along its snapshots without steps of its own: those who are far away, and
- * everybody for a moment until their steps are known.
+ * A body that follows its snapshots with the common gait cycle, without steps of its own: everybody
+ * far away, and everybody else for a moment until their steps are known.
  */
 
+import { Quaternion, type Vector3 } from "three";
 import { cyclePosture, stepAt } from "./cycle";
-import { copyPose, type Pose } from "./motion";
+import { copyPose, type Pose } from "./interpolation";
 import type { FootPosture, Posture } from "./posture";
 import type { Build } from "./skeleton";
-import { headed, rotation, set, times, type Vector } from "./vectors";
+import { UP } from "./rotations";
 
 /** Heights are drawn evened out over this time, so that nobody hops from tread to tread. */
 const LIFT_S = 0.09;
@@ -17,8 +18,8 @@ const PACE_S = 0.15;
 /** A larger step in one frame is no walking. */
 const JUMP_M = 1;
 
-export class Glide {
-  /** Where the body is, its height evened out. */
+export class CycleAnimation {
+  /** The place of the body, its height evened out. */
   readonly place: Pose;
   private phase: number;
   /** Leg lengths a second. */
@@ -33,7 +34,7 @@ export class Glide {
     this.phase = Math.abs(7.13 * start.x + 3.71 * start.y) % 1;
   }
 
-  /** Go where the snapshots have it; the phase follows the distance, so that feet hardly slide. */
+  /** Follow the snapshots; the phase follows the distance, so that feet hardly slide. */
   advance(snapshots: Readonly<Pose>, frameS: number): void {
     const { place, build } = this;
     const dx = snapshots.x - place.x;
@@ -54,8 +55,7 @@ export class Glide {
   pose(out: Posture): void {
     const { x, y, z, heading } = this.place;
     cyclePosture(this.phase, stepAt(this.pace), out);
-    headed(heading, turn);
-    times(turn, out.pelvis, out.pelvis);
+    out.pelvis.premultiply(turn.setFromAxisAngle(UP, heading));
     this.bring(out.root, x, y, z, heading);
     this.step(out.left, x, y, z, heading);
     this.step(out.right, x, y, z, heading);
@@ -66,16 +66,16 @@ export class Glide {
     foot.heading = heading;
   }
 
-  /** From a body of leg length 1 that faces +x over the origin to where it is. */
-  private bring(point: Vector, x: number, y: number, z: number, heading: number): void {
+  /** Bring a point of a body of leg length 1 that faces +x over the origin to its place. */
+  private bring(point: Vector3, x: number, y: number, z: number, heading: number): void {
     const { legM } = this.build;
     const c = Math.cos(heading) * legM;
     const s = Math.sin(heading) * legM;
-    set(point, x + c * point.x - s * point.y, y + s * point.x + c * point.y, z + legM * point.z);
+    point.set(x + c * point.x - s * point.y, y + s * point.x + c * point.y, z + legM * point.z);
   }
 }
 
-const turn = rotation();
+const turn = new Quaternion();
 
 /** The height on the way from the one that was drawn to the one that is right. */
 function lifted(drawnM: number, rightM: number, frameS: number): number {

@@ -1,64 +1,65 @@
 /**
- * How one avatar's body is drawn over time: by its steps where the server tells them, else carried
- * along its snapshots with the common cycle. One takes over from the other by fading, never by a jump.
+ * The animation of one avatar's body: by its steps where the server sends them, else along its
+ * snapshots with the common gait cycle. One takes over from the other by fading, never by a jump.
  */
 
+import { Quaternion } from "three";
 import type { StepRecord } from "../net/steps";
 import { mixAngles, wrapAngle } from "./angles";
 import { type Body, body, solve } from "./body";
-import { Glide } from "./glide";
-import { copyPose, type Pose } from "./motion";
+import { CycleAnimation } from "./cycleanimation";
+import { copyPose, type Pose } from "./interpolation";
 import { mixPostures, type Posture, posture } from "./posture";
 import { Pointing } from "./pointing";
+import { headingOf, UP } from "./rotations";
 import type { Build } from "./skeleton";
 import { readyToDraw, smooth, type Step, underWay } from "./steps";
-import { headed, headingOf, rotation, times } from "./vectors";
 
-/** As many steps are kept: what is drawn lies a little in the past. */
+/** This many steps are kept, because the drawn time lies a little in the past. */
 const MOST_STEPS = 6;
 const FADE_S = 0.3;
-/** A step that comes too late begins late, and its walker hurries by this part to catch up. */
+/** A step that comes too late begins late, and the body hurries by this part to catch up. */
 const HURRY = 0.2;
-/** Later than this it does not wait, but fades. */
+/** A body waits for a step no longer than this, and fades to it if it comes later. */
 const LATEST_S = 0.4;
-/** Steps say nothing any more when they are over for so long and the walker is elsewhere. */
+/** Steps are ignored when they have been over for this long and the avatar is elsewhere. */
 const SILENT_S = 0.4;
 const ELSEWHERE_M = 0.35;
-/** This far is no walk: somebody was put somewhere else. */
+/** A greater distance is no walk: the avatar was put somewhere else. */
 const JUMP_M = 1.5;
 const SAME_S = 1e-6;
 const SAME_M = 1e-3;
-/** A head is turned no further against the chest, and takes so long. */
+/** A head is turned no further against the chest, and turns with this time constant. */
 const LOOK_RAD = 1.1;
 const LOOK_S = 0.12;
 
-const turned = rotation();
+const turned = new Quaternion();
 
 /** A step and the time at which it begins and ends. */
 interface Timed {
   readonly step: Step;
   readonly beginS: number;
   readonly endS: number;
-  /** What comes first of it was not known in time. */
+  /** Its beginning was not known in time. */
   readonly missed: boolean;
 }
 
-export class Walker {
+export class Animator {
   readonly body: Body = body();
-  /** What the joints were solved from. */
+  /** The posture from which the joints were solved. */
   readonly posture: Posture = posture();
   readonly pointing = new Pointing();
   private readonly steps: Timed[] = [];
-  private readonly glide: Glide;
+  private readonly cycle: CycleAnimation;
   private readonly from: Posture = posture();
-  /** What is drawn; null is the glide. */
+  /** The step that is drawn; null stands for the common cycle. */
   private drawn: Timed | null = null;
-  /** What it fades from. */
+  /** The step that is faded from; null stands for the common cycle. */
   private fading: Timed | null = null;
   private fadeLeftS = 0;
-  /** How much later than it should this walker is drawn. */
+  /** The body is drawn later than it should be by this. */
   private lagS = 0;
-  /** How far the head is turned against the chest. */
+  /** The head is turned against the chest by this angle. */
   private gaze = 0;
   private timeS = -Infinity;
   private readonly place: Pose;
@@ -67,9 +68,9 @@ export class Walker {
     readonly build: Build,
     start: Pose,
   ) {
-    this.glide = new Glide(build, start);
+    this.cycle = new CycleAnimation(build, start);
     this.place = { ...start };
-    this.glide.pose(this.posture);
+    this.cycle.pose(this.posture);
     solve(this.posture, build, this.body);
   }
 
@@ -100,12 +101,12 @@ export class Walker {
     if (this.steps.length > MOST_STEPS) this.steps.shift();
   }
 
-  /** Where it is drawn at `timeS`, given where its snapshots have it; writes the body. */
+  /** Write the body at `timeS`; returns its pose, given the pose of its snapshots. */
   advance(timeS: number, snapshots: Readonly<Pose>, frameS: number): Pose {
     const fresh = this.timeS === -Infinity;
     this.lagS = Math.max(0, this.lagS - HURRY * frameS);
     this.timeS = timeS - this.lagS;
-    this.glide.advance(snapshots, frameS);
+    this.cycle.advance(snapshots, frameS);
     const next = this.chosen(snapshots);
     if (fresh) this.drawn = next;
     else this.choose(next);
@@ -122,15 +123,14 @@ export class Walker {
     return this.placed(snapshots);
   }
 
-  /** Turn the head to what is pointed at, else to where the feet will turn. */
+  /** Turn the head to the target of pointing, else to where the feet will turn. */
   private look(heading: number, frameS: number): void {
     const { target } = this.pointing;
     const { chest, neck, head } = this.body;
     const wanted = target ? Math.atan2(target.y - neck.y, target.x - neck.x) : heading;
     const aside = Math.max(-LOOK_RAD, Math.min(LOOK_RAD, wrapAngle(wanted - headingOf(chest))));
     this.gaze += (aside - this.gaze) * (1 - Math.exp(-frameS / LOOK_S));
-    headed(this.gaze, turned);
-    times(turned, head, head);
+    head.premultiply(turned.setFromAxisAngle(UP, this.gaze));
   }
 
   private chosen(snapshots: Readonly<Pose>): Timed | null {
@@ -146,22 +146,21 @@ export class Walker {
     return silent && awayM > ELSEWHERE_M ? null : chosen;
   }
 
-  /** Draw something else from now on; steps that join need no fading. */
+  /** Draw another step, or the cycle, from now on; steps that join need no fading. */
   private choose(next: Timed | null): void {
     const before = this.drawn;
     if (next === before) return;
     this.drawn = next;
     if (before && next && joins(before, next)) return;
     this.show(next, this.from);
-    const { x, y, z } = this.posture.root;
-    const leapM = Math.hypot(this.from.root.x - x, this.from.root.y - y, this.from.root.z - z);
+    const leapM = this.from.root.distanceTo(this.posture.root);
     this.fading = before;
     this.fadeLeftS = leapM < JUMP_M ? FADE_S : 0;
   }
 
   private show(what: Timed | null, out: Posture): void {
     if (!what) {
-      this.glide.pose(out);
+      this.cycle.pose(out);
       return;
     }
     const { step, beginS, endS } = what;
@@ -169,7 +168,7 @@ export class Walker {
     underWay(step, u, this.build, out);
   }
 
-  /** Where labels, camera and map have it: under the middle of the hips, on the feet's height. */
+  /** The pose for labels, camera and map: under the middle of the hips, at the feet's height. */
   private placed(snapshots: Readonly<Pose>): Pose {
     const { place, drawn } = this;
     const { root } = this.body;
@@ -177,7 +176,7 @@ export class Walker {
     place.speed = snapshots.speed;
     place.reason = snapshots.reason;
     if (!drawn) {
-      copyPose(this.glide.place, place);
+      copyPose(this.cycle.place, place);
       return place;
     }
     const { standing, landing } = drawn.step;

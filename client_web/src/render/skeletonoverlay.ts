@@ -1,6 +1,6 @@
 /**
- * What there is behind the figures, for those who want to see it: footprints, joints and bones, and
- * what legs and a pointing arm reach for, before and after their joints are solved.
+ * The debug overlay of skeletons: footprints, joints and bones, and the targets of legs and of a
+ * pointing arm, before and after their joints are solved.
  */
 
 import {
@@ -17,19 +17,19 @@ import {
   OctahedronGeometry,
   Shape,
   ShapeGeometry,
+  type Vector3Like,
 } from "three";
 import type { Limb } from "../world/body";
 import { FOOT } from "../world/skeleton";
 import type { Step } from "../world/steps";
-import type { Vector } from "../world/vectors";
-import type { Walker } from "../world/walker";
+import type { Animator } from "../world/animator";
 import type { Avatar } from "../world/world";
 
 const MOST_PRINTS = 600;
 const MOST_POINTS = 2400;
 const MOST_BONES = 1200;
-/** Only of so many is it shown, the first in view. */
-const MOST_WALKERS = 60;
+/** It is shown for this many avatars, the first in view. */
+const MOST_FIGURES = 60;
 const ABOVE_M = 0.012;
 
 const LEFT = new Color("#2f6fb5");
@@ -38,7 +38,7 @@ const JOINT = new Color("#ffffff");
 const BEFORE = new Color("#ff9d2e");
 const AFTER = new Color("#1fc46b");
 
-export class Footwork {
+export class SkeletonOverlay {
   readonly group = new Group();
   private readonly prints = overlay(sole(), 0.75, MOST_PRINTS);
   private readonly points = overlay(new OctahedronGeometry(1), 1, MOST_POINTS);
@@ -72,12 +72,12 @@ export class Footwork {
   update(avatars: ReadonlyMap<number, Avatar>): void {
     if (!this.group.visible) return;
     this.pointCount = this.boneCount = 0;
-    let walkers = 0;
-    for (const { id, walker } of avatars.values()) {
-      if (walkers++ === MOST_WALKERS) break;
-      this.print(id, walker);
-      this.skeleton(walker);
-      this.reaching(walker);
+    let figures = 0;
+    for (const { id, animator } of avatars.values()) {
+      if (figures++ === MOST_FIGURES) break;
+      this.print(id, animator);
+      this.skeleton(animator);
+      this.reaching(animator);
     }
     this.prints.count = Math.min(this.printCount, MOST_PRINTS);
     this.points.count = this.pointCount;
@@ -89,8 +89,8 @@ export class Footwork {
     this.bones.geometry.getAttribute("position").needsUpdate = true;
   }
 
-  /** The footprint that a new step leads to; the oldest ones go when there are too many. */
-  private print(id: number, { step, build }: Walker): void {
+  /** Draw the footprint that a new step leads to; the oldest ones go when there are too many. */
+  private print(id: number, { step, build }: Animator): void {
     if (!step || this.printed.get(id) === step) return;
     this.printed.set(id, step);
     const { x, y, z, heading } = step.landing;
@@ -101,7 +101,7 @@ export class Footwork {
     this.prints.setColorAt(index, step.rightStands ? LEFT : RIGHT);
   }
 
-  private skeleton({ body }: Walker): void {
+  private skeleton({ body }: Animator): void {
     const { root, lumbar, neck, left, right } = body;
     this.bone(root, lumbar);
     this.bone(lumbar, neck);
@@ -123,8 +123,8 @@ export class Footwork {
     for (const joint of [start, hinge]) this.point(joint, 0.02, JOINT);
   }
 
-  /** Orange is what is asked for, green what has become of it. */
-  private reaching({ posture, body, pointing }: Walker): void {
+  /** A target is orange, the solved joint green. */
+  private reaching({ posture, body, pointing }: Animator): void {
     this.pair(posture.root, body.root);
     this.pair(posture.left.heel, body.left.leg.end);
     this.pair(posture.right.heel, body.right.leg.end);
@@ -135,19 +135,19 @@ export class Footwork {
     if (pointing.target) this.bone(pointing.hand(body), pointing.target);
   }
 
-  private pair(before: Vector, after: Vector): void {
+  private pair(before: Vector3Like, after: Vector3Like): void {
     this.point(before, 0.038, BEFORE);
     this.point(after, 0.026, AFTER);
   }
 
-  private point({ x, y, z }: Vector, sizeM: number, color: Color): void {
+  private point({ x, y, z }: Vector3Like, sizeM: number, color: Color): void {
     if (this.pointCount === MOST_POINTS) return;
     this.matrix.makeScale(sizeM, sizeM, sizeM).setPosition(x, y, z);
     this.points.setMatrixAt(this.pointCount, this.matrix);
     this.points.setColorAt(this.pointCount++, color);
   }
 
-  private bone(from: Vector, to: Vector): void {
+  private bone(from: Vector3Like, to: Vector3Like): void {
     if (this.boneCount === MOST_BONES) return;
     this.ends.set([from.x, from.y, from.z, to.x, to.y, to.z], this.boneCount++ * 6);
   }

@@ -1,17 +1,17 @@
-/** Squares of the ground, each with what can be met from within it. */
+/** A uniform grid over the ground; each square lists the items that can be met from within it. */
 
 const BUCKET_M = 2;
 
-export class Buckets<T> {
+export class SpatialGrid<T> {
   private readonly buckets = new Map<string, T[]>();
 
-  /** What was put where (x, y) lies. */
+  /** The items of the square that holds (x, y). */
   at(x: number, y: number): readonly T[] {
     return this.buckets.get(`${indexOf(x)},${indexOf(y)}`) ?? [];
   }
 
   /**
-   * Put into every square that the box touches, or, with `meets`, into those for whose middle it
+   * Put an item into every square that the box touches, or, with `meets`, into those for whose middle it
    * holds; that is asked with half the diagonal of a square, metres.
    */
   put(

@@ -1,4 +1,4 @@
-/** Where one avatar was at each of the last ticks, and where it is drawn in between. */
+/** Interpolates between the snapshots of one avatar at the last ticks. */
 
 import { mixAngles } from "./angles";
 
@@ -29,10 +29,10 @@ interface Sample extends Pose {
 
 /** Enough for two seconds at 20 ticks a second. */
 const KEPT = 40;
-/** How long a walk goes on by itself when snapshots stay away. */
+/** A walk goes on by itself for this long when snapshots stay away. */
 const COAST_S = 0.25;
 
-export class Motion {
+export class Interpolator {
   private readonly samples: Sample[] = [];
   private readonly here: Pose;
 
@@ -48,7 +48,7 @@ export class Motion {
     if (this.samples.length > KEPT) this.samples.shift();
   }
 
-  /** Nothing had changed up to `timeS`: what comes next begins there. */
+  /** Nothing had changed up to `timeS`: the next change begins there. */
   hold(timeS: number): void {
     if (timeS <= this.last.timeS) return;
     this.add(timeS, { ...this.last, speed: 0 });
@@ -56,7 +56,7 @@ export class Motion {
 
   get last(): Sample {
     const last = this.samples.at(-1);
-    if (!last) throw new Error("a motion begins with a sample");
+    if (!last) throw new Error("an interpolator begins with a sample");
     return last;
   }
 

@@ -1,4 +1,4 @@
-/** The colours of rooms, and of what is shown in them. */
+/** The colours of rooms and of the exhibits in them. */
 
 import { Color } from "three";
 import { pick } from "./palette";

@@ -1,4 +1,4 @@
-/** The renderer, its light and sky, and how finely it draws. */
+/** The WebGL renderer with its scene, camera, light and sky. */
 
 import {
   AmbientLight,
@@ -28,14 +28,14 @@ const SKY_M = 900;
 const SHADOW_PIXELS = 2048;
 /** The shadow map covers at most this much to every side of the middle. */
 const SHADOW_REACH_M = 45;
-/** What is in shadow is not without sun altogether: walls all around throw light back. */
+/** Shadows are not black: walls all around throw light back. */
 const SHADOW = 0.72;
 const SUN = { x: -0.55, y: -0.62, z: 0.95 };
 
-export class Stage {
+export class Renderer {
   readonly scene = new Scene();
   readonly camera = new PerspectiveCamera(55, 1, 0.1, 2 * SKY_M);
-  private readonly renderer: WebGLRenderer;
+  private readonly webgl: WebGLRenderer;
   private readonly sun = new DirectionalLight("#fff1d6", 2.6);
   private readonly sky = skyDome();
   private town: Town | null = null;
@@ -45,13 +45,13 @@ export class Stage {
     private readonly canvas: HTMLCanvasElement,
     antialias: boolean,
   ) {
-    this.renderer = new WebGLRenderer({
+    this.webgl = new WebGLRenderer({
       canvas,
       antialias,
       powerPreference: "high-performance",
     });
-    this.renderer.shadowMap.enabled = true;
-    this.renderer.shadowMap.type = PCFShadowMap;
+    this.webgl.shadowMap.enabled = true;
+    this.webgl.shadowMap.type = PCFShadowMap;
     this.scene.fog = new Fog(SKY_LOW, 70, 320);
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(SHADOW_PIXELS, SHADOW_PIXELS);
@@ -86,29 +86,29 @@ export class Stage {
   }
 
   apply({ pixelRatio, shadows, livingShadows }: Quality): void {
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, pixelRatio));
+    this.webgl.setPixelRatio(Math.min(window.devicePixelRatio, pixelRatio));
     this.resize();
-    this.renderer.shadowMap.autoUpdate = livingShadows;
-    this.renderer.shadowMap.needsUpdate = true;
+    this.webgl.shadowMap.autoUpdate = livingShadows;
+    this.webgl.shadowMap.needsUpdate = true;
     this.sun.castShadow = shadows;
   }
 
   resize(): void {
     const { clientWidth, clientHeight } = this.canvas;
-    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.webgl.setSize(clientWidth, clientHeight, false);
     this.camera.aspect = clientWidth / Math.max(1, clientHeight);
-    // Upright screens see as much to the sides as is bearable.
+    // A wider angle on upright screens shows more to the sides.
     this.camera.fov = this.camera.aspect < 1 ? 68 : 55;
     this.camera.updateProjectionMatrix();
   }
 
-  draw(): void {
+  render(): void {
     const { x, y } = this.camera.position;
     this.sky.position.set(x, y, 0);
     if (this.shadowsAt && Math.hypot(x - this.shadowsAt.x, y - this.shadowsAt.y) > SHADOW_REACH_M) {
       this.lightAround(x, y);
     }
-    this.renderer.render(this.scene, this.camera);
+    this.webgl.render(this.scene, this.camera);
   }
 
   private lightAround(x: number, y: number): void {
@@ -116,7 +116,7 @@ export class Stage {
     this.sun.target.position.set(x, y, 0);
     this.sun.position.set(x + SUN.x * far, y + SUN.y * far, SUN.z * far);
     this.shadowsAt = { x, y };
-    this.renderer.shadowMap.needsUpdate = true;
+    this.webgl.shadowMap.needsUpdate = true;
   }
 }
 

@@ -1,0 +1,114 @@
+"""The settings of `esplanade bots`: what they are called, mean and may be, without pydantic."""
+
+from argparse import ArgumentTypeError
+from collections.abc import Mapping
+from typing import Any, Final
+
+from esplanade.bots.address import websocket_url
+from esplanade.commandline.parser import Parser
+from esplanade.commandline.readers import SEED_LIMIT, InputFile, Number, OutputFile, Whole
+from esplanade.commandline.settings import Setting, Settings, settings_parser
+
+EXAMPLES: Final = """\
+examples:
+  esplanade bots                                   20 visitors walk about for a minute
+  esplanade bots --count 200 --duration 60 --json load.json
+  esplanade bots --url wss://plaza.example --count 5 --duration 0
+  esplanade bots --replay zara1.csv                148 recorded people, in real time; the server
+                                                   runs with `esplanade serve --crowd zara1.csv`
+  esplanade bots --replay zara1.csv --speedup 4 --limit 20
+
+exit code: 0 all went well, 1 some bots failed or were complained of, 2 wrong usage
+Ctrl-C sends everyone home and reports what was measured until then.
+
+Every option can also be given as an environment variable: --join-rate is
+ESPLANADE_BOTS_JOIN_RATE. The command line wins.
+"""
+
+
+class Address:
+    """The address of a server, as people type it."""
+
+    metavar = "URL"
+
+    def __call__(self, text: str) -> str:
+        try:
+            websocket_url(text)
+        except ValueError as error:
+            raise ArgumentTypeError(str(error)) from None
+        return text
+
+
+_LOAD: Final = {
+    "count": Setting("visitors that join and walk about", Whole(1, 10_000), 20),
+    "duration": Setting(
+        "how long they stay once all are there; 0 means until Ctrl-C", Number(0.0, 1e6), 60.0, "s"
+    ),
+    "seed": Setting("the same seed walks the same ways", Whole(0, SEED_LIMIT), 0),
+    "join_rate": Setting("visitors that join", Number(0.1, 10_000.0), 50.0, "per second"),
+    "processes": Setting(
+        "processes that share the visitors; without it, as many as they need", Whole(1, 64)
+    ),
+}
+_REPLAY: Final = {
+    "replay": Setting(
+        "send in the people of this recording (CSV t,id,x,y) instead of visitors", InputFile()
+    ),
+    "speedup": Setting(
+        "how many times faster than they were recorded", Number(0.1, 20.0), 1.0, "times"
+    ),
+    "limit": Setting("only so many of them, in the order in which they come", Whole(1)),
+    "linger": Setting(
+        "how long each stands at the end of the way before leaving", Number(0.0, 3600.0), 0.0, "s"
+    ),
+}
+
+
+def check(given: Mapping[str, Any]) -> None:
+    """Whether these settings fit together.
+
+    Raises
+    ------
+    ValueError
+        They do not; the message says which.
+    """
+    replays = given.get("replay") is not None
+    misplaced = sorted(given.keys() & (_LOAD if replays else _REPLAY).keys() - {"replay"})
+    if misplaced and replays:
+        raise ValueError(f"{misplaced[0]}: belongs to a load test, not to a replay")
+    if misplaced:
+        raise ValueError(f"{misplaced[0]}: belongs to a replay, but none is given")
+
+
+SETTINGS: Final = Settings(
+    "ESPLANADE_BOTS_",
+    {
+        "server": {
+            "url": Setting(
+                "where the server is; the path /ws is added when absent",
+                Address(),
+                "ws://localhost:8080",
+            )
+        },
+        "load test (without --replay)": _LOAD,
+        "replay of a recorded crowd": _REPLAY,
+        "result": {
+            "json_file": Setting(
+                "also write all figures here, as JSON", OutputFile(), option="json"
+            )
+        },
+    },
+    check,
+)
+
+
+def parser() -> Parser:
+    """The options of `esplanade bots`."""
+    return settings_parser(
+        "esplanade bots",
+        SETTINGS,
+        run="esplanade.bots.cli:run",
+        description="Send people made of code into a world: visitors that walk about and measure "
+        "how the\nserver bears them, or everyone of a recorded crowd, each a client of its own.",
+        epilog=EXAMPLES,
+    )

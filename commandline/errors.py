@@ -1,0 +1,17 @@
+"""The faults that end a command with one line."""
+
+from typing import ClassVar
+
+from esplanade.commandline import exit_codes
+
+
+class CommandError(Exception):
+    """The command cannot go on; the message says why and what helps."""
+
+    exit_code: ClassVar[int] = exit_codes.FAILED
+
+
+class UsageError(CommandError):
+    """What was asked for cannot be done; the message says what and why."""
+
+    exit_code: ClassVar[int] = exit_codes.USAGE

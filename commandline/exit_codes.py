@@ -1,0 +1,11 @@
+"""The exit codes of all commands."""
+
+from typing import Final
+
+OK: Final = 0
+FAILED: Final = 1
+"""The command did its work, and the result is bad; or something outside stood in its way."""
+USAGE: Final = 2
+"""The command line, a variable of the environment or a file cannot be used."""
+INTERRUPTED: Final = 130
+"""Ctrl-C, as shells count it: 128 and the number of SIGINT."""

@@ -1,0 +1,165 @@
+"""The settings of `esplanade serve`: what they are called, mean and may be, without pydantic."""
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+from esplanade.commandline.parser import Parser
+from esplanade.commandline.readers import SEED_LIMIT, Choice, InputFile, Number, Text, Whole
+from esplanade.commandline.settings import Setting, Settings, settings_parser
+
+_PORT: Final = Whole(0, 65535)
+_SPEED: Final = Number(0.0, 100.0, above=True)
+_WORLD: Final = {
+    "scene": Setting(
+        "scene to run, a JSON file; without one, the gallery that comes along", InputFile()
+    ),
+    "crowd": Setting(
+        "fit the scene to this recorded crowd (CSV t,id,x,y) instead of --scene", InputFile()
+    ),
+    "walls": Setting(
+        "walls around the crowd; without it, NAME.walls.json beside the crowd's file", InputFile()
+    ),
+    "actors": Setting("computer-run actors that walk about", Whole(0, 500), 10),
+    "seed": Setting("seed of everything random in the world", Whole(0, SEED_LIMIT), 0),
+    "tick_rate": Setting("ticks of the world", Whole(5, 60), 20, "per second"),
+}
+_PEOPLE: Final = {
+    "person_radius_m": Setting("radius of a person", Number(0.05, 1.0), 0.25, "m"),
+    "person_max_speed_mps": Setting(
+        "fastest a person may move; a crowd raises it to what it needs", _SPEED, 3.0, "m/s"
+    ),
+    "person_walk_speed_mps": Setting(
+        "speed of a person who is sent to a point", _SPEED, 1.6, "m/s"
+    ),
+    "view_radius_m": Setting(
+        "others come into view at this distance, and leave it 15 % further off",
+        Number(1.0, 1000.0),
+        40.0,
+        "m",
+    ),
+    "view_limit": Setting(
+        "most others that one person sees, the nearest first", Whole(1, 4000), 100
+    ),
+    "steps_radius_m": Setting(
+        "steps of others are sent within this distance, and 15 % further off to whom they have "
+        "been sent before",
+        Number(1.0, 1000.0),
+        25.0,
+        "m",
+    ),
+    "steps_limit": Setting(
+        "most others whose steps are sent to one person, the nearest first", Whole(0, 250), 60
+    ),
+    "resume_seconds": Setting(
+        "how long a lost connection's avatar stands and waits", Number(0.0, 3600.0), 30.0, "s"
+    ),
+}
+_NETWORK: Final = {
+    "host": Setting("address for people: web client and WebSocket", Text(), "0.0.0.0"),  # noqa: S104
+    "port": Setting("port for people; 0 takes a free one", _PORT, 8080),
+    "private_host": Setting(
+        "address of /healthz, /readyz and /metrics; keep it private", Text(), "127.0.0.1"
+    ),
+    "private_port": Setting(
+        "port of /healthz, /readyz and /metrics; 0 takes a free one", _PORT, 8081
+    ),
+    "allowed_origins": Setting(
+        "origins whose pages may open a WebSocket, separated by commas; empty allows every one",
+        Text(),
+        "",
+    ),
+}
+_LIMITS: Final = {
+    "max_clients": Setting("most people in the world", Whole(1, 4000), 1000),
+    "hello_timeout_s": Setting(
+        "a connection must say hello within this time", Number(0.0, 60.0, above=True), 5.0, "s"
+    ),
+    "message_rate": Setting(
+        "messages a client may send for long; twice this in a burst",
+        Number(1.0, 10_000.0),
+        60.0,
+        "per second",
+    ),
+    "chat_rate": Setting(
+        "lines a person may say for long; five in a burst", Number(0.01, 100.0), 1.0, "per second"
+    ),
+    "slow_bytes": Setting(
+        "a client with more unsent than this gets no snapshots",
+        Whole(1024, 16 * 1024**2),
+        32 * 1024,
+        "bytes",
+    ),
+    "drop_bytes": Setting(
+        "a client with more unsent than this is dropped",
+        Whole(1024, 64 * 1024**2),
+        256 * 1024,
+        "bytes",
+    ),
+    "drop_seconds": Setting(
+        "a client that stays slow for this time is dropped", Number(0.0, 600.0, above=True), 5.0,
+        "s",
+    ),
+    "operator_key": Setting(
+        "who says this key may open and close doors; better set in the environment than here; "
+        "empty: nobody",
+        Text(),
+        "",
+    ),
+}  # fmt: skip
+_LOGS: Final = {
+    "log_format": Setting("lines for people or JSON", Choice("console", "json"), "console"),
+    "log_level": Setting(
+        "least level that is logged", Choice("debug", "info", "warning", "error"), "info"
+    ),
+}
+
+
+def check(given: Mapping[str, Any]) -> None:
+    """Whether these settings fit together, all others being as they are by default.
+
+    Raises
+    ------
+    ValueError
+        They do not; the message says which.
+    """
+    if given.get("scene") and given.get("crowd"):
+        raise ValueError("scene and crowd: give one of them, not both")
+    if given.get("walls") and not given.get("crowd"):
+        raise ValueError("walls: they belong to a crowd, but none is given")
+    slow_bytes = given.get("slow_bytes", _LIMITS["slow_bytes"].default)
+    if given.get("drop_bytes", _LIMITS["drop_bytes"].default) <= slow_bytes:
+        raise ValueError("drop_bytes: must be greater than slow_bytes")
+
+
+SETTINGS: Final = Settings(
+    "ESPLANADE_",
+    {
+        "world": _WORLD,
+        "people": _PEOPLE,
+        "network": _NETWORK,
+        "limits on clients": _LIMITS,
+        "logs": _LOGS,
+    },
+    check,
+)
+
+
+def parser(prog: str = "esplanade serve") -> Parser:
+    """The options of `esplanade serve`."""
+    return settings_parser(
+        prog,
+        SETTINGS,
+        run="esplanade.server.cli:run",
+        description="Run a world for people and actors.",
+        epilog="""\
+examples:
+  esplanade serve                                  the gallery, with ten actors
+  esplanade serve --scene scenes/plaza.json --actors 30 --port 9000
+  esplanade serve --crowd zara1.csv                then `esplanade bots --replay zara1.csv`
+
+Every option can also be given as an environment variable: --tick-rate is ESPLANADE_TICK_RATE.
+The command line wins.
+
+exit code: 0 ended in good order, 1 a port cannot be had, 2 wrong usage, or a scene that cannot
+be run, 130 Ctrl-C before the world was open""",
+    )

@@ -1,0 +1,59 @@
+"""The options of the commands that belong to no part: `demo` and `completion`."""
+
+from typing import Final
+
+from esplanade.commandline.parser import Parser
+from esplanade.commandline.readers import SEED_LIMIT, Whole
+from esplanade.commandline.settings import Setting, settings_parser
+from esplanade.server import options as server
+
+COMPLETION_EPILOG: Final = """\
+to have it from now on:
+  bash  esplanade completion bash > ~/.local/share/bash-completion/completions/esplanade
+  zsh   esplanade completion zsh > FOLDER/_esplanade, where FOLDER is in $fpath
+  fish  esplanade completion fish > ~/.config/fish/completions/esplanade.fish
+"""
+
+
+_PORT: Final = Whole(1, 65535)
+_AMOUNT: Final = Whole(0, 500)
+_DEMO: Final = {
+    "port": Setting("port for people", _PORT, 8080),
+    "private_port": Setting("port for health and metrics", _PORT, 8081),
+    "actors": Setting("number of actors", _AMOUNT, 12),
+    "visitors": Setting("number of wandering bots", _AMOUNT, 6),
+    "seed": Setting("seed of everything drawn by chance", Whole(0, SEED_LIMIT), 1),
+}
+
+
+def demo() -> Parser:
+    """The demo's own options, and without words those of the server."""
+    others = {
+        name: setting
+        for group in server.SETTINGS.groups.values()
+        for name, setting in group.items()
+        if name not in _DEMO
+    }
+    settings = server.SETTINGS._replace(groups={"demo": _DEMO, "server": others})
+    made = settings_parser(
+        "esplanade demo",
+        settings,
+        run="esplanade.demo:run",
+        explained=_DEMO.keys(),
+        description="Run the demo world with actors, and with a few visitors made of code.",
+        epilog="All other options go to the server: see `esplanade serve --help`.",
+    )
+    made.set_defaults(**{name: setting.default for name, setting in _DEMO.items()})
+    return made
+
+
+def completion() -> Parser:
+    """The shell whose completion is wanted."""
+    made = Parser(
+        "esplanade completion",
+        run="esplanade.completion:run",
+        description="Print what completes `esplanade` on a shell's command line.",
+        epilog=COMPLETION_EPILOG,
+    )
+    made.add_argument("shell", choices=("bash", "zsh", "fish"), help="the shell")
+    return made

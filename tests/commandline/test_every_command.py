@@ -1,0 +1,130 @@
+"""What holds for every command: help and faults load nothing heavy, and say all there is to say."""
+
+import os
+import subprocess
+import sys
+from argparse import SUPPRESS, Action
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from esplanade.cli import COMMANDS, parser_of
+from esplanade.commandline.parser import Parser
+
+HEAVY = {
+    *("asyncio", "matplotlib", "msgpack", "numba", "numpy", "PIL", "pydantic", "pydantic_settings"),
+    *("rich", "scipy", "shtab", "structlog", "trimesh", "uvloop", "websockets"),
+}
+
+RUN = """
+import sys
+from esplanade.__main__ import main
+sys.argv = ["esplanade", *sys.argv[1:]]
+try:
+    code = main()
+except SystemExit as end:
+    code = end.code
+print("loaded:", *sorted({name.partition(".")[0] for name in sys.modules}), file=sys.stderr)
+raise SystemExit(code)
+"""
+
+
+def parts(parser: Parser) -> Iterator[Parser]:
+    """A command's parser, and those of its own commands."""
+    yield parser
+    for action in parser._actions:
+        if isinstance(action.choices, dict):
+            yield from (part for each in action.choices.values() for part in parts(each))
+
+
+def explained(parser: Parser) -> Iterator[Action]:
+    return (action for action in parser._actions if action.help != SUPPRESS)
+
+
+EVERY = [part for name in COMMANDS for part in parts(parser_of(name))]
+
+WRONG = [
+    ("esplanade", "srve", "there is no command srve; did you mean serve?"),
+    ("esplanade", "--verbose", "there is no option --verbose;"),
+    ("esplanade serve", "serve --tickrate 3", "no option --tickrate; did you mean --tick-rate?"),
+    ("esplanade serve", "serve --port many", "--port: 'many' is no whole number from 0 to 65535;"),
+    ("esplanade serve", "serve --port", "--port: expected one argument;"),
+    ("esplanade serve", "serve plaza.json", "plaza.json: not expected;"),
+    ("esplanade serve", "serve --scene no.json", "--scene: no.json: cannot be read: No such file"),
+    ("esplanade serve", "serve --walls pyproject.toml", "walls: they belong to a crowd"),
+    ("esplanade serve", "serve --log-level loud", "there are debug, info, warning, error;"),
+    ("esplanade bots", "bots --count 0", "--count: '0' is no whole number from 1 to 10000;"),
+    ("esplanade bots", "bots --url ftp://x", "--url: url 'ftp://x': unknown scheme 'ftp'"),
+    ("esplanade bots", "bots --linger 3", "linger: belongs to a replay"),
+    ("esplanade bots", "bots --json no/x.json", "--json: there is no folder no;"),
+    ("esplanade evaluate", "evaluate", "the following arguments are required: CROWD;"),
+    ("esplanade evaluate", "evaluate no.csv", "CROWD: no.csv: cannot be read"),
+    ("esplanade evaluate", "evaluate pyproject.toml --polcy x", "did you mean --policy?"),
+    ("esplanade evaluate", "evaluate pyproject.toml --tune", "say with --ledger FILE where"),
+    ("esplanade evaluate", "evaluate pyproject.toml --set tempo", "'tempo' is not NAME=VALUE;"),
+    ("esplanade scene", "scene", "the following arguments are required: COMMAND;"),
+    ("esplanade scene", "scene chekc", "'chekc' is no choice; did you mean check?"),
+    ("esplanade scene check", "scene check", "the following arguments are required: FILE;"),
+    ("esplanade scene check", "scene check no.json", "FILE: no.json: cannot be read"),
+    ("esplanade scene render", "scene render README.md --out x --body giant", "is no body;"),
+    ("esplanade scene import", "scene import x.obj --out x.glb", "--out: x.glb is no .json file;"),
+    ("esplanade gait render", "gait render --fps 33", "there are 10, 20, 25, 50;"),
+    ("esplanade gait cycle", "gait cycle", "the following arguments are required: --out;"),
+    ("esplanade demo", "demo --visitor 3", "no option --visitor; did you mean --visitors?"),
+    ("esplanade demo", "demo --tick-rate 1", "--tick-rate: '1' is no whole number from 5 to 60;"),
+    ("esplanade completion", "completion csh", "'csh' is no choice; did you mean zsh?"),
+]
+
+
+def call(*words: str, **variables: str) -> tuple[int, str, list[str], set[str]]:
+    """Exit code, output, lines of the error output, and the packages that were loaded."""
+    done = subprocess.run(
+        [sys.executable, "-c", RUN, *words],
+        check=False,
+        capture_output=True,
+        text=True,
+        cwd=Path(__file__).parents[2],
+        env={**os.environ, **variables},
+    )
+    *said, loaded = done.stderr.splitlines()
+    assert loaded.startswith("loaded: ")
+    return done.returncode, done.stdout, said, set(loaded.split()[1:])
+
+
+@pytest.mark.parametrize("parser", EVERY, ids=lambda parser: parser.prog)
+def test_help_names_and_explains_every_option(parser: Parser) -> None:
+    shown = " ".join(parser.format_help().split())
+    assert parser.description
+    for action in explained(parser):
+        assert all(name in shown for name in action.option_strings)
+        if not isinstance(action.choices, dict):
+            assert action.help, f"{parser.prog} {action.dest} is not explained"
+
+
+@pytest.mark.parametrize("words", ["--help", *(part.prog[10:] + " --help" for part in EVERY)])
+def test_help_loads_nothing_heavy(words: str) -> None:
+    code, shown, said, loaded = call(*words.split())
+    assert (code, said) == (0, [])
+    assert shown.startswith(f"usage: esplanade {words.removesuffix('--help')}".rstrip())
+    assert not loaded & HEAVY
+
+
+@pytest.mark.parametrize(("prog", "words", "fault"), WRONG, ids=[words for _, words, _ in WRONG])
+def test_wrong_usage_is_one_line_and_loads_nothing_heavy(prog: str, words: str, fault: str) -> None:
+    code, shown, said, loaded = call(*words.split())
+    assert (code, shown) == (2, "")
+    (line,) = said
+    assert line.startswith(f"{prog}: ")
+    assert fault in line
+    assert line.endswith(f"see `{prog} --help`")
+    assert not loaded & HEAVY
+
+
+def test_a_wrong_variable_is_one_line_and_loads_nothing_heavy() -> None:
+    code, _, said, loaded = call("bots", ESPLANADE_BOTS_JOIN_RATE="fast")
+    assert code == 2
+    (line,) = said
+    fault = "ESPLANADE_BOTS_JOIN_RATE: 'fast' is no number from 0.1 to 10000"
+    assert line == f"esplanade bots: {fault}; see `esplanade bots --help`"
+    assert not loaded & HEAVY
