@@ -175,6 +175,8 @@ class Population:
         scene = Scene.open_space((0.0, 0.0, 6.0, 6.0), walls=walls, polygons=[step])
         navigator = Navigator(scene, self.navigator.tick_s)
         navigator.grid.walk([(1.0, 1.0)], [0], [(0.1, 0.0)], 0.2)
+        navigator.grid.nearest_free((3.0, 1.0), 0.0, 0.25)
+        navigator.grid.with_heights(np.ones((1, 2, 2)), np.zeros(1, dtype=np.int64))
         potential = Potential(navigator.grid, (5.0, 1.0), 0, 0.25)
         potential.direction([(1.0, 1.0)], [0])
         potential.distance([(1.0, 1.0)], [0])

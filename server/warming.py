@@ -1,4 +1,4 @@
-"""The first start on a machine: kernels are compiled in two processes, and it is told how far."""
+"""The first start on a machine: kernels are compiled in two processes, and how far is told."""
 
 import threading
 import time
@@ -7,16 +7,15 @@ from contextlib import contextmanager
 from typing import Final
 
 import structlog
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
+from esplanade.commandline.progress import progress
 from esplanade.planning.compiled import beside, cache
 from esplanade.planning.compiled.notice import heard
 
 AHEAD: Final = "esplanade.planning.agents.ahead"
 """What the second process compiles: about half of all, and nothing that the first half needs."""
 FUNCTIONS: Final = 430
-"""About how many functions are compiled on the way to a world; only the bar goes by it."""
+"""About how many functions are compiled on the way to a world; only what is shown goes by it."""
 SERVED: Final = "served"
 TOLD_EVERY_S: Final = 10.0
 
@@ -27,7 +26,7 @@ log = structlog.get_logger(__name__)
 def kernels_compiled() -> Iterator[Callable[[], None]]:
     """Within this a world is built and warmed up; yields what waits for the second process.
 
-    Where an earlier start has left all kernels in the cache it does nothing.
+    Where an earlier start has left all kernels in the cache, it does nothing.
     """
     if beside.is_complete(SERVED):
         yield lambda: None
@@ -43,20 +42,20 @@ def kernels_compiled() -> Iterator[Callable[[], None]]:
 
 @contextmanager
 def _shown() -> Iterator[Callable[[], None]]:
-    """Shows how far it is: as a bar on a terminal, else in lines of log."""
+    """Shows how far it is: by a bar on a terminal, else in lines of log."""
     log.info("compiling, once on this machine; it takes a minute or two", kept_in=cache.folder())
-    console = Console(stderr=True)
-    if console.is_terminal:
-        columns = TextColumn("compiling"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn()
-        with Progress(*columns, console=console, transient=True) as progress:
-            task = progress.add_task("compiling", total=FUNCTIONS)
-            yield lambda: progress.advance(task)
+    bar = progress(share=True)
+    if not bar.console.is_terminal:
+        yield _Lines().one_more
         return
-    yield _Lines().one_more
+    with bar:
+        bar.console.show_cursor(True)  # Ctrl-C ends the process at once, without tidying up
+        task = bar.add_task("compiling", total=FUNCTIONS)
+        yield lambda: bar.advance(task)
 
 
 class _Lines:
-    """A line of log now and then; what calls it may be two threads."""
+    """A line of log now and then; two threads call it."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -69,5 +68,4 @@ class _Lines:
             self._count += 1
             if time.monotonic() - self._told_s >= TOLD_EVERY_S:
                 self._told_s = time.monotonic()
-                percent = min(99, 100 * self._count // FUNCTIONS)
-                log.info("compiling", percent=percent)
+                log.info("compiling", percent=min(99, 100 * self._count // FUNCTIONS))

@@ -131,7 +131,8 @@ def plan_and_step(
         return False
     z = zone.value
     # Numbers of the same type as from Python: for literals everything would be compiled once more.
-    first, step = np.int64(0), np.int64(1)
+    first: int = np.int64(0)  # type: ignore[assignment]
+    step: int = np.int64(1)  # type: ignore[assignment]
     index_future(zone, prediction, first, step)
     put_in_order(zone, tick_s)
     decide(

@@ -14,13 +14,13 @@ import pickle
 import shutil
 import sys
 import tempfile
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from types import FunctionType
 from typing import Any, Final
 from uuid import uuid4
 
-import llvmlite
+import llvmlite  # type: ignore[import-untyped]
 import numba
 import numpy as np
 from numba.core.caching import _Cache
@@ -98,13 +98,18 @@ def _home_cache() -> Path:
     return Path(tempfile.gettempdir())
 
 
+def _pickled(value: object) -> bytes:
+    pickled: bytes = dumps(value)  # type: ignore[no-untyped-call]
+    return pickled
+
+
 class KernelCache(_Cache):
     """The entries of one kernel. No entry that cannot be read or written stops a program."""
 
     _told = False
 
-    def __init__(self, function: FunctionType, kept_in: Path) -> None:
-        self._function = function
+    def __init__(self, function: Callable[..., object], kept_in: Path) -> None:
+        self._function: Any = function
         self._folder = kept_in
         self._enabled = True
         file = Path(inspect.getfile(function))
@@ -142,10 +147,11 @@ class KernelCache(_Cache):
             log.debug("%s is damaged; the kernel is compiled anew", path)
             return None
         try:
-            known, payload = pickle.loads(entry)
+            known, payload = pickle.loads(entry)  # noqa: S301 (its checksum is right)
             if known != key:
                 return None
-            return CompileResult._rebuild(target_context, *pickle.loads(payload))
+            parts = pickle.loads(payload)  # noqa: S301
+            return CompileResult._rebuild(target_context, *parts)  # type: ignore[no-untyped-call]  # noqa: SLF001
         except Exception:
             log.debug("%s cannot be used; the kernel is compiled anew", path, exc_info=True)
             return None
@@ -155,7 +161,8 @@ class KernelCache(_Cache):
         if not self._enabled or data.lifted or data.library.has_dynamic_globals:
             return
         key = self._key(sig, data.codegen)
-        entry = dumps((key, dumps(data._reduce())))
+        parts = data._reduce()  # noqa: SLF001 (as numba's own cache)
+        entry = _pickled((key, _pickled(parts)))
         path = self._path(key)
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
@@ -179,13 +186,15 @@ class KernelCache(_Cache):
             self._function.__module__,
             self._function.__qualname__,
             self._function.__code__.co_code,
-            dumps(tuple(cell.cell_contents for cell in closed)) if closed else b"",
+            _pickled(tuple(cell.cell_contents for cell in closed)) if closed else b"",
             codegen.magic_tuple(),
             sig,
         )
 
     def _path(self, key: tuple[object, ...]) -> Path:
-        return self._folder / f"{self._stem()}-{hashlib.sha256(repr(key).encode()).hexdigest()[:24]}"
+        return (
+            self._folder / f"{self._stem()}-{hashlib.sha256(repr(key).encode()).hexdigest()[:24]}"
+        )
 
     def _stem(self) -> str:
         name = f"{self._function.__module__}.{self._function.__name__}"

@@ -14,7 +14,7 @@ notice.begin()
 F = TypeVar("F", bound=Callable[..., object])
 
 
-class Kernel(CPUDispatcher):  # type: ignore[misc]
+class Kernel(CPUDispatcher):
     """A function that is compiled for calls from Python and, apart from that, for other kernels.
 
     The code that takes arguments from Python unpacks every array of every tuple. It is as large as
@@ -23,7 +23,11 @@ class Kernel(CPUDispatcher):  # type: ignore[misc]
     """
 
     def __init__(
-        self, py_func: Any, locals: Any = None, targetoptions: Any = None, **more: Any
+        self,
+        py_func: Any,
+        locals: Any = None,  # noqa: A002 (as numba calls it)
+        targetoptions: Any = None,
+        **more: Any,
     ) -> None:
         super().__init__(py_func, locals, targetoptions, **more)
         options = {**targetoptions, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}

@@ -14,7 +14,7 @@ log = logging.getLogger(__name__)
 Listener = Callable[[], None]
 
 
-class _Compiling(event.Listener):  # type: ignore[misc]
+class _Compiling(event.Listener):
     """Hears of every function that is compiled, be it called from Python or from another one."""
 
     def __init__(self) -> None:
@@ -41,7 +41,7 @@ _COMPILING = _Compiling()
 
 def begin() -> None:
     """Hear of every function that is compiled from now on."""
-    event.register("numba:compile", _COMPILING)
+    event.register("numba:compile", _COMPILING)  # type: ignore[no-untyped-call]
 
 
 @contextmanager
