@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -234,16 +234,26 @@ class Population:
             circles[:, 3] *= 2.0
         return Explanation(behaviour.name, state.reason, state.goal, state.path, near)
 
-    def warm_up(self) -> None:
+    def warm_up(self, ready_to_plan: Callable[[], None] = lambda: None) -> None:
         """Make ready all that a tick would have to wait for: kernels, and potentials of places.
 
         Kernels are compiled by running a small zone of their own, which is not all level: on level
         ground some are not called. Few actors and many are planned for by different ones.
+        `ready_to_plan` waits for whoever compiles meanwhile what plans for them.
         """
         step = Polygon(points=((4.5, 4.5), (5.5, 4.5), (5.5, 5.5), (4.5, 5.5)), height_m=0.3)
         walls = [((3.0, 0.0), (3.0, 2.0))]
         scene = Scene.open_space((0.0, 0.0, 6.0, 6.0), walls=walls, polygons=[step])
         navigator = Navigator(scene, self.navigator.tick_s)
+        navigator.grid.walk([(1.0, 1.0)], [0], [(0.1, 0.0)], 0.2)
+        navigator.grid.nearest_free((3.0, 1.0), 0.0, 0.25)
+        navigator.grid.with_heights(np.ones((1, 2, 2)), np.zeros(1, dtype=np.int64))
+        potential = Potential(navigator.grid, (5.0, 1.0), 0, 0.25)
+        potential.direction([(1.0, 1.0)], [0])
+        potential.distance([(1.0, 1.0)], [0])
+        navigator.observe({"p": (3.0, 5.05)})
+        navigator.tick()
+        ready_to_plan()
         navigator.add_actor("a", (1.0, 1.0), (5.0, 1.0))
         navigator.add_actor("b", (5.0, 1.0), (1.0, 1.0))
         for k in range(40):
@@ -252,10 +262,6 @@ class Population:
             if k == 30:
                 for n in range(10):
                     navigator.add_actor(n, (0.5 + 0.5 * n, 3.5), (1.0, 1.0))
-        navigator.grid.walk([(1.0, 1.0)], [0], [(0.1, 0.0)], 0.2)
-        potential = Potential(navigator.grid, (5.0, 1.0), 0, 0.25)
-        potential.direction([(1.0, 1.0)], [0])
-        potential.distance([(1.0, 1.0)], [0])
         navigator.close()
         for place in self.scene.places:
             self.navigator.prepare_goal(place.position, place.z_m, ActorParameters())

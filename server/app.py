@@ -2,7 +2,7 @@
 
 import asyncio
 import time
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
@@ -25,6 +25,7 @@ from esplanade.server.net.schedule import Schedule
 from esplanade.server.net.ticker import Ticker
 from esplanade.server.populating import populate
 from esplanade.server.settings import ServerSettings
+from esplanade.server.warming import kernels_compiled
 from esplanade.server.world.world import World
 
 log = structlog.get_logger(__name__)
@@ -81,7 +82,6 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             asyncio.Protocol, settings.host, settings.port, start_serving=False
         )
         bound.close()
-        log.info("compiling; the first start on a machine takes a minute or two")
         population, world, storeys = await loop.run_in_executor(thread, _build, loaded, settings)
         stack.callback(population.close)
         _watch(world, metrics)
@@ -115,6 +115,13 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
 
 
 def _build(loaded: LoadedScene, settings: ServerSettings) -> tuple[Population, World, list[float]]:
+    with kernels_compiled() as compiled_beside:
+        return _build_warm(loaded, settings, compiled_beside)
+
+
+def _build_warm(
+    loaded: LoadedScene, settings: ServerSettings, compiled_beside: Callable[[], None]
+) -> tuple[Population, World, list[float]]:
     grid = LayeredGrid.from_scene(loaded.scene)
     tick_s, seed = settings.tick_s, settings.seed
     try:
@@ -139,7 +146,7 @@ def _build(loaded: LoadedScene, settings: ServerSettings) -> tuple[Population, W
         )
     except ValueError as error:
         raise LoadingError(f"scene {loaded.scene.name!r}: {error}") from error
-    population.warm_up()
+    population.warm_up(compiled_beside)
     starts = [(*spawn.position, spawn.z_m) for spawn in loaded.scene.spawns]
     storeys = storeys_of(grid, reached_from(grid, starts))
     return population, world, [round(height, 2) for height in storeys]

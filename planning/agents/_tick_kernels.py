@@ -126,9 +126,25 @@ def plan_and_step(
     """All stages one after the other, on one thread; False, and nothing done, without room."""
     if not has_room(zone, workspace, branching):
         return False
-    index_future(zone, prediction, 0, 1)
+    z = zone.value
+    # Numbers of the same type as from Python: for literals everything would be compiled once more.
+    first: int = np.int64(0)  # type: ignore[assignment]
+    step: int = np.int64(1)  # type: ignore[assignment]
+    index_future(zone, prediction, first, step)
     put_in_order(zone, tick_s)
-    decide_some(zone, prediction, tick_s, 0, len(zone.value.order), workspace)
+    decide(
+        z.world,
+        z.potentials,
+        z.no_potential,
+        z.moves,
+        prediction,
+        z.crowd,
+        tick_s,
+        first,
+        len(z.order),
+        workspace.value,
+        z.decisions,
+    )
     take_steps(zone, tick_s)
     return True
 

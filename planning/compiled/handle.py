@@ -6,7 +6,7 @@ import numba
 from numba.core import types
 from numba.experimental import structref
 
-from esplanade.planning.compiled.jit import kernel
+from esplanade.planning.compiled.jit import compile_for, kernel
 
 T = TypeVar("T")
 
@@ -49,3 +49,9 @@ def make_handle(value: T) -> Handle[T]:
     """Hand a tuple of arrays over to be kept."""
     held = _Plain(value) if numba.config.DISABLE_JIT else _hold(value)  # type: ignore[attr-defined]
     return cast(Handle[T], held)
+
+
+def hold_for(value: types.Type) -> types.Type:
+    """The type of a `Handle` of values of this type; what makes one is compiled."""
+    compile_for(_hold, value)
+    return _HandleType((("value", value),))  # type: ignore[no-untyped-call]

@@ -1,76 +1,69 @@
 """How kernels are compiled: numba, without the interpreter's lock, cached by what they say."""
 
-import contextlib
-import hashlib
-import logging
-import shutil
-import tempfile
 from collections.abc import Callable
-from pathlib import Path
-from typing import TypeVar, cast
+from typing import Any, TypeVar, cast
 
 import numba
+from numba import types
+from numba.core.registry import CPUDispatcher
 
-_KEPT_S = 30 * 24 * 3600.0
-_SOURCES = ("planning", "actors/locomotion", "evaluation/policies")
-"""Folders that hold kernels, and all that kernels take functions and constants from."""
+from esplanade.planning.compiled import cache, notice
+
+notice.begin()
 
 F = TypeVar("F", bound=Callable[..., object])
 
 
-def _source_digest() -> str:
-    """Digest of every module that compiled code can reach.
+class Kernel(CPUDispatcher):
+    """A function that is compiled for calls from Python and, apart from that, for other kernels.
 
-    numba's own cache looks at the file of the outermost function alone, so an edit of a helper
-    or a constant in another file would go unnoticed. One digest for all of them makes that
-    impossible.
+    The code that takes arguments from Python unpacks every array of every tuple. It is as large as
+    many a kernel itself; what other kernels call does without it, and is not kept either: it is
+    part of those that call it.
     """
-    bounds_checked = bool(numba.config.BOUNDSCHECK)  # type: ignore[attr-defined]
-    digest = hashlib.sha256(f"{numba.__version__} {bounds_checked}".encode())
-    for path in sources():
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
+
+    def __init__(
+        self,
+        py_func: Any,
+        locals: Any = None,  # noqa: A002 (as numba calls it)
+        targetoptions: Any = None,
+        **more: Any,
+    ) -> None:
+        super().__init__(py_func, locals, targetoptions, **more)
+        options = {**targetoptions, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+        self._inner = CPUDispatcher(py_func, locals, options, **more)
+
+    def enable_caching(self) -> None:
+        """Keep what is compiled for calls from Python, where there is a folder for it."""
+        kept_in = cache.folder()
+        if kept_in is not None:
+            self._cache = cache.KernelCache(self.py_func, kept_in)
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """What another kernel calls, and its types."""
+        return self._inner.get_call_template(args, kws)
+
+    def get_overload(self, sig: Any) -> Any:
+        """What another kernel is linked with."""
+        return self._inner.get_overload(sig)
+
+    def get_compile_result(self, sig: Any) -> Any:
+        """The same with all that is known of it."""
+        return self._inner.get_compile_result(sig)
 
 
-def sources() -> list[Path]:
-    """The files whose text decides what kernels are compiled to, in a fixed order."""
-    root = Path(__file__).parents[2]
-    return sorted(path for folder in _SOURCES for path in (root / folder).rglob("*.py"))
-
-
-def _forget_older(marker: Path) -> None:
-    """Remove what was compiled from sources that nobody ran for a month before this run."""
-    for other in marker.parent.parent.glob(f"kernels-*/{marker.name}"):
-        with contextlib.suppress(OSError):
-            if marker.stat().st_mtime - other.stat().st_mtime > _KEPT_S:
-                shutil.rmtree(other.parent)
-
-
-def _open_cache() -> bool:
-    """Point numba at a folder of its own for this very source; False where none can be written."""
-    for base in (Path.home() / ".cache", Path(tempfile.gettempdir())):
-        folder = base / "esplanade" / f"kernels-{_source_digest()}"
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            marker = folder / ".used"
-            marker.touch()
-        except OSError:
-            continue
-        _forget_older(marker)
-        numba.config.CACHE_DIR = str(folder)  # type: ignore[attr-defined]
-        return True
-    logging.getLogger(__name__).warning(
-        "no folder to keep compiled kernels in; they are compiled anew at each start"
-    )
-    return False
-
-
-_CACHED = _open_cache()
+def _compiled(function: F, **options: bool) -> F:
+    if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
+        return function
+    common = {"nopython": True, "nogil": True, "boundscheck": None, "error_model": "numpy"}
+    made = Kernel(function, {}, {**common, **options})
+    made.enable_caching()
+    return cast(F, made)
 
 
 def kernel(function: F) -> F:
     """Compile a function of arrays and scalars; it runs without the interpreter's lock."""
-    return cast(F, numba.njit(nogil=True, cache=_CACHED, error_model="numpy")(function))
+    return _compiled(function)
 
 
 def inlined(function: F) -> F:
@@ -79,12 +72,9 @@ def inlined(function: F) -> F:
     For what runs in the innermost loops: numba counts references to every array that is handed to
     a function, and the compiler removes that only where it sees both ends.
     """
-    options = {
-        "nogil": True,
-        "cache": _CACHED,
-        "error_model": "numpy",
-        "forceinline": True,
-        "_nrt": False,
-    }
-    compiled: F = numba.njit(**options)(function)  # type: ignore[call-overload]
-    return compiled
+    return _compiled(function, forceinline=True, _nrt=False)
+
+
+def compile_for(function: Callable[..., object], *kinds: types.Type) -> None:
+    """Compile a kernel for these types of arguments, and keep it, without calling it."""
+    cast(Kernel, function).compile(kinds)

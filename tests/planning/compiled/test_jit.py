@@ -8,11 +8,11 @@ import sys
 from pathlib import Path
 
 import esplanade
-from esplanade.planning.compiled import jit
+from esplanade.planning.compiled import cache
 from esplanade.planning.compiled.jit import kernel
 from tests.planning.worlds import COMPILED
 
-SHOW = "from esplanade.planning.compiled import jit; import numba; print(numba.config.CACHE_DIR)"
+SHOW = "from esplanade.planning.compiled import cache; print(cache.folder())"
 PROBE = """
 from esplanade.planning.compiled.jit import kernel
 
@@ -74,7 +74,7 @@ def test_every_file_that_compiled_code_can_reach_is_in_the_digest() -> None:
         if path not in reached:
             reached.add(path)
             ahead |= imported_by(path)
-    outside = {p for p in reached if p.name != "__init__.py"} - set(jit.sources())
+    outside = {p for p in reached if p.name != "__init__.py"} - set(cache.sources())
     assert not outside
 
 

@@ -1,0 +1,136 @@
+"""Compiles what ticks of actors call, without a zone: in a process of its own, for another.
+
+Its types are told by empty arrays; a test holds them against those of a real zone. Were they ever
+others, kernels would be compiled in vain and a start take longer: nothing else.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numba import typeof, types
+from numpy.typing import DTypeLike, NDArray
+
+from esplanade.planning.agents import _tick_kernels as kernels
+from esplanade.planning.agents._reservation_kernels import Reservations
+from esplanade.planning.agents._task_kernels import World
+from esplanade.planning.agents.agents import PARAMETERS, Agents, Decisions
+from esplanade.planning.agents.search import compass_moves, make_workspace
+from esplanade.planning.compiled.handle import hold_for
+from esplanade.planning.compiled.jit import compile_for
+from esplanade.planning.grid._grid_kernels import GridArrays
+from esplanade.planning.ground._geometry_kernels import SegmentIndex
+from esplanade.planning.ground.layered import LayeredArrays
+from esplanade.planning.people._prediction_kernels import Prediction
+from esplanade.planning.people._risk_kernels import RadialTables, RiskArrays
+
+
+def _array(dimensions: int, kind: DTypeLike = np.float64) -> NDArray[Any]:
+    return np.zeros((1,) * dimensions, dtype=kind)
+
+
+def _type(value: object) -> types.Type:
+    return typeof(value)  # type: ignore[no-untyped-call]
+
+
+def _ground() -> tuple[GridArrays, SegmentIndex]:
+    integers, floats = _array(1, np.int64), _array(1, np.float32)
+    links = _array(2, np.int32)
+    box = 0.0, 0.0, 1.0, 1.0
+    layered = LayeredArrays(
+        _array(3, np.int32), floats, floats, links, links, floats, *box, 0.25, 1, 1
+    )
+    grid = GridArrays(layered, _array(2, np.float32), _array(2, np.bool_), False)
+    return grid, SegmentIndex(_array(2), integers, integers, 0.0, 0.0, 1.0, 1.0, 1, 1)
+
+
+def _risk() -> RiskArrays:
+    tables = RadialTables(_array(3, np.float32), _array(1), 1.0, 1.0)
+    index = _array(2, np.int64)
+    return RiskArrays(tables, _array(3), index, index, index, 0.0, 0.0, 1.0, 1.0, 1, 1)
+
+
+def _reservations() -> Reservations:
+    flags, index = _array(1, np.bool_), _array(2, np.int64)
+    return Reservations(
+        _array(3),
+        _array(2),
+        _array(1),
+        _array(1, np.int64),
+        _array(2),
+        flags,
+        flags,
+        index,
+        index,
+        0.0,
+        0.0,
+        1.0,
+        1.0,
+        1.0,
+        1,
+        1,
+    )
+
+
+def _crowd() -> Agents:
+    integers, floats, places = _array(1, np.int64), _array(1), _array(2)
+    return Agents(
+        places,
+        places,
+        integers,
+        integers,
+        places,
+        integers,
+        _array(1, PARAMETERS),
+        integers,
+        _array(1, np.bool_),
+        integers,
+        _array(3),
+        floats,
+        floats,
+        _array(2),
+    )
+
+
+def zone() -> kernels.Zone:
+    """A zone that means nothing, of the types of any other."""
+    grid, barriers = _ground()
+    integers, places = _array(1, np.int64), _array(2)
+    decisions = Decisions(_array(3), places, integers, integers, integers, _array(1, np.bool_))
+    return kernels.Zone(
+        World(grid, _risk(), _reservations(), 0.4),
+        barriers,
+        _array(3, np.float32),
+        _array(2, np.float32),
+        compass_moves(),
+        _crowd(),
+        integers,
+        decisions,
+        places,
+        integers,
+        1.0,
+        1,
+    )
+
+
+def signatures() -> list[tuple[Callable[..., object], tuple[types.Type, ...]]]:
+    """Every kernel of a tick that Python calls, with the types that it is called for."""
+    held, memory = hold_for(_type(zone())), hold_for(_type(make_workspace(1, 1)))
+    people = _type(Prediction(_array(3), _array(3), _array(2), _array(2), _array(2)))
+    number, count = types.float64, types.int64
+    rows = _type(_array(1)), _type(_array(3)), _type(_array(2))
+    return [
+        (kernels.plan_and_step, (held, memory, count, people, number)),
+        (kernels.decide_some, (held, people, number, count, count, memory)),
+        (kernels.settle_all, (held, number, *rows)),
+        (kernels.index_future, (held, people, count, count)),
+        (kernels.put_in_order, (held, number)),
+        (kernels.take_steps, (held, number)),
+        (kernels.has_room, (held, memory, count)),
+    ]
+
+
+def compile_all() -> None:
+    """Compile them all."""
+    for kernel, kinds in signatures():
+        compile_for(kernel, *kinds)
