@@ -14,7 +14,8 @@ from numpy.typing import DTypeLike, NDArray
 from esplanade.planning.agents import _tick_kernels as kernels
 from esplanade.planning.agents._reservation_kernels import Reservations
 from esplanade.planning.agents._task_kernels import World
-from esplanade.planning.agents.agents import PARAMETERS, Agents, Decisions
+from esplanade.planning.agents.agent_table import AgentTable
+from esplanade.planning.agents.agents import Decisions
 from esplanade.planning.agents.search import compass_moves, make_workspace
 from esplanade.planning.compiled.handle import hold_for
 from esplanade.planning.compiled.jit import compile_for
@@ -45,7 +46,7 @@ def _ground() -> tuple[GridArrays, SegmentIndex]:
 
 
 def _risk() -> RiskArrays:
-    tables = RadialTables(_array(3, np.float32), _array(1), 1.0, 1.0)
+    tables = RadialTables(_array(4, np.float32), _array(1), 1.0, 1.0)
     index = _array(2, np.int64)
     return RiskArrays(tables, _array(3), index, index, index, 0.0, 0.0, 1.0, 1.0, 1, 1)
 
@@ -72,38 +73,18 @@ def _reservations() -> Reservations:
     )
 
 
-def _crowd() -> Agents:
-    integers, floats, places = _array(1, np.int64), _array(1), _array(2)
-    return Agents(
-        places,
-        places,
-        integers,
-        integers,
-        places,
-        integers,
-        _array(1, PARAMETERS),
-        integers,
-        _array(1, np.bool_),
-        integers,
-        _array(3),
-        floats,
-        floats,
-        _array(2),
-    )
-
-
 def zone() -> kernels.Zone:
     """A zone that means nothing, of the types of any other."""
     grid, barriers = _ground()
     integers, places = _array(1, np.int64), _array(2)
     decisions = Decisions(_array(3), places, integers, integers, integers, _array(1, np.bool_))
     return kernels.Zone(
-        World(grid, _risk(), _reservations(), 0.4),
+        World(grid, _risk(), _reservations(), 0.4, 0.25),
         barriers,
         _array(3, np.float32),
         _array(2, np.float32),
         compass_moves(),
-        _crowd(),
+        AgentTable(1).agents,
         integers,
         decisions,
         places,
@@ -118,11 +99,10 @@ def signatures() -> list[tuple[Callable[..., object], tuple[types.Type, ...]]]:
     held, memory = hold_for(_type(zone())), hold_for(_type(make_workspace(1, 1)))
     people = _type(Prediction(_array(3), _array(3), _array(2), _array(2), _array(2)))
     number, count = types.float64, types.int64
-    rows = _type(_array(1)), _type(_array(3)), _type(_array(2))
     return [
         (kernels.plan_and_step, (held, memory, count, people, number)),
         (kernels.decide_some, (held, people, number, count, count, memory)),
-        (kernels.settle_all, (held, number, *rows)),
+        (kernels.settle_all, (held, number)),
         (kernels.index_future, (held, people, count, count)),
         (kernels.put_in_order, (held, number)),
         (kernels.take_steps, (held, number)),
