@@ -39,7 +39,7 @@ NEARER_M = 0.5
 WAITING_MPS = 0.2
 """A second without progress counts like this distance to a passage."""
 LEFT_RAD = 1.0
-"""An agent is wholly on the left of a lane if it is seen at this angle from the lane's beginning."""
+"""An agent is wholly on the left of a lane if it is seen at this angle from its beginning."""
 
 
 class Lane(NamedTuple):

@@ -1,7 +1,7 @@
 """Wave fronts that lead to a goal, on bare arrays.
 
-Both kinds fill the same potential: per cell the distance left from a *waypoint* and the waypoint's
-place, so that the potential anywhere in the cell is `potential distance + way to the waypoint`.
+Both kinds fill the same array: for each cell a *waypoint* and its distance to the goal, so that the
+potential anywhere in the cell is that distance plus the distance to the waypoint.
 """
 
 import numpy as np
@@ -12,12 +12,12 @@ from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.grid._grid_kernels import GridArrays, follow, length, line_is_clear
 
 Guide = NDArray[np.float32]
-"""(N, 3): metres from the waypoint to the goal, waypoint x, waypoint y; inf where no way leads."""
+"""(N, 3): metres from the waypoint to the goal, waypoint x, waypoint y; inf where no path leads."""
 
 
 @inlined
 def potential_at(potential: Guide, cell: int, x: float, y: float) -> float:
-    """Metres from a point, in a cell, to the goal; inf where no way leads."""
+    """Metres from a point, in a cell, to the goal; inf where no path leads."""
     if cell < 0:
         return np.inf
     g = potential[cell]
@@ -28,9 +28,9 @@ def potential_at(potential: Guide, cell: int, x: float, y: float) -> float:
 def direction_at(
     grid: GridArrays, potential: Guide, cell: int, x: float, y: float
 ) -> tuple[float, float, float]:
-    """Unit vector toward the waypoint and the way to it; zeros at the goal or where no way leads.
+    """Unit vector and distance to the waypoint; zeros at the goal or where no path leads.
 
-    Within a quarter of a cell of a waypoint the one after it counts.
+    Within a quarter of a cell of a waypoint, the next waypoint is taken.
     """
     if cell < 0:
         return 0.0, 0.0, 0.0
@@ -49,10 +49,10 @@ def direction_at(
 
 
 @inlined
-def _way_to(
+def _passable_neighbour(
     grid: GridArrays, body: int, step_on_m: float, radius: float, cell: int, direction: int
 ) -> int:
-    """Neighbour that a disc may pass to, without cutting an obstacle's corner; -1 if it may not."""
+    """The neighbour in a direction, if a disc may pass to it without cutting a corner; else -1."""
     clear = grid.clearance[body]
     other = grid.layered.links[cell, direction]
     if other < 0 or clear[other] < radius:
@@ -83,7 +83,7 @@ def spread_wave(
     keys: NDArray[np.float64],
     items: NDArray[np.int64],
 ) -> int:
-    """Fill a potential; returns how many cells were reached.
+    """Fill a potential; returns the number of cells that were reached.
 
     The wave spreads from cell to cell over the links, never cutting a corner. A cell that sees its
     neighbour's waypoint within `longest_sight` metres takes that waypoint over, else the neighbour
@@ -110,7 +110,7 @@ def spread_wave(
         if reached > 0 and not seen:
             own[0] = np.inf
             for direction in range(8):
-                other = _way_to(grid, body, step_on_m, radius, cell, direction)
+                other = _passable_neighbour(grid, body, step_on_m, radius, cell, direction)
                 if other < 0 or not settled[other]:
                     continue
                 cx = centres[other, 0]
@@ -125,7 +125,7 @@ def spread_wave(
         settled[cell] = 1
         reached += 1
         for direction in range(8):
-            other = _way_to(grid, body, step_on_m, radius, cell, direction)
+            other = _passable_neighbour(grid, body, step_on_m, radius, cell, direction)
             if other < 0 or settled[other]:
                 continue
             cx = centres[other, 0]
@@ -156,8 +156,8 @@ def extend_into_obstacles(
 ) -> None:
     """Lead out of cells that are not free but lie next to reached ones, three rings deep.
 
-    Who was put beside a wall, closer than its radius, then still knows the way. Such ground
-    counts thrice its length.
+    An agent closer to a wall than its radius then still finds the path. Distances over such cells
+    count threefold.
     """
     for ring in range(1, 4):
         for cell in range(len(settled)):
@@ -192,7 +192,7 @@ def distances(
     positions: NDArray[np.float64],
     out: NDArray[np.float64],
 ) -> None:
-    """`potential_at` for (N,), (N, 2) -> out (N,)."""
+    """Fill `out` (N,) with `potential_at` of cells (N,) and positions (N, 2)."""
     for k in range(len(positions)):
         out[k] = potential_at(potential, cells[k], positions[k, 0], positions[k, 1])
 
@@ -205,7 +205,7 @@ def directions(
     positions: NDArray[np.float64],
     out: NDArray[np.float64],
 ) -> None:
-    """`direction_at` for (N,), (N, 2) -> out (N, 2)."""
+    """Fill `out` (N, 2) with the vectors of `direction_at`, for cells (N,), positions (N, 2)."""
     for k in range(len(positions)):
         dx, dy, _ = direction_at(grid, potential, cells[k], positions[k, 0], positions[k, 1])
         out[k, 0] = dx

@@ -1,35 +1,32 @@
-"""The potential that potentials the search: how far it is to a goal from everywhere.
+"""The potential of a goal, which guides the search: the distance to the goal from everywhere.
 
 Lei & Li guide their search by NF1 (after Barraquand & Latombe): a wave front that spreads from
 the goal over free cells. NF1 measures along the grid, up to 8 % too long and in eight directions
-only; `Wave.SIGHT` spreads the same front but measures straight lines of sight, so that ways are
-shortest at any angle. `Wave.NF1` stays as the reference.
+only; `Wave.SIGHT` spreads the same front but measures along straight lines of sight, so that paths
+are shortest at any angle. `Wave.NF1` stays as the reference.
 """
 
 from __future__ import annotations
 
 import math
 from enum import Enum
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from esplanade.planning.grid.grid import LayeredGrid
 from esplanade.planning.routes import _potential_kernels as kernels
 from esplanade.planning.scene.bodies import Body
 
-if TYPE_CHECKING:
-    from esplanade.planning.grid.grid import LayeredGrid
-
-
 _MOVED_M = 0.5
+"""Greatest distance that a goal is moved to where the disc fits."""
 
 
 class Wave(Enum):
-    """How a wave front measures the way."""
+    """How a wave front measures distance."""
 
     SIGHT = 24.0
-    """Along lines of sight up to so many metres, so that they cost no more in a large zone."""
+    """Along lines of sight of at most 24 m, so that they cost no more in a large zone."""
     NF1 = 0.0
     """From cell to cell."""
 
@@ -37,9 +34,8 @@ class Wave(Enum):
 class Potential:
     """Distances and directions to one goal for discs of one radius and kind of body.
 
-    Where the disc does not fit at the goal, they are those to the nearest place where it does, if
-    there is one within half a metre.
-    Cost O(cells log cells) once; a look-up is O(1).
+    Where the disc does not fit at the goal, they lead to the nearest place where it fits, if that
+    is within half a metre. Cost O(cells log cells) once; a look-up is O(1).
 
     Raises
     ------
@@ -93,7 +89,7 @@ class Potential:
             )
 
     def distance(self, positions: ArrayLike, heights: ArrayLike) -> NDArray[np.float64]:
-        """Metres to the goal, float64 (N,), inf where no way leads, for (N, 2) and (N,)."""
+        """Metres to the goal, float64 (N,), inf where no path leads, for (N, 2) and (N,)."""
         points, cells = self.grid.on_ground(positions, heights)
         out = np.empty(len(points))
         kernels.distances(self.values, cells, points, out)

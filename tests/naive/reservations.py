@@ -6,20 +6,20 @@ import math
 
 import numpy as np
 
-from esplanade.planning.agents._priority_kernels import JAM_ACTORS, JAM_M
-from esplanade.planning.agents._reservation_kernels import (
-    AGAINST,
-    EVADING_M,
-    EVADING_SLICES,
-    MEETING_ROOM,
-    MEETING_ROOM_M,
-    QUEUE_ROOM,
-    QUEUE_ROOM_M,
-    SOFT,
-    Reservations,
-)
-from esplanade.planning.scene.heights import BODIES_OVERLAP_M
+from esplanade.planning.agents._reservation_kernels import Reservations
 from tests.naive.geometry import Point, closest_approach
+
+BODIES_OVERLAP_M = 1.8
+SOFT = 0.25
+EVADING_SLICES = 2
+EVADING_M = 0.005
+MEETING_ROOM_M = 0.8
+MEETING_ROOM = 0.2
+QUEUE_ROOM_M = 0.5
+QUEUE_ROOM = 0.2
+AGAINST = -0.2
+JAM_M = 8.0
+JAM_ACTORS = 8
 
 
 def conflict(

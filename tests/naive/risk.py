@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning import Prediction, RiskModel, Spread
-from esplanade.planning.scene.heights import BODIES_OVERLAP_M
+
+BODIES_OVERLAP_M = 1.8
 
 
 def sigma_grid() -> list[tuple[float, float, float]]:

@@ -11,11 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning import LayeredGrid, Potential, RiskField, SearchStatus
-from esplanade.planning.agents._reservation_kernels import MARGIN_M, Reservations
-from esplanade.planning.agents._search_kernels import DEPTH_BONUS_S, LIKELY_PART, Moves
+from esplanade.planning.agents._reservation_kernels import Reservations
+from esplanade.planning.agents._search_kernels import Moves
 from esplanade.planning.agents._task_kernels import Task, advance, risk_price, time_cost, wall_cost
 from tests.naive.geometry import Point
 from tests.naive.reservations import conflict
+
+MARGIN_M = 0.03
+DEPTH_BONUS_S = 0.01
+LIKELY_PART = 0.7
 
 
 @dataclass(frozen=True)

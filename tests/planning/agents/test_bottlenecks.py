@@ -1,4 +1,4 @@
-"""Keeping right at contested passages: whom it concerns, where it leads, who goes first."""
+"""Keeping right at contested passages: the agents concerned, their lanes and priorities."""
 
 import math
 
@@ -7,40 +7,33 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from esplanade.planning import PASSAGE
 from esplanade.planning.agents._bottleneck_kernels import (
-    AFTER_M,
-    LEFT_RAD,
-    NEARER_M,
-    OPPOSED,
-    PASSED_M,
-    WAITING_MPS,
     Lane,
-    astray,
     find_contested,
+    off_lane_m,
     order_at_passages,
     see_passage,
 )
 from esplanade.planning.agents._decide_kernels import make_task
-from esplanade.planning.agents._passage_kernels import (
-    BEFORE_M,
-    FEET_M,
-    FOUND,
-    MIDDLE_X,
-    MIDDLE_Y,
-    NEAREST_M,
-    PASSAGE,
-    WAITED_S,
-)
 from esplanade.planning.grid.grid import LayeredGrid
 from esplanade.planning.routes.potential import Potential
 from esplanade.planning.scene.scene import Scene
 from tests.planning.agents.test_batch import crowd_of
 from tests.planning.worlds import holds, open_grid
 
+OPPOSED = 8
+BEFORE_M = 20.0
+AFTER_M = 4.0
+PASSED_M = 8.0
+NEARER_M = 0.5
+WAITING_MPS = 0.2
+LEFT_RAD = 1.0
+
 EAST = Lane(8.0, 8.0, 1.0, 0.0, 0.3, 0.8)
 
 
-def _naive_astray(lane: Lane, x: float, y: float) -> float:
+def _naive_off_lane_m(lane: Lane, x: float, y: float) -> float:
     """The same by complex numbers, with the way through the passage along the real axis."""
     z = complex(x - lane.x, y - lane.y) / complex(lane.along_x, lane.along_y)
     near = (AFTER_M if z.real > 0.0 else BEFORE_M) - abs(z)
@@ -52,19 +45,19 @@ def _naive_astray(lane: Lane, x: float, y: float) -> float:
 
 @given(st.floats(-25.0, 25.0), st.floats(-25.0, 25.0), st.floats(-3.2, 3.2), st.floats(0.1, 1.0))
 @holds(200, 30)
-def test_only_the_left_is_astray(x, y, turn, weight) -> None:
+def test_only_the_left_is_off_lane_m(x, y, turn, weight) -> None:
     lane = EAST._replace(along_x=math.cos(turn), along_y=math.sin(turn), weight=weight)
-    assert astray(lane, x, y) == pytest.approx(_naive_astray(lane, x, y), abs=1e-9)
-    assert astray(lane._replace(weight=0.0), x, y) == 0.0
+    assert off_lane_m(lane, x, y) == pytest.approx(_naive_off_lane_m(lane, x, y), abs=1e-9)
+    assert off_lane_m(lane._replace(weight=0.0), x, y) == 0.0
 
 
 def _facing(west: int, east: int):
-    """So many on either side of the same passage, who all want through it; places beside it."""
+    """Crowds on either side of one passage that all want to go through it."""
     places = [(4.0 - 0.1 * n, 8.0) for n in range(west)] + [(12.0, 8.0 + n) for n in range(east)]
     crowd = crowd_of(places, places)
-    crowd.passages[:, :2] = 8.0
-    crowd.passages[:, 2] = [1.0] * west + [-1.0] * east
-    crowd.passages[:, NEAREST_M] = np.hypot(*(crowd.positions - 8.0).T)
+    crowd.passages["middle_x"] = crowd.passages["middle_y"] = 8.0
+    crowd.passages["along_x"] = [1.0] * west + [-1.0] * east
+    crowd.passages["nearest_m"] = np.hypot(*(crowd.positions - 8.0).T)
     return crowd
 
 
@@ -76,7 +69,7 @@ def test_a_passage_is_contested_by_enough_who_come_against_one() -> None:
     assert not contested[OPPOSED - 1 :].any(), "seven come against the east"
 
 
-def test_who_has_come_through_contests_nothing() -> None:
+def test_agents_that_have_come_through_contest_nothing() -> None:
     crowd = _facing(OPPOSED, OPPOSED)
     crowd.positions[-1] = (5.0, 8.0)
     contested = np.zeros(2 * OPPOSED, dtype=bool)
@@ -87,22 +80,24 @@ def test_who_has_come_through_contests_nothing() -> None:
 
 def test_the_two_ends_of_a_long_passage_are_one() -> None:
     crowd = _facing(OPPOSED, OPPOSED)
-    crowd.passages[:OPPOSED, MIDDLE_X] -= 3.0
+    crowd.passages["middle_x"][:OPPOSED] -= 3.0
     contested = np.zeros(2 * OPPOSED, dtype=bool)
     find_contested(crowd, contested)
     assert contested.all()
 
 
-@pytest.mark.parametrize("column", [MIDDLE_X, MIDDLE_Y, FEET_M])
-def test_another_passage_or_floor_is_not_contested(column) -> None:
+@pytest.mark.parametrize(
+    ("field", "apart_m"), [("middle_x", 7.0), ("middle_y", 3.0), ("floor_m", 3.0)]
+)
+def test_another_passage_or_floor_is_not_contested(field, apart_m) -> None:
     crowd = _facing(OPPOSED, OPPOSED)
-    crowd.passages[:OPPOSED, column] -= 3.0 if column != MIDDLE_X else 7.0
+    crowd.passages[field][:OPPOSED] -= apart_m
     contested = np.ones(2 * OPPOSED, dtype=bool)
     find_contested(crowd, contested)
     assert not contested.any()
 
 
-def test_who_has_come_through_goes_first() -> None:
+def test_agents_that_have_come_through_go_first() -> None:
     crowd = _facing(OPPOSED, OPPOSED + 1)
     crowd.positions[-1] = (5.0, 8.0)
     contested = np.zeros(2 * OPPOSED + 1, dtype=bool)
@@ -123,14 +118,14 @@ def test_who_has_come_through_goes_first() -> None:
     assert left_m[-1] == pytest.approx(-3.0), "on the other side it goes up to the goal first"
 
 
-def test_who_waits_in_vain_goes_before_who_has_come_as_near() -> None:
+def test_waiting_in_vain_gives_priority() -> None:
     crowd = _facing(OPPOSED, OPPOSED)
-    crowd.passages[:, NEAREST_M] = 5.0
-    crowd.passages[:, WAITED_S] = np.random.default_rng(0).permutation(2 * OPPOSED)
-    crowd.passages[0, NEAREST_M] = 4.0
+    crowd.passages["nearest_m"] = 5.0
+    crowd.passages["waited_s"] = np.random.default_rng(0).permutation(2 * OPPOSED)
+    crowd.passages["nearest_m"][0] = 4.0
     left_m = np.full(2 * OPPOSED, 30.0)
     order_at_passages(crowd, np.ones(2 * OPPOSED, dtype=bool), left_m)
-    waited_s = crowd.passages[:, WAITED_S]
+    waited_s = crowd.passages["waited_s"]
     assert left_m[1:] == pytest.approx(5.0 - WAITING_MPS * waited_s[1:])
     assert left_m[0] == pytest.approx(4.0 - WAITING_MPS * waited_s[0])
     waited_s[:] = 1e3
@@ -151,12 +146,14 @@ def test_to_come_nearer_by_enough_ends_the_waiting() -> None:
         crowd.positions[0] = random.uniform((2.0, 6.0), (7.5, 10.0))
         crowd.cells[:] = grid.on_ground(crowd.positions, [0.0])[1]
         see_passage(grid.arrays, potential, crowd, 0, True, 0.1)
-        away = math.dist(crowd.positions[0], crowd.passages[0, :2])
+        away = math.dist(
+            crowd.positions[0], (crowd.passages["middle_x"][0], crowd.passages["middle_y"][0])
+        )
         waited_s += 0.1
         if away < nearest - NEARER_M:
             nearest, waited_s = away, 0.0
-        assert crowd.passages[0, NEAREST_M] == pytest.approx(nearest)
-        assert crowd.passages[0, WAITED_S] == pytest.approx(waited_s)
+        assert crowd.passages["nearest_m"][0] == pytest.approx(nearest)
+        assert crowd.passages["waited_s"][0] == pytest.approx(waited_s)
 
 
 def test_a_passage_is_kept_until_one_is_well_beyond() -> None:
@@ -171,11 +168,11 @@ def test_a_passage_is_kept_until_one_is_well_beyond() -> None:
         crowd.positions[0, 0] = x
         crowd.cells[:] = grid.on_ground(crowd.positions, [0.0])[1]
         see_passage(grid.arrays, potentials[0], crowd, 0, True, 3.0)
-        seen.append(bool(crowd.passages[0, 2]))
+        seen.append(bool(crowd.passages["along_x"][0]))
     assert seen == [True, True, True, True, False]
     crowd.positions[0, 0] = 3.0
     see_passage(grid.arrays, potentials[0], crowd, 0, False, 3.0)
-    assert (crowd.passages == np.zeros((1, PASSAGE))).all()
+    assert (crowd.passages == np.zeros(1, dtype=PASSAGE)).all()
 
 
 def test_on_open_ground_nobody_has_a_passage() -> None:
@@ -186,7 +183,8 @@ def test_on_open_ground_nobody_has_a_passage() -> None:
     potentials = Potential(grid, (12.0, 8.0), 0, 0.25).values[None]
     for a in range(2):
         see_passage(grid.arrays, potentials[0], crowd, a, True, 0.1)
-    assert not crowd.passages[:, :FOUND].any()
+    for field in ("middle_x", "middle_y", "along_x", "along_y", "half_m", "floor_m"):
+        assert not crowd.passages[field].any()
 
 
 def test_neither_lanes_nor_order_depend_on_the_order_of_actors() -> None:
@@ -209,21 +207,22 @@ def test_neither_lanes_nor_order_depend_on_the_order_of_actors() -> None:
             see_passage(grid.arrays, potentials[crowd.potential_rows[a]], crowd, a, True, 0.1)
         find_contested(crowd, contested)
         order_at_passages(crowd, contested, left_m)
-        return np.column_stack([crowd.passages, contested, left_m])
+        return np.column_stack([crowd.passages.tolist(), contested, left_m])
 
     rows = random.permutation(40)
     once, again = decided(np.arange(40)), decided(rows)
-    assert once[:, PASSAGE].any()
+    assert once[:, -2].any()
     assert (once[rows] == again).all()
 
 
 @pytest.mark.parametrize(("x", "weight"), [(6.0, 0.8), (9.0, 0.0)])
-def test_who_is_about_to_arrive_keeps_to_no_lane(x, weight) -> None:
+def test_an_agent_about_to_arrive_keeps_to_no_lane(x, weight) -> None:
     grid = open_grid(16.0)
     crowd = crowd_of([(x, 8.0)], [(12.0, 8.0)])
     crowd.potential_rows[:] = 0
     crowd.cells[:] = grid.on_ground(crowd.positions, [0.0])[1]
-    crowd.passages[0, :3] = (8.0, 8.0, 1.0)
+    for field, value in (("middle_x", 8.0), ("middle_y", 8.0), ("along_x", 1.0)):
+        crowd.passages[field][0] = value
     potentials = Potential(grid, (12.0, 8.0), 0, 0.25).values[None]
     assert make_task(potentials, crowd, 0, 0.3, 0.1, True).lane.weight == weight
     assert make_task(potentials, crowd, 0, 0.3, 0.1, False).lane.weight == 0.0

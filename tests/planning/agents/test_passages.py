@@ -1,26 +1,21 @@
-"""Narrow places on the way: what is one, where its middle is, and which way it leads."""
+"""Narrow passages on a path: which places are passages, their middles and directions."""
 
 import math
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from esplanade.planning.agents._passage_kernels import (
-    FOUND,
-    NARROW_M,
-    RAYS,
-    WALL_PART,
-    find_passage,
-    measure_passage,
-)
+from esplanade.planning.agents._passage_kernels import find_passage, measure_passage
 from esplanade.planning.grid.grid import LayeredGrid
 from esplanade.planning.routes.potential import Potential
 from esplanade.planning.scene.scene import Scene
 from tests.planning.worlds import holds, lines, open_grid
 
 RADIUS_M = 0.25
+NARROW_M = 2.2
+WALL_PART = 0.8
+RAYS = 8
 SIDE_M = 16.0
 
 
@@ -37,9 +32,8 @@ def _found(grid, start, goal):
     """The passage on the way between two points, None without one."""
     cell = int(grid.on_ground([start], [0.0])[1][0])
     potential = Potential(grid, goal, 0, RADIUS_M).values
-    out = np.zeros(FOUND)
-    found = find_passage(grid.arrays, potential, 0, RADIUS_M, cell, *start, out)
-    return out if found else None
+    found, passage = find_passage(grid.arrays, potential, 0, RADIUS_M, cell, *start)
+    return passage if found else None
 
 
 @given(st.floats(1.0, 2.4), st.floats(-0.6, 0.6), st.floats(2.0, 14.0), st.floats(2.0, 14.0))
@@ -51,14 +45,14 @@ def test_a_doorway_is_found_from_wherever_one_comes(door_m, turn, start_y, goal_
         if passage is None:  # it lies around a corner
             assert max(abs(start_y - 8.0), abs(goal_y - 8.0)) > 2.0
             continue
-        assert passage[:2] == pytest.approx([8.0, 8.0], abs=0.4)
+        assert (passage.middle_x, passage.middle_y) == pytest.approx((8.0, 8.0), abs=0.4)
         across = math.copysign(1.0, goal_x - start_x)
         through = (across * math.cos(turn), across * math.sin(turn))
-        assert passage[2] * through[0] + passage[3] * through[1] > math.cos(0.35)
-        assert passage[4] == pytest.approx(door_m / 2 - RADIUS_M, abs=0.3)
+        assert passage.along_x * through[0] + passage.along_y * through[1] > math.cos(0.35)
+        assert passage.half_m == pytest.approx(door_m / 2 - RADIUS_M, abs=0.3)
 
 
-def test_who_sees_a_doorway_straight_ahead_finds_it() -> None:
+def test_a_doorway_straight_ahead_is_found() -> None:
     grid = _wall(2.0, math.pi / 2)
     for y in (5.0, 7.0, 8.0, 9.0, 11.0):
         assert _found(grid, (3.0, y), (13.0, 8.0)) is not None
@@ -77,7 +71,7 @@ def test_wide_gaps_lone_walls_and_open_ground_are_no_passages() -> None:
 def test_a_point_without_room_is_in_no_passage() -> None:
     grid = _wall(2.0, math.pi / 2)
     cell = int(grid.on_ground([(8.0, 3.0)], [0.0])[1][0])
-    assert not measure_passage(grid.arrays, 0, RADIUS_M, cell, 8.0, 3.0, np.zeros(FOUND))
+    assert not measure_passage(grid.arrays, 0, RADIUS_M, cell, 8.0, 3.0)[0]
 
 
 def _naive_narrowest(grid, x, y, angles):
@@ -112,11 +106,11 @@ def test_no_more_is_looked_for_than_counts_and_no_less(walls, x, y) -> None:
         finer = [angle + (n - 2) * 0.25 * apart for n in range(5)]
         width, angle, middle = _naive_narrowest(grid, *middle, finer)
         expected = width < NARROW_M
-    out = np.zeros(FOUND)
     cell = int(grid.on_ground([(x, y)], [0.0])[1][0])
-    assert measure_passage(grid.arrays, 0, RADIUS_M, cell, x, y, out) == expected
+    found, passage = measure_passage(grid.arrays, 0, RADIUS_M, cell, x, y)
+    assert found == expected
     if expected:
-        assert out[:2] == pytest.approx(middle, abs=1e-6)
-        assert 2.0 * (out[4] + (1.0 - WALL_PART) * RADIUS_M) == pytest.approx(
+        assert (passage.middle_x, passage.middle_y) == pytest.approx(middle, abs=1e-6)
+        assert 2.0 * (passage.half_m + (1.0 - WALL_PART) * RADIUS_M) == pytest.approx(
             max(width, 2.0 * (1.0 - WALL_PART) * RADIUS_M), abs=1e-6
         )

@@ -8,23 +8,23 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from esplanade.planning.agents._reservation_kernels import (
-    MARGIN_M,
-    MEETING_ROOM,
-    MEETING_ROOM_M,
-    QUEUE_ROOM,
-    QUEUE_ROOM_M,
-    SOFT,
     conflict,
     crowding,
     meetings,
     others_near,
     room_wanted,
 )
-from esplanade.planning.scene.heights import BODIES_OVERLAP_M
 from tests.naive import reservations as naive
 from tests.planning.worlds import holds, open_grid, reserved
 
 SLICES = 3
+BODIES_OVERLAP_M = 1.8
+MARGIN_M = 0.03
+SOFT = 0.25
+MEETING_ROOM_M = 0.8
+MEETING_ROOM = 0.2
+QUEUE_ROOM_M = 0.5
+QUEUE_ROOM = 0.2
 
 
 EAST, WEST = (1.0, 0.0), (-1.0, 0.0)

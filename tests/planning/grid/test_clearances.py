@@ -7,7 +7,6 @@ import pytest
 
 from esplanade.planning import Body, LayeredGrid, Wall
 from esplanade.planning.grid.clearances import (
-    CLEARANCE_CAP_M,
     cells_within,
     kind_of,
     write_clearance,
@@ -42,7 +41,7 @@ def test_clearance_is_the_distance_to_what_stops_in_a_box_as_over_all() -> None:
     walls = [((2.0, 1.0), (2.0, 4.0)), ((5.0, 6.0), (7.5, 3.0))]
     grid = grid_of(8.0, walls=[Wall(start=a, end=b) for a, b in walls])
     expected = [
-        min(CLEARANCE_CAP_M, *(point_segment_distance(centre, a, b) for a, b in walls))
+        min(3.0, *(point_segment_distance(centre, a, b) for a, b in walls))
         for centre in grid.centres.tolist()
     ]
     out = np.empty(len(expected), dtype=np.float32)

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from esplanade.planning import Body, LayeredGrid, Polygon, Scene, Wall
 from esplanade.planning.grid._grid_kernels import line_is_clear
-from esplanade.planning.grid.grid import CLEARANCE_CAP_M
 from tests.naive.geometry import point_segment_distance, segment_distance
 from tests.naive.waves import clearance_field
 from tests.planning.worlds import UPPER_M, as_rows, holds, lines, open_grid, points, two_floors
 
+CLEARANCE_CAP_M = 3.0
 SQUARE = [(1.0, 1.0), (2.5, 1.2), (2.4, 2.6), (0.9, 2.4)]
 HOOK = [(3.0, 3.0), (4.7, 3.0), (4.7, 3.5), (3.5, 3.5), (3.5, 4.7), (3.0, 4.7)]
 
