@@ -19,7 +19,7 @@ from importlib.abc import MetaPathFinder
 
 class Interrupting(MetaPathFinder):
     def find_spec(self, name, path, target=None):
-        if name == sys.argv[1]:
+        if name == module:
             os.kill(os.getpid(), signal.SIGINT)
 
 module, *words = sys.argv[1:]
@@ -53,8 +53,7 @@ def hear_interrupts() -> None:
     ("module", "words"),
     [
         ("esplanade.commandline.interrupts", "serve"),
-        ("signal", "serve"),
-        ("esplanade.cli", "--help"),
+        ("difflib", "--help"),
         ("argparse", "serve --help"),
         ("esplanade.server.options", "serve"),
         ("pydantic_core", "serve"),
