@@ -138,7 +138,7 @@ def plan_and_step(
         z.no_potential,
         z.moves,
         prediction,
-        z.crowd,
+        z.agents,
         tick_s,
         first,
         len(z.order),

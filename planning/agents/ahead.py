@@ -20,8 +20,8 @@ from esplanade.planning.agents.search import compass_moves, make_workspace
 from esplanade.planning.compiled.handle import hold_for
 from esplanade.planning.compiled.jit import compile_for
 from esplanade.planning.grid._grid_kernels import GridArrays
-from esplanade.planning.ground._geometry_kernels import SegmentIndex
-from esplanade.planning.ground.layered import LayeredArrays
+from esplanade.planning.ground._geometry_kernels import BARRIER, BarrierIndex
+from esplanade.planning.ground.layered import PLACE, LayeredArrays
 from esplanade.planning.people._prediction_kernels import Prediction
 from esplanade.planning.people._risk_kernels import RadialTables, RiskArrays
 
@@ -31,18 +31,18 @@ def _array(dimensions: int, kind: DTypeLike = np.float64) -> NDArray[Any]:
 
 
 def _type(value: object) -> types.Type:
-    return typeof(value)  # type: ignore[no-untyped-call]
+    return typeof(value)  # type: ignore[no-any-return, no-untyped-call]
 
 
-def _ground() -> tuple[GridArrays, SegmentIndex]:
+def _ground() -> tuple[GridArrays, BarrierIndex]:
     integers, floats = _array(1, np.int64), _array(1, np.float32)
     links = _array(2, np.int32)
     box = 0.0, 0.0, 1.0, 1.0
     layered = LayeredArrays(
-        _array(3, np.int32), floats, floats, links, links, floats, *box, 0.25, 1, 1
+        _array(3, np.int32), floats, floats, links, _array(1, PLACE), floats, *box, 0.25, 1, 1
     )
     grid = GridArrays(layered, _array(2, np.float32), _array(2, np.bool_), False)
-    return grid, SegmentIndex(_array(2), integers, integers, 0.0, 0.0, 1.0, 1.0, 1, 1)
+    return grid, BarrierIndex(_array(1, BARRIER), integers, integers, 0.0, 0.0, 1.0, 1.0, 1, 1)
 
 
 def _risk() -> RiskArrays:
