@@ -43,7 +43,7 @@ class Esplanade:
     def cells(self) -> tuple[Floats, float]:
         """The centres of all cells (C, 3) and their side, metres."""
         arrays = self._grid.layered
-        rows, columns = arrays.places[:, 1] + 0.5, arrays.places[:, 2] + 0.5
+        rows, columns = arrays.places["row"] + 0.5, arrays.places["column"] + 0.5
         xy = arrays.x0 + columns * arrays.cell_m, arrays.y0 + rows * arrays.cell_m
         centres = np.column_stack([*xy, arrays.floors]).astype(np.float64)
         return centres[np.isfinite(centres[:, 2])], arrays.cell_m

@@ -91,8 +91,8 @@ def centres(traversability: Traversability) -> NDArray[np.float64]:
     a = traversability.arrays
     return np.stack(
         [
-            a.x0 + (a.places[:, 2] + 0.5) * a.cell_m,
-            a.y0 + (a.places[:, 1] + 0.5) * a.cell_m,
+            a.x0 + (a.places["column"] + 0.5) * a.cell_m,
+            a.y0 + (a.places["row"] + 0.5) * a.cell_m,
             a.floors.astype(np.float64),
         ],
         axis=1,

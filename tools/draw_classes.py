@@ -45,7 +45,8 @@ def scene() -> Scene:
 def main() -> None:
     grid, body = LayeredGrid.from_scene(scene()), Body.adult()
     traversability, path = grid.traversability.of(body), find_path(grid, START, GOAL, body)
-    layers, rows, columns = traversability.arrays.places.T
+    places = traversability.arrays.places
+    layers, rows, columns = places["layer"], places["row"], places["column"]
     figure, axes = plt.subplots(1, 2, figsize=(10, 5.6), layout="constrained")
     for layer, axis in enumerate(axes):
         held = (

@@ -58,7 +58,7 @@ class Lane(NamedTuple):
 
 
 @inlined
-def lane_of(passage: NDArray[np.void], weight: float) -> Lane:
+def lane_of(passage: np.void, weight: float) -> Lane:
     """The lane through a passage, one row of `PASSAGE`."""
     shift_m = min(SHIFT_M, 0.5 * passage["half_m"])
     return Lane(
@@ -72,7 +72,7 @@ def lane_of(passage: NDArray[np.void], weight: float) -> Lane:
 
 
 @inlined
-def _shape_of(passage: NDArray[np.void]) -> PassageShape:
+def _shape_of(passage: np.void) -> PassageShape:
     """The shape of a passage, one row of `PASSAGE`."""
     return PassageShape(
         passage["middle_x"],
@@ -85,7 +85,7 @@ def _shape_of(passage: NDArray[np.void]) -> PassageShape:
 
 
 @inlined
-def _set_passage(passage: NDArray[np.void], shape: PassageShape) -> None:
+def _set_passage(passage: np.void, shape: PassageShape) -> None:
     """Write a shape into one row of `PASSAGE`."""
     passage["middle_x"] = shape.middle_x
     passage["middle_y"] = shape.middle_y
@@ -96,7 +96,7 @@ def _set_passage(passage: NDArray[np.void], shape: PassageShape) -> None:
 
 
 @inlined
-def _clear(passage: NDArray[np.void]) -> None:
+def _clear(passage: np.void) -> None:
     """Forget a passage and the agent's progress."""
     _set_passage(passage, NO_PASSAGE)
     passage["look_in_s"] = 0.0

@@ -166,7 +166,7 @@ def lower_to_barriers(
 @inlined
 def _lower_tile(
     grid: GridArrays,
-    barrier: NDArray[np.void],
+    barrier: np.void,
     body: tuple[float, float],
     page: int,
     rows: tuple[int, int],

@@ -39,15 +39,13 @@ class Measures(NamedTuple):
 
 
 @inlined
-def point_barrier_distance(barrier: NDArray[np.void], x: float, y: float) -> float:
+def point_barrier_distance(barrier: np.void, x: float, y: float) -> float:
     """Distance on the plan from a point to a barrier."""
     return point_segment_distance(x, y, barrier["x0"], barrier["y0"], barrier["x1"], barrier["y1"])
 
 
 @inlined
-def height_to_climb(
-    barrier: NDArray[np.void], lowest: float, highest: float, height: float
-) -> float:
+def height_to_climb(barrier: np.void, lowest: float, highest: float, height: float) -> float:
     """Height that a body has to climb to pass a barrier, in metres.
 
     It is 0 where the body passes below the barrier, and where the barrier is an open door.
@@ -59,9 +57,7 @@ def height_to_climb(
 
 
 @inlined
-def segment_barrier_distance(
-    barrier: NDArray[np.void], ax: float, ay: float, bx: float, by: float
-) -> float:
+def segment_barrier_distance(barrier: np.void, ax: float, ay: float, bx: float, by: float) -> float:
     """Distance on the plan between a barrier and the segment ab, if the two do not cross."""
     px, py, qx, qy = barrier["x0"], barrier["y0"], barrier["x1"], barrier["y1"]
     return min(

@@ -62,7 +62,7 @@ class Placement(NamedTuple):
 
 
 @inlined
-def stops(barrier: NDArray[np.void], placement: Placement) -> bool:
+def stops(barrier: np.void, placement: Placement) -> bool:
     """Whether a barrier stops a body that can neither step over it nor walk under it."""
     return bool(
         barrier["bottom_m"] < placement.floor_m + placement.height_m
@@ -138,7 +138,7 @@ def segments_cross(
 
 
 @inlined
-def crosses(barrier: NDArray[np.void], ax: float, ay: float, bx: float, by: float) -> bool:
+def crosses(barrier: np.void, ax: float, ay: float, bx: float, by: float) -> bool:
     """Whether the segment ab meets a barrier, touching included."""
     return segments_cross(
         ax, ay, bx, by, barrier["x0"], barrier["y0"], barrier["x1"], barrier["y1"]

@@ -92,7 +92,7 @@ def outlines(solids: SolidArrays, out: NDArray[np.void]) -> int:
 
 @inlined
 def _write(
-    barrier: NDArray[np.void],
+    barrier: np.void,
     line: tuple[float, float, float, float],
     heights: tuple[float, float, float],
 ) -> None:

@@ -258,7 +258,7 @@ def join_faces(starts: NDArray[np.int64], faces: NDArray[np.void], kept: NDArray
 
 
 @kernel
-def _same_line(a: NDArray[np.void], b: NDArray[np.void]) -> bool:
+def _same_line(a: np.void, b: np.void) -> bool:
     """Whether two faces lie on one line, in either direction, and touch in height."""
     near = 1e-3
     straight = (

@@ -88,7 +88,7 @@ def _barred_bits(
 
 @inlined
 def _clips_corner(
-    barrier: NDArray[np.void], ax: float, ay: float, bx: float, by: float, radius: float
+    barrier: np.void, ax: float, ay: float, bx: float, by: float, radius: float
 ) -> bool:
     """Whether a disc touches a barrier between a and b although it does not in a or b."""
     px, py, qx, qy = barrier["x0"], barrier["y0"], barrier["x1"], barrier["y1"]
