@@ -43,7 +43,9 @@ def kernels_compiled() -> Iterator[Callable[[], None]]:
 @contextmanager
 def _shown() -> Iterator[Callable[[], None]]:
     """Shows how far it is: by a bar on a terminal, else in lines of log."""
-    log.info("compiling, once on this machine; it takes a minute or two", kept_in=cache.folder())
+    log.info(
+        "compiling, once on this machine; it takes a minute or two", kept_in=str(cache.folder())
+    )
     bar = progress(share=True)
     if not bar.console.is_terminal:
         yield _Lines().one_more

@@ -31,7 +31,8 @@ def _array(dimensions: int, kind: DTypeLike = np.float64) -> NDArray[Any]:
 
 
 def _type(value: object) -> types.Type:
-    return typeof(value)  # type: ignore[no-any-return, no-untyped-call]
+    kind: types.Type = typeof(value)  # type: ignore[no-untyped-call]
+    return kind
 
 
 def _ground() -> tuple[GridArrays, BarrierIndex]:

@@ -8,7 +8,6 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 
 @dataclass(frozen=True)
@@ -91,6 +90,8 @@ class Spread:
         low, high = of_one * min(self.scales), of_one * max(self.scales)
         if low == high:
             return low
+        from scipy.optimize import brentq  # noqa: PLC0415 (it takes long, and few need it)
+
         return float(brentq(lambda radius: self.share_within(radius) - share, low, high))
 
 
