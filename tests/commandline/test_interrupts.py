@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 
 from esplanade.commandline import exit_codes, interrupts
-
-LIMIT_S = 120.0
+from tests.patience import PATIENCE_S
 
 AT_A_MODULE = """
 import os, signal, sys
@@ -73,7 +72,7 @@ def test_while_a_module_is_imported(module: str, words: str) -> None:
         text=True,
         cwd=Path(__file__).parents[2],
         preexec_fn=hear_interrupts,
-        timeout=LIMIT_S,
+        timeout=PATIENCE_S,
     )
     assert (done.returncode, done.stderr) == (exit_codes.INTERRUPTED, "")
 
@@ -93,7 +92,7 @@ def test_at_several_moments_after_the_entry(after_s: float) -> None:
         assert process.stdout.readline() == "entered\n"
         time.sleep(after_s)
         process.send_signal(signal.SIGINT)
-        _, said = process.communicate(timeout=LIMIT_S)
+        _, said = process.communicate(timeout=PATIENCE_S)
     # A world that has been open is closed in good order.
     assert process.returncode == exit_codes.INTERRUPTED or "summary" in said
     assert "Traceback" not in said
