@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import BPoly
 
 Floats = NDArray[np.float64]
 
@@ -14,13 +13,10 @@ def bernstein(count: int, u: ArrayLike) -> Floats:
     """Weights (..., count) of so many controls at shares u (...) in [0, 1]; they sum to 1."""
     if count < 1:
         raise ValueError(f"count must be at least 1, got {count}")
-    share = np.asarray(u, dtype=np.float64)[..., None]
+    share = np.asarray(u, dtype=np.float64)
     if not np.all((share >= 0.0) & (share <= 1.0)):
         raise ValueError("u must lie between 0 and 1")
-    order = count - 1
-    k = np.arange(count)
-    ways = np.array([math.comb(order, i) for i in k], dtype=np.float64)
-    weights: Floats = ways * (1.0 - share) ** (order - k) * share**k
+    weights: Floats = BPoly(np.eye(count)[:, None], [0.0, 1.0])(share)
     return weights
 
 
