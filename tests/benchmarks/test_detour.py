@@ -84,5 +84,5 @@ def test_walkable_ground_lies_where_the_floor_is() -> None:
 
 def test_mesh_without_ground_is_told_of() -> None:
     from_below = floor(0, 6, 0.0)[:, ::-1]
-    with pytest.raises(RuntimeError, match="Node.js process reports"), detour(from_below):
+    with pytest.raises(RuntimeError, match=r"Node\.js process reports"), detour(from_below):
         pass
