@@ -125,18 +125,18 @@ def off_lane_m(lane: Lane, x: float, y: float) -> float:
 
 
 @inlined
-def _beyond(crowd: Agents, a: int) -> tuple[bool, float]:
+def _beyond(agents: Agents, a: int) -> tuple[bool, float]:
     """Whether an agent has come through its passage, and its distance from the middle in metres."""
-    p = crowd.passages[a]
-    dx = crowd.positions[a, 0] - p["middle_x"]
-    dy = crowd.positions[a, 1] - p["middle_y"]
+    p = agents.passages[a]
+    dx = agents.positions[a, 0] - p["middle_x"]
+    dy = agents.positions[a, 1] - p["middle_y"]
     return bool(p["along_x"] * dx + p["along_y"] * dy > 0.0), length(dx, dy)
 
 
 @inlined
-def _has_passage(crowd: Agents, a: int) -> bool:
+def _has_passage(agents: Agents, a: int) -> bool:
     """Whether an agent has a passage ahead or has just come through one."""
-    p = crowd.passages[a]
+    p = agents.passages[a]
     return bool(p["along_x"] != 0.0 or p["along_y"] != 0.0)
 
 
@@ -158,58 +158,60 @@ def _alike(one: PassageShape, other: PassageShape) -> float:
 
 @kernel
 def see_passage(
-    grid: GridArrays, potential: Guide, crowd: Agents, a: int, going: bool, tick_s: float
+    grid: GridArrays, potential: Guide, agents: Agents, a: int, going: bool, tick_s: float
 ) -> None:
     """Renew an agent's passage and its progress there.
 
     An agent that has come through a passage keeps it for a while.
     """
-    p = crowd.passages[a]
+    p = agents.passages[a]
     if not going:
         _clear(p)
         return
     p["look_in_s"] -= tick_s
     p["waited_s"] += tick_s
-    beyond, away = _beyond(crowd, a)
+    beyond, away = _beyond(agents, a)
     if beyond and away > PASSED_M:
         _clear(p)
     elif not beyond and p["look_in_s"] <= 0.0:
-        x, y = crowd.positions[a]
-        radius = crowd.parameters[a]["radius_m"]
+        x, y = agents.positions[a]
+        radius = agents.parameters[a]["radius_m"]
         before = _shape_of(p)
-        found, shape = find_passage(grid, potential, crowd.bodies[a], radius, crowd.cells[a], x, y)
+        found, shape = find_passage(
+            grid, potential, agents.bodies[a], radius, agents.cells[a], x, y
+        )
         if not found:
             _clear(p)
         else:
             _set_passage(p, shape)
             if _alike(before, shape) <= 0.0:
                 p["nearest_m"] = np.inf
-        p["look_in_s"] = LOOK_S * (1.0 + crowd.ranks[a] / len(crowd.ranks))
-        away = _beyond(crowd, a)[1]
+        p["look_in_s"] = LOOK_S * (1.0 + agents.ranks[a] / len(agents.ranks))
+        away = _beyond(agents, a)[1]
     if away < p["nearest_m"] - NEARER_M:
         p["nearest_m"] = away
         p["waited_s"] = 0.0
 
 
 @kernel
-def find_contested(crowd: Agents, out: NDArray[np.bool_]) -> None:
+def find_contested(agents: Agents, out: NDArray[np.bool_]) -> None:
     """Fill `out` (A,): whether enough others still have to come through an agent's passage against
     it."""
     out[:] = False
     coming = np.empty(len(out), dtype=np.int64)
     count = 0
     for a in range(len(out)):
-        if _has_passage(crowd, a) and not _beyond(crowd, a)[0]:
+        if _has_passage(agents, a) and not _beyond(agents, a)[0]:
             coming[count] = a
             count += 1
     if count < OPPOSED:
         return
     for a in range(len(out)):
         against = 0
-        if _has_passage(crowd, a):
-            own = _shape_of(crowd.passages[a])
+        if _has_passage(agents, a):
+            own = _shape_of(agents.passages[a])
             for n in range(count):
-                if _alike(own, _shape_of(crowd.passages[coming[n]])) < 0.0:
+                if _alike(own, _shape_of(agents.passages[coming[n]])) < 0.0:
                     against += 1
                     if against == OPPOSED:
                         break
@@ -218,7 +220,7 @@ def find_contested(crowd: Agents, out: NDArray[np.bool_]) -> None:
 
 @kernel
 def order_at_passages(
-    crowd: Agents, contested: NDArray[np.bool_], left_m: NDArray[np.float64]
+    agents: Agents, contested: NDArray[np.bool_], left_m: NDArray[np.float64]
 ) -> None:
     """Replace distances left in `left_m` (A,), which give priority, where a passage is contested.
 
@@ -235,8 +237,8 @@ def order_at_passages(
         if not contested[a]:
             left_m[a] += 2.0 * BEFORE_M  # further than any contested agent is, even in a jam
             continue
-        p = crowd.passages[a]
-        beyond, away = _beyond(crowd, a)
+        p = agents.passages[a]
+        beyond, away = _beyond(agents, a)
         if beyond:
             left_m[a] = -away
         elif left_m[a] < np.inf:

@@ -30,7 +30,7 @@ JAM_ACTORS = 8
 def prepare(
     world: World,
     potentials: NDArray[np.float32],
-    crowd: Agents,
+    agents: Agents,
     tick_s: float,
     order: NDArray[np.int64],
 ) -> None:
@@ -40,16 +40,16 @@ def prepare(
     """
     r = world.reservations
     actors = len(order)
-    continue_paths(world, potentials, crowd, tick_s, r.paths, r.heights)
+    continue_paths(world, potentials, agents, tick_s, r.paths, r.heights)
     index_paths(r)
     left_m = np.empty(actors)
-    distances_left(potentials, crowd, left_m)
-    find_courses(world.grid, potentials, crowd, left_m, r)
+    distances_left(potentials, agents, left_m)
+    find_courses(world.grid, potentials, agents, left_m, r)
     empty_jams(left_m, r)
     if actors > OPPOSED:
-        find_contested(crowd, r.contested)
-        order_at_passages(crowd, r.contested, left_m)
-    by_rank = np.argsort(crowd.ranks, kind="mergesort")
+        find_contested(agents, r.contested)
+        order_at_passages(agents, r.contested, left_m)
+    by_rank = np.argsort(agents.ranks, kind="mergesort")
     order[:] = by_rank[np.argsort(left_m[by_rank], kind="mergesort")]
     for n in range(actors):
         r.ranks[order[n]] = n
@@ -59,7 +59,7 @@ def prepare(
 def continue_paths(
     world: World,
     potentials: NDArray[np.float32],
-    crowd: Agents,
+    agents: Agents,
     tick_s: float,
     out: NDArray[np.float64],
     heights: NDArray[np.float64],
@@ -72,16 +72,16 @@ def continue_paths(
     slices = out.shape[1]
     ds = world.step_s / SUB
     for a in range(len(out)):
-        px = crowd.positions[a, 0]
-        py = crowd.positions[a, 1]
-        if not crowd.known[a]:
+        px = agents.positions[a, 0]
+        py = agents.positions[a, 1]
+        if not agents.known[a]:
             out[a, :, 0] = px
             out[a, :, 1] = py
-            heights[a] = floor_of(world.grid, crowd.cells[a])
+            heights[a] = floor_of(world.grid, agents.cells[a])
             continue
-        path = crowd.followed[a]
-        cell = crowd.cells[a]
-        shift = crowd.ages[a] * tick_s / ds
+        path = agents.followed[a]
+        cell = agents.cells[a]
+        shift = agents.ages[a] * tick_s / ds
         ox = 0.0
         oy = 0.0
         for k in range(slices):
@@ -95,7 +95,7 @@ def continue_paths(
                 x, y = _carry_on(
                     world,
                     potentials,
-                    crowd,
+                    agents,
                     a,
                     follow(world.grid, cell, path[slices - 1, 0], path[slices - 1, 1]),
                     path[slices - 1, 0],
@@ -118,7 +118,7 @@ def continue_paths(
 def _carry_on(
     world: World,
     potentials: NDArray[np.float32],
-    crowd: Agents,
+    agents: Agents,
     a: int,
     cell: int,
     x: float,
@@ -126,17 +126,17 @@ def _carry_on(
     seconds: float,
 ) -> tuple[float, float]:
     """Position of an agent some seconds after the end of its path, down the potential."""
-    slot = crowd.potential_rows[a]
+    slot = agents.potential_rows[a]
     if slot < 0:
         return x, y
     gx, gy, leg = direction_at(world.grid, potentials[slot], cell, x, y)
-    way = min(leg, crowd.parameters[a]["speed_mps"] * seconds)
+    way = min(leg, agents.parameters[a]["speed_mps"] * seconds)
     return x + gx * way, y + gy * way
 
 
 @kernel
 def distances_left(
-    potentials: NDArray[np.float32], crowd: Agents, out: NDArray[np.float64]
+    potentials: NDArray[np.float32], agents: Agents, out: NDArray[np.float64]
 ) -> None:
     """Fill `out` (A,) with the distance left of each agent, in metres: the least has priority.
 
@@ -145,10 +145,10 @@ def distances_left(
     """
     for a in range(len(out)):
         out[a] = np.inf
-        slot = crowd.potential_rows[a]
+        slot = agents.potential_rows[a]
         if slot >= 0:
-            x, y = crowd.positions[a]
-            left = potential_at(potentials[slot], crowd.cells[a], x, y)
+            x, y = agents.positions[a]
+            left = potential_at(potentials[slot], agents.cells[a], x, y)
             if left > SETTLED_M:
                 out[a] = left
 
@@ -157,7 +157,7 @@ def distances_left(
 def find_courses(
     grid: GridArrays,
     potentials: NDArray[np.float32],
-    crowd: Agents,
+    agents: Agents,
     left_m: NDArray[np.float64],
     reservations: Reservations,
 ) -> None:
@@ -167,13 +167,13 @@ def find_courses(
         r.courses[a] = 0.0
         r.held_up[a] = False
         if left_m[a] < np.inf:
-            x, y = crowd.positions[a]
-            potential = potentials[crowd.potential_rows[a]]
+            x, y = agents.positions[a]
+            potential = potentials[agents.potential_rows[a]]
             r.courses[a, 0], r.courses[a, 1], _ = direction_at(
-                grid, potential, crowd.cells[a], x, y
+                grid, potential, agents.cells[a], x, y
             )
-            speed = np.hypot(crowd.velocities[a, 0], crowd.velocities[a, 1])
-            r.held_up[a] = speed < HELD_UP_PART * crowd.parameters[a]["speed_mps"]
+            speed = np.hypot(agents.velocities[a, 0], agents.velocities[a, 1])
+            r.held_up[a] = speed < HELD_UP_PART * agents.parameters[a]["speed_mps"]
 
 
 @kernel
