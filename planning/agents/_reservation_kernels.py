@@ -24,7 +24,7 @@ MEETING_ROOM_M = 0.8
 MEETING_ROOM = 0.2
 """What having none of it weighs, in certain contacts with a person: half of that when they face
 each other, more with the other on the right, nothing with the other on the left. So both keep to
-the right, and two streams form where there was a agents."""
+the right, and two streams form where there was a crowd."""
 QUEUE_ROOM_M = 0.5
 """Room that two agents who are both held up would like. Coming closer gains a little way once, but
 costs as long as both stay: agents that wait leave gaps, through which others come out."""
