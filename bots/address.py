@@ -1,4 +1,4 @@
-"""Where the server is, as people type it."""
+"""The address of the server, as people type it."""
 
 import socket
 from typing import Final

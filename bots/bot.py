@@ -179,7 +179,7 @@ class Bot:
             self._pings.pop(nonce, None)
 
     async def events(self) -> AsyncIterator[Event]:
-        """What happens, in order; ends when the bot closes or the server said bye.
+        """The events in order; ends when the bot closes or the server said bye.
 
         Raises
         ------

@@ -106,7 +106,7 @@ def _conclude(
 
 
 def _hints(settings: BotsSettings, crowd: Crowd | None, tally: Tally) -> Iterator[str]:
-    """What kept a replay from its way, if anything did."""
+    """The reason why a replay could not go its way, if there was one."""
     if crowd is None:
         return
     if tally.capped:

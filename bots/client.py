@@ -27,7 +27,7 @@ MAX_UNANSWERED: Final = 60
 """A pong later than this many pings is no longer waited for."""
 
 _CODE_BYTE: Final = 1
-"""Where the message code stands in a frame."""
+"""Position of the message code in a frame."""
 _STEPS: Final = bytes([ServerCode.STEPS])
 _LOOKED_INTO: Final = (bytes([ServerCode.PONG]), bytes([ServerCode.ERROR]))
 

@@ -4,7 +4,7 @@ from collections import deque
 from typing import Final
 
 KEPT: Final = 32
-"""So many recent round trips are compared; older ones would hide a drift of the clocks."""
+"""This many recent round trips are compared; older ones would hide a drift of the clocks."""
 
 TOLERANCE_S: Final = 0.005
 """Two samples may disagree by this much more, for clocks that drift and readings that round."""

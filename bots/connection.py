@@ -118,7 +118,7 @@ async def _welcome(socket: ClientConnection) -> Welcome:
 
 
 def _disconnected(error: ConnectionClosed) -> Disconnected:
-    """What the server's side said when it ended the connection, if it said anything."""
+    """The reason that the server gave when it ended the connection, if it gave one."""
     if error.rcvd is None:
         return Disconnected(NO_CLOSE_CODE, "lost")
     return Disconnected(error.rcvd.code, error.rcvd.reason)

@@ -1,4 +1,4 @@
-"""What can go wrong between a bot and its server."""
+"""Errors between a bot and its server."""
 
 
 class BotError(Exception):

@@ -1,4 +1,4 @@
-"""What happens to a bot: the server's messages, snapshots already unpacked."""
+"""Events of a bot: the server's messages, snapshots already unpacked."""
 
 from dataclasses import dataclass
 

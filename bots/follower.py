@@ -17,7 +17,7 @@ GAIN: Final = 0.5
 """Share of an error that one tick takes back. Less is slow, more amplifies rounding to whole cm."""
 
 STILL_M: Final = 0.02
-"""Who is to stand and stands this near, stands; else rounding would keep it shuffling."""
+"""A bot that is to stand and is this near stands; rounding would keep it shuffling otherwise."""
 
 MAX_LAG_TICKS: Final = 20
 MAX_PENDING: Final = 64
@@ -108,7 +108,7 @@ class Follower:
             self._lag_ticks = min(max(tick - self._in_force.tick, 1), MAX_LAG_TICKS)
 
     def _predict(self, tick: int, position: Vector) -> Vector:
-        """Where the avatar will be when a command that is sent now begins to count."""
+        """The avatar's place at the time when a command that is sent now begins to count."""
         x, y = position
         for ahead in range(1, self._lag_ticks):
             vx, vy = self._in_force.velocity

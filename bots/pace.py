@@ -1,4 +1,4 @@
-"""How far the recording has come: by the server's ticks once there are any, else by the clock."""
+"""The time that a replay has reached in its recording: by the server's ticks once there are any, else by the clock."""
 
 import asyncio
 
@@ -18,7 +18,7 @@ class Pace:
         self._timeline: Timeline | None = None
 
     def timeline(self, tick: int, tick_s: float) -> Timeline:
-        """What ties ticks to moments; the first tick ever seen fixes it for everyone."""
+        """The tie between ticks and moments; the first tick ever seen fixes it for everyone."""
         if self._timeline is None:
             self._timeline = Timeline(tick, self.recorded_s, tick_s, self._speedup)
         self.saw(tick)

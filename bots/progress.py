@@ -1,4 +1,4 @@
-"""What is to be seen while the bots are there: one line that changes, or lines now and then."""
+"""Progress while the bots are there: one line that changes, or lines now and then."""
 
 import time
 

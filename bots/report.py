@@ -1,4 +1,4 @@
-"""What a run came to: as tables for people, as one object for programs."""
+"""The report of a run: tables for people, one object for programs."""
 
 from typing import Any, Final
 

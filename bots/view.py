@@ -1,4 +1,4 @@
-"""What a bot sees: itself and the others in view, kept up to date."""
+"""The view of a bot: itself and the others in view, kept up to date."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What the steps of those near by cost one client: bytes, and for how long there was who walked."""
+"""The cost of steps of avatars near by to one client: bytes, and for how long avatars walked."""
 
 from typing import Final
 
@@ -7,7 +7,7 @@ from esplanade.protocol.codec import STEPS_HEAD_BYTES
 from esplanade.protocol.steps import step_records
 
 WALKS_ON_S: Final = 2.0
-"""Whoever begins no other step for so long stands, and counts no longer as walking."""
+"""An avatar that begins no other step for this long stands, and no longer counts as walking."""
 MAX_REMEMBERED: Final = 1024
 
 

@@ -1,4 +1,4 @@
-"""Where a visitor of the load test walks: up and down, to and fro, the same for the same seed."""
+"""The walk of a visitor of the load test: up and down, to and fro, the same for the same seed."""
 
 import math
 import random
@@ -12,11 +12,11 @@ TURN_RAD: Final = 0.7
 """Standard deviation of a change of direction."""
 
 STEPS: Final = (5, 15)
-"""So many changes of direction between two walks to a point."""
+"""A wanderer changes direction this often between two walks to a point."""
 
 STEP_S: Final = (0.3, 1.5)
 WALK_S: Final = (4.0, 12.0)
-"""How long a walk to a point may take before something else comes to mind."""
+"""A walk to a point may take this long before the wanderer does something else."""
 
 
 class Act(NamedTuple):

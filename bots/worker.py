@@ -21,7 +21,7 @@ class Job(Protocol):
 
 
 class Report(NamedTuple):
-    """What a worker sends up the pipe, again and again; `fault` is a traceback."""
+    """A worker sends this up the pipe again and again; `fault` is a traceback."""
 
     tally: Tally
     final: bool

@@ -9,7 +9,7 @@ from esplanade.commandline.readers import Folder, InputFile, OutputFile
 
 
 def script(parser: ArgumentParser, shell: str) -> str:
-    """What the shell reads to complete this parser's commands, options, choices and files."""
+    """The script by which a shell completes a parser's commands, options, choices and files."""
     for action in _actions(parser):
         if isinstance(action.type, InputFile | OutputFile):
             action.complete = shtab.FILE  # type: ignore[attr-defined]

@@ -12,6 +12,6 @@ class CommandError(Exception):
 
 
 class UsageError(CommandError):
-    """What was asked for cannot be done; the message says what and why."""
+    """A command that cannot be carried out; the message says why."""
 
     exit_code: ClassVar[int] = exit_codes.USAGE

@@ -1,4 +1,4 @@
-"""Where results go: tables to a console, figures to a file, pictures to a folder."""
+"""Output of results: tables to a console, figures to a file, pictures to a folder."""
 
 import json
 import math
@@ -15,7 +15,7 @@ _PAGE: Final = 200
 
 
 def console() -> Console:
-    """Where tables go: on a terminal as wide as that is."""
+    """The console for tables: on a terminal as wide as that is."""
     made = Console()
     return made if made.is_terminal else Console(width=_PAGE)
 

@@ -1,4 +1,4 @@
-"""What is seen while a command works: bars, or one line that changes."""
+"""Progress of a command that works: bars, or one line that changes."""
 
 import time
 from types import TracebackType

@@ -40,7 +40,7 @@ class SettingError(ValueError):
 
 @dataclass(frozen=True)
 class Models:
-    """What the actors of a zone share."""
+    """Models that the actors of a zone share."""
 
     risk: RiskModel
     prediction: PredictionModel

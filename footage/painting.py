@@ -54,7 +54,7 @@ class Canvas:
         self._draw = ImageDraw.Draw(self._image)
 
     def picture(self) -> Image.Image:
-        """What has been painted so far, in the size of the camera."""
+        """The picture painted so far, in the size of the camera."""
         return self._image.resize(self._size, Image.Resampling.LANCZOS)
 
     def paint_scene(self, scene: Scene) -> None:

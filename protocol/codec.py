@@ -66,11 +66,11 @@ STEPS_HEAD_BYTES: Final = _STEPS_HEAD.size
 MAX_BLOCK_BYTES: Final = 0xFFFF
 
 _MAX_QUOTED_CHARS: Final = 60
-"""What a fault's text repeats of a frame is cut to this many characters."""
+"""The text of a fault repeats at most this many characters of a frame."""
 
 
 class SnapshotHead(NamedTuple):
-    """What a snapshot says before its block."""
+    """The part of a snapshot before its block."""
 
     tick: int
     ack: int

@@ -50,7 +50,7 @@ class ServerCode(IntEnum):
 
 
 class Kind(StrEnum):
-    """What moves an avatar."""
+    """The kinds of avatars, by the one who moves them."""
 
     PERSON = "person"
     ACTOR = "actor"

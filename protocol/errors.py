@@ -1,4 +1,4 @@
-"""What goes wrong while reading the wire."""
+"""Errors in messages on the wire."""
 
 from esplanade.protocol.codes import CloseCode, ErrorCode
 

@@ -181,7 +181,7 @@ class Entity(BaseModel):
     """Length of a leg from hip to ankle."""
     stature_m: float
     points_at: Place | None
-    """What an actor that explains points at."""
+    """The place that an actor points at while it explains."""
 
 
 class Enter(FromServer):
@@ -201,7 +201,7 @@ class Leave(FromServer):
 
 
 class Snapshot(FromServer):
-    """Where everyone in view is. `block` holds records of `esplanade.protocol.snapshot`."""
+    """Places of everyone in view. `block` holds records of `esplanade.protocol.snapshot`."""
 
     code = ServerCode.SNAPSHOT
     tick: int
@@ -226,7 +226,7 @@ class Notice(FromServer):
 
 
 class Error(FromServer):
-    """What was wrong with something the client sent. `error` is for programs, `text` for people."""
+    """A fault in something that the client sent. `error` is for programs, `text` for people."""
 
     code = ServerCode.ERROR
     error: ErrorCode
@@ -250,7 +250,7 @@ class Pong(FromServer):
 
 
 class Circle(BaseModel):
-    """Where a person may be at one predicted time: centre and radius (two sigma)."""
+    """Likely places of a person at one predicted time: centre and radius (two sigma)."""
 
     model_config = ConfigDict(frozen=True, extra="ignore")
     x: float
@@ -275,7 +275,7 @@ class Plan(FromServer):
 
 
 class Census(FromServer):
-    """How many people and actors the whole world holds, about once a second."""
+    """Numbers of people and actors in the whole world, about once a second."""
 
     code = ServerCode.CENSUS
     people: int

@@ -39,7 +39,7 @@ class Inventory:
     """The memory of the layered cells and their links."""
     parts: Mapping[str, int]
     reach: Mapping[str, Reach]
-    """What each body reaches, by the name of the body."""
+    """The places that each body reaches, by the name of the body."""
 
     @property
     def cells(self) -> int:

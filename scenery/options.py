@@ -8,7 +8,7 @@ from esplanade.commandline.readers import Folder, InputFile, Number, OutputFile,
 from esplanade.scenery.values import body, point, where
 
 DEFAULT_CELL_M: Final = 0.25
-"""What the server takes."""
+"""The width that the server takes."""
 DESCRIPTION: Final = "Check a scene, draw it floor by floor, or make one of a building's mesh."
 EPILOG: Final = """\
 examples:

@@ -1,4 +1,4 @@
-"""What words on the command line mean: bodies and points."""
+"""Bodies and points as they are written on the command line."""
 
 import argparse
 import math

@@ -1,4 +1,4 @@
-"""How the server's log looks: structlog, with the libraries' own lines in the same form."""
+"""The format of the server's log: structlog, with the libraries' own lines in the same form."""
 
 import logging
 import sys

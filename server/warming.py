@@ -13,7 +13,7 @@ from esplanade.planning.compiled import beside, cache
 from esplanade.planning.compiled.notice import heard
 
 AHEAD: Final = "esplanade.planning.agents.ahead"
-"""What the second process compiles: about half of all, and nothing that the first half needs."""
+"""The second process compiles this: about half of all, and nothing that the first half needs."""
 FUNCTIONS: Final = 430
 """About how many functions are compiled on the way to a world; only what is shown goes by it."""
 SERVED: Final = "served"

@@ -1,4 +1,4 @@
-"""Whoever has kernels compiled is told so, and how far it is."""
+"""Tells those who have kernels compiled that it goes on, and how far it is."""
 
 import logging
 from collections.abc import Callable, Iterator

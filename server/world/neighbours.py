@@ -1,4 +1,4 @@
-"""Who is near whom: one search tree over everyone, made anew each tick."""
+"""The neighbours of everyone: one search tree, made anew in each tick."""
 
 import numpy as np
 import numpy.typing as npt

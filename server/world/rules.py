@@ -1,4 +1,4 @@
-"""What holds for every person of a zone."""
+"""The rules that hold for every person of a zone."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What each client has already, and what it needs to be sent: only records that changed."""
+"""Snapshots for each client: only the records that changed since the ones it has."""
 
 from dataclasses import dataclass
 

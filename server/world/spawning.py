@@ -1,4 +1,4 @@
-"""Where new people come into the world."""
+"""Places where new people come into the world."""
 
 import numpy as np
 

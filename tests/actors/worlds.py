@@ -21,7 +21,7 @@ Walk = Callable[[float], tuple[float, ...]]
 
 
 def holds(examples: int) -> settings:
-    """So many examples, the same in every run."""
+    """This many examples, the same in every run."""
     return settings(max_examples=examples, deadline=None, derandomize=True)
 
 

@@ -73,7 +73,7 @@ def _nearest(a: Point, b: Point, c: Point, d: Point) -> float:
 def jam_order(r: Reservations, left_m: list[float]) -> list[float]:
     """What decides who goes first, by listing everyone held up.
 
-    Who is in a jam is as far as its middle is away, and less than nothing beyond it.
+    An agent in a jam counts as far as the middle of the jam is away, and below zero beyond it.
     """
     held_up = [o for o in range(len(left_m)) if r.held_up[o]]
     if len(held_up) < JAM_ACTORS:

@@ -40,7 +40,7 @@ def scaled(compiled: int, plain: int) -> int:
 
 
 def holds(compiled: int, plain: int) -> settings:
-    """So many examples, the same in every run."""
+    """This many examples, the same in every run."""
     return settings(max_examples=scaled(compiled, plain), deadline=None, derandomize=True)
 
 

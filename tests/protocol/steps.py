@@ -6,7 +6,7 @@ from esplanade.protocol.steps import KEYS, Floats, Footprints, Keys, Steps
 
 
 def made_up_steps(count: int, seed: int = 0) -> Steps:
-    """So many steps, all values within what a record can hold."""
+    """Random steps, all values within the range of a record."""
     random = np.random.default_rng(seed)
 
     def within(low: float, high: float, *shape: int) -> Floats:

@@ -67,7 +67,7 @@ def test_what_comes_back_is_as_near_as_a_pose_needs(seed: int) -> None:
 
 @given(st.integers(0, 2**32 - 1))
 def test_what_was_read_is_packed_to_the_same_bytes(seed: int) -> None:
-    """Who goes on from a record's values changes nothing by packing them again."""
+    """Packing the values of a record again changes nothing."""
     records = pack_steps(made_up_steps(4, seed))
     again = pack_steps(unpack_steps(records))
     assert again["standing"].tobytes() == records["standing"].tobytes()

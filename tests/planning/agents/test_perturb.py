@@ -119,7 +119,7 @@ def test_a_path_bends_away_from_a_person_and_keeps_its_ends() -> None:
 
 
 def test_a_stretch_without_a_middle_is_left_alone() -> None:
-    """Who arrives in the first slice has nothing that could bend."""
+    """A path that arrives in the first slice has nothing that could bend."""
     start, goal = (4.0, 4.0), (4.25, 4.0)
     straight = path_between(start, goal)
     question = task(start, goal)

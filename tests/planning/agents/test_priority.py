@@ -1,4 +1,4 @@
-"""Who goes first, against the order of looking at everyone."""
+"""The order of priority, against that of looking at everyone."""
 
 import numpy as np
 import pytest

@@ -226,7 +226,7 @@ def test_means_are_what_walking_slice_by_slice_comes_to(x, y, vx, vy) -> None:
 @given(st.lists(st.sets(st.integers(0, 12)), min_size=2, max_size=8), st.randoms())
 @holds(30, 10)
 def test_coming_and_going_leaves_everyone_in_order_with_their_own_past(present, random) -> None:
-    """Who has been there all along is as if nobody else had been."""
+    """People who have been there all along are predicted as if nobody else had been."""
     history = TrackHistory(PredictionModel(), TICK_S)
     alone = TrackHistory(PredictionModel(), TICK_S)
     for k, ids in enumerate(present):
