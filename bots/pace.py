@@ -1,4 +1,4 @@
-"""The time that a replay has reached in its recording: by the server's ticks once there are any, else by the clock."""
+"""The time that a replay has reached: by the server's ticks if there are any, else by the clock."""
 
 import asyncio
 

@@ -82,7 +82,9 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             asyncio.Protocol, settings.host, settings.port, start_serving=False
         )
         bound.close()
-        population, world, storeys = await loop.run_in_executor(thread, _build, loaded, settings)
+        population, world, storeys = await loop.run_in_executor(
+            thread, build_world, loaded, settings
+        )
         stack.callback(population.close)
         _watch(world, metrics)
 
@@ -116,7 +118,18 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             await _stop(ticker, ticking, hub)
 
 
-def _build(loaded: LoadedScene, settings: ServerSettings) -> tuple[Population, World, list[float]]:
+def build_world(
+    loaded: LoadedScene, settings: ServerSettings
+) -> tuple[Population, World, list[float]]:
+    """The world of a loaded scene, ready to tick: its actors, itself, the heights of its storeys.
+
+    It compiles what is not compiled yet, and takes a while.
+
+    Raises
+    ------
+    LoadingError
+        The scene has no room for the actors.
+    """
     with kernels_compiled() as compiled_beside:
         return _build_warm(loaded, settings, compiled_beside)
 

@@ -79,7 +79,7 @@ def test_a_taken_port_is_named_before_anything_is_built(
     def build(*_: object) -> None:
         raise AssertionError("it takes a minute or two")
 
-    monkeypatch.setattr(app, "_build", build)
+    monkeypatch.setattr(app, "build_world", build)
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = str(taken.getsockname()[1])
         places = {"--host": "127.0.0.1", "--port": "0", "--private-port": "0", option: port}
