@@ -1,6 +1,7 @@
-"""Measure what must stay fast: `python -m benchmarks [NAME] [options]`, with a name of `NAMES`.
+"""Runs one benchmark, or all of them: `python -m benchmarks [NAME] [options]`.
 
-Without a name all of them run, one after the other, each as quick as it is by default.
+The names are those in `NAMES`. Without a name all benchmarks run one after the other, with their
+default options.
 """
 
 import runpy

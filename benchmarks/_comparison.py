@@ -1,4 +1,4 @@
-"""One mesh walked over by two planners: the same pairs asked of both, and why they disagree."""
+"""A comparison of two planners on the same pairs of points, with reasons for disagreements."""
 
 from __future__ import annotations
 
@@ -10,50 +10,54 @@ import numpy as np
 from benchmarks._pairs import (
     Answer,
     Bools,
+    Finders,
     Floats,
-    Verdict,
+    finders_of,
     ground_points,
     last_reached,
     length_ratios,
     pairs_of,
     spread,
-    verdict,
 )
 
 NO_GROUND: Final = "no ground at an end"
 MOVED: Final = "an end moved elsewhere"
-"""From the places that the other chose for both ends, who refused finds a way too."""
+"""The planner that found no path finds one between the ends that the other planner chose."""
 UNEXPLAINED: Final = "unexplained"
 _CANDIDATES: Final = 4
 _WARM_UP: Final = 50
 
 
 class Planner(Protocol):
-    """Finds ways on a mesh for one body."""
+    """Finds paths on a mesh for one body."""
 
     @property
-    def made(self) -> Mapping[str, float]:
-        """What it took to import the mesh."""
+    def build_figures(self) -> Mapping[str, float]:
+        """The time and memory of the import of the mesh, by name."""
 
-    def make(self) -> None:
+    def build(self) -> None:
         """Import the mesh again."""
 
     def stands(self, points: Floats) -> Bools:
         """Whether there is ground near each of the points (N, 3)."""
 
-    def ways(self, pairs: Floats) -> list[Answer]:
-        """What is said of every pair, float64 (N, 2, 3)."""
+    def find_paths(self, pairs: Floats) -> list[Answer]:
+        """The answer to every pair, float64 (N, 2, 3), metres."""
 
-    def eased(self) -> Iterator[tuple[str, Self]]:
-        """Every rule by which a way may be refused, and a planner that eases it."""
+    def relaxed(self) -> Iterator[tuple[str, Self]]:
+        """Yield every rule by which a path may be refused, and a planner that relaxes it."""
 
 
 @dataclass(frozen=True)
 class Disagreement:
-    """A pair of which only one planner finds a way, why, and where the other gets no further."""
+    """A pair for which only one planner finds a path, with the reason.
+
+    `gap` is the point on that path up to which the other planner gets. Points are (x, y, z) in
+    metres.
+    """
 
     number: int
-    who: Verdict
+    finders: Finders
     why: str
     start: tuple[float, ...]
     goal: tuple[float, ...]
@@ -62,22 +66,22 @@ class Disagreement:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Two planners' answers to the same pairs, float64 (N, 2, 3)."""
+    """The answers of two planners to the same pairs, float64 (N, 2, 3), metres."""
 
     pairs: Floats
     ours: list[Answer]
     theirs: list[Answer]
     disagreements: list[Disagreement]
 
-    def count(self, who: Verdict) -> int:
-        """Of how many pairs the named find a way."""
-        return sum(found is who for found in map(verdict, self.ours, self.theirs))
+    def count(self, finders: Finders) -> int:
+        """The number of pairs for which exactly these planners find a path."""
+        return sum(found is finders for found in map(finders_of, self.ours, self.theirs))
 
     def figures(self) -> dict[str, Any]:
-        """All counts and measures: ratios of ours over theirs, times in microseconds."""
+        """All counts and measures; ratios are ours over theirs, times are in microseconds."""
         return {
             "pairs": len(self.pairs),
-            **{str(who): self.count(who) for who in Verdict},
+            **{str(finders): self.count(finders) for finders in Finders},
             "length ratio": spread(length_ratios(self.ours, self.theirs)),
             "us": spread([answer.us for answer in self.ours]),
             "us, theirs": spread([answer.us for answer in self.theirs]),
@@ -85,9 +89,9 @@ class Comparison:
 
 
 def random_pairs(mesh: Floats, planners: tuple[Planner, Planner], count: int, seed: int) -> Floats:
-    """Pairs (count, 2, 3) of points that are ground to at least one of two planners.
+    """Random pairs of points on which a body can stand according to at least one planner.
 
-    `mesh` are triangles, float64 (T, 3, 3).
+    `mesh` holds the triangles, float64 (T, 3, 3), metres. The result is (count, 2, 3), metres.
     """
     random = np.random.default_rng(seed)
     points = ground_points(mesh, _CANDIDATES * count, random)
@@ -96,43 +100,43 @@ def random_pairs(mesh: Floats, planners: tuple[Planner, Planner], count: int, se
 
 
 def compare(ours: Planner, theirs: Planner, pairs: Floats) -> Comparison:
-    """Let both import the mesh and answer, warm, and find out why they disagree."""
+    """Compare two planners that are compiled, and find the reason of every disagreement."""
     for planner in (ours, theirs):
-        planner.make()
-        planner.ways(pairs[-_WARM_UP:])
-    mine, others = ours.ways(pairs), theirs.ways(pairs)
+        planner.build()
+        planner.find_paths(pairs[-_WARM_UP:])
+    mine, others = ours.find_paths(pairs), theirs.find_paths(pairs)
     refusals = [
-        *explained(Verdict.ONLY_THEIRS, ours, pairs, mine, others),
-        *explained(Verdict.ONLY_OURS, theirs, pairs, others, mine),
+        *explain_refusals(Finders.ONLY_THEIRS, ours, pairs, mine, others),
+        *explain_refusals(Finders.ONLY_OURS, theirs, pairs, others, mine),
     ]
     return Comparison(pairs, mine, others, sorted(refusals, key=lambda refusal: refusal.number))
 
 
-def explained(
-    who: Verdict, refusing: Planner, pairs: Floats, refused: list[Answer], found: list[Answer]
+def explain_refusals(
+    finders: Finders, refusing: Planner, pairs: Floats, refused: list[Answer], found: list[Answer]
 ) -> list[Disagreement]:
-    """Every pair that one planner refuses though the other has found a way: `who` names that one.
+    """Find the reason for every pair that one planner refuses and the other solves.
 
-    Who refuses is asked again with one rule eased at a time, and the first that brings a way is
-    the reason.
+    The refusing planner answers again with one rule relaxed at a time. The first rule that makes
+    it find a path is the reason. `finders` says which planner found the path.
     """
     answers = enumerate(zip(refused, found, strict=True))
     numbers = [n for n, (no, yes) in answers if yes.found and not no.found]
     moved = [found[n].points[[0, -1]] for n in numbers]
-    again = refusing.ways(np.array(moved)) if moved else []
+    again = refusing.find_paths(np.array(moved)) if moved else []
     why = {n: MOVED for n, answer in zip(numbers, again, strict=True) if answer.found}
     why |= {n: NO_GROUND for n in numbers if n not in why and not all(refused[n].stands)}
     if len(why) < len(numbers):
-        for rule, eased in refusing.eased():
+        for rule, relaxed in refusing.relaxed():
             left = [n for n in numbers if n not in why]
-            again = eased.ways(pairs[left]) if left else []
+            again = relaxed.find_paths(pairs[left]) if left else []
             why |= {n: rule for n, answer in zip(left, again, strict=True) if answer.found}
             if len(why) == len(numbers):
                 break
     return [
         Disagreement(
             number=n,
-            who=who,
+            finders=finders,
             why=why.get(n, UNEXPLAINED),
             start=tuple(pairs[n, 0].tolist()),
             goal=tuple(pairs[n, 1].tolist()),
@@ -143,13 +147,13 @@ def explained(
 
 
 def _gap(refusing: Planner, refused: Answer, found: Answer) -> Floats:
-    """Where on the way that was found who refuses gets no further, (3,)."""
-    way = found.points
+    """The last point of the found path that the refusing planner reaches, (3,), metres."""
+    path = found.points
     if not all(refused.stands):
-        end: Floats = way[-1] if refused.stands[0] else way[0]
+        end: Floats = path[-1] if refused.stands[0] else path[0]
         return end
 
     def reaches(point: Floats) -> bool:
-        return refusing.ways(np.stack([way[0], point])[None])[0].found
+        return refusing.find_paths(np.stack([path[0], point])[None])[0].found
 
-    return last_reached(way, reaches)
+    return last_reached(path, reaches)

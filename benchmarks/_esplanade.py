@@ -1,4 +1,4 @@
-"""Our own floors of a mesh, asked in the same words as a navigation mesh."""
+"""Our own planner on a mesh, with the interface that both compared planners have."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ THIN_M: Final = 0.05
 
 
 class Esplanade:
-    """A mesh made into layers of cells, for one body.
+    """A mesh that is converted into layers of cells, for one body.
 
-    `made` tells the milliseconds it took to make, its layers, cells and size. Times are of this
-    thread alone: whatever else the machine does is not in them.
+    `build_figures` holds the milliseconds that the conversion took, the layers, the cells and the
+    size. Times are processor times of this thread alone.
     """
 
     def __init__(self, path: Path, up: str, cell_m: float, body: Body) -> None:
         self._path, self._up, self._cell_m, self._body = path, up, cell_m, body
-        self.make()
+        self.build()
 
-    def make(self) -> None:
-        """Import the mesh, or import it again now that all is compiled."""
+    def build(self) -> None:
+        """Import the mesh; the second time, all code is compiled."""
         begun = time.thread_time()
         self._grid = LayeredGrid.from_mesh(self._path, cell_m=self._cell_m, up=self._up)
         arrays = self._grid.layered
-        self.made: dict[str, float] = {
+        self.build_figures: dict[str, float] = {
             "ms": 1e3 * (time.thread_time() - begun),
             "layers": len(arrays.pages),
             "cells": int(np.isfinite(arrays.floors).sum()),
@@ -41,7 +41,7 @@ class Esplanade:
         }
 
     def cells(self) -> tuple[Floats, float]:
-        """Centres of all cells (C, 3), and their side in metres."""
+        """The centres of all cells (C, 3) and their side, metres."""
         arrays = self._grid.layered
         rows, columns = arrays.places[:, 1] + 0.5, arrays.places[:, 2] + 0.5
         xy = arrays.x0 + columns * arrays.cell_m, arrays.y0 + rows * arrays.cell_m
@@ -49,15 +49,15 @@ class Esplanade:
         return centres[np.isfinite(centres[:, 2])], arrays.cell_m
 
     def stands(self, points: Floats) -> Bools:
-        """Whether there is ground for the body near each of the points (N, 3)."""
-        return np.array([self._way(point, point).stands[0] for point in points])
+        """Whether the body can stand near each of the points (N, 3), bool (N,)."""
+        return np.array([self._find_path(point, point).stands[0] for point in points])
 
-    def ways(self, pairs: Floats) -> list[Answer]:
-        """The way of every pair, float64 (N, 2, 3)."""
-        return [self._way(start, goal) for start, goal in pairs]
+    def find_paths(self, pairs: Floats) -> list[Answer]:
+        """Find a path for every pair, float64 (N, 2, 3)."""
+        return [self._find_path(start, goal) for start, goal in pairs]
 
-    def eased(self) -> Iterator[tuple[str, Esplanade]]:
-        """The same for a body that need not obey one rule, or on smaller cells."""
+    def relaxed(self) -> Iterator[tuple[str, Esplanade]]:
+        """Yield each rule and a planner in which that rule is relaxed, or the cells are smaller."""
         body, half_m = self._body, self._cell_m / 2.0
         thinner_m = max(THIN_M, body.radius_m - half_m)
         yield "edge longer than M", self._for(replace(body, edge_cells=NO_LIMIT))
@@ -72,7 +72,7 @@ class Esplanade:
         other.__dict__ |= self.__dict__ | {"_body": body}
         return other
 
-    def _way(self, start: Floats, goal: Floats) -> Answer:
+    def _find_path(self, start: Floats, goal: Floats) -> Answer:
         ends = tuple(start.tolist()), tuple(goal.tolist())
         begun = time.thread_time()
         path = find_path(self._grid, *ends, body=self._body)

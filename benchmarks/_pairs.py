@@ -1,4 +1,4 @@
-"""Random pairs of points on the ground of a mesh, and what two planners say of them."""
+"""Random pairs of points on the ground of a mesh, and the answers of two planners to them."""
 
 from __future__ import annotations
 
@@ -16,33 +16,34 @@ Bools = NDArray[np.bool_]
 
 STEEPEST_DEG: Final = 45.0
 SHORTEST_M: Final = 2.0
-"""Ways shorter than this say nothing by their ratio: either end may be moved by 0.5 m."""
+"""Shorter paths have no meaningful ratio of lengths, as either end may be moved by 0.5 m."""
 
 
 @dataclass(frozen=True)
 class Answer:
-    """What a planner says of a pair: is there ground at either end, the way, and how long it took.
-
-    `points` is float64 (N, 3), empty where there is no way.
-    """
+    """The answer of a planner to one pair."""
 
     stands: tuple[bool, bool]
+    """Whether the body can stand at the start and at the goal."""
     points: Floats
+    """The path, float64 (N, 3), metres; it is empty if there is none."""
     us: float
+    """The time that the query took, microseconds."""
 
     @property
     def found(self) -> bool:
-        """Whether a way leads all through."""
+        """Whether a complete path was found."""
         return len(self.points) > 0
 
     @property
     def length_m(self) -> float:
-        """Length on the plan: both take heights of stairs in ways of their own."""
+        """The length on the map; heights are left out because the planners treat stairs
+        differently."""
         return float(np.hypot(*np.diff(self.points[:, :2], axis=0).T).sum())
 
 
-class Verdict(StrEnum):
-    """Who finds a way."""
+class Finders(StrEnum):
+    """The planners that find a path for a pair."""
 
     BOTH = "both"
     NEITHER = "neither"
@@ -50,17 +51,22 @@ class Verdict(StrEnum):
     ONLY_THEIRS = "only theirs"
 
 
-def verdict(ours: Answer, theirs: Answer) -> Verdict:
-    """Who of the two finds a way."""
+def finders_of(ours: Answer, theirs: Answer) -> Finders:
+    """Which of the two planners found a path."""
     if ours.found:
-        return Verdict.BOTH if theirs.found else Verdict.ONLY_OURS
-    return Verdict.ONLY_THEIRS if theirs.found else Verdict.NEITHER
+        return Finders.BOTH if theirs.found else Finders.ONLY_OURS
+    return Finders.ONLY_THEIRS if theirs.found else Finders.NEITHER
 
 
 def ground_points(triangles: Floats, count: int, random: np.random.Generator) -> Floats:
-    """Points (count, 3) spread evenly over what faces up and is not too steep to stand on.
+    """Random points (count, 3), metres, evenly spread over the triangles that are not too steep.
 
-    `triangles` is float64 (T, 3, 3), z up.
+    `triangles` is float64 (T, 3, 3), metres, z up.
+
+    Raises
+    ------
+    ValueError
+        No triangle faces up.
     """
     a, b, c = (triangles[:, k] for k in range(3))
     normals = np.cross(b - a, c - a)
@@ -77,7 +83,9 @@ def ground_points(triangles: Floats, count: int, random: np.random.Generator) ->
 
 
 def pairs_of(points: Floats, known: Bools, count: int, random: np.random.Generator) -> Floats:
-    """Pairs (count, 2, 3) of different points that are known to be ground.
+    """Random pairs (count, 2, 3) of different points on which a body can stand.
+
+    `known` says of each of the points (N, 3) whether that is so, bool (N,).
 
     Raises
     ------
@@ -94,7 +102,7 @@ def pairs_of(points: Floats, known: Bools, count: int, random: np.random.Generat
 
 
 def length_ratios(ours: Sequence[Answer], theirs: Sequence[Answer]) -> Floats:
-    """Our length over theirs, for every pair whose ways are both found and long enough."""
+    """Our length over theirs, for every pair with two paths that are long enough, float64 (M,)."""
     return np.array(
         [
             mine.length_m / other.length_m
@@ -104,15 +112,15 @@ def length_ratios(ours: Sequence[Answer], theirs: Sequence[Answer]) -> Floats:
     )
 
 
-def last_reached(way: Floats, reaches: Callable[[Floats], bool], step_m: float = 0.1) -> Floats:
-    """Along another's way (N, 3), how far one gets: the last point (3,) before the first gap.
+def last_reached(path: Floats, reaches: Callable[[Floats], bool], step_m: float = 0.1) -> Floats:
+    """The last point (3,) of a path (N, 3) that a planner reaches, metres.
 
-    Halves the way again and again, so that it takes few questions; the start is taken as reached.
+    It is found by bisection, to within `step_m`; the start counts as reached.
     """
-    legs = np.linalg.norm(np.diff(way, axis=0), axis=1)
+    legs = np.linalg.norm(np.diff(path, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(legs)])
     marks = np.linspace(0.0, along[-1], max(2, math.ceil(along[-1] / step_m) + 1))
-    points = np.stack([np.interp(marks, along, way[:, axis]) for axis in range(3)], axis=1)
+    points = np.stack([np.interp(marks, along, path[:, axis]) for axis in range(3)], axis=1)
     reached, beyond = 0, len(points) - 1
     while beyond - reached > 1:
         middle = (reached + beyond) // 2
@@ -125,7 +133,7 @@ def last_reached(way: Floats, reaches: Callable[[Floats], bool], step_m: float =
 
 
 def spread(values: Floats | Sequence[float]) -> dict[str, Any]:
-    """Median and both fifths of a hundred, for tables and JSON; None where there is no value."""
+    """The 5th, 50th and 95th percentile, for tables and JSON; None if there are no values."""
     if len(values) == 0:
         return {"p5": None, "p50": None, "p95": None}
     p5, p50, p95 = np.percentile(values, (5.0, 50.0, 95.0)).tolist()

@@ -1,4 +1,4 @@
-"""A picture of one disagreement: the way that one planner finds, and where the other is stuck."""
+"""A picture of one disagreement: the path of one planner, and the gap of the other."""
 
 from __future__ import annotations
 
@@ -12,23 +12,24 @@ from benchmarks._comparison import Disagreement
 from benchmarks._pairs import Floats
 
 CLOSE_M: Final = 4.0
-"""Half the side of what is shown close up."""
+"""Half the side of the close-up."""
 STOREY_M: Final = 2.0
-"""What is further above or below the gap is left out of the close-up."""
+"""The close-up leaves out points that are farther than this above or below the gap."""
 
 
 def draw(
     path: Path,
     title: str,
     refusal: Disagreement,
-    way: Floats,
+    found_path: Floats,
     cells: tuple[Floats, float],
     triangles: Floats,
 ) -> None:
-    """Two plans: the whole way over all floors, and what lies around the gap.
+    """Draw two maps: the whole path over all floors, and a close-up of the gap.
 
-    `way` is float64 (N, 3), `cells` are our centres (C, 3) and their side in metres, `triangles`
-    what the navigation mesh holds as walkable, float64 (T, 3, 3).
+    `found_path` is float64 (N, 3), `cells` are the centres of our cells (C, 3) and their side,
+    `triangles` are the walkable triangles of the navigation mesh, float64 (T, 3, 3); all in
+    metres.
     """
     try:
         figure_of = import_module("matplotlib.figure").Figure
@@ -50,7 +51,7 @@ def draw(
         )
     )
     for axes in (whole, close):
-        axes.plot(way[:, 0], way[:, 1], color="tab:blue", lw=1.6)
+        axes.plot(found_path[:, 0], found_path[:, 1], color="tab:blue", lw=1.6)
         axes.plot(*refusal.start[:2], "o", color="tab:green", ms=7)
         axes.plot(*refusal.goal[:2], "*", color="tab:green", ms=11)
         axes.plot(*gap[:2], "x", color="black", ms=11, mew=2.5)
@@ -59,7 +60,7 @@ def draw(
     close.set_xlim(gap[0] - CLOSE_M, gap[0] + CLOSE_M)
     close.set_ylim(gap[1] - CLOSE_M, gap[1] + CLOSE_M)
     close.set_title(f"around z = {gap[2]:.2f} m; red: navigation mesh, squares: our cells")
-    figure.suptitle(f"{title}, pair {refusal.number}, {refusal.who}: {refusal.why}")
+    figure.suptitle(f"{title}, pair {refusal.number}, {refusal.finders}: {refusal.why}")
     if near.any():
         figure.colorbar(shown, ax=close, label="height, m", shrink=0.8)
     figure.savefig(path, dpi=90)

@@ -1,4 +1,4 @@
-"""How well feet stand that are drawn from footage, 60 times a second."""
+"""Foot sliding: how far planted feet move when walking is drawn at 60 frames a second."""
 
 from dataclasses import dataclass, fields
 from itertools import pairwise
@@ -14,12 +14,12 @@ from esplanade.server.world.step_records import from_records
 
 FRAMES_PER_SECOND: Final = 60
 PHASE: Final = 0.37
-"""Frames are so much of a frame away from ticks, as they are in a browser."""
+"""Frames are offset from ticks by this part of a frame, since in a browser they do not coincide."""
 
 FLAT_RAD: Final = 1e-3
-"""A foot that is pitched by less lies flat."""
+"""A foot lies flat if its pitch is below this."""
 EVEN: Final = 1.15
-"""Speeds of six steps may differ by this factor where somebody walks evenly."""
+"""Walking counts as even if the speeds of six steps differ by at most this factor."""
 
 Flags = npt.NDArray[np.bool_]
 Rows = npt.NDArray[np.int64]
@@ -27,31 +27,32 @@ Rows = npt.NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Findings:
-    """Distances in metres, one number for each observation."""
+    """Distances in metres, with one number for each observation."""
 
     slide: Floats
-    """Of a planted foot's contact with the ground, along it, from one frame to the next."""
+    """The motion of a planted foot's contact along the ground from one frame to the next."""
     drift: Floats
-    """The furthest that the contact of a foot gets along the ground, while it is planted, from
-    where it lay flat."""
+    """The greatest distance along the ground, while a foot is planted, of its contact from its
+    position when the foot lay flat."""
     jump_feet: Floats
-    """Between what one record draws and what the next one does at the same moment: of the ankle
-    that is further off."""
+    """The distance between the ankles that two successive records draw at the same moment; it is
+    that of the ankle with the greater distance."""
     jump_root: Floats
+    """The same for the hips."""
     landing: Floats
-    """From where the swing foot is at the end of its step to its footprint."""
+    """The distance of the swing foot from its footprint at the end of its step."""
     step_m: Floats
-    """Length of the steps of who walks evenly: half of what a foot covers in one."""
+    """The length of steps of even walking, which is half of the distance that a foot covers."""
     travel_m: Floats
-    """What the body covered meanwhile according to snapshots, half of it."""
+    """Half of the distance that the body covered in that time according to snapshots."""
     off_body: Floats
-    """From the drawn hips to the place in snapshots, on the map."""
+    """The distance on the map of the drawn hips from the position in snapshots."""
     frames: Floats
-    """How many frames each was drawn in."""
+    """The number of frames that each walker was drawn in."""
 
 
 def judge(everyone: list[Seen], tick_rate: int) -> Findings:
-    """Draw everyone from first to last, and look where feet are."""
+    """Draw the whole footage of everybody and measure the feet."""
     parts = [_judge(seen, tick_rate) for seen in everyone]
     names = [field.name for field in fields(Findings)]
     return Findings(**{name: np.concatenate([getattr(p, name) for p in parts]) for name in names})
@@ -98,16 +99,20 @@ def _draw(steps: Steps, rows: Rows, shares: Floats, seen: Seen) -> Pose:
 
 
 class Planted(NamedTuple):
-    """Which feet are to stay where they are in F frames, (F, 2) left, right."""
+    """Which feet must not move in F frames, bool (F, 2) for left and right."""
 
     at_all: Flags
+    """Whether the foot is planted."""
     on_toe: Flags
-    """Of these, which turn on the toe before they lift."""
+    """Whether it is planted and turns on the toe before it lifts."""
 
 
 def _planted(steps: Steps, rows: Rows, shares: Floats) -> Planted:
-    """The standing foot is, always; the other one until its toe lifts, and again from the end of
-    its step."""
+    """Find the planted feet.
+
+    The standing foot is always planted. The swing foot is planted until its toe lifts, and again
+    from the end of its step.
+    """
     swings = np.arange(len(rows)), 1 - steps.right[rows].astype(np.int64)
     lift = steps.lift[rows]
     at_all = np.ones((len(rows), 2), dtype=np.bool_)
@@ -118,7 +123,7 @@ def _planted(steps: Steps, rows: Rows, shares: Floats) -> Planted:
 
 
 def _slides(drawn: Pose, feet: Planted, anew: Flags) -> Floats:
-    """Of the contact between frames in both of which a foot is planted."""
+    """The motion of the contact between two frames in both of which a foot is planted."""
     heel = np.linalg.norm(np.diff(drawn.ankles[..., :2], axis=0), axis=2)
     toe = np.linalg.norm(np.diff(drawn.toes[..., :2], axis=0), axis=2)
     before, after = drawn.pitches[:-1], drawn.pitches[1:]
@@ -126,7 +131,7 @@ def _slides(drawn: Pose, feet: Planted, anew: Flags) -> Floats:
     on_toe = (before < -FLAT_RAD) & (after < -FLAT_RAD)
     turns = feet.on_toe[:-1] | feet.on_toe[1:]
     flat = (np.abs(before) <= FLAT_RAD) & (np.abs(after) <= FLAT_RAD)
-    # On its way from heel to toe it turns about the one until it lies flat, then about the other.
+    # While the foot rolls it turns about the heel until it lies flat, and then about the toe.
     moved = np.minimum(heel, toe)
     moved = np.where(on_heel, heel, np.where(on_toe, toe, moved))
     moved = np.where(turns, toe, np.where(flat, np.maximum(heel, toe), moved))
@@ -135,7 +140,7 @@ def _slides(drawn: Pose, feet: Planted, anew: Flags) -> Floats:
 
 
 def _drifts(drawn: Pose, feet: Planted, anew: Flags) -> Floats:
-    """For every time that a foot stands: the furthest of its contact from where it lies flat."""
+    """The drift of each foot for each time that it is planted; see `Findings.drift`."""
     furthest = []
     for foot in range(2):
         on = feet.at_all[:, foot]
@@ -162,7 +167,7 @@ def _drift(drawn: Pose, on_toe: Flags, foot: int, frames: slice) -> float | None
 
 
 def _jumps(steps: Steps, seen: Seen) -> tuple[Floats, Floats]:
-    """How far ankles and hips are apart at the moment at which one record follows another."""
+    """The jumps of ankles and hips at the moments at which one record follows another."""
     rows = np.flatnonzero(seen.goes_on[1:])
     before = _draw(steps, rows, _shares(steps, rows, steps.start[rows + 1]), seen)
     after = _draw(steps, rows + 1, np.zeros(len(rows)), seen)
@@ -171,7 +176,7 @@ def _jumps(steps: Steps, seen: Seen) -> tuple[Floats, Floats]:
 
 
 def _landings(steps: Steps, seen: Seen) -> Floats:
-    """How far the swing foot is from its footprint at the ends of steps that are not re-aimed."""
+    """The distance of the swing foot from its footprint at the end of steps without re-aiming."""
     whole = np.append(steps.start[1:] >= (steps.start + steps.ticks)[:-1], True)
     rows = np.flatnonzero(whole & (steps.ticks > 0))
     ended = _draw(steps, rows, np.ones(len(rows)), seen)
@@ -187,10 +192,11 @@ def _landings(steps: Steps, seen: Seen) -> Floats:
 
 
 def _strides(steps: Steps, seen: Seen) -> tuple[Floats, Floats]:
-    """Lengths of steps of who walks on at an even speed, drawn and travelled.
+    """The lengths of steps of even walking, drawn and travelled.
 
-    Each is half of a stride, which is what one foot covers while the body takes two steps. Where
-    the body speeds up or slows down feet are to be ahead of it or behind, so that is left out.
+    Each is half of a stride, which is the distance that one foot covers during two steps. Steps
+    during which the body speeds up or slows down are left out, because the feet then run ahead
+    of the body or fall behind.
     """
     starts = np.flatnonzero(~steps.again)
     lasts = np.append(starts[1:], len(steps.start)) - 1

@@ -1,4 +1,4 @@
-"""Places where many actors change sides: where each begins, and where each wants to go."""
+"""Scenes in which many actors change sides, with the start and goal of each."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,18 +12,18 @@ from esplanade.planning import Scene
 Floats = NDArray[np.float64]
 
 APART_M: Final = 1.5
-"""Between neighbours in a room: who has arrived leaves gaps that another can pass."""
+"""The spacing of goals in a room; it lets others pass between actors that have arrived."""
 FILE_M: Final = 1.2
-"""The same between neighbours of a group on a square."""
+"""The spacing within a group on the square."""
 RIM_M: Final = 0.8
-"""The same on the circle, where nobody has to pass between those who have arrived."""
+"""The spacing on the circle, where nobody has to pass between actors that have arrived."""
 MARGIN_M: Final = 3.0
-"""Open ground around everyone."""
+"""The open ground extends this far beyond starts and goals."""
 
 
 @dataclass(frozen=True)
 class Swap:
-    """A scene, and A actors' starts and goals, (A, 2) each."""
+    """A scene with the starts and goals of A actors, (A, 2) each, metres."""
 
     name: str
     scene: Scene
@@ -32,7 +32,7 @@ class Swap:
 
 
 def doorway(actors: int, door_m: float, random: np.random.Generator) -> Swap:
-    """Two rooms that share a doorway; everyone goes to some place of the other room."""
+    """Two rooms that share a doorway; everyone goes to a random goal in the other room."""
     half = -(-actors // 2)
     columns = int(np.ceil(np.sqrt(half)))
     spots = _lattice(half, columns, APART_M)
@@ -51,7 +51,7 @@ def doorway(actors: int, door_m: float, random: np.random.Generator) -> Swap:
 
 
 def square(actors: int, random: np.random.Generator) -> Swap:
-    """Four groups on the sides of a square; each goes straight over it to the other side."""
+    """Four groups on the sides of a square; each goes straight to the opposite side."""
     quarter = -(-actors // 4)
     columns = int(np.ceil(np.sqrt(2 * quarter)))
     depth = -(-quarter // columns) * FILE_M
@@ -84,15 +84,16 @@ SWAPS: Final[dict[str, Callable[[int, float, np.random.Generator], Swap]]] = {
     "square": lambda actors, _, random: square(actors, random),
     "circle": lambda actors, _, random: circle(actors, random),
 }
-"""By name; all take the number of actors, the doorway's width in metres, and a generator."""
+"""The scenes by name; each takes the number of actors, the width of the doorway in metres, and a
+random generator."""
 
 
 def _lattice(count: int, columns: int, apart_m: float) -> Floats:
-    """The first `count` points of rows of `columns`, (count, 2), from the origin on."""
+    """The first `count` points of a lattice of `columns` columns, (count, 2), metres."""
     numbers = np.arange(count)
     return np.asarray(apart_m * np.stack([numbers % columns, numbers // columns], axis=1))
 
 
 def _shaken(points: Floats, most_m: float, random: np.random.Generator) -> Floats:
-    """Points moved a little, so that nothing is exactly symmetric."""
+    """Points that are moved at random a little, so that nothing is exactly symmetric."""
     return points + random.uniform(-most_m, most_m, points.shape)

@@ -1,11 +1,12 @@
-"""Actors and visitors in the gallery: how many trips, contacts, and is anybody in a wall.
+"""Actors and visitors in the gallery: trips, contacts, and impossible positions.
 
     python -m benchmarks.gallery                                    a minute, 20 actors, 20 bots
     python -m benchmarks.gallery --actors 50 --bots 50 --seconds 300
 
 The server runs in a process of its own and the visitors in another, over real sockets. One more
-client stands and watches: what it is sent of everybody, in every tick, is held against the shapes
-of the scene file. Exit code 1: somebody was inside of something, or stood on nothing.
+client stands still and observes: the positions of all avatars that it is sent in every tick are
+checked against the shapes of the scene file. The exit code is 1 if an avatar was inside an
+obstacle or stood on nothing.
 """
 
 import argparse
@@ -20,7 +21,7 @@ from typing import Any
 
 import numpy as np
 import uvloop
-from benchmarks._whereabouts import Points, clearances, inside, unsupported
+from benchmarks._position_checks import Points, clearances, inside, unsupported
 
 from esplanade import bots
 from esplanade.bots.events import SnapshotEvent
@@ -33,9 +34,9 @@ from esplanade.server.settings import ServerSettings
 
 VIEW_M = 200.0
 TOUCHING_M = 0.15
-"""A body's centre is nearer than this to a wall only if it is pressed into it."""
+"""The centre of a body is nearer than this to a wall only if it is pressed into the wall."""
 STEP_M = 0.65
-"""Nobody rises or falls by more between two ticks."""
+"""Nobody may rise or fall by more than this between two ticks."""
 
 
 def main() -> int:
@@ -58,7 +59,7 @@ def main() -> int:
     process.start()
     seen = uvloop.run(watch(here.recv(), options.bots, options.seconds, options.seed))
     here.send("end")
-    figures = {**here.recv(), **whereabouts(scene, seen)}
+    figures = {**here.recv(), **position_figures(scene, seen)}
     process.join()
     for name, value in figures.items():
         print(f"{name:24} {value:,}" if isinstance(value, int) else f"{name:24} {value:g}")
@@ -68,7 +69,7 @@ def main() -> int:
 
 
 def serve(parent: Connection, settings: ServerSettings) -> None:
-    """A world, until told to end; reports its summary."""
+    """Run a world until a message arrives, and send back its summary."""
 
     async def run() -> None:
         async with running(settings) as server:
@@ -81,19 +82,22 @@ def serve(parent: Connection, settings: ServerSettings) -> None:
 
 
 async def watch(port: int, visitors: int, seconds: float, seed: int) -> Points:
-    """What one client is told of all others: float64 (N, 5) of tick, id, x, y, z."""
+    """The positions of all others that one client is sent.
+
+    They are float64 (N, 5): tick, id, x, y and z, metres.
+    """
     url = f"ws://127.0.0.1:{port}"
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder, "bots.json")
         command = ["bots", "--url", url, "--count", str(visitors), "--duration", str(seconds)]
-        crowd = await asyncio.create_subprocess_exec(
+        bots_process = await asyncio.create_subprocess_exec(
             sys.executable, "-m", "esplanade", *command, "--seed", str(seed), "--json", report,
             stdout=asyncio.subprocess.DEVNULL,
         )  # fmt: skip
         rows: list[Points] = []
         async with bots.connect(url, name="Watcher") as watcher:
             reading = asyncio.create_task(_read(watcher, rows))
-            code = await crowd.wait()
+            code = await bots_process.wait()
             reading.cancel()
     if code:
         raise SystemExit(f"some of the visitors failed: exit code {code}")
@@ -109,8 +113,8 @@ async def _read(watcher: bots.Bot, rows: list[Points]) -> None:
             rows.append(np.stack(columns, axis=1).astype(np.float64))
 
 
-def whereabouts(scene: Scene, seen: Points) -> dict[str, Any]:
-    """Figures of all that was seen, (N, 5) of tick, id, x, y, z."""
+def position_figures(scene: Scene, seen: Points) -> dict[str, Any]:
+    """The figures of all positions, which are (N, 5): tick, id, x, y and z."""
     seen = seen[np.lexsort((seen[:, 0], seen[:, 1]))]
     points = seen[:, 2:]
     following = (np.diff(seen[:, 1]) == 0.0) & (np.diff(seen[:, 0]) == 1.0)

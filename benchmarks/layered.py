@@ -1,13 +1,13 @@
-"""What ways over several floors cost, stage by stage.
+"""The cost of paths over several floors, stage by stage.
 
     python -m benchmarks.layered                 the paper's size and a large one
     python -m benchmarks.layered --runs 50       the best of more runs
 
 Stages are those of Huang & Li, fig. 9: height maps (surfaces, links, barriers), reachability,
 the five classes, and search, which here is potential, STABLE_BFP and straightening. The scene is
-a building: floors 3 m apart, each with rooms, joined by flights of stairs. Everything is warm:
-compiled, and asked for once before. Times are those that the processor worked: nothing here waits
-or runs on a second thread.
+a building: floors 3 m apart, each with rooms, joined by flights of stairs. Everything is compiled
+and has run once before it is measured. Times are processor times, as nothing here waits or runs
+on a second thread.
 """
 
 import argparse
@@ -56,7 +56,7 @@ def main(argv: Sequence[str] | None = None) -> None:
 
 
 def building(side: int, layers: int) -> Scene:
-    """Storeys with rooms, each set back from the one below; stairs lead up over the setbacks."""
+    """A building whose storeys are set back; each has rooms, and stairs lead up the setbacks."""
     width = side * CELL_M
     polygons, walls, stairs = [], [], []
     for floor in range(layers):
@@ -87,7 +87,7 @@ def building(side: int, layers: int) -> Scene:
 
 
 def measure(side: int, layers: int, runs: int) -> tuple[int, list[float]]:
-    """Cells held, and milliseconds of each stage."""
+    """The number of cells, and the milliseconds of each stage."""
     scene, body = building(side, layers), Body.adult()
 
     def height_maps() -> tuple[LayeredArrays, Barriers]:
@@ -105,21 +105,27 @@ def measure(side: int, layers: int, runs: int) -> tuple[int, list[float]]:
 
 
 def search(traversability: Traversability, side: int, layers: int) -> float:
-    """Length of the way from the ground's far corner to the far corner of the highest floor."""
+    """The length of the path from a corner of the ground to a corner of the highest floor.
+
+    Raises
+    ------
+    RuntimeError
+        There is no such path.
+    """
     width = side * CELL_M
     start = (0.5 * width, width - 0.6, 0.0)
     goal = (width - 0.6, 0.5 * width + 0.4, STOREY_M * (layers - 1))
     first, last = find_end(traversability, start), find_end(traversability, goal)
     if first is None or last is None:
-        raise RuntimeError(f"nobody stands at an end at {side}x{side}x{layers}")
+        raise RuntimeError(f"a body cannot stand at an end in {side}x{side}x{layers}")
     path = find_route(traversability, first, last)
     if path.status is not PathStatus.FOUND:
-        raise RuntimeError(f"no way at {side}x{side}x{layers}: {path.status.name}")
+        raise RuntimeError(f"there is no path in {side}x{side}x{layers}: {path.status.name}")
     return path.length_m
 
 
 def print_door(side: int, layers: int, runs: int) -> None:
-    """What a door costs that closes, against deriving everything again."""
+    """Print the cost of closing a door, beside that of deriving everything again."""
     body = Body.adult()
     grid = LayeredGrid.from_scene(building(side, layers), CELL_M)
     traversability = find_traversability(grid.layered, grid.barriers, body)
@@ -136,7 +142,7 @@ def print_door(side: int, layers: int, runs: int) -> None:
 
 
 def best_ms(work: Callable[[], Result], runs: int) -> tuple[float, Result]:
-    """Least processor time of some runs after one that does not count, and the last result."""
+    """The least processor time of some runs, after one that does not count, and the result."""
     result = work()
     times = []
     for _ in range(runs):

@@ -1,14 +1,14 @@
-"""Floors made of meshes, side by side with a navigation mesh of Recast and Detour.
+"""Paths on meshes, compared with those of a navigation mesh of Recast and Detour.
 
     python -m benchmarks.meshes                              a thousand pairs on every mesh
     python -m benchmarks.meshes --mesh house.obj --body child --plots pictures
 
-Of random pairs of points on the ground: does a way exist here and there, how long is it, how long
-does the answer take? Every disagreement is listed with the rule that makes it and the place where
-who refuses gets no further. Both walk for one body: its radius, height and step-on height, and
-nobody stands where it is steeper than 45 degrees. An end is ground if the body has a place within
-0.5 m on the plan and 1 m in height. Times are of the processor, all warm. Exit code 1 if a
-disagreement stays unexplained.
+Both planners answer the same random pairs of points on the ground. The benchmark compares whether
+a path exists, its length, and the time of the answer. Every disagreement is listed with the rule
+that causes it, and with the point up to which the refusing planner gets. Both plan for one body
+with its radius, height and step-on height, and neither uses slopes above 45 degrees. An end is
+valid if the body can stand within 0.5 m of it on the map and 1 m in height. Times are processor
+times of compiled code. The exit code is 1 if a disagreement stays unexplained.
 """
 
 import argparse
@@ -26,7 +26,7 @@ from typing import Any, Final
 from benchmarks._comparison import UNEXPLAINED, Comparison, compare, random_pairs
 from benchmarks._detour import Detour, NavMeshSettings, missing
 from benchmarks._esplanade import Esplanade
-from benchmarks._pairs import Verdict
+from benchmarks._pairs import Finders
 from benchmarks._pictures import draw
 from rich import box
 from rich.console import Console
@@ -47,7 +47,7 @@ ROWS: Final = (
     ("memory, KiB", ("import", "KiB"), "{:.0f}"),
     ("  theirs", ("import, theirs", "KiB"), "{:.0f}"),
     ("pairs", ("pairs",), "{:d}"),
-    *((f"  a way: {who}", (str(who),), "{:d}") for who in Verdict),
+    *((f"  a path: {finders}", (str(finders),), "{:d}") for finders in Finders),
     ("length / theirs, median", ("length ratio", "p50"), "{:.3f}"),
     ("  p95", ("length ratio", "p95"), "{:.3f}"),
     ("query, median µs", ("us", "p50"), "{:.0f}"),
@@ -94,13 +94,13 @@ def parser() -> argparse.ArgumentParser:
 
 
 def standing_meshes() -> list[Path]:
-    """The meshes beside the recorded crowds; ESPLANADE_DATA names another folder of data."""
+    """The meshes beside the recorded crowds; `ESPLANADE_DATA` names another folder of data."""
     data = Path(os.environ.get("ESPLANADE_DATA", PROJECT.parent / "shared" / "data"))
     return sorted(path for path in data.glob("meshes/*") if path.suffix.lower() in SUFFIXES)
 
 
 def measure(path: Path, options: argparse.Namespace) -> tuple[Comparison, dict[str, Any]]:
-    """One mesh: all figures, and pictures if they are wanted."""
+    """Compare the planners on one mesh; draw pictures if the options ask for them."""
     body = BODIES[options.body]
     ours = Esplanade(path, options.up, options.cell, body)
     settings = NavMeshSettings(
@@ -113,8 +113,8 @@ def measure(path: Path, options: argparse.Namespace) -> tuple[Comparison, dict[s
         if options.plots is not None:
             picture_each_reason(options.plots, path.stem, found, ours, theirs)
         figures = found.figures() | {
-            "import": dict(ours.made),
-            "import, theirs": dict(theirs.made),
+            "import": dict(ours.build_figures),
+            "import, theirs": dict(theirs.build_figures),
             "disagreements": [asdict(refusal) for refusal in found.disagreements],
         }
     return found, figures
@@ -123,34 +123,34 @@ def measure(path: Path, options: argparse.Namespace) -> tuple[Comparison, dict[s
 def picture_each_reason(
     folder: Path, name: str, found: Comparison, ours: Esplanade, theirs: Detour
 ) -> None:
-    """The first disagreement of every kind."""
+    """Draw the first disagreement of every kind."""
     triangles = theirs.triangles()
-    firsts = {(refusal.who, refusal.why): refusal for refusal in reversed(found.disagreements)}
-    for (who, why), refusal in firsts.items():
-        answers = found.ours if who is Verdict.ONLY_OURS else found.theirs
-        file = folder / f"{name}, {who}, {why}.png".replace(", ", "-").replace(" ", "_")
+    firsts = {(refusal.finders, refusal.why): refusal for refusal in reversed(found.disagreements)}
+    for (finders, why), refusal in firsts.items():
+        answers = found.ours if finders is Finders.ONLY_OURS else found.theirs
+        file = folder / f"{name}, {finders}, {why}.png".replace(", ", "-").replace(" ", "_")
         draw(file, name, refusal, answers[refusal.number].points, ours.cells(), triangles)
 
 
 def list_disagreements(console: Console, found: Comparison) -> None:
-    """How many of each kind, and every one with its place."""
-    kinds = Counter((refusal.who, refusal.why) for refusal in found.disagreements)
-    for (who, why), count in kinds.most_common():
-        console.print(f"  {count:4d} {who}: {why}")
+    """Print the number of disagreements of each kind, and every one with its points."""
+    kinds = Counter((refusal.finders, refusal.why) for refusal in found.disagreements)
+    for (finders, why), count in kinds.most_common():
+        console.print(f"  {count:4d} {finders}: {why}")
         for refusal in found.disagreements:
-            if (refusal.who, refusal.why) == (who, why):
+            if (refusal.finders, refusal.why) == (finders, why):
                 start, goal, gap = map(point, (refusal.start, refusal.goal, refusal.gap))
                 line = f"       {refusal.number:4d} {start} to {goal}, gap at {gap}"
                 console.print(line, highlight=False, soft_wrap=True)
 
 
 def point(xyz: Sequence[float]) -> str:
-    """Coordinates for people."""
+    """The coordinates as text."""
     return "(" + ", ".join(f"{value:.2f}" for value in xyz) + ")"
 
 
 def show(console: Console, figures: dict[str, dict[str, Any]]) -> None:
-    """A table with a column for every mesh."""
+    """Print a table with a column for every mesh."""
     table = Table(box=box.SIMPLE, padding=(0, 0, 0, 1))
     table.add_column("", no_wrap=True)
     for name in figures:

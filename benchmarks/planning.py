@@ -1,14 +1,15 @@
-"""What planning costs: a tick of many actors among many people, by stage.
+"""The cost of planning: a tick of many actors among many people, by stage.
 
     python -m benchmarks.planning                        100 actors among 0 and 100 people
     python -m benchmarks.planning --actors 100 300 1000 --people 0 100 500 --cell-m 0.25 0.5
 
-The world is 64 m x 64 m, a tenth of it buildings. People walk from place to place at 1.2 m/s;
-actors do the same, each to another place whenever it has arrived. Stages: `order` sees followed
-paths from now and tells who goes first, `decide` indexes people and decides for every actor
-(perturbation and search), `resolve` takes the steps in that order, `rest` is all else: observing,
-prediction, and making states. On one thread the first three are one call, `decide`.
-At the end it says how medians grow with actors, people and cells, the others at their most.
+The world is 64 m x 64 m, and buildings cover a tenth of it. People walk from place to place at
+1.2 m/s. Actors do the same, and each goes to another place when it has arrived. There are four
+stages: `order` updates the followed paths and assigns priorities, `decide` indexes people and
+decides for every actor (perturbation and search), `resolve` takes the steps in order of priority,
+and `rest` is all else: observation, prediction, and making states. On one thread the first three
+are one call, `decide`. At the end it prints how medians grow with actors, people and cells, while
+the other two have their greatest values.
 """
 
 import argparse
@@ -63,7 +64,7 @@ def main(argv: Sequence[str] | None = None) -> None:
 
 
 class Case(NamedTuple):
-    """What a tick is measured with."""
+    """The numbers of actors, people and cells of one measurement."""
 
     actors: int
     people: int
@@ -71,7 +72,7 @@ class Case(NamedTuple):
 
 
 def make_scene(random: np.random.Generator) -> Scene:
-    """Buildings at random places until they cover their part of the ground."""
+    """A scene with random buildings that cover their part of the ground."""
     buildings: list[Polygon] = []
     scene = Scene.open_space((0.0, 0.0, SIDE_M, SIDE_M))
     grid = LayeredGrid.from_scene(scene, CELL_M)
@@ -90,12 +91,12 @@ def make_scene(random: np.random.Generator) -> Scene:
 
 
 def built_part(grid: LayeredGrid) -> float:
-    """Part of the ground that buildings cover."""
+    """The part of the ground that buildings cover."""
     return 1.0 - len(grid.surfaces) / (grid.layered.nx * grid.layered.ny)
 
 
 def free_points(grid: LayeredGrid, count: int, random: np.random.Generator) -> NDArray[np.float64]:
-    """Places that a disc may stand at, as far from each other as their number allows."""
+    """Random points (count, 2), metres, at which a disc of 0.5 m is free, with some spacing."""
     found: list[NDArray[np.float64]] = []
     apart = min(3.0, 0.5 * SIDE_M / np.sqrt(count + 1))
     while len(found) < count:
@@ -107,7 +108,7 @@ def free_points(grid: LayeredGrid, count: int, random: np.random.Generator) -> N
 
 
 def print_goals(grid: LayeredGrid) -> None:
-    """Time of a wave front for a goal that nobody had before."""
+    """Print the time of a wave front for a new goal."""
     goals = free_points(grid, 6, np.random.default_rng(3))
     for wave in Wave:
         times = []
@@ -120,8 +121,9 @@ def print_goals(grid: LayeredGrid) -> None:
         print(f"new goal, {name:5s}: {took:6.1f} ms, {size:.1f} MB kept")
 
 
-class Agents:
-    """People who walk to places and turn to others every ten seconds, sliding along walls."""
+class SimulatedPeople:
+    """People who walk to random places, change them about every ten seconds, and slide along
+    walls."""
 
     def __init__(self, grid: LayeredGrid, count: int, random: np.random.Generator) -> None:
         self._grid = grid
@@ -142,7 +144,7 @@ class Agents:
 
 
 class Stopwatch:
-    """Seconds of calls, by stage; everything is timed from outside."""
+    """The seconds of calls by stage; functions are wrapped from outside."""
 
     def __init__(self) -> None:
         self.seconds: dict[str, float] = {}
@@ -162,10 +164,10 @@ class Stopwatch:
 
 
 def print_case(grid: LayeredGrid, case: Case, ticks: int, threads: int) -> float:
-    """Milliseconds a tick, median and 99th percentile, and how they are spent; the median."""
+    """Measure one case, print its times, and return the median of a tick in milliseconds."""
     random = np.random.default_rng(1)
     places = free_points(grid, PLACES, random)
-    crowd = Agents(grid, case.people, random)
+    people = SimulatedPeople(grid, case.people, random)
     nav = Navigator(grid, TICK_S, seed=0, plan=PlanModel(threads=threads))
 
     def another_place() -> tuple[float, float]:
@@ -176,7 +178,7 @@ def print_case(grid: LayeredGrid, case: Case, ticks: int, threads: int) -> float
         nav.add_actor(f"a{k}", (x, y), another_place())
 
     gc.collect()
-    gc.freeze()  # as the server does
+    gc.freeze()  # the server does the same
     watch = Stopwatch()
     rows: list[dict[str, float]] = []
     with ExitStack() as patches:
@@ -188,21 +190,21 @@ def print_case(grid: LayeredGrid, case: Case, ticks: int, threads: int) -> float
             timed = watch.around(stage, getattr(target, attribute))
             patches.enter_context(mock.patch.object(target, attribute, timed))
         for _ in range(WARM_UP_TICKS + ticks):
-            seen = crowd.walk()
+            seen = people.walk()
             watch.seconds = {}
             with watch.stage("all"):
                 nav.observe(seen)
                 states = nav.tick()
             rows.append(watch.seconds)
-            for who, state in states.items():
+            for actor, state in states.items():
                 if state.reason is Reason.ARRIVED:
-                    nav.set_goal(who, another_place())
+                    nav.set_goal(actor, another_place())
     nav.close()
     return print_rows(case, rows[WARM_UP_TICKS:])
 
 
 def print_rows(case: Case, rows: list[dict[str, float]]) -> float:
-    """One line a case; the median of the whole tick."""
+    """Print one line for a case; returns the median of the whole tick in milliseconds."""
     names = ("all", "batch", "order", "resolve")
     spent = {name: 1e3 * np.array([row.get(name, 0.0) for row in rows]) for name in names}
     spent["decide"] = spent["batch"] - spent["order"] - spent["resolve"]
@@ -220,7 +222,7 @@ def print_rows(case: Case, rows: list[dict[str, float]]) -> float:
 
 
 def print_growth(medians: dict[Case, float]) -> None:
-    """How the median grows with one thing, all others at their most."""
+    """Print how the median grows with each number while the others have their greatest values."""
     most = Case(*(max(column) for column in zip(*medians, strict=True)))
     for name in Case._fields:
         line = sorted(c for c in medians if c == most._replace(**{name: getattr(c, name)}))

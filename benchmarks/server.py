@@ -1,12 +1,12 @@
-"""What a tick costs, by stage and by client.
+"""The cost of a tick of the server, by stage and by client.
 
     python -m benchmarks.server                      worlds of 100, 300 and 1000, then 200 sockets
     python -m benchmarks.server --clients 1000
 
-First a world without sockets: simulated people steer about, everything but the writing is timed.
-Then a server in a process of its own with real sockets, and beside it, in the same run, a bare
-server that does nothing but send frames of the same size at the same times and swallow the same
-input: the ratio of the two is what sessions, world and encoding cost on top of the sockets.
+The first part runs a world without sockets, in which simulated people steer, and times everything
+but the writing. The second part runs a server with real sockets in a process of its own, and then
+a bare server that only sends frames of the same size at the same times and discards the same
+input. The ratio of the two is the cost of sessions, world and encoding on top of the sockets.
 """
 
 import argparse
@@ -66,7 +66,7 @@ def main() -> None:
 
 
 def print_stages(settings: ServerSettings, people: int) -> None:
-    """Median time of each stage, and of a client in all of them."""
+    """Print the median time of each stage, and that of all stages for each client."""
     stage = load_scene(settings)
     grid = LayeredGrid.from_scene(stage.scene)
     actors, bodies = populate(grid, stage.scene, 0, TICK_S, 0)
@@ -120,7 +120,10 @@ def print_sockets(settings: ServerSettings, clients: int, seconds: float) -> Non
 def measure(
     server: Callable[[Connection, object], None], what: object, clients: int, seconds: float
 ) -> tuple[float, float]:
-    """Processor microseconds and bytes a client-tick of a server in its own process."""
+    """The processor microseconds and the bytes of a server for each client and tick.
+
+    The server runs in a process of its own.
+    """
     here, there = mp.get_context("spawn").Pipe()
     process = mp.get_context("spawn").Process(target=server, args=(there, what), daemon=True)
     process.start()
@@ -131,7 +134,7 @@ def measure(
 
 
 async def visit(port: int, clients: int, seconds: float, server: Connection) -> int:
-    """Join with raw sockets, steer now and then; returns the bytes received while measuring."""
+    """Join with raw sockets and steer now and then; returns the bytes that were received."""
     visitors = [Visitor(k) for k in range(clients)]
     loop = asyncio.get_running_loop()
     for visitor in visitors:
@@ -152,7 +155,7 @@ async def visit(port: int, clients: int, seconds: float, server: Connection) -> 
 
 
 class Visitor(asyncio.Protocol):
-    """A client that does not look at what it gets."""
+    """A client that only counts the bytes that it receives."""
 
     def __init__(self, number: int) -> None:
         self._random = np.random.default_rng(number)
@@ -183,7 +186,7 @@ class Visitor(asyncio.Protocol):
 
 
 def serve_world(parent: Connection, settings: object) -> None:
-    """Our server; reports its processor time and ticks between `begin` and `end`."""
+    """Run our server; sends back its processor time and ticks between `begin` and `end`."""
     assert isinstance(settings, ServerSettings)
 
     async def serve() -> None:
@@ -199,7 +202,7 @@ def serve_world(parent: Connection, settings: object) -> None:
 
 
 def serve_bare(parent: Connection, size: object) -> None:
-    """Frames of one size to every connection, 20 times a second; nothing else."""
+    """Run a server that sends frames of one size to every connection 20 times a second."""
     transports: list[asyncio.Transport] = []
 
     class Bare(asyncio.Protocol):

@@ -1,12 +1,12 @@
-"""How many actors get along: they change sides of a doorway, of a square, and on a circle.
+"""Many actors among themselves: they change sides of a doorway, of a square, and of a circle.
 
     python -m benchmarks.social                                   200 actors, all three scenes
     python -m benchmarks.social --actors 50 --scenes doorway --door 1.2 --plots pictures
 
-Nobody is among them but actors, each with a goal of its own. Contacts are pairs of discs that ever
-overlap, looked for between ticks too; time is against the same way alone at the preferred speed;
-stuck is who comes less than 0.5 m nearer to the goal in 20 s. Exit code 1 if there was a contact,
-somebody stuck, or somebody who did not arrive.
+There are only actors, each with its own goal. Contacts are pairs of discs that overlap at any time,
+also between ticks. Times are compared with that of the same path alone at the preferred speed. An
+actor is stuck if it comes less than 0.5 m nearer to its goal in 20 s. The exit code is 1 if there
+was a contact, or an actor was stuck or did not arrive.
 """
 
 import argparse
@@ -33,7 +33,7 @@ from esplanade.planning import LayeredGrid, PlanModel
 TICK_S: Final = 0.05
 CELL_M: Final = 0.25
 EPILOGUE_S: Final = 2.0
-"""Those who have arrived are watched so much longer."""
+"""The simulation goes on for this long after the last actor has arrived."""
 
 ROWS: Final = (
     ("actors", "actors", "{:d}"),
@@ -76,13 +76,13 @@ def parser() -> argparse.ArgumentParser:
     parser.add_argument("--door", type=float, default=2.0, metavar="M", help="width of the doorway")
     parser.add_argument("--until", type=float, default=300.0, metavar="S", help="simulated seconds")
     parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--plots", type=Path, metavar="DIR", help="draw all ways, as PNG")
+    parser.add_argument("--plots", type=Path, metavar="DIR", help="draw all paths as PNG")
     parser.add_argument("--json", type=Path, metavar="F")
     return parser
 
 
 def walk_watched(swap: Swap, seed: int, until_s: float, threads: int) -> tuple[Walks, Floats]:
-    """`walk`, with a progress bar for who sits at a terminal."""
+    """Run `walk` with a progress bar on a terminal."""
     with Progress(
         TextColumn("{task.description}, {task.fields[here]} arrived"),
         BarColumn(),
@@ -106,9 +106,10 @@ def walk(
     threads: int = 1,
     report: Callable[[float, int], None] | None = None,
 ) -> tuple[Walks, Floats]:
-    """Run until all have arrived, and a little longer; also milliseconds of every tick.
+    """Simulate until all actors have arrived, and a little longer.
 
-    `report` hears of every tick: seconds, and how many have arrived.
+    Returns the walks and the milliseconds of every tick. `report` is called after every tick with
+    the simulated seconds and the number of actors that have arrived.
     """
     body = ActorParameters()
     grid = LayeredGrid.from_scene(swap.scene, CELL_M)
@@ -137,7 +138,7 @@ def walk(
 
 
 def show(verdicts: dict[str, Verdict]) -> None:
-    """A table with a column for every scene."""
+    """Print a table with a column for every scene."""
     table = Table(box=box.SIMPLE)
     table.add_column("")
     for name in verdicts:
@@ -149,7 +150,7 @@ def show(verdicts: dict[str, Verdict]) -> None:
 
 
 def draw(path: Path, swap: Swap, walks: Walks) -> None:
-    """All ways on one picture, their colour the time; crosses are goals never reached."""
+    """Draw all paths in one picture, coloured by time; crosses are goals that were not reached."""
     try:
         figure_of = import_module("matplotlib.figure").Figure
         lines_of = import_module("matplotlib.collections").LineCollection

@@ -1,4 +1,4 @@
-"""People made of code: a client library for scripts, load tests, replay of recorded crowds.
+"""Bots are people made of code: a client library, load tests, replay of recorded crowds.
 
 Names are imported when they are first asked for: the command explains its options without them.
 """

@@ -1,4 +1,4 @@
-"""One measured connection, as load tests and replays use it by the hundred.
+"""A client measures one connection; load tests and replays use hundreds of them.
 
 It decodes as little as it can: a snapshot costs a look at its head, so that the generator of
 load is not what limits the load.

@@ -28,7 +28,7 @@ from esplanade.protocol.steps import StepRecords, Steps, unpack_steps
 
 @dataclass(frozen=True, eq=False)
 class SnapshotEvent:
-    """Who moved by tick `tick`; `ack` is the newest of our sequence numbers that counted in it.
+    """The avatars that moved by tick `tick`; `ack` is our newest sequence number that it counted.
 
     `records` is an array of `esplanade.protocol.snapshot.RECORD`, one row an avatar; avatars
     that are absent are as before.
@@ -62,7 +62,7 @@ class SnapshotEvent:
 
 @dataclass(frozen=True, eq=False)
 class StepsEvent:
-    """Who of those near begins a step, or has come near in the middle of one.
+    """The steps of walkers near by: of those who begin one, or have come near in the middle of one.
 
     `records` is an array of `esplanade.protocol.steps.STEP`, one row a step.
     """

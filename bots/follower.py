@@ -1,4 +1,4 @@
-"""Steering along a recorded way by what the server reports: pure arithmetic, no sockets.
+"""Steers along a recorded trajectory by the server's reports; this is arithmetic without sockets.
 
 A command sent now counts some ticks later, and the snapshot in hand is already old. So the
 follower works out where the avatar will be when the command begins to count, from the commands
@@ -86,14 +86,14 @@ class Follower:
         begins = tick + self._lag_ticks - 1
         now, then = self._track_at(begins), self._track_at(begins + 1)
         dt = self._timeline.tick_s
-        way = ((then[0] - now[0]) / dt, (then[1] - now[1]) / dt)
+        planned = ((then[0] - now[0]) / dt, (then[1] - now[1]) / dt)
         place = self._predict(tick, position)
         error = (now[0] - place[0], now[1] - place[1])
-        if way == (0.0, 0.0) and math.hypot(*error) < STILL_M:
+        if planned == (0.0, 0.0) and math.hypot(*error) < STILL_M:
             velocity = (0.0, 0.0)
         else:
-            velocity = (way[0] + GAIN * error[0] / dt, way[1] + GAIN * error[1] / dt)
-        return self._command(tick, velocity, capped=math.hypot(*way) > self._max_speed_mps)
+            velocity = (planned[0] + GAIN * error[0] / dt, planned[1] + GAIN * error[1] / dt)
+        return self._command(tick, velocity, capped=math.hypot(*planned) > self._max_speed_mps)
 
     def _track_at(self, tick: int) -> Vector:
         return self._track.at(self._timeline.recorded_s(tick))

@@ -1,11 +1,16 @@
-"""Percentiles of millions of measurements in a few kilobytes."""
+"""Percentiles of millions of measurements in a few kilobytes.
+
+Two libraries were measured on 200 000 values. hdrhistogram's does not pickle, so that processes
+could not send it, and it takes 1.3 µs a value, this one 0.8. ddsketch is as quick, but its ranks
+differ: the 99th percentile of fifty values is the second greatest there, the greatest here.
+"""
 
 import math
 from collections.abc import Iterable
 from typing import Final
 
 LEAST: Final = 1e-5
-"""Everything below falls into the first bin: 10 microseconds, a hundredth of a millimetre."""
+"""Smaller values fall into the first bin: 10 microseconds, a hundredth of a millimetre."""
 
 GREATEST: Final = 1e3
 STEP: Final = 1.01
@@ -36,7 +41,7 @@ class Histogram:
         self.greatest = max(self.greatest, value)
 
     def merge(self, other: "Histogram") -> None:
-        """Take in everything that the other has counted."""
+        """Add everything that the other has counted."""
         self.counts = [a + b for a, b in zip(self.counts, other.counts, strict=True)]
         self.count += other.count
         self.total += other.total
@@ -48,7 +53,7 @@ class Histogram:
         return self.total / self.count if self.count else None
 
     def percentile(self, percent: float) -> float | None:
-        """The value that so many per cent do not exceed, at most 1 % too great.
+        """The value that `percent` of all do not exceed; it is at most 1 % too great.
 
         None while nothing was counted.
         """

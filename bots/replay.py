@@ -1,4 +1,4 @@
-"""Replay of a recorded crowd: each pedestrian is a client that joins, follows its way, leaves."""
+"""Replays a recorded crowd: each pedestrian is a client that joins, walks its track and leaves."""
 
 import asyncio
 from dataclasses import dataclass
@@ -18,15 +18,15 @@ from esplanade.recordings import Track
 
 LEAD_S: Final = 0.5
 """A pedestrian joins this long (real time) before its recorded start, so that it stands at its
-first place when its way begins."""
+first place when its track begins."""
 
 NEAR_M: Final = 0.1
-"""The promise: this near to the recorded way at every tick."""
+"""A replay promises to be this near to the recorded track at every tick."""
 
 
 @dataclass(frozen=True)
 class ReplayJob:
-    """Tracks to be walked, at least one, each with a way; in any order."""
+    """The tracks to be walked in any order, at least one, each of two samples or more."""
 
     url: str
     tracks: tuple[Track, ...]
@@ -65,7 +65,7 @@ class ReplayJob:
 
 
 class _Walk:
-    """One pedestrian on its way: measures each snapshot and answers it with a command."""
+    """Walks one pedestrian: measures each snapshot and answers it with a command."""
 
     def __init__(
         self,

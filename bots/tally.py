@@ -1,4 +1,4 @@
-"""Everything that a run counts and measures, small enough to be sent between processes."""
+"""A tally holds all counts and measurements of a run, in a size that processes can send."""
 
 from collections import Counter
 from collections.abc import Iterable
@@ -9,19 +9,19 @@ from esplanade.bots.histogram import Histogram
 
 @dataclass
 class Tally:
-    """What happened to some clients. Times in seconds, bytes of payload without WebSocket heads."""
+    """The counts of some clients. Times are in seconds, bytes without WebSocket heads."""
 
     expected: int = 0
     """Clients that are to join in all."""
     joined: int = 0
     failed: int = 0
-    """Clients that never came in."""
+    """Clients that never joined."""
     left: int = 0
     """Clients that stayed to their end and went."""
     lost: int = 0
     """Clients whose connection ended before they were done."""
     skipped: int = 0
-    """Recorded pedestrians without a way: a single sample."""
+    """Recorded pedestrians with a single sample, who have no trajectory."""
 
     messages_in: int = 0
     messages_out: int = 0
@@ -32,25 +32,25 @@ class Tally:
     step_bytes: int = 0
     """Bytes of the messages that these came in."""
     walker_seconds: float = 0.0
-    """Time for which clients saw somebody walk step by step, summed over walkers and clients."""
+    """The time that clients saw somebody walk step by step, summed over walkers and clients."""
     client_seconds: float = 0.0
     """Time in the world, summed over clients."""
     cpu_seconds: float = 0.0
     """Processor time of the processes that ran the clients."""
 
     errors: Counter[str] = field(default_factory=Counter)
-    """By code: what the server complained of, how connections failed or ended."""
+    """Complaints of the server, failed connections and lost ones, counted by code."""
 
     no_path: int = 0
-    """Points that no way leads to: an answer to a wanderer, not a fault."""
+    """Points that no route leads to. To a wanderer this is an answer, not a fault."""
 
     round_trip_s: Histogram = field(default_factory=Histogram)
     snapshot_age_s: Histogram = field(default_factory=Histogram)
     snapshot_interval_s: Histogram = field(default_factory=Histogram)
     deviation_m: Histogram = field(default_factory=Histogram)
-    """Of replayed pedestrians from their recorded way."""
+    """The deviations of replayed pedestrians from their recorded trajectories."""
     near: int = 0
-    """Of those deviations, how many were within the promised distance."""
+    """The number of those deviations that were within the promised distance."""
     capped: int = 0
     """Commands of a replay that had to be slower than the recording."""
 
@@ -60,11 +60,11 @@ class Tally:
 
     @property
     def well(self) -> bool:
-        """Whether everybody came in, stayed, and nothing was complained of."""
+        """Whether everybody joined and stayed, without any complaint."""
         return not (self.failed or self.lost or self.errors)
 
     def merge(self, other: "Tally") -> None:
-        """Take in everything that the other has counted."""
+        """Add everything that the other has counted."""
         for name, value in vars(other).items():
             own = getattr(self, name)
             if isinstance(value, Histogram):

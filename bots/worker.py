@@ -42,7 +42,7 @@ def work(job: Job, pipe: Pipe) -> None:
 
 async def _run(job: Job, pipe: Pipe) -> None:
     tally = Tally()
-    idle_s = time.process_time()  # what starting the process took is not the clients' doing
+    idle_s = time.process_time()  # the start of the process is not the clients' time
     stop = asyncio.Event()
     task = asyncio.create_task(job.run(tally, stop))
     while not task.done():
@@ -58,6 +58,6 @@ async def _run(job: Job, pipe: Pipe) -> None:
 
 
 def _report(pipe: Pipe, report: Report) -> None:
-    # Nobody listens any more when whoever started this is gone; the pipe has said stop by then.
+    # Nobody listens any more once the parent process is gone; the pipe has said stop by then.
     with suppress(OSError):
         pipe.send(report)

@@ -83,7 +83,8 @@ class Parser(ArgumentParser):
         if action.choices is None or value in action.choices:
             return
         choices = [str(choice) for choice in action.choices]
-        hint = suggestion(str(value), choices) or f"; there are {', '.join(choices)}"
+        near = suggestion(value, choices) if isinstance(value, str) else ""
+        hint = near or f"; there are {', '.join(choices)}"
         raise ArgumentError(action, f"{str(value)!r} is no choice{hint}")
 
 

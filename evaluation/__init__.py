@@ -1,1 +1,1 @@
-"""Measures navigation and prediction among recorded people who do not react."""
+"""Evaluation of navigation and prediction among recorded people, who do not react."""

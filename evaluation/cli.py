@@ -10,10 +10,10 @@ from esplanade.commandline.output import console, made_folder, write_json
 from esplanade.commandline.progress import progress
 from esplanade.evaluation import forecast_report, plotting, report
 from esplanade.evaluation.console import named_sources, walk
-from esplanade.evaluation.ledger import LedgerError
 from esplanade.evaluation.policies import PolicyError
 from esplanade.evaluation.rules import Rules
-from esplanade.evaluation.runner import Result, ready_policy
+from esplanade.evaluation.runner import TrialResult, ready_policy
+from esplanade.evaluation.score_cache import ScoreCacheError
 from esplanade.evaluation.settings import SettingError, read_changes
 from esplanade.evaluation.studies import command
 from esplanade.evaluation.trials import Source, plan_trials
@@ -31,7 +31,7 @@ def run(options: Namespace) -> int:
             _forecasts(options)
         elif _trips(options) and options.strict:
             return exit_codes.FAILED
-    except (SettingError, LedgerError, RecordingError, PolicyError) as error:
+    except (SettingError, ScoreCacheError, RecordingError, PolicyError) as error:
         raise UsageError(str(error)) from None
     return exit_codes.OK
 
@@ -82,7 +82,7 @@ def _check_numbers(numbers: frozenset[int] | None, count: int) -> None:
 def _draw(
     folder: Path,
     numbers: frozenset[int] | None,
-    results: Sequence[Result],
+    results: Sequence[TrialResult],
     names: Mapping[Source, str],
 ) -> None:
     chosen = [
@@ -100,7 +100,7 @@ def _draw(
             plotting.draw_episode(
                 folder / f"{stem}.png",
                 f"{name}, {trial.policy}, episode {number}",
-                trial.source.ground(trial.rules.tick_s),
+                trial.source.environment(trial.rules.tick_s),
                 episode,
                 ready_policy(trial),
                 trial.rules,

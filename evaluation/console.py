@@ -1,17 +1,17 @@
-"""What all kinds of evaluation share: recordings that were named, and walking with a bar."""
+"""The recordings that the command line names, and the run of trials with a progress bar."""
 
 from argparse import Namespace
 from collections.abc import Sequence
 
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.progress import progress
-from esplanade.evaluation.ledger import Ledger
-from esplanade.evaluation.runner import Result, run_trials
+from esplanade.evaluation.runner import TrialResult, run_trials
+from esplanade.evaluation.score_cache import ScoreCache
 from esplanade.evaluation.trials import Source, Trial
 
 
 def named_sources(options: Namespace) -> dict[Source, str]:
-    """Recordings, with their own names, or their paths where these are the same."""
+    """The recordings of the command line and their names; equal names are replaced by paths."""
     sources = dict.fromkeys(
         Source(path, options.walls, options.fps, options.interp) for path in options.crowds
     )
@@ -20,18 +20,28 @@ def named_sources(options: Namespace) -> dict[Source, str]:
     return {s: str(s.path.with_suffix("")) if n in shared else n for s, n in names.items()}
 
 
-def walk(trials: Sequence[Trial], options: Namespace) -> list[Result]:
-    """Run all trials before the eyes of who waits for them."""
+def walk(trials: Sequence[Trial], options: Namespace) -> list[TrialResult]:
+    """Run all trials with a progress bar.
+
+    Raises
+    ------
+    UsageError
+        A recording has no episodes.
+    """
     for trial in trials:
         if not trial.episodes:
-            raise UsageError(f"{trial.source.path}: nobody in it makes a trip that can be judged")
-    with Ledger(options.ledger) as ledger, progress(time_left=True) as shown:
-        task = shown.add_task("walking", total=sum(len(trial.episodes) for trial in trials))
+            raise UsageError(f"{trial.source.path}: it has no trip that can be an episode")
+    with ScoreCache(options.score_cache) as score_cache, progress(time_left=True) as shown:
+        task = shown.add_task(
+            "running episodes", total=sum(len(trial.episodes) for trial in trials)
+        )
         try:
-            return run_trials(trials, options.processes, lambda n: shown.advance(task, n), ledger)
+            return run_trials(
+                trials, options.processes, lambda n: shown.advance(task, n), score_cache
+            )
         except KeyboardInterrupt:
-            if options.ledger is not None:
+            if options.score_cache is not None:
                 shown.console.print(
-                    f"interrupted; {options.ledger} has what was walked: the same command goes on"
+                    f"interrupted; the same command continues from {options.score_cache}"
                 )
             raise

@@ -1,10 +1,11 @@
-"""Who comes how near to the robot, continuously between ticks."""
+"""Contacts between the robot and people, found continuously between ticks."""
 
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.evaluation.obstacles import point_segment_distances
 from esplanade.evaluation.policies.policy import Person
 from esplanade.evaluation.replay import Replay
 from esplanade.evaluation.rules import Rules
@@ -12,34 +13,42 @@ from esplanade.evaluation.rules import Rules
 Floats = NDArray[np.float64]
 
 TOWARD_MPS = 0.1
-"""A robot that moves faster than this toward whom it touches did it itself."""
+"""A contact is active if the robot moves faster than this toward the person."""
 
 
 def closest_approach(offset: Floats, change: Floats) -> float:
-    """Least length of `offset` + u · `change` for u from 0 to 1, metres."""
-    square = float(change @ change)
-    share = 0.0 if square < 1e-12 else min(1.0, max(0.0, -float(offset @ change) / square))
-    return float(np.hypot(*(offset + share * change)))
+    """Smallest distance, metres, of two bodies that move straight during one tick.
+
+    `offset` (2,) is the difference of their positions at the start of the tick, and `change` (2,)
+    is how much that difference changes until its end, both in metres.
+    """
+    passed = np.stack([offset, offset + change])[None]
+    return float(point_segment_distances(np.zeros(2), passed)[0])
 
 
-class Encounters:
-    """Adds up contacts and clearances over an episode."""
+class ContactMonitor:
+    """Counts contacts and measures clearances over one episode."""
 
     def __init__(self, replay: Replay, rules: Rules) -> None:
         self._replay = replay
         self._rules = rules
-        self.met: set[int] = set()
-        """Whom the robot has touched."""
-        self.caused = 0
-        """Contacts in which the robot moved toward the person."""
+        self.touched: set[int] = set()
+        """The people that the robot has touched."""
+        self.active = 0
+        """The number of contacts in which the robot moved toward the person."""
         self.clearance_m = rules.clearance_cap_m
-        """Least distance, skin to skin."""
+        """The smallest distance between the surfaces of the bodies."""
         self.near_s = 0.0
+        """The time during which somebody was nearer than `Rules.near_m`."""
 
     def step(
         self, tick: int, people: Sequence[Person], old: Floats, velocity: Floats, new: Floats
     ) -> None:
-        """The robot went from `old` to `new` in the tick that begins at `tick`."""
+        """Take account of the robot's step from `old` to `new` in the tick that begins at `tick`.
+
+        `people` are those in view at the start of the tick; `old`, `velocity` and `new` are (2,),
+        in metres and m/s.
+        """
         nearest = np.inf
         for person in people:
             if tick + 1 > self._replay.last[person.id]:
@@ -48,10 +57,10 @@ class Encounters:
             change = (new - self._replay.at(person.id, tick + 1)) - offset
             distance = closest_approach(offset, change)
             nearest = min(nearest, distance)
-            if distance < self._rules.contact_m and person.id not in self.met:
-                self.met.add(person.id)
+            if distance < self._rules.contact_m and person.id not in self.touched:
+                self.touched.add(person.id)
                 toward = -offset / max(1e-9, float(np.hypot(*offset)))
-                self.caused += float(velocity @ toward) > TOWARD_MPS
+                self.active += float(velocity @ toward) > TOWARD_MPS
         clearance = nearest - self._rules.contact_m
         self.clearance_m = min(self.clearance_m, clearance)
         self.near_s += self._rules.tick_s * (clearance < self._rules.near_m)

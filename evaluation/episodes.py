@@ -1,4 +1,4 @@
-"""Which trips are judged: people's own starts and goals, at the times they set out."""
+"""The choice of episodes: recorded people's own starts, goals and times of departure."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -9,44 +9,51 @@ from esplanade.evaluation.replay import Replay
 from esplanade.evaluation.rules import Rules
 
 MIN_TICKS: Final = 5
-MIN_WAY_M: Final = 5.0
-SLOWEST: Final = 3.0
-"""Who took longer than this many times the straight way's time was not going somewhere."""
-TIME_LEFT: Final = 1.5
-"""The recording must go on for this many times the straight way's time."""
+MIN_DISTANCE_M: Final = 5.0
+MAX_TIME_RATIO: Final = 3.0
+"""Recorded trips that took longer than this many times the straight line's time are left out,
+because such people were not heading for a destination."""
+MIN_TIME_LEFT_RATIO: Final = 1.5
+"""The recording must go on for at least this many times the straight line's time."""
 FREE_START_M: Final = 0.8
-"""Nobody else may stand nearer than this to the start."""
-OUT_OF_SIGHT_M: Final = 9.0
+"""Trips are left out if somebody else is nearer than this to the start."""
 
 
 @dataclass(frozen=True)
 class Episode:
-    """One trip: that pedestrian is taken out, and the robot goes instead, from `first_tick` on."""
+    """One trip on which the robot takes the place of a recorded pedestrian.
+
+    The pedestrian is removed from the replay. `start` and `goal` are (x, y) in metres.
+    """
 
     number: int
-    """Position among the episodes of its recording, from 0."""
+    """The position among the episodes of the recording, from 0."""
     pedestrian: int
     first_tick: int
     start: tuple[float, float]
     goal: tuple[float, float]
     reverse: bool
-    """Whether the trip goes from the pedestrian's end to the start."""
+    """Whether the trip goes from the pedestrian's last position to the first one."""
 
     @property
-    def way_m(self) -> float:
-        """Length of the straight way."""
+    def distance_m(self) -> float:
+        """Length of the straight line from start to goal."""
         return float(np.hypot(self.goal[0] - self.start[0], self.goal[1] - self.start[1]))
 
 
 def choose_episodes(replay: Replay, rules: Rules, count: int, seed: int) -> list[Episode]:
-    """At most so many trips, the same for the same seed; reversed ones where there are too few."""
+    """Choose at most `count` episodes of a recording in random order.
+
+    The same seed gives the same episodes. Reversed trips are added if there are fewer forward
+    trips than `count`.
+    """
     forward: list[Episode] = []
     backward: list[Episode] = []
     for pedestrian in range(len(replay.ids)):
-        if not _goes_somewhere(replay, rules, pedestrian):
+        if not _has_destination(replay, rules, pedestrian):
             continue
-        way = replay.way(pedestrian)
-        for chosen, start, goal in ((forward, way[0], way[-1]), (backward, way[-1], way[0])):
+        begin, end = replay.trajectory(pedestrian)[[0, -1]]
+        for chosen, start, goal in ((forward, begin, end), (backward, end, begin)):
             first = int(replay.first[pedestrian])
             if _is_free(replay, rules, pedestrian, start, goal):
                 ends = (float(start[0]), float(start[1])), (float(goal[0]), float(goal[1]))
@@ -61,17 +68,18 @@ def choose_episodes(replay: Replay, rules: Rules, count: int, seed: int) -> list
     ]
 
 
-def _goes_somewhere(replay: Replay, rules: Rules, pedestrian: int) -> bool:
+def _has_destination(replay: Replay, rules: Rules, pedestrian: int) -> bool:
     first, last = int(replay.first[pedestrian]), int(replay.last[pedestrian])
     if last - first < MIN_TICKS:
         return False
-    way = replay.way(pedestrian)
-    way_m = float(np.linalg.norm(way[-1] - way[0]))
-    straight_s = way_m / rules.speed_mps
+    begin, end = replay.trajectory(pedestrian)[[0, -1]]
+    distance_m = float(np.linalg.norm(end - begin))
+    straight_s = distance_m / rules.speed_mps
+    left_s = (replay.end_tick - first) * replay.tick_s
     return not (
-        way_m < MIN_WAY_M
-        or (last - first) * replay.tick_s > SLOWEST * straight_s
-        or first * replay.tick_s + TIME_LEFT * straight_s > replay.end_tick * replay.tick_s
+        distance_m < MIN_DISTANCE_M
+        or (last - first) * replay.tick_s > MAX_TIME_RATIO * straight_s
+        or MIN_TIME_LEFT_RATIO * straight_s > left_s
     )
 
 
@@ -85,8 +93,8 @@ def _is_free(
     first = int(replay.first[pedestrian])
     others = replay.present(first)
     others = others[others != pedestrian]
-    away = np.linalg.norm(replay.positions(others, first) - start, axis=1)
-    if min([*away, OUT_OF_SIGHT_M]) < FREE_START_M:
+    distances = np.linalg.norm(replay.positions(others, first) - start, axis=1)
+    if distances.min(initial=np.inf) < FREE_START_M:
         return False
     walls_m = min(replay.obstacles.distance(start), replay.obstacles.distance(goal))
     return walls_m >= rules.robot_radius_m

@@ -1,4 +1,4 @@
-"""The errors that suit recorded people best, fitted to recordings and held against others."""
+"""Error distributions fitted to recordings by maximum likelihood, with cross-validation."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -12,48 +12,48 @@ from esplanade.evaluation.calibration import negative_log_likelihood, pool
 from esplanade.evaluation.forecasts import Floats, Forecasts, ahead_s
 from esplanade.planning import GAUSSIAN, Spread
 
-STOOD_M: Final = 0.01
-"""Who is within a centimetre of where they were expected, at every step, has stood."""
+STANDING_M: Final = 0.01
+"""People whose error stays below this at every step are taken to have stood still."""
 
 
 @dataclass(frozen=True)
 class Growth:
-    """Deviation sigma_0 + growth × seconds ahead, eq. (3)."""
+    """A deviation of sigma_0 + growth × seconds ahead, eq. (3) of Lei & Li."""
 
     sigma_0_m: float
     growth_mps: float
 
     def sigmas(self) -> Floats:
-        """Deviations of the steps, (STEPS,), metres."""
+        """Deviations at each step ahead, (STEPS,), metres."""
         return self.sigma_0_m + self.growth_mps * ahead_s()
 
 
 Fitted = TypeVar("Fitted", Growth, Spread)
 
 
-class FitRow(NamedTuple, Generic[Fitted]):
-    """What was fitted to all recordings but one, held against that one."""
+class LeaveOneOutFit(NamedTuple, Generic[Fitted]):
+    """A fit to all recordings but one, tested on the recording that was left out."""
 
     left_out: str | None
-    """None: fitted to all, held against all."""
+    """The name of the recording; None if the fit was made and tested on all recordings."""
     fit: Fitted
-    fitted: float
-    """Negative log-likelihood of what was left out, with the fit."""
-    default: float
-    """The same with what the fit would replace."""
+    negative_log_likelihood: float
+    """That of the test recording under the fit."""
+    default_negative_log_likelihood: float
+    """That of the test recording under the default distribution."""
 
 
 class Fits(NamedTuple):
-    """Fits to all recordings but each in turn, and to all of them."""
+    """Leave-one-out fits; the last one of each kind is to all recordings."""
 
-    growths: Sequence[FitRow[Growth]] = ()
-    """The same for everyone, instead of each person's own; one Gaussian."""
-    spreads: Sequence[FitRow[Spread]] = ()
-    """Of the errors in each person's own deviations, instead of the default."""
+    growths: Sequence[LeaveOneOutFit[Growth]] = ()
+    """Deviations that are the same for everyone, with one Gaussian."""
+    spreads: Sequence[LeaveOneOutFit[Spread]] = ()
+    """Mixtures for errors that are expressed in each person's own deviation."""
 
 
 def fit_growth(recordings: Sequence[Forecasts]) -> Growth:
-    """The most likely deviation. Every recording weighs the same, however many people it has."""
+    """Fit the most likely deviation; every recording has the same weight, whatever its size."""
 
     def mean_cost(logarithms: Floats) -> float:
         sigmas = Growth(*np.exp(logarithms)).sigmas()
@@ -65,7 +65,10 @@ def fit_growth(recordings: Sequence[Forecasts]) -> Growth:
 
 
 def fit_spread(recordings: Sequence[Forecasts]) -> Spread:
-    """The most likely mixture of two, the narrower first. Every recording weighs the same."""
+    """Fit the most likely mixture of two Gaussians, the narrower one first.
+
+    Every recording has the same weight, whatever its size.
+    """
 
     def spread_of(free: Floats) -> Spread:
         one, other = np.exp(free[:2]).tolist()
@@ -81,43 +84,52 @@ def fit_spread(recordings: Sequence[Forecasts]) -> Spread:
     return spread_of(minimize(mean_cost, start, bounds=bounds, method="L-BFGS-B").x)
 
 
-def those_who_moved(forecasts: Forecasts) -> Forecasts:
-    """Without those who stood.
+def without_standing(forecasts: Forecasts) -> Forecasts:
+    """Leave out the predictions of people who stood still.
 
-    Recordings have them stand on one spot. Without any error the narrower the likelier, without
-    end: they would tell the spread about drawing, not about walking.
+    In recordings they stand on exactly one spot. Errors of zero make a mixture the likelier the
+    narrower it is, without limit, and say nothing about walking.
     """
-    moved = np.linalg.norm(forecasts.errors, axis=2).max(axis=1, initial=0.0) > STOOD_M
+    moved = np.linalg.norm(forecasts.errors, axis=2).max(axis=1, initial=0.0) > STANDING_M
     return Forecasts(forecasts.errors[moved], forecasts.sigmas[moved])
 
 
 def fit_each(recordings: Sequence[tuple[str, Forecasts]], spread: Spread) -> Fits:
-    """Fit to recordings by name, predicted with deviations of each person and with a spread."""
+    """Fit growths and spreads to named recordings, leaving out each recording in turn.
 
-    def growth_row(left_out: str | None, fit: Growth, found: Forecasts) -> FitRow[Growth]:
+    The forecasts hold each person's own deviation; `spread` is the default distribution that the
+    fitted spreads are compared with.
+    """
+
+    def growth_row(left_out: str | None, fit: Growth, found: Forecasts) -> LeaveOneOutFit[Growth]:
         own = negative_log_likelihood(found, found.sigmas, GAUSSIAN)
-        return FitRow(left_out, fit, negative_log_likelihood(found, fit.sigmas(), GAUSSIAN), own)
+        return LeaveOneOutFit(
+            left_out, fit, negative_log_likelihood(found, fit.sigmas(), GAUSSIAN), own
+        )
 
-    def spread_row(left_out: str | None, fit: Spread, found: Forecasts) -> FitRow[Spread]:
+    def spread_row(left_out: str | None, fit: Spread, found: Forecasts) -> LeaveOneOutFit[Spread]:
         default = negative_log_likelihood(found, found.sigmas, spread)
-        return FitRow(left_out, fit, negative_log_likelihood(found, found.sigmas, fit), default)
+        return LeaveOneOutFit(
+            left_out, fit, negative_log_likelihood(found, found.sigmas, fit), default
+        )
 
-    moved = [(name, those_who_moved(found)) for name, found in recordings]
+    moved = [(name, without_standing(found)) for name, found in recordings]
     return Fits(
-        [growth_row(*of) for of in _leaving_out(recordings, fit_growth)],
+        [growth_row(*split) for split in _leave_one_out(recordings, fit_growth)],
         [
-            spread_row(*of)
-            for of in _leaving_out([of for of in moved if len(of[1].errors)], fit_spread)
+            spread_row(*split)
+            for split in _leave_one_out([m for m in moved if len(m[1].errors)], fit_spread)
         ],
     )
 
 
-def _leaving_out(
+def _leave_one_out(
     recordings: Sequence[tuple[str, Forecasts]], fit: Callable[[Sequence[Forecasts]], Fitted]
 ) -> list[tuple[str | None, Fitted, Forecasts]]:
-    """What is left out, the fit to the others, and what it is held against.
+    """The name of each test recording, the fit to the others, and the test recording.
 
-    The last leaves out nothing. With one recording, it is the only one.
+    The last row is fitted to all recordings and tested on all; with one recording it is the only
+    row.
     """
     if not recordings:
         return []

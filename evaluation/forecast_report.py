@@ -1,4 +1,4 @@
-"""Predictions as tables, and as one object for programs."""
+"""Reports of how good predictions are: tables, and one object for JSON."""
 
 import math
 from collections.abc import Sequence
@@ -10,13 +10,13 @@ from rich.console import Console
 from rich.table import Table
 
 from esplanade.evaluation.calibration import (
+    COVERAGE_LEVELS,
     HORIZONS_S,
-    SHARES,
     ForecastScore,
     pool,
     score_forecasts,
 )
-from esplanade.evaluation.fits import FitRow, Fits, Growth, fit_each
+from esplanade.evaluation.fits import Fits, Growth, LeaveOneOutFit, fit_each
 from esplanade.evaluation.forecasts import Forecasts, forecast
 from esplanade.planning import GAUSSIAN, PredictionModel, Spread
 from esplanade.recordings import Crowd, Obstacles
@@ -31,8 +31,8 @@ POOLED: Final = "all together"
 NOTHING: Final = "nothing"
 
 
-class Row(NamedTuple):
-    """One line of the result."""
+class ForecastRow(NamedTuple):
+    """The score of one prediction model on one recording."""
 
     recording: str
     model: str
@@ -41,26 +41,29 @@ class Row(NamedTuple):
 
 def measure(
     crowds: Sequence[tuple[str, Crowd, Obstacles]], sample_s: float, *, fit: bool
-) -> tuple[list[Row], Fits]:
-    """Every model on every recording; who is not followed for long enough does not count."""
-    rows: list[Row] = []
+) -> tuple[list[ForecastRow], Fits]:
+    """Score every model on every recording, and fit error distributions if `fit` is set.
+
+    People who are not recorded for long enough do not count.
+    """
+    rows: list[ForecastRow] = []
     by_model: dict[str, list[tuple[str, Forecasts]]] = {name: [] for name in MODELS}
     for recording, crowd, obstacles in crowds:
         for model, constants in MODELS.items():
             found = forecast(crowd, obstacles, constants, sample_s)
             if len(found.errors):
                 by_model[model].append((recording, found))
-                rows.append(Row(recording, model, score_forecasts(found, constants.spread)))
+                rows.append(ForecastRow(recording, model, score_forecasts(found, constants.spread)))
     for model, parts in by_model.items():
         if len(parts) > 1:
             pooled = pool([found for _, found in parts])
-            rows.append(Row(POOLED, model, score_forecasts(pooled, MODELS[model].spread)))
+            rows.append(ForecastRow(POOLED, model, score_forecasts(pooled, MODELS[model].spread)))
     used = MODELS["default"].spread
     return rows, fit_each(by_model["default"], used) if fit else Fits()
 
 
-def show(console: Console, rows: Sequence[Row], fits: Fits) -> None:
-    """A table for every model, a column for every recording; then the fits."""
+def show(console: Console, rows: Sequence[ForecastRow], fits: Fits) -> None:
+    """Print one table for each model, with a column for each recording, then the fits."""
     for model in MODELS:
         shown = {row.recording: row.score for row in rows if row.model == model}
         table = Table(title=f"Prediction, {model}", title_justify="left", box=box.SIMPLE_HEAD)
@@ -77,34 +80,34 @@ def show(console: Console, rows: Sequence[Row], fits: Fits) -> None:
 
 
 def _lines(score: ForecastScore) -> list[tuple[str, str]]:
-    """Headings and cells of one column."""
-    errors = zip(HORIZONS_S, score.average_m, score.final_m, strict=True)
+    """The headings and cells of one column."""
+    errors = zip(HORIZONS_S, score.ade_m, score.fde_m, strict=True)
     return [
         ("predictions", f"{score.forecasts}"),
         *((f"ADE/FDE at {s} s, m", f"{average:.2f}/{final:.2f}") for s, average, final in errors),
         ("neg. log-likelihood", f"{score.negative_log_likelihood:.2f}"),
         *(
-            (f"% in the {circle:.0%} circle", f"{100.0 * inside:.1f}")
-            for circle, inside in zip(SHARES, score.inside, strict=True)
+            (f"% in the {circle:.0%} circle", f"{100.0 * coverage:.1f}")
+            for circle, coverage in zip(COVERAGE_LEVELS, score.coverage, strict=True)
         ),
     ]
 
 
-def _growth_table(fits: Sequence[FitRow[Growth]]) -> Table:
+def _growth_table(fits: Sequence[LeaveOneOutFit[Growth]]) -> Table:
     headings = ("sigma_0, m", "growth, m/s", "neg. log-likelihood", "each their own")
     table = _table("Fitted deviation, the same for everyone", headings)
     for row in fits:
-        values = (row.fit.sigma_0_m, row.fit.growth_mps, row.fitted, row.default)
+        values = (row.fit.sigma_0_m, row.fit.growth_mps, *row[2:])
         table.add_row(row.left_out or NOTHING, *(f"{value:.3f}" for value in values))
     return table
 
 
-def _spread_table(fits: Sequence[FitRow[Spread]]) -> Table:
+def _spread_table(fits: Sequence[LeaveOneOutFit[Spread]]) -> Table:
     headings = ("narrow", "weight", "wide", "weight", "neg. log-likelihood", "by default")
     table = _table("Fitted spread of those who moved, in deviations", headings)
     for row in fits:
         parts = [value for part in row.fit.parts for value in part]
-        values = (*parts, row.fitted, row.default)
+        values = (*parts, *row[2:])
         table.add_row(row.left_out or NOTHING, *(f"{value:.3f}" for value in values))
     return table
 
@@ -116,10 +119,10 @@ def _table(title: str, headings: Sequence[str]) -> Table:
     return table
 
 
-def figures(rows: Sequence[Row], fits: Fits, sample_s: float) -> dict[str, Any]:
-    """Everything that was measured, for JSON."""
+def figures(rows: Sequence[ForecastRow], fits: Fits, sample_s: float) -> dict[str, Any]:
+    """All scores and fits, ready for JSON."""
     return {
-        "settings": {"sample_s": sample_s, "horizons_s": HORIZONS_S, "circles": SHARES},
+        "settings": {"sample_s": sample_s, "horizons_s": HORIZONS_S, "circles": COVERAGE_LEVELS},
         "predictions": [
             {"recording": row.recording, "model": row.model, **asdict(row.score)} for row in rows
         ],
@@ -128,10 +131,10 @@ def figures(rows: Sequence[Row], fits: Fits, sample_s: float) -> dict[str, Any]:
     }
 
 
-def _figures_of(row: FitRow[Growth] | FitRow[Spread]) -> dict[str, Any]:
+def _figures_of(row: LeaveOneOutFit[Growth] | LeaveOneOutFit[Spread]) -> dict[str, Any]:
     return {
         "left_out": row.left_out,
         **asdict(row.fit),
-        "negative_log_likelihood": row.fitted,
-        "default_negative_log_likelihood": row.default,
+        "negative_log_likelihood": row.negative_log_likelihood,
+        "default_negative_log_likelihood": row.default_negative_log_likelihood,
     }

@@ -1,4 +1,4 @@
-"""What was predicted of people, beside what they did."""
+"""Predictions of recorded people, compared with what these people did."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -13,38 +13,39 @@ Floats = NDArray[np.float64]
 
 STEP_S: Final = 0.4
 STEPS: Final = 12
-"""Predictions are looked at every 0.4 s, up to 4.8 s ahead."""
+"""Predictions are compared every 0.4 s, up to 4.8 s ahead."""
 MARGIN_M: Final = 10.0
+"""The ground extends this far beyond the bounds of the recording."""
 _SLACK: Final = 1e-6
 
 
 @dataclass(frozen=True)
 class Forecasts:
-    """F predictions, each of one person at one tick, STEPS steps ahead.
+    """F predictions, each of one person at one time, STEPS steps ahead.
 
-    Only those count who have been seen for as long as the model looks back, and whose whole
-    future is recorded.
+    A person counts only once observed for as long as the model looks back, and only while the
+    whole horizon is recorded.
     """
 
     errors: Floats
-    """(F, STEPS, 2): recorded minus predicted place, metres."""
+    """(F, STEPS, 2): the recorded minus the predicted position, metres."""
     sigmas: Floats
-    """(F, STEPS): predicted deviation per axis, metres."""
+    """(F, STEPS): the predicted deviation along each axis, metres."""
 
 
 def ahead_s() -> Floats:
-    """Times ahead of the steps, (STEPS,)."""
+    """The times of the steps ahead, (STEPS,), seconds."""
     return STEP_S * np.arange(1, STEPS + 1, dtype=np.float64)
 
 
 def forecast(
     crowd: Crowd, obstacles: Obstacles, model: PredictionModel, sample_s: float
 ) -> Forecasts:
-    """Predict everyone every `sample_s`, as actors do, walls included.
+    """Predict everyone every `sample_s` seconds, as actors do, walls included.
 
-    Predictions of different people do not depend on each other. So all tracks begin at once here,
-    and everyone is seen just when the recording has a sample: a place between two samples would
-    be an interpolated one, with less noise than there is.
+    Predictions of different people do not depend on each other. Therefore all tracks start at the
+    same time here, and people are observed exactly at the samples of the recording: a position
+    between two samples would be interpolated, with less noise than the recording has.
     """
     x0, y0, x1, y1 = crowd.bounds
     bounds = (x0 - MARGIN_M, y0 - MARGIN_M, x1 + MARGIN_M, y1 + MARGIN_M)
@@ -52,17 +53,19 @@ def forecast(
     history = TrackHistory(model, sample_s)
     past = history.stride * model.samples
     ahead = np.round(ahead_s() / sample_s).astype(int)
-    ways = [_sampled(track, sample_s) for track in crowd.tracks]
+    paths = [_sampled(track, sample_s) for track in crowd.tracks]
     errors, sigmas = [np.zeros((0, STEPS, 2))], [np.zeros((0, STEPS))]
-    for k in range(max(map(len, ways))):
-        history.observe({who: tuple(way[k]) for who, way in enumerate(ways) if k < len(way)})
-        judged = [who for who, way in enumerate(ways) if k + ahead[-1] < len(way)]
+    for k in range(max(map(len, paths))):
+        history.observe(
+            {person: tuple(path[k]) for person, path in enumerate(paths) if k < len(path)}
+        )
+        judged = [person for person, path in enumerate(paths) if k + ahead[-1] < len(path)]
         if k < past or not judged:
             continue
         prediction = history.predict(grid, STEPS, STEP_S)
-        rows_by_id = {who: row for row, who in enumerate(history.ids)}
-        rows = [rows_by_id[who] for who in judged]
-        truth = np.stack([ways[who][k + ahead] for who in judged])
+        rows_by_id = {person: row for row, person in enumerate(history.ids)}
+        rows = [rows_by_id[person] for person in judged]
+        truth = np.stack([paths[person][k + ahead] for person in judged])
         errors.append(truth - prediction.means[rows, 1:])
         sigmas.append(prediction.sigmas[rows, 1:])
     return Forecasts(np.concatenate(errors), np.concatenate(sigmas))

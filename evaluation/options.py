@@ -16,10 +16,10 @@ from esplanade.commandline.readers import (
 
 POLICIES: Final = {
     "esplanade": "the project's own actor",
-    "straight": "straight on, whoever is in the way",
+    "straight": "straight on, ignoring people",
     "discs": "constant velocities, hard discs, space-time A*",
-    "clairvoyant": "the same, shown the true future",
-    "human": "the recorded pedestrian's own way",
+    "oracle": "the same search, given the true future",
+    "human": "the recorded pedestrian's own trajectory",
     "jupedsim-speed": "JuPedSim, collision-free speed",
     "jupedsim-anticipation": "JuPedSim, anticipation velocity",
     "jupedsim-forces": "JuPedSim, social forces",
@@ -29,12 +29,12 @@ POLICIES: Final = {
 EXAMPLES: Final = """\
 examples:
   esplanade evaluate zara1.csv
-  esplanade evaluate eth.csv hotel.csv --policy esplanade discs clairvoyant --json all.json
+  esplanade evaluate eth.csv hotel.csv --policy esplanade discs oracle --json all.json
   esplanade evaluate zara1.csv --episodes 20 --plots failed/
   esplanade evaluate zara1.csv --set risk_weight=12 --set foresight_s=2
   esplanade evaluate eth.csv zara1.csv --prediction --fit
-  esplanade evaluate eth.csv zara1.csv --sensitivity --ledger done.jsonl --plots .
-  esplanade evaluate eth.csv zara1.csv --tune --vary risk_weight=6,8,12 --ledger done.jsonl
+  esplanade evaluate eth.csv zara1.csv --sensitivity --score-cache done.jsonl --plots .
+  esplanade evaluate eth.csv zara1.csv --tune --vary risk_weight=6,8,12 --score-cache done.jsonl
 
 files: CSV with the header t,id,x,y; ETH's obsmat.txt; TrajNet++ .ndjson
 
@@ -142,10 +142,10 @@ def parser() -> Parser:
         "--json", metavar="FILE", type=OutputFile(), help="write every episode there"
     )
     results.add_argument(
-        "--ledger",
+        "--score-cache",
         metavar="FILE",
         type=OutputFile(),
-        help="keep scores there as they come; what is there is not walked again",
+        help="cache scores there; episodes whose score is there are not run again",
     )
     results.add_argument(
         "--plots", metavar="FOLDER", type=Folder(), help="draw episodes there, as PNG"
@@ -201,8 +201,8 @@ def check(options: Namespace) -> None:
         raise UsageError("--vary is for --sensitivity and --tune")
     if options.candidates is not None and not options.tune:
         raise UsageError("--candidates is for --tune")
-    if studies and options.ledger is None:
-        raise UsageError("this takes long: say with --ledger FILE where to keep what is done")
+    if studies and options.score_cache is None:
+        raise UsageError("a study takes long: keep its scores with --score-cache FILE")
     if options.tune and not (options.vary or options.candidates):
         raise UsageError("--tune needs candidates: --vary NAME=V1,V2,.. or --candidates FILE")
     if options.tune and not all("=" in text for text in options.vary):

@@ -1,4 +1,4 @@
-"""A recorded crowd as it is replayed: everyone's place at every tick."""
+"""The replay of a recorded crowd: everyone's position at every tick."""
 
 import math
 from typing import Final, Literal
@@ -14,14 +14,15 @@ Floats = NDArray[np.float64]
 Interpolation = Literal["linear", "cubic"]
 
 _SLACK: Final = 1e-6
-"""A sample this part of a tick off still counts as on the tick."""
+"""A sample that differs from a tick by this part of a tick counts as on the tick."""
 
 
 class Replay:
-    """Positions of everyone, one a tick; tick k is at k × `tick_s` in the recording's own time.
+    """The positions of all pedestrians at every tick.
 
-    Pedestrians are numbered in the order of their ids, by number where ids are numbers. Memory:
-    one position for each tick at which a pedestrian is there.
+    Tick k is at k × `tick_s` in the recording's own time. Pedestrians are numbered in the order of
+    their ids, numerically if the ids are numbers. Memory is one position for each tick at which a
+    pedestrian is present.
     """
 
     def __init__(
@@ -38,50 +39,54 @@ class Replay:
         tracks = sorted(crowd.tracks, key=_by_number)
         self.ids = tuple(track.id for track in tracks)
         self.end_tick = math.floor(crowd.end_s / tick_s + _SLACK)
-        """Last tick of the recording."""
+        """The last tick of the recording."""
         self.first = np.array([math.ceil(t.start_s / tick_s - _SLACK) for t in tracks])
-        """First tick at which each pedestrian is there, int64 (N,)."""
+        """The first tick at which each pedestrian is present, int64 (N,)."""
         self.last = np.array([math.floor(t.end_s / tick_s + _SLACK) for t in tracks])
-        """Last tick, int64 (N,); before the first for who falls between two ticks."""
-        self._ways = [
+        """The last tick of each pedestrian, int64 (N,). It is less than the first one for a
+        pedestrian who was recorded only between two ticks."""
+        self._trajectories = [
             _resample(track, np.arange(first, last + 1) * tick_s, interpolation)
             for track, first, last in zip(tracks, self.first, self.last, strict=True)
         ]
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
-        """Smallest rectangle (x0, y0, x1, y1) around everyone's ways, metres; 0 where none is."""
-        ways = [way for way in self._ways if len(way)] or [np.zeros((1, 2))]
-        lower = np.min([way.min(axis=0) for way in ways], axis=0)
-        upper = np.max([way.max(axis=0) for way in ways], axis=0)
+        """Smallest rectangle (x0, y0, x1, y1) around all trajectories, metres.
+
+        All four are 0 if nobody is present at any tick.
+        """
+        trajectories = [t for t in self._trajectories if len(t)] or [np.zeros((1, 2))]
+        lower = np.min([t.min(axis=0) for t in trajectories], axis=0)
+        upper = np.max([t.max(axis=0) for t in trajectories], axis=0)
         return float(lower[0]), float(lower[1]), float(upper[0]), float(upper[1])
 
-    def way(self, pedestrian: int) -> Floats:
-        """A pedestrian's positions, float64 (last - first + 1, 2)."""
-        return self._ways[pedestrian]
+    def trajectory(self, pedestrian: int) -> Floats:
+        """A pedestrian's positions tick by tick, float64 (last - first + 1, 2), metres."""
+        return self._trajectories[pedestrian]
 
     def present(self, tick: int) -> NDArray[np.int64]:
-        """Who is there at a tick, in ascending order."""
+        """The pedestrians who are present at a tick, in ascending order."""
         return self.present_between(tick, tick)
 
     def present_between(self, first: int, last: int) -> NDArray[np.int64]:
-        """Who is there at any tick from the first to the last, in ascending order."""
-        lasts = np.maximum(self.first, first) <= np.minimum(self.last, last)
-        return np.flatnonzero(lasts)
+        """The pedestrians who are present at any tick from first to last, in ascending order."""
+        overlaps = np.maximum(self.first, first) <= np.minimum(self.last, last)
+        return np.flatnonzero(overlaps)
 
     def at(self, pedestrian: int, tick: int) -> Floats:
-        """Position (2,) at a tick at which the pedestrian is there."""
-        return np.asarray(self._ways[pedestrian][tick - self.first[pedestrian]])
+        """Position (2,), metres, at a tick at which the pedestrian is present."""
+        return np.asarray(self._trajectories[pedestrian][tick - self.first[pedestrian]])
 
     def positions(self, pedestrians: NDArray[np.int64], tick: int) -> Floats:
-        """Positions (len(pedestrians), 2) of people who are there at the tick."""
+        """Positions (len(pedestrians), 2), metres, of people who are present at the tick."""
         rows = [self.at(int(j), tick) for j in pedestrians]
         return np.array(rows, dtype=np.float64).reshape(-1, 2)
 
     def past(self, pedestrian: int, tick: int, ticks: int) -> Floats:
-        """Positions up to a tick, newest last, at most so many ticks back."""
+        """Positions up to a tick, newest last; they go back by at most `ticks` ticks."""
         here = tick - int(self.first[pedestrian])
-        return self._ways[pedestrian][max(0, here - ticks) : here + 1]
+        return self._trajectories[pedestrian][max(0, here - ticks) : here + 1]
 
 
 def _by_number(track: Track) -> tuple[int, float, str]:

@@ -1,4 +1,4 @@
-"""Results as tables for people, and as one object for programs."""
+"""Reports of episodes: tables, and one object for JSON."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -9,7 +9,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from esplanade.evaluation.runner import Result
+from esplanade.evaluation.runner import TrialResult
 from esplanade.evaluation.scores import Score, Summary, summarise
 
 POOLED = "all together"
@@ -29,13 +29,13 @@ LINES = (
     ("decision, mean ms", "decision_ms", 2),
     ("decision, greatest ms", "decision_max_ms", 1),
 )
-"""What is shown of a summary: its name, the field, digits after the point."""
+"""The rows of the table: heading, field of `Summary`, digits after the decimal point."""
 
 
 def summaries(
-    results: Sequence[Result], names: Mapping[Any, str]
+    results: Sequence[TrialResult], names: Mapping[Any, str]
 ) -> list[tuple[str, str, Summary]]:
-    """(recording, policy, summary), recording by recording, then all recordings together."""
+    """Rows of (recording, policy, summary), first for each recording, then for all together."""
     rows = [(names[r.trial.source], r.trial.policy, summarise(r.scores)) for r in results]
     if len({r.trial.source for r in results}) > 1:
         pooled: dict[str, list[Score]] = {}
@@ -46,7 +46,7 @@ def summaries(
 
 
 def show(console: Console, rows: Sequence[tuple[str, str, Summary]]) -> None:
-    """A table for every recording, a column for every policy."""
+    """Print one table for each recording, with a column for each policy."""
     for recording in dict.fromkeys(name for name, _, _ in rows):
         shown = {policy: summary for name, policy, summary in rows if name == recording}
         table = Table("", title=recording, title_justify="left", box=box.SIMPLE_HEAD)
@@ -59,12 +59,12 @@ def show(console: Console, rows: Sequence[tuple[str, str, Summary]]) -> None:
 
 
 def figures(
-    results: Sequence[Result],
+    results: Sequence[TrialResult],
     rows: Sequence[tuple[str, str, Summary]],
     names: Mapping[Any, str],
     settings: Mapping[str, Any],
 ) -> dict[str, Any]:
-    """Everything that was measured, for JSON."""
+    """All summaries and episodes, ready for JSON."""
     return {
         "settings": dict(settings),
         "summaries": [

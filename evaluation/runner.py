@@ -1,4 +1,4 @@
-"""Many episodes on several processes. What comes out does not depend on how many."""
+"""Episodes run on several processes; the results do not depend on the number of processes."""
 
 import multiprocessing
 import signal
@@ -7,9 +7,9 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
-from esplanade.evaluation.ledger import Ledger
 from esplanade.evaluation.policies import Policy, make_policy
 from esplanade.evaluation.rules import Rules
+from esplanade.evaluation.score_cache import ScoreCache
 from esplanade.evaluation.scores import Score
 from esplanade.evaluation.simulation import run_episode
 from esplanade.evaluation.trials import Source, Trial
@@ -19,8 +19,8 @@ WARM_UP_S: Final = 1.0
 
 
 @dataclass(frozen=True)
-class Result:
-    """The scores of a trial, in the order of its episodes."""
+class TrialResult:
+    """The scores of a trial in the order of its episodes."""
 
     trial: Trial
     scores: tuple[Score, ...]
@@ -30,21 +30,21 @@ def run_trials(
     trials: Sequence[Trial],
     processes: int,
     report: Callable[[int], None],
-    ledger: Ledger | None = None,
-) -> list[Result]:
-    """Run all trials; `report` is told each time how many more episodes are done.
+    score_cache: ScoreCache | None = None,
+) -> list[TrialResult]:
+    """Run all trials; `report` is called with the number of episodes that have been added.
 
-    What the ledger has is not run again. What has been run is in the ledger, even if this is
-    interrupted: then it comes to its end as soon as the episodes under way have.
+    Episodes whose score is in the cache are not run again. Every new score is in the cache, even
+    after an interrupt: this then ends as soon as the episodes that are running have ended.
     """
-    ledger = ledger or Ledger()
-    found = [ledger.find(trial) for trial in trials]
+    score_cache = score_cache or ScoreCache()
+    found = [score_cache.find(trial) for trial in trials]
     known = sum(map(len, found))
     if known:
         report(known)
 
     def keep(index: int, part: Trial, scores: Sequence[Score]) -> None:
-        ledger.add(part, scores)
+        score_cache.add(part, scores)
         found[index] |= {score.number: score for score in scores}
         report(len(scores))
 
@@ -53,29 +53,32 @@ def run_trials(
         for index, trial in enumerate(trials)
         for part in _parts(trial, found[index].keys())
     ]
-    _carry_out(parts, processes, keep)
+    _run_parts(parts, processes, keep)
     return [
-        Result(trial, tuple(scores[episode.number] for episode in trial.episodes))
+        TrialResult(trial, tuple(scores[episode.number] for episode in trial.episodes))
         for trial, scores in zip(trials, found, strict=True)
     ]
 
 
 def ready_policy(trial: Trial) -> Policy:
-    """The policy of a trial, compiled: the first episode's first second has been walked."""
+    """The policy of a trial with its kernels compiled.
+
+    The first second of the first episode is run for that.
+    """
     policy = make_policy(trial.policy, dict(trial.settings))
     short = replace(trial.rules, time_limit_s=WARM_UP_S)
-    run_episode(trial.source.ground(short.tick_s), trial.episodes[0], policy, short)
+    run_episode(trial.source.environment(short.tick_s), trial.episodes[0], policy, short)
     return policy
 
 
 def _parts(trial: Trial, done: Collection[int]) -> Iterator[Trial]:
-    """What is left of a trial, some episodes at a time."""
+    """The remaining episodes of a trial, divided into chunks."""
     left = [episode for episode in trial.episodes if episode.number not in done]
     for first in range(0, len(left), EPISODES_AT_ONCE):
         yield replace(trial, episodes=tuple(left[first : first + EPISODES_AT_ONCE]))
 
 
-def _carry_out(
+def _run_parts(
     parts: Sequence[tuple[int, Trial]],
     processes: int,
     keep: Callable[[int, Trial, Sequence[Score]], None],
@@ -105,10 +108,10 @@ _last: dict[tuple[Source, str, Rules, tuple[tuple[str, Any], ...]], Policy] = {}
 
 
 def _run(part: Trial) -> list[Score]:
-    """Run some episodes; the policy of the chunk before is used again where it is the same."""
+    """Run one chunk of episodes; the policy of the previous chunk is reused if it is the same."""
     key = (part.source, part.policy, part.rules, part.settings)
     if key not in _last:
         _last.clear()
         _last[key] = ready_policy(part)
-    ground = part.source.ground(part.rules.tick_s)
-    return [run_episode(ground, e, _last[key], part.rules).score for e in part.episodes]
+    environment = part.source.environment(part.rules.tick_s)
+    return [run_episode(environment, e, _last[key], part.rules).score for e in part.episodes]

@@ -1,4 +1,4 @@
-"""What an episode came to, and what many came to."""
+"""The score of one episode, and the summary of many."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.evaluation.contacts import Encounters
+from esplanade.evaluation.contacts import ContactMonitor
 from esplanade.evaluation.episodes import Episode
 from esplanade.evaluation.replay import Replay
 from esplanade.evaluation.rules import Rules
@@ -14,12 +14,12 @@ from esplanade.evaluation.rules import Rules
 Floats = NDArray[np.float64]
 
 WALKING_MPS = 0.2
-"""Slower than this, a direction means nothing."""
+"""Below this speed the direction of walking is not defined."""
 
 
 @dataclass(frozen=True)
 class Score:
-    """One episode. Units are in the names; nan where there is nothing to measure."""
+    """The score of one episode. Units are in the names; nan means that nothing was measured."""
 
     number: int
     pedestrian: str
@@ -27,7 +27,7 @@ class Score:
     reverse: bool
     people_touched: int
     moved_toward: bool
-    """Whether in a contact the robot moved toward the person."""
+    """Whether the robot moved toward the person in at least one contact."""
     clearance_m: float
     near_s: float
     reached: bool
@@ -57,19 +57,30 @@ def score(
     replay: Replay,
     rules: Rules,
     episode: Episode,
-    encounters: Encounters,
+    contacts: ContactMonitor,
     pop_ins: int,
-    way: Floats,
+    trajectory: Floats,
     velocities: Floats,
     wall_m: float,
     reached: bool,
     decide_s: Sequence[float],
 ) -> Score:
-    """Score an episode from its way (T + 1, 2) and velocities (T, 2)."""
-    to_go_m = episode.way_m - rules.goal_tolerance_m
+    """Score an episode of T ticks.
+
+    Parameters
+    ----------
+    contacts : the contacts and clearances of the episode
+    pop_ins : number of people who were left out because they appeared beside the robot
+    trajectory : float64 (T + 1, 2), metres
+    velocities : float64 (T, 2), m/s
+    wall_m : smallest distance of the robot's centre from a wall, metres
+    reached : whether the robot arrived at the goal
+    decide_s : the time that each decision took, seconds
+    """
+    to_go_m = episode.distance_m - rules.goal_tolerance_m
     time_s = len(velocities) * rules.tick_s if reached else np.nan
     straight_s = max(rules.tick_s, to_go_m / rules.speed_mps)
-    walked_m = float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
+    walked_m = float(np.linalg.norm(np.diff(trajectory, axis=0), axis=1).sum())
     accelerations = np.linalg.norm(np.diff(velocities, axis=0), axis=1) / rules.tick_s
     jerks = np.linalg.norm(np.diff(velocities, n=2, axis=0), axis=1) / rules.tick_s**2
     return Score(
@@ -77,10 +88,10 @@ def score(
         pedestrian=replay.ids[episode.pedestrian],
         start_s=episode.first_tick * rules.tick_s,
         reverse=episode.reverse,
-        people_touched=len(encounters.met),
-        moved_toward=encounters.caused > 0,
-        clearance_m=encounters.clearance_m,
-        near_s=encounters.near_s,
+        people_touched=len(contacts.touched),
+        moved_toward=contacts.active > 0,
+        clearance_m=contacts.clearance_m,
+        near_s=contacts.near_s,
         reached=reached,
         time_s=time_s,
         time_ratio=time_s / straight_s,
@@ -98,7 +109,7 @@ def score(
 
 
 def _turns(velocities: Floats) -> Floats:
-    """Angles between velocities of neighbouring ticks, where both are of one who walks."""
+    """Angles between velocities of neighbouring ticks, radians, if the robot walks at both."""
     walking = np.linalg.norm(velocities, axis=1) > WALKING_MPS
     headings = np.arctan2(velocities[:, 1], velocities[:, 0])
     turns = np.abs((np.diff(headings) + np.pi) % (2.0 * np.pi) - np.pi)
@@ -111,7 +122,7 @@ def _rms(values: Floats) -> float:
 
 @dataclass(frozen=True)
 class Summary:
-    """Many episodes. Shares are in per cent; times and paths of those that arrived."""
+    """The summary of many episodes; ratios of time and path are over those that arrived."""
 
     episodes: int
     contacts_percent: float
@@ -123,14 +134,14 @@ class Summary:
     path_ratio: float
     wall_contacts_percent: float
     acceleration_max_mps2: float
-    """Median of the episodes' greatest."""
+    """The median of the episodes' greatest accelerations."""
     turn_rms_radps: float
     decision_ms: float
     decision_max_ms: float
 
 
 def summarise(scores: Sequence[Score]) -> Summary:
-    """Put episodes together, at least one."""
+    """Summarise the scores of at least one episode."""
     decisions = sum(s.decisions for s in scores)
     return Summary(
         episodes=len(scores),

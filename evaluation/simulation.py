@@ -1,4 +1,4 @@
-"""One episode: a robot among replayed people who do not react."""
+"""The simulation of one episode: a robot among replayed people, who do not react."""
 
 import time
 from collections.abc import Callable
@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.evaluation.contacts import Encounters
+from esplanade.evaluation.contacts import ContactMonitor
 from esplanade.evaluation.episodes import Episode
-from esplanade.evaluation.policies.policy import Person, Policy, Task, View
+from esplanade.evaluation.policies.policy import Observation, Person, Policy, Task
 from esplanade.evaluation.replay import Replay
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.scores import Score, score
@@ -19,79 +19,85 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Ground:
-    """A recording made ready for episodes: who is where, and the ways among its walls."""
+class Environment:
+    """A recording prepared for episodes: the replay of its people, and the map of its walls."""
 
     replay: Replay
-    walls: WallMap
+    wall_map: WallMap
 
     @classmethod
-    def of(cls, replay: Replay) -> "Ground":
+    def of(cls, replay: Replay) -> "Environment":
+        """Prepare a replay; this takes a moment where there are walls."""
         return cls(replay, WallMap(replay))
 
 
 @dataclass(frozen=True)
-class Run:
-    """What came of an episode: its score, and the way walked, a place a tick, (T + 1, 2)."""
+class EpisodeResult:
+    """The score of an episode of T ticks, and the robot's positions (T + 1, 2), metres."""
 
     score: Score
-    way: Floats
+    trajectory: Floats
 
 
-Watcher = Callable[[View, Policy], None]
+DecisionCallback = Callable[[Observation, Policy], None]
 
 
 def run_episode(
-    ground: Ground,
+    environment: Environment,
     episode: Episode,
     policy: Policy,
     rules: Rules,
-    watch: Watcher | None = None,
-) -> Run:
-    """Send a policy on a trip; `watch` is called after each of its decisions."""
-    replay = ground.replay
+    on_decision: DecisionCallback | None = None,
+) -> EpisodeResult:
+    """Run a policy on an episode; `on_decision` is called after each of its decisions."""
+    replay = environment.replay
     policy.reset(Task(rules, replay, episode))
     goal = np.array(episode.goal)
-    waypoints = Waypoints(ground.walls, goal)
-    sight = Sight(replay, rules, episode)
-    encounters = Encounters(replay, rules)
-    way = [np.array(episode.start)]
+    waypoints = Waypoints(environment.wall_map, goal)
+    sensor = Sensor(replay, rules, episode)
+    contacts = ContactMonitor(replay, rules)
+    trajectory = [np.array(episode.start)]
     velocities = [np.zeros(2)]
     decide_s: list[float] = []
     wall_m = np.inf
     reached = False
     for n in range(round(rules.time_limit_s / rules.tick_s)):
-        tick, position = episode.first_tick + n, way[-1]
-        people = sight.people(n, position)
-        view = View(
+        tick, position = episode.first_tick + n, trajectory[-1]
+        people = sensor.people(n, position)
+        observation = Observation(
             n * rules.tick_s, position, velocities[-1], waypoints.next_from(position), people
         )
         began_s = time.perf_counter()
-        wanted = np.asarray(policy.decide(view), dtype=np.float64)
+        wanted = np.asarray(policy.decide(observation), dtype=np.float64)
         decide_s.append(time.perf_counter() - began_s)
-        if watch is not None:
-            watch(view, policy)
+        if on_decision is not None:
+            on_decision(observation, policy)
         if not np.isfinite(wanted).all():
             wanted = np.zeros(2)
-        velocity = wanted if policy.follows_recording else limited(rules, velocities[-1], wanted)
+        velocity = (
+            wanted if policy.follows_recording else limit_velocity(rules, velocities[-1], wanted)
+        )
         velocities.append(velocity)
-        way.append(position + velocity * rules.tick_s)
-        encounters.step(tick, people, position, velocity, way[-1])
-        wall_m = min(wall_m, replay.obstacles.distance(way[-1]))
+        trajectory.append(position + velocity * rules.tick_s)
+        contacts.step(tick, people, position, velocity, trajectory[-1])
+        wall_m = min(wall_m, replay.obstacles.distance(trajectory[-1]))
         at_end = policy.follows_recording and tick + 1 >= replay.last[episode.pedestrian]
-        reached = at_end or bool(np.hypot(*(goal - way[-1])) <= rules.goal_tolerance_m)
+        reached = at_end or bool(np.hypot(*(goal - trajectory[-1])) <= rules.goal_tolerance_m)
         if reached:
             break
-    walked = np.array(way)
+    walked = np.array(trajectory)
     result = score(
-        replay, rules, episode, encounters, sight.pop_ins, walked, np.array(velocities[1:]),
+        replay, rules, episode, contacts, sensor.pop_ins, walked, np.array(velocities[1:]),
         wall_m, reached, decide_s,
     )  # fmt: skip
-    return Run(result, walked)
+    return EpisodeResult(result, walked)
 
 
-def limited(rules: Rules, before: Floats, wanted: Floats) -> Floats:
-    """The velocity that the limits of speed and acceleration leave of a wanted one."""
+def limit_velocity(rules: Rules, before: Floats, wanted: Floats) -> Floats:
+    """The wanted velocity cut to the greatest speed and acceleration, (2,) m/s.
+
+    `before` is the velocity of the previous tick, (2,) m/s.
+    """
     speed = float(np.hypot(*wanted))
     if speed > rules.max_speed_mps:
         wanted = wanted * (rules.max_speed_mps / speed)
@@ -104,8 +110,11 @@ def limited(rules: Rules, before: Floats, wanted: Floats) -> Floats:
     return wanted
 
 
-class Sight:
-    """Whom the robot sees. Who appears right beside it counts as not there, for all its time."""
+class Sensor:
+    """The robot's perfect sensor for people within its range.
+
+    A person whose recording begins right beside the robot is left out of the whole episode.
+    """
 
     def __init__(self, replay: Replay, rules: Rules, episode: Episode) -> None:
         self._replay = replay
@@ -115,7 +124,7 @@ class Sight:
         self.pop_ins = 0
 
     def people(self, n: int, position: Floats) -> list[Person]:
-        """Everyone in sight at the n-th tick of the episode."""
+        """The people within range at the n-th tick of the episode."""
         tick = self._first_tick + n
         present = self._replay.present(tick)
         away = np.linalg.norm(self._replay.positions(present, tick) - position, axis=1)
@@ -127,7 +136,7 @@ class Sight:
             if appears and distance < self._rules.pop_in_m:
                 self._ignored.add(pedestrian)
                 self.pop_ins += 1
-            elif distance < self._rules.sight_m:
+            elif distance < self._rules.sensor_range_m:
                 past = self._replay.past(pedestrian, tick, self._rules.past_ticks)
                 seen.append(Person(pedestrian, past.copy()))
         return seen

@@ -1,4 +1,7 @@
-"""What is to be run: policies, with their settings, on the episodes of recordings."""
+"""The plan of an evaluation: policies with their settings on the episodes of recordings.
+
+A trial is what Optuna and Ray Tune call so: one evaluation of one configuration.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -10,13 +13,13 @@ from esplanade.evaluation.episodes import Episode, choose_episodes
 from esplanade.evaluation.policies import make_policy
 from esplanade.evaluation.replay import Interpolation, Replay
 from esplanade.evaluation.rules import Rules
-from esplanade.evaluation.simulation import Ground
+from esplanade.evaluation.simulation import Environment
 from esplanade.recordings import Crowd, Obstacles, read_crowd, read_obstacles, walls_beside
 
 
 @dataclass(frozen=True)
 class Source:
-    """A recording on disk: every process reads it for itself."""
+    """A recording on disk; every process reads it for itself."""
 
     path: Path
     walls: Path | None = None
@@ -24,16 +27,22 @@ class Source:
     interpolation: Interpolation = "linear"
 
     def read(self) -> tuple[Crowd, Obstacles]:
-        """What the files hold; RecordingError says what is wrong with one."""
+        """The crowd and the obstacles of the files.
+
+        Raises
+        ------
+        RecordingError
+            A file cannot be read or is broken.
+        """
         return _read(self)
 
     def episodes(self, rules: Rules, count: int, seed: int) -> tuple[Episode, ...]:
-        """Its trips to be judged."""
+        """The episodes of the recording, as `choose_episodes` chooses them."""
         return _episodes(self, rules, count, seed)
 
-    def ground(self, tick_s: float) -> Ground:
-        """The recording, ready for episodes; read once in a process."""
-        return _ground(self, tick_s)
+    def environment(self, tick_s: float) -> Environment:
+        """The recording prepared for episodes; it is read once in each process."""
+        return _environment(self, tick_s)
 
 
 @cache
@@ -44,14 +53,14 @@ def _read(source: Source) -> tuple[Crowd, Obstacles]:
 
 
 @cache
-def _ground(source: Source, tick_s: float) -> Ground:
+def _environment(source: Source, tick_s: float) -> Environment:
     replay = Replay(*source.read(), tick_s=tick_s, interpolation=source.interpolation)
-    return Ground.of(replay)
+    return Environment.of(replay)
 
 
 @cache
 def _episodes(source: Source, rules: Rules, count: int, seed: int) -> tuple[Episode, ...]:
-    return tuple(choose_episodes(source.ground(rules.tick_s).replay, rules, count, seed))
+    return tuple(choose_episodes(source.environment(rules.tick_s).replay, rules, count, seed))
 
 
 @dataclass(frozen=True)
@@ -63,7 +72,7 @@ class Trial:
     rules: Rules
     episodes: tuple[Episode, ...]
     settings: tuple[tuple[str, Any], ...] = ()
-    """Changes of settings, for our own policy."""
+    """Changed settings, for our own policy."""
 
 
 def plan_trials(
@@ -74,12 +83,14 @@ def plan_trials(
     seed: int,
     settings: Mapping[str, Any],
 ) -> list[Trial]:
-    """Every policy on the same episodes of every recording.
+    """Plan every policy on the same episodes of every recording.
 
     Raises
     ------
-    RecordingError, PolicyError
-        A file is broken, or a policy cannot be had: before anything has run.
+    RecordingError
+        A file is broken.
+    PolicyError
+        The package that a policy needs is not installed.
     """
     follows = {name: make_policy(name, settings).follows_recording for name in policies}
     trials = []

@@ -87,7 +87,7 @@ def encode(message: FromClient | FromServer) -> bytes:
 
 
 def encode_snapshot(tick: int, ack: int, block: bytes | memoryview) -> bytes:
-    """A snapshot's frame.
+    """Encode a snapshot as a frame.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def encode_snapshot(tick: int, ack: int, block: bytes | memoryview) -> bytes:
 
 
 def encode_steps(tick: int, block: bytes | memoryview) -> bytes:
-    """A frame of steps.
+    """Encode steps as a frame.
 
     Raises
     ------
@@ -123,7 +123,7 @@ def peek_snapshot(frame: bytes) -> SnapshotHead | None:
 
 
 def decode_client(frame: bytes) -> ClientMessage:
-    """What a client sent.
+    """Decode a message of a client.
 
     Raises
     ------
@@ -156,7 +156,7 @@ def decode_client(frame: bytes) -> ClientMessage:
 
 
 def decode_server(frame: bytes) -> ServerMessage:
-    """What the server sent.
+    """Decode a message of the server.
 
     Raises
     ------

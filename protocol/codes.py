@@ -1,4 +1,4 @@
-"""The one table of everything on the wire that is a number: versions, codes, limits.
+"""The one table of all numbers of the wire: versions, codes, limits.
 
 `docs/protocol.md` explains each entry; `client_web/src/net/codes.ts` repeats the numbers for
 the browser and `tests/protocol/test_codes.py` holds the two together.

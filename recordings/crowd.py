@@ -1,4 +1,4 @@
-"""A recorded crowd: who was where, when."""
+"""A recorded crowd: the tracks of pedestrians over time."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,10 +11,10 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """One pedestrian's way: samples in the order of time.
+    """The track of one pedestrian: N >= 1 samples in the order of time.
 
-    `times` is float64 (N,), seconds, strictly increasing; `positions` float64 (N, 2), metres;
-    N >= 1. Between samples the pedestrian walks straight and evenly.
+    `times` is float64 (N,), seconds, strictly increasing. `positions` is float64 (N, 2), metres.
+    Between samples the pedestrian walks straight at constant speed.
     """
 
     id: str
@@ -23,14 +23,19 @@ class Track:
 
     @property
     def start_s(self) -> float:
+        """The time of the first sample."""
         return float(self.times[0])
 
     @property
     def end_s(self) -> float:
+        """The time of the last sample."""
         return float(self.times[-1])
 
     def at(self, t: float) -> tuple[float, float]:
-        """Position (x, y), metres, at time `t` in seconds; the nearer end outside the track."""
+        """Position (x, y), metres, at time `t` in seconds.
+
+        Before the start it is the first position, and after the end the last one.
+        """
         x = np.interp(t, self.times, self.positions[:, 0])
         y = np.interp(t, self.times, self.positions[:, 1])
         return float(x), float(y)
@@ -46,21 +51,27 @@ class Track:
 
 @dataclass(frozen=True, eq=False)
 class Crowd:
-    """Everyone of one recording, in the order in which they first appear; at least one track."""
+    """The tracks of one recording, in the order in which the pedestrians first appear.
+
+    There is at least one track.
+    """
 
     name: str
     tracks: tuple[Track, ...]
 
     @cached_property
     def start_s(self) -> float:
+        """The time of the first sample of all."""
         return min(track.start_s for track in self.tracks)
 
     @cached_property
     def end_s(self) -> float:
+        """The time of the last sample of all."""
         return max(track.end_s for track in self.tracks)
 
     @property
     def duration_s(self) -> float:
+        """The time from the first sample to the last one."""
         return self.end_s - self.start_s
 
     @cached_property
@@ -72,11 +83,12 @@ class Crowd:
 
     @cached_property
     def max_speed_mps(self) -> float:
+        """Greatest speed of any pedestrian between two neighbouring samples."""
         return max(track.max_speed_mps for track in self.tracks)
 
     @cached_property
     def max_present(self) -> int:
-        """Most pedestrians that are there at the same time."""
+        """Greatest number of pedestrians who are present at the same time."""
         starts = np.sort([track.start_s for track in self.tracks])
         ends = np.sort([track.end_s for track in self.tracks])
         left_before = np.searchsorted(ends, starts, side="left")

@@ -1,4 +1,4 @@
-"""Comma-separated recordings: a header `t,id,x,y`, then one sample a line (seconds, metres)."""
+"""Comma-separated recordings: the header `t,id,x,y`, then one sample a line (seconds, metres)."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,12 +11,13 @@ HEADER: Final = ["t", "id", "x", "y"]
 
 
 def read_csv(path: Path) -> Iterator[Sample]:
-    """Samples in the order of the file; blank lines are passed over.
+    """Yield the samples in the order of the file; blank lines are skipped.
 
     Raises
     ------
     RecordingError
-        Empty file, wrong header, wrong number of columns, or a t, x or y that is no number.
+        The file is empty, its header or a number of columns is wrong, an id is empty, or a t, x
+        or y is not a number.
     """
     lines = read_text(path).splitlines()
     if not lines:

@@ -1,8 +1,8 @@
-"""Openings in recorded walls where the recorded people went through them.
+"""Openings in recorded walls where recorded people walked through them.
 
-The walls of public recordings were drawn by hand over the video, so that now and then somebody
-cuts a corner, leans into a facade or walks in at a door that was drawn shut. Who replays the
-people among those walls needs the way free.
+The walls of public recordings were drawn by hand over the video. Therefore somebody sometimes
+cuts a corner, leans into a facade or walks in at a door that was drawn shut. A replay of these
+people among these walls needs openings there.
 """
 
 from collections.abc import Iterator, Sequence
@@ -14,25 +14,24 @@ from esplanade.recordings.crowd import Crowd, Floats
 from esplanade.recordings.walls import Wall
 
 MIN_REST_M: Final = 0.05
-"""A piece of wall shorter than this, left over between two openings, is left out."""
+"""Pieces of wall between two openings are left out if they are shorter than this."""
 
 
 def open_doorways(walls: Sequence[Wall], crowd: Crowd, width_m: float) -> list[Wall]:
-    """Walls without the stretches that stand in some recorded pedestrian's way.
+    """Cut out the parts of walls that obstruct the paths of recorded pedestrians.
 
     A wall keeps every part that is at least half of `width_m` from all recorded paths, so that a
-    disc of that diameter can follow each of them. A wall that nobody comes near is the same as
-    before.
+    disc of that diameter can follow each of them. Walls far from all paths do not change.
 
     Parameters
     ----------
     walls : straight walls, metres
-    crowd : whose tracks stay free; between samples a track is straight
-    width_m : diameter of the corridor around each track, metres
+    crowd : the recorded pedestrians; between samples their paths are straight
+    width_m : the width of the corridor around each path, metres
 
     Returns
     -------
-    Walls in their order, each replaced by what is left of it.
+    The walls in their order, each replaced by its remaining pieces.
 
     Raises
     ------
@@ -41,35 +40,35 @@ def open_doorways(walls: Sequence[Wall], crowd: Crowd, width_m: float) -> list[W
 
     Notes
     -----
-    The corridor around one straight piece of a path is a capsule, which is convex: it cuts at
-    most one stretch out of a wall. Cost O(walls x samples).
+    The corridor around one straight piece of a path is a capsule. It is convex, so it cuts at
+    most one interval out of a wall. The cost is O(walls x samples).
     """
     if not (np.isfinite(width_m) and width_m > 0.0):
         raise ValueError(f"width_m is {width_m}, expected a positive number of metres")
     starts, ends = _pieces(crowd)
     opened: list[Wall] = []
     for wall in walls:
-        opened.extend(_rest_of(wall, starts, ends, width_m / 2.0))
+        opened.extend(_remaining_pieces(wall, starts, ends, width_m / 2.0))
     return opened
 
 
 def _pieces(crowd: Crowd) -> tuple[Floats, Floats]:
-    """Starts and ends, each (N, 2), of the straight pieces of all paths.
+    """The starts and ends, each (N, 2), metres, of the straight pieces of all paths.
 
-    A track of a single sample is a piece without length.
+    A track with a single sample gives a piece of length 0.
     """
     starts = [t.positions[:-1] if len(t.times) > 1 else t.positions for t in crowd.tracks]
     ends = [t.positions[1:] if len(t.times) > 1 else t.positions for t in crowd.tracks]
     return np.concatenate(starts), np.concatenate(ends)
 
 
-def _rest_of(wall: Wall, starts: Floats, ends: Floats, radius_m: float) -> Iterator[Wall]:
-    """What is left of a wall once the stretches near any piece are out of it."""
+def _remaining_pieces(wall: Wall, starts: Floats, ends: Floats, radius_m: float) -> Iterator[Wall]:
+    """The pieces of a wall that are not near any piece of a path."""
     origin = np.array(wall[0])
     span = np.array(wall[1]) - origin
     length_m = float(np.hypot(*span))
     along = span / length_m
-    near = _stretches(starts - origin, ends - origin, along, radius_m)
+    near = _capsule_intervals(starts - origin, ends - origin, along, radius_m)
     near = near[(near[:, 1] > 0.0) & (near[:, 0] < length_m)]
     if not len(near):
         yield wall
@@ -86,18 +85,19 @@ def _point(origin: Floats, along: Floats, distance_m: float) -> tuple[float, flo
     return float(x), float(y)
 
 
-def _stretches(starts: Floats, ends: Floats, along: Floats, radius_m: float) -> Floats:
-    """Where a line through the origin runs inside the capsules around N pieces.
+def _capsule_intervals(starts: Floats, ends: Floats, along: Floats, radius_m: float) -> Floats:
+    """The intervals of a line through the origin that are inside the capsules around N pieces.
 
     Parameters
     ----------
-    starts, ends : float64 (N, 2), metres, relative to the line's origin
-    along : float64 (2,), the line's unit direction
+    starts, ends : float64 (N, 2), metres, relative to the origin of the line
+    along : float64 (2,), the unit vector of the line
     radius_m : metres
 
     Returns
     -------
-    float64 (M, 2), M <= N: from and to, metres along the line, of the capsules that it meets.
+    float64 (M, 2), M <= N: the ends of the intervals, metres along the line, of the M capsules
+    that the line meets.
     """
     low = np.full(len(starts), np.inf)
     high = np.full(len(starts), -np.inf)
@@ -108,7 +108,7 @@ def _stretches(starts: Floats, ends: Floats, along: Floats, radius_m: float) -> 
         inside = aside < radius_m
         low = np.where(inside, np.minimum(low, middle - half), low)
         high = np.where(inside, np.maximum(high, middle + half), high)
-    slab_low, slab_high = _rectangle_stretches(starts, ends, along, radius_m)
+    slab_low, slab_high = _rectangle_intervals(starts, ends, along, radius_m)
     inside = slab_low < slab_high
     low = np.where(inside, np.minimum(low, slab_low), low)
     high = np.where(inside, np.maximum(high, slab_high), high)
@@ -116,10 +116,13 @@ def _stretches(starts: Floats, ends: Floats, along: Floats, radius_m: float) -> 
     return np.stack([low[met], high[met]], axis=1)
 
 
-def _rectangle_stretches(
+def _rectangle_intervals(
     starts: Floats, ends: Floats, along: Floats, radius_m: float
 ) -> tuple[Floats, Floats]:
-    """From and to of the line inside the capsules' rectangles; from >= to where it misses."""
+    """The ends of the intervals inside the rectangles of the capsules, each (N,).
+
+    The first end is not less than the second one where the line misses a rectangle.
+    """
     spans = ends - starts
     lengths = np.hypot(*spans.T)
     forward = spans / np.where(lengths > 0.0, lengths, 1.0)[:, None]
@@ -136,5 +139,5 @@ def _rectangle_stretches(
         low = np.maximum(low, np.where(parallel, -np.inf, np.minimum(one, other)))
         high = np.minimum(high, np.where(parallel, np.inf, np.maximum(one, other)))
         high = np.where(outside, -np.inf, high)
-    # A piece without length has no rectangle: its two discs say it all.
+    # A piece of length 0 has no rectangle, and the discs at its ends cover its capsule.
     return low, np.where(lengths > 0.0, high, -np.inf)

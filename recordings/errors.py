@@ -1,10 +1,13 @@
-"""What goes wrong while reading a recording."""
+"""The error of a file that cannot be read as a recording."""
 
 from pathlib import Path
 
 
 class RecordingError(ValueError):
-    """A file that is no recording; says which file, which line (from 1), what was expected."""
+    """A file cannot be read as a recording; the message names the file, the line and the reason.
+
+    Lines count from 1; `line` is None if the error is not in a single line.
+    """
 
     def __init__(self, path: Path, text: str, line: int | None = None) -> None:
         where = str(path) if line is None else f"{path}:{line}"
@@ -15,7 +18,7 @@ class RecordingError(ValueError):
 
 
 def read_text(path: Path) -> str:
-    """The whole file as UTF-8 text, a byte order mark left out.
+    """Read a whole file as UTF-8 text without a byte order mark.
 
     Raises
     ------

@@ -1,7 +1,8 @@
-"""TrajNet++ recordings: a JSON object a line, either a scene or a sample of a track.
+"""TrajNet++ recordings: one JSON object a line, which is a scene or a sample of a track.
 
-Frames keep the numbers they had in the video, but only one in six or ten is there; `fps` of a
-scene counts those that are. So a second has `fps` × (distance of two frames) frame numbers.
+Frames keep the numbers that they had in the video, but the file holds only every sixth or tenth
+of them, and `fps` of a scene counts only frames in the file. Therefore one second has `fps` ×
+(difference of neighbouring frames) frame numbers.
 """
 
 import json
@@ -14,7 +15,7 @@ from esplanade.recordings.errors import RecordingError, read_text
 from esplanade.recordings.sample import Sample
 
 DEFAULT_SAMPLES_PER_S: Final = 2.5
-"""Of files whose scenes do not say; all TrajNet++ files are sampled so."""
+"""The value for files whose scenes have no `fps`; all TrajNet++ files are sampled at this rate."""
 
 
 class _Row(NamedTuple):
@@ -26,16 +27,17 @@ class _Row(NamedTuple):
 
 
 def read_ndjson(path: Path, fps: float | None) -> Iterator[Sample]:
-    """Samples in the order of time; `fps`, if given, is of frame numbers, whatever scenes say.
+    """Yield the samples in the order of time.
 
-    Predicted tracks, those with a `prediction_number`, are passed over, and so are exact repeats
-    of a sample, which files have where scenes overlap.
+    `fps` is the number of frame numbers in a second; it overrides the scenes of the file.
+    Predicted tracks, which have a `prediction_number`, are skipped. Exact repeats of a sample are
+    skipped too, as files have them where scenes overlap.
 
     Raises
     ------
     RecordingError
         A line is no JSON object with a scene or a track, a value is missing or of the wrong
-        kind, or scenes do not agree in their `fps`.
+        kind, or scenes differ in their `fps`.
     """
     rows: dict[tuple[int, str, float, float], _Row] = {}
     samples_per_s: float | None = None
@@ -98,6 +100,6 @@ def _number(path: Path, line: int, content: dict[str, Any], name: str) -> float:
 
 
 def _frame_step(rows: Iterable[_Row]) -> int:
-    """Greatest number that all distances of frames are multiples of; 1 for a single frame."""
+    """The greatest common divisor of all differences of frames; 1 for a single frame."""
     frames = sorted({row.frame for row in rows})
     return math.gcd(*(frame - frames[0] for frame in frames[1:])) or 1

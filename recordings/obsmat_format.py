@@ -1,4 +1,4 @@
-"""ETH's `obsmat.txt`: a line a sample, eight columns, times as numbers of video frames."""
+"""ETH's `obsmat.txt`: one sample a line in eight columns; times are numbers of video frames."""
 
 import math
 from collections.abc import Iterator
@@ -11,16 +11,16 @@ from esplanade.recordings.sample import Sample, number
 COLUMNS: Final = ("frame", "id", "x", "z", "y", "vx", "vz", "vy")
 
 DEFAULT_FPS: Final = 15.0
-"""Frames a second of the well-known recordings: six frames, one sample, are 0.4 s."""
+"""Frames a second of the well-known recordings, which have a sample every six frames (0.4 s)."""
 
 
 def read_obsmat(path: Path, fps: float | None) -> Iterator[Sample]:
-    """Samples in the order of the file; z is up, and velocities are not used.
+    """Yield the samples in the order of the file; z is up, and velocities are not used.
 
     Raises
     ------
     RecordingError
-        Wrong number of columns, a column that is no number, or an id that is not whole.
+        The number of columns is wrong, a cell is not a number, or an id is not a whole number.
     """
     frames_per_s = DEFAULT_FPS if fps is None else fps
     for line, text in enumerate(read_text(path).splitlines(), start=1):

@@ -1,7 +1,7 @@
-"""From a file to a `Crowd`.
+"""Reading a file of any known format as a `Crowd`.
 
-A format is one module that turns a file into samples in file order; everything that must hold
-for any recording is checked here, once. A further format is a further row in `_FORMATS`.
+Each format is one module, which turns a file into samples in file order. The checks that apply to
+all recordings are here. A new format needs a module and a row in `_FORMATS`.
 """
 
 import math
@@ -25,23 +25,24 @@ _FORMATS: Final[dict[str, Callable[[Path, float | None], Iterable[Sample]]]] = {
 }
 
 MIN_STEP_S: Final = 1e-3
-"""Two samples of one pedestrian closer in time than this count as the same moment."""
+"""Two samples of one pedestrian that are closer in time than this count as simultaneous."""
 
 MAX_SECONDS: Final = 1e10
+"""Times beyond this, either way, are taken for errors of the file."""
 
 
 def read_crowd(path: str | Path, fps: float | None = None) -> Crowd:
-    """Everyone in a recording.
+    """Read the crowd of a recording.
 
-    `fps`, more than 0, is the number of frames a second where a format counts frames: ETH's
-    `obsmat.txt` (default 15) and TrajNet++ ndjson (default: what its scenes say).
-    A pedestrian with a single sample is kept, as a track without duration.
+    `fps` > 0 is the number of frames in a second, for formats that count frames: ETH's
+    `obsmat.txt` (15 by default) and TrajNet++ ndjson (by default the `fps` of its scenes).
+    A pedestrian with a single sample becomes a track of zero duration.
 
     Raises
     ------
     RecordingError
-        The file cannot be read, is of no known format, holds no sample, or a sample is not
-        finite, out of range, twice in the file or back in time.
+        The file cannot be read, has no known format or no samples, or a sample is not finite, out
+        of range, repeated, or earlier than the one before.
     """
     path = Path(path)
     read = _FORMATS.get(path.suffix.lower())
@@ -59,7 +60,7 @@ def read_crowd(path: str | Path, fps: float | None = None) -> Crowd:
 
 
 def _name(path: Path) -> str:
-    """All recordings of ETH lie in an `obsmat.txt`: the folder tells them apart."""
+    """The name of a recording; files called `obsmat.txt` are named after their folder."""
     return path.resolve().parent.name if path.stem == "obsmat" else path.stem
 
 

@@ -1,4 +1,4 @@
-"""What every format of recording comes down to."""
+"""The sample, which all formats of recordings are read into."""
 
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -6,11 +6,14 @@ from typing import Final, NamedTuple
 from esplanade.recordings.errors import RecordingError
 
 MAX_METRES: Final = 100_000.0
-"""A coordinate farther out than this, either way, is taken for a fault of the file."""
+"""Coordinates beyond this, either way, are taken for errors of the file."""
 
 
 class Sample(NamedTuple):
-    """Pedestrian `id` is at (x, y) metres at `t` seconds; `line` of the file says so (from 1)."""
+    """The position (x, y), metres, of pedestrian `id` at `t` seconds.
+
+    It comes from line `line` of the file; lines count from 1.
+    """
 
     line: int
     t: float
@@ -20,7 +23,13 @@ class Sample(NamedTuple):
 
 
 def number(path: Path, line: int, column: str, text: str) -> float:
-    """A column's number; RecordingError says where there is none."""
+    """The number in a column of a line.
+
+    Raises
+    ------
+    RecordingError
+        The text is not a number.
+    """
     try:
         return float(text)
     except ValueError:

@@ -12,41 +12,41 @@ Wall = tuple[tuple[float, float], tuple[float, float]]
 """A straight wall from (x, y) to (x, y), metres."""
 
 CIRCLE_EDGES: Final = 16
-"""A round obstacle becomes this many walls; its polygon lies at most 2 % outside the circle."""
+"""A circle becomes a polygon of this many walls, which is at most 2 % larger than the circle."""
 
 
 def walls_beside(crowd_path: str | Path) -> Path | None:
-    """The file of walls that belongs to a recording: `<name>.walls.json` beside it, if there."""
+    """The file of walls beside a recording, `<name>.walls.json`; None if there is no such file."""
     path = Path(crowd_path).with_suffix(".walls.json")
     return path if path.is_file() else None
 
 
 class Obstacles(NamedTuple):
-    """What a file of walls holds: straight walls, and circles as (x, y, radius), metres."""
+    """The obstacles of a recording: straight walls, and circles as (x, y, radius), metres."""
 
     segments: tuple[Wall, ...] = ()
     circles: tuple[tuple[float, float, float], ...] = ()
 
     def as_walls(self) -> list[Wall]:
-        """All of it as straight walls: of a circle, the edges of a regular polygon around it."""
+        """All obstacles as straight walls; circles become regular polygons around them."""
         return [*self.segments, *(edge for circle in self.circles for edge in _polygon(*circle))]
 
 
 def read_walls(path: str | Path) -> list[Wall]:
-    """Walls from a file as `read_obstacles` takes it, circles as polygons."""
+    """Read the walls of a file like `read_obstacles`, with circles as polygons."""
     return read_obstacles(path).as_walls()
 
 
 def read_obstacles(path: str | Path) -> Obstacles:
-    """Obstacles from `{"segments": [[x1, y1, x2, y2], ...], "circles": [[x, y, r], ...]}`.
+    """Read a file `{"segments": [[x1, y1, x2, y2], ...], "circles": [[x, y, r], ...]}`.
 
-    Either list may be absent.
+    All numbers are in metres. Either list may be absent.
 
     Raises
     ------
     RecordingError
-        The file cannot be read, is no JSON object of that form, or holds a number that is not
-        finite, a wall without length or a circle without radius.
+        The file cannot be read, is no JSON object of that form, or has a number that is not
+        finite, a wall of length 0 or a circle of radius 0.
     """
     path = Path(path)
     content = _parse(path)
@@ -69,7 +69,7 @@ def _parse(path: Path) -> dict[str, Any]:
         content = json.loads(text)
     except json.JSONDecodeError as error:
         raise RecordingError(path, f"is not JSON: {error.msg}", error.lineno) from None
-    except ValueError:  # the only other one: an integer of more digits than Python converts
+    except ValueError:  # the only other cause is an integer with more digits than Python converts
         raise RecordingError(path, "holds a number out of range, expected metres") from None
     except RecursionError:
         raise RecordingError(path, "is nested too deeply, expected two lists of numbers") from None
@@ -84,7 +84,8 @@ def _parse(path: Path) -> dict[str, Any]:
 def _rows(
     path: Path, content: dict[str, Any], key: str, columns: str
 ) -> list[tuple[str, tuple[float, ...]]]:
-    """Rows of one list with their names, every row checked to be as many finite numbers."""
+    """The rows of one list with their names; each is checked to have the right number of finite
+    numbers."""
     rows = content.get(key, [])
     if not isinstance(rows, list):
         raise RecordingError(path, f"{key} is no list, expected rows of {columns}")

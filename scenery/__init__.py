@@ -1,1 +1,1 @@
-"""What makers of scenes need: check a scene, draw it, make one of a mesh."""
+"""Tools for authors of scenes: they check a scene, draw it, or make one of a mesh."""

@@ -15,7 +15,7 @@ from esplanade.scenery import inventory, pictures
 from esplanade.scenery.bodies import made_body
 from esplanade.scenery.download import local_file
 from esplanade.scenery.importing import import_mesh
-from esplanade.scenery.views import layer_views
+from esplanade.scenery.layer_maps import layer_maps
 
 
 def check(options: Namespace) -> int:
@@ -45,7 +45,7 @@ def render(options: Namespace) -> int:
     except SceneError as error:
         return _refuse(error)
     folder = made_folder("--out", options.out)
-    views = layer_views(scene, options.cell, body, options.start, options.goal)
+    views = layer_maps(scene, options.cell, body, options.start, options.goal)
     files = []
     with progress() as shown:
         task = shown.add_task("drawing", total=len(views))

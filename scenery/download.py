@@ -1,4 +1,4 @@
-"""Meshes that are named by an address of the web: fetched, and kept as long as they are needed."""
+"""Download of meshes that are named by a web address; they are kept only while they are used."""
 
 import urllib.error
 import urllib.request
@@ -14,20 +14,21 @@ from esplanade.commandline.errors import UsageError
 SCHEMES: Final = ("http", "https")
 MAX_BYTES: Final = 256 * 2**20
 TIMEOUT_S: Final = 30.0
-"""Without a byte for so long, it is given up."""
+"""The download fails if no byte arrives for this long."""
 _PIECE_BYTES: Final = 2**18
 
 
 @contextmanager
-def local_file(source: str, tell: Callable[[str, float], None]) -> Iterator[Path]:
-    """A file by its path; one by its address for as long as the context lasts.
+def local_file(source: str, report: Callable[[str, float], None]) -> Iterator[Path]:
+    """The local path of a file that is named by its path or web address.
 
-    `tell` hears what is being done, and which share of it is behind.
+    A downloaded file is deleted when the context ends. `report` is called with the current
+    activity and the fraction of it that is done.
 
     Raises
     ------
     UsageError
-        The address cannot be fetched, or what is there is too large.
+        The file cannot be downloaded, or is too large.
     """
     if urlsplit(source).scheme not in SCHEMES:
         yield Path(source)
@@ -35,12 +36,12 @@ def local_file(source: str, tell: Callable[[str, float], None]) -> Iterator[Path
     with TemporaryDirectory() as folder:
         name = PurePosixPath(unquote(urlsplit(source).path)).name or "mesh"
         path = Path(folder) / name
-        _fetch(source, path, tell)
+        _download(source, path, report)
         yield path
 
 
-def _fetch(address: str, path: Path, tell: Callable[[str, float], None]) -> None:
-    doing = f"fetching {path.name}"
+def _download(address: str, path: Path, report: Callable[[str, float], None]) -> None:
+    activity = f"downloading {path.name}"
     try:
         with (
             urllib.request.urlopen(address, timeout=TIMEOUT_S) as answer,  # noqa: S310 - http only
@@ -53,9 +54,9 @@ def _fetch(address: str, path: Path, tell: Callable[[str, float], None]) -> None
                 if max(got, size) > MAX_BYTES:
                     raise UsageError(f"{address}: it is larger than {MAX_BYTES // 2**20} MiB")
                 file.write(piece)
-                tell(doing, got / size if size else 0.0)
+                report(activity, got / size if size else 0.0)
     except urllib.error.HTTPError as error:
         raise UsageError(f"{address}: the server answers {error.code} {error.reason}") from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "reason", None) or error
-        raise UsageError(f"{address}: cannot be fetched: {reason}") from None
+        raise UsageError(f"{address}: cannot be downloaded: {reason}") from None

@@ -1,4 +1,4 @@
-"""What a scene holds: extent, layers, cells, memory, and who gets where in it."""
+"""The inventory of a scene: extent, layers, cells, memory, and what each body reaches."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
@@ -17,7 +17,7 @@ _PARTS: Final = ("polygons", "walls", "stairs", "doors", "spawns", "places")
 
 @dataclass(frozen=True)
 class Layer:
-    """One layer's cells and heights."""
+    """The cells and heights of one layer."""
 
     cells: int
     area_m2: float
@@ -27,32 +27,33 @@ class Layer:
 
 @dataclass(frozen=True)
 class Inventory:
-    """All that is counted."""
+    """The counts and measures of a scene."""
 
     name: str
     extent_m: tuple[float, float, float]
-    """West to east, south to north, lowest to highest floor."""
+    """The extent from west to east, from south to north, and from the lowest to the highest
+    floor."""
     cell_m: float
     layers: tuple[Layer, ...]
     memory_bytes: int
-    """Of the layered cells and their links."""
+    """The memory of the layered cells and their links."""
     parts: Mapping[str, int]
     reach: Mapping[str, Reach]
-    """By the name of the body."""
+    """What each body reaches, by the name of the body."""
 
     @property
     def cells(self) -> int:
-        """Cells that have a floor, over all layers."""
+        """The number of cells with a floor in all layers."""
         return sum(layer.cells for layer in self.layers)
 
     @property
     def unreached(self) -> tuple[str, ...]:
-        """Places that nobody reaches."""
+        """The places that no body reaches."""
         return _common(reach.places_missed for reach in self.reach.values())
 
     @property
     def faults(self) -> tuple[str, ...]:
-        """What makes a scene of little use although it is well formed."""
+        """Messages about faults that make a well-formed scene useless."""
         blocked = _common(reach.spawns_blocked for reach in self.reach.values())
         return (
             *(() if self.cells else ("there is no floor to stand on",)),
@@ -61,12 +62,12 @@ class Inventory:
         )
 
     def figures(self) -> dict[str, Any]:
-        """Everything, ready for JSON."""
+        """All counts and measures, ready for JSON."""
         return {**asdict(self), "cells": self.cells, "faults": list(self.faults)}
 
 
 def take_inventory(scene: Scene, cell_m: float) -> Inventory:
-    """Count what a scene holds. Doors are taken to be open: what is behind them can be reached."""
+    """Take the inventory of a scene with all doors open, so that rooms behind them count."""
     opened = tuple(door.model_copy(update={"open": True}) for door in scene.doors)
     scene = scene.model_copy(update={"doors": opened})
     grid = LayeredGrid.from_scene(scene, cell_m)
@@ -91,7 +92,7 @@ def take_inventory(scene: Scene, cell_m: float) -> Inventory:
 
 
 def show(console: Console, found: Inventory) -> None:
-    """Print it for people."""
+    """Print the inventory as text and a table."""
     width, depth, height = found.extent_m
     parts = ", ".join(f"{count} {part}" for part, count in found.parts.items() if count)
     console.print(f"[bold]{found.name}[/bold]  {width:g} m × {depth:g} m, floors over {height:g} m")
@@ -114,6 +115,6 @@ def show(console: Console, found: Inventory) -> None:
 
 
 def _common(groups: Iterable[tuple[str, ...]]) -> tuple[str, ...]:
-    """What all of them have, in the order of the first."""
+    """The items that all groups contain, in the order of the first group."""
     first, *others = groups
     return tuple(name for name in first if all(name in other for other in others))

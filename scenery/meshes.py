@@ -1,4 +1,4 @@
-"""Meshes as files: read in whatever form, kept as the one form that server and browser read."""
+"""Conversion of mesh files into GLB, the form that server and browser read."""
 
 from pathlib import Path
 from typing import Final
@@ -6,11 +6,11 @@ from typing import Final
 from esplanade.planning.scene.mesh_file import open_mesh
 
 _Z_TO_Y: Final = ((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1))
-"""Turns z up into y up, as glTF has it."""
+"""The rotation from z up to y up, which glTF requires."""
 
 
 def as_glb(path: Path, up: str, metres_a_unit: float) -> bytes:
-    """A mesh of any form that trimesh reads, as GLB: y up, in metres, with its materials.
+    """Convert a mesh that trimesh reads into GLB: y up, in metres, with its materials.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Pictures of one layer of a scene: what each of them shows, its legend, and a scale bar."""
+"""Pictures of one layer of a scene, each with a legend and a scale bar."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -29,13 +29,13 @@ CLASSES: Final = {
     "up-stair": "#2b83ba",
     "down-stair": "#9e6ebd",
 }
-"""How the five classes are painted, in the order of `Stability`."""
+"""The colours of the five classes, in the order of `Stability`."""
 _FORBIDDEN: Final = 0
 
 
 @dataclass(frozen=True)
-class Mark:
-    """A point with a name."""
+class Marker:
+    """A named point, which is a spawn or a place."""
 
     name: str
     position: tuple[float, float]
@@ -43,48 +43,49 @@ class Mark:
 
 
 @dataclass(frozen=True)
-class LayerView:
-    """One layer, cell by cell: rows go north, columns east. What does not exist is nan or -1."""
+class LayerMap:
+    """The data of one layer cell by cell; rows go north, columns go east."""
 
     title: str
     number: int
     body: str
     corner: tuple[float, float]
-    """x, y of the lower left corner of the first cell, metres."""
+    """The x and y of the lower left corner of the first cell, metres."""
     cell_m: float
     floors: Floats
-    """(rows, columns), metres; nan: nobody can stand there."""
+    """(rows, columns): the height of the floor, metres; nan where there is none."""
     reachable: NDArray[np.bool_]
-    """(rows, columns): somebody who comes in at a spawn gets there."""
+    """(rows, columns): whether a path leads there from a spawn."""
     classes: NDArray[np.int8]
-    """(rows, columns): codes in the order of CLASSES, -1: no floor."""
+    """(rows, columns): codes in the order of `CLASSES`; -1 where there is no floor."""
     distance: Floats
-    """(rows, columns): way to the goal, metres; inf: none; nan: no floor."""
+    """(rows, columns): the length of the path to the goal, metres; inf where no path leads to it,
+    nan where there is no floor."""
     walls: Floats
-    """(S, 4): x0, y0, x1, y1 of what stops this body on this layer."""
-    marks: tuple[Mark, ...]
-    way: str
-    """How long the path is, or why there is none."""
+    """(S, 4): x0, y0, x1, y1 of the barriers that stop this body on this layer, metres."""
+    markers: tuple[Marker, ...]
+    path_summary: str
+    """The length of the path, or the reason why there is none."""
     path: Floats
-    """(N, 2): the way between the two points, over all layers; empty: there is none."""
+    """(N, 2): the path between the two points over all layers, metres; empty if there is none."""
     path_layers: NDArray[np.int64]
-    """(N,)"""
+    """(N,): the layer of each point of the path."""
 
     @property
     def extent(self) -> tuple[float, float, float, float]:
-        """Left, right, bottom, top in metres."""
+        """The left, right, bottom and top edges, metres."""
         rows, columns = self.floors.shape
         (x, y), cell_m = self.corner, self.cell_m
         return x, x + columns * cell_m, y, y + rows * cell_m
 
 
 def require_matplotlib() -> Any:
-    """matplotlib's Figure.
+    """The class `Figure` of matplotlib.
 
     Raises
     ------
     UsageError
-        It is not installed.
+        matplotlib is not installed.
     """
     try:
         return import_module("matplotlib.figure").Figure
@@ -94,20 +95,20 @@ def require_matplotlib() -> Any:
         ) from None
 
 
-def draw_layer(view: LayerView, folder: Path) -> list[Path]:
-    """Draw all that there is to a layer; returns the files, `layer-0-heights.png` and so on."""
+def draw_layer(layer: LayerMap, folder: Path) -> list[Path]:
+    """Draw all pictures of a layer; returns their files, such as `layer-0-heights.png`."""
     made = []
     for name, (caption, paint) in _SUBJECTS.items():
-        path = folder / f"layer-{view.number}-{name}.png"
-        _draw(view, caption, paint, path)
+        path = folder / f"layer-{layer.number}-{name}.png"
+        _draw(layer, caption, paint, path)
         made.append(path)
     return made
 
 
 def _draw(
-    view: LayerView, caption: str, paint: Callable[[LayerView, Any], None], path: Path
+    layer: LayerMap, caption: str, paint: Callable[[LayerMap, Any], None], path: Path
 ) -> None:
-    left, right, bottom, top = view.extent
+    left, right, bottom, top = layer.extent
     inches_a_metre = _LONGER_SIDE_IN / max(right - left, top - bottom)
     inches = (right - left) * inches_a_metre, (top - bottom) * inches_a_metre
     size = inches[0] + _MARGIN_IN + _LEGEND_IN, inches[1] + 2.0 * _MARGIN_IN
@@ -115,62 +116,62 @@ def _draw(
     axes = figure.add_axes(
         (_MARGIN_IN / size[0], _MARGIN_IN / size[1], inches[0] / size[0], inches[1] / size[1])
     )
-    paint(view, axes)
+    paint(layer, axes)
     lines = import_module("matplotlib.collections").LineCollection
-    axes.add_collection(lines(view.walls.reshape(-1, 2, 2), colors=_WALL, linewidths=0.9))
-    _add_marks(view, axes)
-    _add_scale(view, axes)
+    axes.add_collection(lines(layer.walls.reshape(-1, 2, 2), colors=_WALL, linewidths=0.9))
+    _add_markers(layer, axes)
+    _add_scale(layer, axes)
     axes.set_xlim(left, right)
     axes.set_ylim(bottom, top)
     axes.tick_params(labelsize=7)
-    title = f"{view.title}, layer {view.number}: {caption.format(way=view.way)}"
+    title = f"{layer.title}, layer {layer.number}: {caption.format(path=layer.path_summary)}"
     axes.set_title(title, fontsize=10, loc="left", pad=14)
     figure.savefig(path)
 
 
-def _paint_heights(view: LayerView, axes: Any) -> None:
-    # The darkest shades would hide names and walls.
+def _paint_heights(layer: LayerMap, axes: Any) -> None:
+    # The darkest shades are left out because they would hide names and walls.
     shades = import_module("matplotlib").colormaps["viridis"](np.linspace(0.25, 1.0, 256))
     colours = import_module("matplotlib.colors").ListedColormap(shades)
-    _paint_measure(view.floors, "height of the floor, m", colours, view, axes)
+    _paint_measure(layer.floors, "height of the floor, m", colours, layer, axes)
 
 
-def _paint_reachability(view: LayerView, axes: Any) -> None:
-    codes = np.where(view.reachable, 0, np.where(view.classes == _FORBIDDEN, 2, 1))
-    codes[view.classes < 0] = -1
+def _paint_reachability(layer: LayerMap, axes: Any) -> None:
+    codes = np.where(layer.reachable, 0, np.where(layer.classes == _FORBIDDEN, 2, 1))
+    codes[layer.classes < 0] = -1
     colours = {"reached": "#a6d8b0", "not reached": "#e08a80", "no room to stand": "#4d4d4d"}
-    _paint_codes(codes, colours, view, axes)
+    _paint_codes(codes, colours, layer, axes)
 
 
-def _paint_classes(view: LayerView, axes: Any) -> None:
-    _paint_codes(view.classes, CLASSES, view, axes)
+def _paint_classes(layer: LayerMap, axes: Any) -> None:
+    _paint_codes(layer.classes, CLASSES, layer, axes)
 
 
-def _paint_path(view: LayerView, axes: Any) -> None:
-    cut_off = np.where(np.isinf(view.distance), 0, -1)
-    _paint_codes(cut_off, {"no way to the goal": "#c9c9c9"}, view, axes)
-    known = np.where(np.isfinite(view.distance), view.distance, np.nan)
-    _paint_measure(known, "way left to the goal, m", "YlGnBu_r", view, axes)
-    here = view.path_layers == view.number
-    for k in range(len(view.path) - 1):
+def _paint_path(layer: LayerMap, axes: Any) -> None:
+    cut_off = np.where(np.isinf(layer.distance), 0, -1)
+    _paint_codes(cut_off, {"no path to the goal": "#c9c9c9"}, layer, axes)
+    known = np.where(np.isfinite(layer.distance), layer.distance, np.nan)
+    _paint_measure(known, "path length to the goal, m", "YlGnBu_r", layer, axes)
+    here = layer.path_layers == layer.number
+    for k in range(len(layer.path) - 1):
         style = {"lw": 2.2} if here[k] or here[k + 1] else {"lw": 1.2, "ls": (0, (2, 2))}
-        axes.plot(*view.path[k : k + 2].T, color=_PATH, **style)
+        axes.plot(*layer.path[k : k + 2].T, color=_PATH, **style)
     for end, marker, size in ((0, "o", 8), (-1, "*", 15)):
-        if len(view.path):
+        if len(layer.path):
             fill = _PATH if here[end] else _NOTHING
-            axes.plot(*view.path[end], marker, ms=size, mfc=fill, mec="black", mew=0.8)
+            axes.plot(*layer.path[end], marker, ms=size, mfc=fill, mec="black", mew=0.8)
 
 
 _SUBJECTS: Final = {
     "heights": ("heights", _paint_heights),
-    "reachability": ("where one gets from the spawns", _paint_reachability),
+    "reachability": ("reachability from the spawns", _paint_reachability),
     "classes": ("classes", _paint_classes),
-    "path": ("potential and path ({way})", _paint_path),
+    "path": ("potential and path ({path})", _paint_path),
 }
 
 
-def _paint_measure(values: Floats, caption: str, colours: Any, view: LayerView, axes: Any) -> None:
-    """Metres as shades, with a bar that says which."""
+def _paint_measure(values: Floats, caption: str, colours: Any, layer: LayerMap, axes: Any) -> None:
+    """Paint values in metres as shades, with a colour bar."""
     known = values[np.isfinite(values)]
     if not len(known):
         return
@@ -178,7 +179,7 @@ def _paint_measure(values: Floats, caption: str, colours: Any, view: LayerView, 
     image = axes.imshow(
         values,
         origin="lower",
-        extent=view.extent,
+        extent=layer.extent,
         cmap=colours,
         vmin=low,
         vmax=max(high, low + 0.1),
@@ -190,21 +191,22 @@ def _paint_measure(values: Floats, caption: str, colours: Any, view: LayerView, 
 
 
 def _paint_codes(
-    codes: NDArray[np.integer], colours: Mapping[str, str], view: LayerView, axes: Any
+    codes: NDArray[np.integer], colours: Mapping[str, str], layer: LayerMap, axes: Any
 ) -> None:
-    """Codes 0, 1, ... in the colours of the names; their share of all floor in the legend."""
+    """Paint codes 0, 1, ... in the colours of the names; the legend has their shares of the
+    floor."""
     palette = import_module("matplotlib.colors").ListedColormap(list(colours.values()))
     axes.imshow(
         np.ma.masked_less(codes, 0),
         origin="lower",
-        extent=view.extent,
+        extent=layer.extent,
         cmap=palette,
         vmin=-0.5,
         vmax=len(colours) - 0.5,
         interpolation="nearest",
     )
     patch = import_module("matplotlib.patches").Patch
-    floor = max(1, int(np.isfinite(view.floors).sum()))
+    floor = max(1, int(np.isfinite(layer.floors).sum()))
     handles = [
         patch(fc=colour, ec="0.4", label=f"{name} {np.sum(codes == code) / floor:.0%}")
         for code, (name, colour) in enumerate(colours.items())
@@ -215,19 +217,19 @@ def _paint_codes(
         bbox_to_anchor=(1.01, 1.0),
         frameon=False,
         fontsize=8,
-        title=view.body,
+        title=layer.body,
         title_fontsize=8,
         alignment="left",
     )
 
 
-def _add_marks(view: LayerView, axes: Any) -> None:
+def _add_markers(layer: LayerMap, axes: Any) -> None:
     outline = import_module("matplotlib.patheffects").withStroke(linewidth=2.0, foreground="white")
-    for mark in view.marks:
-        axes.plot(*mark.position, "^" if mark.spawn else ".", color="black", ms=7, mec="white")
+    for marker in layer.markers:
+        axes.plot(*marker.position, "^" if marker.spawn else ".", color="black", ms=7, mec="white")
         axes.annotate(
-            mark.name,
-            mark.position,
+            marker.name,
+            marker.position,
             xytext=(0, 5),
             textcoords="offset points",
             ha="center",
@@ -237,9 +239,9 @@ def _add_marks(view: LayerView, axes: Any) -> None:
         )
 
 
-def _add_scale(view: LayerView, axes: Any) -> None:
-    """A bar of a round length, at most a fifth of the picture's width."""
-    most = 0.2 * (view.extent[1] - view.extent[0])
+def _add_scale(layer: LayerMap, axes: Any) -> None:
+    """Add a scale bar of a round length, at most a fifth of the width of the picture."""
+    most = 0.2 * (layer.extent[1] - layer.extent[0])
     power = 10.0 ** math.floor(math.log10(most))
     length = max(step * power for step in (1.0, 2.0, 5.0) if step * power <= most)
     bar = import_module("mpl_toolkits.axes_grid1.anchored_artists").AnchoredSizeBar

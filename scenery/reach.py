@@ -1,4 +1,4 @@
-"""Who gets where: what a body reaches from the spawns of a scene."""
+"""Reachability of a scene: the cells and places that a body reaches from the spawns."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,30 +17,31 @@ from esplanade.planning.traversal.traversability import Traversability
 from esplanade.planning.traversal.wavefront import UNREACHED, spread_wave
 from esplanade.scenery.values import Point
 
-_SHELTERED = 4.0
-"""What a cell under a roof counts for."""
+_ROOFED_CELL_WEIGHT = 4.0
+"""The weight of a cell under a roof in the choice of the largest region."""
 
 
 @dataclass(frozen=True)
 class Reach:
-    """What of a scene one body reaches."""
+    """The part of a scene that one body reaches."""
 
     standing: float
-    """Share of all floor in which it could stand."""
+    """The share of all floor on which the body can stand."""
     reached: float
-    """Share of that where it gets to from the spawns."""
+    """The share of that which the body reaches from the spawns."""
     places_missed: tuple[str, ...]
+    """The names of the places that it does not reach."""
     spawns_blocked: tuple[str, ...]
-    """Spawns where it cannot stand, as `spawns.0`."""
+    """The spawns at which it cannot stand, such as `spawns.0`."""
 
 
 def reach_of(grid: LayeredGrid, scene: Scene, body: Body) -> Reach:
-    """Send a body from every spawn to every place.
+    """Find what a body reaches, with a path from some spawn to each place.
 
-    Without spawns, avatars come in anywhere: the largest region is taken that hangs together.
+    In a scene without spawns avatars enter anywhere, so the largest connected region is taken.
     """
     traversability = grid.traversability.of(body)
-    stands = stands_in(traversability)
+    stands = can_stand(traversability)
     seeds = spawn_cells(traversability, scene)
     reached = reached_cells(traversability, seeds)
     if not seeds and reached.any():
@@ -49,7 +50,7 @@ def reach_of(grid: LayeredGrid, scene: Scene, body: Body) -> Reach:
     missed = [
         place.name
         for place in scene.places
-        if not any(_leads(grid, start, (*place.position, place.z_m), body) for start in starts)
+        if not any(_has_path(grid, start, (*place.position, place.z_m), body) for start in starts)
     ]
     blocked = [f"spawns.{i}" for i, seed in enumerate(seeds) if seed < 0]
     floor = int(np.isfinite(grid.layered.floors).sum())
@@ -62,7 +63,7 @@ def reach_of(grid: LayeredGrid, scene: Scene, body: Body) -> Reach:
 
 
 def spawn_cells(traversability: Traversability, scene: Scene) -> tuple[int, ...]:
-    """The cell where a body comes in, for each spawn; -1: there is no room for it."""
+    """The cell at which a body enters, for each spawn; -1 if there is no room for it."""
     return tuple(
         cell_near(traversability, (*spawn.position, spawn.z_m), spawn.radius_m)
         for spawn in scene.spawns
@@ -70,7 +71,7 @@ def spawn_cells(traversability: Traversability, scene: Scene) -> tuple[int, ...]
 
 
 def reached_cells(traversability: Traversability, seeds: Sequence[int]) -> NDArray[np.bool_]:
-    """Where one gets from some cells, bool (N,); without any, the largest region."""
+    """The cells that are reached from some cells, bool (N,); without any, the largest region."""
     if not seeds:
         return largest_region(traversability)
     reached = np.zeros(len(traversability.steps), dtype=np.bool_)
@@ -80,13 +81,13 @@ def reached_cells(traversability: Traversability, seeds: Sequence[int]) -> NDArr
     return reached
 
 
-def _leads(grid: LayeredGrid, start: NDArray[np.float64], goal: Point, body: Body) -> bool:
+def _has_path(grid: LayeredGrid, start: NDArray[np.float64], goal: Point, body: Body) -> bool:
     x, y, z = (float(value) for value in start)
     return find_path(grid, (x, y, z), goal, body=body).status is PathStatus.FOUND
 
 
 def centres(traversability: Traversability) -> NDArray[np.float64]:
-    """x, y, z of every cell, float64 (N, 3), metres; z is nan where there is no floor."""
+    """The centres of all cells, float64 (N, 3), metres; z is nan where there is no floor."""
     a = traversability.arrays
     return np.stack(
         [
@@ -99,11 +100,14 @@ def centres(traversability: Traversability) -> NDArray[np.float64]:
 
 
 def cell_near(traversability: Traversability, point: Point, within_m: float) -> int:
-    """The nearest cell in which the body can stand; -1: none within that distance on the map."""
+    """The nearest cell in which the body can stand.
+
+    It is -1 if there is none within the distance `within_m` on the map on the same floor.
+    """
     away = centres(traversability) - point
     on_map = np.hypot(away[:, 0], away[:, 1])
     near = np.flatnonzero(
-        stands_in(traversability)
+        can_stand(traversability)
         & (on_map <= within_m + traversability.arrays.cell_m)
         & (np.abs(away[:, 2]) <= SAME_SURFACE_M)
     )
@@ -112,17 +116,18 @@ def cell_near(traversability: Traversability, point: Point, within_m: float) -> 
     return int(near[np.hypot(on_map[near], away[near, 2]).argmin()])
 
 
-def stands_in(traversability: Traversability) -> NDArray[np.bool_]:
-    """Cells in which the body can stand, bool (N,)."""
+def can_stand(traversability: Traversability) -> NDArray[np.bool_]:
+    """Whether the body can stand in each cell, bool (N,)."""
     return np.asarray(traversability.classes != Stability.FORBIDDEN)
 
 
 def largest_region(traversability: Traversability) -> NDArray[np.bool_]:
-    """The most cells that one body can walk between, bool (N,); none if it stands nowhere.
+    """The largest connected region that a body can walk, bool (N,).
 
-    Cells under a roof count for more, so that the rooms of a building come before its roof.
+    Cells under a roof have a greater weight, so that the rooms of a building are preferred to its
+    roof. No cell is set if the body cannot stand anywhere.
     """
-    stands, links = stands_in(traversability), traversability.arrays.links
+    stands, links = can_stand(traversability), traversability.arrays.links
     steps = (traversability.steps[:, None] >> np.arange(8)) & 1 == 1
     steps &= stands[:, None] & stands[links]
     starts, directions = np.nonzero(steps)
@@ -132,6 +137,6 @@ def largest_region(traversability: Traversability) -> NDArray[np.bool_]:
         shape=(count, count),
     )
     labels = connected_components(graph, directed=False)[1]
-    worth = np.where(np.isfinite(traversability.arrays.ceilings), _SHELTERED, 1.0) * stands
+    worth = np.where(np.isfinite(traversability.arrays.ceilings), _ROOFED_CELL_WEIGHT, 1.0) * stands
     sizes = np.bincount(labels, weights=worth, minlength=1)
     return np.asarray(stands & (labels == sizes.argmax()))

@@ -88,9 +88,11 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         _watch(world, metrics)
 
         schedule = Schedule(world.tick_s, loop.time())
-        ways = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ways"))
-        route_requests = RouteRequests(world, ways)
-        metrics.gauge("ways_waiting", "People who wait for a way", lambda: route_requests.waiting)
+        searching = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="routes"))
+        route_requests = RouteRequests(world, searching)
+        metrics.gauge(
+            "routes_waiting", "People who wait for a route", lambda: route_requests.waiting
+        )
         hub = Hub(
             world,
             route_requests,

@@ -1,4 +1,8 @@
-"""The built web client and what a world adds to it, served from memory."""
+"""Serves the built web client, and the data that a world adds to it, from memory.
+
+People have one port for pages and WebSocket, and the library behind it answers requests without
+routing or files; so the few rules of HTTP that static files need stand here.
+"""
 
 import gzip
 import hashlib
@@ -96,21 +100,60 @@ class Assets:
         return Assets({**self._table, path: _asset(path, body)}), address
 
     def answer(self, request: Request) -> Response:
-        """The response to a GET."""
+        """The response to a GET, whose body is left out where the request is a HEAD."""
+        answer = self._found(request)
+        if request.method == "HEAD":
+            answer.body = b""  # the headers stay those of the answer to a GET
+        return answer
+
+    def _found(self, request: Request) -> Response:
         asset = self._table.get(unquote(path_of(request)))
         if asset is None:
             return respond(HTTPStatus.NOT_FOUND, b"there is nothing here\n")
-        if asset.headers["ETag"] in " ".join(request.headers.get_all("If-None-Match")):
+        if _is_known(asset.headers["ETag"], _listed(request, "If-None-Match")):
             return respond(HTTPStatus.NOT_MODIFIED, b"", asset.headers)
-        accepted = ",".join(request.headers.get_all("Accept-Encoding"))
-        if asset.compressed is not None and "gzip" in accepted:
+        if asset.compressed is not None and _accepts_gzip(_listed(request, "Accept-Encoding")):
             headers = {**asset.headers, "Content-Encoding": "gzip"}
             return respond(HTTPStatus.OK, asset.compressed, headers)
         return respond(HTTPStatus.OK, asset.body, asset.headers)
 
 
+def _listed(request: Request, name: str) -> list[str]:
+    """The items of a header that holds a list, from all lines that have it."""
+    lines = ",".join(request.headers.get_all(name))
+    return [item.strip() for item in lines.split(",") if item.strip()]
+
+
+def _is_known(tag: str, known: list[str]) -> bool:
+    """Whether a client has the content with this tag (RFC 9110, section 13.1.2).
+
+    Our tags hold no comma, so that a list of tags may be split at each.
+    """
+    return "*" in known or tag in (item.removeprefix("W/") for item in known)
+
+
+def _accepts_gzip(codings: list[str]) -> bool:
+    """Whether a client takes gzip (RFC 9110, section 12.5.3); q=0 forbids it."""
+    qualities: dict[str, float] = {}
+    for item in codings:
+        coding, *parameters = (part.strip().lower() for part in item.split(";"))
+        qualities[coding] = _quality(parameters)
+    return qualities.get("gzip", qualities.get("*", 0.0)) > 0.0
+
+
+def _quality(parameters: list[str]) -> float:
+    for parameter in parameters:
+        name, _, value = parameter.partition("=")
+        if name.strip() == "q":
+            try:
+                return float(value)
+            except ValueError:
+                return 0.0
+    return 1.0
+
+
 def path_of(request: Request) -> str:
-    """What is asked for, without query and fragment. Taken as it comes: it need not be a URL."""
+    """The path of a request without query and fragment; it is taken as it comes, URL or not."""
     return request.path.partition("#")[0].partition("?")[0]
 
 

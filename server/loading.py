@@ -1,4 +1,4 @@
-"""What world the settings ask for: the scene, from a file or around a recorded crowd."""
+"""Loads the scene that the settings name: from a file, or around a recorded crowd."""
 
 import math
 from dataclasses import dataclass, replace
@@ -28,15 +28,15 @@ CROWD_MARGIN_M: Final = 2.0
 CROWD_PLACES: Final = 8
 CROWD_PLACE_INSET_M: Final = 1.0
 DOORWAY_M: Final = 0.5
-"""Walls drawn across the way of a recorded person are opened this wide."""
+"""Walls drawn across a recorded trajectory are opened this wide."""
 CATCH_UP: Final = 1.5
 """A replayed person may be this much faster than the recording, to catch up with it."""
 MAX_TRIANGLES: Final = 400_000
-"""Every visitor's browser fetches a mesh whole: this many are 14 MB before compression."""
+"""A larger mesh is refused: each browser fetches it whole, and this many are 14 MB."""
 
 
 class LoadingError(ValueError):
-    """A scene or crowd that cannot be run; the message names the file and the place in it."""
+    """The scene or crowd cannot be run; the message names the file and the place in it."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class LoadedScene:
     scene: Scene
     rules: Rules
     triangles: bytes | None = None
-    """Of a building that is a mesh: nine little-endian 32-bit floats each, metres, z up."""
+    """The triangles of a mesh: nine little-endian 32-bit floats each, metres, z up."""
 
 
 def load_scene(settings: ServerSettings) -> LoadedScene:
@@ -116,7 +116,7 @@ def _triangles(mesh: Path) -> bytes:
 def _scene_around(
     crowd: Crowd, walls: list[tuple[tuple[float, float], tuple[float, float]]]
 ) -> Scene:
-    """Open ground around everyone's ways, with places along its edge to walk between."""
+    """Open ground around all recorded trajectories, with places along its edge to walk between."""
     x0, y0, x1, y1 = crowd.bounds
     bounds = (
         x0 - CROWD_MARGIN_M,
@@ -133,7 +133,7 @@ def _scene_around(
 
 
 def _places_along(bounds: tuple[float, float, float, float]) -> list[Place]:
-    """In the corners and in the middle of the sides, just inside the bounds."""
+    """Places in the corners and in the middle of the sides, just inside the bounds."""
     x0, y0, x1, y1 = bounds
     middle = np.array([(x0 + x1) / 2.0, (y0 + y1) / 2.0])
     half = np.array([(x1 - x0) / 2.0, (y1 - y0) / 2.0]) - CROWD_PLACE_INSET_M

@@ -1,6 +1,6 @@
-"""Everything that is counted, in one registry of its own.
+"""The server's metrics, in one registry of their own.
 
-What counts thousands of times a second is a plain integer in `Traffic`, read when scraped.
+A count that grows thousands of times a second is a plain integer in `Traffic`, read when scraped.
 """
 
 from collections.abc import Callable, Iterable
@@ -31,7 +31,7 @@ class Durations:
         self._count += 1
 
     def percentile(self, percent: float, latest: int = _KEPT_TICKS) -> float:
-        """Of the latest so many, seconds; 0 if there are none."""
+        """A percentile of the `latest` durations, seconds; 0 if there are none."""
         count = min(self._count, latest, _KEPT_TICKS)
         if not count:
             return 0.0
@@ -41,7 +41,7 @@ class Durations:
 
 @dataclass
 class Traffic:
-    """Totals of what goes over people's connections."""
+    """Totals of the messages on people's connections."""
 
     messages_in: int = 0
     bytes_in: int = 0
@@ -66,7 +66,7 @@ _TRAFFIC_HELP: Final = {
 
 
 class _Total(Collector):
-    """A total that is kept elsewhere and asked for when scraped."""
+    """A total that is kept elsewhere and read when scraped."""
 
     def __init__(self, name: str, text: str, read: Callable[[], float]) -> None:
         self._name = name
@@ -104,7 +104,7 @@ class Metrics:
             "clients_dropped_slow", "Clients dropped because they did not read", ["limit"]
         )
         self.joins = self._counter("joins", "People who came in", ["way"])
-        self.chat_lines = self._counter("chat_lines", "Lines that people said")
+        self.chat_lines = self._counter("chat_lines", "Lines of chat that people have said")
         self.planning_failures = self._counter(
             "planning_failures", "Ticks in which the actors' planning failed and they stood still"
         )
@@ -116,12 +116,12 @@ class Metrics:
             )
 
     def gauge(self, name: str, text: str, read: Callable[[], float]) -> None:
-        """A value that is asked for when scraped."""
+        """Add a value that is read when scraped."""
         gauge = Gauge(name, text, namespace=_NAMESPACE, registry=self.registry)
         gauge.set_function(read)
 
     def total(self, name: str, text: str, read: Callable[[], float]) -> None:
-        """A total that is kept elsewhere and never falls."""
+        """Add a total that is kept elsewhere and never falls."""
         self.registry.register(_Total(f"{_NAMESPACE}_{name}", text, read))
 
     def tick_took(self, seconds: float, stages: dict[str, float]) -> None:

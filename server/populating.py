@@ -1,4 +1,4 @@
-"""The population that a scene gets: wanderers, and where there are places a patrol and a guide."""
+"""Populates a scene: with wanderers, and where there are places with a patrol and a guide."""
 
 from collections.abc import Hashable
 from typing import Final
@@ -25,12 +25,12 @@ GUIDE_STOPS: Final = 4
 def populate(
     grid: LayeredGrid, scene: Scene, count: int, tick_s: float, seed: int
 ) -> tuple[Population, dict[Hashable, Body]]:
-    """A population of so many actors, and what others see of each.
+    """Make a population of `count` actors, and the bodies that others see.
 
     Raises
     ------
     ValueError
-        The scene has no room for so many.
+        The scene has no room for them.
     """
     random = np.random.default_rng([seed, count])
     population = Population(grid, scene, tick_s=tick_s, seed=seed)

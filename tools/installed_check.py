@@ -165,12 +165,13 @@ async def walk(port: int) -> float:
 
 
 def record_crowd(path: Path) -> Path:
-    """Write a recording of three people who cross an open place."""
+    """Write a recording: one person crosses an open place, two others go on long after that."""
     lines = ["t,id,x,y"]
-    for tick in range(101):
+    for tick in range(401):
         seconds = tick / 10.0
-        lines += [f"{seconds},{k},{1.2 * seconds - 6.0},{1.5 * k}" for k in (1, 2)]
-        lines.append(f"{seconds},3,0.5,{6.0 - 1.1 * seconds}")
+        if seconds <= 8.0:
+            lines.append(f"{seconds},1,{1.2 * seconds - 5.0},0.0")
+        lines += [f"{seconds},{k},{0.5 * seconds - 8.0},{3.0 * k}" for k in (2, 3)]
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
     return path
 

@@ -1,17 +1,18 @@
 /*
- * Walks over a triangle mesh by a navigation mesh of Recast and Detour.
+ * Answers queries to a navigation mesh of Recast and Detour.
  *
- * Reads one JSON value a line, answers each by one line. Metres, y up; a point is [x, y, z].
+ * Each line of the input is one JSON request, and each is answered by one line. Lengths are in
+ * metres, y is up, and a point is [x, y, z].
  *
- *   {"build": {positions, indices, config}}   flat arrays; config in Recast's units
+ *   {"build": {positions, indices, config}}   flat arrays; config is in Recast's units
  *       -> {ms, polygons, bytes}
- *   {"stand": [point, ...], reach}            reach: half the box to look in, [x, y, z]
+ *   {"stand": [point, ...], reach}            reach: half extents of the search box, [x, y, z]
  *       -> {places: [point | null, ...]}
- *   {"ways": [[point, point], ...], reach}
- *       -> {ways: [{stands, points, us}, ...]}
- *   stands: whether there is a place at either end; points: corners of a complete way, or none
+ *   {"paths": [[point, point], ...], reach}
+ *       -> {paths: [{stands, points, us}, ...]}
+ *   stands: whether each end is on the mesh; points: corners of a complete path, or none
  *   {"triangles": true}
- *       -> {positions, indices}               what is walkable, flat arrays
+ *       -> {positions, indices}               the walkable triangles, flat arrays
  */
 
 import { createInterface } from "node:readline";
@@ -50,7 +51,11 @@ function build({ positions, indices, config }) {
   };
 }
 
-/** The polygon to stand on near a point, or null; the box alone would let in what only touches it. */
+/**
+ * The polygon near a point, with the nearest point of it, or null.
+ *
+ * The box of the query also finds polygons that only touch it, so the distance is checked again.
+ */
 function place(position, reach) {
   const halfExtents = vector(reach);
   const { nearestRef, nearestPoint } = query.findNearestPoly(position, { halfExtents });
@@ -59,7 +64,7 @@ function place(position, reach) {
   return nearestRef && isNear ? { ref: nearestRef, at: nearestPoint } : null;
 }
 
-/** Corners of the way between two places, or none if it would end before the goal. */
+/** The corners of the path between two places, or none if it would end before the goal. */
 function corners(start, goal) {
   const found = query.findPath(start.ref, goal.ref, start.at, goal.at, {
     maxPathPolys: MAX_POLYGONS,
@@ -71,13 +76,13 @@ function corners(start, goal) {
       !(found.status & Detour.DT_PARTIAL_RESULT) &&
       polys.size > 0 &&
       polys.get(polys.size - 1) === goal.ref;
-    return complete ? pulled(start, goal, polys) : [];
+    return complete ? straightened(start, goal, polys) : [];
   } finally {
     polys.destroy();
   }
 }
 
-function pulled(start, goal, polys) {
+function straightened(start, goal, polys) {
   const result = query.findStraightPath(start.at, goal.at, polys, {
     maxStraightPathPoints: MAX_POLYGONS,
   });
@@ -91,7 +96,7 @@ function pulled(start, goal, polys) {
   return points;
 }
 
-function way([from, to], reach) {
+function path([from, to], reach) {
   const begun = process.hrtime.bigint();
   const start = place(vector(from), reach);
   const goal = place(vector(to), reach);
@@ -106,12 +111,12 @@ function answer(request) {
     const places = request.stand.map((position) => place(vector(position), request.reach));
     return { places: places.map((found) => found && point(found.at)) };
   }
-  if (request.ways) return { ways: request.ways.map((pair) => way(pair, request.reach)) };
+  if (request.paths) return { paths: request.paths.map((pair) => path(pair, request.reach)) };
   if (request.triangles) {
     const [positions, indices] = getNavMeshPositionsAndIndices(navMesh);
     return { positions, indices };
   }
-  throw new Error(`nothing known to do: ${Object.keys(request)}`);
+  throw new Error(`unknown request: ${Object.keys(request)}`);
 }
 
 await init();

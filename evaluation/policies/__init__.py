@@ -1,4 +1,4 @@
-"""Policies by name. A module is imported only when its policy is asked for."""
+"""The policies by name. The module of a policy is imported only when the policy is made."""
 
 from collections.abc import Callable, Mapping
 from importlib import import_module
@@ -8,34 +8,34 @@ from esplanade.evaluation.policies.policy import Policy, PolicyError
 
 
 class Entry(NamedTuple):
-    """Where a policy is made, and what it is."""
+    """The module of a policy, and its class or function there."""
 
     module: str
     maker: str
-    summary: str
 
 
 POLICIES: Final = {
-    "esplanade": Entry("ours", "Esplanade", "the project's own actor"),
-    "straight": Entry("straight", "Straight", "straight on, whoever is in the way"),
-    "discs": Entry("discs", "Discs", "constant velocities, hard discs, space-time A*"),
-    "clairvoyant": Entry("clairvoyant", "Clairvoyant", "the same, shown the true future"),
-    "human": Entry("human", "Human", "the recorded pedestrian's own way"),
-    "jupedsim-speed": Entry("jupedsim_models", "speed", "JuPedSim, collision-free speed"),
-    "jupedsim-anticipation": Entry(
-        "jupedsim_models", "anticipation", "JuPedSim, anticipation velocity"
-    ),
-    "jupedsim-forces": Entry("jupedsim_models", "forces", "JuPedSim, social forces"),
+    "esplanade": Entry("ours", "Esplanade"),
+    "straight": Entry("straight", "Straight"),
+    "discs": Entry("discs", "Discs"),
+    "oracle": Entry("oracle", "Oracle"),
+    "human": Entry("human", "Human"),
+    "jupedsim-speed": Entry("jupedsim_models", "speed"),
+    "jupedsim-anticipation": Entry("jupedsim_models", "anticipation"),
+    "jupedsim-forces": Entry("jupedsim_models", "forces"),
 }
+"""The policies; `esplanade.evaluation.options` has a summary of each."""
 
 
 def make_policy(name: str, settings: Mapping[str, Any] | None = None) -> Policy:
-    """A policy by its name; `settings` of our actor are for "esplanade" alone.
+    """Make the policy of a name in `POLICIES`.
+
+    `settings` are those of our actor; all policies but "esplanade" ignore them.
 
     Raises
     ------
     PolicyError
-        Its package is not installed.
+        The package that the policy needs is not installed.
     """
     entry = POLICIES[name]
     maker = cast(

@@ -1,7 +1,4 @@
-"""A plain space-time A* among moving discs, on bare arrays.
-
-One file, as numba notices an edit only in the file of the outermost function.
-"""
+"""A plain space-time A* among moving discs, on bare arrays."""
 
 from typing import NamedTuple
 
@@ -16,7 +13,7 @@ NO_NODE = -1
 
 
 class Problem(NamedTuple):
-    """One decision. `tracks` (P, K + 1, 2): where people are at each step, nan where absent."""
+    """The input of one decision with K steps ahead, in metres, seconds and m/s."""
 
     x: float
     y: float
@@ -29,15 +26,17 @@ class Problem(NamedTuple):
     acceleration_mps2: float
     step_s: float
     tracks: NDArray[np.float64]
+    """(P, K + 1, 2): the positions of P people at each step; nan where a person is absent."""
     distances_m: NDArray[np.float64]
-    """(K + 1,): how near to people one may come, step by step."""
+    """(K + 1,): the smallest allowed distance to people at each step."""
     walls: NDArray[np.float64]
-    """(M, 2, 2)."""
+    """(M, 2, 2): the two ends of each wall."""
     wall_m: float
+    """The smallest allowed distance to walls."""
 
 
 class Nodes(NamedTuple):
-    """Room for a search: a row a node, a heap, and the best node of every cell (nodes each)."""
+    """The memory of a search for N nodes: their data, a heap, and a hash table."""
 
     places: NDArray[np.float64]
     """(N, 4): x, y, vx, vy."""
@@ -45,16 +44,16 @@ class Nodes(NamedTuple):
     steps: NDArray[np.int64]
     parents: NDArray[np.int64]
     wanted: NDArray[np.float64]
-    """(N, 2): the velocity aimed at on the way here."""
+    """(N, 2): the velocity that the step to the node aims at."""
     keys: NDArray[np.float64]
     heap: NDArray[np.int64]
     table: NDArray[np.int64]
-    """(N * 4, 2): hash table from cell, step and heading to node."""
+    """(4 N, 2): a hash table from the key of cell, step and heading to the best node."""
 
 
 @kernel
 def _swept(ox: float, oy: float, dx: float, dy: float) -> float:
-    """Least length of o + u d for u from 0 to 1."""
+    """Smallest length of o + u d for u from 0 to 1."""
     square = dx * dx + dy * dy
     u = 0.0
     if square > 1e-12:
@@ -64,7 +63,10 @@ def _swept(ox: float, oy: float, dx: float, dy: float) -> float:
 
 @kernel
 def _hits_person(p: Problem, k: int, x0: float, y0: float, x1: float, y1: float) -> bool:
-    """Whether going from 0 to 1 in step k comes too near; who is so already may draw apart."""
+    """Whether the motion from 0 to 1 in step k comes too near to a person.
+
+    If the two are too near already, motions that move them apart are allowed.
+    """
     for i in range(len(p.tracks)):
         bx = p.tracks[i, k + 1, 0]
         if np.isnan(p.tracks[i, k, 0]) or np.isnan(bx):
@@ -81,7 +83,10 @@ def _hits_person(p: Problem, k: int, x0: float, y0: float, x1: float, y1: float)
 
 @kernel
 def _hits_wall(p: Problem, x0: float, y0: float, x1: float, y1: float) -> bool:
-    """Whether the way from 0 to 1 crosses a wall or ends too near one; drawing apart is fine."""
+    """Whether the line from 0 to 1 crosses a wall or ends too near one.
+
+    If 0 is too near already, lines that lead away from the wall are allowed.
+    """
     for m in range(len(p.walls)):
         ax = p.walls[m, 0, 0]
         ay = p.walls[m, 0, 1]
@@ -104,6 +109,7 @@ def _hits_wall(p: Problem, x0: float, y0: float, x1: float, y1: float) -> bool:
 
 @kernel
 def _push(nodes: Nodes, size: int, node: int) -> int:
+    """Put a node on the heap of `size` nodes; returns the new size."""
     at = size
     nodes.heap[at] = node
     while at > 0:
@@ -118,7 +124,10 @@ def _push(nodes: Nodes, size: int, node: int) -> int:
 
 @kernel
 def _pop(nodes: Nodes, size: int) -> int:
-    """Take the least off the heap, which then has one node fewer; returns it."""
+    """Take the node with the smallest key off the heap of `size` nodes, and return it.
+
+    The caller lowers the size by one.
+    """
     top = nodes.heap[0]
     node = nodes.heap[size - 1]
     at = 0
@@ -140,7 +149,7 @@ def _pop(nodes: Nodes, size: int) -> int:
 
 @kernel
 def _slot(nodes: Nodes, p: Problem, x: float, y: float, vx: float, vy: float, step: int) -> int:
-    """Row of the table for a configuration: its own, or the free one where it belongs."""
+    """The row of the hash table for a configuration; a free row is taken if it has none yet."""
     cx = int(np.floor((x - p.x) / CELL_M)) + 512
     cy = int(np.floor((y - p.y) / CELL_M)) + 512
     heading = HEADINGS
@@ -159,9 +168,10 @@ def _slot(nodes: Nodes, p: Problem, x: float, y: float, vx: float, vy: float, st
 def search(
     p: Problem, directions: NDArray[np.float64], speeds: NDArray[np.float64], nodes: Nodes
 ) -> tuple[int, int]:
-    """Least time to the goal, or to the last step; returns the node, and how many were expanded.
+    """Search for the least time to the goal, or to the last step.
 
-    The node is `NO_NODE` when not one move is possible. Trace `parents` back for the path.
+    Returns the final node and the number of expanded nodes. The node is `NO_NODE` if no motion is
+    possible at all. `parents` leads back from it to the start, which is node 0.
     """
     steps = len(p.distances_m) - 1
     room = len(nodes.costs)

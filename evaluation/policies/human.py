@@ -1,22 +1,25 @@
-"""The recorded pedestrian's own way. People in groups walk closer than two discs."""
+"""The recorded pedestrian's own trajectory; people in groups walk closer than two discs."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.evaluation.policies.policy import Policy, Task, View
+from esplanade.evaluation.policies.policy import Observation, Policy, Task
 
 
 class Human(Policy):
-    """Does what the one did whom the robot stands in for; a reference that knows the recording."""
+    """Repeats the trajectory of the pedestrian whose place the robot takes.
+
+    It is a reference that knows the recording.
+    """
 
     follows_recording = True
 
     def reset(self, task: Task) -> None:
-        self._way = task.replay.way(task.episode.pedestrian)
+        self._trajectory = task.replay.trajectory(task.episode.pedestrian)
         self._tick_s = task.rules.tick_s
         self._next = 1
 
-    def decide(self, view: View) -> NDArray[np.float64]:
-        there = self._way[self._next]
+    def decide(self, observation: Observation) -> NDArray[np.float64]:
+        target = self._trajectory[self._next]
         self._next += 1
-        return np.asarray((there - view.position) / self._tick_s)
+        return np.asarray((target - observation.position) / self._tick_s)

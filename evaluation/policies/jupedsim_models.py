@@ -1,8 +1,8 @@
-"""Models of the JuPedSim package, with the parameters they come with, as peers.
+"""Models of the JuPedSim package with their default parameters, for comparison.
 
-JuPedSim moves all of its agents itself. Here only the robot's next step is wanted, among people
-who are where they are: so a simulation is made anew for every decision, everyone in it goes on
-as they did, and after one tick the robot's way is read off.
+JuPedSim moves all of its agents itself. The evaluation needs only the next step of the robot
+among people at given positions. Therefore each decision makes a new simulation, in which everyone
+keeps their velocity, runs it for one tick, and takes the motion of the robot.
 """
 
 import contextlib
@@ -13,24 +13,31 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.evaluation.policies.policy import Person, Policy, PolicyError, Task, View
+from esplanade.evaluation.policies.policy import Observation, Person, Policy, PolicyError, Task
 
 Floats = NDArray[np.float64]
 
 MARGIN_M: Final = 10.0
+"""The walkable area extends this far beyond the bounds of the recording."""
 WALL_M: Final = 0.02
-"""JuPedSim has areas, not lines: walls become this thick, to each side."""
+"""JuPedSim has areas, not lines: walls extend by this much to each side."""
 SEEN_M: Final = 8.0
+"""People farther from the robot than this are left out."""
 AHEAD_S: Final = 2.0
-"""People walk toward where they would be then."""
+"""The target of each person is the position predicted for this time ahead."""
 INNER_STEPS: Final = 10
-SMALLEST_BODY: Final = (1.0, 0.6, 0.2)
-"""Agents that would overlap are refused; they are tried again with these parts of the radius."""
+"""The number of time steps of JuPedSim in one tick."""
+RADIUS_FACTORS: Final = (1.0, 0.6, 0.2)
+"""JuPedSim refuses agents that overlap; they are tried with these fractions of their radius."""
 STANDING_MPS: Final = 0.05
+"""The desired speed of people who stand; it must be positive."""
 
 
 class JuPedSim(Policy):
-    """One model; `agent` makes the parameters of an agent from place, velocity, speed, radius."""
+    """A policy that uses one model of JuPedSim.
+
+    `agent` makes the parameters of an agent from its position, velocity, speed and radius.
+    """
 
     def __init__(self, jupedsim: Any, model: Any, agent: Callable[..., Any]) -> None:
         self._jupedsim = jupedsim
@@ -51,7 +58,7 @@ class JuPedSim(Policy):
         self._area = min(parts, key=start.distance)
         shapely.prepare(self._area)
 
-    def decide(self, view: View) -> Floats:
+    def decide(self, observation: Observation) -> Floats:
         simulation = self._jupedsim.Simulation(
             model=self._model, geometry=self._area, dt=self._rules.tick_s / INNER_STEPS
         )
@@ -61,12 +68,12 @@ class JuPedSim(Policy):
         def add(
             position: Floats, velocity: Floats, speed_mps: float, radius_m: float, target: Floats
         ) -> int | None:
-            for part in SMALLEST_BODY:
+            for factor in RADIUS_FACTORS:
                 parameters = self._agent(
                     position=_point(position),
                     velocity=_point(velocity),
                     desired_speed=speed_mps,
-                    radius=part * radius_m,
+                    radius=factor * radius_m,
                     journey_id=journey,
                     stage_id=stage,
                 )
@@ -81,15 +88,19 @@ class JuPedSim(Policy):
 
         rules = self._rules
         robot = add(
-            view.position, view.velocity, rules.speed_mps, rules.robot_radius_m, view.waypoint
+            observation.position,
+            observation.velocity,
+            rules.speed_mps,
+            rules.robot_radius_m,
+            observation.waypoint,
         )
         if robot is None:
-            way = view.waypoint - view.position
-            return np.asarray(way * (rules.speed_mps / max(1e-9, float(np.hypot(*way)))))
+            offset = observation.waypoint - observation.position
+            return np.asarray(offset * (rules.speed_mps / max(1e-9, float(np.hypot(*offset)))))
         for person in sorted(
-            view.people, key=lambda p: float(np.hypot(*(p.position - view.position)))
+            observation.people, key=lambda p: float(np.hypot(*(p.position - observation.position)))
         ):
-            if np.hypot(*(person.position - view.position)) < SEEN_M:
+            if np.hypot(*(person.position - observation.position)) < SEEN_M:
                 velocity = _velocity(person, rules.tick_s)
                 add(
                     person.position,
@@ -98,10 +109,11 @@ class JuPedSim(Policy):
                     rules.person_radius_m,
                     person.position + AHEAD_S * velocity,
                 )
-        # Forces between people who overlap can throw one of them out of the area, which ends it.
+        # Forces between people who overlap can push one of them out of the area. JuPedSim then
+        # ends the simulation with an error, and the robot has moved less far.
         with contextlib.suppress(RuntimeError):
             simulation.iterate(INNER_STEPS)
-        moved = np.array(simulation.agent(robot).position) - view.position
+        moved = np.array(simulation.agent(robot).position) - observation.position
         return np.asarray(moved / rules.tick_s)
 
 
@@ -122,7 +134,7 @@ def anticipation() -> JuPedSim:
 
 
 def forces() -> JuPedSim:
-    """The social force model; the only one of these that takes the velocity of the moment."""
+    """The social force model; it is the only one of the three that takes current velocities."""
     jupedsim = _require()
     return JuPedSim(jupedsim, jupedsim.SocialForceModel(), jupedsim.SocialForceModelAgentParameters)
 

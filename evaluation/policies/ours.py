@@ -1,4 +1,4 @@
-"""The project's own actor, driven as a guest of this simulation."""
+"""The project's own actor, whose navigator this simulation drives tick by tick."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -9,28 +9,32 @@ from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from esplanade.actors import ActorParameters, Navigator
-from esplanade.evaluation.policies.policy import Policy, PolicyError, Task, Thoughts, View
+from esplanade.evaluation.policies.policy import DebugInfo, Observation, Policy, PolicyError, Task
 from esplanade.evaluation.replay import Replay
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.settings import models_of, parameters_of
 from esplanade.planning import LayeredGrid, Scene
 
 MARGIN_M: Final = 10.0
-"""Ground around everyone's recorded ways."""
+"""The ground extends this far beyond the bounds of the recording."""
 DRAWN_WITHIN_M: Final = 8.0
+"""Predictions are drawn for people within this distance."""
 DRAWN_EVERY_S: Final = 0.8
+"""A predicted circle is drawn for every so many seconds ahead."""
 DRAWN_SIGMAS: Final = 2.0
-"""Predicted circles are drawn for those near, now and then, with this many deviations."""
+"""The radius of a predicted circle in deviations."""
 UNLIMITED_MPS2: Final = 20.0
+"""The actor's limit of acceleration where the rules have none."""
 
 _ACTOR: Final = "robot"
 
 
 class Esplanade(Policy):
-    """`actors.Navigator` with one actor: placed by the simulation, asked for its next velocity.
+    """A policy that asks `actors.Navigator` for the next velocity of a single actor.
 
-    The ground is worked out once for a recording; a navigator lives for one episode. Before its
-    first decision it is told the visible past: in a world that runs, it has been watching too.
+    The simulation places the actor in every tick. The grid is made once for a recording, a
+    navigator for each episode. Before its first decision the navigator observes the visible past,
+    since in a running world it would have observed it too.
     """
 
     def __init__(self, settings: Mapping[str, Any] | None = None) -> None:
@@ -55,41 +59,41 @@ class Esplanade(Policy):
         self._navigator.add_actor(
             _ACTOR, task.episode.start, task.episode.goal, _parameters(task.rules, self._settings)
         )
-        self._fresh = True
+        self._first_decision = True
 
-    def decide(self, view: View) -> NDArray[np.float64]:
+    def decide(self, observation: Observation) -> NDArray[np.float64]:
         navigator = self._running
-        if self._fresh:
-            self._tell_past(view)
-            self._fresh = False
-        position, velocity = self._grid_place(view.position), view.velocity
+        if self._first_decision:
+            self._observe_past(observation)
+            self._first_decision = False
+        position, velocity = self._within_bounds(observation.position), observation.velocity
         navigator.place_actor(_ACTOR, position, (float(velocity[0]), float(velocity[1])))
-        navigator.observe({person.id: person.position for person in view.people})
+        navigator.observe({person.id: person.position for person in observation.people})
         self._state = navigator.tick()[_ACTOR]
         return np.array(self._state.velocity)
 
-    def thoughts(self) -> Thoughts:
+    def debug_info(self) -> DebugInfo:
         circles = [
             np.column_stack([future[::every, :2], DRAWN_SIGMAS * future[::every, 3]])
             for every in [max(1, round(DRAWN_EVERY_S / self._running.plan.slice_s))]
             for future in self._running.predicted_near(self._state.position, 0, DRAWN_WITHIN_M)
         ]
-        return Thoughts(self._state.way[:, :2], np.concatenate([np.zeros((0, 3)), *circles]))
+        return DebugInfo(self._state.way[:, :2], np.concatenate([np.zeros((0, 3)), *circles]))
 
     @property
     def _running(self) -> Navigator:
         if self._navigator is None:
-            raise RuntimeError("reset comes before the first decision")
+            raise RuntimeError("call reset before the first decision")
         return self._navigator
 
-    def _tell_past(self, view: View) -> None:
-        longest = max((len(person.track) for person in view.people), default=1)
+    def _observe_past(self, observation: Observation) -> None:
+        longest = max((len(person.track) for person in observation.people), default=1)
         for back in range(longest, 1, -1):
             self._running.observe(
-                {p.id: tuple(p.track[-back]) for p in view.people if len(p.track) >= back}
+                {p.id: tuple(p.track[-back]) for p in observation.people if len(p.track) >= back}
             )
 
-    def _grid_place(self, position: NDArray[np.float64]) -> tuple[float, float]:
+    def _within_bounds(self, position: NDArray[np.float64]) -> tuple[float, float]:
         x0, y0, x1, y1 = self._grid.bounds
         x, y = np.clip(position, (x0, y0), (x1, y1)).tolist()
         return x, y
@@ -101,7 +105,8 @@ def _scene(replay: Replay) -> Scene:
     try:
         return Scene.open_space(bounds, replay.obstacles.obstacles.as_walls(), name=replay.name)
     except ValidationError as error:
-        raise PolicyError(f"{replay.name} makes no scene: {error.errors()[0]['msg']}") from None
+        message = error.errors()[0]["msg"]
+        raise PolicyError(f"{replay.name} cannot be made into a scene: {message}") from None
 
 
 def _parameters(rules: Rules, settings: Mapping[str, Any]) -> ActorParameters:

@@ -1,4 +1,4 @@
-"""What a policy is: told where it is and who is around, it says how it wants to move."""
+"""The interface of policies: from an observation, a policy decides the robot's velocity."""
 
 from __future__ import annotations
 
@@ -17,15 +17,16 @@ Floats = NDArray[np.float64]
 
 
 class PolicyError(Exception):
-    """A policy cannot be had here; the message says why and what helps."""
+    """A policy cannot be used here; the message says why, and what helps."""
 
 
 @dataclass(frozen=True)
 class Person:
-    """Somebody in sight: `track` holds their places tick by tick, newest last, (n, 2), n >= 1."""
+    """One person within range of the robot's sensor."""
 
     id: int
     track: Floats
+    """The positions tick by tick, the newest last, float64 (n, 2), metres, n >= 1."""
 
     @property
     def position(self) -> Floats:
@@ -33,24 +34,25 @@ class Person:
 
 
 @dataclass(frozen=True)
-class View:
-    """What is known at one tick."""
+class Observation:
+    """The input of a policy at one tick; positions are (2,) metres, velocities (2,) m/s."""
 
     t: float
-    """Seconds since the episode began."""
+    """The seconds since the episode began."""
     position: Floats
     velocity: Floats
     waypoint: Floats
-    """The goal, or where walls hide it, the next point of the way there."""
+    """The goal, or the next point of the path to it if walls hide the goal."""
     people: list[Person]
+    """The people within range."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """What is known before an episode begins.
+    """The episode that a policy is reset for.
 
-    `replay` and `episode` hold the future too. Only reference policies look at it; all others
-    take nothing from them but walls and bounds.
+    `replay` and `episode` contain the future. Only the reference policies `oracle` and `human` use
+    it; all others may use nothing but walls, bounds, start and goal.
     """
 
     rules: Rules
@@ -59,27 +61,30 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Thoughts:
-    """What a policy expects, to be drawn: its path (K, 2), and circles x, y, radius (n, 3)."""
+class DebugInfo:
+    """The plan and predictions behind a decision, for drawing."""
 
     path: Floats = field(default_factory=lambda: np.zeros((0, 2)))
+    """The planned path, float64 (K, 2), metres."""
     circles: Floats = field(default_factory=lambda: np.zeros((0, 3)))
+    """The circles in which people are predicted: x, y and radius, float64 (n, 3), metres."""
 
 
 class Policy(ABC):
-    """Decides for one robot at a time. What it decides depends on nothing before `reset`."""
+    """Decides for one robot. No decision may depend on anything before the last `reset`."""
 
     follows_recording: ClassVar[bool] = False
-    """Walks the recorded way itself: limits do not hold, and there are no reversed trips."""
+    """Whether the policy repeats the recorded trajectory; then the limits of speed and
+    acceleration do not apply, and there are no reversed trips."""
 
     @abstractmethod
     def reset(self, task: Task) -> None:
         """Begin an episode."""
 
     @abstractmethod
-    def decide(self, view: View) -> Floats:
-        """The wanted velocity, (2,) m/s."""
+    def decide(self, observation: Observation) -> Floats:
+        """The wanted velocity, float64 (2,), m/s."""
 
-    def thoughts(self) -> Thoughts:
-        """What the last decision was made of, if it can be drawn."""
-        return Thoughts()
+    def debug_info(self) -> DebugInfo:
+        """The plan and predictions of the last decision, if the policy has any."""
+        return DebugInfo()

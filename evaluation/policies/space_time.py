@@ -1,4 +1,4 @@
-"""Search in space and time among moving discs: what `discs` and `clairvoyant` have in common."""
+"""Space-time A* among moving discs, the common part of the policies `discs` and `oracle`."""
 
 from abc import abstractmethod
 from typing import Final
@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.evaluation.policies import _space_time_kernels as kernels
-from esplanade.evaluation.policies.policy import Policy, Task, Thoughts, View
+from esplanade.evaluation.policies.policy import DebugInfo, Observation, Policy, Task
 
 Floats = NDArray[np.float64]
 
@@ -16,16 +16,19 @@ STEPS: Final = 14
 MAX_NODES: Final = 12_000
 DIRECTIONS: Final = 16
 WALL_M: Final = 0.27
+"""The smallest allowed distance of the robot's centre to walls."""
 UNLIMITED_MPS2: Final = 100.0
+"""The limit of acceleration where the rules have none."""
 
 
 class SpaceTimeSearch(Policy):
-    """A* over places and times with hard discs, anew at every tick."""
+    """A policy that plans anew at every tick, with A* over positions and times."""
 
     margins_m: tuple[float, ...]
-    """Room kept to people beyond contact; the next one is tried when there is no way at all."""
+    """The distances kept to people beyond contact; each is tried if the one before finds no
+    path."""
     margin_lost_mps: float
-    """How fast that room shrinks to nothing for times ahead."""
+    """The margin shrinks by this much for each second ahead, down to zero."""
 
     def __init__(self) -> None:
         angles = np.arange(DIRECTIONS) * (2.0 * np.pi / DIRECTIONS)
@@ -48,31 +51,39 @@ class SpaceTimeSearch(Policy):
         self._speeds = np.array([speed_mps, 0.5 * speed_mps])
 
     @abstractmethod
-    def futures(self, view: View) -> Floats:
-        """Where people are now and at each step ahead, (P, STEPS + 1, 2); nan where absent."""
+    def futures(self, observation: Observation) -> Floats:
+        """The positions of P people now and at each step ahead, (P, STEPS + 1, 2), metres.
 
-    def decide(self, view: View) -> Floats:
-        tracks = self.futures(view)
+        They are nan where a person is absent.
+        """
+
+    def decide(self, observation: Observation) -> Floats:
+        tracks = self.futures(observation)
         for margin_m in self.margins_m:
             node, _ = kernels.search(
-                self._problem(view, tracks, margin_m), self._directions, self._speeds, self._nodes
+                self._problem(observation, tracks, margin_m),
+                self._directions,
+                self._speeds,
+                self._nodes,
             )
             if node > 0:
                 return self._follow(node)
-        self._path = np.stack([view.position])
+        self._path = np.stack([observation.position])
         return np.zeros(2)
 
-    def thoughts(self) -> Thoughts:
-        return Thoughts(path=self._path)
+    def debug_info(self) -> DebugInfo:
+        return DebugInfo(path=self._path)
 
-    def _problem(self, view: View, tracks: Floats, margin_m: float) -> kernels.Problem:
+    def _problem(
+        self, observation: Observation, tracks: Floats, margin_m: float
+    ) -> kernels.Problem:
         rules = self._task.rules
         ahead_s = np.arange(STEPS + 1) * STEP_S
         margins_m = np.maximum(margin_m - self.margin_lost_mps * ahead_s, 0.0)
         return kernels.Problem(
-            *_pair(view.position),
-            *_pair(view.velocity),
-            *_pair(view.waypoint),
+            *_pair(observation.position),
+            *_pair(observation.velocity),
+            *_pair(observation.waypoint),
             0.8 * rules.goal_tolerance_m,
             rules.speed_mps,
             rules.max_acceleration_mps2 or UNLIMITED_MPS2,
@@ -84,12 +95,12 @@ class SpaceTimeSearch(Policy):
         )
 
     def _follow(self, node: int) -> Floats:
-        """The first move of the way to a node; keeps the way for drawing."""
-        way = [node]
-        while (parent := int(self._nodes.parents[way[-1]])) >= 0:
-            way.append(parent)
-        self._path = self._nodes.places[way[::-1], :2].copy()
-        return np.array(self._nodes.wanted[way[-2]])
+        """The first velocity of the path to a node; the path is kept for drawing."""
+        path = [node]
+        while (parent := int(self._nodes.parents[path[-1]])) >= 0:
+            path.append(parent)
+        self._path = self._nodes.places[path[::-1], :2].copy()
+        return np.array(self._nodes.wanted[path[-2]])
 
 
 def _pair(values: Floats) -> tuple[float, float]:

@@ -1,1 +1,1 @@
-"""Many variants of our actor on the same episodes: what each setting does, and which are best."""
+"""Studies that compare variants of our actor on the same episodes: sensitivity and tuning."""

@@ -1,4 +1,4 @@
-"""`esplanade evaluate --sensitivity` and `--tune`."""
+"""The studies as `esplanade evaluate --sensitivity` and `--tune` run them."""
 
 import argparse
 from collections.abc import Mapping
@@ -16,9 +16,9 @@ from esplanade.evaluation.trials import Source
 
 
 def show_sensitivity(options: argparse.Namespace) -> None:
-    """Vary one setting after the other; show, write and draw what came of it."""
+    """Vary one setting after the other, then show, write and draw the results."""
     names, base, rules = _begin(options)
-    choices = read_choices(options.vary or sensitivity.TEMPER)
+    choices = read_choices(options.vary or sensitivity.BEHAVIOUR_PARAMETERS)
     values = sensitivity.ranges(choices, base)
     variants = [
         sensitivity.variant_of(rules, base, name, value)
@@ -37,7 +37,7 @@ def show_sensitivity(options: argparse.Namespace) -> None:
 
 
 def show_tuning(options: argparse.Namespace) -> None:
-    """Compare candidates, and choose among them without one recording after the other."""
+    """Compare candidates, with leave-one-out cross-validation over the recordings."""
     names, base, rules = _begin(options)
     choices = read_choices(options.vary)
     grid = {name: values for name, values in choices.items() if values is not None}
@@ -45,7 +45,7 @@ def show_tuning(options: argparse.Namespace) -> None:
     if not grid and not listed:
         raise UsageError(f"--candidates: {options.candidates} has none")
     if len(names) < 2:
-        raise UsageError("--tune needs two recordings: one to be held against what others chose")
+        raise UsageError("--tune needs two recordings, as each is left out of the choice in turn")
     variants = [Variant.of(rules, found) for found in tuning.candidates(grid, listed, base)]
     trials = trials_of(variants, list(names), options.episodes, options.seed)
     tables = tables_of(walk(trials, options))
@@ -57,7 +57,7 @@ def show_tuning(options: argparse.Namespace) -> None:
 
 
 def _begin(options: argparse.Namespace) -> tuple[dict[Source, str], dict[str, Any], Rules]:
-    """Recordings with their names, the settings that all variants share, and the rules."""
+    """The recordings with their names, the settings that all variants share, and the rules."""
     base = read_changes(options.set)
     names = named_sources(options)
     if options.plots is not None:
@@ -69,7 +69,7 @@ def _begin(options: argparse.Namespace) -> tuple[dict[Source, str], dict[str, An
 def _settings(
     options: argparse.Namespace, names: Mapping[Source, str], base: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """How it was measured, for JSON."""
+    """The conditions of the study, for JSON."""
     return {
         "recordings": list(names.values()),
         "episodes": options.episodes,

@@ -1,4 +1,4 @@
-"""What studies compare: a few measures, their means over recordings, and how sure those are."""
+"""The measures that studies compare: their means over recordings, and bootstrap intervals."""
 
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Final, NamedTuple
@@ -15,17 +15,22 @@ CONFIDENCE_PERCENT: Final = 95.0
 
 
 class Measure(NamedTuple):
-    """One figure of an episode; nan where the episode has none."""
+    """One figure of an episode."""
 
     name: str
+    """The key in JSON."""
     label: str
+    """The heading in pictures."""
     short: str
+    """The heading in tables."""
     digits: int
+    """The digits after the decimal point."""
     goal: float
-    """What is good enough, as a mean over recordings."""
+    """A mean over recordings that is good enough."""
     best: float
-    """What could not be better."""
+    """The best possible value."""
     of: Callable[[Score], float]
+    """Gives the figure of an episode; nan if the episode has none."""
 
 
 MEASURES: Final = (
@@ -40,25 +45,25 @@ MEASURES: Final = (
 
 
 def table(scores: Sequence[Score]) -> Floats:
-    """Measures of episodes, (E, M)."""
+    """The M measures of E episodes, float64 (E, M)."""
     return np.array([[measure.of(score) for measure in MEASURES] for score in scores])
 
 
 def named(measures: Floats) -> dict[str, float]:
-    """Measures (M,) by their names."""
+    """The measures (M,) by their names."""
     return {measure.name: value for measure, value in zip(MEASURES, measures.tolist(), strict=True)}
 
 
-def pooled(tables: Iterable[Floats]) -> Floats:
+def mean_over_recordings(tables: Iterable[Floats]) -> Floats:
     """The mean over recordings of the means over their episodes, (M,)."""
     return _even([_means(np.ones((1, len(t))), t)[0] for t in tables])
 
 
-def resampled(tables: Iterable[Floats], seed: int) -> Floats:
-    """`pooled` of episodes drawn anew, with replacement and within each recording, (R, M).
+def bootstrap(tables: Iterable[Floats], seed: int) -> Floats:
+    """`mean_over_recordings` of R bootstrap resamples, float64 (R, M).
 
-    For the same seed and numbers of episodes the same ones are drawn: differences between variants
-    are differences on the same episodes.
+    Episodes are resampled with replacement within each recording. The same seed and numbers of
+    episodes give the same resamples, so that differences between variants are paired.
     """
     rng = np.random.default_rng(seed)
     return _even(
@@ -66,20 +71,20 @@ def resampled(tables: Iterable[Floats], seed: int) -> Floats:
     )
 
 
-def interval(resamples: Floats) -> tuple[Floats, Floats]:
-    """The middle range of resamples (R, ...) that holds 95 % of them."""
+def percentile_interval(resamples: Floats) -> tuple[Floats, Floats]:
+    """The bounds, each (...), of the percentile interval that holds 95 % of resamples (R, ...)."""
     tail = (100.0 - CONFIDENCE_PERCENT) / 2.0
     low, high = np.percentile(resamples, [tail, 100.0 - tail], axis=0)
     return low, high
 
 
 def _even(means: Sequence[Floats]) -> Floats:
-    """Every recording weighs the same."""
+    """The mean over recordings, which all have the same weight, (..., M)."""
     return np.asarray(np.mean(means, axis=0))
 
 
 def _means(counts: NDArray[Any], values: Floats) -> Floats:
-    """Means of values (E, M) that count so often (R, E), leaving out nan; (R, M)."""
+    """Means (R, M) of values (E, M) that are weighted by counts (R, E); nan is left out."""
     known = np.isfinite(values)
     with np.errstate(invalid="ignore"):
         return np.asarray(counts @ np.where(known, values, 0.0) / (counts @ known))

@@ -1,4 +1,4 @@
-"""Studies as tables for people."""
+"""The results of studies as tables."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -15,68 +15,71 @@ from esplanade.evaluation.studies.variants import Variant
 from esplanade.evaluation.trials import Source
 
 RANKED_SHOWN: Final = 15
-AS_IS: Final = "as is"
+BASELINE: Final = "baseline"
 CHOSEN: Final = "settings"
-"""This column takes the lines it needs."""
-HELD_AGAINST: Final = MEASURES[:3]
-"""What is shown of a recording that was left out; the rest is in the JSON."""
+"""The heading of the column whose cells may wrap."""
+HELD_OUT_MEASURES: Final = MEASURES[:3]
+"""The measures that are shown of a recording that was left out; the JSON has all."""
 
 
 def show_curves(console: Console, curves: Sequence[Curve]) -> None:
-    """A row for every value; a star where a measure differs from the unchanged beyond chance."""
-    table = _table("Sensitivity (*: differs from `as is` beyond chance)", "setting", "value")
+    """Print a row for every value, with a star where a measure differs from the baseline.
+
+    Only differences beyond chance have a star: their 95 % interval does not contain 0.
+    """
+    table = _table("Sensitivity (*: differs from the baseline beyond chance)", "setting", "value")
     for curve in curves:
         for point in curve.points:
-            here = point.value == curve.unchanged
+            here = point.value == curve.baseline
             cells = (
                 _cell(mean, measure.digits) + ("*" if differs else " ")
                 for measure, mean, differs in zip(MEASURES, point.means, point.differs, strict=True)
             )
-            value = f"{point.value} {AS_IS}" if here else f"{point.value}"
+            value = f"{point.value} {BASELINE}" if here else f"{point.value}"
             table.add_row(curve.name if point is curve.points[0] else "", value, *cells)
         table.add_section()
     console.print(table)
 
 
 def show_tuning(console: Console, tuning: Tuning, names: Mapping[Source, str]) -> None:
-    """The best candidates on all recordings, then what was chosen without each of them."""
+    """Print the best candidates on all recordings, then the result of cross-validation."""
     table = _table("Candidates on all recordings", CHOSEN, "cost")
     for variant, measures, cost in tuning.ranked[:RANKED_SHOWN]:
-        table.add_row(_told(variant, tuning), _cell(cost, 2), *_cells(measures))
+        table.add_row(_describe(variant, tuning), _cell(cost, 2), *_cells(measures))
     if len(tuning.ranked) > RANKED_SHOWN:
         table.add_row(f"and {len(tuning.ranked) - RANKED_SHOWN} more")
     console.print(table)
     table = _table(
-        "Chosen without one recording, held against that one",
+        "Leave-one-out cross-validation over recordings",
         "left out",
         CHOSEN,
         "cost",
-        "as is",
+        BASELINE,
         "least",
-        measures=HELD_AGAINST,
+        measures=HELD_OUT_MEASURES,
     )
     for fold in tuning.folds:
         table.add_row(
             names[fold.left_out],
-            _told(fold.chosen, tuning),
-            *(_cell(cost, 2) for cost in (fold.cost, fold.unchanged_cost, fold.least_cost)),
-            *_cells(fold.measures)[: len(HELD_AGAINST)],
+            _describe(fold.chosen, tuning),
+            *(_cell(cost, 2) for cost in (fold.cost, fold.baseline_cost, fold.least_cost)),
+            *_cells(fold.measures)[: len(HELD_OUT_MEASURES)],
         )
     console.print(table)
     best = tuning.ranked[0][0]
-    if best == tuning.unchanged:
-        console.print(f"No candidate costs less than `{AS_IS}`.")
+    if best == tuning.baseline:
+        console.print("No candidate costs less than the baseline.")
     else:
-        sure = f"in {tuning.sure_percent:.0f} % of draws of episodes"
         console.print(
-            f"Chosen on all recordings: {_told(best, tuning)}; costs less than `{AS_IS}` {sure}."
+            f"Chosen on all recordings: {_describe(best, tuning)}. It costs less than the baseline "
+            f"in {tuning.confidence_percent:.0f} % of bootstrap resamples."
         )
 
 
-def _told(variant: Variant, tuning: Tuning) -> str:
-    """A variant in one line, as options of the command say it."""
+def _describe(variant: Variant, tuning: Tuning) -> str:
+    """A variant in one line, as the options of the command write it."""
     settings = " ".join(f"{name}={value}" for name, value in variant.settings)
-    return AS_IS if variant == tuning.unchanged else settings
+    return BASELINE if variant == tuning.baseline else settings
 
 
 def _table(title: str, *headings: str, measures: Sequence[Measure] = MEASURES) -> Table:

@@ -1,4 +1,4 @@
-"""What each setting does: some values of one, all others as they are."""
+"""Sensitivity analysis: one setting takes other values while all others stay as they are."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,10 +9,15 @@ import numpy as np
 from esplanade.actors import ActorParameters
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.settings import DEFAULTS, SettingError, check
-from esplanade.evaluation.studies.measures import MEASURES, interval, pooled, resampled
+from esplanade.evaluation.studies.measures import (
+    MEASURES,
+    bootstrap,
+    mean_over_recordings,
+    percentile_interval,
+)
 from esplanade.evaluation.studies.variants import Tables, Variant
 
-BODY: Final = frozenset(
+BODY_PARAMETERS: Final = frozenset(
     {
         "radius_m",
         "speed_mps",
@@ -24,55 +29,57 @@ BODY: Final = frozenset(
         "edge_cells",
     }
 )
-"""Parameters that say what an actor is, not how it behaves."""
-AMONG_ACTORS: Final = frozenset({"keep_right_weight"})
-"""Parameters that one actor alone never asks for."""
-TEMPER: Final = tuple(
-    name for name in ActorParameters.model_fields if name not in BODY | AMONG_ACTORS
+"""Parameters of the body, which are not varied by default."""
+MULTI_ACTOR_PARAMETERS: Final = frozenset({"keep_right_weight"})
+"""Parameters that have no effect on a single actor."""
+BEHAVIOUR_PARAMETERS: Final = tuple(
+    name
+    for name in ActorParameters.model_fields
+    if name not in BODY_PARAMETERS | MULTI_ACTOR_PARAMETERS
 )
-EACH_SIDE: Final = 2
+VALUES_EACH_SIDE: Final = 2
 FACTOR: Final = 2.0
-"""By default a setting takes so many values on each side, each so many times its neighbour; one
-that is zero takes parts of its limit."""
+"""By default a setting takes `VALUES_EACH_SIDE` values below and above its own, each `FACTOR` times
+its neighbour; a setting that is zero takes fractions of its upper limit instead."""
 
 
 @dataclass(frozen=True)
 class Point:
-    """What came of one value; a figure for each of `MEASURES`."""
+    """The results of one value of a setting, one figure for each of `MEASURES`."""
 
     value: Any
     means: tuple[float, ...]
     lows: tuple[float, ...]
     highs: tuple[float, ...]
     differs: tuple[bool, ...]
-    """Whether the difference from the unchanged setting, on the same episodes, is beyond chance."""
+    """Whether the 95 % interval of the paired difference from the baseline excludes 0."""
 
 
 @dataclass(frozen=True)
 class Curve:
-    """What came of all values of one setting."""
+    """The results of all values of one setting."""
 
     name: str
     unit: str
-    unchanged: Any
+    baseline: Any
     points: tuple[Point, ...]
 
 
 def ranges(
     choices: Mapping[str, tuple[Any, ...] | None], base: Mapping[str, Any]
 ) -> dict[str, tuple[Any, ...]]:
-    """The values each setting takes, in order; the unchanged one is among them.
+    """The values of each setting in ascending order, with that of the baseline among them.
 
     Raises
     ------
     SettingError
-        No values are given, and there is nothing to multiply or divide.
+        No values are given for a setting that has no value to scale and no upper limit.
     """
     return {name: _values(name, given, base) for name, given in choices.items()}
 
 
 def variant_of(rules: Rules, base: Mapping[str, Any], name: str, value: Any) -> Variant:
-    """Our actor with one setting at one value."""
+    """The variant that has one setting at one value."""
     return Variant.of(rules, check({**base, name: value}))
 
 
@@ -83,37 +90,37 @@ def curves(
     tables: Mapping[Variant, Tables],
     seed: int,
 ) -> list[Curve]:
-    """Put together what came of every value of every setting."""
+    """Collect the results of every value of every setting."""
     found = []
     for name, taken in values.items():
-        unchanged = _unchanged(name, base)
-        at_rest = resampled(tables[variant_of(rules, base, name, unchanged)].values(), seed)
+        baseline = _baseline(name, base)
+        reference = bootstrap(tables[variant_of(rules, base, name, baseline)].values(), seed)
         points = []
         for value in taken:
             measured = tables[variant_of(rules, base, name, value)].values()
-            resamples = resampled(measured, seed)
-            low, high = interval(resamples)
-            less, more = interval(resamples - at_rest)
+            resamples = bootstrap(measured, seed)
+            low, high = percentile_interval(resamples)
+            less, more = percentile_interval(resamples - reference)
             points.append(
                 Point(
                     value,
-                    tuple(pooled(measured).tolist()),
+                    tuple(mean_over_recordings(measured).tolist()),
                     tuple(low.tolist()),
                     tuple(high.tolist()),
                     tuple(np.asarray((less > 0) | (more < 0)).tolist()),
                 )
             )
-        found.append(Curve(name, _schema(name).get("unit", ""), unchanged, tuple(points)))
+        found.append(Curve(name, _schema(name).get("unit", ""), baseline, tuple(points)))
     return found
 
 
 def figures(found: Sequence[Curve]) -> list[dict[str, Any]]:
-    """Every point, for JSON."""
+    """All points, ready for JSON."""
     return [
         {
             "setting": curve.name,
             "unit": curve.unit,
-            "unchanged": curve.unchanged,
+            "baseline": curve.baseline,
             "value": point.value,
             **{
                 measure.name: {"mean": mean, "low": low, "high": high, "differs": differs}
@@ -128,27 +135,27 @@ def figures(found: Sequence[Curve]) -> list[dict[str, Any]]:
 
 
 def _values(name: str, given: tuple[Any, ...] | None, base: Mapping[str, Any]) -> tuple[Any, ...]:
-    unchanged = _unchanged(name, base)
+    baseline = _baseline(name, base)
     if given is not None:
-        return tuple(sorted({*given, unchanged}))
+        return tuple(sorted({*given, baseline}))
     limits = _schema(name)
     least, most = limits.get("minimum", 0.0), limits.get("maximum", np.inf)
-    if unchanged == 0 and most < np.inf and not isinstance(unchanged, bool):
-        spread = [0.0, *(most / FACTOR**step for step in range(2 * EACH_SIDE, 0, -1))]
-    elif 0.0 < unchanged < np.inf and not isinstance(unchanged, bool):
-        steps = range(-EACH_SIDE, EACH_SIDE + 1)
-        spread = [min(most, max(least, unchanged * FACTOR**step)) for step in steps]
+    if baseline == 0 and most < np.inf and not isinstance(baseline, bool):
+        spread = [0.0, *(most / FACTOR**step for step in range(2 * VALUES_EACH_SIDE, 0, -1))]
+    elif 0.0 < baseline < np.inf and not isinstance(baseline, bool):
+        steps = range(-VALUES_EACH_SIDE, VALUES_EACH_SIDE + 1)
+        spread = [min(most, max(least, baseline * FACTOR**step)) for step in steps]
     else:
-        raise SettingError(f"{name} is {unchanged}: say which values, as {name}=V1,V2,..")
-    whole = isinstance(unchanged, int)
+        raise SettingError(f"{name} is {baseline}: give its values as {name}=V1,V2,..")
+    whole = isinstance(baseline, int)
     return tuple(sorted({round(value) if whole else value for value in spread}))
 
 
-def _unchanged(name: str, base: Mapping[str, Any]) -> Any:
+def _baseline(name: str, base: Mapping[str, Any]) -> Any:
     return base.get(name, DEFAULTS[name])
 
 
 def _schema(name: str) -> dict[str, Any]:
-    """What is said of a parameter; nothing of a model's field."""
+    """The JSON schema of a parameter; it is empty for a field of a model."""
     found: dict[str, Any] = ActorParameters.model_json_schema()["properties"].get(name, {})
     return found

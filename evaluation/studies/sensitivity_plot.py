@@ -12,15 +12,15 @@ from esplanade.evaluation.studies.measures import MEASURES
 from esplanade.evaluation.studies.sensitivity import Curve, Point
 
 SHOWN: Final = 4
-"""So many of `MEASURES` are drawn, from the first."""
+"""The number of `MEASURES` that are drawn, from the first on."""
 WIDTH_IN: Final = 9.6
 ROW_IN: Final = 1.05
 AROUND_IN: Final = 0.85
-"""Height of the heading and of what explains the marks."""
+"""The height of the headings and the legend together."""
 INK: Final = "#1f2933"
 LINE: Final = "#2563a8"
 GOAL: Final = "#2f8f4e"
-AT_REST: Final = "#e9edf2"
+BASELINE_BAND: Final = "#e9edf2"
 STYLE: Final = {
     "font.sans-serif": ["DejaVu Sans", "sans-serif"],
     "font.size": 8.0,
@@ -40,7 +40,7 @@ STYLE: Final = {
 
 
 def draw(path: Path, curves: Sequence[Curve]) -> None:
-    """Draw all curves; a column has one scale, so that settings can be held against each other."""
+    """Draw all curves; each column has one scale, so that settings can be compared."""
     figure_of = require_matplotlib()
     with import_module("matplotlib").rc_context(STYLE):
         height = AROUND_IN + ROW_IN * len(curves)
@@ -57,7 +57,7 @@ def draw(path: Path, curves: Sequence[Curve]) -> None:
         figure.text(
             0.5,
             0.12 / height,
-            "shaded: unchanged · filled: differs from it beyond chance · bars: 95 % · green: goal",
+            "shaded: baseline · filled: differs from it beyond chance · bars: 95 % · green: goal",
             ha="center",
             va="bottom",
         )
@@ -69,8 +69,8 @@ def _draw(panel: Any, curve: Curve, column: int) -> None:
     places = range(len(curve.points))
     means = np.array([point.means[column] for point in curve.points])
     reach = np.array([_reach(point, column) for point in curve.points]).T
-    at_rest = [point.value for point in curve.points].index(curve.unchanged)
-    panel.axvspan(at_rest - 0.4, at_rest + 0.4, color=AT_REST, lw=0, zorder=0)
+    baseline = [point.value for point in curve.points].index(curve.baseline)
+    panel.axvspan(baseline - 0.4, baseline + 0.4, color=BASELINE_BAND, lw=0, zorder=0)
     panel.axhline(MEASURES[column].goal, color=GOAL, lw=0.8, ls=(0, (4, 3)), zorder=1)
     panel.errorbar(places, means, reach, color=LINE, lw=1.2, elinewidth=0.8, zorder=2)
     fills = [LINE if point.differs[column] else "white" for point in curve.points]
@@ -83,13 +83,13 @@ def _draw(panel: Any, curve: Curve, column: int) -> None:
 
 
 def _reach(point: Point, column: int) -> tuple[float, float]:
-    """How far the bar goes below the mean, and above."""
+    """The lengths of the error bar below and above the mean."""
     mean = point.means[column]
     return max(mean - point.lows[column], 0.0), max(point.highs[column] - mean, 0.0)
 
 
 def _short(value: Any) -> str:
-    """Two digits are enough to tell values apart; five values share the width of a panel."""
+    """A value with two digits, which is enough to tell the five values of a panel apart."""
     if not isinstance(value, float):
         return str(value).lower()
     text = f"{float(f'{value:.2g}'):g}"

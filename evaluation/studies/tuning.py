@@ -1,4 +1,4 @@
-"""Which settings are best, and whether that holds on a recording they were not chosen on."""
+"""Tuning: the best settings by cost, with leave-one-out cross-validation over recordings."""
 
 import itertools
 import json
@@ -10,12 +10,18 @@ from typing import Any, Final
 import numpy as np
 
 from esplanade.evaluation.settings import SettingError, check
-from esplanade.evaluation.studies.measures import MEASURES, Floats, named, pooled, resampled
+from esplanade.evaluation.studies.measures import (
+    MEASURES,
+    Floats,
+    bootstrap,
+    mean_over_recordings,
+    named,
+)
 from esplanade.evaluation.studies.variants import Tables, Variant
 from esplanade.evaluation.trials import Source
 
-BEYOND_GOALS: Final = 0.1
-"""What getting better is still worth once a goal is met; before that, it is worth one more."""
+WEIGHT_BEYOND_GOALS: Final = 0.1
+"""The weight of improvements once a goal is met; before that, their weight is 1 more."""
 
 _GOALS: Final = np.array([m.goal - m.best for m in MEASURES if m.goal > m.best])
 _BEST: Final = np.array([m.best for m in MEASURES])
@@ -24,33 +30,33 @@ _HAS_GOAL: Final = np.array([m.goal > m.best for m in MEASURES])
 
 @dataclass(frozen=True)
 class Fold:
-    """What is chosen without one recording, and what comes of it there."""
+    """A candidate chosen on all recordings but one, and its results on that one."""
 
     left_out: Source
     chosen: Variant
     measures: Floats
     cost: float
-    unchanged_cost: float
+    baseline_cost: float
     least_cost: float
-    """Of whatever candidate would have been best there."""
+    """The cost of the candidate that is best on the recording left out."""
 
 
 @dataclass(frozen=True)
 class Tuning:
-    """Candidates on all recordings, best first, and one fold for each recording."""
+    """The candidates ranked on all recordings, and one fold for each recording."""
 
-    unchanged: Variant
+    baseline: Variant
     ranked: tuple[tuple[Variant, Floats, float], ...]
-    """Candidate, measures, cost."""
+    """Rows of (candidate, measures, cost), the best first."""
     folds: tuple[Fold, ...]
-    sure_percent: float
-    """So often, when episodes are drawn anew, is the first better than what is unchanged."""
+    confidence_percent: float
+    """The share of bootstrap resamples in which the best candidate costs less than the baseline."""
 
 
 def candidates(
     grid: Mapping[str, Sequence[Any]], listed: Sequence[Mapping[str, Any]], base: Mapping[str, Any]
 ) -> list[dict[str, Any]]:
-    """Settings to compare: the unchanged first, all combinations of a grid, and those listed."""
+    """The settings to compare: the baseline, all combinations of a grid, and those listed."""
     combined = [
         dict(zip(grid, values, strict=True)) for values in itertools.product(*grid.values()) if grid
     ]
@@ -58,12 +64,12 @@ def candidates(
 
 
 def read_candidates(path: Path) -> list[dict[str, Any]]:
-    """Candidates from a file that has a JSON object of settings in every line.
+    """Read candidates from a file that has a JSON object of settings in every line.
 
     Raises
     ------
     SettingError
-        The file cannot be read, or a line is none; the message names it.
+        The file cannot be read, or a line is not an object of valid settings.
     """
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
@@ -76,7 +82,7 @@ def read_candidates(path: Path) -> list[dict[str, Any]]:
         try:
             settings = json.loads(line)
             if not isinstance(settings, dict):
-                raise SettingError('a line is one object of settings, {"NAME": VALUE, ..}')
+                raise SettingError('a line must be one object of settings, {"NAME": VALUE, ..}')
             found.append(check(settings))
         except ValueError as error:
             raise SettingError(f"{path}:{number}: {error}") from None
@@ -84,40 +90,42 @@ def read_candidates(path: Path) -> list[dict[str, Any]]:
 
 
 def cost(measures: Floats) -> Floats:
-    """What is to be least, of measures (..., M).
+    """The cost (...) that tuning minimises, of measures (..., M).
 
-    Each measure is expressed in goals: 1 is just good enough, 0 could not be better. The cost is
-    what they are short of their goals, and a tenth of them all; each per cent of trips that do not
-    arrive costs 1 beside it.
+    Each measure is scaled so that 0 is the best possible value and 1 is its goal. The cost is the
+    sum of the excesses over the goals, plus a tenth of the sum of all scaled measures, plus 1 for
+    each per cent of trips that did not arrive. It is infinite if no trip arrived.
     """
     missed = measures[..., ~_HAS_GOAL].sum(axis=-1)
-    in_goals = (measures - _BEST)[..., _HAS_GOAL] / _GOALS
-    short = np.maximum(in_goals - 1.0, 0.0)
-    total = short.sum(axis=-1) + BEYOND_GOALS * in_goals.sum(axis=-1) + missed
-    return np.where(np.isnan(total), np.inf, total)  # nobody arrived, so there is no time
+    scaled = (measures - _BEST)[..., _HAS_GOAL] / _GOALS
+    excess = np.maximum(scaled - 1.0, 0.0)
+    total = excess.sum(axis=-1) + WEIGHT_BEYOND_GOALS * scaled.sum(axis=-1) + missed
+    return np.where(np.isnan(total), np.inf, total)  # without arrivals the time is nan
 
 
-def tune(tables: Mapping[Variant, Tables], unchanged: Variant, seed: int) -> Tuning:
-    """Rank candidates on all recordings; choose on all but one, and hold against that one."""
-    measured = {variant: pooled(rows.values()) for variant, rows in tables.items()}
+def tune(tables: Mapping[Variant, Tables], baseline: Variant, seed: int) -> Tuning:
+    """Rank the candidates on all recordings, and cross-validate the choice on each in turn."""
+    measured = {variant: mean_over_recordings(rows.values()) for variant, rows in tables.items()}
     ranked = sorted(
         ((variant, found, float(cost(found))) for variant, found in measured.items()),
         key=lambda row: row[2],
     )
-    best = cost(resampled(tables[ranked[0][0]].values(), seed))
-    before = cost(resampled(tables[unchanged].values(), seed))
+    best = cost(bootstrap(tables[ranked[0][0]].values(), seed))
+    before = cost(bootstrap(tables[baseline].values(), seed))
     return Tuning(
-        unchanged,
+        baseline,
         tuple(ranked),
-        tuple(_fold(tables, unchanged, source) for source in tables[unchanged]),
+        tuple(_fold(tables, baseline, source) for source in tables[baseline]),
         float(100.0 * np.mean(best < before)),
     )
 
 
-def _fold(tables: Mapping[Variant, Tables], unchanged: Variant, left_out: Source) -> Fold:
-    there = {variant: pooled([t[left_out]]) for variant, t in tables.items()}
+def _fold(tables: Mapping[Variant, Tables], baseline: Variant, left_out: Source) -> Fold:
+    there = {variant: mean_over_recordings([t[left_out]]) for variant, t in tables.items()}
     elsewhere = {
-        variant: float(cost(pooled(rows for source, rows in t.items() if source != left_out)))
+        variant: float(
+            cost(mean_over_recordings(rows for source, rows in t.items() if source != left_out))
+        )
         for variant, t in tables.items()
     }
     chosen = min(elsewhere, key=elsewhere.__getitem__)
@@ -126,13 +134,13 @@ def _fold(tables: Mapping[Variant, Tables], unchanged: Variant, left_out: Source
         chosen,
         there[chosen],
         float(cost(there[chosen])),
-        float(cost(there[unchanged])),
+        float(cost(there[baseline])),
         min(float(cost(measures)) for measures in there.values()),
     )
 
 
 def figures(tuning: Tuning, names: Mapping[Source, str]) -> dict[str, Any]:
-    """Everything that was compared, for JSON."""
+    """All candidates and folds, ready for JSON."""
     return {
         "candidates": [
             {"settings": dict(variant.settings), "cost": cost, **named(measures)}
@@ -143,11 +151,11 @@ def figures(tuning: Tuning, names: Mapping[Source, str]) -> dict[str, Any]:
                 "left_out": names[fold.left_out],
                 "chosen": dict(fold.chosen.settings),
                 "cost": fold.cost,
-                "unchanged_cost": fold.unchanged_cost,
+                "baseline_cost": fold.baseline_cost,
                 "least_cost": fold.least_cost,
                 **named(fold.measures),
             }
             for fold in tuning.folds
         ],
-        "sure_percent": tuning.sure_percent,
+        "confidence_percent": tuning.confidence_percent,
     }

@@ -5,14 +5,14 @@ from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from esplanade.evaluation.rules import Rules
-from esplanade.evaluation.runner import Result
+from esplanade.evaluation.runner import TrialResult
 from esplanade.evaluation.settings import DEFAULTS
 from esplanade.evaluation.studies.measures import Floats, table
 from esplanade.evaluation.trials import Source, Trial, plan_trials
 
 OURS: Final = "esplanade"
 LIMIT: Final = "max_acceleration_mps2"
-"""Belongs to the body, so that the rules of the episode follow it."""
+"""This parameter belongs to the body, so the limit of the rules follows it."""
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,10 @@ class Variant:
 
     @classmethod
     def of(cls, rules: Rules, settings: Mapping[str, Any]) -> "Variant":
-        """Equal for equal behaviour: what is as by default, or said by the rules, is left out."""
+        """The variant with some settings, without those that have their default value.
+
+        The limit of acceleration becomes a rule. So variants are equal if they behave the same.
+        """
         if LIMIT in settings:
             rules = replace(rules, max_acceleration_mps2=settings[LIMIT])
         changed = {
@@ -36,16 +39,16 @@ class Variant:
 
 
 GIVEN: Final = frozenset({"radius_m", "speed_mps", "max_speed_mps"})
-"""What the rules say of the body where no setting does: their defaults are not the actor's."""
+"""The rules give these parameters if no setting does, so their defaults are not the actor's."""
 
 Tables = Mapping[Source, Floats]
-"""What came of one variant: for each recording, the measures of its episodes."""
+"""The results of one variant: for each recording, the measures (E, M) of its episodes."""
 
 
 def trials_of(
     variants: Sequence[Variant], sources: Sequence[Source], count: int, seed: int
 ) -> list[Trial]:
-    """Every variant, each once, on the same episodes of every recording."""
+    """Plan every variant once on the same episodes of every recording."""
     return [
         trial
         for variant in dict.fromkeys(variants)
@@ -55,7 +58,7 @@ def trials_of(
     ]
 
 
-def tables_of(results: Sequence[Result]) -> dict[Variant, Tables]:
+def tables_of(results: Sequence[TrialResult]) -> dict[Variant, Tables]:
     """The measures of every variant on every recording."""
     found: dict[Variant, dict[Source, Floats]] = {}
     for result in results:

@@ -12,7 +12,7 @@ from typing import Any, Final, cast
 from websockets.asyncio.server import Server, ServerConnection
 
 SHUT_S: Final = 2.0
-"""Connections that are still open so long after a port was closed are cut off."""
+"""Connections that are still open this long after a port was closed are cut off."""
 
 
 class Connections:
@@ -29,7 +29,7 @@ class Connections:
 
     @property
     def factory(self) -> type[ServerConnection]:
-        """What `websockets.serve` is to make connections with."""
+        """The class that `websockets.serve` makes connections with."""
 
         def make(*args: Any, **kwargs: Any) -> ServerConnection:
             return _Listed(self._come, self._open.discard, *args, **kwargs)
@@ -55,7 +55,7 @@ class Connections:
 
 
 class _Listed(ServerConnection):
-    """Tells when it opens and when it is gone."""
+    """A connection that reports when it opens and when it is gone."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""After a tick: everyone is told what they are to know, in one pass that never waits."""
+"""Delivery tells everyone the news of a tick, in one pass that never waits."""
 
 from collections.abc import Mapping
 from typing import Final
@@ -26,7 +26,7 @@ class Delivery:
         self._census_period = tick_rate
 
     def deliver(self, update: WorldUpdate, now: float) -> None:
-        """Doors and changes of view first, then steps and snapshots, then what is for some."""
+        """Write doors and changes of view first, then snapshots, then plans and the census."""
         if update.doors:
             doors = frames.message(Doors(doors=update.doors))
             for session in self._sessions.values():
@@ -82,7 +82,7 @@ class Delivery:
         self._world.wrote(snapshots, written)
 
     def _plans(self) -> None:
-        """Plans of the actors whose turn it is, each packed once, to whoever watches them."""
+        """Offer the plans of the actors whose turn it is, each packed once, to their watchers."""
         tick = self._world.tick
         packed: dict[int, bytes] = {}
         for viewer, session in self._sessions.items():

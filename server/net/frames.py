@@ -1,7 +1,7 @@
 """Server messages as WebSocket frames, header included, ready for a transport.
 
-A frame is built once, whoever it goes to. What goes out in numbers is packed here without its
-pydantic model; the tests hold both ways of encoding together.
+A frame is built once and goes to any number of clients. Messages that go out in large numbers are
+packed here without their pydantic models; the tests hold both encodings together.
 """
 
 import struct
@@ -30,7 +30,7 @@ def frame(payload: bytes) -> bytes:
 
 
 def message(content: FromServer) -> bytes:
-    """Any message but the welcome, the snapshot and steps."""
+    """The frame of any message but the welcome, the snapshot and steps."""
     return frame(encode(content))
 
 
@@ -73,7 +73,7 @@ class Welcomes:
         self._scene: bytes = msgpack.packb(scene)
 
     def frame(self, welcome: Welcome) -> bytes:
-        """The frame of a welcome, whatever scene it holds replaced by the packed one."""
+        """The frame of a welcome, with the packed scene in place of the one that it holds."""
         fields = welcome.model_dump(mode="json", exclude={"scene"})
         packer = msgpack.Packer(autoreset=False)
         packer.pack_array_header(2)

@@ -1,4 +1,4 @@
-"""Where sessions and the world meet: who sits where, what they want, what they say."""
+"""The hub joins sessions and the world: it seats people, collects their wishes, passes chat on."""
 
 import asyncio
 import secrets
@@ -30,7 +30,7 @@ from esplanade.server.world.routes import Route
 from esplanade.server.world.world import Joined, World
 
 MAX_JOINS_PER_TICK: Final = 16
-"""Each join costs every neighbour an enter message; a crowd comes in over some ticks."""
+"""Each join costs every neighbour an enter message, so a crowd comes in over some ticks."""
 
 log = structlog.get_logger(__name__)
 
@@ -38,9 +38,9 @@ log = structlog.get_logger(__name__)
 class Hub:
     """All sessions of a zone.
 
-    Between two ticks it keeps, for each person, at most one movement (the latest) and what came
-    and went; the number of people bounds both. `drain` hands them to the tick. `derived` is what
-    welcomes say of the scene beside what its file holds.
+    Between two ticks the hub keeps at most one movement for each person, the latest, and a list
+    of those who came and went; the number of people bounds both. `drain` hands them to the tick.
+    `derived` holds the facts about the scene that a welcome adds to those in the scene's file.
     """
 
     def __init__(
@@ -68,15 +68,23 @@ class Hub:
         self._movements: dict[int, Movement] = {}
         self._doors: dict[str, MoveDoor] = {}
         metrics.gauge("clients", "People connected", lambda: len(self.sessions))
-        metrics.gauge("clients_away", "Avatars that wait for a lost person", self._vacant)
-        metrics.gauge("joining", "People at the door", lambda: len(self._joining))
+        metrics.gauge(
+            "clients_away",
+            "Avatars that wait for a lost person",
+            self._vacant,
+        )
+        metrics.gauge("joining", "People who wait to join", lambda: len(self._joining))
         metrics.gauge("frames_waiting", "Frames that wait for slow clients", self._frames_waiting)
-        metrics.gauge("movements_waiting", "Movements for next tick", lambda: len(self._movements))
+        metrics.gauge(
+            "movements_waiting",
+            "Movements that wait for the next tick",
+            lambda: len(self._movements),
+        )
 
-    # --- what sessions ask for ----------------------------------------------------------------
+    # --- requests of sessions -----------------------------------------------------------------
 
     def admit(self, session: Session, hello: Hello) -> None:
-        """Give a newcomer a place at the door, or someone who comes back their own avatar.
+        """Let a newcomer wait to join, or give a person who comes back their own avatar.
 
         Raises
         ------
@@ -112,13 +120,13 @@ class Hub:
         else:
             self._routes.ask(avatar_id, wish)
 
-    def route_found(self, avatar_id: int, wish: WalkTo, way: Route | None) -> None:
-        """Send a person on the way that was found, or tell them that there is none."""
+    def route_found(self, avatar_id: int, wish: WalkTo, route: Route | None) -> None:
+        """Send a person along the route that was found, or tell them that there is none."""
         session = self.sessions.get(avatar_id)
         if session is None:
             return
-        if way is not None:
-            self._want(Follow(avatar_id, wish.seq, way))
+        if route is not None:
+            self._want(Follow(avatar_id, wish.seq, route))
         else:
             text = f"no way leads to ({wish.x:.2f}, {wish.y:.2f}, {wish.z:.2f})"
             session.tell(ProtocolError(ErrorCode.NO_PATH, text, None))
@@ -164,7 +172,7 @@ class Hub:
         return bool(known and key) and secrets.compare_digest(known.encode(), (key or "").encode())
 
     def depart(self, session: Session, comes_back: bool) -> None:
-        """The session has ended; its avatar waits a while if the person may come back."""
+        """Let go of a session that has ended; its avatar waits if the person may come back."""
         self._joining.pop(session.ticket, None)
         if session.avatar_id is None:
             return
@@ -179,10 +187,10 @@ class Hub:
             self._remove(seat)
         log.info("person gone", id=seat.avatar_id, name=seat.name, may_come_back=comes_back)
 
-    # --- what the tick asks for ---------------------------------------------------------------
+    # --- requests of the tick -----------------------------------------------------------------
 
     def drain(self, now: float) -> list[Input]:
-        """Everything for the next tick: at most one movement a person, and a few joins."""
+        """Return everything for the next tick: at most one movement a person, and a few joins."""
         for seat in self._seats.vacant_since(now - self._settings.resume_seconds):
             self._remove(seat)
         inputs: list[Input] = [*self._comings]
@@ -195,13 +203,13 @@ class Hub:
         return inputs
 
     def welcome(self, inputs: Iterable[Input], joined: Joined) -> None:
-        """Welcome those whom the tick has let in, before anything else is sent to them."""
+        """Welcome the people whom the tick has let in, before anything else is sent to them."""
         for ticket, avatar_id in joined:
             session, hello = self._joining.pop(ticket)
             token = self._seats.issue(avatar_id, hello.name, session)
             session.avatar_id, session.token = avatar_id, token
             self._bind(session, avatar_id, resumed=False)
-        # Two may have come back to one avatar since the last tick: the later one sits there.
+        # Two people may have come back to one avatar since the last tick: the later one has it.
         for avatar_id in dict.fromkeys(item.id for item in inputs if isinstance(item, Attach)):
             seat = self._seats.of(avatar_id)
             if seat is not None and seat.occupant is not None:

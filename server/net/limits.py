@@ -1,4 +1,7 @@
-"""Token buckets: how much a client may send."""
+"""Token buckets limit how much a client may send.
+
+The usual libraries of rate limits keep locks, keys or a store; this runs once for each message.
+"""
 
 
 class TokenBucket:

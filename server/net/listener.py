@@ -20,17 +20,16 @@ from esplanade.server.settings import ServerSettings
 
 SOCKET_PATH: Final = "/ws"
 ANSWER_TIMEOUT_S: Final = 30.0
-"""For the opening handshake, and for an asset to go out whole over a thin line."""
+"""The opening handshake, or a whole asset over a thin line, may take this long."""
 
 MAX_FRAME_BYTES: Final = 8 * MAX_CLIENT_FRAME_BYTES
 """Frames above the protocol's limit get a named error; above this the library refuses to read."""
 
-MAX_AT_DOOR: Final = 256
-"""Connections that have not said hello yet; beyond, new ones are turned away."""
-
+MAX_UNGREETED: Final = 256
+"""New connections are turned away while this many have not said hello yet."""
 
 MAX_VISITS: Final = 256
-"""Connections that fetch a page, or have not asked for anything yet; beyond, new ones are cut."""
+"""New connections are cut off while this many fetch a page or have not asked for anything yet."""
 
 
 class Listener:
@@ -44,7 +43,7 @@ class Listener:
         self._settings = settings
         self._metrics = metrics
         self._sessions = 0
-        self._connections = Connections(settings.max_clients + MAX_AT_DOOR + MAX_VISITS)
+        self._connections = Connections(settings.max_clients + MAX_UNGREETED + MAX_VISITS)
         metrics.gauge("connections", "Open WebSocket connections", lambda: self._sessions)
         metrics.gauge("sockets", "Open connections of any kind", lambda: len(self._connections))
         metrics.total(
@@ -90,12 +89,14 @@ class Listener:
             self._sessions -= 1
 
     def _answer(self, _: ServerConnection, request: Request) -> Response | None:
-        if request.method != "GET":
+        if request.method not in {"GET", "HEAD"}:
             return respond(
-                HTTPStatus.METHOD_NOT_ALLOWED, b"only GET is answered here\n", {"Allow": "GET"}
+                HTTPStatus.METHOD_NOT_ALLOWED,
+                b"only GET and HEAD are answered here\n",
+                {"Allow": "GET, HEAD"},
             )
         if path_of(request) != SOCKET_PATH:
             return self._assets.answer(request)
-        if self._sessions >= self._settings.max_clients + MAX_AT_DOOR:
+        if self._sessions >= self._settings.max_clients + MAX_UNGREETED:
             return respond(HTTPStatus.SERVICE_UNAVAILABLE, b"too many connections\n")
         return None

@@ -1,4 +1,4 @@
-"""What goes out to one client, and what happens when it does not read.
+"""The outbox of one client bounds what waits for it, and drops a client that does not read.
 
 Frames are written straight to the transport, past the library's own queue and its awaiting; so
 the state of the connection is checked here, and nothing is ever sent in fragments.
@@ -54,7 +54,7 @@ class Outbox:
         self._patience_s = policy.drop_seconds
         self._allowance_bytes = 0
         self.dropped: str | None = None
-        """Why the client was dropped as too slow."""
+        """The limit that the client broke, once it was dropped as too slow."""
         _bound_kernel_buffers(connection)
 
     @property
@@ -74,7 +74,7 @@ class Outbox:
             self._write(frame)
 
     def post(self, frame: bytes) -> None:
-        """Send what must not be lost; it waits while the client is slow."""
+        """Send a frame that must not be lost; it waits while the client is slow."""
         if not self.open:
             return
         if not self._waiting and self._unsent() <= self._policy.slow_bytes:
@@ -85,7 +85,7 @@ class Outbox:
             self._drop("waiting")
 
     def offer(self, frame: bytes) -> bool:
-        """Send what a later one replaces; False if it was left out, the client being slow."""
+        """Send a frame that a later one replaces; False if a slow client does not get it."""
         if not self.open or self._waiting or self._unsent() > self._policy.slow_bytes:
             return False
         self._write(frame)
@@ -94,7 +94,7 @@ class Outbox:
     def snapshot(
         self, tick: int, ack: int, block: memoryview, steps: memoryview, now: float
     ) -> bool:
-        """Once a tick: send what waits, then steps if there are any and a snapshot.
+        """Send the frames that wait, then steps if there are any and a snapshot, once a tick.
 
         False if they were left out, both together.
         """
@@ -121,7 +121,7 @@ class Outbox:
         return True
 
     def flush(self) -> None:
-        """Send all that waits, before the end."""
+        """Send all frames that wait, before the end of the connection."""
         while self._waiting and self.open:
             self._write(self._waiting.popleft())
 

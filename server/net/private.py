@@ -1,4 +1,4 @@
-"""The private port: is the server alive, is it ready, what does it count."""
+"""The private port tells operators whether the server is alive and ready, and its metrics."""
 
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager

@@ -1,4 +1,4 @@
-"""Finds ways for people in a thread of its own, so that no tick waits for them."""
+"""Finds routes for people in a thread of its own, so that no tick waits for them."""
 
 import asyncio
 from collections.abc import Callable
@@ -13,11 +13,11 @@ from esplanade.server.world.world import World
 log = structlog.get_logger(__name__)
 
 Found = Callable[[int, WalkTo, Route | None], None]
-"""Called with the avatar's id, its wish, and the way; None where no way leads."""
+"""It is called with the avatar's id, its wish, and the route; None where there is no route."""
 
 
 class RouteRequests:
-    """One wish a person, the latest; taken up one by one in the order in which people asked."""
+    """Keeps the latest wish of each person and searches in the order in which people asked."""
 
     def __init__(self, world: World, thread: Executor) -> None:
         self._world = world
@@ -34,11 +34,11 @@ class RouteRequests:
         self._wanted.set()
 
     def forget(self, avatar_id: int) -> None:
-        """The person wants something else, or is gone."""
+        """Drop the wish of a person who wants something else, or is gone."""
         self._wishes.pop(avatar_id, None)
 
     async def run(self, found: Found) -> None:
-        """Find ways until cancelled."""
+        """Find routes until cancelled."""
         while True:
             await self._wanted.wait()
             while self._wishes:
@@ -52,16 +52,16 @@ class RouteRequests:
         goal = (wish.x, wish.y, wish.z)
         try:
             find = self._world.route_finder(avatar_id, goal)
-            way = await loop.run_in_executor(self._thread, find)
+            route = await loop.run_in_executor(self._thread, find)
         except Exception:
-            log.exception("no way found because of a fault", id=avatar_id, goal=goal)
-            way = None
-        # While the way was sought, the person may have changed their mind.
+            log.exception("no route found because of a fault", id=avatar_id, goal=goal)
+            route = None
+        # While the route was sought, the person may have changed their mind.
         latest = self._wishes.pop(avatar_id, None)
         if latest is wish:
-            found(avatar_id, wish, way)
+            found(avatar_id, wish, route)
         elif latest is not None:
-            # Behind the others: whoever changes their mind all the time keeps nobody waiting.
+            # It goes behind the others: changing one's mind often delays nobody else.
             self._wishes[avatar_id] = latest
         # Resting as long as it worked, this never takes more than half a core from the actors.
         await asyncio.sleep(loop.time() - start)

@@ -1,4 +1,4 @@
-"""When the next tick is due: drift-free, with a bounded number of ticks to catch up."""
+"""The schedule says when the next tick is due, without drift and with few ticks to catch up."""
 
 from typing import Final
 
@@ -22,7 +22,7 @@ class Schedule:
         return self._next
 
     def begin(self, now: float) -> None:
-        """A tick begins now; sets the deadline of the one after it."""
+        """Begin a tick now, and set the deadline of the one after it."""
         behind_s = now - self._next
         if behind_s > 0.5 * self._period_s:
             self.late_ticks += 1

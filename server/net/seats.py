@@ -1,4 +1,4 @@
-"""Whose avatar it is: resume tokens, and avatars that wait for their person to come back."""
+"""Seats tell whose avatar it is: they hold resume tokens, and wait for a lost person."""
 
 import hashlib
 import secrets
@@ -11,7 +11,7 @@ Occupant = TypeVar("Occupant")
 
 @dataclass(eq=False)
 class Seat(Generic[Occupant]):
-    """One person's avatar, and through whom it is steered now, if by anybody."""
+    """One person's avatar, and the session that steers it now, if there is one."""
 
     avatar_id: int
     name: str
@@ -35,7 +35,7 @@ class Seats(Generic[Occupant]):
         return len(self._vacant)
 
     def issue(self, avatar_id: int, name: str, occupant: Occupant) -> str:
-        """A seat for a new avatar; returns the token that takes it again."""
+        """Make a seat for a new avatar, and return the token that takes it again."""
         token = secrets.token_urlsafe(24)
         seat = Seat(avatar_id, name, occupant, _digest(token))
         self._by_digest[seat.digest] = self._by_avatar[avatar_id] = seat
@@ -48,18 +48,18 @@ class Seats(Generic[Occupant]):
         return self._by_avatar.get(avatar_id)
 
     def occupy(self, seat: Seat[Occupant], occupant: Occupant) -> Occupant | None:
-        """Take a seat; returns who sat there until now."""
+        """Take a seat, and return the occupant until now."""
         before, seat.occupant = seat.occupant, occupant
         self._vacant.pop(seat.avatar_id, None)
         return before
 
     def vacate(self, seat: Seat[Occupant], now: float) -> None:
-        """Nobody steers this avatar since now."""
+        """Leave a seat: from now on nobody steers its avatar."""
         seat.occupant = None
         self._vacant[seat.avatar_id] = now
 
     def remove(self, seat: Seat[Occupant]) -> None:
-        """The avatar is gone, its token worth nothing."""
+        """Remove the seat of an avatar that is gone, and its token with it."""
         del self._by_digest[seat.digest], self._by_avatar[seat.avatar_id]
         self._vacant.pop(seat.avatar_id, None)
 

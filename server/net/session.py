@@ -1,7 +1,8 @@
-"""One connection of one person: hello, then what they send, until it ends."""
+"""A session reads one connection of one person, from its hello to its end."""
 
 import asyncio
-from typing import TYPE_CHECKING, Final
+from collections.abc import Callable
+from typing import Final, Protocol
 
 import structlog
 from websockets.asyncio.server import ServerConnection
@@ -27,9 +28,6 @@ from esplanade.server.net.limits import TokenBucket
 from esplanade.server.net.outbox import Outbox, SlowPolicy
 from esplanade.server.settings import ServerSettings
 
-if TYPE_CHECKING:
-    from esplanade.server.net.hub import Hub
-
 CLOSE_S: Final = 2.0
 """A client that has not answered the closing handshake by then is cut off."""
 CHAT_BURST: Final = 5
@@ -37,20 +35,50 @@ CHAT_BURST: Final = 5
 log = structlog.get_logger(__name__)
 
 
+class SessionRequests(Protocol):
+    """The requests that a session passes on; the hub fulfils them."""
+
+    @property
+    def server_time(self) -> Callable[[], float]:
+        """Returns the seconds of the world's clock."""
+
+    def admit(self, session: "Session", hello: Hello) -> None:
+        """Give the person a place in the world, or raise ProtocolError."""
+
+    def move(self, session: "Session", wish: Move | WalkTo) -> None:
+        """Move the person's avatar in the next tick."""
+
+    def say(self, session: "Session", text: str) -> None:
+        """Pass a line of chat on to everyone who has the speaker in view."""
+
+    def watch(self, session: "Session", actor_id: int | None) -> None:
+        """Send the plans of an actor from now on, or of none."""
+
+    def set_door(self, session: "Session", wish: SetDoor) -> None:
+        """Open or close a door in the next tick, if the session may."""
+
+    def depart(self, session: "Session", comes_back: bool) -> None:
+        """Let go of a session that has ended."""
+
+
 class Session:
     """Reads one connection; every fault of the client ends here, with its name."""
 
     def __init__(
-        self, connection: ServerConnection, hub: "Hub", settings: ServerSettings, metrics: Metrics
+        self,
+        connection: ServerConnection,
+        hub: SessionRequests,
+        settings: ServerSettings,
+        metrics: Metrics,
     ) -> None:
         now = asyncio.get_running_loop().time()
         self.outbox = Outbox(connection, SlowPolicy.of(settings), metrics.traffic)
         self.avatar_id: int | None = None
         """Set once the hub has a seat for this session."""
         self.ticket = 0
-        """Number of the place at the door; 0 for none."""
+        """The number of the session among those that wait to join; 0 while it does not wait."""
         self.token = ""
-        """The seat's resume token. Never logged."""
+        """The seat's resume token, which is never logged."""
         self.name = ""
         self.watching: int | None = None
         self.is_operator = False
@@ -63,13 +91,13 @@ class Session:
         self._dismissal: asyncio.Task[None] | None = None
 
     async def run(self) -> None:
-        """From hello to the end of the connection."""
+        """Serve the connection from its hello to its end."""
         try:
             hello = await self._hello()
             self.name = hello.name
             self._hub.admit(self, hello)
             async for frame in self._connection:
-                # Whoever was dismissed may go on talking until the connection ends.
+                # A client that was dismissed may go on talking until the connection ends.
                 if self._dismissal is None:
                     self._take(self._decode(frame))
         except ProtocolError as fault:
@@ -84,7 +112,7 @@ class Session:
             await self._dismissal
 
     def tell(self, fault: ProtocolError) -> None:
-        """Tell the client what was wrong with something it sent."""
+        """Tell the client of a fault in something that it sent."""
         self._metrics.errors.labels(fault.code.value).inc()
         self.outbox.post(frames.message(Error(error=fault.code, text=fault.text)))
 
@@ -151,7 +179,7 @@ class Session:
                 raise ProtocolError(ErrorCode.INVALID, "hello comes only once", CloseCode.INVALID)
 
     def _count_end(self, closed: ConnectionClosed) -> None:
-        """Ends that the library made by itself: broken frames, too large ones, no more answers."""
+        """Count an end that the library made itself: a broken or too large frame, a lost client."""
         if self._dismissal is None and closed.sent is not None and not closed.rcvd_then_sent:
             self._metrics.closes.labels(LibraryCode(closed.sent.code).name.lower()).inc()
 
@@ -160,7 +188,7 @@ class Session:
             self._metrics.dropped_slow.labels(self.outbox.dropped).inc()
             self._metrics.closes.labels(CloseCode.TOO_SLOW.name.lower()).inc()
             log.warning("client dropped, too slow", id=self.avatar_id, limit=self.outbox.dropped)
-        # Whoever closes with 1000 means to go; all else may be a tunnel or a page that reloads.
+        # A client that closes with 1000 means to go; any other end may be a tunnel or a reload.
         self._hub.depart(self, comes_back=self._connection.close_code != CloseCode.NORMAL)
 
     async def _close(self, code: CloseCode, reason: str) -> None:

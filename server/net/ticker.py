@@ -1,4 +1,4 @@
-"""The heart: runs the world's ticks at their times, the actors' planning in a thread of its own."""
+"""The ticker runs the world's ticks at their times, and the actors' planning in its own thread."""
 
 import asyncio
 from concurrent.futures import Executor
@@ -47,7 +47,7 @@ class Ticker:
         )
 
     def stop(self) -> None:
-        """Finish the tick that runs, begin no other."""
+        """Let the tick that runs be the last."""
         self._stopping.set()
 
     async def run(self) -> None:

@@ -9,7 +9,7 @@ Pair = tuple[int, int]
 
 
 class Contacts:
-    """Contacts so far. A pair in contact counts once, and again only after it has parted."""
+    """The contacts so far. A pair in contact counts once, and again only after it has parted."""
 
     def __init__(self) -> None:
         self.actor_person = 0

@@ -7,11 +7,11 @@ from esplanade.planning.scene.heights import BODIES_OVERLAP_M
 from esplanade.server.world.state import State
 
 GAP_M = 0.05
-"""Room that a closing leaf leaves to whoever stands beside it."""
+"""A closing leaf leaves this much room to anybody who stands beside it."""
 
 
 class Doors:
-    """What operators and scripts want of the doors, and what the doors do."""
+    """Moves doors as operators and scripts wish, once nobody stands in the way."""
 
     def __init__(self, state: State, grid: LayeredGrid) -> None:
         self._state = state

@@ -1,4 +1,4 @@
-"""What may happen to a world from outside. A recorded list of these per tick replays the world."""
+"""Inputs are everything that may happen to a world from outside; a list per tick replays it."""
 
 from dataclasses import dataclass
 
@@ -7,12 +7,12 @@ from esplanade.server.world.routes import Point, Route
 
 @dataclass(frozen=True, slots=True)
 class Join:
-    """A new person. `ticket` is the caller's mark, it comes back with the avatar's id."""
+    """A new person joins. `ticket` is the caller's mark, and comes back with the avatar's id."""
 
     ticket: int
     name: str
     at: Point | None
-    """Wished place x, y and height, metres; None for a spawn point."""
+    """The wished place x, y and height, metres; None for a spawn point."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,11 +48,11 @@ class Steer:
 
 @dataclass(frozen=True, slots=True)
 class Follow:
-    """Walk along a way that was found, to its end."""
+    """Walk along a route that was found, to its end."""
 
     id: int
     seq: int
-    way: Route
+    route: Route
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Who sees whom, with hysteresis, so that nobody flickers at the edge of sight."""
+"""Interest management: each viewer sees the nearest avatars, with hysteresis at the edge."""
 
 from collections import defaultdict
 from dataclasses import dataclass, field
@@ -11,15 +11,15 @@ from esplanade.server.world.rules import Rules
 from esplanade.server.world.state import Slots, State
 
 LEAVE_RATIO: Final = 1.15
-"""Out of view at this multiple of the distance at which one comes into view."""
+"""An avatar goes out of view at this multiple of the distance at which it comes into view."""
 
 PERIOD_TICKS: Final = 4
-"""A viewer's interest is looked at every so many ticks, in turn. Who leaves goes at once."""
+"""Each viewer's view is computed anew every so many ticks; an avatar that leaves goes at once."""
 
 
 @dataclass(frozen=True)
 class Changes:
-    """What came into view and went out of it, by the viewer's id."""
+    """The avatars that came into view and went out of it, by the viewer's id."""
 
     entered: dict[int, list[int]] = field(default_factory=lambda: defaultdict(list))
     """Slots that came into view."""
@@ -28,7 +28,7 @@ class Changes:
 
 
 class Interest:
-    """What each viewer has in view: always itself, and at most `view_limit` others.
+    """The avatars in view of each viewer: always itself, and at most `view_limit` others.
 
     `rows[viewer]` lists the slots in view, when they were looked at the nearest first; unused
     places hold the capacity, a slot that no avatar ever has. `rows_since` has beside each the tick
@@ -54,19 +54,19 @@ class Interest:
         self._changes = Changes()
 
     def attach(self, slot: int) -> None:
-        """This avatar looks, with nothing in view so far."""
+        """Let this avatar look, with nothing in view so far."""
         self.detach(slot)
         self.viewing[slot] = self._unseeing[slot] = True
 
     def detach(self, slot: int) -> None:
-        """This avatar looks no more."""
+        """Let this avatar look no more."""
         self.viewing[slot] = self._unseeing[slot] = False
         self.rows[slot] = self._nobody
         self.since[slot] = 0
         self._changes.left.pop(int(self._state.ids[slot]), None)
 
     def remove(self, slot: int, avatar_id: int) -> None:
-        """This avatar is out of the world: out of every view, at once."""
+        """Take an avatar that left the world out of every view, at once."""
         self.detach(slot)
         for viewer in self.seen_by(slot).tolist():
             place = self.rows[viewer] == slot

@@ -1,4 +1,4 @@
-"""How people move: the server decides, within speed and walls."""
+"""Moves people: the server decides, within the limits of speed and walls."""
 
 from collections import deque
 from typing import Final
@@ -13,7 +13,7 @@ from esplanade.server.world.rules import Rules
 from esplanade.server.world.state import PERSON, Floats, Slots, State
 
 BLOCKED_TICKS: Final = 20
-"""Whoever follows a way and gets nowhere for so long gives it up."""
+"""A person who follows a route but gets nowhere for this long gives it up."""
 
 
 class People:
@@ -25,18 +25,18 @@ class People:
         self._rules = rules
         self._tick_s = tick_s
         self._walk_speed_mps = min(rules.person_walk_speed_mps, rules.person_max_speed_mps)
-        # What each person is trying to do, by slot: a velocity, or the next point of a way.
+        # The intention of each person, by slot: a velocity, or the next point of a route.
         self._velocities = np.zeros((state.capacity, 2))
         self._following = np.zeros(state.capacity, dtype=np.bool_)
         self._targets = np.zeros((state.capacity, 2))
         self._blocked = np.zeros(state.capacity, dtype=np.int64)
-        self._ways: dict[int, deque[Point]] = {}
+        self._routes: dict[int, deque[Point]] = {}
 
     def stop(self, slot: int) -> None:
-        """Stand still, want nothing."""
+        """Stand still, without any intention."""
         self._velocities[slot] = 0.0
         self._following[slot] = False
-        self._ways.pop(slot, None)
+        self._routes.pop(slot, None)
 
     def steer(self, slot: int, wish: Steer) -> None:
         """Walk in a direction, no faster than the rules allow."""
@@ -46,16 +46,16 @@ class People:
         self._velocities[slot] = speed * np.cos(angle), speed * np.sin(angle)
 
     def follow(self, slot: int, wish: Follow) -> None:
-        """Walk along a way to its end."""
+        """Walk along a route to its end."""
         self.stop(slot)
-        if wish.way:
-            self._ways[slot] = deque(wish.way)
+        if wish.route:
+            self._routes[slot] = deque(wish.route)
             self._following[slot] = True
             self._blocked[slot] = 0
-            self._targets[slot] = wish.way[0][:2]
+            self._targets[slot] = wish.route[0][:2]
 
     def move(self) -> None:
-        """Everyone's motion of one tick."""
+        """Move everyone by one tick."""
         state = self._state
         self._head_for_targets()
         people = state.of_kind(PERSON)
@@ -77,29 +77,29 @@ class People:
         self._pass_targets()
 
     def _look_ahead(self, moving: Slots, moved_m: Floats) -> None:
-        """Where those who moved so in this tick, (N, 2), get if they go on, to a last target."""
+        """Write where people get who go on by (N, 2) a tick, at most to their last target."""
         state = self._state
         here = state.positions[moving]
-        way = (AHEAD_S / self._tick_s * moved_m)[:, None] * np.arange(AHEAD)[:, None]
+        onward = (AHEAD_S / self._tick_s * moved_m)[:, None] * np.arange(AHEAD)[:, None]
         left_m = np.hypot(*(self._targets[moving] - here).T)
         last = self._following[moving]
-        last[last] = [len(self._ways[slot]) == 1 for slot in moving[last].tolist()]
-        length = np.maximum(np.hypot(way[..., 0], way[..., 1]), 1e-9)
+        last[last] = [len(self._routes[slot]) == 1 for slot in moving[last].tolist()]
+        length = np.maximum(np.hypot(onward[..., 0], onward[..., 1]), 1e-9)
         share = np.where(last, left_m, np.inf)[:, None] / length
-        way *= np.minimum(share, 1.0)[..., None]
+        onward *= np.minimum(share, 1.0)[..., None]
         cells = self._grid.on_ground(here, state.heights[moving])[1]
-        state.ahead[moving] = self._grid.with_heights(here[:, None] + way, cells)
+        state.ahead[moving] = self._grid.with_heights(here[:, None] + onward, cells)
 
     def _head_for_targets(self) -> None:
-        """Velocities of those who follow a way; the last step to a point ends on it."""
+        """Set velocities along routes; the last step to a point ends on it."""
         slots = np.flatnonzero(self._following)
-        ways = self._targets[slots] - self._state.positions[slots]
-        remaining_m = np.hypot(ways[:, 0], ways[:, 1])
+        offsets = self._targets[slots] - self._state.positions[slots]
+        remaining_m = np.hypot(offsets[:, 0], offsets[:, 1])
         seconds = np.maximum(remaining_m / self._walk_speed_mps, self._tick_s)
-        self._velocities[slots] = ways / seconds[:, None]
+        self._velocities[slots] = offsets / seconds[:, None]
 
     def _pass_targets(self) -> None:
-        """Those at a point of their way turn to the next; those at its end or stuck stop."""
+        """Turn people to the next point of their routes; stop those at the end or stuck."""
         slots = np.flatnonzero(self._following)
         state = self._state
         wanted = np.hypot(self._velocities[slots, 0], self._velocities[slots, 1])
@@ -107,13 +107,13 @@ class People:
         self._blocked[slots] = np.where(stuck, self._blocked[slots] + 1, 0)
         for slot in slots[self._blocked[slots] >= BLOCKED_TICKS].tolist():
             self.stop(slot)
-        ways = self._targets[slots] - state.positions[slots]
-        for slot in slots[np.hypot(ways[:, 0], ways[:, 1]) < 1e-6].tolist():
-            way = self._ways.get(slot)
-            if way is None:
+        offsets = self._targets[slots] - state.positions[slots]
+        for slot in slots[np.hypot(offsets[:, 0], offsets[:, 1]) < 1e-6].tolist():
+            route = self._routes.get(slot)
+            if route is None:
                 continue
-            way.popleft()
-            if way:
-                self._targets[slot] = way[0][:2]
+            route.popleft()
+            if route:
+                self._targets[slot] = route[0][:2]
             else:
                 self.stop(slot)

@@ -1,4 +1,4 @@
-"""Ways for people who want to walk to a point: a few straight legs around what stands there."""
+"""Routes for people who want to walk to a point: a few straight legs around obstacles."""
 
 import math
 from typing import Final
@@ -30,9 +30,9 @@ def straight_route(
 
 
 def find_route(grid: LayeredGrid, start: Point, goal: Point, clearance_m: float) -> Route | None:
-    """A shortest way to the free place nearest to the goal; None where no way leads.
+    """A shortest route to the free place nearest to the goal; None where there is no route.
 
-    Cost: that of a potential where no straight way leads. Some 40 ms in 64 m, half a second
+    Cost: that of a potential where no straight line leads there. Some 40 ms in 64 m, half a second
     at 150 m a side and more than a minute at 650 m, so not for the event loop.
     """
     free = grid.nearest_free(goal[:2], goal[2], clearance_m)

@@ -5,11 +5,11 @@ from contextlib import contextmanager
 from typing import Final
 
 STAGES: Final = ("drain", "people", "actors", "contacts", "steps", "interest", "encode")
-"""What a world does in a tick, in this order; whoever runs it adds `write` at the end."""
+"""The stages of a world's tick in their order; the ticker adds `write` at the end."""
 
 
 class StageTimes:
-    """Seconds that the stages of the latest tick took. For watching only; nothing reads them back.
+    """Seconds that the stages of the latest tick took. They are for metrics only.
 
     The clock comes from outside: a world has no wall clock of its own.
     """

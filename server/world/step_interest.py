@@ -1,4 +1,4 @@
-"""Who is shown the steps of whom: of those in view the ones that are near, with hysteresis."""
+"""Step interest: each viewer is shown the steps of the walkers in view that are near."""
 
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ STEP_BYTES = STEP.itemsize
 
 
 class LatestSteps:
-    """The newest step of everyone, by slot, also when it is over.
+    """The newest step of everyone, by slot; a step stays here when it is over.
 
     `records` is STEP (capacity + 1,), `begun` int32 the tick in which each was written, 0 for
     none; the last row belongs to nobody and stays as it is.
@@ -26,7 +26,7 @@ class LatestSteps:
         self.begun = np.zeros(capacity + 1, dtype=np.int32)
 
     def begin(self, slots: Slots, records: StepRecords, tick: int) -> None:
-        """Those in these slots, (N,), begin these steps, STEP (N,)."""
+        """Write the steps, STEP (N,), that the avatars in these slots, (N,), begin."""
         self.records[slots] = records
         self.begun[slots] = tick
 
@@ -64,15 +64,15 @@ class StepInterest:
         return int(np.count_nonzero(self.since))
 
     def attach(self, slot: int) -> None:
-        """This avatar looks, and has been shown nothing so far."""
+        """Let this avatar look; it has been shown nothing so far."""
         self.since[slot] = 0
 
     def detach(self, slot: int) -> None:
-        """This avatar looks no more."""
+        """Let this avatar look no more."""
         self.since[slot] = 0
 
     def remove(self, slot: int) -> None:
-        """This avatar is out of the world."""
+        """Take an avatar that left the world out of every row."""
         self.detach(slot)
         self.since[:, slot] = 0
 

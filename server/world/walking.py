@@ -1,4 +1,4 @@
-"""Everyone's feet: whoever is in the world walks with real steps after where it is."""
+"""Everyone's feet: each avatar in the world takes real steps after its position."""
 
 import numpy as np
 import structlog
@@ -40,7 +40,7 @@ class Feet:
         return self._walkers.lost
 
     def update(self, tick: int) -> None:
-        """Take in where everyone is and is going; who is new stands."""
+        """Take in where everyone is and is going; a new avatar stands."""
         self._tick = tick
         state = self._state
         live = state.live()

@@ -1,4 +1,4 @@
-"""Two planners asked of the same pairs: who finds what, and why they disagree."""
+"""The comparison of two planners on the same pairs, and the reasons of disagreements."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 from benchmarks._comparison import MOVED, NO_GROUND, UNEXPLAINED, compare, random_pairs
-from benchmarks._pairs import Answer, Verdict
+from benchmarks._pairs import Answer, Finders
 
 FLOOR = np.array(
     [[[0, 0, 0], [30, 0, 0], [30, 4, 0]], [[0, 0, 0], [30, 4, 0], [0, 4, 0]]], dtype=float
@@ -15,7 +15,7 @@ FLOOR = np.array(
 
 @dataclass(frozen=True)
 class Corridor:
-    """Walks straight along x, past nothing beyond a barrier, on ground that ends somewhere."""
+    """A planner that goes straight along x, up to a barrier or the end of the ground."""
 
     barrier_m: float = np.inf
     end_m: float = 30.0
@@ -24,16 +24,16 @@ class Corridor:
     shift_m: float = 0.0
 
     @property
-    def made(self) -> dict[str, float]:
+    def build_figures(self) -> dict[str, float]:
         return {}
 
-    def make(self) -> None:
+    def build(self) -> None:
         pass
 
     def stands(self, points: np.ndarray) -> np.ndarray:
         return points[:, 0] <= self.end_m
 
-    def ways(self, pairs: np.ndarray) -> list[Answer]:
+    def find_paths(self, pairs: np.ndarray) -> list[Answer]:
         answers = []
         for pair in pairs:
             first, last = self.stands(pair).tolist()
@@ -43,7 +43,7 @@ class Corridor:
             answers.append(Answer((first, last), points, 2.0))
         return answers
 
-    def eased(self) -> Iterator[tuple[str, "Corridor"]]:
+    def relaxed(self) -> Iterator[tuple[str, "Corridor"]]:
         yield "colour", self
         yield self.rule, replace(self, barrier_m=self.eased_to_m)
 
@@ -55,20 +55,20 @@ def pairs(*along: tuple[float, float]) -> np.ndarray:
 def test_disagreements_have_a_reason_and_a_place() -> None:
     asked = pairs((1, 5), (1, 19), (25, 1), (1, 29))
     found = compare(Corridor(barrier_m=10.0), Corridor(end_m=28.0), asked)
-    assert found.count(Verdict.BOTH) == 1
-    assert found.count(Verdict.NEITHER) == 1
-    assert found.count(Verdict.ONLY_OURS) == 0
+    assert found.count(Finders.BOTH) == 1
+    assert found.count(Finders.NEITHER) == 1
+    assert found.count(Finders.ONLY_OURS) == 0
     assert [refusal.number for refusal in found.disagreements] == [1, 2]
     for refusal in found.disagreements:
-        assert (refusal.who, refusal.why) == (Verdict.ONLY_THEIRS, "gate")
+        assert (refusal.finders, refusal.why) == (Finders.ONLY_THEIRS, "gate")
         assert refusal.gap == pytest.approx((10.0, 2.0, 0.0), abs=0.15)
 
 
-def test_what_no_rule_explains_is_said_so() -> None:
+def test_disagreements_that_no_rule_explains_are_reported() -> None:
     found = compare(Corridor(), Corridor(barrier_m=10.0, eased_to_m=12.0), pairs((1, 19), (1, 11)))
-    assert [(d.who, d.why) for d in found.disagreements] == [
-        (Verdict.ONLY_OURS, UNEXPLAINED),
-        (Verdict.ONLY_OURS, "gate"),
+    assert [(d.finders, d.why) for d in found.disagreements] == [
+        (Finders.ONLY_OURS, UNEXPLAINED),
+        (Finders.ONLY_OURS, "gate"),
     ]
 
 
@@ -78,7 +78,7 @@ def test_missing_ground_needs_no_further_reason() -> None:
     assert refusal.gap == (29.5, 2.0, 0.0)
 
 
-def test_who_finds_a_way_from_the_places_of_the_other_is_told() -> None:
+def test_a_path_between_the_positions_of_the_other_planner_is_reported() -> None:
     asked = pairs((9.5, 19))
     theirs = replace(Corridor(), shift_m=1.0)
     (refusal,) = compare(Corridor(barrier_m=10.0), theirs, asked).disagreements

@@ -1,4 +1,4 @@
-"""The navigation mesh beside us: its units, and a real one where it is installed."""
+"""The navigation mesh of Recast: its units, and a real one where it is installed."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -50,7 +50,7 @@ def test_step_is_climbed_by_the_tall_only() -> None:
         [[[1, 2, 0], [11, 2, 0.5]], [[1, 2, 0], [19, 2, 0]], [[1, 2, 0], [1, 9, 0]]], dtype=float
     )
     with detour(mesh) as tall:
-        up, across, outside = tall.ways(pairs)
+        up, across, outside = tall.find_paths(pairs)
         assert up.found
         assert up.length_m == pytest.approx(10.0, abs=0.2)
         assert across.stands == (True, True)
@@ -58,21 +58,23 @@ def test_step_is_climbed_by_the_tall_only() -> None:
         assert outside.stands == (True, False)
         assert tall.stands(pairs[:, 1]).tolist() == [True, True, False]
     with detour(mesh, NavMeshSettings(0.2, 1.3, 0.3)) as short:
-        assert not short.ways(pairs[:1])[0].found
+        assert not short.find_paths(pairs[:1])[0].found
 
 
 def test_rules_are_eased_one_at_a_time() -> None:
     pair = np.array([[[1, 2, 0], [11, 2, 0.66]]])
     with detour(np.concatenate([floor(0, 6, 0.0), floor(6, 12, 0.66)])) as refusing:
-        assert not refusing.ways(pair)[0].found
-        assert [rule for rule, other in refusing.eased() if other.ways(pair)[0].found] == ["step"]
-        assert not refusing.ways(pair)[0].found
+        assert not refusing.find_paths(pair)[0].found
+        assert [rule for rule, other in refusing.relaxed() if other.find_paths(pair)[0].found] == [
+            "step"
+        ]
+        assert not refusing.find_paths(pair)[0].found
 
 
 def test_walkable_ground_lies_where_the_floor_is() -> None:
     with detour(floor(0, 6, 1.0)) as plain:
-        assert plain.made["polygons"] >= 1
-        assert plain.made["KiB"] > 0
+        assert plain.build_figures["polygons"] >= 1
+        assert plain.build_figures["KiB"] > 0
         triangles = plain.triangles()
     assert triangles.shape[1:] == (3, 3)
     assert 0.0 < triangles[..., 0].min() < triangles[..., 0].max() < 6.0
@@ -82,5 +84,5 @@ def test_walkable_ground_lies_where_the_floor_is() -> None:
 
 def test_mesh_without_ground_is_told_of() -> None:
     from_below = floor(0, 6, 0.0)[:, ::-1]
-    with pytest.raises(RuntimeError, match="navigation mesh says"), detour(from_below):
+    with pytest.raises(RuntimeError, match="Node.js process reports"), detour(from_below):
         pass

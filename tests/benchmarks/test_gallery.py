@@ -1,9 +1,9 @@
-"""The watcher of the gallery sees who is where nobody can be, and lets everyone else alone."""
+"""The checks of positions in the gallery find impossible positions and accept all others."""
 
 import numpy as np
 import pytest
-from benchmarks._whereabouts import clearances, inside, unsupported
-from benchmarks.gallery import whereabouts
+from benchmarks._position_checks import clearances, inside, unsupported
+from benchmarks.gallery import position_figures
 
 from esplanade.planning import Place
 from esplanade.planning.scene.scene_file import read_scene
@@ -62,11 +62,11 @@ def test_distances_are_those_to_what_stops_a_body() -> None:
 def test_figures_sum_it_up() -> None:
     rows = [[tick, 7.0, 2.0 + 0.1 * tick, 4.0, 0.0] for tick in range(10)]
     rows += [[tick, 8.0, 10.0, 4.0, 0.0] for tick in range(0, 10, 3)]
-    figures = whereabouts(ROOM, np.array(rows))
+    figures = position_figures(ROOM, np.array(rows))
     assert figures["positions"] == 14
     assert figures["avatars"] == 2
     assert figures["share_at_0_m"] == 1.0
-    assert figures["inside"] == 4  # who stands in the wall
+    assert figures["inside"] == 4  # this avatar stands in the wall
     assert figures["unsupported"] == 0
     assert figures["longest_move_m"] == pytest.approx(0.1)
     assert figures["steps_too_high"] == 0

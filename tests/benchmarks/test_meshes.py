@@ -50,7 +50,7 @@ def test_both_climb_the_step_that_an_adult_climbs(tmp_path, capsys) -> None:
     assert 0.95 < figures["length ratio"]["p50"] < 1.05
     assert figures["import"]["layers"] == 1
     assert figures["import"]["cells"] == pytest.approx(48.0 / 0.25**2, rel=0.1)
-    assert "a way: both" in capsys.readouterr().out
+    assert "a path: both" in capsys.readouterr().out
 
 
 def test_neither_lets_a_child_climb_it(tmp_path) -> None:
@@ -69,7 +69,7 @@ def test_a_disagreement_is_drawn(tmp_path, monkeypatch) -> None:
     assert code == 0
     assert figures["only ours"] > 0
     for refusal in figures["disagreements"]:
-        assert (refusal["who"], refusal["why"]) == ("only ours", "step")
+        assert (refusal["finders"], refusal["why"]) == ("only ours", "step")
         assert refusal["gap"][0] == pytest.approx(6.0, abs=0.6)
     (picture,) = (tmp_path / "new").iterdir()
     assert picture.name == "terrace-only_ours-step.png"

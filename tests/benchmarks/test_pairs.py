@@ -1,16 +1,16 @@
-"""Pairs of points on the ground, and what is said of two planners' answers."""
+"""Random pairs of points on the ground, and the comparison of the answers to them."""
 
 import numpy as np
 import pytest
 from benchmarks._pairs import (
     Answer,
-    Verdict,
+    Finders,
+    finders_of,
     ground_points,
     last_reached,
     length_ratios,
     pairs_of,
     spread,
-    verdict,
 )
 
 SQUARE = np.array(
@@ -62,17 +62,17 @@ def test_no_pairs_without_ground() -> None:
 
 
 @pytest.mark.parametrize(
-    ("ours", "theirs", "who"),
+    ("ours", "theirs", "finders"),
     [
-        (True, True, Verdict.BOTH),
-        (False, False, Verdict.NEITHER),
-        (True, False, Verdict.ONLY_OURS),
-        (False, True, Verdict.ONLY_THEIRS),
+        (True, True, Finders.BOTH),
+        (False, False, Finders.NEITHER),
+        (True, False, Finders.ONLY_OURS),
+        (False, True, Finders.ONLY_THEIRS),
     ],
 )
-def test_verdict(ours, theirs, who) -> None:
-    way = answer((0, 0, 0), (5, 0, 0))
-    assert verdict(way if ours else answer(), way if theirs else answer()) is who
+def test_verdict(ours, theirs, finders) -> None:
+    path = answer((0, 0, 0), (5, 0, 0))
+    assert finders_of(path if ours else answer(), path if theirs else answer()) is finders
 
 
 def test_ratios_are_of_ways_both_found_and_long_enough() -> None:

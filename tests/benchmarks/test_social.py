@@ -1,4 +1,4 @@
-"""Many actors who change sides: the scenes, and one walked to its end."""
+"""The scenes in which actors change sides, and one that is run to its end."""
 
 import json
 from importlib.util import find_spec
@@ -52,7 +52,7 @@ def test_two_crowds_come_through_a_doorway_and_nobody_is_stuck(capsys) -> None:
     assert social.main(options) == 0, capsys.readouterr().out
 
 
-def test_who_does_not_arrive_in_time_is_told_of(capsys) -> None:
+def test_actors_that_do_not_arrive_in_time_are_reported(capsys) -> None:
     options = ["--actors", "2", "--scenes", "circle", "--until", "1", "--threads", "1"]
     assert social.main(options) == 1
     assert "–" in capsys.readouterr().out

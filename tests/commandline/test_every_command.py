@@ -61,7 +61,7 @@ WRONG = [
     ("esplanade evaluate", "evaluate", "the following arguments are required: CROWD;"),
     ("esplanade evaluate", "evaluate no.csv", "CROWD: no.csv: cannot be read"),
     ("esplanade evaluate", "evaluate pyproject.toml --polcy x", "did you mean --policy?"),
-    ("esplanade evaluate", "evaluate pyproject.toml --tune", "say with --ledger FILE where"),
+    ("esplanade evaluate", "evaluate pyproject.toml --tune", "scores with --score-cache FILE"),
     ("esplanade evaluate", "evaluate pyproject.toml --set tempo", "'tempo' is not NAME=VALUE;"),
     ("esplanade scene", "scene", "the following arguments are required: COMMAND;"),
     ("esplanade scene", "scene chekc", "'chekc' is no choice; did you mean check?"),

@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 
 from esplanade.commandline import exit_codes, interrupts
-
-LIMIT_S = 120.0
+from tests.patience import PATIENCE_S
 
 AT_A_MODULE = """
 import os, signal, sys
@@ -19,7 +18,7 @@ from importlib.abc import MetaPathFinder
 
 class Interrupting(MetaPathFinder):
     def find_spec(self, name, path, target=None):
-        if name == sys.argv[1]:
+        if name == module:
             os.kill(os.getpid(), signal.SIGINT)
 
 module, *words = sys.argv[1:]
@@ -53,8 +52,7 @@ def hear_interrupts() -> None:
     ("module", "words"),
     [
         ("esplanade.commandline.interrupts", "serve"),
-        ("signal", "serve"),
-        ("esplanade.cli", "--help"),
+        ("difflib", "--help"),
         ("argparse", "serve --help"),
         ("esplanade.server.options", "serve"),
         ("pydantic_core", "serve"),
@@ -74,7 +72,7 @@ def test_while_a_module_is_imported(module: str, words: str) -> None:
         text=True,
         cwd=Path(__file__).parents[2],
         preexec_fn=hear_interrupts,
-        timeout=LIMIT_S,
+        timeout=PATIENCE_S,
     )
     assert (done.returncode, done.stderr) == (exit_codes.INTERRUPTED, "")
 
@@ -83,11 +81,7 @@ def test_while_a_module_is_imported(module: str, words: str) -> None:
 def test_at_several_moments_after_the_entry(after_s: float) -> None:
     """Whatever it is doing then; before the entry Python itself is starting."""
     process = subprocess.Popen(
-        [
-            sys.executable,
-            "-c",
-            f"try:\n    {program}\nexcept KeyboardInterrupt:\n    sys.exit(130)",
-        ],
+        [sys.executable, "-c", ENTERED],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -98,7 +92,7 @@ def test_at_several_moments_after_the_entry(after_s: float) -> None:
         assert process.stdout.readline() == "entered\n"
         time.sleep(after_s)
         process.send_signal(signal.SIGINT)
-        _, said = process.communicate(timeout=LIMIT_S)
+        _, said = process.communicate(timeout=PATIENCE_S)
     # A world that has been open is closed in good order.
     assert process.returncode == exit_codes.INTERRUPTED or "summary" in said
     assert "Traceback" not in said

@@ -1,4 +1,4 @@
-"""An independent judge with the same rules, where its file lies beside the recordings."""
+"""An independent implementation of the same rules, used if it lies beside the recordings."""
 
 import importlib.util
 import sys
@@ -9,13 +9,16 @@ import numpy as np
 import pytest
 
 from esplanade.evaluation.episodes import Episode
-from esplanade.evaluation.policies.policy import Person, Policy, Task, View
+from esplanade.evaluation.policies.policy import Observation, Person, Policy, Task
 from esplanade.evaluation.replay import Floats, Replay
 from esplanade.evaluation.rules import Rules
 
 
 def load_judge(recording: Path) -> ModuleType:
-    """The module `tools/crowd_eval.py` of the folder that holds `data/`; skips where absent."""
+    """The module `tools/crowd_eval.py` of the folder that holds `data/`.
+
+    The test is skipped if the file is absent.
+    """
     path = recording.parents[2] / "tools" / "crowd_eval.py"
     if not path.is_file():
         pytest.skip("the independent judge crowd_eval.py is absent")
@@ -23,13 +26,13 @@ def load_judge(recording: Path) -> ModuleType:
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    sys.modules["crowd_eval"] = module  # its dataclasses look themselves up there
+    sys.modules["crowd_eval"] = module  # its dataclasses look up their module there
     spec.loader.exec_module(module)
     return module
 
 
 class Judged:
-    """A policy of ours in the judge's form."""
+    """One of our policies with the interface that the judge calls."""
 
     def __init__(self, policy: Policy, replay: Replay, rules: Rules, episode: Episode) -> None:
         self._policy = policy
@@ -42,4 +45,4 @@ class Judged:
         self, t: float, pos: Floats, vel: Floats, goal: Floats, others: list[object]
     ) -> Floats:
         people = [Person(o.id, np.array(o.pos_hist)) for o in others]  # type: ignore[attr-defined]
-        return self._policy.decide(View(t, pos, vel, goal, people))
+        return self._policy.decide(Observation(t, pos, vel, goal, people))

@@ -1,4 +1,4 @@
-"""Which trips are judged."""
+"""The choice of episodes."""
 
 import numpy as np
 import pytest
@@ -25,7 +25,7 @@ def test_a_trip_there_and_then_back() -> None:
     assert (there.start, there.first_tick) == ((0.0, 0.0), 0)
     assert back.start == there.goal
     assert (there.reverse, back.reverse) == (False, True)
-    assert there.way_m == pytest.approx(10.0, abs=0.5)
+    assert there.distance_m == pytest.approx(10.0, abs=0.5)
 
 
 def test_the_number_of_forward_trips_decides_whether_any_go_back() -> None:

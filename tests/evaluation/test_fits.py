@@ -1,10 +1,10 @@
-"""What fits find in errors that were drawn, and what they are held against."""
+"""Fits to errors drawn from known distributions, and their cross-validation."""
 
 import numpy as np
 import pytest
 
 from esplanade.evaluation.calibration import negative_log_likelihood, pool
-from esplanade.evaluation.fits import fit_each, fit_growth, fit_spread, those_who_moved
+from esplanade.evaluation.fits import fit_each, fit_growth, fit_spread, without_standing
 from esplanade.evaluation.forecasts import STEPS, Forecasts
 from esplanade.planning import GAUSSIAN, PEOPLE, Spread
 from tests.evaluation.worlds import drawn
@@ -39,12 +39,12 @@ def test_a_fit_finds_the_spread_that_was_drawn(spread: Spread) -> None:
     assert found.weights == pytest.approx(spread.weights, abs=0.03)
 
 
-def test_who_stands_tells_nothing_about_the_spread() -> None:
+def test_people_who_stand_do_not_affect_the_spread() -> None:
     walkers = drawn(0.05, 0.2, PEOPLE)
     standing = Forecasts(np.full((500, STEPS, 2), 1e-4), walkers.sigmas[:500])
-    moved = those_who_moved(pool([standing, walkers]))
+    moved = without_standing(pool([standing, walkers]))
     np.testing.assert_array_equal(moved.errors, walkers.errors)
-    assert len(those_who_moved(standing).errors) == 0
+    assert len(without_standing(standing).errors) == 0
     assert fit_each([("square", standing)], PEOPLE).spreads == []
 
 
@@ -56,9 +56,10 @@ def test_each_recording_is_held_against_the_fit_to_the_others() -> None:
     without_small, without_large, both = fits.growths
     assert without_small.fit.growth_mps == pytest.approx(0.3, rel=0.05)
     assert without_large.fit.growth_mps == pytest.approx(0.1, rel=0.05)
-    assert without_small.fitted > without_small.default
-    assert both.fitted > both.default
-    assert fits.spreads[0].default == negative_log_likelihood(small, small.sigmas, PEOPLE)
+    for row in (without_small, both):
+        assert row.negative_log_likelihood > row.default_negative_log_likelihood
+    default = negative_log_likelihood(small, small.sigmas, PEOPLE)
+    assert fits.spreads[0].default_negative_log_likelihood == default
 
 
 def test_one_recording_is_fitted_as_a_whole() -> None:
@@ -66,8 +67,8 @@ def test_one_recording_is_fitted_as_a_whole() -> None:
     assert [row.left_out for row in fits.growths] == [None]
     (row,) = fits.spreads
     assert row.left_out is None
-    assert row.fitted <= row.default
+    assert row.negative_log_likelihood <= row.default_negative_log_likelihood
 
 
-def test_nobody_is_no_trouble() -> None:
+def test_without_recordings_there_are_no_fits() -> None:
     assert fit_each([], PEOPLE) == ([], [])

@@ -1,11 +1,11 @@
-"""Predictions of several recordings, as tables and for programs."""
+"""Reports of predictions on several recordings, as tables and as JSON."""
 
 import json
 
 from rich.console import Console
 
 from esplanade.evaluation.fits import Fits
-from esplanade.evaluation.forecast_report import MODELS, POOLED, Row, figures, measure, show
+from esplanade.evaluation.forecast_report import MODELS, POOLED, ForecastRow, figures, measure, show
 from esplanade.planning import PEOPLE
 from esplanade.recordings import Crowd, Obstacles
 from tests.evaluation.worlds import crowd, walk
@@ -14,7 +14,7 @@ SQUARE = crowd(*(walk(str(k), 2.0 * k, (0, 0), (4 + k, 0), (4 + k, 12)) for k in
 LANE = crowd(walk("1", 0.0, (0, 0), (9, 3), (12, 12)), walk("2", 1.0, (30, 0), (0, 0)))
 
 
-def measured(*crowds: tuple[str, Crowd], fit: bool) -> tuple[list[Row], Fits]:
+def measured(*crowds: tuple[str, Crowd], fit: bool) -> tuple[list[ForecastRow], Fits]:
     return measure([(name, people, Obstacles()) for name, people in crowds], 0.4, fit=fit)
 
 
@@ -26,7 +26,7 @@ def test_every_model_is_held_against_every_recording_and_all_together() -> None:
     assert fits == Fits()
     by_model = {row.model: row.score for row in rows if row.recording == POOLED}
     ours, even = by_model["default"], by_model["one Gaussian"]
-    assert ours.final_m == even.final_m
+    assert ours.fde_m == even.fde_m
     assert ours.negative_log_likelihood != even.negative_log_likelihood
 
 

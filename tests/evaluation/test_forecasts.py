@@ -1,4 +1,4 @@
-"""Predictions beside what people did, and how they are judged."""
+"""Predictions compared with what people did, and their scores."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ def forecast_of(*tracks: Track, sample_s: float = 0.4) -> Forecasts:
 
 
 @pytest.mark.parametrize("sample_s", [0.4, 0.2, 0.1])
-def test_who_walks_on_evenly_is_predicted_exactly(sample_s: float) -> None:
+def test_people_at_constant_velocity_are_predicted_exactly(sample_s: float) -> None:
     found = forecast_of(walk("1", 3.3, (0, 0), (20, 0)), sample_s=sample_s)
     seconds = 20 / 1.2
     assert len(found.errors) == pytest.approx((seconds - 1.6 - 4.8) / sample_s, abs=2)
@@ -44,33 +44,33 @@ def test_people_do_not_depend_on_each_other() -> None:
     )
 
 
-def test_who_is_not_followed_for_long_enough_does_not_count() -> None:
+def test_people_who_are_not_recorded_for_long_enough_do_not_count() -> None:
     assert forecast_of(walk("1", 0.0, (0, 0), (7, 0))).errors.shape == (0, STEPS, 2)
 
 
 @pytest.mark.parametrize("spread", [GAUSSIAN, PEOPLE])
-def test_what_is_expected_rightly_holds_the_right_shares(spread: Spread) -> None:
+def test_circles_of_the_right_distribution_hold_their_shares(spread: Spread) -> None:
     score = score_forecasts(drawn(0.05, 0.2, spread), spread)
-    assert score.inside == pytest.approx((0.5, 0.9, 0.95), abs=0.01)
+    assert score.coverage == pytest.approx((0.5, 0.9, 0.95), abs=0.01)
 
 
 def test_one_gaussian_misjudges_heavy_tails() -> None:
     heavy = drawn(0.05, 0.2, PEOPLE)
     right, wrong = (score_forecasts(heavy, spread) for spread in (PEOPLE, GAUSSIAN))
     assert right.negative_log_likelihood < wrong.negative_log_likelihood - 0.1
-    assert wrong.inside[0] > 0.6
+    assert wrong.coverage[0] > 0.6
 
 
 def test_errors_are_averaged_up_to_the_horizon_and_at_it() -> None:
     errors = np.zeros((1, STEPS, 2))
     errors[0, :, 1] = np.arange(1, STEPS + 1)
     score = score_forecasts(Forecasts(errors, np.ones((1, STEPS))), GAUSSIAN)
-    assert score.average_m == (2.0, 3.5, 6.5)
-    assert score.final_m == (3.0, 6.0, 12.0)
+    assert score.ade_m == (2.0, 3.5, 6.5)
+    assert score.fde_m == (3.0, 6.0, 12.0)
     squares = np.arange(1, STEPS + 1) ** 2
     expected = np.log(2 * np.pi) + squares.mean() / 2
     assert score.negative_log_likelihood == pytest.approx(expected)
-    assert score.inside[2] == pytest.approx(2 / 12)
+    assert score.coverage[2] == pytest.approx(2 / 12)
 
 
 def people(name: str) -> Crowd:
@@ -84,15 +84,15 @@ def test_printed_equation_extrapolates_noise_on_recorded_people() -> None:
         for model in (MODEL, PredictionModel(printed=True))
     )
     assert ours.forecasts == printed.forecasts > 1000
-    assert all(a < 0.6 * b for a, b in zip(ours.final_m, printed.final_m, strict=True))
+    assert all(a < 0.6 * b for a, b in zip(ours.fde_m, printed.fde_m, strict=True))
 
 
 def test_errors_on_recorded_people_are_those_known() -> None:
-    """Three recordings together, against figures that were measured by other means."""
+    """Scores on three recordings are close to figures from an independent implementation."""
     found = pool([forecast(people(n), Obstacles(), MODEL, 0.4) for n in ("eth", "hotel", "zara1")])
     score = score_forecasts(found, MODEL.spread)
-    np.testing.assert_allclose(score.average_m, (0.12, 0.23, 0.47), atol=0.03)
-    np.testing.assert_allclose(score.final_m, (0.18, 0.40, 0.97), atol=0.03)
+    np.testing.assert_allclose(score.ade_m, (0.12, 0.23, 0.47), atol=0.03)
+    np.testing.assert_allclose(score.fde_m, (0.18, 0.40, 0.97), atol=0.03)
     growth = np.sqrt(np.mean((found.errors / ahead_s()[:, None]) ** 2))
     assert growth == pytest.approx(0.167, abs=0.01)
 
@@ -101,4 +101,4 @@ def test_recorded_people_stray_as_is_expected_by_default() -> None:
     found = pool([forecast(people(n), Obstacles(), MODEL, 0.4) for n in ("eth", "zara1")])
     ours, even = (score_forecasts(found, spread) for spread in (PEOPLE, GAUSSIAN))
     assert ours.negative_log_likelihood < even.negative_log_likelihood - 0.1
-    assert ours.inside == pytest.approx((0.5, 0.9, 0.95), abs=0.04)
+    assert ours.coverage == pytest.approx((0.5, 0.9, 0.95), abs=0.04)

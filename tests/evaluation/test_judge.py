@@ -1,4 +1,4 @@
-"""Episode by episode the same as an independent judge of the same rules."""
+"""Every episode has the same score as in an independent implementation of the rules."""
 
 import warnings
 from types import ModuleType
@@ -10,7 +10,7 @@ from esplanade.evaluation.episodes import Episode, choose_episodes
 from esplanade.evaluation.policies import make_policy
 from esplanade.evaluation.replay import Interpolation, Replay
 from esplanade.evaluation.rules import Rules
-from esplanade.evaluation.simulation import Ground, run_episode
+from esplanade.evaluation.simulation import Environment, run_episode
 from esplanade.recordings import Obstacles, read_crowd, read_obstacles, walls_beside
 from tests.evaluation.judge import Judged, load_judge
 from tests.recordings.data import recorded
@@ -42,14 +42,14 @@ CLOSE = {
 def open_recording(
     name: str, interpolation: Interpolation = "linear"
 ) -> tuple[ModuleType, object, Replay]:
-    """The judge, its recording, and ours."""
+    """The judge, the recording in its form, and in ours."""
     path = recorded(name)
     judge = load_judge(path)
     walls = walls_beside(path)
     obstacles = Obstacles() if walls is None else read_obstacles(walls)
     ours = Replay(read_crowd(path), obstacles, interpolation=interpolation)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ResourceWarning)  # it leaves the walls' file open
+        warnings.simplefilter("ignore", ResourceWarning)  # the judge leaves the file of walls open
         theirs = judge.load_recording(name, root=str(path.parent), interp=interpolation)
     return judge, theirs, ours
 
@@ -57,7 +57,7 @@ def open_recording(
 def assert_same(
     judge: ModuleType, theirs: object, ours: Replay, episodes: list[Episode], policy: str
 ) -> None:
-    ground, walker = Ground.of(ours), make_policy(policy)
+    environment, walker = Environment.of(ours), make_policy(policy)
     for episode in episodes:
         same = judge.Episode(
             ours.name, episode.pedestrian, episode.first_tick, episode.start, episode.goal,
@@ -65,7 +65,7 @@ def assert_same(
         )  # fmt: skip
         judged = Judged(walker, ours, RULES, episode)
         expected = judge.run_episode(theirs, same, judged, a_max=RULES.max_acceleration_mps2)
-        score = run_episode(ground, episode, walker, RULES).score
+        score = run_episode(environment, episode, walker, RULES).score
         found = {name: int(getattr(score, field)) for name, field in EXACT.items()}
         assert found == {name: expected[name] for name in EXACT}
         np.testing.assert_allclose(
@@ -104,7 +104,7 @@ def test_trips_backward_are_judged_the_same(name: str, policy: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["hotel", "zara1"])
-def test_who_has_no_map_is_led_around_walls_the_same(name: str) -> None:
+def test_policies_without_a_map_are_led_around_walls_the_same(name: str) -> None:
     judge, theirs, ours = open_recording(name)
     episodes = choose_episodes(ours, RULES, 100, 0)
     assert_same(judge, theirs, ours, episodes[::6], "straight")
@@ -118,13 +118,13 @@ def test_smooth_replays_are_judged_the_same() -> None:
 
 def test_recorded_people_are_judged_the_same() -> None:
     judge, theirs, ours = open_recording("zara1")
-    ground, human = Ground.of(ours), make_policy("human")
+    environment, human = Environment.of(ours), make_policy("human")
     for episode in [e for e in choose_episodes(ours, RULES, 100, 0) if not e.reverse][:5]:
         same = judge.Episode(
             ours.name, episode.pedestrian, episode.first_tick, episode.start, episode.goal, False
         )
         expected = judge.run_episode(theirs, same, judge.RealPath(), a_max=2.0)
-        score = run_episode(ground, episode, human, RULES).score
+        score = run_episode(environment, episode, human, RULES).score
         assert (score.people_touched, score.pop_ins) == (expected["n_hit"], expected["popins"])
         assert score.time_s == pytest.approx(expected["time"])
         assert score.clearance_m == pytest.approx(expected["min_clear"], abs=1e-9)

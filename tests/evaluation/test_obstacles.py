@@ -1,11 +1,15 @@
-"""Distances from walls and circles, against a dense sampling."""
+"""Distances from walls and circles agree with a dense sampling."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from esplanade.evaluation.obstacles import ObstacleSet, point_distances, segment_distances
+from esplanade.evaluation.obstacles import (
+    ObstacleSet,
+    point_segment_distances,
+    segment_segment_distances,
+)
 from esplanade.recordings import Obstacles
 
 coordinate = st.floats(-4.0, 4.0).map(lambda value: round(value, 2))
@@ -26,7 +30,7 @@ def test_without_obstacles_everything_is_far() -> None:
 
 
 def dense(start: np.ndarray, end: np.ndarray) -> np.ndarray:
-    return start + np.linspace(0.0, 1.0, 201)[:, None] * (end - start)
+    return np.asarray(start + np.linspace(0.0, 1.0, 201)[:, None] * (end - start))
 
 
 @given(a=point, b=point, c=point, d=point)
@@ -38,9 +42,9 @@ def test_distances_are_those_of_a_dense_sampling(
     on_wall = dense(*wall[0])
     step_m = 0.5 * float(np.hypot(*(wall[0, 1] - wall[0, 0]))) / 200 + 1e-9
     naive = np.hypot(*(on_wall - start).T).min()
-    assert naive - step_m <= point_distances(start, wall)[0] <= naive + 1e-9
+    assert naive - step_m <= point_segment_distances(start, wall)[0] <= naive + 1e-9
 
-    way = dense(start, end)
-    naive = np.hypot(*np.moveaxis(way[:, None] - on_wall[None], -1, 0)).min()
+    line = dense(start, end)
+    naive = np.hypot(*np.moveaxis(line[:, None] - on_wall[None], -1, 0)).min()
     step_m += 0.5 * float(np.hypot(*(end - start))) / 200
-    assert naive - step_m <= segment_distances(start, end, wall)[0] <= naive + 1e-9
+    assert naive - step_m <= segment_segment_distances(start, end, wall)[0] <= naive + 1e-9

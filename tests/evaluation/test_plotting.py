@@ -9,7 +9,7 @@ from esplanade.evaluation import plotting
 from esplanade.evaluation.policies import PolicyError, make_policy
 from esplanade.evaluation.simulation import run_episode
 from esplanade.recordings import Obstacles
-from tests.evaluation.worlds import RULES, ground, trip, walk
+from tests.evaluation.worlds import RULES, environment, trip, walk
 
 HEDGE = Obstacles(segments=(((5.0, -3.0), (5.0, -1.0)),), circles=((8.0, 1.0, 0.3),))
 
@@ -17,7 +17,7 @@ HEDGE = Obstacles(segments=(((5.0, -3.0), (5.0, -1.0)),), circles=((8.0, 1.0, 0.
 @pytest.mark.skipif(find_spec("matplotlib") is None, reason="matplotlib is absent")
 @pytest.mark.parametrize("policy", ["esplanade", "straight"])
 def test_an_episode_is_drawn_as_it_ran(policy: str, tmp_path: Path) -> None:
-    place = ground(
+    place = environment(
         walk("1", 0.0, (0, 0), (10, 0)), walk("2", 0.0, (10, 0), (-2, 0)), obstacles=HEDGE
     )
     walker, path = make_policy(policy), tmp_path / "strip.png"

@@ -1,4 +1,4 @@
-"""Replays: ticks, the order of people, the past."""
+"""Replays: ticks, the order of people, and past positions."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ def samples(name: str, *rows: tuple[float, float, float]) -> Track:
 def test_people_are_where_they_were_at_every_tick_they_are_there() -> None:
     walked = replay(samples("1", (0.95, 0.0, 0.0), (1.35, 4.0, 0.0)))
     assert (walked.first[0], walked.last[0]) == (10, 13)
-    np.testing.assert_allclose(walked.way(0)[:, 0], [0.5, 1.5, 2.5, 3.5])
+    np.testing.assert_allclose(walked.trajectory(0)[:, 0], [0.5, 1.5, 2.5, 3.5])
     np.testing.assert_allclose(walked.at(0, 12), [2.5, 0.0])
     assert [walked.present(tick).tolist() for tick in (9, 10, 13, 14)] == [[], [0], [0], []]
 
@@ -26,10 +26,10 @@ def test_a_sample_on_a_tick_is_there_whatever_rounding_says() -> None:
     assert (walked.first[0], walked.last[0], walked.end_tick) == (3, 7, 7)
 
 
-def test_who_falls_between_two_ticks_is_never_there() -> None:
+def test_people_recorded_between_two_ticks_are_never_present() -> None:
     walked = replay(samples("1", (0.11, 0.0, 0.0), (0.19, 1.0, 0.0)), walk("2", 0, (0, 0), (3, 0)))
     assert not any(0 in walked.present(tick) for tick in range(10))
-    assert len(walked.way(0)) == 0
+    assert len(walked.trajectory(0)) == 0
     assert walked.bounds[2] == pytest.approx(3.0, abs=0.5)
 
 
@@ -41,7 +41,7 @@ def test_people_are_ordered_by_number_then_by_name() -> None:
 def test_recordings_may_begin_at_any_time() -> None:
     for begins_s in (-50.0, 1e7):
         walked = replay(walk("1", begins_s, (0, 0), (6, 0)))
-        assert len(walked.way(0)) == walked.last[0] - walked.first[0] + 1
+        assert len(walked.trajectory(0)) == walked.last[0] - walked.first[0] + 1
         assert walked.first[0] == round(begins_s / 0.1)
 
 
@@ -55,10 +55,10 @@ def test_the_past_ends_now_and_begins_when_they_came() -> None:
 
 def test_cubic_interpolation_meets_the_samples_without_corners() -> None:
     track = walk("1", 0.0, (0, 0), (3, 0), (3, 3))
-    smooth = Replay(crowd(track), interpolation="cubic").way(0)
+    smooth = Replay(crowd(track), interpolation="cubic").trajectory(0)
     np.testing.assert_allclose(smooth[::4], track.positions[: len(smooth[::4])], atol=1e-9)
-    corner = Replay(crowd(track)).way(0)
-    bend = [np.abs(np.diff(way, n=2, axis=0)).max() for way in (smooth, corner)]
+    corner = Replay(crowd(track)).trajectory(0)
+    bend = [np.abs(np.diff(trajectory, n=2, axis=0)).max() for trajectory in (smooth, corner)]
     assert bend[0] < bend[1]
 
 

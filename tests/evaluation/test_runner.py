@@ -1,12 +1,12 @@
-"""Many episodes: what comes out does not depend on processes, order or interruptions."""
+"""The results of many episodes do not depend on processes, order or interrupts."""
 
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from esplanade.evaluation.ledger import Ledger
 from esplanade.evaluation.runner import run_trials
+from esplanade.evaluation.score_cache import ScoreCache
 from esplanade.evaluation.scores import Score
 from esplanade.evaluation.trials import Source, Trial, plan_trials
 from tests.evaluation.worlds import RULES, busy_plaza, write_csv
@@ -18,7 +18,7 @@ def planned(folder: Path, *policies: str) -> list[Trial]:
 
 
 def timeless(scores: tuple[Score, ...]) -> list[Score]:
-    """Scores without what the clock of this machine said."""
+    """Scores without the times measured on this machine."""
     return [replace(score, decision_ms=0.0, decision_max_ms=0.0) for score in scores]
 
 
@@ -44,13 +44,13 @@ def test_an_interrupted_run_goes_on_where_it_was(tmp_path: Path, processes: int)
         if done:
             raise KeyboardInterrupt
 
-    with Ledger(path) as ledger, pytest.raises(KeyboardInterrupt):
-        run_trials(trials, processes, interrupt, ledger)
+    with ScoreCache(path) as score_cache, pytest.raises(KeyboardInterrupt):
+        run_trials(trials, processes, interrupt, score_cache)
     kept = len(path.read_text().splitlines())
     assert 0 < kept <= total
     reports: list[int] = []
-    with Ledger(path) as ledger:
-        (result,) = run_trials(trials, processes, reports.append, ledger)
+    with ScoreCache(path) as score_cache:
+        (result,) = run_trials(trials, processes, reports.append, score_cache)
     assert reports[0] == kept
     assert sum(reports) == len(path.read_text().splitlines()) == total
     (whole,) = run_trials(trials, 1, reports.append)

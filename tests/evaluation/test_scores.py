@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from esplanade.evaluation.contacts import Encounters
+from esplanade.evaluation.contacts import ContactMonitor
 from esplanade.evaluation.scores import Score, score, summarise
 from tests.evaluation.worlds import RULES, Point, replay, trip, walk
 
@@ -14,24 +14,24 @@ from tests.evaluation.worlds import RULES, Point, replay, trip, walk
 def score_of(*velocities: Point, reached: bool = True, wall_m: float = 9.0) -> Score:
     walked = replay(walk("1", 0.0, (0, 0), (9.6, 0)))
     speeds = np.array(velocities)
-    way = np.concatenate([np.zeros((1, 2)), np.cumsum(0.1 * speeds, axis=0)])
-    encounters = Encounters(walked, RULES)
+    trajectory = np.concatenate([np.zeros((1, 2)), np.cumsum(0.1 * speeds, axis=0)])
+    contacts = ContactMonitor(walked, RULES)
     return score(
-        walked, RULES, trip(walked), encounters, 0, way, speeds, wall_m, reached,
+        walked, RULES, trip(walked), contacts, 0, trajectory, speeds, wall_m, reached,
         [0.001] * len(speeds),
     )  # fmt: skip
 
 
 def test_time_and_path_are_held_against_the_straight_way() -> None:
     found = score_of(*[(1.3, 0.0)] * 93)
-    way_m = 9.6 - RULES.goal_tolerance_m
+    distance_m = 9.6 - RULES.goal_tolerance_m
     assert found.time_s == pytest.approx(9.3)
-    assert found.time_ratio == pytest.approx(9.3 / (way_m / 1.3))
-    assert found.path_ratio == pytest.approx(93 * 0.13 / way_m)
+    assert found.time_ratio == pytest.approx(9.3 / (distance_m / 1.3))
+    assert found.path_ratio == pytest.approx(93 * 0.13 / distance_m)
     assert (found.turn_rms_radps, found.acceleration_max_mps2, found.failed) == (0.0, 0.0, False)
 
 
-def test_who_does_not_arrive_has_no_time() -> None:
+def test_episodes_that_do_not_arrive_have_no_time() -> None:
     found = score_of((1.3, 0.0), (1.3, 0.0), reached=False)
     assert math.isnan(found.time_ratio)
     assert math.isnan(found.path_ratio)

@@ -1,4 +1,4 @@
-"""Settings by name: what is known, what each may be, and what is made of them."""
+"""Settings by name: the known names, the allowed values, and the models made of them."""
 
 import math
 from pathlib import Path
@@ -60,7 +60,7 @@ def test_choices_are_several_values_or_a_mere_name() -> None:
         ("risk_weight", "--set 'risk_weight' is not NAME=VALUE"),
     ],
 )
-def test_what_cannot_be_set_is_told_why(text: str, fault: str) -> None:
+def test_settings_that_cannot_be_set_are_refused_with_a_reason(text: str, fault: str) -> None:
     with pytest.raises(SettingError) as caught:
         read_changes([text])
     assert fault in str(caught.value)

@@ -1,4 +1,4 @@
-"""What is to be run: the same episodes for all, and files that are checked before."""
+"""Trials share the same episodes, and files are checked before anything runs."""
 
 from pathlib import Path
 
@@ -19,7 +19,7 @@ def test_policies_get_the_same_episodes_and_humans_only_those_forward(tmp_path: 
 def test_walls_beside_a_recording_are_found(tmp_path: Path) -> None:
     path = write_csv(tmp_path, busy_plaza())
     path.with_suffix(".walls.json").write_text('{"segments": [[50, 0, 50, 9]]}')
-    assert len(Source(path).ground(0.1).replay.obstacles.segments) == 1
+    assert len(Source(path).environment(0.1).replay.obstacles.segments) == 1
 
 
 def test_broken_recordings_are_found_before_anything_runs(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""The way around walls for those who have no map."""
+"""Waypoints around walls."""
 
 import numpy as np
 
@@ -18,7 +18,7 @@ def test_a_goal_in_sight_is_the_waypoint() -> None:
     np.testing.assert_array_equal(behind.next_from(np.array([6.0, 0.0])), goal)
 
 
-def test_who_follows_waypoints_walks_around_the_wall() -> None:
+def test_waypoints_lead_around_the_wall() -> None:
     walls = WallMap(replay(*CROSSING, obstacles=HEDGE))
     goal = np.array([10.0, 0.0])
     waypoints = Waypoints(walls, goal)
@@ -26,8 +26,8 @@ def test_who_follows_waypoints_walks_around_the_wall() -> None:
     length_m = 0.0
     clearances = []
     while np.hypot(*(goal - here)) > 0.1:
-        way = waypoints.next_from(here) - here
-        step = way / max(1.0, np.hypot(*way) / 0.1)
+        offset = waypoints.next_from(here) - here
+        step = offset / max(1.0, np.hypot(*offset) / 0.1)
         here = here + step
         length_m += float(np.hypot(*step))
         clearances.append(float(np.hypot(max(0.0, abs(here[1]) - 3.0), here[0] - 5.0)))
@@ -36,7 +36,7 @@ def test_who_follows_waypoints_walks_around_the_wall() -> None:
     assert length_m < 2.0 * np.hypot(5.0, 3.5)
 
 
-def test_who_stands_beside_a_wall_may_leave_it() -> None:
+def test_a_robot_beside_a_wall_may_leave_it() -> None:
     walls = WallMap(replay(*CROSSING, obstacles=HEDGE))
-    assert walls.sees(np.array([4.9, 0.0]), np.array([1.0, 0.0]))
-    assert not walls.sees(np.array([4.9, 0.0]), np.array([9.0, 0.0]))
+    assert walls.has_line_of_sight(np.array([4.9, 0.0]), np.array([1.0, 0.0]))
+    assert not walls.has_line_of_sight(np.array([4.9, 0.0]), np.array([9.0, 0.0]))

@@ -1,4 +1,4 @@
-"""Where the public recordings lie, for tests that need real crowds.
+"""The public recordings, for tests that need real crowds.
 
 They are not ours to hand out: anyone can make them from the public repository
 crowdbotp/OpenTraj. Point `ESPLANADE_DATA` at the folder that holds `crowds/*.csv`.

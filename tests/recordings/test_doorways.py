@@ -1,4 +1,4 @@
-"""Openings in walls: exact cases, what must always hold, and the recorded walls."""
+"""Openings in walls: exact cases, invariants, and the recorded walls."""
 
 import math
 from collections.abc import Sequence
@@ -33,7 +33,7 @@ def crowd_of(*paths: Sequence[Point]) -> Crowd:
 
 
 def distance_m(point: Point, start: Point, end: Point) -> float:
-    """Naive distance from a point to a straight piece."""
+    """The naive distance from a point to a segment."""
     dx, dy = end[0] - start[0], end[1] - start[1]
     square = dx * dx + dy * dy
     u = ((point[0] - start[0]) * dx + (point[1] - start[1]) * dy) / square if square else 0.0
@@ -120,13 +120,13 @@ def test_every_path_is_free_and_nothing_else_is_gone(
         for place in points_on(before, 17):
             gap_m = min((distance_m(place, *rest) for rest in opened), default=math.inf)
             near_m = distance_to_crowd_m(place, crowd)
-            # A sliver may go, so what is gone lies near a path or within a sliver of such a place.
+            # Slivers may be removed too, so a removed point may also be within a sliver of a path.
             assert gap_m < 1e-6 or near_m < width_m / 2 + 0.05 or math.dist(*before) < 0.05
 
 
 @pytest.mark.parametrize(("name", "touched"), [("eth", False), ("hotel", True), ("zara1", True)])
 def test_recorded_people_have_their_way_among_recorded_walls(name: str, touched: bool) -> None:
-    """hotel: one person leans on the kiosk. zara1: one cuts a corner of the shop front."""
+    """In hotel one person leans on the kiosk; in zara1 one cuts a corner of the shop front."""
     csv_path: Path = recorded(name)
     crowd = read_crowd(csv_path)
     walls_path = walls_beside(csv_path)

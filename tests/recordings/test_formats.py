@@ -1,4 +1,4 @@
-"""ETH's obsmat.txt and TrajNet++ ndjson: what comes out, and what broken files are told."""
+"""ETH's obsmat.txt and TrajNet++ ndjson: the samples, and the errors for broken files."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Reading crowds: what comes out, and what every kind of broken file is told."""
+"""Reading crowds: the tracks, and the error for every kind of broken file."""
 
 from pathlib import Path
 
@@ -51,7 +51,7 @@ def test_a_single_sample_is_a_track_without_duration(tmp_path: Path) -> None:
     assert track.at(100.0) == (1.0, 2.0)
 
 
-def test_who_leaves_before_another_comes_is_not_there_with_them(tmp_path: Path) -> None:
+def test_people_who_leave_before_others_come_are_not_counted_together(tmp_path: Path) -> None:
     crowd = read_crowd(write(tmp_path, HEADER + "0,a,0,0\n1,a,0,1\n2,b,0,0\n3,b,0,1\n"))
     assert crowd.max_present == 1
 
@@ -112,7 +112,7 @@ def test_files_of_another_kind(tmp_path: Path, name: str, content: bytes, fault:
 
 
 @pytest.mark.parametrize("name", ["missing.csv", "."])
-def test_what_cannot_be_read(tmp_path: Path, name: str) -> None:
+def test_files_that_cannot_be_read_are_refused(tmp_path: Path, name: str) -> None:
     folder = tmp_path / "folder.csv"
     folder.mkdir()
     path = folder if name == "." else tmp_path / name

@@ -1,4 +1,4 @@
-"""The command: what it prints and writes, exit codes, and what wrong usage is told."""
+"""The command: its output, files, exit codes and usage errors."""
 
 import json
 from importlib.util import find_spec
@@ -18,10 +18,10 @@ def run(*arguments: object) -> int:
 
 
 def refused(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
-    """What the command says when it does not do it."""
+    """The error message of a command that is refused."""
     try:
         code: object = run(*arguments)
-    except SystemExit as end:  # how the parser of options refuses
+    except SystemExit as end:  # the parser of options raises this
         code = end.code
     assert code == exit_codes.USAGE
     shown = capsys.readouterr()

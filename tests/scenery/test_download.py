@@ -1,4 +1,4 @@
-"""Meshes from the web: fetched whole, or refused with a reason."""
+"""Meshes from the web are downloaded whole or refused with a reason."""
 
 import http.server
 import threading
@@ -19,7 +19,7 @@ Told = list[tuple[str, float]]
 
 @pytest.fixture
 def site(tmp_path: Path) -> Iterator[str]:
-    """Address of a server that hands out what lies in a folder."""
+    """The address of a server that serves the files of a folder."""
 
     class Handler(http.server.SimpleHTTPRequestHandler):
         def __init__(self, *arguments: object) -> None:
@@ -42,17 +42,17 @@ def test_a_path_is_a_path(tmp_path: Path) -> None:
         assert path == tmp_path / "a.obj"
 
 
-def test_an_address_is_fetched_and_forgotten(site: str, tmp_path: Path) -> None:
+def test_an_address_is_downloaded_and_deleted(site: str, tmp_path: Path) -> None:
     (tmp_path / "my house.obj").write_bytes(b"v 0 0 0\n" * 50_000)
-    told: Told = []
-    with local_file(f"{site}/my%20house.obj", lambda *what: told.append(what)) as path:
+    reports: Told = []
+    with local_file(f"{site}/my%20house.obj", lambda *what: reports.append(what)) as path:
         assert path.name == "my house.obj"
         assert path.read_bytes() == (tmp_path / "my house.obj").read_bytes()
     assert not path.exists()
-    assert told[-1] == ("fetching my house.obj", 1.0)
+    assert reports[-1] == ("downloading my house.obj", 1.0)
 
 
-def test_what_is_too_large_is_refused(
+def test_a_file_that_is_too_large_is_refused(
     site: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(download, "MAX_BYTES", 2**20)
@@ -65,9 +65,10 @@ def test_what_is_too_large_is_refused(
 
 
 @pytest.mark.parametrize(
-    ("path", "reason"), [("/none.obj", "the server answers 404"), (":1/x.obj", "cannot be fetched")]
+    ("path", "reason"),
+    [("/none.obj", "the server answers 404"), (":1/x.obj", "cannot be downloaded")],
 )
-def test_what_is_not_there_is_said(site: str, path: str, reason: str) -> None:
+def test_an_absent_file_is_refused_with_the_reason(site: str, path: str, reason: str) -> None:
     address = site + path if path.startswith("/") else f"http://127.0.0.1{path}"
     with pytest.raises(UsageError, match=reason), local_file(address, lambda *_: None):
         pass

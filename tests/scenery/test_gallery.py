@@ -1,4 +1,4 @@
-"""The gallery: two floors on which everyone gets everywhere, but for the children's den."""
+"""The gallery: two floors on which all bodies reach all places but the children's den."""
 
 import itertools
 from functools import cache
@@ -27,7 +27,7 @@ def grid() -> LayeredGrid:
     return LayeredGrid.from_scene(gallery(), 0.25)
 
 
-def way(start: str, goal: str, body: Body) -> LayeredPath:
+def path_summary(start: str, goal: str, body: Body) -> LayeredPath:
     ends = [gallery().place(name) for name in (start, goal)]
     first, last = ((*end.position, end.z_m) for end in ends)
     return find_path(grid(), first, last, body=body)
@@ -49,23 +49,23 @@ def test_an_adult_walks_between_all_other_places() -> None:
     missed = [
         pair
         for pair in itertools.pairwise((*names, names[0]))
-        if way(*pair, Body.adult()).status is not PathStatus.FOUND
+        if path_summary(*pair, Body.adult()).status is not PathStatus.FOUND
     ]
     assert missed == []
 
 
 @pytest.mark.parametrize("body", [Body.adult(), Body.child()], ids=["adult", "child"])
 def test_the_bridge_leads_over_the_passage(body: Body) -> None:
-    path = way("under the bridge", "bridge", body)
+    path = path_summary("under the bridge", "bridge", body)
     assert path.status is PathStatus.FOUND
     assert path.length_m > 15.0
     assert np.allclose(path.points[[0, -1], :2], [20.0, 12.5])
     assert path.points[-1, 2] - path.points[0, 2] == pytest.approx(UPPER_M)
 
 
-def test_who_takes_no_steps_takes_the_ramp() -> None:
+def test_bodies_that_cannot_climb_steps_take_the_ramp() -> None:
     wheels = Body(radius_m=0.35, height_m=1.4, step_on_m=0.04, leg_length_m=0.5)
-    path = way("forecourt", "terrace", wheels)
+    path = path_summary("forecourt", "terrace", wheels)
     assert path.status is PathStatus.FOUND
     rises = np.diff(path.points[:, 2])
     steps = np.hypot(*np.diff(path.points[:, :2], axis=0).T)

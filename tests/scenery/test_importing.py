@@ -1,4 +1,4 @@
-"""Worlds of meshes: whatever the file's axes and units, the scene can be read and walked."""
+"""Scenes made of meshes can be read and walked, whatever the axes and units of the file."""
 
 import json
 from pathlib import Path
@@ -18,7 +18,7 @@ from tests.scenery.worlds import write_building
 Told = list[tuple[str, float]]
 
 
-def make(source: Path, target: Path, told: Told | None = None, **changes: Any) -> Scene:
+def make(source: Path, target: Path, reports: Told | None = None, **changes: Any) -> Scene:
     options: dict[str, Any] = {
         "up": "y",
         "metres_a_unit": 1.0,
@@ -26,22 +26,24 @@ def make(source: Path, target: Path, told: Told | None = None, **changes: Any) -
         "name": None,
         "spawn": None,
         "places": 6,
-        "tell": lambda doing, share: (told if told is not None else []).append((doing, share)),
+        "report": lambda activity, share: (reports if reports is not None else []).append(
+            (activity, share)
+        ),
     }
     return import_mesh(source, target, **{**options, **changes})
 
 
 def test_a_mesh_becomes_a_world_of_two_floors(tmp_path: Path) -> None:
-    told: Told = []
+    reports: Told = []
     target = tmp_path / "house.json"
-    make(write_building(tmp_path), target, told, name="House")
+    make(write_building(tmp_path), target, reports, name="House")
     scene = read_scene(target)
     assert scene.name == "House"
     assert scene.mesh == tmp_path / "house.glb"
     assert scene.bounds == (0.0, 0.0, 10.0, 8.0)
     assert len(scene.places) == 6
     assert {round(place.z_m, 1) for place in scene.places} >= {0.0, 2.4}
-    shares = [share for _, share in told]
+    shares = [share for _, share in reports]
     assert shares == sorted(shares)
     assert shares[-1] < 1.0
 
@@ -87,7 +89,7 @@ def test_the_spawn_that_is_asked_for_is_taken(tmp_path: Path) -> None:
         ({"metres_a_unit": 1000.0}, "--up and --scale"),
     ],
 )
-def test_what_cannot_be_is_refused_and_leaves_nothing(
+def test_impossible_imports_are_refused_and_leave_no_files(
     tmp_path: Path, changes: dict[str, Any], message: str
 ) -> None:
     target = tmp_path / "house.json"

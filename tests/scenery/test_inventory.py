@@ -1,4 +1,4 @@
-"""What a scene holds, counted."""
+"""The inventory counts the contents of a scene."""
 
 import json
 from io import StringIO

@@ -1,4 +1,4 @@
-"""A real house, imported as anybody would: its world can be walked at once."""
+"""A real house, imported with the default options, can be walked at once."""
 
 import os
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Who gets where: a child's den, rooms nobody gets to, spawns without room."""
+"""Reachability: a den for children, rooms without an entrance, spawns without room."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What words on the command line mean."""
+"""The values of options: bodies, points and numbers."""
 
 import argparse
 
@@ -34,7 +34,7 @@ def test_a_body_is_a_preset_or_its_measures(text: str, meant: Body) -> None:
         ("edge=2.5", "edge: '2.5' is no number"),
     ],
 )
-def test_what_is_no_body_is_refused(text: str, message: str) -> None:
+def test_text_that_is_no_body_is_refused(text: str, message: str) -> None:
     with pytest.raises(argparse.ArgumentTypeError, match=message):
         body(text)
 
@@ -45,7 +45,7 @@ def test_two_commas_make_a_point_and_everything_else_is_a_name() -> None:
 
 
 @pytest.mark.parametrize("text", ["1,2", "1,2,x", "1,2,3,4", "1,2,inf", "nan,1,1"])
-def test_what_is_no_point_is_refused(text: str) -> None:
+def test_text_that_is_no_point_is_refused(text: str) -> None:
     with pytest.raises(argparse.ArgumentTypeError):
         point(text)
 

@@ -1,4 +1,4 @@
-"""Small scenes with much in them."""
+"""Small scenes that contain many kinds of parts."""
 
 import itertools
 import json
@@ -39,7 +39,7 @@ LOFT: dict[str, Any] = {
 
 
 def loft(**changes: Any) -> Scene:
-    """That scene, with other parts."""
+    """The scene `LOFT` with some parts replaced."""
     return Scene.model_validate({**LOFT, **changes})
 
 

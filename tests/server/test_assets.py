@@ -22,9 +22,9 @@ def assets(tmp_path: Path) -> Assets:
     return assets
 
 
-def get(assets: Assets, path: str, **headers: str) -> Response:
+def get(assets: Assets, path: str, method: str = "GET", **headers: str) -> Response:
     fields = Headers({name.replace("_", "-"): value for name, value in headers.items()})
-    return assets.answer(Request(path, fields))
+    return assets.answer(Request(path, fields, method=method))
 
 
 @pytest.mark.parametrize("path", ["/", "/index.html", "/?room=1", "/index.html#top"])
@@ -56,7 +56,40 @@ def test_what_has_not_changed_is_not_sent_again(assets: Assets) -> None:
     again = get(assets, "/", If_None_Match=f'"other", {tag}')
     assert (again.status_code, again.body) == (304, b"")
     assert again.headers["ETag"] == tag
-    assert get(assets, "/", If_None_Match='"other"').status_code == 200
+    for known in (f"W/{tag}", f'"other",W/{tag}', "*"):
+        assert get(assets, "/", If_None_Match=known).status_code == 304
+    for known in ('"other"', tag.strip('"'), f'"x{tag[1:]}', "", f'"other{tag}"'):
+        assert get(assets, "/", If_None_Match=known).status_code == 200
+
+
+@pytest.mark.parametrize("path", ["/assets/index-D1y0ESrc.js", "/nothing"])
+def test_head_has_the_headers_of_get_and_no_body(assets: Assets, path: str) -> None:
+    whole = get(assets, path, Accept_Encoding="gzip")
+    head = get(assets, path, "HEAD", Accept_Encoding="gzip")
+    assert (head.status_code, head.body) == (whole.status_code, b"")
+    assert list(head.headers.raw_items()) == list(whole.headers.raw_items())
+    assert get(assets, path, Accept_Encoding="gzip").body == whole.body
+
+
+@pytest.mark.parametrize(
+    ("accepted", "packed"),
+    [
+        ("gzip", True),
+        ("GZIP;q=0.5", True),
+        ("br;q=1.0, gzip; q=0.001", True),
+        ("*", True),
+        ("gzip;q=0", False),
+        ("gzip;q=0.0, *", False),
+        ("*;q=0", False),
+        ("gzip;q=none", False),
+        ("x-gzip-not", False),
+        ("identity", False),
+        ("", False),
+    ],
+)
+def test_only_those_get_gzip_who_accept_it(assets: Assets, accepted: str, packed: bool) -> None:
+    answer = get(assets, "/assets/index-D1y0ESrc.js", Accept_Encoding=accepted)
+    assert ("Content-Encoding" in answer.headers) == packed
 
 
 def test_text_is_compressed_for_those_who_can_read_it(assets: Assets) -> None:

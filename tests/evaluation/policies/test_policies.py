@@ -1,4 +1,4 @@
-"""Every policy on small cases: arrives, keeps clear, depends on nothing before its reset."""
+"""Every policy in small cases: it arrives, keeps clear of people, and is reset completely."""
 
 from importlib.util import find_spec
 
@@ -8,9 +8,9 @@ import pytest
 from esplanade.evaluation.policies import POLICIES, PolicyError, jupedsim_models, make_policy
 from esplanade.evaluation.policies.policy import Policy
 from esplanade.evaluation.replay import Replay
-from esplanade.evaluation.simulation import Ground, Run, run_episode
+from esplanade.evaluation.simulation import Environment, EpisodeResult, run_episode
 from esplanade.recordings import Obstacles
-from tests.evaluation.worlds import RULES, busy_plaza, ground, trip, walk
+from tests.evaluation.worlds import RULES, busy_plaza, environment, trip, walk
 
 HEDGE = Obstacles(segments=(((5.0, -3.0), (5.0, 1.5)),))
 ROBOT = walk("1", 0.0, (0, 0), (10, 0))
@@ -28,73 +28,73 @@ every_policy = pytest.mark.parametrize(
 )
 
 
-def run(name: str, place: Ground, policy: Policy | None = None) -> Run:
+def run(name: str, place: Environment, policy: Policy | None = None) -> EpisodeResult:
     return run_episode(place, trip(place.replay), policy or make_policy(name), RULES)
 
 
 @every_policy
-def test_alone_everyone_arrives_in_about_the_straight_ways_time(name: str) -> None:
-    score = run(name, ground(ROBOT)).score
+def test_alone_every_policy_arrives_in_about_the_straight_lines_time(name: str) -> None:
+    score = run(name, environment(ROBOT)).score
     assert score.reached
     assert score.time_ratio < 1.2
 
 
 @every_policy
-def test_everyone_gets_around_a_wall(name: str) -> None:
-    score = run(name, ground(ROBOT, obstacles=HEDGE)).score
+def test_every_policy_gets_around_a_wall(name: str) -> None:
+    score = run(name, environment(ROBOT, obstacles=HEDGE)).score
     assert score.reached
     assert not score.wall_contact
 
 
 @every_policy
-def test_what_is_decided_depends_on_nothing_before_the_reset(name: str) -> None:
-    place = Ground.of(Replay(busy_plaza()))
+def test_decisions_depend_on_nothing_before_the_reset(name: str) -> None:
+    place = Environment.of(Replay(busy_plaza()))
     policy = make_policy(name)
     first, again = (run(name, place, policy) for _ in range(2))
-    np.testing.assert_array_equal(first.way, again.way)
-    np.testing.assert_array_equal(first.way, run(name, place).way)
+    np.testing.assert_array_equal(first.trajectory, again.trajectory)
+    np.testing.assert_array_equal(first.trajectory, run(name, place).trajectory)
 
 
-@pytest.mark.parametrize("name", ["esplanade", "discs", "clairvoyant"])
-def test_those_who_look_ahead_make_way(name: str) -> None:
-    score = run(name, ground(ROBOT, HEAD_ON)).score
+@pytest.mark.parametrize("name", ["esplanade", "discs", "oracle"])
+def test_policies_that_look_ahead_make_way(name: str) -> None:
+    score = run(name, environment(ROBOT, HEAD_ON)).score
     assert score.reached
     assert not score.touched
     assert score.time_ratio < 1.3
 
 
 def test_straight_on_runs_into_people() -> None:
-    assert run("straight", ground(ROBOT, HEAD_ON)).score.moved_toward
+    assert run("straight", environment(ROBOT, HEAD_ON)).score.moved_toward
 
 
-def test_who_knows_the_future_does_not_dodge_who_will_turn_off() -> None:
+def test_the_oracle_does_not_dodge_people_who_will_turn_off() -> None:
     turns_off = walk("2", 0.0, (10, 0.05), (6.5, 0.05), (6.5, 9.0))
     ratios = {
-        name: run(name, ground(ROBOT, turns_off)).score.path_ratio
-        for name in ("discs", "clairvoyant")
+        name: run(name, environment(ROBOT, turns_off)).score.path_ratio
+        for name in ("discs", "oracle")
     }
-    assert ratios["clairvoyant"] < ratios["discs"]
+    assert ratios["oracle"] < ratios["discs"]
 
 
-@pytest.mark.parametrize("name", ["esplanade", "discs", "clairvoyant", "straight"])
+@pytest.mark.parametrize("name", ["esplanade", "discs", "oracle", "straight"])
 def test_plans_can_be_drawn(name: str) -> None:
     policy = make_policy(name)
-    run(name, ground(ROBOT, HEAD_ON), policy)
-    thoughts = policy.thoughts()
-    assert thoughts.path.shape[1:] == (2,)
-    assert len(thoughts.path) > 0
-    assert thoughts.circles.shape[1:] == (3,)
+    run(name, environment(ROBOT, HEAD_ON), policy)
+    debug_info = policy.debug_info()
+    assert debug_info.path.shape[1:] == (2,)
+    assert len(debug_info.path) > 0
+    assert debug_info.circles.shape[1:] == (3,)
 
 
 def test_our_actor_takes_changed_parameters() -> None:
-    place = ground(ROBOT)
+    place = environment(ROBOT)
     slow = run("esplanade", place, make_policy("esplanade", {"speed_mps": 0.65})).score
     assert slow.time_ratio > 1.8
 
 
 def test_a_recording_too_large_for_a_scene_is_refused_by_name() -> None:
-    place = ground(ROBOT, walk("2", 0.0, (0, 900), (1, 900)))
-    with pytest.raises(PolicyError, match=r"plaza makes no scene: .* 650 m"):
+    place = environment(ROBOT, walk("2", 0.0, (0, 900), (1, 900)))
+    with pytest.raises(PolicyError, match=r"plaza cannot be made into a scene: .* 650 m"):
         run("esplanade", place)
 
 

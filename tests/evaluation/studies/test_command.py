@@ -1,4 +1,4 @@
-"""`--sensitivity` and `--tune`: tables, JSON, a picture, and what wrong usage is told."""
+"""The options `--sensitivity` and `--tune`: tables, JSON, a picture, and usage errors."""
 
 import json
 from importlib.util import find_spec
@@ -25,21 +25,21 @@ def test_one_setting_after_the_other_is_varied(
     tmp_path: Path, crowds: list[Path], capsys: pytest.CaptureFixture[str]
 ) -> None:
     target, folder = tmp_path / "all.json", tmp_path / "pictures"
-    ledger = tmp_path / "done.jsonl"
+    score_cache = tmp_path / "done.jsonl"
     study = [*crowds, "--sensitivity", "--vary=risk_weight=2,20", "--vary=risk.comfort=0.2"]
-    study += ["--ledger", ledger, "--json", target, "--plots", folder]
+    study += ["--score-cache", score_cache, "--json", target, "--plots", folder]
     assert run(*study) == exit_codes.OK
     shown = capsys.readouterr().out
     assert "risk_weight" in shown
-    assert shown.count("as is") == 3
+    assert shown.count("baseline") == 3
     found = json.loads(target.read_text())
     assert found["settings"]["recordings"] == ["plaza", "market"]
     assert [row["setting"] for row in found["points"]] == ["risk_weight"] * 3 + ["risk.comfort"] * 2
     assert [path.name for path in folder.iterdir()] == ["sensitivity.svg"]
-    walked = len(ledger.read_text().splitlines())
+    walked = len(score_cache.read_text().splitlines())
     assert walked == 2 * 4 * 2  # recordings, variants, episodes
     assert run(*study) == exit_codes.OK
-    assert len(ledger.read_text().splitlines()) == walked
+    assert len(score_cache.read_text().splitlines()) == walked
     assert capsys.readouterr().out == shown
 
 
@@ -49,9 +49,9 @@ def test_candidates_are_compared(
     listed, target = tmp_path / "candidates.jsonl", tmp_path / "all.json"
     listed.write_text('{"foresight_s": 2}\n')
     study = [*crowds, "--tune", "--vary", "risk_weight=2,20", "--candidates", listed]
-    assert run(*study, "--ledger", tmp_path / "done.jsonl", "--json", target) == exit_codes.OK
+    assert run(*study, "--score-cache", tmp_path / "done.jsonl", "--json", target) == exit_codes.OK
     shown = capsys.readouterr().out
-    assert "Chosen without one recording" in shown
+    assert "Leave-one-out cross-validation" in shown
     assert "Chosen on all recordings: " in shown
     found = json.loads(target.read_text())
     assert len(found["candidates"]) == 4
@@ -61,17 +61,20 @@ def test_candidates_are_compared(
 @pytest.mark.parametrize(
     ("arguments", "fault"),
     [
-        (["--sensitivity"], "say with --ledger FILE where to keep what is done"),
+        (["--sensitivity"], "keep its scores with --score-cache FILE"),
         (["--sensitivity", "--tune"], "not allowed with argument --sensitivity"),
         (
-            ["--sensitivity", "--ledger=done", "--vary=tempo"],
+            ["--sensitivity", "--score-cache=done", "--vary=tempo"],
             "--vary tempo: there is no such setting",
         ),
-        (["--sensitivity", "--ledger", "/nowhere/done"], "--ledger: there is no folder /nowhere"),
-        (["--tune", "--ledger=done"], "--tune needs candidates"),
-        (["--tune", "--ledger=done", "--vary=foresight_s"], "--tune needs values"),
-        (["--tune", "--ledger=done", "--vary=foresight_s=2"], "--tune needs two recordings"),
-        (["--tune", "--ledger=done", "--candidates=none"], "none: cannot be read"),
+        (
+            ["--sensitivity", "--score-cache", "/nowhere/done"],
+            "--score-cache: there is no folder /nowhere",
+        ),
+        (["--tune", "--score-cache=done"], "--tune needs candidates"),
+        (["--tune", "--score-cache=done", "--vary=foresight_s"], "--tune needs values"),
+        (["--tune", "--score-cache=done", "--vary=foresight_s=2"], "--tune needs two recordings"),
+        (["--tune", "--score-cache=done", "--candidates=none"], "none: cannot be read"),
         (["--vary=foresight_s=2"], "--vary is for --sensitivity and --tune"),
         (["--candidates=none"], "--candidates is for --tune"),
     ],
@@ -87,7 +90,7 @@ def test_wrong_usage(
     monkeypatch.chdir(tmp_path)
     try:
         code: object = run(crowds[0], *arguments)
-    except SystemExit as end:  # how the parser of options refuses
+    except SystemExit as end:  # the parser of options raises this
         code = end.code
     assert code == exit_codes.USAGE
     shown = capsys.readouterr()

@@ -1,4 +1,4 @@
-"""One setting after the other: its values, its curve, its picture."""
+"""The values of each setting, the curves, and their picture."""
 
 from importlib.util import find_spec
 from pathlib import Path
@@ -10,7 +10,12 @@ from esplanade.actors import ActorParameters
 from esplanade.evaluation.settings import DEFAULTS, SettingError, check
 from esplanade.evaluation.studies import sensitivity, sensitivity_plot
 from esplanade.evaluation.studies.measures import MEASURES, Floats
-from esplanade.evaluation.studies.sensitivity import AMONG_ACTORS, BODY, TEMPER, Curve
+from esplanade.evaluation.studies.sensitivity import (
+    BEHAVIOUR_PARAMETERS,
+    BODY_PARAMETERS,
+    MULTI_ACTOR_PARAMETERS,
+    Curve,
+)
 from esplanade.evaluation.studies.variants import Tables
 from esplanade.evaluation.trials import Source
 from tests.evaluation.worlds import RULES
@@ -19,13 +24,15 @@ NEAR = [measure.name for measure in MEASURES].index("near_s")
 BASE = {"risk_weight": 8.0}
 
 
-def test_every_parameter_is_body_or_temper_or_of_no_use_to_one_actor() -> None:
-    assert set(TEMPER) | BODY | AMONG_ACTORS == set(ActorParameters.model_fields)
-    assert "risk_weight" in TEMPER
+def test_every_parameter_belongs_to_one_of_three_groups() -> None:
+    assert set(BEHAVIOUR_PARAMETERS) | BODY_PARAMETERS | MULTI_ACTOR_PARAMETERS == set(
+        ActorParameters.model_fields
+    )
+    assert "risk_weight" in BEHAVIOUR_PARAMETERS
 
 
-def test_by_default_values_double_around_the_unchanged_within_limits() -> None:
-    taken = sensitivity.ranges(dict.fromkeys(TEMPER), {})
+def test_by_default_values_double_around_the_baseline_within_limits() -> None:
+    taken = sensitivity.ranges(dict.fromkeys(BEHAVIOUR_PARAMETERS), {})
     for name, values in taken.items():
         assert DEFAULTS[name] in values
         assert list(values) == sorted(set(values))
@@ -37,26 +44,26 @@ def test_by_default_values_double_around_the_unchanged_within_limits() -> None:
     assert wide == (0.1, 0.2, 0.4, 0.8, 1.0)
 
 
-def test_given_values_are_taken_beside_the_unchanged() -> None:
+def test_given_values_are_taken_beside_the_baseline() -> None:
     choices = {"risk_weight": (3.0, 100.0), "risk.comfort": None}
     taken = sensitivity.ranges(choices, {"risk_weight": 5.0, "risk.comfort": 0.2})
     assert taken == {"risk_weight": (3.0, 5.0, 100.0), "risk.comfort": (0.05, 0.1, 0.2, 0.4, 0.8)}
 
 
-def test_what_is_zero_takes_parts_of_its_limit() -> None:
+def test_a_setting_that_is_zero_takes_fractions_of_its_limit() -> None:
     taken = sensitivity.ranges({"wall_weight": None}, {"wall_weight": 0.0})
     assert taken == {"wall_weight": (0.0, 0.625, 1.25, 2.5, 5.0)}
 
 
-def test_what_cannot_be_multiplied_needs_values() -> None:
-    with pytest.raises(SettingError, match=r"prediction.printed is False: say which values"):
+def test_a_setting_that_cannot_be_scaled_needs_values() -> None:
+    with pytest.raises(SettingError, match=r"prediction.printed is False: give its values"):
         sensitivity.ranges({"prediction.printed": None}, {})
-    with pytest.raises(SettingError, match=r"risk.comfort is 0.0: say which values"):
+    with pytest.raises(SettingError, match=r"risk.comfort is 0.0: give its values"):
         sensitivity.ranges({"risk.comfort": None}, {"risk.comfort": 0.0})
 
 
 def measured(shift: float) -> Tables:
-    """Three recordings; `shift` is added to the time near others."""
+    """Tables of three recordings; `shift` is added to the time near people."""
     found: dict[Source, Floats] = {}
     for k in range(3):
         rows = np.random.default_rng(k).uniform(0.0, 1.0, (40, len(MEASURES)))
@@ -79,9 +86,9 @@ def curve() -> Curve:
 def test_a_difference_on_all_episodes_is_beyond_chance_however_much_these_scatter(
     curve: Curve,
 ) -> None:
-    less, unchanged, more = curve.points
-    assert less.means[NEAR] == pytest.approx(unchanged.means[NEAR] + 0.3)
-    assert unchanged.lows[NEAR] < more.means[NEAR] < unchanged.highs[NEAR]
+    less, baseline, more = curve.points
+    assert less.means[NEAR] == pytest.approx(baseline.means[NEAR] + 0.3)
+    assert baseline.lows[NEAR] < more.means[NEAR] < baseline.highs[NEAR]
     assert [point.differs[NEAR] for point in curve.points] == [True, False, True]
     assert not any(differs for k, differs in enumerate(more.differs) if k != NEAR)
 

@@ -1,4 +1,4 @@
-"""Choosing settings: the cost, the folds, and files of candidates."""
+"""Tuning: the cost, the folds of the cross-validation, and files of candidates."""
 
 import math
 from pathlib import Path
@@ -18,12 +18,12 @@ SOURCES = [Source(Path(f"{name}.csv")) for name in ("plaza", "market", "station"
 
 
 def measures(**changes: float) -> Floats:
-    """What just meets all goals, but for some changes."""
+    """Measures that just meet all goals, except for some changes."""
     return np.array([{**GOALS, **changes}[measure.name] for measure in MEASURES])
 
 
 def test_the_cost_of_just_meeting_all_goals_and_of_nothing_to_better() -> None:
-    assert tuning.cost(measures()) == pytest.approx(4 * tuning.BEYOND_GOALS)
+    assert tuning.cost(measures()) == pytest.approx(4 * tuning.WEIGHT_BEYOND_GOALS)
     perfect = np.array([measure.best for measure in MEASURES])
     assert tuning.cost(perfect) == 0.0
 
@@ -36,11 +36,11 @@ def test_short_of_a_goal_costs_more_than_beyond_it_is_worth() -> None:
     assert tuning.cost(measures(missed_percent=0.5)) - just == pytest.approx(0.5)
 
 
-def test_who_never_arrives_is_never_chosen() -> None:
+def test_candidates_that_never_arrive_are_never_chosen() -> None:
     assert tuning.cost(measures(time_ratio=math.nan)) == np.inf
 
 
-def test_candidates_are_all_combinations_and_those_listed_after_the_unchanged() -> None:
+def test_candidates_are_the_baseline_all_combinations_and_those_listed() -> None:
     grid = {"risk_weight": (6.0, 12.0), "risk.comfort": (0.0, 0.1)}
     found = tuning.candidates(grid, [{"foresight_s": 2}], {"turn_weight": 0.2})
     assert found[0] == {"turn_weight": 0.2}
@@ -66,7 +66,7 @@ def test_candidates_are_read_line_by_line(tmp_path: Path) -> None:
     ("line", "fault"),
     [
         ("risk_weight", "Expecting value"),
-        ("[1]", "a line is one object of settings"),
+        ("[1]", "a line must be one object of settings"),
         ('{"tempo": 3}', "tempo: there is no such setting"),
         ('{"risk_weight": -1}', "risk_weight: Input should be greater"),
     ],
@@ -92,26 +92,26 @@ def rows(contacts_percent: float) -> Floats:
 UNCHANGED = Variant(RULES)
 EVEN = Variant(RULES, (("risk_weight", 9.0),))
 LUCKY = Variant(RULES, (("risk_weight", 99.0),))
-"""Excellent on the plaza, poor elsewhere."""
+"""A candidate that is excellent on the plaza and poor elsewhere."""
 
 CONTACTS = {UNCHANGED: (4.0, 4.0, 4.0), EVEN: (3.0, 3.0, 3.0), LUCKY: (0.0, 4.0, 3.5)}
 
 
-def test_what_is_chosen_for_a_recording_was_not_chosen_on_it() -> None:
+def test_the_choice_for_a_recording_is_not_made_on_it() -> None:
     tables = {
         variant: dict(zip(SOURCES, map(rows, contacts), strict=True))
         for variant, contacts in CONTACTS.items()
     }
     found = tuning.tune(tables, UNCHANGED, seed=0)
     assert [variant for variant, _, _ in found.ranked] == [LUCKY, EVEN, UNCHANGED]
-    assert found.sure_percent == 100.0
+    assert found.confidence_percent == 100.0
     plaza, market, station = found.folds
     assert [fold.left_out for fold in found.folds] == SOURCES
-    assert plaza.chosen == EVEN  # without the plaza, nothing speaks for the lucky one
+    assert plaza.chosen == EVEN  # without the plaza the lucky candidate is the worse one
     assert plaza.cost == pytest.approx(float(tuning.cost(measures(contacts_percent=3.0))))
     assert plaza.least_cost == pytest.approx(float(tuning.cost(measures(contacts_percent=0.0))))
     assert market.chosen == station.chosen == LUCKY
-    assert market.cost == pytest.approx(market.unchanged_cost)
+    assert market.cost == pytest.approx(market.baseline_cost)
     figures = tuning.figures(found, {source: source.path.stem for source in SOURCES})
     assert [fold["left_out"] for fold in figures["folds"]] == ["plaza", "market", "station"]
     assert figures["candidates"][0]["settings"] == {"risk_weight": 99.0}
@@ -123,4 +123,4 @@ def test_equal_candidates_leave_all_as_it_is() -> None:
     found = tuning.tune(tables, UNCHANGED, seed=0)
     assert found.ranked[0][0] == UNCHANGED
     assert {fold.chosen for fold in found.folds} == {UNCHANGED}
-    assert found.sure_percent == 0.0
+    assert found.confidence_percent == 0.0

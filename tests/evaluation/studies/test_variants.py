@@ -1,4 +1,4 @@
-"""Variants that behave the same are the same."""
+"""Variants are equal if they behave the same."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -11,12 +11,12 @@ from esplanade.evaluation.trials import Source
 from tests.evaluation.worlds import RULES, busy_plaza, write_csv
 
 
-def test_what_is_as_by_default_changes_nothing() -> None:
+def test_default_values_change_nothing() -> None:
     assert Variant.of(RULES, {"risk_weight": DEFAULTS["risk_weight"]}) == Variant(RULES)
     assert Variant.of(RULES, {"risk_weight": 1.0}) == Variant(RULES, (("risk_weight", 1.0),))
 
 
-def test_what_the_rules_say_of_the_body_is_only_left_out_where_they_do() -> None:
+def test_settings_of_the_body_are_kept_even_at_their_defaults() -> None:
     slow = replace(RULES, speed_mps=0.8)
     assert Variant.of(slow, {"speed_mps": DEFAULTS["speed_mps"]}) != Variant(slow)
 

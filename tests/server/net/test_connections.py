@@ -24,7 +24,7 @@ async def test_connections_without_a_request_hold_no_stop_up(serving: Serving) -
 async def test_sockets_are_bounded_from_their_first_moment(
     serving: Serving, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("esplanade.server.net.listener.MAX_AT_DOOR", 1)
+    monkeypatch.setattr("esplanade.server.net.listener.MAX_UNGREETED", 1)
     monkeypatch.setattr("esplanade.server.net.listener.MAX_VISITS", 1)
     async with serving(max_clients=1) as server, joined(server.port) as client:
         streams = [await asyncio.open_connection("127.0.0.1", server.port) for _ in range(4)]

@@ -15,12 +15,20 @@ async def test_pages_and_the_socket_share_one_port(serving: Serving) -> None:
         assert b"make client" in page.body
 
 
-@pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "HEAD"])
-async def test_only_get_is_answered(serving: Serving, method: str) -> None:
+async def test_head_is_answered_without_a_body(serving: Serving) -> None:
+    async with serving() as server:
+        head = await get(server.port, "/", method="HEAD")
+        whole = await get(server.port, "/")
+        assert (head.status, head.body) == (200, b"")
+        assert head.headers["content-length"] == str(len(whole.body))
+
+
+@pytest.mark.parametrize("method", ["POST", "PUT", "DELETE"])
+async def test_only_get_and_head_are_answered(serving: Serving, method: str) -> None:
     async with serving() as server:
         answer = await get(server.port, "/", method=method)
         assert answer.status == 405
-        assert answer.headers["allow"] == "GET"
+        assert answer.headers["allow"] == "GET, HEAD"
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""What to call a place of which nothing is known but where it lies."""
+"""Names for places that are generated: they say in which part of the ground a place is."""
 
 from __future__ import annotations
 
@@ -14,14 +14,16 @@ _THIRD: Final = 1.0 / 3.0
 
 
 @dataclass(frozen=True)
-class Ground:
-    """Ground that people get to: points (N, 3) all over it, and the heights of its storeys, m."""
+class PlaceNamer:
+    """Names places by storey and direction within some ground."""
 
     points: NDArray[np.float64]
+    """Points all over the ground, float64 (N, 3), metres."""
     storeys: tuple[float, ...]
+    """The heights of its storeys, metres."""
 
     def name_of(self, point: Point) -> str:
-        """Such as `north-east`, or `floor 1, middle` where there is more than one floor."""
+        """The name of a place, such as `north-east`, or `floor 1, middle` with several storeys."""
         low, high = self.points[:, :2].min(axis=0), self.points[:, :2].max(axis=0)
         half = np.maximum(0.5 * (high - low), 1e-6)
         east, north = (np.array(point[:2]) - 0.5 * (low + high)) / half

@@ -1,57 +1,59 @@
-"""What a body finds on every layer of a scene, ready to be drawn."""
+"""The maps of all layers of a scene as one body finds them, ready to be drawn."""
 
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.commandline.errors import UsageError
 from esplanade.planning import LayeredGrid, Scene
 from esplanade.planning.routes.find_path import LayeredPath, PathStatus, find_path
 from esplanade.planning.scene.bodies import Body
 from esplanade.planning.traversal.traversability import Traversability
 from esplanade.planning.traversal.wavefront import metres, spread_wave
-from esplanade.commandline.errors import UsageError
-from esplanade.scenery.pictures import LayerView, Mark
+from esplanade.scenery.pictures import LayerMap, Marker
 from esplanade.scenery.reach import cell_near, centres, reached_cells, spawn_cells
 from esplanade.scenery.values import Point, Where
 
 Floats = NDArray[np.float64]
 
 _NEAR_M = 1.0
-"""An end of the path may lie so far from where the body can stand."""
+"""The greatest distance from an end of the path to a cell in which the body can stand."""
 _ALONG = np.array([0.05, 0.275, 0.5, 0.725, 0.95])
-"""Where along a barrier it is looked whether it stands on a layer."""
+"""The points along a barrier at which it is tested for standing on a layer, as fractions."""
 
 
-def layer_views(
+def layer_maps(
     scene: Scene, cell_m: float, body: Body, start: Where | None, goal: Where | None
-) -> list[LayerView]:
-    """One view of each layer, with the path from start to goal, or between two places.
+) -> list[LayerMap]:
+    """Make one map of each layer, with a path from `start` to `goal`.
+
+    By default the path goes from the first spawn to the place that is farthest from it.
 
     Raises
     ------
     UsageError
-        An end of the path is no place, or nobody can stand there.
+        An end of the path is no place, or the body cannot stand there or at any spawn.
     """
     grid = LayeredGrid.from_scene(scene, cell_m)
     traversability = grid.traversability.of(body)
     reached = reached_cells(traversability, spawn_cells(traversability, scene))
     if not reached.any():
-        raise UsageError("nobody of this body comes in: it cannot stand at any spawn")
+        raise UsageError("this body cannot enter the scene: it cannot stand at any spawn")
     first = _end("--from", scene, start) if start else _entrance(scene, traversability, reached)
-    ways = metres(
+    lengths = metres(
         traversability, spread_wave(traversability, _cell("--from", traversability, first))
     )
-    last = _end("--to", scene, goal) if goal else _farthest(scene, traversability, ways)
+    last = _end("--to", scene, goal) if goal else _farthest(scene, traversability, lengths)
     path = find_path(grid, first, last, body=body)
     distance = metres(
         traversability, spread_wave(traversability, _cell("--to", traversability, last))
     )
     return [
-        LayerView(
+        LayerMap(
             title=scene.name,
             number=number,
-            body=_words(body),
+            body=_body_summary(body),
             corner=(traversability.arrays.x0, traversability.arrays.y0),
             cell_m=cell_m,
             floors=_dense(traversability, number, traversability.arrays.floors, np.nan),
@@ -63,8 +65,8 @@ def layer_views(
                 traversability,
                 body,
             ),
-            marks=_marks(scene, grid, number),
-            way=_way_words(path),
+            markers=_markers(scene, grid, number),
+            path_summary=_path_summary(path),
             path=path.points[:, :2],
             path_layers=path.layers,
         )
@@ -73,7 +75,7 @@ def layer_views(
 
 
 def _end(option: str, scene: Scene, where: Where) -> Point:
-    """The point that an end of the path means."""
+    """The point of an end of the path that is given as a point or the name of a place."""
     if not isinstance(where, str):
         return where
     try:
@@ -92,7 +94,7 @@ def _cell(option: str, traversability: Traversability, point: Point) -> int:
 
 
 def _entrance(scene: Scene, traversability: Traversability, reached: NDArray[np.bool_]) -> Point:
-    """Where avatars come in, or the first place they get to."""
+    """The first spawn or place that is reached."""
     for part in (*scene.spawns, *scene.places):
         point = (*part.position, part.z_m)
         cell = cell_near(traversability, point, _NEAR_M)
@@ -101,9 +103,11 @@ def _entrance(scene: Scene, traversability: Traversability, reached: NDArray[np.
     return _centre(traversability, int(reached.argmax()))
 
 
-def _farthest(scene: Scene, traversability: Traversability, ways: NDArray[np.float32]) -> Point:
-    """The place with the longest way to it; without places, the cell."""
-    lengths = np.where(np.isfinite(ways), ways, -1.0)
+def _farthest(
+    scene: Scene, traversability: Traversability, path_lengths: NDArray[np.float32]
+) -> Point:
+    """The place with the longest path to it; in a scene without places, the cell."""
+    lengths = np.where(np.isfinite(path_lengths), path_lengths, -1.0)
     points: list[Point] = [(*place.position, place.z_m) for place in scene.places]
     cells = {point: cell_near(traversability, point, _NEAR_M) for point in points}
     return max(
@@ -121,7 +125,7 @@ def _centre(traversability: Traversability, cell: int) -> Point:
 def _dense(
     traversability: Traversability, layer: int, values: NDArray[Any], nothing: float
 ) -> NDArray[Any]:
-    """A layer's values by row and column, `nothing` where it has no floor."""
+    """The values of a layer as (rows, columns), with `nothing` where it has no floor."""
     a = traversability.arrays
     own = (a.places[:, 0] == layer) & np.isfinite(a.floors)
     dense = np.full((a.ny, a.nx), nothing, dtype=values.dtype)
@@ -130,7 +134,10 @@ def _dense(
 
 
 def _walls_on(floors: Floats, traversability: Traversability, body: Body) -> Floats:
-    """The barriers that stop a body where it stands beside them on one layer, float64 (S, 4)."""
+    """The barriers that stop a body that stands beside them on one layer.
+
+    `floors` is (rows, columns), metres. The result is x0, y0, x1, y1, float64 (S, 4), metres.
+    """
     rows, a = traversability.near.barriers, traversability.arrays
     ends = rows[:, :4].reshape(-1, 2, 2)
     along = ends[:, 1] - ends[:, 0]
@@ -148,24 +155,24 @@ def _walls_on(floors: Floats, traversability: Traversability, body: Body) -> Flo
     return rows[stops & (rows[:, 6] > body.step_on_m), :4]
 
 
-def _marks(scene: Scene, grid: LayeredGrid, layer: int) -> tuple[Mark, ...]:
-    """Spawns and places of a layer."""
+def _markers(scene: Scene, grid: LayeredGrid, layer: int) -> tuple[Marker, ...]:
+    """The markers of the spawns and places on a layer."""
     spawns = [(f"spawn {i}", spawn, True) for i, spawn in enumerate(scene.spawns)]
     places = [(place.name, place, False) for place in scene.places]
     return tuple(
-        Mark(name, part.position, is_spawn)
+        Marker(name, part.position, is_spawn)
         for name, part, is_spawn in (*spawns, *places)
         if grid.layer_at(part.position, part.z_m) == layer
     )
 
 
-def _way_words(path: LayeredPath) -> str:
+def _path_summary(path: LayeredPath) -> str:
     if path.status is PathStatus.FOUND:
         return f"{path.length_m:.1f} m"
     return path.status.name.lower().replace("_", " ")
 
 
-def _words(body: Body) -> str:
+def _body_summary(body: Body) -> str:
     return (
         f"{body.height_m:g} m tall, radius {body.radius_m:g} m,\n"
         f"steps {body.step_on_m:g} m, leg {body.leg_length_m:g} m"

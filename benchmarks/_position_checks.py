@@ -1,4 +1,4 @@
-"""Whether anybody is where nobody can be, held against a scene's own shapes and nothing else."""
+"""Checks of avatars' positions against the shapes of the scene, independent of the planner."""
 
 from __future__ import annotations
 
@@ -9,28 +9,32 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.evaluation.obstacles import point_segment_distances
 from esplanade.planning import Polygon, Scene
 
 Points = NDArray[np.float64]
-"""(N, 3): x, y and the height of the feet, metres."""
+"""Positions (N, 3): x, y and the height of the feet, metres."""
 Flags = NDArray[np.bool_]
 
 STEP_ON_M: Final = 0.6
 HEAD_M: Final = 1.75
-"""A body of 1.80 m, less what snapshots round off."""
+"""The height of a body of 1.80 m, less the rounding of snapshots."""
 UNCLIMBED_M: Final = 1.2
-"""What does not carry is in the way however low it is."""
+"""Solids that cannot be stood on obstruct up to at least this height, however low they are."""
 
 AROUND_M: Final = 0.13
-"""Heights are those of cells of 0.25 m: the floor is looked for within half a cell."""
+"""A floor is searched for within half a cell, since heights are those of cells of 0.25 m."""
 LEVEL_M: Final = 0.04
-"""Feet so near to a floor stand on it: snapshots are in centimetres, ramps rise within a cell."""
+"""Feet this near to a floor stand on it: snapshots are in centimetres, and ramps rise within a
+cell."""
 IN_WALL_M: Final = 0.03
+"""A centre this near to a wall is inside it."""
 _FAR_M: Final = 3.0
+"""Larger clearances count as this."""
 
 
 def unsupported(scene: Scene, points: Points) -> Flags:
-    """Who stands on nothing: between two floors, in the air, beyond the bounds. Bool (N,)."""
+    """Whether each avatar stands on no floor, or beyond the bounds, bool (N,)."""
     x0, y0, x1, y1 = scene.bounds
     stands = np.zeros(len(points), dtype=np.bool_)
     carrying = [solid for solid in scene.solids() if solid.carries]
@@ -46,7 +50,7 @@ def unsupported(scene: Scene, points: Points) -> Flags:
 
 
 def inside(scene: Scene, points: Points) -> Flags:
-    """Who is within a solid, or in a wall, between step and head. Bool (N,)."""
+    """Whether each avatar is inside a solid or a wall between step height and head, bool (N,)."""
     found = np.zeros(len(points), dtype=np.bool_)
     x, y, z = points.T
     for solid in scene.solids():
@@ -62,7 +66,7 @@ def inside(scene: Scene, points: Points) -> Flags:
 
 
 def clearances(scene: Scene, points: Points) -> NDArray[np.float64]:
-    """How far centres are from what stops bodies, metres (N,); at most 3 m are told apart."""
+    """The distances of centres from obstacles, float64 (N,), metres, at most 3 m."""
     least = np.full(len(points), _FAR_M)
     x, y, z = points.T
     for solid in scene.solids():
@@ -84,7 +88,7 @@ def clearances(scene: Scene, points: Points) -> NDArray[np.float64]:
 def _reaches(
     bottom: float, top: float | NDArray[np.float64], z: NDArray[np.float64]
 ) -> NDArray[np.bool_]:
-    """Whether something from bottom to top is in the way of bodies with their feet at z."""
+    """Whether something from bottom to top obstructs bodies with their feet at z, bool (N,)."""
     return np.asarray((bottom < z + HEAD_M) & (top > z + STEP_ON_M + LEVEL_M))
 
 
@@ -93,7 +97,10 @@ def _stopping(solid: Polygon, top: float) -> float:
 
 
 def _top(solid: Polygon, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
-    """`Polygon.top_at` for (N,), and what counts as the top of what nobody climbs."""
+    """The height of the top of a solid at N points, (N,), metres.
+
+    It is `Polygon.top_at` for solids that can be stood on; others obstruct up to `_stopping`.
+    """
     top = solid.offset_m + solid.height_m
     if solid.ramp is None:
         return np.full(len(x), _stopping(solid, top))
@@ -116,7 +123,7 @@ def _boxed(
 
 
 def _encloses(solid: Polygon, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Whether the ring goes round (N,) points, by the crossings of a ray to the east."""
+    """Whether the ring encloses each of N points, bool (N,), by the crossings of a ray east."""
     odd = np.zeros(len(x), dtype=np.bool_)
     ring = (*solid.points, solid.points[0])
     for (ax, ay), (bx, by) in itertools.pairwise(ring):
@@ -129,8 +136,5 @@ def _encloses(solid: Polygon, x: NDArray[np.float64], y: NDArray[np.float64]) ->
 def _distance(
     points: Points, start: tuple[float, float], end: tuple[float, float]
 ) -> NDArray[np.float64]:
-    """From (N, 3) points to a segment on the map, metres (N,)."""
-    way = np.subtract(end, start)
-    off = points[:, :2] - start
-    part = np.clip(off @ way / (way @ way), 0.0, 1.0)
-    return np.asarray(np.hypot(*(off - part[:, None] * way).T))
+    """The distances on the map of points (N, 3) from a segment, (N,), metres."""
+    return point_segment_distances(points[:, :2], np.array([[start, end]]))

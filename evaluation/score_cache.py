@@ -1,4 +1,4 @@
-"""Scores kept on disk, so that no episode is run twice and an interrupted run loses nothing."""
+"""A cache of scores on disk: no episode is run twice, and an interrupt loses no results."""
 
 import hashlib
 import json
@@ -25,28 +25,33 @@ _SHOW_ONLY: Final = frozenset(
         "forecast_report",
         "fits",
         "forecasts",
-        "ledger",
         "options",
         "plotting",
         "report",
+        "score_cache",
         "studies",
     }
 )
-"""Parts of `evaluation` that no score depends on."""
+"""Modules and packages of `evaluation` that no score depends on."""
 
 _Key = tuple[str, int, bool]
 
 
-class LedgerError(Exception):
-    """A ledger that cannot be used; the message says which and why."""
+class ScoreCacheError(Exception):
+    """A cache file cannot be used; the message names the file and the reason."""
 
 
-class Ledger:
-    """One line of JSON for every episode that was scored.
+class ScoreCache:
+    """A file with one line of JSON for each scored episode.
 
-    A score is found again where all that it depends on is the same: recording, rules, policy,
-    settings, trip, and the source code. Runs of different studies may share one ledger, in one
-    process at a time. Without a path, scores last as long as this object.
+    A score is found again only if everything that it depends on is the same: recording, rules,
+    policy, settings, episode, and the source code. Different studies may share one file, but only
+    one process may use it at a time. Without a path, scores last as long as this object.
+
+    Raises
+    ------
+    ScoreCacheError
+        The file cannot be read or written, or holds a line of another form.
     """
 
     def __init__(self, path: Path | None = None) -> None:
@@ -59,10 +64,10 @@ class Ledger:
             whole = text[: text.rfind("\n") + 1]
             self._scores |= _entries(path, whole)
             self._file = path.open("a", encoding="utf-8")
-            if whole != text:  # whoever wrote it was ended in the middle of a line
+            if whole != text:  # the process that wrote the file was killed in the middle of a line
                 self._file.truncate(len(whole.encode()))
         except (OSError, UnicodeDecodeError) as error:
-            raise LedgerError(f"{path}: {error}") from None
+            raise ScoreCacheError(f"{path}: {error}") from None
 
     def __enter__(self) -> Self:
         return self
@@ -77,24 +82,24 @@ class Ledger:
             self._file.close()
 
     def find(self, trial: Trial) -> dict[int, Score]:
-        """What is known of a trial's episodes, by their numbers in it."""
-        kind = _digest_of(trial)
-        known = ((e.number, self._scores.get((kind, *_trip(e)))) for e in trial.episodes)
+        """The known scores of a trial's episodes, by the numbers of these episodes."""
+        digest = _digest_of(trial)
+        known = ((e.number, self._scores.get((digest, *_trip(e)))) for e in trial.episodes)
         return {k: replace(score, number=k) for k, score in known if score is not None}
 
     def add(self, trial: Trial, scores: Sequence[Score]) -> None:
-        """Keep the scores of a trial's episodes; they are on disk when this returns."""
-        kind = _digest_of(trial)
+        """Keep the scores of a trial's episodes; they are in the file when this returns."""
+        digest = _digest_of(trial)
         lines = []
         for episode, score in zip(trial.episodes, scores, strict=True):
-            self._scores[kind, *_trip(episode)] = score
-            lines.append(json.dumps(_line(kind, trial, episode, score), allow_nan=False) + "\n")
+            self._scores[digest, *_trip(episode)] = score
+            lines.append(json.dumps(_line(digest, trial, episode, score), allow_nan=False) + "\n")
         if self._file is not None:
             try:
                 self._file.write("".join(lines))
                 self._file.flush()
             except OSError as error:
-                raise LedgerError(f"{self._file.name}: {error}") from None
+                raise ScoreCacheError(f"{self._file.name}: {error}") from None
 
 
 def _entries(path: Path, text: str) -> dict[_Key, Score]:
@@ -105,15 +110,15 @@ def _entries(path: Path, text: str) -> dict[_Key, Score]:
             key = entry["trial"], entry["pedestrian"], entry["reverse"]
             found[key] = _score(entry["score"])
         except (ValueError, TypeError, KeyError):
-            raise LedgerError(f"{path}:{number}: this is no line of a ledger") from None
+            raise ScoreCacheError(f"{path}:{number}: this is no line of a score cache") from None
     return found
 
 
-def _line(kind: str, trial: Trial, episode: Episode, score: Score) -> dict[str, Any]:
-    """What one line holds; recording, policy and settings are for those who read it."""
+def _line(digest: str, trial: Trial, episode: Episode, score: Score) -> dict[str, Any]:
+    """The content of one line; recording, policy and settings are there for human readers."""
     pedestrian, reverse = _trip(episode)
     return {
-        "trial": kind,
+        "trial": digest,
         "recording": trial.source.path.stem,
         "policy": trial.policy,
         "settings": {name: _finite(value) for name, value in trial.settings},
@@ -124,13 +129,13 @@ def _line(kind: str, trial: Trial, episode: Episode, score: Score) -> dict[str, 
 
 
 def _trip(episode: Episode) -> tuple[int, bool]:
-    """Tells a trip from all others of its recording."""
+    """The key of an episode within its recording."""
     return episode.pedestrian, episode.reverse
 
 
 def _score(values: dict[str, Any]) -> Score:
     if set(values) != {field.name for field in fields(Score)}:
-        raise ValueError("fields of another form of score")
+        raise ValueError("the score has other fields")
     known: dict[str, Any] = {k: math.nan if v is None else v for k, v in values.items()}
     return Score(**known)
 
@@ -140,15 +145,16 @@ def _finite(value: Any) -> Any:
 
 
 def _digest_of(trial: Trial) -> str:
-    """Of everything that the score of one of its trips depends on."""
+    """A digest of everything that the scores of a trial depend on, except the episode."""
     settings = sorted((name, repr(value)) for name, value in trial.settings)
     rules = sorted(asdict(trial.rules).items())
-    told = repr((_code(), _recorded(trial.source), trial.policy, rules, settings))
-    return hashlib.sha256(told.encode()).hexdigest()[:16]
+    inputs = repr((_code_digest(), _recording_digest(trial.source), trial.policy, rules, settings))
+    return hashlib.sha256(inputs.encode()).hexdigest()[:16]
 
 
 @cache
-def _recorded(source: Source) -> str:
+def _recording_digest(source: Source) -> str:
+    """A digest of the recording, its walls, and how they are read."""
     walls = source.walls or walls_beside(source.path)
     parts = [source.path.read_bytes(), b"" if walls is None else walls.read_bytes()]
     how = repr((source.path.suffix, source.fps, source.interpolation)).encode()
@@ -156,8 +162,11 @@ def _recorded(source: Source) -> str:
 
 
 @cache
-def _code() -> str:
-    """Of the source of all that makes scores; cached, for it is what has been imported."""
+def _code_digest() -> str:
+    """A digest of the source code that scores depend on.
+
+    It is cached because the code that runs is the code that was imported.
+    """
     return _digest(path.read_bytes() for path in sorted(_sources()))
 
 

@@ -1,4 +1,4 @@
-"""Scores on disk: found again where all is the same, and only there."""
+"""Scores on disk are found again only if all that they depend on is the same."""
 
 import json
 import subprocess
@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from esplanade.evaluation import ledger as ledgers
-from esplanade.evaluation.ledger import Ledger, LedgerError
+from esplanade.evaluation import score_cache as score_caches
 from esplanade.evaluation.runner import run_trials
+from esplanade.evaluation.score_cache import ScoreCache, ScoreCacheError
 from esplanade.evaluation.trials import Source, Trial, plan_trials
 from tests.evaluation.worlds import RULES, busy_plaza, write_csv
 
@@ -23,35 +23,35 @@ def trial(tmp_path: Path) -> Trial:
 
 @pytest.fixture
 def path(tmp_path: Path, trial: Trial) -> Path:
-    """A ledger with the trial's scores."""
+    """A cache file with the scores of the trial."""
     path = tmp_path / "done.jsonl"
-    with Ledger(path) as ledger:
-        run_trials([trial], 1, lambda _: None, ledger)
+    with ScoreCache(path) as score_cache:
+        run_trials([trial], 1, lambda _: None, score_cache)
     return path
 
 
 def found(path: Path, trial: Trial) -> int:
-    with Ledger(path) as ledger:
-        return len(ledger.find(trial))
+    with ScoreCache(path) as score_cache:
+        return len(score_cache.find(trial))
 
 
 def test_scores_are_found_again_as_they_were(path: Path, trial: Trial) -> None:
-    with Ledger(path) as ledger:
-        (result,) = run_trials([trial], 1, lambda _: None, ledger)
-        assert tuple(ledger.find(trial).values()) == result.scores
+    with ScoreCache(path) as score_cache:
+        (result,) = run_trials([trial], 1, lambda _: None, score_cache)
+        assert tuple(score_cache.find(trial).values()) == result.scores
     assert len(path.read_text().splitlines()) == 6
 
 
 def test_an_episode_is_found_under_its_number_in_any_selection(path: Path, trial: Trial) -> None:
     backward = tuple(replace(e, number=5 - e.number) for e in reversed(trial.episodes))
-    with Ledger(path) as ledger:
-        scores = ledger.find(replace(trial, episodes=backward))
-        before = ledger.find(trial)
+    with ScoreCache(path) as score_cache:
+        scores = score_cache.find(replace(trial, episodes=backward))
+        before = score_cache.find(trial)
     assert list(scores) == list(range(6))
     assert [scores[k].pedestrian for k in range(6)] == [before[5 - k].pedestrian for k in range(6)]
 
 
-def test_what_was_measured_otherwise_is_not_found(
+def test_scores_measured_otherwise_are_not_found(
     path: Path, trial: Trial, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert found(path, trial) == 6
@@ -59,7 +59,7 @@ def test_what_was_measured_otherwise_is_not_found(
     assert found(path, replace(trial, rules=replace(RULES, near_m=0.3))) == 0
     assert found(path, replace(trial, settings=(("risk_weight", 9.0),))) == 0
     assert found(path, replace(trial, source=replace(trial.source, interpolation="cubic"))) == 0
-    monkeypatch.setattr(ledgers, "_code", lambda: "changed")
+    monkeypatch.setattr(score_caches, "_code_digest", lambda: "changed")
     assert found(path, trial) == 0
 
 
@@ -76,46 +76,48 @@ def test_another_recording_of_the_same_name_is_not_found(
     assert found(path, replace(trial, source=Source(changed))) == 0
 
 
-def test_what_did_not_arrive_has_no_time_and_is_found_again(path: Path, trial: Trial) -> None:
+def test_scores_without_arrival_have_no_time_and_are_found_again(path: Path, trial: Trial) -> None:
     lines = path.read_text().splitlines()
     entry = json.loads(lines[0])
     entry["score"] |= {"reached": False, "time_ratio": None}
     path.write_text("\n".join([json.dumps(entry), *lines[1:]]) + "\n")
-    with Ledger(path) as ledger:
-        (lost,) = (score for score in ledger.find(trial).values() if not score.reached)
+    with ScoreCache(path) as score_cache:
+        (lost,) = (score for score in score_cache.find(trial).values() if not score.reached)
     assert lost.time_ratio != lost.time_ratio  # nan
 
 
 def test_half_a_line_at_the_end_is_left_out_and_written_anew(path: Path, trial: Trial) -> None:
     path.write_text(path.read_text()[:-40])
-    with Ledger(path) as ledger:
-        assert len(ledger.find(trial)) == 5
-        run_trials([trial], 1, lambda _: None, ledger)
+    with ScoreCache(path) as score_cache:
+        assert len(score_cache.find(trial)) == 5
+        run_trials([trial], 1, lambda _: None, score_cache)
     assert found(path, trial) == 6
 
 
 @pytest.mark.parametrize("line", ["no json", "[]", "{}", '{"trial": "x", "score": {}}'])
-def test_a_file_that_is_no_ledger_is_refused_with_its_line(path: Path, line: str) -> None:
+def test_a_file_that_is_no_score_cache_is_refused_with_its_line(path: Path, line: str) -> None:
     before = path.read_text() + line + "\n"
     path.write_text(before)
-    with pytest.raises(LedgerError, match=r"done.jsonl:7: this is no line of a ledger"):
-        Ledger(path)
+    with pytest.raises(ScoreCacheError, match=r"done.jsonl:7: this is no line of a score cache"):
+        ScoreCache(path)
     assert path.read_text() == before
 
 
 def test_a_place_where_nothing_can_be_written_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(LedgerError, match="directory"):
-        Ledger(tmp_path)
+    with pytest.raises(ScoreCacheError, match="directory"):
+        ScoreCache(tmp_path)
 
 
 def test_no_score_depends_on_what_is_left_out_of_the_codes_digest() -> None:
     program = (
-        "import sys, evaluation.simulation, evaluation.policies.ours, evaluation.trials\n"
-        "print(*(name for name in sys.modules if name.startswith('evaluation.')))"
+        "import sys\n"
+        "from esplanade.evaluation import simulation, trials\n"
+        "from esplanade.evaluation.policies import ours\n"
+        "print(*(name for name in sys.modules if name.startswith('esplanade.evaluation.')))"
     )
     done = subprocess.run(
         [sys.executable, "-c", program], check=True, capture_output=True, text=True
     )
-    used = {name.split(".")[1] for name in done.stdout.split()}
+    used = {name.split(".")[2] for name in done.stdout.split()}
     assert "simulation" in used
-    assert used & ledgers._SHOW_ONLY == set()
+    assert used & score_caches._SHOW_ONLY == set()
