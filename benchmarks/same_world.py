@@ -1,4 +1,4 @@
-"""A digest of all bytes that clients get, to be taken before and after a change that changes nothing.
+"""A digest of all bytes that clients get, taken before and after a change that changes nothing.
 
 python -m benchmarks.same_world --ticks 2000 --clients 50
 

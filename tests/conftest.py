@@ -1,12 +1,19 @@
-"""Rules of every run: a browser test that skips is loud, and fails where browsers are required."""
+"""Rules of every run: nothing is measured against a clock, and no browser test skips in silence."""
 
 import os
 from collections.abc import Generator
 
 import pytest
 from _pytest.terminal import TerminalReporter
+from hypothesis import HealthCheck, settings
 
 REQUIRE_VARIABLE = "ESPLANADE_REQUIRE_BROWSER"
+
+# The first example of a process compiles kernels, some of them while it is drawn.
+settings.register_profile(
+    "any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow]
+)
+settings.load_profile("any machine")
 
 
 @pytest.hookimpl(wrapper=True)

@@ -20,10 +20,10 @@ from esplanade.planning import Scene
 from esplanade.protocol.messages import Chat, Enter
 from esplanade.server.app import running
 from esplanade.server.settings import ServerSettings
+from tests.patience import PATIENCE_S
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md"))]
-ANSWER_LIMIT_S = 30.0
 NOT_OURS = {"crowdbotp/OpenTraj", "crowds/", "server/client_assets/"}
 
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
@@ -136,7 +136,7 @@ async def test_bot_of_the_readme_answers() -> None:
         url = f"ws://localhost:{server.port}"
         names: dict[str, Any] = {}
         exec(program.replace("ws://localhost:8080", url), names)
-        async with asyncio.timeout(ANSWER_LIMIT_S), bots.connect(url, name="Narcissus") as bot:
+        async with asyncio.timeout(PATIENCE_S), bots.connect(url, name="Narcissus") as bot:
             echo = asyncio.create_task(names["main"]())
             try:
                 assert await conversation(bot) == "I heard: Who is there?"

@@ -13,6 +13,7 @@ from esplanade.cli import main
 from esplanade.protocol import ErrorCode
 from esplanade.protocol.messages import Error
 from tests.bots.scripted import scripted_server, until
+from tests.patience import PATIENCE_S
 
 PROJECT = Path(__file__).resolve().parents[2]
 RECORDING = "t,id,x,y\n" + "".join(
@@ -48,7 +49,7 @@ def _hear_interrupts() -> None:
 
 
 async def finish(process: asyncio.subprocess.Process) -> tuple[int | None, str, str]:
-    out, err = await asyncio.wait_for(process.communicate(), 60.0)
+    out, err = await asyncio.wait_for(process.communicate(), PATIENCE_S)
     return process.returncode, out.decode(), err.decode()
 
 
@@ -114,7 +115,7 @@ async def test_people_off_their_way_are_explained(tmp_path: Path) -> None:
 async def test_a_signal_sends_everyone_home_and_reports(number: int) -> None:
     async with scripted_server() as server:
         process = await start("--url", server.url, "--count", "3", "--duration", "0")
-        await until(lambda: len(server.people) == 3, within_s=30.0)
+        await until(lambda: len(server.people) == 3)
         process.send_signal(number)
         code, out, err = await finish(process)
         await until(lambda: not server.people)
@@ -125,10 +126,10 @@ async def test_a_signal_sends_everyone_home_and_reports(number: int) -> None:
 async def test_bots_end_with_the_process_that_sent_them() -> None:
     async with scripted_server() as server:
         process = await start("--url", server.url, "--count", "3", "--duration", "0")
-        await until(lambda: len(server.people) == 3, within_s=30.0)
+        await until(lambda: len(server.people) == 3)
         process.kill()
         await process.communicate()
-        await until(lambda: not server.people, within_s=30.0)
+        await until(lambda: not server.people)
     assert [person.socket.close_code for person in server.all_people] == [1000] * 3
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from esplanade.bots.crew import Crew
 from esplanade.bots.tally import Tally
+from tests.patience import PATIENCE_S
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ def test_a_worker_that_dies_is_told() -> None:
 
 def test_stop_brings_the_last_word_of_each() -> None:
     crew = Crew([Counting(10**9), Counting(10**9)])
-    deadline_s = time.monotonic() + 30.0
+    deadline_s = time.monotonic() + PATIENCE_S
 
     def until_both_count(tally: Tally) -> None:
         assert time.monotonic() < deadline_s

@@ -8,6 +8,7 @@ from pathlib import Path
 from esplanade import bots
 from esplanade.protocol.messages import Chat
 from tests.bots.scripted import scripted_server, until
+from tests.patience import PATIENCE_S
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = re.findall(
@@ -29,7 +30,7 @@ async def start(example: str, url: str) -> asyncio.subprocess.Process:
 
 
 async def finish(process: asyncio.subprocess.Process) -> str:
-    out, err = await asyncio.wait_for(process.communicate(), 30.0)
+    out, err = await asyncio.wait_for(process.communicate(), PATIENCE_S)
     assert process.returncode == 0, err.decode()
     return out.decode()
 
@@ -37,7 +38,7 @@ async def finish(process: asyncio.subprocess.Process) -> str:
 async def test_the_greeter_greets_and_leaves_on_bye() -> None:
     async with scripted_server() as server:
         process = await start(EXAMPLES[0], server.url)
-        await until(lambda: bool(server.people), within_s=30.0)
+        await until(lambda: bool(server.people))
         async with bots.connect(server.url, name="Ann") as ann:
             greetings = []
             async for event in ann.events():
@@ -54,9 +55,9 @@ async def test_the_steady_one_comes_back_with_its_token() -> None:
     async with scripted_server() as server:
         process = await start(EXAMPLES[1], server.url)
         assert process.stdout is not None
-        assert await asyncio.wait_for(process.stdout.readline(), 30.0) == b"here as 1\n"
+        assert await asyncio.wait_for(process.stdout.readline(), PATIENCE_S) == b"here as 1\n"
         server.people[1].socket.transport.abort()
-        await until(lambda: 2 in server.people, within_s=30.0)
+        await until(lambda: 2 in server.people)
         assert server.people[2].hello.resume == "token-1"
         process.terminate()
         await process.communicate()

@@ -9,6 +9,7 @@ from esplanade.protocol import ErrorCode, encode
 from esplanade.protocol.codes import CloseCode
 from esplanade.protocol.messages import Error, Move, Notice, WalkTo
 from tests.bots.scripted import ScriptedServer, scripted_server, until
+from tests.patience import PATIENCE_S
 
 JOB = LoadJob(url="", count=6, first=0, step=1, seed=1, join_rate=100.0, duration_s=1.0)
 
@@ -18,23 +19,39 @@ def job_for(server: ScriptedServer, **changes: float) -> LoadJob:
 
 
 async def test_visitors_join_walk_measure_and_leave() -> None:
-    tally = Tally()
+    tally, stop = Tally(), asyncio.Event()
+    clock = asyncio.get_running_loop().time
     async with scripted_server() as server:
-        await job_for(server).run(tally, asyncio.Event())
+        running = asyncio.create_task(job_for(server, duration_s=0.0).run(tally, stop))
+        await until(lambda: tally.joined == 6)
+        joined_s = clock()
+        await until(lambda: tally.round_trip_s.count >= 18 and bool(tally.snapshot_age_s.count))
+        stayed_s = clock() - joined_s
+        stop.set()
+        await running
         await until(lambda: not server.people)
     assert (tally.expected, tally.joined, tally.left) == (6, 6, 6)
     assert tally.well
-    assert tally.client_seconds > 5.0
+    assert tally.client_seconds > 6.0 * stayed_s
     heard = [message for person in server.all_people for message in person.heard]
     assert len(heard) == tally.messages_out
     assert any(isinstance(message, Move | WalkTo) for message in heard)
     assert tally.bytes_out == sum(len(encode(message)) for message in heard)
-    assert tally.round_trip_s.count >= 18
     assert 0 < tally.snapshot_age_s.count <= tally.messages_in
     assert tally.snapshot_interval_s.percentile(50) is not None
     assert {person.hello.name for person in server.all_people} == {
         f"Visitor {number}" for number in range(1, 7)
     }
+
+
+async def test_visitors_leave_by_themselves_when_the_time_is_over() -> None:
+    tally = Tally()
+    async with scripted_server() as server:
+        began_s = asyncio.get_running_loop().time()
+        await job_for(server).run(tally, asyncio.Event())
+        assert asyncio.get_running_loop().time() - began_s >= JOB.duration_s
+    assert (tally.joined, tally.left) == (6, 6)
+    assert tally.well
 
 
 async def test_shares_make_up_the_whole() -> None:
@@ -56,7 +73,7 @@ async def test_stop_sends_everyone_home() -> None:
         running = asyncio.create_task(job_for(server, duration_s=0.0).run(tally, stop))
         await until(lambda: tally.joined == 6)
         stop.set()
-        await asyncio.wait_for(running, 10.0)
+        await asyncio.wait_for(running, PATIENCE_S)
     assert tally.left == 6
     assert tally.well
 
@@ -93,7 +110,7 @@ async def test_lost_connections_and_complaints_are_counted() -> None:
         await fed.socket.send(b"\x92\x48\x80")  # a pong without its fields
         await until(lambda: tally.lost == 3)
         stop.set()
-        await asyncio.wait_for(running, 10.0)
+        await asyncio.wait_for(running, PATIENCE_S)
     assert tally.errors == {
         "closed_1006": 1,
         "closed_too_slow": 1,

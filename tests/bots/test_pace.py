@@ -5,6 +5,7 @@ import asyncio
 import pytest
 
 from esplanade.bots.pace import Pace
+from tests.patience import PATIENCE_S
 
 
 async def test_ticks_take_over_from_the_clock_without_a_jump() -> None:
@@ -33,4 +34,4 @@ async def test_waiting_ends_at_the_moment_or_when_stopped() -> None:
     waiting = asyncio.create_task(pace.until(1e6, stop))
     await asyncio.sleep(0)
     stop.set()
-    await asyncio.wait_for(waiting, 5.0)
+    await asyncio.wait_for(waiting, PATIENCE_S)

@@ -11,6 +11,7 @@ from esplanade.bots.tally import Tally
 from esplanade.protocol.messages import Move
 from esplanade.recordings import Track, read_crowd
 from tests.bots.scripted import scripted_server, until
+from tests.patience import PATIENCE_S
 from tests.recordings.data import recorded
 
 
@@ -26,6 +27,12 @@ def track(name: str, start_s: float, end_s: float, speed_mps: float = 1.3) -> Tr
 TRACKS = (track("7", 10.0, 14.0), track("8", 11.0, 13.0, speed_mps=0.6), track("9", 12.0, 15.0))
 
 
+@pytest.fixture(autouse=True)
+def _early(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Everybody joins so early that they stand at their first place on a slow machine too."""
+    monkeypatch.setattr("esplanade.bots.replay.LEAD_S", 2.0)
+
+
 async def test_everyone_joins_follows_and_leaves_at_their_time() -> None:
     tally = Tally()
     async with scripted_server() as server:
@@ -36,7 +43,7 @@ async def test_everyone_joins_follows_and_leaves_at_their_time() -> None:
     assert tally.capped == 0
     # 9 recorded seconds at twice the speed are 90 ticks of 50 ms.
     assert 80 <= tally.deviation_m.count <= 93
-    # Half the machine may be busy elsewhere: what must hold in real time is tested for most.
+    # The first commands may be late.
     assert tally.near > 0.9 * tally.deviation_m.count
     assert [person.hello.name for person in server.all_people] == [
         "Pedestrian 7",
@@ -90,7 +97,7 @@ async def test_stop_takes_everyone_out() -> None:
         running = asyncio.create_task(ReplayJob(server.url, TRACKS, 1.0, 0.0).run(tally, stop))
         await until(lambda: tally.joined >= 1)
         stop.set()
-        await asyncio.wait_for(running, 10.0)
+        await asyncio.wait_for(running, PATIENCE_S)
         await until(lambda: not server.people)
     assert tally.present == 0
     assert tally.lost == 0

@@ -22,9 +22,7 @@ from esplanade.protocol.messages import (
     Welcome,
 )
 from esplanade.protocol.snapshot import positions_m, unpack_block
-
-DEADLINE_S = 20.0
-"""No test waits longer than this for anything."""
+from tests.patience import PATIENCE_S
 
 Message = TypeVar("Message")
 
@@ -82,7 +80,7 @@ class Client:
 
     async def until(self, kind: type[Message]) -> Message:
         """Read up to the next message of a kind."""
-        async with asyncio.timeout(DEADLINE_S):
+        async with asyncio.timeout(PATIENCE_S):
             while True:
                 message = await self.next()
                 if isinstance(message, kind):
@@ -90,7 +88,7 @@ class Client:
 
     async def wait_for(self, condition: Callable[[], bool]) -> None:
         """Read until a condition holds."""
-        async with asyncio.timeout(DEADLINE_S):
+        async with asyncio.timeout(PATIENCE_S):
             while not condition():
                 await self.next()
 
@@ -105,7 +103,7 @@ class Client:
     async def last_words(self) -> tuple[list[ServerMessage], int | None]:
         """Read to the end of the connection: the messages, and the close code."""
         messages = []
-        async with asyncio.timeout(DEADLINE_S):
+        async with asyncio.timeout(PATIENCE_S):
             try:
                 while True:
                     messages.append(await self.next())

@@ -4,6 +4,8 @@ import asyncio
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from tests.patience import PATIENCE_S
+
 
 @dataclass(frozen=True)
 class Answer:
@@ -26,7 +28,7 @@ async def get(
         fields["Content-Length"] = str(len(body))
     lines = [f"{method} {path} HTTP/1.1", *(f"{name}: {value}" for name, value in fields.items())]
     writer.write("\r\n".join([*lines, "", ""]).encode() + body)
-    async with asyncio.timeout(20.0):
+    async with asyncio.timeout(PATIENCE_S):
         received = await reader.read()
     writer.close()
     await writer.wait_closed()

@@ -13,9 +13,9 @@ from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosedError
 
 from esplanade.server.net import asgi
+from tests.patience import PATIENCE_S
 from tests.server.http import get
 
-LIMIT_S = 60.0
 CHUNK = bytes(64 * 1024)
 
 
@@ -116,7 +116,7 @@ async def test_half_a_request_is_cut_off(sent: bytes, monkeypatch: pytest.Monkey
 async def test_who_does_not_read_is_cut_off(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(asgi, "PATIENCE_S", 0.2)
     app = application()
-    async with asgi.serving(app, "127.0.0.1", 0) as port, asyncio.timeout(LIMIT_S):
+    async with asgi.serving(app, "127.0.0.1", 0) as port, asyncio.timeout(PATIENCE_S):
         _, writer = await _unread_stream(port)
         await app.state.stream_ended.wait()
         writer.close()
@@ -125,7 +125,7 @@ async def test_who_does_not_read_is_cut_off(monkeypatch: pytest.MonkeyPatch) -> 
 async def test_who_does_not_read_holds_no_stop_up(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(asgi, "SHUT_S", 1.0)
     app = application()
-    async with asyncio.timeout(LIMIT_S):
+    async with asyncio.timeout(PATIENCE_S):
         async with asgi.serving(app, "127.0.0.1", 0) as port:
             _, writer = await _unread_stream(port)
         assert app.state.stream_ended.is_set()
@@ -135,7 +135,7 @@ async def test_who_does_not_read_holds_no_stop_up(monkeypatch: pytest.MonkeyPatc
 async def test_a_client_that_reads_steadily_is_not_cut_off(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(asgi, "PATIENCE_S", 2.0)
     app = application()
-    async with asgi.serving(app, "127.0.0.1", 0) as port, asyncio.timeout(LIMIT_S):
+    async with asgi.serving(app, "127.0.0.1", 0) as port, asyncio.timeout(PATIENCE_S):
         reader, writer = await _unread_stream(port)
         begin = asyncio.get_running_loop().time()
         while asyncio.get_running_loop().time() < begin + 3.0:
@@ -148,7 +148,7 @@ async def test_connections_are_bounded_and_a_place_is_free_again(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(asgi, "MAX_CONNECTIONS", 2)
-    async with asgi.serving(application(), "127.0.0.1", 0) as port, asyncio.timeout(LIMIT_S):
+    async with asgi.serving(application(), "127.0.0.1", 0) as port, asyncio.timeout(PATIENCE_S):
         async with connect(f"ws://127.0.0.1:{port}/echo") as first:
             _, second = await asyncio.open_connection("127.0.0.1", port)
             third, writer = await asyncio.open_connection("127.0.0.1", port)
@@ -162,7 +162,7 @@ async def test_connections_are_bounded_and_a_place_is_free_again(
 
 
 async def test_a_connection_serves_one_request_after_another() -> None:
-    async with asgi.serving(application(), "127.0.0.1", 0) as port, asyncio.timeout(LIMIT_S):
+    async with asgi.serving(application(), "127.0.0.1", 0) as port, asyncio.timeout(PATIENCE_S):
         reader, writer = await asyncio.open_connection("127.0.0.1", port)
         for _ in range(3):
             writer.write(b"GET /nothing HTTP/1.1\r\nHost: x\r\n\r\n")
@@ -192,7 +192,7 @@ async def _unread_stream(port: int) -> tuple[asyncio.StreamReader, asyncio.Strea
 
 
 async def _to_the_end(reader: asyncio.StreamReader) -> bytes:
-    async with asyncio.timeout(LIMIT_S):
+    async with asyncio.timeout(PATIENCE_S):
         try:
             return await reader.read()
         except ConnectionResetError:

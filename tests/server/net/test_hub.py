@@ -160,6 +160,7 @@ async def test_a_lost_connection_comes_back_as_the_same_avatar(serving: Serving)
             await ann.wait_for(lambda: ann.position[0] > 2.3)
             ann.connection.transport.abort()
         assert ann.welcome is not None
+        await eve.wait_for(lambda: b"esplanade_clients 1.0" in server.metrics.exposition())
         await eve.until_tick(server.world.tick + 3)
         stood = eve.positions[ann.id]
         await eve.ticks(3)

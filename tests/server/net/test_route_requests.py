@@ -8,6 +8,7 @@ from esplanade.protocol.messages import WalkTo
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.world.routes import Point, Route
 from esplanade.server.world.world import World
+from tests.patience import PATIENCE_S
 
 Answer = tuple[int, int, Route | None]
 
@@ -20,7 +21,7 @@ class SlowWorld:
 
     def route_finder(self, avatar_id: int, goal: Point) -> Callable[[], Route | None]:
         def find() -> Route | None:
-            assert self.go.wait(20.0)
+            assert self.go.wait(PATIENCE_S)
             if goal[0] < 0.0:
                 raise RuntimeError("told to fail")
             return (goal,)
@@ -44,7 +45,7 @@ async def test_who_changes_their_mind_all_the_time_keeps_nobody_waiting() -> Non
         route_requests.ask(1, WalkTo(seq=0, x=1.0, y=0.0))
         route_requests.ask(2, WalkTo(seq=0, x=2.0, y=0.0))
         running = asyncio.create_task(route_requests.run(lambda *_: answered.set()))
-        async with asyncio.timeout(20.0):
+        async with asyncio.timeout(PATIENCE_S):
             await answered.wait()
         running.cancel()
     assert asked[:2] == [1, 2]
@@ -70,7 +71,7 @@ async def test_wishes_are_taken_in_turn_the_latest_of_each_person() -> None:
         route_requests.forget(3)
         assert route_requests.waiting == 3
         world.go.set()
-        async with asyncio.timeout(20.0):
+        async with asyncio.timeout(PATIENCE_S):
             await done.wait()
         running.cancel()
     assert answers == [(2, 1, ((2.0, 0.0, 0),)), (4, 1, ((4.0, 0.0, 0),)), (1, 2, None)]

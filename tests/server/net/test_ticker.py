@@ -6,6 +6,7 @@ import pytest
 
 from esplanade.actors import Population
 from esplanade.protocol.messages import Ping, Pong
+from tests.patience import PATIENCE_S
 from tests.server.client import joined
 from tests.server.conftest import Serving
 
@@ -40,11 +41,11 @@ async def test_the_event_loop_serves_while_actors_are_planned(
 
     def think_long(*_: Any) -> None:
         planning.set()
-        assert go_on.wait(20.0)
+        assert go_on.wait(PATIENCE_S)
 
     async with serving(actors=1) as server, joined(server.port) as client:
         monkeypatch.setattr(Population, "advance", think_long)
-        await asyncio.to_thread(planning.wait, 20.0)
+        assert await asyncio.to_thread(planning.wait, PATIENCE_S)
         tick = server.world.tick
         await client.send(Ping(nonce=5))
         await client.until(Pong)
