@@ -15,7 +15,7 @@ async def test_connections_without_a_request_hold_no_stop_up(serving: Serving) -
         silent[0][1].write(b"GET / HT")
         await silent[0][1].drain()
         reading = [asyncio.create_task(_answer(reader)) for reader, _ in silent]
-    # A connection that is not cut off is told, in the end, that the handshake took too long.
+    # Whoever is not cut off is told, in the end, that the handshake took too long.
     assert [await task for task in reading] == [b"", b""]
     for _, writer in silent:
         writer.close()
