@@ -10,44 +10,32 @@ import pytest_asyncio
 from playwright.async_api import Browser, BrowserContext
 
 from esplanade.planning.scene.scene_file import read_scene
-from esplanade.server.app import running
-from esplanade.server.settings import ServerSettings
 from tests.browser.test_layout import CONTROLS, boxes_of, overlapping, shares_of_colours, visit
 from tests.browser.visitor import Visitor, moved_m, own
+from tests.browser.worlds import entered_at, world
 
 pytestmark = [pytest.mark.browser, pytest.mark.asyncio(loop_scope="module")]
 
 SCENE: Final = Path(__file__).parents[2] / "scenes" / "pavilion.json"
+MEADOW: Final = (0.0, -14.0, 0.0)
 BALCONY: Final = (0.0, -6.0)
 UPPER_M: Final = 3.8
 WALKED_M: Final = 1.0
 
 
-async def world(scene: Path) -> AsyncIterator[str]:
-    settings = ServerSettings(
-        host="127.0.0.1", port=0, private_port=0, actors=2, scene=scene, log_level="warning"
-    )
-    async with running(settings) as server:
-        yield f"http://127.0.0.1:{server.port}/"
-
-
 @pytest_asyncio.fixture(scope="module", loop_scope="module")
-async def meadow() -> AsyncIterator[str]:
+async def meadow(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[str]:
     """Address of the pavilion's world, where people come in beside it."""
-    async for address in world(SCENE):
+    scene = entered_at(read_scene(SCENE), MEADOW, tmp_path_factory.mktemp("meadow"))
+    async with world(scene=scene, actors=2) as address:
         yield address
 
 
 @pytest_asyncio.fixture(loop_scope="module")
 async def balcony(tmp_path: Path) -> AsyncIterator[str]:
     """The same, where people come in on its upper floor."""
-    scene = read_scene(SCENE)
-    spawn = scene.spawns[0].model_copy(
-        update={"position": BALCONY, "z_m": UPPER_M, "radius_m": 0.0}
-    )
-    path = tmp_path / "balcony.json"
-    path.write_text(scene.model_copy(update={"spawns": (spawn,)}).model_dump_json())
-    async for address in world(path):
+    scene = entered_at(read_scene(SCENE), (*BALCONY, UPPER_M), tmp_path)
+    async with world(scene=scene, actors=2) as address:
         yield address
 
 

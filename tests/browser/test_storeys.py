@@ -8,9 +8,8 @@ import pytest
 import pytest_asyncio
 from playwright.async_api import Browser
 
-from esplanade.server.app import running
-from esplanade.server.settings import ServerSettings
 from tests.browser.test_layout import CONTROLS, PANELS, boxes_of, overlapping, visit
+from tests.browser.worlds import world
 
 pytestmark = [pytest.mark.browser, pytest.mark.asyncio(loop_scope="module")]
 
@@ -21,11 +20,8 @@ SIZES = pytest.mark.parametrize(("width", "height"), [(1280, 720), (390, 844), (
 @pytest_asyncio.fixture(scope="module", loop_scope="module")
 async def house() -> AsyncIterator[str]:
     """Address of a running world with a storey above the ground."""
-    settings = ServerSettings(
-        host="127.0.0.1", port=0, private_port=0, actors=0, scene=SCENE, log_level="warning"
-    )
-    async with running(settings) as server:
-        yield f"http://127.0.0.1:{server.port}/"
+    async with world(scene=SCENE) as address:
+        yield address
 
 
 @SIZES

@@ -8,6 +8,7 @@ import pytest
 from playwright.async_api import BrowserContext, Error
 
 from tests.browser.visitor import View, Visitor, avatar_of, moved_m, own
+from tests.patience import PATIENCE_S
 
 pytestmark = [pytest.mark.browser, pytest.mark.asyncio(loop_scope="module")]
 
@@ -24,7 +25,6 @@ async def test_two_people_see_each_other_walk(
     for walker, watcher in ((ann, ben), (ben, ann)):
         walker_id = (await walker.look())["id"]
         before = await _seen(watcher, walker_id)
-        # Backwards: before a spawn point there may be a wall, behind the camera there is room.
         await walker.page.keyboard.down("s")
         await watcher.until(partial(_has_walked, before=before))
         await walker.page.keyboard.up("s")
@@ -64,7 +64,7 @@ async def test_a_killed_page_comes_back_as_the_same_avatar(
     ann.page.on("crash", lambda _page: crashed.set())
     with pytest.raises(Error):
         await ann.page.goto("chrome://crash")
-    await asyncio.wait_for(crashed.wait(), 30.0)
+    await asyncio.wait_for(crashed.wait(), PATIENCE_S)
 
     again = await Visitor.arrive(profile, url)
     await again.join("Cora")
@@ -97,9 +97,8 @@ async def test_what_one_says_the_other_reads(
     await ann.join("Ann")
     ben = await Visitor.arrive(other_profile, url)
     await ben.join("Ben")
-    ben_id = (await ben.look())["id"]
-    await ann.until(lambda view: avatar_of(view, ben_id) is not None)
-    await ben.until(lambda view: len(view["avatars"]) > 1)
+    await _seen(ann, (await ben.look())["id"])
+    await _seen(ben, (await ann.look())["id"])
     await ann.page.keyboard.press("Enter")
     await ann.page.keyboard.type("Good morning <b>Ben</b>!")
     await ann.page.keyboard.press("Enter")

@@ -9,10 +9,11 @@ from typing import Any, Final
 
 from playwright.async_api import BrowserContext, ConsoleMessage, Page, Request
 
+from tests.patience import PATIENCE_S
+
 View = dict[str, Any]
 """What a page knows, as `window.esplanade` tells it."""
 
-DEADLINE_S: Final = 60.0
 _POLL_S: Final = 0.1
 
 # The page's security policy forbids evaluating strings, so conditions are polled from here.
@@ -38,6 +39,7 @@ class Visitor:
     @classmethod
     async def arrive(cls, context: BrowserContext, url: str, drawing: str = "fast") -> "Visitor":
         """Open the client in a new page, that draws as finely as is said."""
+        context.set_default_timeout(1e3 * PATIENCE_S)
         page = await context.new_page()
         visitor = cls(page)
         page.on("console", visitor._heard)
@@ -70,14 +72,14 @@ class Visitor:
         Raises
         ------
         AssertionError
-            It did not within the deadline.
+            It did not while a test waits.
         """
-        deadline = time.monotonic() + DEADLINE_S
+        deadline_s = time.monotonic() + PATIENCE_S
         while True:
             view = await self.look()
             if condition(view):
                 return view
-            assert time.monotonic() < deadline, f"never came to be; last seen: {view}"
+            assert time.monotonic() < deadline_s, f"never came to be; last seen: {view}"
             await asyncio.sleep(_POLL_S)
 
     async def complaints(self) -> list[str]:

@@ -2,6 +2,7 @@ import asyncio
 
 import pytest
 
+from tests.patience import PATIENCE_S
 from tests.server.client import joined
 from tests.server.conftest import Serving
 
@@ -39,7 +40,7 @@ async def test_sockets_are_bounded_from_their_first_moment(
 
 async def _answer(reader: asyncio.StreamReader) -> bytes:
     """What comes until the server ends the connection; nothing where it was cut off."""
-    async with asyncio.timeout(20.0):
+    async with asyncio.timeout(PATIENCE_S):
         try:
             return await reader.read()
         except ConnectionResetError:
