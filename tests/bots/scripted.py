@@ -81,7 +81,7 @@ class ScriptedServer:
 
     @property
     def time_s(self) -> float:
-        """Server time; tick k is due at k / tick_rate."""
+        """Server time; where no time was lost, tick k is due at k / tick_rate."""
         return asyncio.get_running_loop().time() - self._loop_start_s
 
     async def talk(self, socket: ServerConnection) -> None:
@@ -181,12 +181,12 @@ class ScriptedServer:
         """
         loop = asyncio.get_running_loop()
         self._loop_start_s = loop.time() - self.tick / self.tick_rate
+        due_s = loop.time()
         while True:
-            due_s = self._loop_start_s + (self.tick + 1) / self.tick_rate
+            due_s += 1.0 / self.tick_rate
             await asyncio.sleep(max(0.0, due_s - loop.time()))
-            late_s = loop.time() - due_s
-            if late_s > 0.5 / self.tick_rate:
-                self._loop_start_s += late_s
+            if loop.time() - due_s > 0.5 / self.tick_rate:
+                due_s = loop.time()
             await _let_messages_arrive()
             self.tick += 1
             self._apply()

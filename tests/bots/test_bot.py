@@ -2,6 +2,7 @@
 
 import asyncio
 import math
+import time
 
 import numpy as np
 import pytest
@@ -135,8 +136,10 @@ async def test_it_knows_the_build_of_those_in_view_and_where_they_point() -> Non
 
 async def test_ping_measures_and_sets_the_clock() -> None:
     async with scripted_server() as server, bots.connect(server.url) as bot:
+        begin_s = time.monotonic()
         round_trips = await asyncio.gather(*(bot.ping() for _ in range(5)))
-        assert all(0 < round_trip_s < 5 for round_trip_s in round_trips)
+        waited_s = time.monotonic() - begin_s
+        assert all(0 < round_trip_s <= waited_s for round_trip_s in round_trips)
         assert abs(bot.server_time - server.time_s) <= max(round_trips)
 
 

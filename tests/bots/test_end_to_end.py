@@ -2,6 +2,7 @@
 
 import asyncio
 import math
+import time
 from collections.abc import AsyncIterator
 from pathlib import Path
 
@@ -82,7 +83,8 @@ async def test_two_bots_meet_walk_and_talk(server: Running) -> None:
         await bob.stop()
         await ann.walk_to(1.0, 1.0)
         await until(lambda: math.dist(ann.position[:2], (1.0, 1.0)) < 0.3)
-        assert 0.0 < await ann.ping() < 5.0
+        begin_s = time.monotonic()
+        assert 0.0 < await ann.ping() <= time.monotonic() - begin_s
         await ann.chat("good day")
         async for event in bob.events():
             if isinstance(event, Chat):
