@@ -1,13 +1,16 @@
 """Two people meet in the world, each through a page in a real browser."""
 
 import asyncio
+from collections.abc import AsyncIterator
 from functools import partial
 from typing import Any
 
 import pytest
+import pytest_asyncio
 from playwright.async_api import BrowserContext, Error
 
 from tests.browser.visitor import View, Visitor, avatar_of, moved_m, own
+from tests.browser.worlds import PROMENADE, PROMENADE_END, entered_at, world
 from tests.patience import PATIENCE_S
 
 pytestmark = [pytest.mark.browser, pytest.mark.asyncio(loop_scope="module")]
@@ -50,13 +53,21 @@ async def test_actors_walk_about(url: str, profile: BrowserContext) -> None:
     await ann.until(lambda view: sum(_has_walked(view, actor) for actor in before) >= 2)
 
 
+@pytest_asyncio.fixture(scope="module", loop_scope="module")
+async def waiting_world(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[str]:
+    """Address of a world whose avatars wait for a page as long as a slow machine opens it."""
+    scene = entered_at(PROMENADE, PROMENADE_END, tmp_path_factory.mktemp("promenade"))
+    async with world(scene=scene, resume_seconds=PATIENCE_S) as address:
+        yield address
+
+
 async def test_a_killed_page_comes_back_as_the_same_avatar(
-    url: str, profile: BrowserContext, other_profile: BrowserContext
+    waiting_world: str, profile: BrowserContext, other_profile: BrowserContext
 ) -> None:
-    ann = await Visitor.arrive(profile, url)
+    ann = await Visitor.arrive(profile, waiting_world)
     await ann.join("Cora")
     ann_id = (await ann.look())["id"]
-    ben = await Visitor.arrive(other_profile, url)
+    ben = await Visitor.arrive(other_profile, waiting_world)
     await ben.join("Ben")
     await ben.until(lambda view: avatar_of(view, ann_id) is not None)
 
@@ -66,15 +77,15 @@ async def test_a_killed_page_comes_back_as_the_same_avatar(
         await ann.page.goto("chrome://crash")
     await asyncio.wait_for(crashed.wait(), PATIENCE_S)
 
-    again = await Visitor.arrive(profile, url)
+    again = await Visitor.arrive(profile, waiting_world)
     await again.join("Cora")
     assert (await again.look())["id"] == ann_id
     names = [avatar["name"] for avatar in (await ben.look())["avatars"]]
     assert names.count("Cora") == 1
 
 
-async def test_a_reload_goes_straight_back_in(url: str, profile: BrowserContext) -> None:
-    ann = await Visitor.arrive(profile, url)
+async def test_a_reload_goes_straight_back_in(waiting_world: str, profile: BrowserContext) -> None:
+    ann = await Visitor.arrive(profile, waiting_world)
     await ann.join("Ann")
     ann_id = (await ann.look())["id"]
     await ann.page.reload()
