@@ -184,7 +184,7 @@ def test_recordings_in_which_nothing_can_be_judged(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = write_csv(tmp_path, crowd(walk("1", 0.0, (0, 0), (1, 0))))
-    assert "nobody in it makes a trip" in refused(capsys, path)
+    assert "it has no trip that can be an episode" in refused(capsys, path)
     assert "nobody in it is followed for long enough" in refused(capsys, path, "--prediction")
 
 

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
+from esplanade.cli import main
 from esplanade.planning import LayeredGrid
 from esplanade.planning.routes.find_path import PathStatus, find_path
 from esplanade.planning.routes.storey_heights import reached_from, storeys_of
 from esplanade.planning.scene.scene_file import read_scene
-from esplanade.scenery import cli
 
 DATA = Path(__file__).resolve().parents[3] / "shared" / "data"
 HOUSE = Path(os.environ.get("ESPLANADE_DATA", DATA)) / "meshes" / "duplex.obj"
@@ -20,7 +20,7 @@ def imported(tmp_path_factory: pytest.TempPathFactory) -> Path:
     if not HOUSE.is_file():
         pytest.skip("the house meshes/duplex.obj is absent; set ESPLANADE_DATA to its folder")
     target = tmp_path_factory.mktemp("worlds") / "duplex.json"
-    assert cli.run(["import", str(HOUSE), "--out", str(target)]) == cli.EXIT_WELL
+    assert main(["scene", "import", str(HOUSE), "--out", str(target)]) == 0
     return target
 
 
@@ -46,5 +46,5 @@ def test_from_the_spawn_there_is_a_way_to_every_place(imported: Path) -> None:
 
 
 def test_it_passes_the_check(imported: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert cli.run(["check", str(imported)]) == cli.EXIT_WELL
+    assert main(["scene", "check", str(imported)]) == 0
     assert "8 places" in capsys.readouterr().out

@@ -76,7 +76,7 @@ def test_candidates_are_compared(
         (["--tune", "--score-cache=done", "--vary=foresight_s=2"], "--tune needs two recordings"),
         (["--tune", "--score-cache=done", "--candidates=none"], "none: cannot be read"),
         (["--vary=foresight_s=2"], "--vary is for --sensitivity and --tune"),
-        (["--candidates=none"], "--candidates is for --tune"),
+        (["--candidates=some.jsonl"], "--candidates is for --tune"),
     ],
 )
 def test_wrong_usage(
@@ -88,6 +88,7 @@ def test_wrong_usage(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "some.jsonl").write_text("{}\n")
     try:
         code: object = run(crowds[0], *arguments)
     except SystemExit as end:  # the parser of options raises this

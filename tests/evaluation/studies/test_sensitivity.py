@@ -41,7 +41,7 @@ def test_by_default_values_double_around_the_baseline_within_limits() -> None:
     assert taken["risk_weight"] == tuple(weight * 2.0**k for k in range(-2, 3))
     assert all(isinstance(value, int) for value in taken["max_expansions"])
     (wide,) = sensitivity.ranges({"person_room_m": None}, {"person_room_m": 0.4}).values()
-    assert wide == (0.1, 0.2, 0.4, 0.8, 1.0)
+    assert wide == (0.1, 0.2, 0.4, 0.75)
 
 
 def test_given_values_are_taken_beside_the_baseline() -> None:

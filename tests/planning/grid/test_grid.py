@@ -100,7 +100,7 @@ def test_the_floor_that_is_meant_is_the_one_nearest_in_height() -> None:
     assert grid.layers == 2
     where = [(4.0, 4.0)] * 5
     cells = grid.on_ground(where, [0.0, 1.6, 1.7, 3.3, 99.0])[1]
-    assert grid.layered.places[cells, 0].tolist() == [0, 0, 1, 1, 1]
+    assert grid.layered.places["layer"][cells].tolist() == [0, 0, 1, 1, 1]
     assert [grid.layer_at((4.0, 4.0), z) for z in (-5.0, 1.0, 2.0)] == [0, 0, 1]
     assert grid.floor_at((4.0, 4.0), 2.5) == pytest.approx(UPPER_M)
 

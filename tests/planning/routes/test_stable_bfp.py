@@ -19,7 +19,7 @@ from tests.planning.worlds import holds
 
 def way_of(feet, cells) -> float:
     """Length in cells."""
-    places = feet.arrays.places[cells][:, 1:]
+    places = np.column_stack([feet.arrays.places[name][cells] for name in ("row", "column")])
     diagonal = (np.diff(places, axis=0) != 0).all(axis=1)
     return float(np.where(diagonal, 99 / 70, 1.0).sum())
 
@@ -93,7 +93,7 @@ def test_who_sets_out_on_an_edge_counts_from_there() -> None:
     feet, start, goal = along_a_kerb(12)
     path = stable_bfp(feet, spread_wave(feet, goal), start, goal)
     assert not len(path.cells)
-    row = feet.arrays.places[start, 1]
+    row = feet.arrays.places["row"][start]
     cells = {tuple(place): cell for cell, place in enumerate(feet.arrays.places.tolist())}
     amid = cells[0, int(row), 10]
     assert feet.classes[amid] == Stability.UNSTABLE

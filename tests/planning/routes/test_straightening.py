@@ -63,7 +63,7 @@ def test_a_straightened_way_is_walkable_and_no_longer(grid, body, pick) -> None:
         assert after.xy[0] == pytest.approx(before.xy[0])
         assert after.xy[-1] == pytest.approx(before.xy[-1])
         points = np.column_stack([after.xy, feet.arrays.floors[after.cells].astype(float)])
-        layers = feet.arrays.places[after.cells, 0].astype(np.int64)
+        layers = feet.arrays.places["layer"][after.cells].astype(np.int64)
         path = LayeredPath(PathStatus.FOUND, points, layers, headings(after.xy))
         walk_through(path, grid, body)
 
@@ -83,7 +83,7 @@ def test_a_straight_way_crosses_the_cells_that_lie_under_it(grid, body, pick) ->
         p, q = np.array(centre(feet, a)), np.array(centre(feet, b))
         samples = p + np.linspace(0.0, 1.0, 4001)[:, None] * (q - p)
         crossed = {(int(y / 0.25), int(x / 0.25)) for x, y in samples if x % 0.25 and y % 0.25}
-        places = [tuple(place) for place in feet.arrays.places[[a, *cells], 1:].tolist()]
+        places = [place[1:] for place in feet.arrays.places[[a, *cells]].tolist()]
         assert crossed <= set(places)
         count = 0
         for before, cell, reported in zip([a, *cells], cells, counts, strict=False):
@@ -95,9 +95,7 @@ def test_a_straight_way_crosses_the_cells_that_lie_under_it(grid, body, pick) ->
 
 def test_in_the_open_the_way_becomes_one_straight_line() -> None:
     feet = traversability(grid_of(12.0), Body.adult())
-    start, goal = (
-        int(np.flatnonzero((feet.arrays.places == p).all(1))[0]) for p in ((0, 3, 2), (0, 40, 20))
-    )
+    start, goal = (feet.arrays.places.tolist().index(p) for p in ((0, 3, 2), (0, 40, 20)))
     line = straighten(feet, found_line(feet, start, goal))
     assert length(line.xy) == pytest.approx(math.hypot(37 * 0.25, 18 * 0.25))
     assert np.ptp(headings(line.xy)) < 1e-9
@@ -106,9 +104,7 @@ def test_in_the_open_the_way_becomes_one_straight_line() -> None:
 def test_around_a_block_the_way_is_within_three_percent_of_the_shortest() -> None:
     block = [box(3.0, 0.0, 5.0, 5.0, 3.0)]
     feet = traversability(grid_of(8.0, block), Body.adult())
-    start, goal = (
-        int(np.flatnonzero((feet.arrays.places == p).all(1))[0]) for p in ((0, 4, 4), (0, 4, 27))
-    )
+    start, goal = (feet.arrays.places.tolist().index(p) for p in ((0, 4, 4), (0, 4, 27)))
     line = straighten(feet, found_line(feet, start, goal))
     corners = [centre(feet, start), (2.75, 5.25), (5.25, 5.25), centre(feet, goal)]
     assert length(corners) * 0.98 < length(line.xy) < length(corners) * 1.03

@@ -61,7 +61,7 @@ async def test_foreign_pages_are_refused_where_origins_are_named(serving: Servin
 async def test_connections_at_the_door_are_bounded(
     serving: Serving, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("esplanade.server.net.listener.MAX_AT_DOOR", 1)
+    monkeypatch.setattr("esplanade.server.net.listener.MAX_UNGREETED", 1)
     async with serving(max_clients=1) as server, joined(server.port):
         url = f"ws://127.0.0.1:{server.port}/ws"
         async with connect(url, proxy=None):
