@@ -20,7 +20,7 @@ USER esplanade
 RUN mkdir -p /home/esplanade/.cache
 VOLUME /home/esplanade/.cache
 EXPOSE 8080
-# Health is asked on the private port, from within; the first start compiles for a minute or two.
+# Health is asked on the private port, from within; the first start compiles for about a minute.
 HEALTHCHECK --start-period=180s --interval=10s --timeout=3s --retries=3 \
   CMD ["python", "-c", "import urllib.request as r; r.urlopen('http://127.0.0.1:8081/readyz', timeout=2)"]
 STOPSIGNAL SIGTERM

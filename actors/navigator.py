@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -154,12 +154,18 @@ class Navigator:
         self.table.agents.goals[row] = free
         return self._potentials.take(free, target[2], body)
 
-    def prepare_goal(self, goal: Point, z_m: float, parameters: ActorParameters) -> None:
-        """Work out the potential of a goal before somebody needs it in the middle of a tick."""
+    def prepare_goals(
+        self, goals: Iterable[tuple[Point, float]], parameters: ActorParameters
+    ) -> None:
+        """Derive the potentials of goals, (x, y) and a height, before a tick has to wait for them.
+
+        Goals where nobody can stand are left out.
+        """
         body = parameters.body
-        free = self.grid.nearest_free(goal, z_m, body.radius_m - _SLACK_M, body)
-        if free is not None:
-            self._potentials.release(self._potentials.take(free, z_m, body))
+        fits_m = body.radius_m - _SLACK_M
+        free = [(self.grid.nearest_free(goal, z_m, fits_m, body), z_m) for goal, z_m in goals]
+        keys = [(*goal, z_m, body) for goal, z_m in free if goal is not None]
+        self._potentials.prepare(keys, self.plan.threads)
 
     def set_parameters(self, actor_id: Hashable, parameters: ActorParameters) -> None:
         """Change an actor's parameters from the next tick on."""

@@ -263,8 +263,8 @@ class Population:
                 for n in range(10):
                     navigator.add_actor(n, (0.5 + 0.5 * n, 3.5), (1.0, 1.0))
         navigator.close()
-        for place in self.scene.places:
-            self.navigator.prepare_goal(place.position, place.z_m, ActorParameters())
+        goals = [(place.position, place.z_m) for place in self.scene.places]
+        self.navigator.prepare_goals(goals, ActorParameters())
 
     def close(self) -> None:
         """End the planning threads."""

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -34,13 +37,26 @@ class PotentialPool:
         key = (goal[0], goal[1], z_m, body)
         slot = self._slots.get(key)
         if slot is None:
-            slot = self._fresh_slot()
-            self.arrays[slot] = self._potential(key)
-            self._slots[key] = slot
-            self._keys[slot] = key
+            slot = self._keep(key, self._potential(key))
         elif slot in self._idle:
             self._idle.remove(slot)
         self._users[slot] += 1
+        return slot
+
+    def prepare(self, goals: Iterable[_Key], threads: int) -> None:
+        """Derive the potentials of goals (x, y, height, body) for later users, on threads."""
+        wanted = [key for key in dict.fromkeys(goals) if key not in self._slots]
+        for *_, body in wanted:
+            self._grid.row_of(body)  # derived here, since the threads share the grid
+        with ThreadPoolExecutor(threads, thread_name_prefix="potentials") as pool:
+            for key, values in zip(wanted, pool.map(self._potential, wanted), strict=True):
+                self._idle.append(self._keep(key, values))
+
+    def _keep(self, key: _Key, values: NDArray[np.float32]) -> int:
+        slot = self._fresh_slot()
+        self.arrays[slot] = values
+        self._slots[key] = slot
+        self._keys[slot] = key
         return slot
 
     def release(self, slot: int) -> None:

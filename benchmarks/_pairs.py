@@ -52,7 +52,7 @@ class Finders(StrEnum):
 
 
 def finders_of(ours: Answer, theirs: Answer) -> Finders:
-    """Which of the two planners found a path."""
+    """The planners that found a path."""
     if ours.found:
         return Finders.BOTH if theirs.found else Finders.ONLY_OURS
     return Finders.ONLY_THEIRS if theirs.found else Finders.NEITHER

@@ -100,7 +100,7 @@ def _draw(steps: Steps, rows: Rows, shares: Floats, seen: Seen) -> Pose:
 
 
 class Planted(NamedTuple):
-    """Which feet must not move in F frames, bool (F, 2) for left and right."""
+    """The feet that must not move in F frames, bool (F, 2) for left and right."""
 
     at_all: Flags
     """Whether the foot is planted."""

@@ -1,4 +1,4 @@
-"""What Python does in a tick of many actors: everything but the compiled part.
+"""The cost of Python in a tick of many actors: everything but the compiled part.
 
 python -m benchmarks.bookkeeping --actors 1000 --people 200
 

@@ -72,7 +72,7 @@ def parser() -> argparse.ArgumentParser:
 async def watch(
     settings: ServerSettings, crowd: Crowd | None, seconds: float
 ) -> tuple[StepLog, list[Seen], float]:
-    """What an onlooker in the middle of a crowd sees for some seconds of the world's time."""
+    """Log what an onlooker in the middle of a crowd sees for some seconds of the world's time."""
     async with running(settings) as server:
         url = f"ws://127.0.0.1:{server.port}"
         x0, y0, x1, y1 = server.world.scene.bounds

@@ -51,7 +51,7 @@ LEAST_SAVED: Final = {"limb is enough": 0.80, "half and half": 0.60, "all of the
 
 
 class Cost(NamedTuple):
-    """What the feet of a number of avatars cost."""
+    """The cost of the feet of a number of avatars."""
 
     avatars: int
     tick_p50_ms: float
@@ -60,11 +60,11 @@ class Cost(NamedTuple):
     us_an_avatar_and_tick: float
     us_a_step: float
     frame_ms: float
-    """Posing all of them once."""
+    """Time to pose all of them once."""
 
 
 class Work(NamedTuple):
-    """What one method of reaching did for `TARGETS` targets."""
+    """The results of one method of reaching for `TARGETS` targets."""
 
     reached_percent: float
     turned: float
@@ -73,7 +73,7 @@ class Work(NamedTuple):
     trunk_deg: float
     """Mean angle by which the trunk has turned in the end."""
     ms: float
-    """For all targets."""
+    """Time for all targets."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -107,7 +107,7 @@ class Bot:
 
     @property
     def doors(self) -> Mapping[str, bool]:
-        """Which doors stand open, by name; changes as they do."""
+        """Whether each door stands open, by name; changes as the doors do."""
         return MappingProxyType(self._view.doors)
 
     @property

@@ -97,7 +97,7 @@ class Client:
             self._tally.snapshot_age_s.add(max(0.0, age_s))
 
     def _take(self, frame: bytes) -> None:
-        """Of everything but snapshots only steps, pongs and errors are looked into."""
+        """Look into steps, pongs and errors, and into nothing else."""
         if frame[_CODE_BYTE : _CODE_BYTE + 1] == _STEPS:
             self._walkers.take(frame)
             return

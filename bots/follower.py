@@ -27,7 +27,7 @@ Vector = tuple[float, float]
 
 @dataclass(frozen=True)
 class Timeline:
-    """Which moment of the recording a tick shows."""
+    """The tie between ticks of the server and moments of the recording."""
 
     base_tick: int
     base_s: float

@@ -65,7 +65,7 @@ _REPLAY: Final = {
 
 
 def check(given: Mapping[str, Any]) -> None:
-    """Whether these settings fit together.
+    """Check that these settings fit together.
 
     Raises
     ------

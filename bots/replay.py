@@ -32,7 +32,7 @@ class ReplayJob:
     tracks: tuple[Track, ...]
     speedup: float
     linger_s: float
-    """How long a pedestrian stands at its last place before it leaves (real time)."""
+    """Time that a pedestrian stands at its last place before it leaves (real time)."""
 
     async def run(self, tally: Tally, stop: asyncio.Event) -> None:
         """Send everyone in at their time, until all have left or `stop` is set."""

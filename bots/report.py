@@ -94,7 +94,7 @@ def _counts(tally: Tally) -> Table:
 
 
 def _per_walker(tally: Tally) -> float | None:
-    """Bytes of steps that a client is sent a second for each whom it sees walk."""
+    """Bytes of steps a second that a client is sent for each avatar that it sees walk."""
     return tally.step_bytes / tally.walker_seconds if tally.walker_seconds else None
 
 

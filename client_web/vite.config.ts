@@ -8,7 +8,7 @@ export default defineConfig({
     // The server answers with a strict content security policy: nothing may be inlined.
     assetsInlineLimit: 0,
     modulePreload: { polyfill: false },
-    // Whose code is in the bundle, with the licences of all of it; the page links to it.
+    // This file lists the libraries in the bundle with their licences; the page links to it.
     license: { fileName: "licences.txt" },
     sourcemap: false,
     target: "es2022",

@@ -16,7 +16,7 @@ from esplanade.commandline import exit_codes
 
 
 def end_quietly() -> None:
-    """From now on Ctrl-C ends the process at once, unless whoever started it ignores Ctrl-C."""
+    """Let Ctrl-C end the process at once, unless the process was started to ignore Ctrl-C."""
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, _end)
 

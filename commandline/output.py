@@ -50,7 +50,7 @@ def made_folder(option: str, path: Path) -> Path:
 
 
 def _plain(value: Any) -> Any:
-    """As JSON has it."""
+    """The value as JSON can hold it; None stands for a number that is not finite."""
     match value:
         case Mapping():
             return {name: _plain(part) for name, part in value.items()}

@@ -33,6 +33,6 @@ def run(parser: Parser, words: Sequence[str]) -> int:
 
 
 def imported(name: str) -> Any:
-    """What "package.module:name" names."""
+    """The object that a name like "package.module:name" refers to."""
     module, _, attribute = name.partition(":")
     return getattr(import_module(module), attribute)

@@ -62,9 +62,10 @@ def settings_parser(
     explained: Collection[str] | None = None,
     **more: Any,
 ) -> Parser:
-    """One option for every setting, in their groups. What is not given is not in the result.
+    """One option for every setting, in their groups.
 
-    With `explained`, the help is silent about all others.
+    Settings that are not given are not in the result. With `explained`, the help is silent about
+    all others.
     """
     options: dict[str, Action] = {}
 

@@ -4,7 +4,7 @@ from argparse import ArgumentTypeError, Namespace
 from typing import Any, Final
 
 from esplanade.commandline.errors import UsageError
-from esplanade.commandline.parser import Parser
+from esplanade.commandline.parser import Parser, suggestion
 from esplanade.commandline.readers import (
     SEED_LIMIT,
     Folder,
@@ -13,6 +13,7 @@ from esplanade.commandline.readers import (
     OutputFile,
     Whole,
 )
+from esplanade.evaluation.setting_names import NAMES
 
 POLICIES: Final = {
     "esplanade": "the project's own actor",
@@ -175,6 +176,7 @@ def _add_studies(studies: Any) -> None:
     studies.add_argument(
         "--vary",
         metavar="NAME=V1,V2,..",
+        type=_of_setting,
         action="append",
         default=[],
         help="a setting and its values; may be given several times: --sensitivity takes one at a "
@@ -214,6 +216,13 @@ def check(options: Namespace) -> None:
 def _change(text: str) -> str:
     if "=" not in text:
         raise ArgumentTypeError(f"{text!r} is not NAME=VALUE")
+    return _of_setting(text)
+
+
+def _of_setting(text: str) -> str:
+    name = text.partition("=")[0]
+    if name not in NAMES:
+        raise ArgumentTypeError(f"{name}: there is no such setting{suggestion(name, NAMES)}")
     return text
 
 

@@ -44,7 +44,7 @@ class Film:
     poses: Pose
     """Joints of the body, a row for each of the F frames."""
     footprints: tuple[FilmedFootprint, ...]
-    """In the order in which they were first stood on."""
+    """The footprints in the order in which they were first stood on."""
     sizes: BodySizes
     steps: int
     """Number of steps begun, those included that were only re-aimed."""

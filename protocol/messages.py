@@ -1,6 +1,6 @@
 """Every message, as a pydantic model. Field names are those on the wire.
 
-What comes from a client is checked strictly: unknown fields, wrong types, infinities and
+Messages of clients are checked strictly: unknown fields, wrong types, infinities and
 over-long texts are refused. Positions are metres, z being the height of the feet above the
 scene's ground; directions are radians, counter-clockwise from +x; speeds are metres a second.
 """
@@ -82,7 +82,7 @@ class Hello(FromClient):
     at: Annotated[tuple[Metres, Metres, Metres], Field(strict=False)] | None = None
     """Wished place (x, y, z) of a new avatar; the server takes the nearest free one."""
     operator: Token | None = None
-    """The server's operator key; who does not know it comes in without an operator's rights."""
+    """The server's operator key; without the right key a client has no operator's rights."""
 
 
 class Move(FromClient):
@@ -159,7 +159,7 @@ class Welcome(FromServer):
     origin: tuple[float, float]
     """World position (x, y) of the snapshot's coordinate (0, 0), metres."""
     doors: dict[str, bool]
-    """Which of the scene's doors stand open now, by name."""
+    """Whether each of the scene's doors stands open now, by name."""
     operator: bool
     """Whether this client may do what only operators may."""
 

@@ -58,7 +58,7 @@ def pack_records(
 
     Returns
     -------
-    RECORD (N,). What lies outside the range is clamped to its edge.
+    RECORD (N,). Values outside the range are clamped to its edge.
     """
     records = np.empty(len(ids), dtype=RECORD)
     records["id"] = ids

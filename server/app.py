@@ -77,7 +77,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     async with AsyncExitStack() as stack:
         thread = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="actors"))
         private = await stack.enter_async_context(private_port(settings, metrics, lambda: ready))
-        # Whether the port can be had is found out now, not after a minute of compiling.
+        # This finds out now, not after a minute of compiling, whether the port can be had.
         bound = await loop.create_server(
             asyncio.Protocol, settings.host, settings.port, start_serving=False
         )

@@ -36,8 +36,8 @@ def serve(settings: ServerSettings) -> None:
 async def _serve(settings: ServerSettings) -> None:
     loop = asyncio.get_running_loop()
     stop = asyncio.Event()
-    # Until people can come in there is nothing to put in order, but a thread that compiles for
-    # a minute or two and cannot be interrupted: Ctrl-C ends the process at once.
+    # Until people can come in there is nothing to put in order, but there is a thread that compiles
+    # for about a minute and cannot be interrupted: Ctrl-C ends the process at once.
     interrupts.end_quietly()
 
     def on_signal(number: int) -> None:

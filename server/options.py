@@ -41,8 +41,8 @@ _PEOPLE: Final = {
         "most others that one person sees, the nearest first", Whole(1, 4000), 100
     ),
     "steps_radius_m": Setting(
-        "steps of others are sent within this distance, and 15 % further off to whom they have "
-        "been sent before",
+        "steps of others are sent within this distance, and up to 15 % further off to those who "
+        "are already sent them",
         Number(1.0, 1000.0),
         25.0,
         "m",
@@ -115,7 +115,7 @@ _LOGS: Final = {
 
 
 def check(given: Mapping[str, Any]) -> None:
-    """Whether these settings fit together, all others being as they are by default.
+    """Check that these settings fit together, all others being as they are by default.
 
     Raises
     ------

@@ -15,7 +15,7 @@ from esplanade.planning.compiled.notice import heard
 AHEAD: Final = "esplanade.planning.agents.ahead"
 """The second process compiles this: about half of all, and nothing that the first half needs."""
 FUNCTIONS: Final = 430
-"""About how many functions are compiled on the way to a world; only what is shown goes by it."""
+"""The approximate number of functions that a world needs compiled; only the display uses it."""
 SERVED: Final = "served"
 TOLD_EVERY_S: Final = 10.0
 
@@ -24,7 +24,7 @@ log = structlog.get_logger(__name__)
 
 @contextmanager
 def kernels_compiled() -> Iterator[Callable[[], None]]:
-    """Within this a world is built and warmed up; yields what waits for the second process.
+    """Yield while a world is built and warmed up; the value waits for the second process.
 
     Where an earlier start has left all kernels in the cache, it does nothing.
     """
@@ -44,7 +44,7 @@ def kernels_compiled() -> Iterator[Callable[[], None]]:
 def _shown() -> Iterator[Callable[[], None]]:
     """Shows how far it is: by a bar on a terminal, else in lines of log."""
     log.info(
-        "compiling, once on this machine; it takes a minute or two", kept_in=str(cache.folder())
+        "compiling, once on this machine; it takes about a minute", kept_in=str(cache.folder())
     )
     bar = progress(share=True)
     if not bar.console.is_terminal:

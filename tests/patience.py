@@ -1,4 +1,4 @@
-"""How long tests wait for what is to happen.
+"""The longest times that tests wait for something to happen.
 
 A wait that ends too late fails a test only when nothing happens any more: no test measures how
 fast the machine is. Both times are many times what a slow and busy machine needs.

@@ -1,4 +1,4 @@
-"""What the documents name exists: make targets, files, options, and examples that hold."""
+"""Everything that the documents name exists: make targets, files, options; examples hold."""
 
 import ast
 import asyncio
@@ -146,7 +146,7 @@ async def test_bot_of_the_readme_answers() -> None:
 
 
 async def conversation(bot: bots.Bot) -> str:
-    """What somebody else says, after we have asked whoever comes into view."""
+    """Ask Echo as soon as it comes into view, and return what somebody else says then."""
     async for event in bot.events():
         if isinstance(event, Enter) and any(entity.name == "Echo" for entity in event.entities):
             await bot.chat("Who is there?")

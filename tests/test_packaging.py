@@ -1,4 +1,4 @@
-"""What is shipped: the build hook, the wheel, the source archive, and the container's files."""
+"""Packaging: the build hook, the wheel, the source archive, and the container's files."""
 
 import os
 import re
@@ -24,7 +24,7 @@ PACKAGE = ROOT / "src" / "esplanade"
 SCENES = ("gallery.json", "pavilion.json", "pavilion.obj", "plaza.json")
 
 HOLDERS = ("three.js authors", "The MessagePack Community")
-"""Whose code the web client bundles."""
+"""The holders of the code that the web client bundles."""
 
 NPM_THAT_BUILDS = """
 import sys

@@ -25,7 +25,7 @@ STEP_TURN = math.radians(400) / STEPS
 FIRST_STEP = math.radians(-90)
 STEP_THICK_M = 0.3
 HEAD_ARC = math.radians(60)
-"""How much of the upper railing is left out where the stair arrives."""
+"""The angle of the upper railing that is left out where the stair arrives."""
 
 LAND_M, LAND_CELL_M = 26.0, 2.0
 
@@ -42,13 +42,13 @@ class Mesh:
         self.faces: list[list[int]] = []
 
     def face(self, *corners: Corner) -> None:
-        """Counter-clockwise as seen from outside."""
+        """Add a face; its corners are counter-clockwise as seen from outside."""
         rounded = [(round(x, 3), round(y, 3), round(z, 3)) for x, y, z in corners]
         numbers = [self.corners.setdefault(each, len(self.corners) + 1) for each in rounded]
         self.faces.append(numbers)
 
     def prism(self, ring: Sequence[Point], bottom: float, top: float) -> None:
-        """A convex ring, counter-clockwise, between two heights."""
+        """Add the prism of a convex, counter-clockwise ring between two heights."""
         for (ax, ay), (bx, by) in pairwise([*ring, ring[0]]):
             self.face((ax, ay, bottom), (bx, by, bottom), (bx, by, top), (ax, ay, top))
         (x0, y0), *rest = ring
@@ -57,7 +57,7 @@ class Mesh:
             self.face((x0, y0, bottom), (bx, by, bottom), (ax, ay, bottom))
 
     def text(self) -> str:
-        """As OBJ, y up."""
+        """The mesh as OBJ, y up."""
         lines = ["# Esplanade: a pavilion, metres, y up. Written by tools/build_pavilion.py"]
         lines += [f"v {x:g} {z:g} {0.0 - y:g}" for x, y, z in self.corners]
         lines += ["f " + " ".join(map(str, face)) for face in self.faces]
@@ -95,7 +95,7 @@ def spiral(mesh: Mesh) -> float:
 
 
 def railings(mesh: Mesh, head: float) -> None:
-    """Around the upper floor, and around the well but for the head of the stair."""
+    """Add railings around the upper floor, and around the well but for the head of the stair."""
     top = UPPER_M + RAILING_M
     ring(mesh, SLAB_R - RAILING_THICK_M, SLAB_R, UPPER_M, top)
     pieces = 24
@@ -111,7 +111,7 @@ def roof(mesh: Mesh) -> None:
 
 
 def land_height(x: float, y: float) -> float:
-    """Level around the pavilion, hills farther out."""
+    """The height of the land: it is level around the pavilion, with hills farther out."""
     away = min(1.0, max(0.0, (math.hypot(x, y) - 11.0) / 11.0))
     hills = 1.7 + 1.2 * math.sin(0.23 * x + 0.6) * math.cos(0.19 * y - 0.4)
     return away * away * (3.0 - 2.0 * away) * hills

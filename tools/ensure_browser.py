@@ -1,7 +1,8 @@
 """Print the path of a chromium for the browser tests; where there is none, install one.
 
-In this order: what ESPLANADE_CHROMIUM names, the machine's own, playwright's download, the
-system's package manager where we may use it. What was tried goes to stderr, the path to stdout.
+It tries, in this order: the one that ESPLANADE_CHROMIUM names, the machine's own, playwright's
+download, the system's package manager where we may use it. Attempts are told on stderr, the path
+goes to stdout.
 """
 
 import os
@@ -57,7 +58,7 @@ def _candidates() -> Iterator[str | None]:
 
 
 def _playwright_path() -> str | None:
-    """Where playwright keeps its own browser, downloaded or not."""
+    """The path at which playwright keeps its own browser, downloaded or not."""
     done = subprocess.run(
         [sys.executable, "-c", PLAYWRIGHT_PATH], check=False, capture_output=True, text=True
     )

@@ -89,7 +89,7 @@ def run(
     line = " ".join(map(str, command))
     print(f"$ {line}", flush=True)
     begun = time.monotonic()
-    # What the calling shell has active must not leak into another environment.
+    # The environment that the calling shell has active must not leak into another one.
     hidden = {"PYTHONPATH", "PYTHONHOME", "VIRTUAL_ENV", "UV_PROJECT_ENVIRONMENT"}
     variables = {name: value for name, value in os.environ.items() if name not in hidden}
     status = subprocess.run(

@@ -29,7 +29,7 @@ READY_LIMIT_S: Final = 900.0
 WALK_LIMIT_S: Final = 20.0
 NOT_IMPORTED: Final = {"esplanade.__main__"}
 EXTRAS: Final = {"jupedsim", "matplotlib", "PIL", "shapely"}
-"""What a plain install does not bring."""
+"""Packages that a plain install does not bring."""
 
 
 def main(document: Path) -> None:

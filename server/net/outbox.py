@@ -31,7 +31,7 @@ UNSENT_LOW_WATER_BYTES: Final = 16 * 1024
 
 @dataclass(frozen=True)
 class SlowPolicy:
-    """When a client is slow, and when it is dropped."""
+    """The limits beyond which a client is slow, and beyond which it is dropped."""
 
     slow_bytes: int
     drop_bytes: int

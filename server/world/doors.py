@@ -19,7 +19,7 @@ class Doors:
         self._wanted: dict[str, bool] = {}
 
     def states(self) -> dict[str, bool]:
-        """Which doors stand open now, by name."""
+        """Whether each door stands open now, by name."""
         return {name: self._grid.doors.is_open(name) for name in self._grid.doors}
 
     def want(self, name: str, is_open: bool) -> None:

@@ -24,7 +24,7 @@ class Attach:
 
 @dataclass(frozen=True, slots=True)
 class Detach:
-    """Nobody looks any more; the avatar stands still where it is."""
+    """The client of this person looks no more; the avatar stands still where it is."""
 
     id: int
 

@@ -97,7 +97,7 @@ class Interest:
     def _look(self, due: Slots, neighbours: Neighbours, tick: int) -> None:
         viewer = due[:, None]
         distances, found = neighbours.nearest(due, self._columns, self._leave_m)
-        # Where many stand on one spot, oneself may not be among the nearest.
+        # If many avatars stand on one spot, a viewer may not be among its own nearest.
         hidden = ~(found == viewer).any(axis=1)
         found[hidden, -1] = due[hidden]
 

@@ -8,7 +8,7 @@ from esplanade.planning.scene.heights import BODIES_OVERLAP_M
 from esplanade.server.world.state import Floats, Slots, State
 
 STOREY_WEIGHT = 3.0
-"""A metre up or down counts so many metres: who is on another floor is seen, but later."""
+"""A metre up or down counts this many metres: avatars on other floors come into view later."""
 
 
 class Neighbours:

@@ -77,7 +77,7 @@ class People:
         self._pass_targets()
 
     def _look_ahead(self, moving: Slots, moved_m: Floats) -> None:
-        """Write where people get who go on by (N, 2) a tick, at most to their last target."""
+        """Write the places of people who go on by (N, 2) a tick, at most to their last target."""
         state = self._state
         here = state.positions[moving]
         onward = (AHEAD_S / self._tick_s * moved_m)[:, None] * np.arange(AHEAD)[:, None]

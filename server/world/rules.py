@@ -15,5 +15,5 @@ class Rules:
     view_radius_m: float
     view_limit: int
     steps_radius_m: float
-    """Steps are sent of who is so near, and in view."""
+    """Steps are sent of walkers that are within this distance, and in view."""
     steps_limit: int

@@ -33,7 +33,7 @@ class SnapshotEncoder:
     def __init__(self, state: State, origin_m: tuple[float, float]) -> None:
         self._state = state
         self._origin_m = origin_m
-        # One row more than there are slots: where nobody is, nothing ever changes.
+        # One row more than there are slots: it stands for nobody, and never changes.
         self._records = np.zeros(state.capacity + 1, dtype=RECORD)
         self._changed = np.zeros(state.capacity + 1, dtype=np.int32)
         self.written = np.zeros(state.capacity, dtype=np.int32)

@@ -43,10 +43,11 @@ class StepBlocks:
 
 
 class StepInterest:
-    """Keeps for every viewer since when it is shown whose steps.
+    """Keeps, for every viewer, the walkers whose steps it is shown, and since when.
 
-    `since[viewer, slot]` is the tick at which that walker came near, 0 for who is not near. Oneself
-    is always near; of the others in view those within `steps_radius_m`, the nearest `steps_limit`.
+    `since[viewer, slot]` is the tick at which that walker came near, 0 if it is not near. A viewer
+    is always near to itself; of the others in view, the nearest `steps_limit` within
+    `steps_radius_m` are near.
     """
 
     def __init__(self, state: State, rules: Rules) -> None:
@@ -60,7 +61,7 @@ class StepInterest:
 
     @property
     def shown(self) -> int:
-        """How many walkers all viewers together are shown."""
+        """Number of walkers that are shown, summed over all viewers."""
         return int(np.count_nonzero(self.since))
 
     def attach(self, slot: int) -> None:
@@ -116,7 +117,7 @@ class StepInterest:
         return StepBlocks(ends.tolist(), memoryview(data))
 
     def _distances(self, viewers: Slots, rows: Slots) -> npt.NDArray[np.float64]:
-        """From each of V viewers to those in its row, (V, C); of nobody any number."""
+        """Distances (V, C) from each viewer to those in its row; unused places hold any number."""
         state = self._state
         places = np.column_stack([state.positions, state.heights * STOREY_WEIGHT])
         apart: npt.NDArray[np.float64] = np.linalg.norm(

@@ -36,7 +36,7 @@ def to_records(steps: motion.Steps, ids: Slots) -> StepRecords:
 
 
 def from_records(records: StepRecords) -> motion.Steps:
-    """The steps as everyone knows them who got these records."""
+    """The steps as readers of these records know them."""
     known = unpack_steps(records)
     standing = np.column_stack([known.standing.positions_m, known.standing.headings_rad])
     landing = np.column_stack([known.landing.positions_m, known.landing.headings_rad])

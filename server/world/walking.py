@@ -36,7 +36,7 @@ class Feet:
 
     @property
     def lost(self) -> int:
-        """How often a body was too far from its feet and stood anew."""
+        """Number of times that a body was too far from its feet and stood anew."""
         return self._walkers.lost
 
     def update(self, tick: int) -> None:

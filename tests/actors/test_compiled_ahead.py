@@ -1,4 +1,4 @@
-"""What a second process compiles ahead is what ticks of a real zone call."""
+"""The kernels that a second process compiles ahead are those that ticks of a real zone call."""
 
 import pytest
 

@@ -55,7 +55,7 @@ def test_an_open_door_is_taken_by_who_was_on_a_longer_way(navigator) -> None:
 
 
 def test_a_goal_known_before_is_derived_anew_for_who_comes_later(navigator) -> None:
-    navigator.prepare_goal((9.0, 4.0), 0.0, BODY)
+    navigator.prepare_goals([((9.0, 4.0), 0.0)], BODY)
     navigator.grid.set_door("gate", is_open=False)
     navigator.ground_changed()
     navigator.add_actor("a", (3.0, 4.0), (9.0, 4.0), BODY)

@@ -235,7 +235,7 @@ def test_a_cast_plays_on_all_floors() -> None:
     assert states["climber"].reason is Reason.ARRIVED
     assert states["climber"].z_m == pytest.approx(UPPER_M, abs=1e-4)
     assert states["climber"].goal == (11.0, 6.0, UPPER_M)
-    assert told.people == [], "who is below is of no concern"
+    assert told.people == [], "people on the floor below are of no concern"
     assert states["stays"].z_m == 0.0
     assert population.trips >= 1
 

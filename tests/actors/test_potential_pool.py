@@ -31,7 +31,7 @@ def test_floors_and_bodies_have_rows_of_their_own() -> None:
     child = guides.take((12.0, 6.0), 0.0, Body.child())
     assert len({below, above, child}) == 3
     cells = grid.on_ground([(12.0, 6.0)] * 2, [0.0, UPPER_M])[1]
-    # What is left from the cell's first waypoint: of the other floor, the way over the stairs.
+    # The length left from each cell's first waypoint; from the other floor it is over the stairs.
     left = guides.arrays[[below, above]][:, cells, 0]
     assert np.diag(left).max() < 0.5
     assert min(left[0, 1], left[1, 0]) > 5.0

@@ -1,4 +1,4 @@
-"""What there is to see at a place."""
+"""The sights that there are to see at a place."""
 
 import pytest
 

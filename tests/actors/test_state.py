@@ -1,4 +1,4 @@
-"""What an actor shows, and that the reasons are those of the wire."""
+"""The state that an actor shows; its reasons are those of the wire."""
 
 import numpy as np
 

@@ -21,7 +21,7 @@ Walk = Callable[[float], tuple[float, ...]]
 
 
 def holds(examples: int) -> settings:
-    """This many examples, the same in every run."""
+    """Settings for this many examples, the same in every run."""
     return settings(max_examples=examples, deadline=None, derandomize=True)
 
 
@@ -62,7 +62,7 @@ def along(*corners: Point, speed_mps: float = 1.2) -> Walk:
 
 @dataclass
 class Record:
-    """What happened: per actor positions (T, 2), heights (T,) and reasons; per person (T, 2)."""
+    """A run: per actor positions (T, 2), heights (T,) and reasons; per person positions (T, 2)."""
 
     positions: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     heights: dict[str, NDArray[np.float64]] = field(default_factory=dict)
@@ -70,7 +70,7 @@ class Record:
     people: dict[str, NDArray[np.float64]] = field(default_factory=dict)
 
     def arrival_s(self, actor: str) -> float:
-        """When an actor first said that it had arrived; inf if never."""
+        """The time at which an actor first said that it had arrived; inf if never."""
         if Reason.ARRIVED not in self.reasons[actor]:
             return math.inf
         return TICK_S * (1 + self.reasons[actor].index(Reason.ARRIVED))

@@ -1,4 +1,4 @@
-"""What the benchmark of walking measures: everyone's steps, every way of reaching, the verdict."""
+"""The benchmark of walking: everyone's steps, every way of reaching, and the verdict."""
 
 import json
 from pathlib import Path

@@ -249,7 +249,7 @@ async def scripted_server(**settings: Any) -> AsyncIterator[ScriptedServer]:
 
 
 async def _let_messages_arrive() -> None:
-    """What clients in this process have been sent they answer, and the answers are heard."""
+    """Let clients in this process answer what they were sent, and let the answers arrive."""
     for _ in range(TURNS):
         await asyncio.sleep(0)
 

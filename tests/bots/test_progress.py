@@ -1,4 +1,4 @@
-"""What is seen while a run goes on."""
+"""The progress that is shown while a run goes on."""
 
 import io
 

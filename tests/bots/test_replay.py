@@ -104,7 +104,7 @@ async def test_stop_takes_everyone_out() -> None:
 
 
 async def test_a_recorded_crowd() -> None:
-    """Those who left within the first twenty seconds of a real recording, in five."""
+    """People who left within the first twenty seconds of a recording are replayed in five."""
     crowd = read_crowd(recorded("zara1"))
     tracks = tuple(each for each in crowd.tracks if each.end_s < 20.0)
     tally = Tally()

@@ -1,4 +1,4 @@
-"""What steps cost, from the frames that a client is sent."""
+"""The cost of steps, from the frames that a client is sent."""
 
 from dataclasses import replace
 

@@ -29,9 +29,9 @@ PICTURES: Final = 6
 RISE_M: Final = 0.28
 """Height between one picture and the next."""
 SPEED_MPS: Final = 0.6
-"""Slowly, so that a machine without a graphics card keeps up."""
+"""The walk is slow, so that a machine without a graphics card keeps up."""
 BEFORE_M: Final = 0.4
-"""So far before the foot of the stairs the walk begins."""
+"""The walk begins this far before the foot of the stairs."""
 FROM_THE_SIDE_PX: Final = -262
 """A drag that turns the camera by a quarter."""
 NEARER_PX: Final = -900

@@ -79,7 +79,7 @@ async def other_profile(browser: Browser) -> BrowserContext:
 
 
 def executable(playwright: Playwright) -> str | None:
-    """What ESPLANADE_CHROMIUM names, the machine's own, or playwright's download."""
+    """The chromium that ESPLANADE_CHROMIUM names, the machine's own, or playwright's download."""
     named = os.environ.get("ESPLANADE_CHROMIUM")
     if named:
         return named

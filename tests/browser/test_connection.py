@@ -1,4 +1,4 @@
-"""What a page does when its server goes away and comes back."""
+"""The behaviour of a page when its server goes away and comes back."""
 
 from urllib.parse import urlsplit
 

@@ -65,7 +65,7 @@ async def boxes_of(visitor: Visitor, selector: str) -> list[dict[str, Any]]:
 
 
 async def shares_of_colours(visitor: Visitor) -> list[float]:
-    """How much of what the page shows each colour takes, for all colours that there are."""
+    """The share of the page's picture that each colour takes, for all colours in it."""
     picture = base64.b64encode(await visitor.page.screenshot()).decode()
     shares: list[float] = await visitor.page.evaluate(_COLOURS, picture)
     return shares

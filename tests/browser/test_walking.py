@@ -99,7 +99,7 @@ async def _frames(visitor: Visitor) -> list[Frame]:
 
 
 def _all_slides(frames: list[Frame]) -> list[tuple[float, int]]:
-    """How far each planted foot moved from one frame to the next, and whose it is."""
+    """The movement of each planted foot from one frame to the next, and the id of its avatar."""
     return [
         (slide_m, avatar_id)
         for before, after in pairwise(frames)
@@ -109,7 +109,7 @@ def _all_slides(frames: list[Frame]) -> list[tuple[float, int]]:
 
 
 def _slides_m(before: dict[str, Any], after: dict[str, Any]) -> list[float]:
-    """How far the heel or the toe on which a foot stands moved in the midst of a step."""
+    """The movement, in the midst of a step, of the heel or the toe on which a foot stands."""
     if before["step"] is None or before["step"] != after["step"]:
         return []
     side = before["step"]["stands"]
@@ -122,7 +122,7 @@ def _slides_m(before: dict[str, Any], after: dict[str, Any]) -> list[float]:
 
 
 def _distance_m(frames: list[Frame], avatar_id: int) -> float:
-    """How far somebody went while the frames were drawn."""
+    """The distance that an avatar went while the frames were drawn."""
     places = [frame[avatar_id]["pose"] for frame in frames if avatar_id in frame]
     return math.dist(_place(places[0]), _place(places[-1]))
 
@@ -136,7 +136,7 @@ def _walks(avatar: dict[str, Any]) -> bool:
 
 
 def _own_foot(view: View) -> str | None:
-    """On which foot the own avatar stands; None while it has no steps."""
+    """The foot on which the own avatar stands; None while it has no steps."""
     avatar = own(view)
     step = avatar["step"] if avatar else None
     return None if step is None else str(step["stands"])

@@ -12,7 +12,7 @@ from playwright.async_api import BrowserContext, ConsoleMessage, Page, Request
 from tests.patience import PATIENCE_S
 
 View = dict[str, Any]
-"""What a page knows, as `window.esplanade` tells it."""
+"""Everything that a page knows, as `window.esplanade` tells it."""
 
 _POLL_S: Final = 0.1
 
@@ -62,7 +62,7 @@ class Visitor:
         await self.until(lambda view: view["phase"] == "live" and own(view) is not None)
 
     async def look(self) -> View:
-        """What the page knows now."""
+        """Everything that the page knows now."""
         view: View = await self.page.evaluate(_LOOK)
         return view
 
@@ -103,11 +103,11 @@ def avatar_of(view: View, avatar_id: int) -> dict[str, Any] | None:
 
 
 def place_of(avatar: dict[str, Any]) -> tuple[float, float]:
-    """Where an avatar is drawn: x, y in metres."""
+    """The place where an avatar is drawn: x, y in metres."""
     return avatar["pose"]["x"], avatar["pose"]["y"]
 
 
 def moved_m(view: View, before: dict[str, Any]) -> float:
-    """How far an avatar is from where it was; 0 while it is out of view."""
+    """The distance of an avatar from its place before; 0 while it is out of view."""
     now = avatar_of(view, before["id"])
     return math.dist(place_of(now), place_of(before)) if now else 0.0

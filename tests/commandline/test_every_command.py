@@ -1,4 +1,4 @@
-"""What holds for every command: help and faults load nothing heavy, and say all there is to say."""
+"""Rules for every command: help and faults load nothing heavy, and say all there is to say."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""Where results go."""
+"""Results go to a console, a file or a folder."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What the word behind an option may be."""
+"""The words that an option accepts, and those that it refuses."""
 
 import os
 from argparse import ArgumentTypeError

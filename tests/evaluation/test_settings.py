@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from esplanade.actors import ActorParameters
+from esplanade.evaluation import setting_names
 from esplanade.evaluation.settings import (
     DEFAULTS,
     SettingError,
@@ -69,6 +70,10 @@ def test_settings_that_cannot_be_set_are_refused_with_a_reason(text: str, fault:
     with pytest.raises(SettingError) as caught:
         read_changes([text])
     assert fault in str(caught.value)
+
+
+def test_the_command_line_knows_all_names() -> None:
+    assert tuple(DEFAULTS) == setting_names.NAMES
 
 
 def test_choices_are_checked_too() -> None:

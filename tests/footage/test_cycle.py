@@ -14,7 +14,7 @@ COMMITTED = Path(__file__).resolve().parents[2] / "client_web" / "src" / "world"
 
 
 def numbers(value: Any, path: str = "") -> dict[str, float]:
-    """Every number by where it is."""
+    """Every number by its path in the value."""
     if isinstance(value, dict):
         parts = value.items()
     elif isinstance(value, list):
@@ -25,7 +25,7 @@ def numbers(value: Any, path: str = "") -> dict[str, float]:
 
 
 def mixed(made: dict[str, Any], phase: float, side: str) -> np.ndarray:
-    """Where the client has a heel: on the straight line between two keys."""
+    """The place that the client gives a heel: on the straight line between two keys."""
     keys = made["keys"]
     k = max(n for n in range(KEYS) if keys[n]["phase"] <= phase)
     a, b = keys[k], keys[(k + 1) % KEYS]

@@ -1,4 +1,4 @@
-"""Where a body may go, the long way: every cell against every other and every barrier."""
+"""The cells that a body may go to, the long way: every cell against all others and barriers."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class Floors:
         return max(0.0, min(float(barrier["top_m"]) - min(floors), float(barrier["climb_m"])))
 
     def stops_at(self, position: Point, floor: float, step_m: float) -> Iterator[float]:
-        """Distances to barriers that stop whoever can step no higher than that."""
+        """Distances to barriers that stop a body which can step no higher than `step_m`."""
         for barrier in self.barriers:
             if self.height_to_climb(barrier, floor) > step_m + HAIR:
                 yield point_segment_distance(position, *line_of(barrier))

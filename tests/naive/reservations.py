@@ -49,7 +49,7 @@ def conflict(
 
 
 def crowding(r: Reservations, margin_m: float, me: int, other: int, k: int, at: Point) -> float:
-    """What is lacking of the room between two of whom at least one is held up."""
+    """The cost of lacking room between two agents of which at least one is held up."""
     away = np.subtract(r.paths[other, k], at)
     room_m = math.hypot(*away) - r.radii[me] - r.radii[other] - margin_m
     mine, others = r.courses[me], r.courses[other]
@@ -71,9 +71,9 @@ def _nearest(a: Point, b: Point, c: Point, d: Point) -> float:
 
 
 def jam_order(r: Reservations, left_m: list[float]) -> list[float]:
-    """What decides who goes first, by listing everyone held up.
+    """The distances that decide priority, the least first, by listing everyone held up.
 
-    An agent in a jam counts as far as the middle of the jam is away, and below zero beyond it.
+    In a jam it is the distance to the middle of the jam, and below zero beyond the middle.
     """
     held_up = [o for o in range(len(left_m)) if r.held_up[o]]
     if len(held_up) < JAM_ACTORS:

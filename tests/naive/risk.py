@@ -33,7 +33,7 @@ def risk(
 ) -> float:
     """Mean over each person's likely places of w1 · proximity + w2 · closing speed.
 
-    Every Gaussian of the spread has likely places of its own. Who is on another floor is no risk.
+    Every Gaussian of the spread has likely places of its own. People on another floor are no risk.
     """
     near = 0.0
     closing = 0.0

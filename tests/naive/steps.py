@@ -54,7 +54,7 @@ _VALUES = np.eye(KEYS)
 
 
 def weights(u: Floats) -> Floats:
-    """How much each key counts at shares u (N,) of a step: (N, KEYS); cubic Hermite curves."""
+    """The weight of each key at shares u (N,) of a step: (N, KEYS); cubic Hermite curves."""
     place = np.clip(u, 0.0, 1.0) * (KEYS - 1)
     k = np.minimum(place.astype(np.int64), KEYS - 2)
     s = (place - k)[:, None]
@@ -85,7 +85,7 @@ def interpolate(keys: Floats, u: Floats) -> Floats:
 
 
 def sample_keys(steps: Steps, u: Floats, foot_m: Floats) -> Floats:
-    """What is drawn of steps at shares u (N,): keys (N, WIDTH).
+    """The keys (N, WIDTH) by which steps are drawn at shares u (N,).
 
     Until toe-off the swing foot turns about its toe, which stays where key 0 has it; after that the
     difference to its curve fades.
@@ -148,7 +148,7 @@ def _raise_heels(
     raised: Floats,
     sizes: BodySizes,
 ) -> None:
-    """Where a leg is too short for a foot on its toe, turn the foot about the toe; in place."""
+    """Turn feet on their toes about the toe where the leg is too short for them; in place."""
     reach = REACH * sizes.leg_m[:, None]
     short = (np.linalg.norm(ankles - hips, axis=2) > reach) & (raised > 0.0)
     if not short.any():

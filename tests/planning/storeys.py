@@ -16,7 +16,7 @@ from tests.planning.worlds import UPPER_M
 CELL_M = 0.25
 SLAB_FROM = 8.0
 STAIRS_FROM = 2.96
-"""Where along x the upper floor of `storeyed`, and the flight that leads up to it, begin."""
+"""The upper floor of `storeyed`, and the flight that leads up to it, begin here along x."""
 
 
 def box(x0: float, y0: float, x1: float, y1: float, height_m: float, offset_m: float = 0.0):
@@ -37,12 +37,12 @@ def scene_of(side_m, polygons=(), walls=(), stairs=(), doors=()) -> Scene:
 
 
 def grid_of(side_m, polygons=(), walls=(), stairs=(), doors=()) -> LayeredGrid:
-    """The same as a grid."""
+    """The same scene as a grid."""
     return LayeredGrid.from_scene(scene_of(side_m, polygons, walls, stairs, doors), CELL_M)
 
 
 def traversability(grid: LayeredGrid, body: Body):
-    """Derived afresh."""
+    """The traversability of a grid for a body, derived afresh."""
     return find_traversability(grid.layered, grid.barriers, body)
 
 

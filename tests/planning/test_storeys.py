@@ -22,7 +22,7 @@ def house() -> LayeredGrid:
 
 
 def stroll(grid, start, step, steps, body=ADULT, clearance_m=0.25):
-    """Places (steps + 1, 3) of who goes straight on."""
+    """Places (steps + 1, 3) of a body that goes straight on."""
     position, height = np.array([start[:2]]), np.array([start[2]])
     places = [(*position[0], height[0])]
     for _ in range(steps):
@@ -79,7 +79,7 @@ def test_beside_the_stairs_nobody_steps_off_where_they_are_high(house) -> None:
 
 
 def ledges(body):
-    """Where a body that stands upstairs must not come close to."""
+    """The edges that a body upstairs must not come close to."""
     return [
         ((SLAB_FROM, 0.0), (SLAB_FROM, 5.0)),
         ((SLAB_FROM, 7.0), (SLAB_FROM, 12.0)),
@@ -163,7 +163,7 @@ def test_up_a_ramp_the_height_rises_evenly() -> None:
 
 
 def followed(potential, start, step_m=0.05, most_m=60.0):
-    """Places (K, 3) of who goes down the potential, cell by cell."""
+    """Places (K, 3) of a body that goes down the potential, cell by cell."""
     grid = potential.grid
     x, y, z = start
     places = [start]

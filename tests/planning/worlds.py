@@ -35,12 +35,12 @@ Line = tuple[tuple[float, float], tuple[float, float]]
 
 
 def scaled(compiled: int, plain: int) -> int:
-    """How much of something to test: less where kernels are not compiled."""
+    """The amount of something to test: less where kernels are not compiled."""
     return compiled if COMPILED else plain
 
 
 def holds(compiled: int, plain: int) -> settings:
-    """This many examples, the same in every run."""
+    """Settings for this many examples, the same in every run."""
     return settings(max_examples=scaled(compiled, plain), deadline=None, derandomize=True)
 
 
@@ -128,7 +128,7 @@ def reserved(
 
 
 def world_of(grid: LayeredGrid, field: RiskField, reservations: Reservations) -> World:
-    """What kernels look up."""
+    """The world that kernels look things up in."""
     return World(grid.arrays, field.arrays, reservations, STEP_S, field.model.person_radius_m)
 
 

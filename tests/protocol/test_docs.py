@@ -115,7 +115,7 @@ def test_every_field_of_a_part_is_documented(title: str, model: type[BaseModel])
 
 
 def documented_type(kind: Any) -> str:
-    """How the document calls a field's type."""
+    """The document's name for a field's type."""
     names = {int: "integer", float: "number", str: "text", bool: "boolean", bytes: "binary"}
     if kind in names:
         return names[kind]

@@ -1,4 +1,4 @@
-"""What a message may hold."""
+"""The values that a message may hold."""
 
 import math
 from typing import Any

@@ -77,7 +77,7 @@ def test_a_taken_port_is_named_before_anything_is_built(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     def build(*_: object) -> None:
-        raise AssertionError("it takes a minute or two")
+        raise AssertionError("it takes about a minute")
 
     monkeypatch.setattr(app, "build_world", build)
     with socket.create_server(("127.0.0.1", 0)) as taken:

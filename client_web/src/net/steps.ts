@@ -26,7 +26,7 @@ export interface StepRecord {
   landing: Footprint;
   /** Share of the duration until which the swing foot's toe stays where key 0 has it. */
   lift: number;
-  /** A row of `KEY_NUMBERS` for each key; where each number is says `KeyNumber`. */
+  /** A row of `KEY_NUMBERS` for each key; `KeyNumber` says where each number is. */
   keys: Float64Array;
 }
 

@@ -12,7 +12,7 @@ export interface Barrier {
   b: Vec2;
   bottomM: number;
   topM: number;
-  /** The door that it is, and that does not stop anybody while it stands open. */
+  /** The door that this barrier is, if any; an open door does not stop anybody. */
   door: string | null;
   /** The direction to the floor of an edge to fall from. A body beyond the edge may come back. */
   inward?: Vec2;

@@ -43,7 +43,7 @@ export class Obstacles {
     for (const barrier of [...barriersOf(scene, floors), ...more]) this.add(barrier);
   }
 
-  /** The place that a body reaches which wants to move by (dx, dy). */
+  /** The place that a body reaches when it wants to move by (dx, dy). */
   walk(from: Vec3, dx: number, dy: number, radiusM: number): Vec3 {
     const steps = Math.max(1, Math.ceil(Math.hypot(dx, dy) / STEP_M));
     let at = from;

@@ -34,7 +34,7 @@ class Begun:
 
 @dataclass(frozen=True)
 class Frame:
-    """What is drawn of everyone at a time, in ticks."""
+    """Everything that is drawn of everyone at one moment; `tick` may be a fraction."""
 
     tick: float
     steps: Steps
@@ -43,7 +43,7 @@ class Frame:
     bodies: Floats
     """(N, 3): where the bodies are."""
     slide_m: Floats
-    """(N, 2): how far the ends that feet stand on are from where these were put, left and right;
+    """(N, 2): distances of the ends that feet stand on from where these were put, left and right;
     nan for feet in the air."""
 
 
@@ -100,7 +100,7 @@ class Parade:
         self.places.append(self.positions.copy())
 
     def frames(self, a_second: float = 60.0) -> Iterator[Frame]:
-        """What a client draws from the beginning to now."""
+        """The frames that a client draws from the beginning to now."""
         drawn, told = no_steps(self.count), iter([*self.begun, None])
         stood = np.full((self.count, 2, 4), np.nan)
         after = next(told)
@@ -163,7 +163,7 @@ class Parade:
 
 
 def _slide(steps: Steps, share: Floats, body: Pose, stood: Floats, sizes: BodySizes) -> Floats:
-    """(N, 2) metres: heels of feet with the toe up and toes of others, from where they stood."""
+    """Distances (N, 2), metres, of heels (if the toe is up) or toes from where they stood."""
     rows = np.arange(len(share))
     right = steps.on_right.astype(np.int64)
     ahead = np.stack([np.cos(stood[..., 3]), np.sin(stood[..., 3])], axis=-1)

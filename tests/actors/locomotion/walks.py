@@ -23,18 +23,18 @@ def step_footprints(prints, *, right_lifts=True, leg_m=1.0) -> StepFootprints:
 
 
 def aside(k: int) -> float:
-    """Where foot number k is beside a straight way: the first is the right one."""
+    """The distance of foot number k to the left of a straight way; foot 0 is a right one."""
     return -TRACK_HALF_WIDTH if k % 2 == 0 else TRACK_HALF_WIDTH
 
 
 def straight(lengths) -> StepFootprints:
-    """From standing along +x by given step lengths."""
+    """Steps along +x of given lengths, from standing."""
     ahead = np.concatenate([[0.0, 0.0], np.cumsum(lengths)])
     return step_footprints([(x, aside(k), 0.0, 0.0) for k, x in enumerate(ahead)])
 
 
 def arc(radius: float, length: float, steps: int) -> StepFootprints:
-    """Round a bend to the left, steady from the first step."""
+    """Steps round a bend to the left, steady from the first step."""
     prints = []
     for k in range(steps + 2):
         turned = k * length / radius
@@ -53,7 +53,7 @@ def backward(length: float, steps: int) -> StepFootprints:
 
 
 def sideways(length: float, steps: int) -> StepFootprints:
-    """To the left: the left foot goes, the right one closes."""
+    """Steps to the left: the left foot goes, the right one closes."""
     prints = [(0.0, TRACK_HALF_WIDTH, 0.0, 0.0), (0.0, -TRACK_HALF_WIDTH, 0.0, 0.0)]
     for k in range(steps):
         place = length * (k // 2 + 1)
@@ -115,7 +115,7 @@ def _pelvis(yaw: Floats, lean: Floats, roll: Floats) -> Floats:
 
 
 def _standing_ankle(footprints: StepFootprints, targets: Targets) -> Floats:
-    """On its heel while the toe is up, else as its toe on the footprint has it."""
+    """The ankle: the foot is on its heel while the toe is up, else it turns about its toe."""
     pitch = np.minimum(targets.standing_pitch, 0.0)
     heading = footprints.standing[:, 3, None]
     foot = FOOT * footprints.leg_m[:, None]
@@ -144,7 +144,7 @@ def _leg(targets, pelvis, side, leg_m, ankle, pitch, heading):
 
 
 def slide(walked: Walked) -> float:
-    """How far, in metres, any point moves that should rest on the ground."""
+    """The greatest movement, in metres, of any point that should rest on the ground."""
     pitch = walked.targets.standing_pitch
     footprint = walked.footprints.standing
     toe = footprint[:, :3] + FOOT * walked.footprints.leg_m[:, None] * np.stack(
@@ -175,11 +175,11 @@ def gaps(walked: Walked) -> tuple[float, float]:
 
 
 def top_speed(walked: Walked) -> float:
-    """Of hip flexion and knee, radians a step."""
+    """The greatest speed of hip flexion and knee, radians a step."""
     count = walked.joints.shape[1] - 1
     return np.abs(np.diff(walked.joints[..., 2:4], axis=1)).max() * count
 
 
 def depth(walked: Walked, ground=lambda place: np.zeros(place.shape[:-1])) -> float:
-    """How deep a heel or toe gets into the ground, metres; negative when all stay above."""
+    """The greatest depth of a heel or toe in the ground, metres; negative when all stay above."""
     return max((ground(point) - point[..., 2]).max() for point in (walked.heels, walked.toes))

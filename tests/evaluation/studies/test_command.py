@@ -65,7 +65,7 @@ def test_candidates_are_compared(
         (["--sensitivity", "--tune"], "not allowed with argument --sensitivity"),
         (
             ["--sensitivity", "--score-cache=done", "--vary=tempo"],
-            "--vary tempo: there is no such setting",
+            "--vary: tempo: there is no such setting",
         ),
         (
             ["--sensitivity", "--score-cache", "/nowhere/done"],

@@ -50,7 +50,7 @@ class DoubleSupportPose(NamedTuple):
     ground: Floats
     """Height that stands for level ground."""
     lowered: Floats
-    """How much the hips come down so that both feet are in reach."""
+    """The distance that the hips come down so that both feet are in reach."""
     hip_height: Floats
     """Height of the hips above the ground by the curves, before they are lowered."""
     heel: Floats
@@ -126,7 +126,7 @@ def double_support_pose(rear: Floats, front: Floats, side: Floats) -> DoubleSupp
 
 
 def _lowered(root: Floats, rear: Floats, front: Floats, heel: Floats, side: Floats) -> Floats:
-    """How far hips at a height (..., 3) must come down for both ankles to be in reach."""
+    """The distance that hips (..., 3) must come down for both ankles to be in reach."""
     yaw = 0.5 * (rear[..., 3] + front[..., 3])
     aside = np.zeros_like(root)
     aside[..., :2] = (side * TRACK_HALF_WIDTH)[..., None] * forward_and_left(yaw)[1]

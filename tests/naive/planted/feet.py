@@ -101,7 +101,7 @@ def lowered_to(hips: Hips, standing: Foot, swing: Foot) -> Floats:
 def clearance(
     before: DoubleSupportPose, after: DoubleSupportPose, lifted: Floats, landing: Floats
 ) -> Floats:
-    """How far a foot is lifted beyond the curves, (N, 1): so that it clears the ground.
+    """The height that a foot is lifted beyond the curves to clear the ground, (N, 1).
 
     Feet that hardly move are hardly raised.
     """
@@ -181,7 +181,7 @@ def _level_swing(
 
 @cache
 def _clearance_table() -> Floats:
-    """What straight steps must be raised by on level ground, by relative velocities at both ends.
+    """The lifts that straight steps need on level ground, by relative velocities at both ends.
 
     (_TABLE_SIDE, _TABLE_SIDE), leg lengths: the largest that any moment of a step asks for.
     """

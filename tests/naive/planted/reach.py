@@ -56,7 +56,7 @@ def raised_heel(hip: Floats, toe: Floats, heading: Floats, pitch: Floats) -> Flo
 
 
 def hip_ceiling(hip: Floats, ankle: Floats, reach: float) -> Floats:
-    """How high a hip may be that an ankle is in reach of, as far aside as both are; (...,)."""
+    """The greatest height at which a hip has an ankle in reach, their distance on the map given."""
     aside = hip[..., :2] - ankle[..., :2]
     level = np.minimum(np.sum(aside * aside, axis=-1), 0.8 * reach**2)
     ceiling: Floats = ankle[..., 2] + np.sqrt(reach**2 - level)

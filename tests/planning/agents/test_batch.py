@@ -95,7 +95,7 @@ def decided(batch, crowd, potentials, prediction):
 
 
 def step(crowd, decisions, positions) -> None:
-    """What the owner of the state does after a tick."""
+    """Update the state after a tick, as its owner does."""
     crowd.velocities[:] = (positions - crowd.positions) / TICK_S
     crowd.positions[:] = positions
     crowd.followed[decisions.renewed] = decisions.paths[decisions.renewed]
@@ -323,7 +323,7 @@ def test_an_old_path_is_read_on_and_lengthened(batch) -> None:
 
 
 def test_a_batch_that_has_ticked_before_decides_like_a_new_one(batch) -> None:
-    """What it has handed over to compiled code is never out of date."""
+    """The arrays that it has handed over to compiled code are never out of date."""
     ends = [(1.0, 4.0), (2.0, 5.0)], [(7.0, 4.2), (6.0, 2.0)]
     crowd = crowd_of(*ends)
     people = [((4.0 + 0.3 * k, 4.0), (-0.5, 0.1 * k)) for k in range(6)]

@@ -112,7 +112,7 @@ def test_agents_that_have_come_through_go_first() -> None:
     assert left_m[0] == 7.0 + 2.0 * BEFORE_M
     left_m[1] = np.inf
     order_at_passages(crowd, contested, left_m)
-    assert left_m[1] == np.inf, "who is about to arrive on this side goes last"
+    assert left_m[1] == np.inf, "an agent about to arrive on this side goes last"
     left_m[-1] = np.inf
     order_at_passages(crowd, contested, left_m)
     assert left_m[-1] == pytest.approx(-3.0), "on the other side it goes up to the goal first"
@@ -130,7 +130,7 @@ def test_waiting_in_vain_gives_priority() -> None:
     assert left_m[0] == pytest.approx(4.0 - WAITING_MPS * waited_s[0])
     waited_s[:] = 1e3
     order_at_passages(crowd, np.ones(2 * OPPOSED, dtype=bool), left_m)
-    assert not left_m.any(), "however long they wait, who has come through goes first"
+    assert not left_m.any(), "however long they wait, agents that have come through go first"
 
 
 def test_to_come_nearer_by_enough_ends_the_waiting() -> None:

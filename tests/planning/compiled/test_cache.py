@@ -62,7 +62,7 @@ class Program:
         )
 
     def run(self, code: str = ASK) -> tuple[float, int, list[str]]:
-        """What the program computed, how much of it came from the cache, and what was logged."""
+        """The result of the program, the number of cache hits, and the lines that were logged."""
         return outcome(self.start(code))
 
     def entries(self) -> list[Path]:

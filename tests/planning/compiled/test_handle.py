@@ -1,4 +1,4 @@
-"""What compiled code keeps from one call to the next."""
+"""The data that compiled code keeps from one call to the next."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""What stops a body: outlines, walls, doors and ledges, where they really are."""
+"""The barriers that stop a body: outlines, walls, doors and ledges, where they really are."""
 
 import math
 
@@ -17,7 +17,7 @@ def barriers(**parts) -> np.ndarray:
 
 
 def stops(rows: np.ndarray, z: float, height_m: float, step_on_m: float) -> np.ndarray:
-    """Which rows stop a body that stands at that height."""
+    """For each row, whether it stops a body that stands at that height."""
     return (
         (rows["bottom_m"] < z + height_m)
         & (rows["top_m"] > z + step_on_m)

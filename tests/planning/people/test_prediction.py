@@ -174,7 +174,7 @@ def test_up_a_flight_of_stairs_a_track_goes_on() -> None:
 
 
 def test_each_is_predicted_on_its_own_floor() -> None:
-    """A wall on the ground hinders who walks below it, not who walks above."""
+    """A wall on the ground hinders people who walk below, not those who walk above."""
     wall = Wall(start=(5.0, 0.0), end=(5.0, 8.0), height_m=2.5)
     grid = grid_of(8.0, [box(0.0, 0.0, 8.0, 8.0, 0.3, offset_m=3.0)], [wall])
     history = TrackHistory(PredictionModel(), TICK_S)

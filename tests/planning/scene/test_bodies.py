@@ -1,4 +1,4 @@
-"""What a body may measure."""
+"""The measures that a body may have."""
 
 import dataclasses
 import math

@@ -1,4 +1,4 @@
-"""What is derived for a body is kept, and derived anew around doors."""
+"""Traversability is kept for each body, and derived anew around doors."""
 
 import numpy as np
 import pytest

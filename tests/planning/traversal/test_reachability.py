@@ -1,4 +1,4 @@
-"""Which cell a body reaches from which, against the long way."""
+"""Reachability between cells, against the long way."""
 
 import numpy as np
 from hypothesis import given

@@ -69,7 +69,7 @@ def test_leg_length_tells_an_edge_from_an_obstacle() -> None:
 
 
 def test_where_stairs_meet_the_floor_above_the_way_is_up_and_down() -> None:
-    """As in fig. 5: treads belong to the ground's layer, the upper floor is one of its own."""
+    """Fig. 5: treads belong to the ground's layer, the upper floor has a layer of its own."""
     upper = box(3.0, 0.0, 6.0, 6.0, 0.25, offset_m=2.5)
     grid = grid_of(6.0, [upper], stairs=[flight((0.0, 3.0), (3.0, 3.0), 2.0, 2.5, 10)])
     adult = Body.adult()

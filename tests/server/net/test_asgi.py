@@ -1,4 +1,4 @@
-"""What any application on the private port can rely on, whoever its clients are."""
+"""Every application on the private port can rely on this, whatever its clients do."""
 
 import asyncio
 import json

@@ -16,7 +16,7 @@ async def test_connections_without_a_request_hold_no_stop_up(serving: Serving) -
         silent[0][1].write(b"GET / HT")
         await silent[0][1].drain()
         reading = [asyncio.create_task(_answer(reader)) for reader, _ in silent]
-    # Whoever is not cut off is told, in the end, that the handshake took too long.
+    # A client that is not cut off is told, in the end, that the handshake took too long.
     assert [await task for task in reading] == [b"", b""]
     for _, writer in silent:
         writer.close()
@@ -39,7 +39,7 @@ async def test_sockets_are_bounded_from_their_first_moment(
 
 
 async def _answer(reader: asyncio.StreamReader) -> bytes:
-    """What comes until the server ends the connection; nothing where it was cut off."""
+    """The bytes that come until the server ends the connection; none where it was cut off."""
     async with asyncio.timeout(PATIENCE_S):
         try:
             return await reader.read()

@@ -93,13 +93,13 @@ class Listener:
         self.watching = None
 
     def heard(self) -> list[ServerMessage]:
-        """What came since the last call."""
+        """The messages that came since the last call."""
         frames, self.line.frames = self.line.frames, []
         return [decode_server(payload_of(frame)) for frame in frames]
 
 
 def lifts_of(messages: list[ServerMessage]) -> list[int]:
-    """Of all steps in these messages the lift, to know them by."""
+    """The lift of every step in these messages, by which the tests know the steps."""
     blocks = [message.block for message in messages if isinstance(message, StepBlock)]
     return [lift for block in blocks for lift in step_records(block)["lift"].tolist()]
 

@@ -9,7 +9,7 @@ from tests.server.worlds import ROOM
 
 
 def payload_of(frame: bytes) -> bytes:
-    """What the library, as a client, reads from a frame."""
+    """The payload that the library, as a client, reads from a frame."""
     reader = StreamReader()
     reader.feed_data(frame)
     parser = Frame.parse(reader.read_exact, mask=False, max_size=None)

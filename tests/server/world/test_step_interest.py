@@ -16,7 +16,7 @@ def nobody_steps_unless_told(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def begin(trial: Trial, *avatar_ids: int, lift: int = 0) -> None:
-    """These avatars begin a step in the tick that comes; `lift` is to know it again by."""
+    """These avatars begin a step in the tick that comes; tests know it by its `lift`."""
     world = trial.world
     slots = np.array([world.state.slot(avatar_id) for avatar_id in avatar_ids])
     records = np.zeros(len(slots), dtype=STEP)
@@ -25,7 +25,7 @@ def begin(trial: Trial, *avatar_ids: int, lift: int = 0) -> None:
 
 
 def steps_of(update: WorldUpdate, viewer: int) -> dict[int, int]:
-    """Whose steps this viewer is to be sent: id -> lift."""
+    """The steps that this viewer is to be sent: id of the walker -> lift."""
     place = update.snapshots.viewers.index(viewer)
     first = update.steps.ends[place - 1] if place else 0
     records = step_records(bytes(update.steps.data[first : update.steps.ends[place]]))

@@ -14,7 +14,7 @@ from tests.server.worlds import ROOM, TICK_S, Trial, rules
 
 
 def recorded(ticks: int) -> list[list[Input]]:
-    """What eight people did, once."""
+    """Inputs of eight people, tick by tick, the same in every run."""
     random = np.random.default_rng(12)
     record: list[list[Input]] = [[Join(k, f"p{k}", None) for k in range(8)]]
     first_person = 4

@@ -13,7 +13,7 @@ MM = 1e-3
 
 
 def deviations(parade: Parade) -> Floats:
-    """How far drawn hips are from bodies, on the map, at 60 frames a second."""
+    """Distances of drawn hips from bodies, on the map, at 60 frames a second."""
     return np.array([np.hypot(*(f.pose.root - f.bodies)[:, :2].T) for f in parade.frames()]).ravel()
 
 

@@ -1,4 +1,4 @@
-"""How long steps take."""
+"""The durations of steps."""
 
 import math
 

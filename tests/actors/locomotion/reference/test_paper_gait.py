@@ -9,18 +9,18 @@ from esplanade.actors.locomotion.reference.published_lengths import sl_noslide, 
 
 
 def heel_prints(made: PaperWalk) -> np.ndarray:
-    """Where each foot begins to support: (N, S, 2)."""
+    """The places at which each foot begins to support: (N, S, 2)."""
     heels, _ = made.feet()
     return heels[:, made.ends, np.arange(len(made.ends)) % 2]
 
 
 def reversals(made: PaperWalk) -> int:
-    """How often the first walker's hips change between going forward and back."""
+    """The number of times that the first walker's hips change between forward and back."""
     moved = np.diff(made.root[0, :, 0])
     return int(np.sum(np.diff(np.sign(moved[np.abs(moved) > 1e-12])) != 0))
 
 
-# Of steps as short as .1 the toe is the lower one from the beginning: its foot is never flat.
+# In steps as short as 0.1 the toe is lower from the beginning, and the foot is never flat.
 @pytest.mark.parametrize(("length", "most"), [(0.1, 1e-3), (0.2, 1e-4), (0.5, 1e-4), (0.7, 1e-4)])
 def test_steady_steps_are_as_long_as_asked_for(length: float, most: float):
     walked = np.diff(heel_prints(walk(np.full((1, 8), length)))[..., 0], axis=1)

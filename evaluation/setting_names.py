@@ -1,0 +1,45 @@
+"""Names of the settings that `--set` and `--vary` change, told apart without any model's import."""
+
+from typing import Final
+
+NAMES: Final = (
+    "radius_m",
+    "speed_mps",
+    "max_speed_mps",
+    "max_acceleration_mps2",
+    "goal_tolerance_m",
+    "person_room_m",
+    "contact_closing_s",
+    "risk_weight",
+    "foresight_s",
+    "closing_weight",
+    "turn_weight",
+    "wall_weight",
+    "hurry_weight",
+    "catch_up",
+    "hysteresis_s",
+    "keep_right_weight",
+    "max_expansions",
+    "height_m",
+    "step_on_m",
+    "leg_length_m",
+    "edge_cells",
+    "risk.person_radius_m",
+    "risk.contact_margin_m",
+    "risk.influence_m",
+    "risk.comfort",
+    "risk.sway_m",
+    "risk.reaction_s",
+    "prediction.samples",
+    "prediction.sample_s",
+    "prediction.sigma_0_m",
+    "prediction.sigma_growth_mps",
+    "prediction.calibration_s",
+    "prediction.least_growth_mps",
+    "prediction.wall_clearance_m",
+    "prediction.printed",
+    "plan.step_s",
+    "plan.steps",
+)
+"""All keys of `settings.DEFAULTS` in their order. They are kept here a second time so that the
+command line refuses a wrong name at once: the models themselves take a second to import."""
