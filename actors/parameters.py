@@ -187,7 +187,7 @@ class ActorParameters(BaseModel):
         return self
 
     def row(self) -> NDArray[np.void]:
-        """As the agents' table holds it: one record of `planning.PARAMETERS`."""
+        """Return the record of `planning.PARAMETERS` that the agents' table holds."""
         values = tuple(getattr(self, name) for name in PARAMETERS.names or ())
         return np.array(values, dtype=PARAMETERS)
 

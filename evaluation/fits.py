@@ -38,9 +38,9 @@ class LeaveOneOutFit(NamedTuple, Generic[Fitted]):
     """The name of the recording; None if the fit was made and tested on all recordings."""
     fit: Fitted
     negative_log_likelihood: float
-    """That of the test recording under the fit."""
+    """The value of the test recording under the fit."""
     default_negative_log_likelihood: float
-    """That of the test recording under the default distribution."""
+    """The value of the test recording under the default distribution."""
 
 
 class Fits(NamedTuple):

@@ -14,7 +14,7 @@ from esplanade.planning.agents._passage_kernels import (
 from esplanade.planning.agents.agents import Agents
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.grid._grid_kernels import GridArrays, length
-from esplanade.planning.routes._potential_kernels import Guide
+from esplanade.planning.routes._potential_kernels import PotentialValues
 
 OPPOSED = 8
 """Number of agents that want to go through a passage against an agent and make it keep right."""
@@ -158,7 +158,7 @@ def _alike(one: PassageShape, other: PassageShape) -> float:
 
 @kernel
 def see_passage(
-    grid: GridArrays, potential: Guide, agents: Agents, a: int, going: bool, tick_s: float
+    grid: GridArrays, potential: PotentialValues, agents: Agents, a: int, going: bool, tick_s: float
 ) -> None:
     """Renew an agent's passage and its progress there.
 

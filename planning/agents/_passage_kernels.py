@@ -6,7 +6,7 @@ import numpy as np
 
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.grid._grid_kernels import GridArrays, clearance_at, floor_of, follow, length
-from esplanade.planning.routes._potential_kernels import Guide, direction_at
+from esplanade.planning.routes._potential_kernels import PotentialValues, direction_at
 
 PASSAGE = np.dtype(
     [
@@ -161,7 +161,13 @@ def measure_passage(
 
 @kernel
 def find_passage(
-    grid: GridArrays, potential: Guide, body: int, radius: float, cell: int, x: float, y: float
+    grid: GridArrays,
+    potential: PotentialValues,
+    body: int,
+    radius: float,
+    cell: int,
+    x: float,
+    y: float,
 ) -> tuple[bool, PassageShape]:
     """Whether there is a passage about straight ahead on the path to the goal, and its shape.
 

@@ -25,7 +25,7 @@ from esplanade.planning.grid._grid_kernels import (
     length,
 )
 from esplanade.planning.people._risk_kernels import risk_at
-from esplanade.planning.routes._potential_kernels import Guide, potential_at
+from esplanade.planning.routes._potential_kernels import PotentialValues, potential_at
 
 SHORTEST_STRETCH = 4
 """Stretches of fewer slices are not split further."""
@@ -109,7 +109,7 @@ def _on_edges(grid: GridArrays, task: Task, cell: int, edge_m: float, moved: flo
 @kernel
 def stretch_is_legal(
     world: World,
-    potential: Guide,
+    potential: PotentialValues,
     task: Task,
     need: float,
     cell: int,
@@ -145,7 +145,7 @@ def stretch_is_legal(
 
 @kernel
 def path_cost(
-    world: World, potential: Guide, task: Task, path: NDArray[np.float64]
+    world: World, potential: PotentialValues, task: Task, path: NDArray[np.float64]
 ) -> tuple[float, float, bool]:
     """Cost of a whole path as the search counts it (its length and time among it), mean risk, and
     whether it is legal: `stretch_is_legal` of all of it."""
@@ -216,7 +216,7 @@ def _bend(
 @kernel
 def perturb_path(
     world: World,
-    potential: Guide,
+    potential: PotentialValues,
     task: Task,
     need: float,
     path: NDArray[np.float64],
@@ -265,7 +265,7 @@ def perturb_path(
 
 @kernel
 def _arrival(
-    potential: Guide, task: Task, path: NDArray[np.float64], cells: NDArray[np.int64]
+    potential: PotentialValues, task: Task, path: NDArray[np.float64], cells: NDArray[np.int64]
 ) -> int:
     """Slice at which a path arrives at the goal, its last if it does not."""
     last = len(path) - 1
@@ -280,7 +280,7 @@ def _arrival(
 @kernel
 def update_path(
     world: World,
-    potential: Guide,
+    potential: PotentialValues,
     task: Task,
     path: NDArray[np.float64],
     cells: NDArray[np.int64],

@@ -22,7 +22,7 @@ EVADING_M = 0.005
 MEETING_ROOM_M = 0.8
 """Room that two agents with opposite courses would like, if one of them is held up."""
 MEETING_ROOM = 0.2
-"""What having none of it weighs, in certain contacts with a person: half of that when they face
+"""The weight of having none of it, in certain contacts with a person: half of that when they face
 each other, more with the other on the right, nothing with the other on the left. So both keep to
 the right, and two streams form where there was a crowd."""
 QUEUE_ROOM_M = 0.5
@@ -57,7 +57,7 @@ class Reservations(NamedTuple):
     widest_m: float
     """The greatest radius."""
     fastest_m: float
-    """Nobody gets further than this in a slice."""
+    """The greatest distance that an agent gets in a slice."""
     nx: int
     ny: int
 

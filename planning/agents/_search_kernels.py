@@ -23,7 +23,7 @@ from esplanade.planning.compiled._heap_kernels import heap_pop, heap_push
 from esplanade.planning.compiled.jit import inlined
 from esplanade.planning.grid._grid_kernels import GridArrays, clearance_at, follow, length
 from esplanade.planning.people._risk_kernels import people_near, risk_among
-from esplanade.planning.routes._potential_kernels import Guide, direction_at
+from esplanade.planning.routes._potential_kernels import PotentialValues, direction_at
 
 FOUND = 0
 PARTIAL = 1
@@ -141,7 +141,7 @@ def _slot(workspace: Workspace, key: int) -> int:
 @inlined
 def search(
     world: World,
-    potential: Guide,
+    potential: PotentialValues,
     moves: Moves,
     task: Task,
     accumulate: bool,

@@ -9,7 +9,7 @@ from esplanade.planning.agents._reservation_kernels import Reservations
 from esplanade.planning.compiled.jit import inlined
 from esplanade.planning.grid._grid_kernels import GridArrays, clearance_at, length
 from esplanade.planning.people._risk_kernels import RiskArrays
-from esplanade.planning.routes._potential_kernels import Guide, potential_at
+from esplanade.planning.routes._potential_kernels import PotentialValues, potential_at
 
 SUB = 2
 """Slices of the risk field in one step: a move is looked at half-way and at its end."""
@@ -94,7 +94,7 @@ def on_ramp(
 
 
 @inlined
-def metres_left(potential: Guide, task: Task, cell: int, x: float, y: float) -> float:
+def metres_left(potential: PotentialValues, task: Task, cell: int, x: float, y: float) -> float:
     """Metres from a point, in a cell, to the goal, and what being left of a lane is like besides.
 
     An agent that holds its place goes straight back to it.

@@ -37,7 +37,7 @@ class Zone(NamedTuple):
     positions: NDArray[np.float64]
     cells: NDArray[np.int64]
     fastest_mps: float
-    """Nobody faster than this has room."""
+    """The room is enough for agents up to this speed."""
     last_wider: int
 
 
@@ -126,25 +126,12 @@ def plan_and_step(
     """All stages one after the other, on one thread; False, and nothing done, without room."""
     if not has_room(zone, workspace, branching):
         return False
-    z = zone.value
     # Numbers of the same type as from Python: for literals everything would be compiled once more.
     first: int = np.int64(0)  # type: ignore[assignment]
     step: int = np.int64(1)  # type: ignore[assignment]
     index_future(zone, prediction, first, step)
     put_in_order(zone, tick_s)
-    decide(
-        z.world,
-        z.potentials,
-        z.no_potential,
-        z.moves,
-        prediction,
-        z.agents,
-        tick_s,
-        first,
-        len(z.order),
-        workspace.value,
-        z.decisions,
-    )
+    decide_some(zone, prediction, tick_s, first, len(zone.value.order), workspace)
     take_steps(zone, tick_s)
     return True
 

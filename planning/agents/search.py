@@ -27,14 +27,14 @@ _MOST_PEOPLE = 256
 
 
 class SearchStatus(IntEnum):
-    """How a search ended."""
+    """The outcome of a search."""
 
     FOUND = kernels.FOUND
     """The goal or the horizon was reached."""
     PARTIAL = kernels.PARTIAL
-    """The budget of expansions ran out, or every way ends before the horizon: the best so far."""
+    """The budget of expansions ran out, or every path ends before the horizon: the best so far."""
     NO_PATH = kernels.NO_PATH
-    """Not even the first move is possible, or no way leads to the goal."""
+    """Not even the first move is possible, or no path leads to the goal."""
 
 
 class SearchForm(Enum):
@@ -43,7 +43,7 @@ class SearchForm(Enum):
     PRINTED = "printed"
     """U(q') = potential(q') + Risk(q'), as in fig. 5: greedy, forgets the risk already taken."""
     ACCUMULATED = "accumulated"
-    """f = time and risk so far + way left: what actors use."""
+    """f = time and risk so far + time of the path that is left; actors use this."""
 
 
 def compass_moves() -> Moves:

@@ -1,1 +1,1 @@
-"""How kernels are compiled, and what compiled code keeps between two calls."""
+"""The compiling of kernels, and the data that compiled code keeps between two calls."""

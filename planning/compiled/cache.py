@@ -1,4 +1,4 @@
-"""Where compiled kernels are kept from one run to the next, and how they are found again.
+"""The cache keeps compiled kernels from one run to the next, and finds them again.
 
 The folder is named by a digest of everything that decides what kernels are compiled to, and a
 file in it by the kernel and its types. There is no index that several processes would have to

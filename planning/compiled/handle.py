@@ -34,7 +34,7 @@ class _HandleType(types.StructRef):
 
 
 class _Proxy(structref.StructRefProxy):
-    """What Python has of a `Handle`: nothing but its place."""
+    """The part of a `Handle` that Python has: nothing but its place."""
 
 
 structref.define_proxy(_Proxy, _HandleType, ["value"])  # type: ignore[no-untyped-call]

@@ -1,4 +1,4 @@
-"""How kernels are compiled: numba, without the interpreter's lock, cached by what they say."""
+"""Kernels are compiled with numba, run without the interpreter's lock, and cached by source."""
 
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
@@ -40,11 +40,11 @@ class Kernel(CPUDispatcher):
             self._cache = cache.KernelCache(self.py_func, kept_in)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
-        """What another kernel calls, and its types."""
+        """The function that another kernel calls, and its types."""
         return self._inner.get_call_template(args, kws)
 
     def get_overload(self, sig: Any) -> Any:
-        """What another kernel is linked with."""
+        """The library that another kernel is linked with."""
         return self._inner.get_overload(sig)
 
     def get_compile_result(self, sig: Any) -> Any:

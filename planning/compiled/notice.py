@@ -26,7 +26,7 @@ class _Compiling(event.Listener):
         if not self.listeners and not self._told:
             self._told = True
             log.warning(
-                "compiling kernels, which may take a minute or two; %s",
+                "compiling kernels, which may take about a minute; %s",
                 f"they are kept in {cache.folder()}" if cache.folder() else "they cannot be kept",
             )
 

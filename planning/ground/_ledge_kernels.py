@@ -164,7 +164,7 @@ def _carrier(columns: SolidColumns, c: int, x: float, y: float, floor: float) ->
 def _outline_between(
     solids: SolidArrays, k: int, axis: int, line: tuple[float, float, float, float]
 ) -> tuple[bool, tuple[float, float, float, float]]:
-    """Where the outline of a solid passes between two cells that differ along an axis.
+    """The place where the outline of a solid passes between two cells that differ along an axis.
 
     `line` is their common edge x0, y0, x1, y1. It is returned unchanged, with False, where no
     outline passes within half a cell of it.

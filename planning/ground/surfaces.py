@@ -228,7 +228,7 @@ def _reached(
     floors: NDArray[np.float32],
     links: NDArray[np.int32],
 ) -> NDArray[np.bool_]:
-    """Which surfaces are linked to a spawn or a place."""
+    """The surfaces that are linked to a spawn or a place."""
     points = [(*spawn.position, spawn.z_m) for spawn in scene.spawns]
     points += [(*place.position, place.z_m) for place in scene.places]
     reached = np.zeros(len(floors), dtype=np.bool_)

@@ -47,7 +47,7 @@ class PredictionModel:
     spread: Spread = PEOPLE
     """Shape of the errors, in deviations: `GAUSSIAN` is eq. (4) as it stands."""
     wall_clearance_m: float = 0.15
-    """How close to walls people are expected to pass, metres."""
+    """Distance to walls, metres, at which people are expected to pass."""
     printed: bool = False
     """Eq. (1) with the signs as printed. It extrapolates noise on real tracks: reference only."""
 

@@ -1,4 +1,4 @@
-"""How risky it is to be somewhere at some time: Lei & Li, sec. 3.3, eq. (5)."""
+"""The risk of being somewhere at some time: Lei & Li, sec. 3.3, eq. (5)."""
 
 from __future__ import annotations
 

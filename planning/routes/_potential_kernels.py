@@ -11,12 +11,12 @@ from esplanade.planning.compiled._heap_kernels import heap_pop, heap_push
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.grid._grid_kernels import GridArrays, follow, length, line_is_clear
 
-Guide = NDArray[np.float32]
+PotentialValues = NDArray[np.float32]
 """(N, 3): metres from the waypoint to the goal, waypoint x, waypoint y; inf where no path leads."""
 
 
 @inlined
-def potential_at(potential: Guide, cell: int, x: float, y: float) -> float:
+def potential_at(potential: PotentialValues, cell: int, x: float, y: float) -> float:
     """Metres from a point, in a cell, to the goal; inf where no path leads."""
     if cell < 0:
         return np.inf
@@ -26,7 +26,7 @@ def potential_at(potential: Guide, cell: int, x: float, y: float) -> float:
 
 @inlined
 def direction_at(
-    grid: GridArrays, potential: Guide, cell: int, x: float, y: float
+    grid: GridArrays, potential: PotentialValues, cell: int, x: float, y: float
 ) -> tuple[float, float, float]:
     """Unit vector and distance to the waypoint; zeros at the goal or where no path leads.
 
@@ -78,7 +78,7 @@ def spread_wave(
     goal_y: float,
     longest_sight: float,
     centres: NDArray[np.float64],
-    potential: Guide,
+    potential: PotentialValues,
     settled: NDArray[np.uint8],
     keys: NDArray[np.float64],
     items: NDArray[np.int64],
@@ -151,7 +151,7 @@ def extend_into_obstacles(
     grid: GridArrays,
     step_on_m: float,
     centres: NDArray[np.float64],
-    potential: Guide,
+    potential: PotentialValues,
     settled: NDArray[np.uint8],
 ) -> None:
     """Lead out of cells that are not free but lie next to reached ones, three rings deep.
@@ -187,7 +187,7 @@ def extend_into_obstacles(
 
 @kernel
 def distances(
-    potential: Guide,
+    potential: PotentialValues,
     cells: NDArray[np.int64],
     positions: NDArray[np.float64],
     out: NDArray[np.float64],
@@ -200,7 +200,7 @@ def distances(
 @kernel
 def directions(
     grid: GridArrays,
-    potential: Guide,
+    potential: PotentialValues,
     cells: NDArray[np.int64],
     positions: NDArray[np.float64],
     out: NDArray[np.float64],

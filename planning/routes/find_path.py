@@ -26,7 +26,7 @@ turn, since most paths are as short and a low limit saves work."""
 
 
 class PathStatus(IntEnum):
-    """How the search for a path ended."""
+    """The outcome of the search for a path."""
 
     FOUND = 0
     NO_WAY = 1

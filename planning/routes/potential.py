@@ -23,7 +23,7 @@ _MOVED_M = 0.5
 
 
 class Wave(Enum):
-    """How a wave front measures distance."""
+    """The measure of distance of a wave front."""
 
     SIGHT = 24.0
     """Along lines of sight of at most 24 m, so that they cost no more in a large zone."""

@@ -22,7 +22,7 @@ MOST_BODIES = 64
 
 @dataclass(frozen=True)
 class Body:
-    """What of a person or an actor decides where it can go (Huang & Li, sec. 3).
+    """The sizes of a person or an actor that decide where it can go (Huang & Li, sec. 3).
 
     Raises
     ------

@@ -92,11 +92,11 @@ class _Line(_Part):
 class _Spot(_Part):
     position: Point
     z_m: Metres = 0.0
-    """Which floor: the one nearest in height."""
+    """Height of the floor that is meant: the floor nearest to it."""
 
 
 class Ramp(_Line):
-    """How the top of a polygon rises evenly along a line, and no further before and behind it.
+    """A slope: the top of a polygon rises evenly along a line, and no further before and behind it.
 
     At its end the top is as high as the polygon.
     """
@@ -115,9 +115,9 @@ class Polygon(_Part):
     offset_m: Annotated[float, Field(ge=0.0, le=500.0)] = 0.0
     """Clearance of its underside above the ground."""
     ramp: Ramp | None = None
-    """How its top rises; level without."""
+    """The slope of its top; the top is level without one."""
     kind: Literal["building", "floor", "wall", "furniture", "plant", "water"] = "building"
-    """What it is drawn as. Buildings and floors can be stood on; nobody climbs the rest."""
+    """The kind of thing that is drawn. One can stand on buildings and floors, on nothing else."""
     name: Name = ""
 
     def top_at(self, x: float, y: float) -> float:
@@ -153,7 +153,7 @@ class Door(_Line):
     offset_m: Annotated[float, Field(ge=0.0, le=500.0)] = 0.0
     """Height of its foot above the ground."""
     open: bool = True
-    """How it is when the world starts."""
+    """Its state when the world starts."""
 
 
 class Stairs(_Line):
@@ -200,7 +200,7 @@ class Stairs(_Line):
 
 
 class Spawn(_Spot):
-    """Where avatars come into the world: anywhere free within `radius_m` of the position."""
+    """Avatars come into the world anywhere free within `radius_m` of the position."""
 
     radius_m: Annotated[float, Field(ge=0.0, le=50.0)] = 1.0
 

@@ -34,7 +34,7 @@ _PHRASES: Final = {
     "extra_forbidden": "there is no such key",
     "json_invalid": "is no JSON: {error}",
 }
-"""What is said of the faults that hands make; the others keep pydantic's words."""
+"""Words for the faults that hands make; all other faults keep pydantic's words."""
 _TOLD: Final = frozenset(
     ("value_error", "missing", "extra_forbidden", "json_invalid", "too_short", "string_too_short")
 )

@@ -1,1 +1,1 @@
-"""Where one kind of body may go: reachability, stability, regions, and wave fronts over them."""
+"""The ground that one kind of body may walk on: reachability, stability, regions, and waves."""

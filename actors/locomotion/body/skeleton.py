@@ -28,7 +28,7 @@ People walk on a narrower track than table 1 has it.
 """
 
 HIP_DEPTH: Final = 0.178
-"""How far the line through both hip joints lies below the origin, where the spine bends."""
+"""Depth of the line through both hip joints below the origin, where the spine bends."""
 
 CHEST_HEIGHT: Final = 0.20
 """Height of the chest joint above the origin."""

@@ -1,4 +1,4 @@
-"""How one avatar differs from the others: the sizes of its body and its cadence."""
+"""The traits in which one avatar differs from the others: the sizes of its body and its cadence."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where bodies will be on their courses, one body after the other."""
+"""The places of bodies on their courses, worked out one body after the other."""
 
 from __future__ import annotations
 

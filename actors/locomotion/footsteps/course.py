@@ -64,7 +64,7 @@ def planned_places(planned: Floats, slice_s: float, now_s: float, places: Floats
 
 
 def desired_headings(course: Course, velocity: Floats) -> Floats:
-    """Where bodies want to face: in the direction they walk, else as their courses say.
+    """Headings that bodies want: the direction in which they walk, else as their courses say.
 
     Parameters
     ----------

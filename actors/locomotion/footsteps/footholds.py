@@ -25,7 +25,7 @@ from esplanade.actors.locomotion.gait.step_length import (
 from esplanade.actors.locomotion.planted.footprints import HEADING, ON_MAP, PLACE, Z
 from esplanade.planning.compiled.arrays import Bools, Floats
 
-# How far up or down a foot is put.
+# Limits of the height up or down to which a foot is put.
 _TREAD_M: Final = 0.26
 """Ahead of a body that takes one tread at a time."""
 _TWO_TREADS_M: Final = 0.42
@@ -36,13 +36,13 @@ _CLIMB_M: Final = 0.75
 """At most, under a body that has gone there."""
 
 _OPENING_RAD: Final = 1.6
-"""How far a foot may be turned outwards against the other one."""
+"""The greatest angle by which a foot is turned outwards against the other one."""
 _CLOSING_RAD: Final = 1.0
-"""How far a foot may be turned inwards against the other one."""
+"""The greatest angle by which a foot is turned inwards against the other one."""
 
 
 class Footholds(NamedTuple):
-    """What N steps are to reach."""
+    """The targets of N steps."""
 
     landing: Floats
     """(N, 4): footprints on which the swing feet land."""
@@ -168,5 +168,5 @@ _LENGTHS: Final = planted_length(_POSES)
 
 
 def _heel_ahead_of_hips(length: Floats) -> Floats:
-    """How far ahead of the hips the heel of steps of lengths (N,) lands: (N,), leg lengths."""
+    """Distances, leg lengths (N,), ahead of the hips where heels of steps of lengths (N,) land."""
     return np.interp(np.minimum(length, longest_step()), _LENGTHS, _POSES.front_forward)

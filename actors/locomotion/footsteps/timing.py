@@ -1,4 +1,4 @@
-"""How long a step takes, from how fast a body goes and how far its legs reach."""
+"""The duration of a step, from the speed of a body and the reach of its legs."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ _FEWEST_TICKS: Final = 2
 
 
 class StepGoals(NamedTuple):
-    """What the steps under way of N walkers were to reach, and traits of their bodies."""
+    """The targets of the steps under way of N walkers, and traits of their bodies."""
 
     body: Floats
     """(N, 2), metres: where the body was to be at the end."""

@@ -112,7 +112,7 @@ def leg_angles(rv: ArrayLike, phase: ArrayLike) -> Floats:
 
 
 def joint_angles(rv: Floats, phase: Floats, *, faded: bool = True) -> Floats:
-    """As `leg_angles`, for arrays that are known to be sound and of one shape, which is any.
+    """Return the same as `leg_angles`, for sound arrays of one shape, whatever it is.
 
     With `faded=False` the curves are those published, see `leg_keys`.
     """

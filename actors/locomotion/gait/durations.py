@@ -1,4 +1,4 @@
-"""How long a step of a free walk takes."""
+"""The duration of a step of a free walk."""
 
 from __future__ import annotations
 

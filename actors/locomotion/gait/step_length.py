@@ -1,4 +1,4 @@
-"""How long a planted step at a relative velocity is, and which velocity gives a step of a length.
+"""The length of a planted step at a relative velocity, and the velocity that gives a length.
 
 All lengths are shares of the leg length. A step ends in double support, with the front leg at
 phase 0 and the rear leg at phase .5 of its curves.
@@ -32,7 +32,7 @@ class StraightDoubleSupport(NamedTuple):
 
     @property
     def heel_raised(self) -> Floats:
-        """How much higher the rear heel is than the front one; never negative."""
+        """Height of the rear heel above the front one; never negative."""
         return np.maximum(self.rear_up - self.front_up, 0.0)
 
 
@@ -92,7 +92,7 @@ def sl_planted(rv: ArrayLike) -> Floats:
 
 
 def planted_length(pose: StraightDoubleSupport) -> Floats:
-    """As `sl_planted`, of poses that are at hand."""
+    """Return the same as `sl_planted`, from poses that are at hand."""
     drawn_in = FOOT - np.sqrt(FOOT**2 - pose.heel_raised**2)
     length: Floats = pose.front_forward - pose.rear_forward + drawn_in
     return length

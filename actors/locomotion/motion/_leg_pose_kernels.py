@@ -29,7 +29,7 @@ EASE_RAD = 0.1
 
 
 class Placement(NamedTuple):
-    """What decides where the feet of N steps are, besides their keys; fields as in `Steps`."""
+    """All that decides, besides keys, the places of the feet of N steps; fields as in `Steps`."""
 
     on_right: Bools
     standing: Floats

@@ -1,4 +1,4 @@
-"""What a step under way is made of: six key poses of a body, and curves through them."""
+"""A step under way is made of six key poses of a body, and curves through them."""
 
 from __future__ import annotations
 

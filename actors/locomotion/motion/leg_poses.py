@@ -1,4 +1,4 @@
-"""Where the legs of a body in a step are: feet on their footprints, hips within reach of them."""
+"""The poses of legs in a step: feet on their footprints, hips within reach of them."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ _BACK: Final = 0.02
 
 
 class CurrentPose(NamedTuple):
-    """What is drawn of N bodies at one moment, as keys of the steps that they begin."""
+    """The drawn poses of N bodies at one moment, as keys of the steps that they begin."""
 
     key: Floats
     """(N, WIDTH)."""

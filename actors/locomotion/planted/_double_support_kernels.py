@@ -58,7 +58,7 @@ class DoubleSupportPose(NamedTuple):
     ground: float
     """Height that stands for level ground."""
     lowered: float
-    """How much the hips come down for both feet to be in reach."""
+    """The depth by which the hips come down for both feet to be in reach."""
     hip_height: float
     """Height of the hips above the ground by the curves, before they are lowered."""
     heel: float

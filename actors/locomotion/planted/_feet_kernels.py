@@ -192,7 +192,7 @@ def swing_foot(
 
 @inlined
 def hip_drop(hips: Hips, standing: Foot, swing: Foot) -> float:
-    """How much the hips must come down for both legs to reach their feet."""
+    """The depth by which the hips must come down for both legs to reach their feet."""
     x, y, z = hips.joint
     down = excess_height(
         hips.x + x - standing.x, hips.y + y - standing.y, hips.z + z - standing.z, FULL
@@ -210,7 +210,7 @@ def clearance(
     landing: Footprint,
     table: Floats,
 ) -> float:
-    """How much a swing foot is raised beyond the curves so that it clears the ground.
+    """The height by which a swing foot is raised beyond the curves so that it clears the ground.
 
     `table` is what `fill_clearances` wrote. Feet that hardly move are hardly raised.
     """

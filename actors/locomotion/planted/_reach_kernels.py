@@ -52,6 +52,6 @@ def raised_heel(ahead: float, aside: float, up: float, pitch: float) -> float:
 
 @inlined
 def excess_height(x: float, y: float, z: float, reach: float) -> float:
-    """How much a hip at x, y, z from an ankle must come down for the ankle to be in reach."""
+    """The depth by which a hip at x, y, z from an ankle must come down to reach the ankle."""
     level = min(x * x + y * y, 0.8 * reach * reach)
     return max(z - math.sqrt(reach * reach - level), 0.0)

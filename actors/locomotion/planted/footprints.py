@@ -12,7 +12,7 @@ ON_MAP: Final = slice(0, 2)
 Z: Final = 2
 """Height of the ground."""
 HEADING: Final = 3
-"""Where the toe points, radians from +x, counter-clockwise."""
+"""The direction of the toe, radians from +x, counter-clockwise."""
 
 
 class Footprint(NamedTuple):
@@ -23,7 +23,7 @@ class Footprint(NamedTuple):
     y: float
     z: float
     heading: float
-    """Where the toe points, radians."""
+    """The direction of the toe, radians."""
 
 
 class StepFootprints(NamedTuple):

@@ -59,7 +59,7 @@ def step_targets(footprints: StepFootprints, u: Floats) -> Targets:
 
 @cache
 def _clearances() -> Floats:
-    """How much feet are raised beyond the curves, (26, 26), by relative velocity at both ends."""
+    """Rise of feet beyond the curves, (26, 26), by the relative velocities at both ends."""
     table = np.empty((_TABLE_SIDE, _TABLE_SIDE))
     lengths = sl_planted(np.linspace(0.0, RV_LONGEST, _TABLE_SIDE))
     fill_clearances(lengths, pose_table(), table)

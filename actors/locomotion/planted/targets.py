@@ -1,4 +1,4 @@
-"""What a step asks of the body: where hips and feet are, and how trunk and arms turn."""
+"""The targets of a step for the body: places of hips and feet, turns of trunk and arms."""
 
 from typing import NamedTuple
 

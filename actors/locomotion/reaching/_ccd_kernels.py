@@ -42,7 +42,7 @@ class Effort(NamedTuple):
     sweeps: int
     """Largest number of sweeps over the hinges."""
     limb_sweeps: int
-    """How many of them, the first ones, are of the limb alone (CCD only)."""
+    """Number of hinges, the first ones, that are of the limb alone (CCD only)."""
 
 
 @kernel

@@ -27,7 +27,7 @@ class Hinges(NamedTuple):
 
 
 class ChainState(NamedTuple):
-    """Where the hinges are: `place_hinges` writes it, and what moves them keeps it up to date."""
+    """The places of the hinges, written by `place_hinges` and by all that moves them."""
 
     frames: Floats
     """(J + 1, 3, 3): orientation before each hinge turns; the last is the effector's."""

@@ -64,7 +64,7 @@ def timing(rv: ArrayLike) -> Timing:
 
 
 def pelvis_motion(rv: Floats, phase: Floats) -> PelvisMotion:
-    """How the pelvis moves and turns about its mean, by the phase of the left leg.
+    """Motion and turning of the pelvis about its mean, by the phase of the left leg.
 
     The amplitudes sideways and forward keep one sign throughout; the sources let them flip at
     rv = .5.

@@ -54,7 +54,7 @@ class Frames(NamedTuple):
 
 
 class Feet(NamedTuple):
-    """Where the feet of N poses are; pairs are left, right."""
+    """The places of the feet of N poses; pairs are left, right."""
 
     ankles: Floats
     """(N, 2, 3): ankles, which are the heels."""

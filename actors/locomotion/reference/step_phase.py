@@ -1,4 +1,4 @@
-"""How far a step has come at a time, where steps of different durations follow one another.
+"""The phase of a step at a time, where steps of different durations follow one another.
 
 The live world gives each step a number of ticks instead. The plots of docs/walking.md show this.
 """

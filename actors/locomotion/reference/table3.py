@@ -66,7 +66,7 @@ class Reproduced(NamedTuple):
     """(15,): how often the interval was halved."""
 
     def rows_right(self) -> tuple[int, int]:
-        """How many velocities, and how many numbers of halvings, agree with the table."""
+        """Number of velocities, and of counts of halvings, that agree with the table."""
         same = np.abs(self.rv - PRINTED_RV) < SAME_RV
         return int(same.sum()), int((self.halvings == SHIFTED_HALVINGS).sum())
 
