@@ -24,6 +24,7 @@ from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.schedule import Schedule
 from esplanade.server.net.ticker import Ticker
 from esplanade.server.populating import populate
+from esplanade.server.rehearsal import rehearse
 from esplanade.server.settings import ServerSettings
 from esplanade.server.warming import kernels_compiled
 from esplanade.server.world.world import World
@@ -162,6 +163,7 @@ def _build_warm(
     except ValueError as error:
         raise LoadingError(f"scene {loaded.scene.name!r}: {error}") from error
     population.warm_up(compiled_beside)
+    rehearse(loaded.rules, tick_s)
     starts = [(*spawn.position, spawn.z_m) for spawn in loaded.scene.spawns]
     storeys = storeys_of(grid, reached_from(grid, starts))
     return population, world, [round(height, 2) for height in storeys]

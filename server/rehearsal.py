@@ -1,0 +1,49 @@
+"""A small world runs for some ticks, so that all that a tick calls is compiled beforehand."""
+
+import time
+from typing import Final
+
+from esplanade.actors import ActorParameters, GoTo, Population
+from esplanade.planning import LayeredGrid, Polygon, Scene
+from esplanade.server.world.inputs import Detach, Follow, Input, Join, Leave, Steer
+from esplanade.server.world.rules import Rules
+from esplanade.server.world.world import World
+
+SCENE: Final = Scene.open_space(
+    (0.0, 0.0, 6.0, 6.0),
+    walls=[((3.0, 0.0), (3.0, 2.0))],
+    polygons=[Polygon(points=((4.5, 4.5), (5.5, 4.5), (5.5, 5.5), (4.5, 5.5)), height_m=0.3)],
+)
+"""It is not all level: on level ground some kernels are not called."""
+TICKS: Final = 30
+PERSON: Final = 2
+"""The id of the person: the actor is the first avatar, and the person the second."""
+
+
+def rehearse(rules: Rules, tick_s: float) -> None:
+    """Let an actor and a person of a world of their own walk, stand, and leave."""
+    grid = LayeredGrid.from_scene(SCENE)
+    population = Population(grid, SCENE, tick_s=tick_s, person_radius_m=rules.person_radius_m)
+    population.add("a", GoTo((5.0, 3.0, 0.0)), ActorParameters(), position=(1.0, 4.0))
+    world = World(
+        SCENE,
+        grid,
+        population,
+        {"a": "A"},
+        rules,
+        tick_s=tick_s,
+        max_people=1,
+        seed=0,
+        clock=time.perf_counter,
+    )
+    inputs: dict[int, list[Input]] = {
+        1: [Join(0, "P", None)],
+        2: [Steer(PERSON, 1, 0.5, 1.0)],
+        TICKS // 2: [Follow(PERSON, 2, ((1.0, 1.0, 0.0), (2.0, 1.0, 0.0)))],
+        TICKS - 1: [Detach(PERSON)],
+        TICKS: [Leave(PERSON)],
+    }
+    for tick in range(1, TICKS + 1):
+        world.begin(inputs.get(tick, []))
+        world.finish(world.think())
+    population.close()
