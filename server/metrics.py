@@ -103,6 +103,15 @@ class Metrics:
         self.dropped_slow = self._counter(
             "clients_dropped_slow", "Clients dropped because they did not read", ["limit"]
         )
+        self.sockets_refused = self._counter(
+            "sockets_refused", "Connections that were not let in, or cut off for others", ["why"]
+        )
+        self.answers_refused = self._counter(
+            "answers_refused", "Requests that were told to come later, or broken off", ["why"]
+        )
+        self.floods = self._counter(
+            "floods", "Connections closed because of what they sent, before it was parsed", ["what"]
+        )
         self.joins = self._counter("joins", "People who came in", ["way"])
         self.chat_lines = self._counter("chat_lines", "Lines of chat that people have said")
         self.planning_failures = self._counter(

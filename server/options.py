@@ -63,6 +63,12 @@ _NETWORK: Final = {
     "private_port": Setting(
         "port of /healthz, /readyz and /metrics; 0 takes a free one", _PORT, 8081
     ),
+    "trusted_proxies": Setting(
+        "addresses or networks of proxies in front, separated by commas; limits then go by the "
+        "address in X-Forwarded-For, to which each of them must append the one that it sees",
+        Text(),
+        "",
+    ),
     "allowed_origins": Setting(
         "origins whose pages may open a WebSocket, separated by commas; empty allows every one",
         Text(),
@@ -74,8 +80,33 @@ _LIMITS: Final = {
     "hello_timeout_s": Setting(
         "a connection must say hello within this time", Number(0.0, 60.0, above=True), 5.0, "s"
     ),
+    "address_sockets": Setting(
+        "most open connections from one address; an IPv6 network of 64 bits counts as one address, "
+        "and 127.0.0.1 and ::1 have no limits as addresses",
+        Whole(1, 10_000),
+        320,
+    ),
+    "address_connects": Setting(
+        "most new connections from one address within ten seconds", Whole(1, 100_000), 600
+    ),
+    "address_joins": Setting(
+        "most people who may come in from one address within ten seconds", Whole(1, 10_000), 80
+    ),
+    "address_bytes": Setting(
+        "most bytes of pages and data under way to one address that are not read yet",
+        Whole(32 * 1024, 1024**3),
+        2 * 1024**2,
+        "bytes",
+    ),
+    "answer_bytes": Setting(
+        "most bytes of pages and data under way to all addresses that are not read yet",
+        Whole(32 * 1024, 1024**3),
+        16 * 1024**2,
+        "bytes",
+    ),
     "message_rate": Setting(
-        "messages a client may send for long; twice this in a burst",
+        "messages a client may send for long; twice this in a burst; every WebSocket frame counts, "
+        "and five more a second are granted for pongs",
         Number(1.0, 10_000.0),
         60.0,
         "per second",
@@ -126,6 +157,10 @@ def check(given: Mapping[str, Any]) -> None:
         raise ValueError("scene and crowd: give one of them, not both")
     if given.get("walls") and not given.get("crowd"):
         raise ValueError("walls: they belong to a crowd, but none is given")
+    if given.get("trusted_proxies"):
+        from esplanade.server.net.addresses import TrustedProxies  # noqa: PLC0415
+
+        TrustedProxies(given["trusted_proxies"])
     slow_bytes = given.get("slow_bytes", _LIMITS["slow_bytes"].default)
     if given.get("drop_bytes", _LIMITS["drop_bytes"].default) <= slow_bytes:
         raise ValueError("drop_bytes: must be greater than slow_bytes")

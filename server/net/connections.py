@@ -1,41 +1,147 @@
 """All connections of a port from their first moment on: bounded in number, cut off at the end.
 
-The library knows a connection only once its opening handshake is done; until then a client that
-sends nothing would be counted by nobody, and a stopping server would wait for it.
+Places are shared fairly. When the port is full, a newcomer takes the place of a connection that
+has not said hello yet, of the address that has the most of these: silent connections keep out
+only others from where they come themselves.
 """
 
 import asyncio
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Any, Final, cast
+from typing import Final
 
-from websockets.asyncio.server import Server, ServerConnection
+from websockets.asyncio.server import Server
+
+from esplanade.server.net.address_limits import AddressLimits
+from esplanade.server.net.addresses import TrustedProxies, address_key
+from esplanade.server.net.refusals import Refusals
 
 SHUT_S: Final = 2.0
 """Connections that are still open this long after a port was closed are cut off."""
 
 
-class Connections:
-    """The connections of one port; those beyond `most` are cut off as they come."""
+class Place:
+    """The place of one connection among those of its port, from its first moment to its end."""
 
-    def __init__(self, most: int) -> None:
+    __slots__ = ("_connections", "address", "charged", "cut", "peer", "present", "settled")
+
+    def __init__(self, connections: "Connections", peer: str, address: str, charged: bool) -> None:
+        self._connections = connections
+        self.peer = peer
+        """The address of the socket's other end, as text."""
+        self.address = address
+        """The key of the client's address; the proxy's until a request says who is behind it."""
+        self.charged = charged
+        """Whether the connection is counted among those of its address."""
+        self.present = True
+        self.settled = False
+        """Whether the client has said hello; until then others may be given the place."""
+        self.cut: Callable[[], object] = _nothing
+        """Ends the connection at once."""
+
+    def attribute(self, forwarded: list[str]) -> str | None:
+        """Find the client behind a trusted proxy, and count the connection as the client's.
+
+        The result is the name of the limit that the client's address is over, or None.
+        """
+        return self._connections.attribute(self, forwarded)
+
+    def settle(self) -> None:
+        """Keep the place from now on, whoever comes."""
+        if self.present and not self.settled:
+            self._connections.settle(self)
+
+    def leave(self) -> None:
+        """Give the place back; it may be called more than once."""
+        if self.present:
+            self._connections.leave(self)
+
+
+class Connections:
+    """The connections of one port, `most` of them."""
+
+    def __init__(
+        self, most: int, limits: AddressLimits, proxies: TrustedProxies, refusals: Refusals
+    ) -> None:
         self._most = most
-        self._open: set[ServerConnection] = set()
-        self.refused = 0
-        """Connections that were cut off because there were too many."""
+        self._limits = limits
+        self._proxies = proxies
+        self._refusals = refusals
+        self._loop = asyncio.get_running_loop()
+        self._open: set[Place] = set()
+        self._unsettled: dict[str, dict[Place, None]] = {}
+        self._gone = asyncio.Event()
+        self._gone.set()
 
     def __len__(self) -> int:
         return len(self._open)
 
-    @property
-    def factory(self) -> type[ServerConnection]:
-        """The class that `websockets.serve` makes connections with."""
+    def enter(self, peer: str) -> Place | None:
+        """Give a new connection a place; None if it must be refused."""
+        key = address_key(peer)
+        charged = not self._proxies.trusts(peer)
+        why = self._limits.connect(key, self._loop.time()) if charged else None
+        if why is None and len(self._open) >= self._most and not self.make_room(key):
+            why = "port_full"
+            if charged:
+                self._limits.disconnect(key)
+        if why is not None:
+            self._refusals.socket(why, key)
+            return None
+        place = Place(self, peer, key, charged)
+        self._open.add(place)
+        self._gone.clear()
+        self._unsettled.setdefault(key, {})[place] = None
+        return place
 
-        def make(*args: Any, **kwargs: Any) -> ServerConnection:
-            return _Listed(self._come, self._open.discard, *args, **kwargs)
+    def make_room(self, key: str) -> bool:
+        """Cut off the oldest unsettled connection of the address that has the most of them.
 
-        # The library only ever calls it.
-        return cast(type[ServerConnection], make)
+        Nobody is cut off, and the result is False, if no address has more than the given one.
+        """
+        most = max(self._unsettled, key=lambda each: len(self._unsettled[each]), default=key)
+        crowd = self._unsettled.get(most, {})
+        if len(crowd) <= len(self._unsettled.get(key, {})):
+            return False
+        place = next(iter(crowd))
+        self._refusals.socket("port_full", most)
+        place.leave()
+        place.cut()
+        return True
+
+    def attribute(self, place: Place, forwarded: list[str]) -> str | None:
+        """See `Place.attribute`."""
+        if place.charged or not forwarded:
+            return None
+        key = self._proxies.client_key(place.peer, forwarded)
+        why = self._limits.connect(key, self._loop.time())
+        if why is None:
+            self._forget_unsettled(place)
+            place.address, place.charged = key, True
+            self._unsettled.setdefault(key, {})[place] = None
+        else:
+            self._refusals.socket(why, key)
+        return why
+
+    def settle(self, place: Place) -> None:
+        """See `Place.settle`."""
+        place.settled = True
+        self._forget_unsettled(place)
+
+    def leave(self, place: Place) -> None:
+        """See `Place.leave`."""
+        place.present = False
+        self._open.discard(place)
+        if not self._open:
+            self._gone.set()
+        if not place.settled:
+            self._forget_unsettled(place)
+        if place.charged:
+            self._limits.disconnect(place.address)
+
+    async def all_gone(self) -> None:
+        """Wait until no connection is open."""
+        await self._gone.wait()
 
     async def shut(self, server: Server) -> None:
         """Close the port, wait a moment for its connections to end, cut off the others."""
@@ -43,35 +149,16 @@ class Connections:
         with suppress(TimeoutError):
             async with asyncio.timeout(SHUT_S):
                 await server.wait_closed()
-        for connection in list(self._open):
-            connection.transport.abort()
+        for place in list(self._open):
+            place.cut()
         await server.wait_closed()
 
-    def _come(self, connection: ServerConnection) -> None:
-        self._open.add(connection)
-        if len(self._open) > self._most:
-            self.refused += 1
-            connection.transport.abort()
+    def _forget_unsettled(self, place: Place) -> None:
+        crowd = self._unsettled[place.address]
+        del crowd[place]
+        if not crowd:
+            del self._unsettled[place.address]
 
 
-class _Listed(ServerConnection):
-    """A connection that reports when it opens and when it is gone."""
-
-    def __init__(
-        self,
-        on_open: Callable[[ServerConnection], None],
-        on_gone: Callable[[ServerConnection], None],
-        *args: Any,
-        **kwargs: Any,
-    ) -> None:
-        super().__init__(*args, **kwargs)
-        self._on_open = on_open
-        self._on_gone = on_gone
-
-    def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        super().connection_made(transport)
-        self._on_open(self)
-
-    def connection_lost(self, exc: Exception | None) -> None:
-        super().connection_lost(exc)
-        self._on_gone(self)
+def _nothing() -> None:
+    """Nothing is to be ended yet."""

@@ -14,11 +14,15 @@ class TokenBucket:
         self._burst = self._tokens = burst
         self._then = now
 
-    def take(self, now: float) -> bool:
-        """Take one token, if there is one."""
+    def available(self, now: float) -> float:
+        """The tokens that there are now."""
         self._tokens = min(self._burst, self._tokens + (now - self._then) * self._rate)
         self._then = now
-        if self._tokens < 1.0:
+        return self._tokens
+
+    def take(self, now: float, tokens: float = 1.0) -> bool:
+        """Take some tokens, one unless told otherwise, if there are so many."""
+        if self.available(now) < tokens:
             return False
-        self._tokens -= 1.0
+        self._tokens -= tokens
         return True

@@ -1,29 +1,39 @@
 """The one port for people: the web client by GET, the world by WebSocket at /ws."""
 
+import asyncio
 import logging
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Callable, Coroutine, Sequence
 from contextlib import asynccontextmanager
+from functools import partial
 from http import HTTPStatus
-from typing import Final, cast
+from typing import Any, Final, cast
 
-from websockets.asyncio.server import Server, ServerConnection, serve
+import structlog
+from websockets.asyncio.server import Server, ServerConnection
 from websockets.http11 import Request, Response
+from websockets.protocol import State
+from websockets.server import ServerProtocol
 from websockets.typing import Origin
 
-from esplanade.protocol.codes import MAX_CLIENT_FRAME_BYTES
 from esplanade.server.assets import Assets, path_of, respond
 from esplanade.server.metrics import Metrics
-from esplanade.server.net.connections import Connections
+from esplanade.server.net.address_limits import AddressBounds, AddressLimits
+from esplanade.server.net.addresses import TrustedProxies
+from esplanade.server.net.answers import Answers, busy
+from esplanade.server.net.connection import Connection
+from esplanade.server.net.connections import Connections, Place
+from esplanade.server.net.door import Door
 from esplanade.server.net.hub import Hub
-from esplanade.server.net.session import CLOSE_S, Session
+from esplanade.server.net.metering import MAX_FRAME_BYTES, Meter
+from esplanade.server.net.refusals import Refusals
+from esplanade.server.net.session import Session
 from esplanade.server.settings import ServerSettings
 
-SOCKET_PATH: Final = "/ws"
-ANSWER_TIMEOUT_S: Final = 30.0
-"""The opening handshake, or a whole asset over a thin line, may take this long."""
+log = structlog.get_logger(__name__)
 
-MAX_FRAME_BYTES: Final = 8 * MAX_CLIENT_FRAME_BYTES
-"""Frames above the protocol's limit get a named error; above this the library refuses to read."""
+SOCKET_PATH: Final = "/ws"
+REQUEST_TIMEOUT_S: Final = 30.0
+"""A request, and the opening handshake of a WebSocket, must be whole within this time."""
 
 MAX_UNGREETED: Final = 256
 """New connections are turned away while this many have not said hello yet."""
@@ -33,7 +43,7 @@ MAX_VISITS: Final = 256
 
 
 class Listener:
-    """Accepts connections and runs a session for each."""
+    """Accepts connections, answers requests for pages, and runs a session for each person."""
 
     def __init__(
         self, hub: Hub, assets: Assets, settings: ServerSettings, metrics: Metrics
@@ -43,13 +53,24 @@ class Listener:
         self._settings = settings
         self._metrics = metrics
         self._sessions = 0
-        self._connections = Connections(settings.max_clients + MAX_UNGREETED + MAX_VISITS)
+        self._refusals = Refusals(metrics)
+        self._limits = AddressLimits(AddressBounds.of(settings))
+        self._answers = Answers(settings.address_bytes, settings.answer_bytes, self._refusals)
+        self._connections = Connections(
+            settings.max_clients + MAX_UNGREETED + MAX_VISITS,
+            self._limits,
+            TrustedProxies(settings.trusted_proxies),
+            self._refusals,
+        )
+        # Nothing is kept of what the library logs of each connection: port scanners break off many.
+        self._logger = logging.getLogger("esplanade.server.websockets")
         metrics.gauge("connections", "Open WebSocket connections", lambda: self._sessions)
         metrics.gauge("sockets", "Open connections of any kind", lambda: len(self._connections))
-        metrics.total(
-            "sockets_refused",
-            "Connections cut off because there were too many",
-            lambda: self._connections.refused,
+        metrics.gauge("addresses", "Addresses with open connections", lambda: len(self._limits))
+        metrics.gauge(
+            "answer_bytes_unsent",
+            "Bytes of pages and data that clients have not taken yet",
+            lambda: self._answers.unsent_bytes,
         )
 
     @asynccontextmanager
@@ -61,42 +82,86 @@ class Listener:
         OSError
             The address cannot be had.
         """
-        origins = cast(Sequence[Origin] | None, self._settings.origins)
-        server = await serve(
-            self._serve,
-            self._settings.host,
-            self._settings.port,
-            origins=None if origins is None else [*origins, None],
-            compression=None,
-            process_request=self._answer,
-            server_header=None,
-            open_timeout=ANSWER_TIMEOUT_S,
-            close_timeout=CLOSE_S,
-            max_size=MAX_FRAME_BYTES,
-            logger=logging.getLogger("esplanade.server.websockets"),
-            create_connection=self._connections.factory,
-        )
+        # The library hands over the connections that `_connect` makes.
+        handler = cast(Callable[[ServerConnection], Coroutine[Any, Any, None]], self._handle)
+        server = Server(lambda: self._open(server), handler, self._logger)
+        await server
         try:
             yield server
         finally:
             await self._connections.shut(server)
 
-    async def _serve(self, connection: ServerConnection) -> None:
+    async def _open(self, server: Server) -> asyncio.Server:
+        door = await Door.open(
+            self._settings.host,
+            self._settings.port,
+            self._connections,
+            partial(self._connect, server),
+        )
+        # The door has what the library asks of a server: it is no server of the event loop.
+        return cast(asyncio.Server, door)
+
+    def _connect(self, server: Server, place: Place) -> Connection:
+        origins = cast(Sequence[Origin] | None, self._settings.origins)
+        protocol = ServerProtocol(
+            origins=None if origins is None else [*origins, None],
+            max_size=MAX_FRAME_BYTES,
+            logger=self._logger,
+        )
+        now = asyncio.get_running_loop().time()
+        meter = Meter(self._settings.message_rate, now)
+        return Connection(protocol, server, place, meter, self._metrics, self._refusals)
+
+    async def _handle(self, connection: Connection) -> None:
+        """Run a connection from its first byte to its end."""
+        try:
+            async with asyncio.timeout(REQUEST_TIMEOUT_S):
+                request = await connection.asked()
+                answer = self._answer(connection, request)
+                if answer is None:
+                    await connection.handshake(server_header=None)
+            if answer is not None:
+                await self._answers.send(connection, answer)
+            elif connection.state is State.OPEN:
+                await self._serve(connection)
+        except (TimeoutError, ConnectionError):
+            pass  # the client is gone, or too slow
+        except Exception:
+            log.exception("connection failed", address=connection.client_address)
+        finally:
+            connection.transport.abort()
+            connection.server.handler_tasks.discard(asyncio.current_task())
+
+    async def _serve(self, connection: Connection) -> None:
+        connection.server.all_connections.add(connection)
+        connection.start_keepalive()
         self._sessions += 1
         try:
-            await Session(connection, self._hub, self._settings, self._metrics).run()
+            async with connection:
+                await Session(connection, self._hub, self._settings, self._metrics).run()
         finally:
             self._sessions -= 1
+            connection.server.all_connections.discard(connection)
 
-    def _answer(self, _: ServerConnection, request: Request) -> Response | None:
+    def _answer(self, connection: Connection, request: Request) -> Response | None:
+        """The answer to a request, or None where a WebSocket may be opened."""
         if request.method not in {"GET", "HEAD"}:
             return respond(
                 HTTPStatus.METHOD_NOT_ALLOWED,
                 b"only GET and HEAD are answered here\n",
                 {"Allow": "GET, HEAD"},
             )
+        if connection.place.attribute(request.headers.get_all("X-Forwarded-For")) is not None:
+            return busy("too many connections from your address\n")
         if path_of(request) != SOCKET_PATH:
             return self._assets.answer(request)
-        if self._sessions >= self._settings.max_clients + MAX_UNGREETED:
-            return respond(HTTPStatus.SERVICE_UNAVAILABLE, b"too many connections\n")
+        address = connection.client_address
+        too_many = self._sessions >= self._settings.max_clients + MAX_UNGREETED
+        if too_many and not self._connections.make_room(address):
+            self._refusals.answer("port_full", address)
+            return busy("too many connections\n")
+        why = self._limits.join(address, asyncio.get_running_loop().time())
+        if why is not None:
+            self._refusals.answer(why, address)
+            return busy("too many people are coming in from your address\n")
         return None

@@ -55,7 +55,7 @@ class Outbox:
         self._allowance_bytes = 0
         self.dropped: str | None = None
         """The limit that the client broke, once it was dropped as too slow."""
-        _bound_kernel_buffers(connection)
+        bound_kernel_buffers(connection)
 
     @property
     def waiting(self) -> int:
@@ -148,7 +148,7 @@ class Outbox:
         self._traffic.bytes_out += len(frame)
 
 
-def _bound_kernel_buffers(connection: ServerConnection) -> None:
+def bound_kernel_buffers(connection: ServerConnection) -> None:
     """Keep the kernel from hiding megabytes that a client has not read."""
     sock = connection.transport.get_extra_info("socket")
     sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)

@@ -5,7 +5,6 @@ from collections.abc import Callable
 from typing import Final, Protocol
 
 import structlog
-from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode as LibraryCode
 
@@ -24,13 +23,13 @@ from esplanade.protocol.messages import (
 )
 from esplanade.server.metrics import Metrics
 from esplanade.server.net import frames
+from esplanade.server.net.connection import CLOSE_S, Connection
 from esplanade.server.net.limits import TokenBucket
 from esplanade.server.net.outbox import Outbox, SlowPolicy
 from esplanade.server.settings import ServerSettings
 
-CLOSE_S: Final = 2.0
-"""A client that has not answered the closing handshake by then is cut off."""
 CHAT_BURST: Final = 5
+_CODES_OF_OURS: Final = frozenset(code for code in CloseCode if code >= 4000)
 
 log = structlog.get_logger(__name__)
 
@@ -66,7 +65,7 @@ class Session:
 
     def __init__(
         self,
-        connection: ServerConnection,
+        connection: Connection,
         hub: SessionRequests,
         settings: ServerSettings,
         metrics: Metrics,
@@ -86,7 +85,6 @@ class Session:
         self._hub = hub
         self._metrics = metrics
         self._hello_timeout_s = settings.hello_timeout_s
-        self._messages = TokenBucket(settings.message_rate, 2.0 * settings.message_rate, now)
         self._lines = TokenBucket(settings.chat_rate, CHAT_BURST, now)
         self._dismissal: asyncio.Task[None] | None = None
 
@@ -94,6 +92,7 @@ class Session:
         """Serve the connection from its hello to its end."""
         try:
             hello = await self._hello()
+            self._connection.place.settle()
             self.name = hello.name
             self._hub.admit(self, hello)
             async for frame in self._connection:
@@ -105,7 +104,10 @@ class Session:
             self._hub.depart(self, comes_back=False)
             await self._close(fault.close or CloseCode.NORMAL, fault.code.value)
         except ConnectionClosed as closed:
-            self._count_end(closed)
+            if self._broke_a_limit(closed):
+                self._hub.depart(self, comes_back=False)
+            else:
+                self._count_end(closed)
         finally:
             self._end()
         if self._dismissal:
@@ -151,8 +153,6 @@ class Session:
     def _decode(self, frame: bytes | str) -> ClientMessage:
         self._metrics.traffic.messages_in += 1
         self._metrics.traffic.bytes_in += len(frame)
-        if not self._messages.take(asyncio.get_running_loop().time()):
-            raise ProtocolError(ErrorCode.FLOODING, "too many messages", CloseCode.FLOODING)
         if isinstance(frame, str):
             raise ProtocolError(
                 ErrorCode.MALFORMED, "a text frame; messages are binary", CloseCode.MALFORMED
@@ -177,6 +177,15 @@ class Session:
                 self._hub.set_door(self, message)
             case Hello():
                 raise ProtocolError(ErrorCode.INVALID, "hello comes only once", CloseCode.INVALID)
+
+    def _broke_a_limit(self, closed: ConnectionClosed) -> bool:
+        """Whether the connection itself has ended the client, told it why, and counted that."""
+        return (
+            self._dismissal is None
+            and closed.sent is not None
+            and not closed.rcvd_then_sent
+            and closed.sent.code in _CODES_OF_OURS
+        )
 
     def _count_end(self, closed: ConnectionClosed) -> None:
         """Count an end that the library made itself: a broken or too large frame, a lost client."""

@@ -1,0 +1,144 @@
+"""One connection of the port for people: the library's, with a meter before its parser."""
+
+import asyncio
+from typing import Final
+
+from websockets.asyncio.server import Server, ServerConnection
+from websockets.http11 import Request
+from websockets.protocol import State
+from websockets.server import ServerProtocol
+
+from esplanade.protocol import CloseCode, ErrorCode
+from esplanade.protocol.messages import Error
+from esplanade.server.metrics import Metrics
+from esplanade.server.net import frames
+from esplanade.server.net.connections import Place
+from esplanade.server.net.metering import Meter
+from esplanade.server.net.refusals import Refusals
+
+CLOSE_S: Final = 2.0
+"""A client that has not answered the closing handshake by then is cut off."""
+
+GRACE_S: Final = 1.0
+"""A client that floods has so long to read why it is closed; nothing more of it is read."""
+
+FRAME_S: Final = 15.0
+"""A frame that has begun must be whole within this time."""
+
+_FAULTS: Final = {
+    "frames": (ErrorCode.FLOODING, CloseCode.FLOODING, "too many frames"),
+    "bytes": (ErrorCode.FLOODING, CloseCode.FLOODING, "too many bytes"),
+    "slow_frame": (
+        ErrorCode.MALFORMED,
+        CloseCode.MALFORMED,
+        f"a frame was not whole within {FRAME_S:g} s",
+    ),
+}
+"""What a client is told that breaks a limit of its meter, or of time."""
+
+
+class Connection(ServerConnection):
+    """Charges every chunk before the library sees it, and ends a client that sends too much."""
+
+    def __init__(
+        self,
+        protocol: ServerProtocol,
+        server: Server,
+        place: Place,
+        meter: Meter,
+        metrics: Metrics,
+        refusals: Refusals,
+    ) -> None:
+        super().__init__(protocol, server, close_timeout=CLOSE_S)
+        self.place = place
+        self.answering = False
+        """Whether an HTTP answer is on its way: what the client sends meanwhile is not parsed."""
+        self._meter = meter
+        self._metrics = metrics
+        self._refusals = refusals
+        self._deaf = False
+        self._end: asyncio.TimerHandle | None = None
+        self._frame_end: asyncio.TimerHandle | None = None
+
+    @property
+    def client_address(self) -> str:
+        """The key of the client's address, by which limits go (`addresses.address_key`)."""
+        return self.place.address
+
+    async def asked(self) -> Request:
+        """Wait for the request.
+
+        Raises
+        ------
+        ConnectionResetError
+            The connection has ended without one that can be read.
+        """
+        await asyncio.wait(
+            [self.request_rcvd, self.connection_lost_waiter], return_when=asyncio.FIRST_COMPLETED
+        )
+        if self.request is None:
+            raise ConnectionResetError
+        return self.request
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        super().connection_made(transport)
+        self.place.cut = self.transport.abort
+        if not self.place.present:  # it was given to somebody else while this one was opening
+            self.transport.abort()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        for timer in (self._end, self._frame_end):
+            if timer is not None:
+                timer.cancel()
+        super().connection_lost(exc)
+        self.place.leave()
+
+    def data_received(self, data: bytes) -> None:
+        if self._deaf:
+            self.transport.pause_reading()  # the library may have resumed it
+            return
+        excess = self._meter.charge(data, self.loop.time())
+        if excess is not None:
+            self._refuse(excess)
+            return
+        if self.answering:
+            return
+        super().data_received(data)
+        self._watch_frame()
+        if self._end is None and self.protocol.close_expected():
+            self._end_within(CLOSE_S)
+
+    def eof_received(self) -> bool | None:  # type: ignore[override]
+        if self.answering:
+            return self.transport.can_write_eof()
+        super().eof_received()
+        return None
+
+    def _watch_frame(self) -> None:
+        """Give a frame that has begun and is not whole a time in which it must be."""
+        if self._frame_end is not None and (self._meter.began or not self._meter.within_frame):
+            self._frame_end.cancel()
+            self._frame_end = None
+        if self._frame_end is None and self._meter.within_frame:
+            self._frame_end = self.loop.call_later(FRAME_S, self._refuse, "slow_frame")
+
+    def _refuse(self, excess: str) -> None:
+        """End the connection with its name, if it has come so far that it can be told."""
+        self._deaf = True
+        self.transport.pause_reading()
+        self._refusals.flood(excess, self.client_address)
+        if self.protocol.state is not State.OPEN or excess not in _FAULTS:
+            self.transport.abort()
+            return
+        error, code, text = _FAULTS[excess]
+        self._metrics.errors.labels(error.value).inc()
+        self._metrics.closes.labels(code.name.lower()).inc()
+        self.transport.write(frames.message(Error(error=error, text=text)))
+        self.protocol.fail(code, error.value)
+        self.send_data()
+        self._end_within(GRACE_S)
+
+    def _end_within(self, seconds: float) -> None:
+        if self._end is not None:
+            self._end.cancel()
+        self._end = self.loop.call_later(seconds, self.transport.abort)

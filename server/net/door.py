@@ -1,0 +1,138 @@
+"""The door accepts connections: each is counted before anything is spent on it.
+
+A server of the event loop makes a transport and a protocol for every connection before anybody
+can ask where it comes from, and knows nothing of those whose TLS handshake is not done. Here an
+address is known as soon as the kernel hands the connection over. One that is refused costs two
+system calls, and one round of the event loop takes in a few only, however many wait.
+"""
+
+import asyncio
+import os
+import socket
+import ssl
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Final
+
+from esplanade.server.net.connections import Connections, Place
+
+BACKLOG: Final = 1024
+"""Connections that wait in the kernel to be accepted."""
+
+MOST_AT_ONCE: Final = 16
+"""Connections that are accepted in one round of the event loop."""
+
+EXHAUSTED_PAUSE_S: Final = 0.2
+"""The door rests for this long when the process has no descriptor left."""
+
+
+class Door:
+    """Accepts at all addresses of a host; it has what the library asks of an `asyncio.Server`.
+
+    `make` makes the protocol of a connection that has been given a place.
+    """
+
+    def __init__(
+        self,
+        sockets: list[socket.socket],
+        connections: Connections,
+        make: Callable[[Place], asyncio.Protocol],
+        tls: ssl.SSLContext | None = None,
+        tls_timeout_s: float | None = None,
+    ) -> None:
+        self._loop = asyncio.get_running_loop()
+        self.sockets = tuple(sockets)
+        self._connections = connections
+        self._make = make
+        self._tls = tls
+        self._tls_timeout_s = tls_timeout_s
+        self._opening: set[asyncio.Task[None]] = set()
+        self._accepting = [self._loop.create_task(self._accept(each)) for each in sockets]
+
+    @classmethod
+    async def open(
+        cls,
+        host: str,
+        port: int,
+        connections: Connections,
+        make: Callable[[Place], asyncio.Protocol],
+        tls: ssl.SSLContext | None = None,
+        tls_timeout_s: float | None = None,
+    ) -> "Door":
+        """Listen at a host and port.
+
+        Raises
+        ------
+        OSError
+            The address cannot be had.
+        """
+        return cls(await _listening(host, port), connections, make, tls, tls_timeout_s)
+
+    def is_serving(self) -> bool:
+        """Whether connections are accepted."""
+        return bool(self._accepting)
+
+    def get_loop(self) -> asyncio.AbstractEventLoop:
+        return self._loop
+
+    def close(self) -> None:
+        """Accept nothing more; whoever is still in a TLS handshake is cut off."""
+        for task in (*self._accepting, *self._opening):
+            task.cancel()
+        self._accepting = []
+
+    async def wait_closed(self) -> None:
+        """Wait until all connections are gone."""
+        await self._connections.all_gone()
+        for each in self.sockets:
+            each.close()
+
+    async def _accept(self, listening: socket.socket) -> None:
+        while True:
+            try:
+                taken, peer = await self._loop.sock_accept(listening)
+                self._take(taken, peer)
+                for _ in range(MOST_AT_ONCE - 1):
+                    taken, peer = listening.accept()
+                    self._take(taken, peer)
+            except (BlockingIOError, ConnectionAbortedError):
+                pass
+            except OSError:
+                await asyncio.sleep(EXHAUSTED_PAUSE_S)
+
+    def _take(self, taken: socket.socket, peer: tuple[str, int]) -> None:
+        place = self._connections.enter(peer[0])
+        if place is None:
+            taken.close()
+            return
+        taken.setblocking(False)
+        task = self._loop.create_task(self._open(taken, place))
+        self._opening.add(task)
+        task.add_done_callback(self._opening.discard)
+        place.cut = task.cancel
+
+    async def _open(self, taken: socket.socket, place: Place) -> None:
+        try:
+            await self._loop.connect_accepted_socket(
+                lambda: self._make(place),
+                taken,
+                ssl=self._tls,
+                ssl_handshake_timeout=self._tls_timeout_s if self._tls else None,
+            )
+        except (OSError, asyncio.CancelledError):
+            # The connection has been made in vain, or its TLS handshake has failed.
+            with suppress(OSError):
+                taken.close()
+            place.leave()
+
+
+async def _listening(host: str, port: int) -> list[socket.socket]:
+    """Listening sockets at all addresses of a host, found and refused as the event loop does it."""
+    loop = asyncio.get_running_loop()
+    server = await loop.create_server(asyncio.Protocol, host, port, start_serving=False)
+    sockets = [socket.socket(fileno=os.dup(bound.fileno())) for bound in server.sockets]
+    server.close()
+    for each in sockets:
+        each.setblocking(False)
+        each.listen(BACKLOG)
+    return sockets
