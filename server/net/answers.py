@@ -94,9 +94,11 @@ class Answers:
         turns = self._turns.setdefault(address, _Turns(self._for_each))
         turns.users += 1
         try:
-            async with _waiting(turns.free if address not in LOCAL_KEYS else None, "address_bytes"):
-                async with _waiting(self._all, "answer_bytes"):
-                    yield
+            async with (
+                _waiting(None if address in LOCAL_KEYS else turns.free, "address_bytes"),
+                _waiting(self._all, "answer_bytes"),
+            ):
+                yield
         finally:
             turns.users -= 1
             if not turns.users:

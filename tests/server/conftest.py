@@ -2,6 +2,7 @@
 
 from collections.abc import AsyncIterator, Callable
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from tests.server.worlds import ROOM
 NO_CLIENT = Assets.load(Path("no such folder"))
 
 Serving = Callable[..., AbstractAsyncContextManager[Running]]
+ServingAssets = Callable[..., AbstractAsyncContextManager[Running]]
 
 
 @pytest.fixture
@@ -25,11 +27,17 @@ def room_file(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def serving(room_file: Path) -> Serving:
+def serving(serving_assets: ServingAssets) -> Serving:
     """`async with serving(actors=2) as server`: settings by name, the rest as tests need it."""
+    return partial(serving_assets, NO_CLIENT)
+
+
+@pytest.fixture
+def serving_assets(room_file: Path) -> ServingAssets:
+    """`async with serving_assets(assets, actors=2) as server`: the same with other pages."""
 
     @asynccontextmanager
-    async def serve(**changes: Any) -> AsyncIterator[Running]:
+    async def serve(assets: Assets, **changes: Any) -> AsyncIterator[Running]:
         values: dict[str, Any] = {
             "scene": room_file,
             "host": "127.0.0.1",
@@ -37,7 +45,7 @@ def serving(room_file: Path) -> Serving:
             "private_port": 0,
             "actors": 0,
         }
-        async with running(ServerSettings(**{**values, **changes}), NO_CLIENT) as server:
+        async with running(ServerSettings(**{**values, **changes}), assets) as server:
             yield server
 
     return serve
