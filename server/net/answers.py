@@ -57,7 +57,9 @@ class Answers:
         except TimeoutError:
             self._refusals.answer("unread", address)
             return
-        await self._end(connection)
+        connection.end_answer()
+        async with asyncio.timeout(CLOSE_S):
+            await asyncio.shield(connection.connection_lost_waiter)
 
     async def _write(self, connection: Connection, answer: Response) -> None:
         body = memoryview(answer.body)
@@ -77,16 +79,6 @@ class Answers:
                 await connection.drain()
         finally:
             self.unsent_bytes -= len(piece)
-
-    async def _end(self, connection: Connection) -> None:
-        """Tell the client that this was all, and wait a moment for it to go."""
-        transport = connection.transport
-        if transport.can_write_eof():
-            transport.write_eof()
-        else:
-            transport.close()
-        async with asyncio.timeout(CLOSE_S):
-            await asyncio.shield(connection.connection_lost_waiter)
 
     @asynccontextmanager
     async def _turn(self, address: str) -> AsyncIterator[None]:

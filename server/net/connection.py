@@ -53,6 +53,8 @@ class Connection(ServerConnection):
         self.place = place
         self.answering = False
         """Whether an HTTP answer is on its way: what the client sends meanwhile is not parsed."""
+        self._answered = False
+        self._client_ended = False
         self._meter = meter
         self._metrics = metrics
         self._refusals = refusals
@@ -110,9 +112,18 @@ class Connection(ServerConnection):
 
     def eof_received(self) -> bool | None:  # type: ignore[override]
         if self.answering:
-            return self.transport.can_write_eof()
+            self._client_ended = True
+            return not self._answered and self.transport.can_write_eof()
         super().eof_received()
         return None
+
+    def end_answer(self) -> None:
+        """Tell the client of an HTTP answer that this was all; the connection ends when it goes."""
+        self._answered = True
+        if self._client_ended or not self.transport.can_write_eof():
+            self.transport.close()
+        else:
+            self.transport.write_eof()
 
     def _watch_frame(self) -> None:
         """Give a frame that has begun and is not whole a time in which it must be."""

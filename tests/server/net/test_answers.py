@@ -176,5 +176,5 @@ async def _settled(server: Running) -> float:
 
 async def _until(server: Running, line: bytes) -> None:
     async with asyncio.timeout(PATIENCE_S):
-        while line not in server.metrics.exposition():
+        while line not in server.metrics.exposition():  # noqa: ASYNC110
             await asyncio.sleep(0.05)
