@@ -92,6 +92,13 @@ _LIMITS: Final = {
     "address_joins": Setting(
         "most people who may come in from one address within ten seconds", Whole(1, 10_000), 80
     ),
+    "address_frames": Setting(
+        "WebSocket frames that are taken from one address, of all its clients together; "
+        "further ones wait",
+        Whole(1, 1_000_000),
+        3000,
+        "per second",
+    ),
     "address_bytes": Setting(
         "most bytes of pages and data under way to one address that are not read yet",
         Whole(32 * 1024, 1024**3),

@@ -53,6 +53,7 @@ class ServerSettings(BaseSettings):
     address_sockets: int = _field("address_sockets")
     address_connects: int = _field("address_connects")
     address_joins: int = _field("address_joins")
+    address_frames: int = _field("address_frames")
     address_bytes: int = _field("address_bytes")
     answer_bytes: int = _field("answer_bytes")
     message_rate: float = _field("message_rate")

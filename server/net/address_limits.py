@@ -11,6 +11,9 @@ from esplanade.server.settings import ServerSettings
 WINDOW_S: Final = 10.0
 """Connections and joins of one address are bounded within this time."""
 
+FRAMES_BURST_S: Final = 0.25
+"""An address may send at once what it may send in this time: all of it is parsed within a tick."""
+
 MAX_REMEMBERED: Final = 4096
 """Addresses without a connection whose rates are remembered, the latest ones."""
 
@@ -25,21 +28,29 @@ class AddressBounds:
     """New connections within `WINDOW_S`."""
     joins: int
     """People who come in within `WINDOW_S`."""
+    frames: int
+    """WebSocket frames a second, of all its connections together."""
 
     @classmethod
     def of(cls, settings: ServerSettings) -> "AddressBounds":
-        return cls(settings.address_sockets, settings.address_connects, settings.address_joins)
+        return cls(
+            settings.address_sockets,
+            settings.address_connects,
+            settings.address_joins,
+            settings.address_frames,
+        )
 
 
 class _Account:
     """What one address has open, and what it may still do in this moment."""
 
-    __slots__ = ("connects", "joins", "sockets")
+    __slots__ = ("connects", "frames", "joins", "sockets")
 
     def __init__(self, bounds: AddressBounds, now: float) -> None:
         self.sockets = 0
         self.connects = TokenBucket(bounds.connects / WINDOW_S, bounds.connects, now)
         self.joins = TokenBucket(bounds.joins / WINDOW_S, bounds.joins, now)
+        self.frames = TokenBucket(bounds.frames, FRAMES_BURST_S * bounds.frames, now)
 
 
 class AddressLimits:
@@ -87,6 +98,12 @@ class AddressLimits:
         if key in LOCAL_KEYS or self._account(key, now).joins.take(now):
             return None
         return "address_joins"
+
+    def delay(self, key: str, frames: int, now: float) -> float:
+        """Seconds to wait with frames of an address; they are counted where the result is 0."""
+        if key in LOCAL_KEYS:
+            return 0.0
+        return self._account(key, now).frames.borrow(now, frames)
 
     def _account(self, key: str, now: float) -> _Account:
         account = self._busy.get(key)

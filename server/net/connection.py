@@ -59,6 +59,9 @@ class Connection(ServerConnection):
         self._metrics = metrics
         self._refusals = refusals
         self._deaf = False
+        self._held = b""
+        self._held_frames = 0
+        self._turn: asyncio.TimerHandle | None = None
         self._end: asyncio.TimerHandle | None = None
         self._frame_end: asyncio.TimerHandle | None = None
 
@@ -89,7 +92,7 @@ class Connection(ServerConnection):
             self.transport.abort()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        for timer in (self._end, self._frame_end):
+        for timer in (self._end, self._frame_end, self._turn):
             if timer is not None:
                 timer.cancel()
         super().connection_lost(exc)
@@ -103,12 +106,33 @@ class Connection(ServerConnection):
         if excess is not None:
             self._refuse(excess)
             return
-        if self.answering:
+        self._held += data
+        self._held_frames += max(self._meter.began, 1)
+        if self._turn is None:
+            self._parse_held()
+        else:
+            self.transport.pause_reading()  # the library may have resumed it
+
+    def _go_on(self) -> None:
+        """Parse what had to wait, and read again."""
+        self._turn = None
+        if not self._deaf and not self.transport.is_closing():
+            self.transport.resume_reading()
+            self._parse_held()
+
+    def _parse_held(self) -> None:
+        """Parse what is paid for, now or when it is the turn of the client's address."""
+        delay_s = self.place.delay(self._held_frames, self.loop.time())
+        if delay_s:
+            self.transport.pause_reading()
+            self._turn = self.loop.call_later(delay_s, self._go_on)
             return
-        super().data_received(data)
-        self._watch_frame()
-        if self._end is None and self.protocol.close_expected():
-            self._end_within(CLOSE_S)
+        data, self._held, self._held_frames = self._held, b"", 0
+        if not self.answering:
+            super().data_received(data)
+            self._watch_frame()
+            if self._end is None and self.protocol.close_expected():
+                self._end_within(CLOSE_S)
 
     def eof_received(self) -> bool | None:  # type: ignore[override]
         if self.answering:

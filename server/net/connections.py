@@ -46,6 +46,10 @@ class Place:
         """
         return self._connections.attribute(self, forwarded)
 
+    def delay(self, frames: int, now: float) -> float:
+        """Seconds to wait with frames that came; they are counted where the result is 0."""
+        return self._connections.delay(self, frames, now)
+
     def settle(self) -> None:
         """Keep the place from now on, whoever comes."""
         if self.present and not self.settled:
@@ -122,6 +126,10 @@ class Connections:
         else:
             self._refusals.socket(why, key)
         return why
+
+    def delay(self, place: Place, frames: int, now: float) -> float:
+        """See `Place.delay`."""
+        return self._limits.delay(place.address, frames, now) if place.charged else 0.0
 
     def settle(self, place: Place) -> None:
         """See `Place.settle`."""

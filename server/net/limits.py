@@ -26,3 +26,15 @@ class TokenBucket:
             return False
         self._tokens -= tokens
         return True
+
+    def borrow(self, now: float, tokens: float) -> float:
+        """Take tokens, even more than there are, or say how many seconds it is until that may be.
+
+        The result is 0 where they were taken. Whoever takes more than there are leaves a debt,
+        and nobody takes anything until the rate has paid it.
+        """
+        available = self.available(now)
+        if available <= 0.0:
+            return (1.0 - available) / self._rate
+        self._tokens -= tokens
+        return 0.0

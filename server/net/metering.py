@@ -89,8 +89,8 @@ class Meter:
         self._in_request = True
         self._request_bytes = 0
         self._tail = b""
-        self.began = False
-        """Whether a frame began in the last chunk."""
+        self.began = 0
+        """Frames that began in the last chunk."""
 
     @property
     def within_frame(self) -> bool:
@@ -116,5 +116,5 @@ class Meter:
                 return "request"
         credit = int(self._frames.available(now))
         count = self._walk.begun(chunk, credit)
-        self.began = count > 0
+        self.began = count
         return None if self._frames.take(now, max(count, 1)) else "frames"

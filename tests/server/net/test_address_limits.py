@@ -1,3 +1,5 @@
+import pytest
+
 from esplanade.server.net.address_limits import (
     MAX_REMEMBERED,
     WINDOW_S,
@@ -6,7 +8,7 @@ from esplanade.server.net.address_limits import (
 )
 from esplanade.server.settings import ServerSettings
 
-BOUNDS = AddressBounds(sockets=3, connects=5, joins=2)
+BOUNDS = AddressBounds(sockets=3, connects=5, joins=2, frames=8)
 
 
 def test_open_connections_of_an_address_are_bounded() -> None:
@@ -35,11 +37,21 @@ def test_joins_of_an_address_are_bounded_in_time() -> None:
     assert limits.join("a", WINDOW_S) is None
 
 
+def test_frames_of_an_address_wait_for_each_other() -> None:
+    limits = AddressLimits(BOUNDS)
+    assert limits.delay("a", 6, 0.0) == 0.0  # two are the burst; the others are borrowed
+    assert limits.delay("a", 1, 0.0) == pytest.approx(5 / 8)
+    assert limits.delay("b", 1, 0.0) == 0.0
+    assert limits.delay("a", 1, 5 / 8) == 0.0
+    assert limits.delay("a", 1, 5 / 8) > 0.0
+
+
 def test_this_machine_has_no_limits_but_its_other_loopback_addresses_do() -> None:
     limits = AddressLimits(BOUNDS)
     for key in ("127.0.0.1", "::1"):
         assert {limits.connect(key, 0.0) for _ in range(1000)} == {None}
         assert {limits.join(key, 0.0) for _ in range(1000)} == {None}
+        assert {limits.delay(key, 100, 0.0) for _ in range(1000)} == {0.0}
         limits.disconnect(key)
     assert {limits.connect("127.0.0.2", 0.0) for _ in range(10)} == {None, "address_sockets"}
 

@@ -2,6 +2,7 @@
 
 import asyncio
 import struct
+import time
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from itertools import cycle
@@ -11,7 +12,7 @@ import pytest
 import structlog
 
 from esplanade.protocol import VERSION, CloseCode, ErrorCode, encode
-from esplanade.protocol.messages import Hello, Ping
+from esplanade.protocol.messages import Hello, Ping, Pong
 from esplanade.server.app import Running
 from esplanade.server.net import connection
 from esplanade.server.net.metering import MAX_HEAD_BYTES
@@ -159,6 +160,28 @@ async def test_what_is_within_the_rate_goes_on(serving: Serving) -> None:
         assert b"esplanade_floods_total{" not in server.metrics.exposition()
 
 
+async def test_clients_of_one_address_wait_for_each_other(serving: Serving) -> None:
+    """One sends more at once than its address may; the other is not read until that is paid."""
+    hello, clock = _frame(encode(Hello(name="Ben", version=VERSION))), time.monotonic
+    async with (
+        serving(address_frames=20) as server,
+        joined(server.port) as other,
+        handshaken(server, "127.0.0.2") as (busy_reader, busy),
+        handshaken(server, "127.0.0.2") as (quiet_reader, quiet),
+    ):
+        for writer in (busy, quiet):
+            writer.write(hello)
+        began_s = clock()
+        busy.write(b"".join(_frame(encode(Ping(nonce=nonce))) for nonce in range(60)))
+        await _read_pong(busy_reader, 59)
+        quiet.write(_frame(encode(Ping(nonce=1))))
+        await _read_pong(quiet_reader, 1)
+        assert clock() - began_s > 60 / 20 - 0.5  # a quarter of a second may be saved up
+        await other.ticks(3)
+        assert server.metrics.traffic.messages_in == 3 + 60 + 1
+        assert b"esplanade_floods_total{" not in server.metrics.exposition()
+
+
 async def test_the_server_ends_a_connection_that_the_library_has_failed(
     serving: Serving, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -174,10 +197,12 @@ async def test_the_server_ends_a_connection_that_the_library_has_failed(
 
 @asynccontextmanager
 async def handshaken(
-    server: Running,
+    server: Running, address: str = "127.0.0.1"
 ) -> AsyncIterator[tuple[asyncio.StreamReader, asyncio.StreamWriter]]:
     """A bare WebSocket connection, to be written to as no library would."""
-    reader, writer = await asyncio.open_connection("127.0.0.1", server.port)
+    reader, writer = await asyncio.open_connection(
+        "127.0.0.1", server.port, local_addr=(address, 0)
+    )
     writer.write(
         b"GET /ws HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
         b"Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\n\r\n"
@@ -186,6 +211,13 @@ async def handshaken(
         assert b" 101 " in await reader.readuntil(b"\r\n\r\n")
     yield reader, writer
     writer.close()
+
+
+async def _read_pong(reader: asyncio.StreamReader, nonce: int) -> None:
+    wanted, received = encode(Pong(nonce=nonce, server_time=0.0))[:-8], b""
+    async with asyncio.timeout(PATIENCE_S):
+        while wanted not in received:
+            received += await reader.read(65_536)
 
 
 async def _write_for_ever(writer: asyncio.StreamWriter, data: bytes) -> None:
