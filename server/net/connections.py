@@ -98,6 +98,10 @@ class Connections:
         self._unsettled.setdefault(key, {})[place] = None
         return place
 
+    def no_descriptor(self) -> None:
+        """Note that connections have to wait, because the process has no descriptor for them."""
+        self._refusals.socket("no_descriptor", "unknown")
+
     def make_room(self, key: str) -> bool:
         """Cut off the oldest unsettled connection of the address that has the most of them.
 
@@ -115,7 +119,7 @@ class Connections:
 
     def attribute(self, place: Place, forwarded: list[str]) -> str | None:
         """See `Place.attribute`."""
-        if place.charged or not forwarded:
+        if place.charged or not place.present or not forwarded:
             return None
         key = self._proxies.client_key(place.peer, forwarded)
         why = self._limits.connect(key, self._loop.time())

@@ -14,7 +14,11 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Final
 
+import structlog
+
 from esplanade.server.net.connections import Connections, Place
+
+log = structlog.get_logger(__name__)
 
 BACKLOG: Final = 1024
 """Connections that wait in the kernel to be accepted."""
@@ -98,12 +102,20 @@ class Door:
             except (BlockingIOError, ConnectionAbortedError):
                 pass
             except OSError:
+                self._connections.no_descriptor()
                 await asyncio.sleep(EXHAUSTED_PAUSE_S)
+            except Exception:
+                # Whatever is wrong with one connection, others are still accepted.
+                log.exception("accepting failed")
 
     def _take(self, taken: socket.socket, peer: tuple[str, int]) -> None:
-        place = self._connections.enter(peer[0])
+        place = None
+        try:
+            place = self._connections.enter(peer[0])
+        finally:
+            if place is None:
+                taken.close()
         if place is None:
-            taken.close()
             return
         taken.setblocking(False)
         task = self._loop.create_task(self._open(taken, place))

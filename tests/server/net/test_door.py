@@ -1,6 +1,8 @@
 """What one address may have, with real sockets: 127.0.0.2 is an address like any other."""
 
 import asyncio
+import errno
+import socket
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 
@@ -147,6 +149,37 @@ async def test_lines_of_the_log_are_bounded(serving: Serving) -> None:
         assert 0 < len(told) < 2 * LINES_BURST
         total = 4.0 * LINES_BURST
         assert f'why="address_sockets"}} {total}'.encode() in server.metrics.exposition()
+
+
+async def test_a_process_without_descriptors_lets_connections_wait(
+    serving: Serving, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with serving() as server, joined(server.port) as client:
+        accept, full = socket.socket.accept, True
+
+        def exhausted(listening: socket.socket) -> tuple[socket.socket, object]:
+            if full:
+                raise OSError(errno.EMFILE, "Too many open files")
+            return accept(listening)
+
+        monkeypatch.setattr(socket.socket, "accept", exhausted)
+        asking = asyncio.create_task(ask(server, "127.0.0.1"))
+        async with asyncio.timeout(PATIENCE_S):
+            while b'why="no_descriptor"' not in server.metrics.exposition():  # noqa: ASYNC110
+                await asyncio.sleep(0.01)
+        await client.ticks(3)
+        full = False
+        assert (await asking).startswith(b"HTTP/1.1 200 ")
+
+
+async def test_an_accept_that_fails_does_not_close_the_door(
+    serving: Serving, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with serving() as server:
+        with monkeypatch.context() as patch:
+            patch.setattr("esplanade.server.net.connections.address_key", lambda text: 1 / 0)
+            assert await ask(server, "127.0.0.2") == b""
+        assert (await ask(server, "127.0.0.2")).startswith(b"HTTP/1.1 200 ")
 
 
 @asynccontextmanager

@@ -185,13 +185,13 @@ async def test_a_client_that_never_reads_is_dropped_and_nobody_else_waits(
     serving: Serving,
 ) -> None:
     async with (
-        serving(drop_seconds=0.3, drop_bytes=64 * 1024**2) as server,
+        serving(drop_seconds=0.3, drop_bytes=64 * 1024**2, message_rate=10_000.0) as server,
         joined(server.port, "Ann") as ann,
         joined(server.port, "Deaf") as deaf,
     ):
         deaf.connection.transport.pause_reading()
         # The answers to these are more than the kernel's buffers on both sides swallow.
-        deaf.connection.transport.write(PING * 50_000)
+        deaf.connection.transport.write(PING * 18_000)
         await ann.wait_for(lambda: b'slow_total{limit="seconds"}' in server.metrics.exposition())
         assert b'closes_total{reason="too_slow"} 1.0' in server.metrics.exposition()
         assert server.metrics.traffic.snapshots_skipped > 0
