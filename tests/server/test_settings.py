@@ -54,6 +54,7 @@ def test_settings_are_frozen() -> None:
         ({"scene": Path("a"), "crowd": Path("b")}, "one of them"),
         ({"walls": Path("a")}, "belong to a crowd"),
         ({"drop_bytes": 2048, "slow_bytes": 4096}, "greater than slow_bytes"),
+        ({"trusted_proxies": "10.0.0.0/8, nginx"}, "'nginx' is no address or network"),
         ({"port": -1}, "greater than or equal to 0"),
         ({"colour": "red"}, "not permitted"),
     ],
