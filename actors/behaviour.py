@@ -31,7 +31,7 @@ class Perception:
     arrived: bool
     """The goal given last has been reached."""
     stuck: bool
-    """No way leads to the goal given last."""
+    """No path leads to the goal given last."""
     people: Mapping[Hashable, Goal]
     scene: Scene
     grid: LayeredGrid
@@ -51,7 +51,7 @@ class Behaviour(ABC):
 
     name: ClassVar[BehaviourName]
     ask_at_s: float = -math.inf
-    """When `update` wants to be called again, in seconds of the world; at once unless it says so.
+    """Time of the world, in seconds, when `update` wants to be called again; by default at once.
 
     It is called before that when the actor has arrived, and while no path leads to its goal.
     """
@@ -81,7 +81,7 @@ class Idle(Behaviour):
     name = "idle"
 
     def update(self, view: Perception) -> Goal | None:  # noqa: ARG002 - nothing to look at
-        """Never a goal."""
+        """None: an idle actor has no goal."""
         self.ask_at_s = math.inf
         return None
 
@@ -170,7 +170,7 @@ class Patrol(Behaviour):
 
     @property
     def resting(self) -> bool:
-        """At a stop."""
+        """Whether the actor rests at a stop."""
         return self._rest_until is not None
 
     def targets(self) -> Sequence[Target]:
@@ -241,7 +241,7 @@ class Guide(Behaviour):
 
     @property
     def waiting(self) -> bool:
-        """Standing for a follower who fell behind."""
+        """Whether the guide stands for a follower who fell behind."""
         return self._waiting_since is not None
 
     @property

@@ -38,7 +38,7 @@ class Navigator:
     """Takes every actor to its goal among people whose future is not known.
 
     A tick is `observe` (where everyone is now) and `tick` (one step of every actor). Time is
-    tick × `tick_s`; the seed decides nothing but which of two with equal ways left goes first, and
+    tick × `tick_s`; the seed only decides which of two with equal distances left goes first, and
     in which tick each looks for narrow places; the order in which actors were added or people are
     listed never matters.
     """
@@ -243,7 +243,7 @@ class Navigator:
     def observe(self, people: People) -> None:
         """Tell where everyone is at this tick: id -> (x, y) or (x, y, z).
 
-        Those who are absent have left. Call it once before every tick.
+        People who are absent have left. Call it once before every tick.
 
         Raises
         ------
@@ -256,7 +256,7 @@ class Navigator:
             self._history.observe(people)
 
     def advance(self) -> None:
-        """Plan and take one step for every actor; `table` holds what has come of it."""
+        """Plan and take one step for every actor; `table` holds the result."""
         self._potentials.renew_one()
         self._prediction = self._history.predict(self.grid, self.plan.slices, self.plan.slice_s)
         if len(self.table):
@@ -292,7 +292,7 @@ class Navigator:
     def predicted_near(
         self, position: Point, z_m: float, within_m: float
     ) -> list[NDArray[np.float64]]:
-        """For each person now within that distance: float64 (K, 4) x, y, z, deviation m."""
+        """One array for each person now in that distance: (K, 4) float64 x, y, z, deviation m."""
         p: Prediction = self._prediction
         out = []
         for k in range(len(p.means)):
@@ -324,7 +324,7 @@ class Navigator:
         return int(self.grid.layered.places["layer"][cell]) if cell >= 0 else 0
 
     def _rank(self) -> None:
-        """Order among those with equal ways left: a hash of id and seed, free of ties."""
+        """Order actors with equal distances left: a hash of id and seed, free of ties."""
         keys = [(_priority(self._seed, who), str(who)) for who in self.table]
         order = sorted(range(len(keys)), key=keys.__getitem__)
         self.table.agents.ranks[order] = np.arange(len(keys))

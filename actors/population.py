@@ -31,7 +31,7 @@ class Explanation:
     path: NDArray[np.float64]
     """float64 (K, 4): x, y, z, seconds from now."""
     people: list[NDArray[np.float64]]
-    """For each person near: float64 (K, 4) x, y, z, radius of the two-sigma circle, m."""
+    """One array for each person near: float64 (K, 4) x, y, z, radius of the two-sigma circle, m."""
 
 
 class Population:
@@ -222,7 +222,7 @@ class Population:
         return {ids[row]: target for row in rows if (target := self.table.points_at(row))}
 
     def ground_changed(self) -> None:
-        """The ground has changed, as when a door closes: ways to goals are found anew."""
+        """The ground has changed, as when a door closes: potentials of goals are derived anew."""
         self._entrances.clear()
         self.navigator.ground_changed()
 
@@ -239,7 +239,7 @@ class Population:
 
         Kernels are compiled by running a small zone of their own, which is not all level: on level
         ground some are not called. Few actors and many are planned for by different ones.
-        `ready_to_plan` waits for whoever compiles meanwhile what plans for them.
+        `ready_to_plan` waits until the kernels that plan have been compiled elsewhere.
         """
         step = Polygon(points=((4.5, 4.5), (5.5, 4.5), (5.5, 5.5), (4.5, 5.5)), height_m=0.3)
         walls = [((3.0, 0.0), (3.0, 2.0))]

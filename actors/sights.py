@@ -31,7 +31,7 @@ def sight_at(scene: Scene, place: Point) -> Point | None:
 
 
 def _distance(corners: NDArray[np.float64], point: tuple[float, float]) -> float:
-    """From a point to the outline of a polygon, (N, 2)."""
+    """Distance from a point to the outline of a polygon, (N, 2)."""
     along = np.roll(corners, -1, axis=0) - corners
     apart = np.asarray(point) - corners
     share = np.clip((apart * along).sum(1) / (along * along).sum(1), 0.0, 1.0)

@@ -37,7 +37,7 @@ def run(options: Namespace) -> int:
 
 
 def _trips(options: Namespace) -> bool:
-    """Walk all episodes, show and write what came of them; returns whether one failed."""
+    """Walk all episodes, show and write the results; returns whether one failed."""
     settings = read_changes(options.set)
     names = named_sources(options)
     if options.plots is not None:
@@ -60,7 +60,7 @@ def _trips(options: Namespace) -> bool:
 
 
 def _forecasts(options: Namespace) -> None:
-    """Hold predictions against what people did."""
+    """Compare predictions with what people did."""
     names = named_sources(options)
     crowds = [(name, *source.read()) for source, name in names.items()]
     rows, fits = forecast_report.measure(crowds, options.sample_s, fit=options.fit)

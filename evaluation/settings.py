@@ -89,7 +89,7 @@ def models_of(settings: Mapping[str, Any]) -> Models:
 
 
 def parameters_of(settings: Mapping[str, Any], given: Mapping[str, Any]) -> ActorParameters:
-    """An actor's parameters: checked settings before what is given, that before defaults."""
+    """An actor's parameters: checked settings go before `given`, and that before defaults."""
     return ActorParameters(**{**given, **_grouped(settings)[0]})
 
 

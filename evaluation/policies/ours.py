@@ -20,7 +20,7 @@ MARGIN_M: Final = 10.0
 DRAWN_WITHIN_M: Final = 8.0
 """Predictions are drawn for people within this distance."""
 DRAWN_EVERY_S: Final = 0.8
-"""A predicted circle is drawn for every so many seconds ahead."""
+"""Seconds between the predicted circles that are drawn."""
 DRAWN_SIGMAS: Final = 2.0
 """The radius of a predicted circle in deviations."""
 UNLIMITED_MPS2: Final = 20.0

@@ -1,7 +1,7 @@
 """One tick's decisions for many actors, on bare arrays.
 
-Everyone reads the state of the finished tick and writes its own row, so rows may be worked on in
-any order and on any number of threads; only `resolve` runs through the actors in rank order.
+Every agent reads the state of the finished tick and writes its own row, so rows may be worked on
+in any order and on any number of threads; only `resolve` runs through the actors in rank order.
 """
 
 import numpy as np
@@ -34,10 +34,10 @@ EASE_S = 0.5
 
 @kernel
 def keep_account(agents: Agents, a: int, left: float, tick_s: float) -> float:
-    """Book the time that an actor lost or made up since the last tick; its speed from now on.
+    """Book the time that an actor lost or made up in the last tick; return its speed from now on.
 
-    Lost is what a tick lasts beyond the time that the way made good in it takes at the preferred
-    speed.
+    The time lost is the length of a tick less the time that the progress made in it takes at the
+    preferred speed.
     """
     p = agents.parameters[a]
     before = agents.left_m[a]
@@ -58,10 +58,10 @@ def make_task(
     tick_s: float,
     contested: bool,
 ) -> Task:
-    """The question that actor a asks this tick. Without a goal or a way to it, it stays around.
+    """The task of actor a's search in this tick; without a goal or a path to it, it stays around.
 
-    `contested` is its passage; who is about to arrive keeps to no lane, or could not go to a goal
-    that lies left of it.
+    `contested` tells whether its passage is contested. An actor that is about to arrive keeps to
+    no lane, since it could not go to a goal that lies left of the lane.
     """
     p = agents.parameters[a]
     cell = agents.cells[a]
@@ -133,9 +133,9 @@ def decide(
 ) -> None:
     """Perturb the followed path, search anew, keep the better, and wish for a velocity.
 
-    The search only looks at what may be better than the followed path by the hysteresis, so that
-    it costs little while that path is good. The actors are first..last of those listed by where
-    they are now: neighbours look at the same ground and the same people, which stay in the cache.
+    The search only looks at paths that may be better than the followed one by the hysteresis, so
+    that it costs little while that path is good. The actors are first..last of those listed by
+    their places now: neighbours look at the same ground and people, which stay in the cache.
     Their followed paths, seen from now, are `world.reservations.paths`. The speeds of `moves` are
     parts of each actor's own.
     """
@@ -202,9 +202,9 @@ def _improve(
     cells: NDArray[np.int64],
     trial: NDArray[np.float64],
 ) -> tuple[float, bool]:
-    """Perturb a path in place where that is worth it: its cost, inf if illegal, and if it changed.
+    """Perturb a path in place if that pays; return its cost, inf if illegal, and if it changed.
 
-    Worth it means less mean risk and less cost, in which time and length are.
+    It pays if both mean risk and cost become less; the cost counts time and length.
     """
     cost, risk, legal = path_cost(world, potential, task, path)
     if not legal:
@@ -230,7 +230,7 @@ def _reason(
     dodged: bool,
     step_s: float,
 ) -> int:
-    """Why the actor does what it does; `lost` tells that no way leads to its goal."""
+    """Why the actor does what it does; `lost` tells that no path leads to its goal."""
     if dodged:
         return GIVING_WAY
     if lost:
@@ -239,9 +239,9 @@ def _reason(
         return WAITING
     if task.hold:
         return ARRIVED
-    if status == NO_PATH:  # a way leads there, but every first move is taken by somebody
+    if status == NO_PATH:  # a path leads there, but every first move is taken by somebody
         return WAITING
-    ramp = 2 * SUB  # from a stand it takes so many slices to get going
+    ramp = 2 * SUB  # slices that it takes to get going from a stand
     ahead = 2 * ramp
     pace = np.hypot(path[ahead, 0] - path[ramp, 0], path[ahead, 1] - path[ramp, 1]) / (2.0 * step_s)
     standing = np.hypot(task.vx, task.vy) < 0.15 * task.speed_mps

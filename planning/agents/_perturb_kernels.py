@@ -89,7 +89,7 @@ def risks_along(
 
 @inlined
 def _may_go(task: Task, need: float, moved: float, room: float, left_m: float, ds: float) -> bool:
-    """Whether a slice is free of walls, within the speed limit, with a way to the goal."""
+    """Whether a slice is free of walls, within the speed limit, with a path to the goal."""
     return (
         moved <= task.max_speed_mps * ds + 1e-9
         and room >= need
@@ -117,9 +117,11 @@ def stretch_is_legal(
     first: int,
     last: int,
 ) -> bool:
-    """Free of walls, within the speed limit, clear of certain obstacles, with a way to the goal.
+    """Whether a stretch of a path is legal.
 
-    The path is in `cell` at slice first.
+    It is legal if it keeps clear of walls and of certain obstacles, keeps the limits of speed and
+    of cells at steps and edges, and the goal can be reached from all of it. The path is in `cell`
+    at slice first.
     """
     grid = world.grid
     ds = world.step_s / SUB
@@ -288,8 +290,9 @@ def update_path(
 ) -> int:
     """Fig. 7: perturb the whole path, else its halves, and so on; returns how many bends held.
 
-    The recursion is a stack of stretches; the earlier half comes first, as printed. What lies
-    after the arrival at the goal is left alone: a bend over it would arrive later and later.
+    The recursion is a stack of stretches; the earlier half comes first, as printed. The
+    stretch after the arrival at the goal is left alone: a bend over it would arrive later and
+    later.
     `cells` (K,) are filled with those that the path is in.
     """
     cells[0] = task.cell

@@ -16,17 +16,18 @@ SOFT = 0.25
 were as dear as one, everyone would rather wait than go where others stand, and nobody would make
 way."""
 EVADING_SLICES = 2
-"""In the first slices, this many, there may be no time left to get out of somebody's way."""
+"""In the first slices, up to this number, an agent may have no time left to get out of the way."""
 EVADING_M = 0.005
-"""An agent that then gains this much room over standing may move, even if the two still meet."""
+"""In those slices a move is allowed that gains this much room over standing, even if it ends in a
+meeting."""
 MEETING_ROOM_M = 0.8
 """Room that two agents with opposite courses would like, if one of them is held up."""
 MEETING_ROOM = 0.2
-"""The weight of having none of it, in certain contacts with a person: half of that when they face
-each other, more with the other on the right, nothing with the other on the left. So both keep to
-the right, and two streams form where there was a crowd."""
+"""Weight of having none of `MEETING_ROOM_M`, in certain contacts with a person. Half of it counts
+when the two face each other, more with the other on the right, nothing with the other on the left.
+So both keep to the right, and two streams form where there was a crowd."""
 QUEUE_ROOM_M = 0.5
-"""Room that two agents who are both held up would like. Coming closer gains a little way once, but
+"""Room that two agents who are both held up would like. Coming closer gains a little once, but
 costs as long as both stay: agents that wait leave gaps, through which others come out."""
 QUEUE_ROOM = 0.2
 AGAINST = -0.2
@@ -34,12 +35,13 @@ AGAINST = -0.2
 
 
 class Reservations(NamedTuple):
-    """Everyone's planned path and an index of it by bucket, slice by slice.
+    """The planned paths of all agents, and an index of them by bucket, slice by slice.
 
     `paths` (A, K, 2) m; `heights` (A, K) m of the feet; `radii` (A,) m; `ranks` (A,), smaller goes
-    first; `courses` (A, 2) unit vectors of where they want, zeros for who goes nowhere; `held_up`
-    (A,) tells who gets on badly, `contested` (A,) at whose passage many want against them; `starts`
-    (K, buckets + 1) and `members` (K, A) list the actors of a bucket.
+    first; `courses` (A, 2) unit vectors down the potential, zeros for agents that are settled or
+    have no path; `held_up` (A,) tells whether an agent is held up, `contested` (A,) whether its
+    passage is contested; `starts` (K, buckets + 1) and `members` (K, A) list the agents of a
+    bucket.
     """
 
     paths: NDArray[np.float64]
@@ -87,14 +89,14 @@ def index_paths(reservations: Reservations) -> None:
 
 @inlined
 def _against(r: Reservations, me: int, other: int) -> bool:
-    """Whether the two want against each other."""
+    """Whether the courses of two agents are against each other."""
     along = r.courses[me, 0] * r.courses[other, 0] + r.courses[me, 1] * r.courses[other, 1]
     return bool(along < AGAINST)
 
 
 @inlined
 def room_wanted(r: Reservations, me: int, other: int) -> float:
-    """Metres that I would like to another beyond not touching; none where everyone gets along."""
+    """Metres that two agents would like between their bodies; 0 if they only must not touch."""
     if not (r.held_up[me] or r.held_up[other]):
         return 0.0
     if _against(r, me, other):
@@ -124,7 +126,7 @@ def crowding(r: Reservations, me: int, other: int, k: int, x: float, y: float) -
 def buckets_within(
     r: Reservations, x: float, y: float, within_m: float
 ) -> tuple[int, int, int, int]:
-    """Rows and columns (j0, j1, i0, i1) of the buckets that may hold somebody within so far."""
+    """Rows and columns (j0, j1, i0, i1) of the buckets that may hold agents within a distance."""
     return (
         min(r.ny - 1, max(0, int((y - within_m - r.y0) / r.bucket_m))),
         min(r.ny - 1, max(0, int((y + within_m - r.y0) / r.bucket_m))),
@@ -144,16 +146,15 @@ def conflict(
     bx: float,
     by: float,
 ) -> tuple[bool, float]:
-    """Meetings while moving from a at slice k to b at slice k + 1.
+    """Meetings of agent `me` while it moves from a at slice k to b at slice k + 1.
 
-    The first value tells of one that is forbidden, the second adds up what the others weigh, and
-    at the end of a step what is lacking of the room between them. Swapping places is a meeting.
-    `feet_m` is the height that I am at; who is on another floor is
-    not met.
+    The first value tells whether one of them is forbidden. The second is the weight of the others;
+    at the end of a step the weight of too little room to other agents is added. Swapping places is
+    a meeting. `feet_m` is the height of the agent's feet; agents on another floor are not met.
     """
     r = reservations
     soft = 0.0
-    # An agent further away than this in the end neither was met on the way nor is crowded.
+    # An agent further away than this at the end was not met in the move and is not crowded.
     far = max(MEETING_ROOM_M, np.sqrt((bx - ax) ** 2 + (by - ay) ** 2) + r.fastest_m)
     j0, j1, i0, i1 = buckets_within(r, bx, by, 2.0 * r.widest_m + MARGIN_M + far)
     for j in range(j0, j1 + 1):
@@ -187,11 +188,11 @@ def others_near(
     slice_m: float,
     others: NDArray[np.int64],
 ) -> tuple[int, int]:
-    """List whom one may meet who leaves (x, y) at slice k, within two slices; how many they are.
+    """List the agents that may be met within two slices of leaving (x, y) at slice k; count them.
 
-    From the end of `others` are listed, backwards, those whom one cannot meet but may agents: the
-    second number. `slice_m` is how far one gets in a slice. `others` takes as many as it has room
-    for.
+    Agents that cannot be met but may stand too near are listed from the end of `others` backwards;
+    the second number counts them. `slice_m` is the distance that agent `me` gets in a slice.
+    `others` takes as many as it has room for.
     """
     r = reservations
     room_m = MEETING_ROOM_M + r.fastest_m
@@ -210,7 +211,7 @@ def others_near(
             room_m = room_wanted(r, me, o)
             dx = x - r.paths[o, k + 1, 0]
             dy = y - r.paths[o, k + 1, 1]
-            # Nobody gets further than that from where they are in the middle of the step.
+            # In the whole step agents stay within `fastest_m` of their places in its middle.
             most = reach + room_m + r.fastest_m
             if dx * dx + dy * dy > most * most:
                 continue
@@ -275,10 +276,10 @@ def _meeting(
 ) -> float:
     """Weight of a move from a at slice k to b because of one other agent; inf if forbidden.
 
-    Nothing if the two stay clear, or are too close already and draw apart. A meeting with an actor
-    of larger rank, who will yield, is dear; with one of smaller rank it is forbidden, unless it
-    is about to come to me wherever I stand and the move gains room: who cannot get out of the way
-    in time has to begin with it.
+    It is 0 if the two stay clear, or are too close already and draw apart. A meeting with an agent
+    of larger rank, which will yield, is dear. A meeting with one of smaller rank is forbidden,
+    unless it is about to happen anyway and the move leaves more room than standing would: an agent
+    that cannot get out of the way in time has to begin with it.
     """
     r = reservations
     rx = ax - r.paths[other, k, 0]

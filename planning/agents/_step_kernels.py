@@ -1,4 +1,4 @@
-"""From a plan to the step of this tick, on bare arrays: the control, the last checks, the step."""
+"""Steps that agents take after their plans, on bare arrays: control, last checks and step."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,13 +45,13 @@ def limited(task: Task, ux: float, uy: float, tick_s: float) -> tuple[float, flo
 
 
 MARGIN_M = 0.01
-"""No step brings two actors closer than that."""
+"""No step brings the bodies of two actors closer than this."""
 HEADING_MPS = 0.1
 """An agent that is slower than this keeps its heading."""
 LOOK_AHEAD_S = 0.6
 """The last check before a step looks this far ahead, in two halves."""
 NEAR_M = 4.0
-"""Nobody further away than this can be met in that time."""
+"""People further away than this cannot be met in that time."""
 SWAY_M = 0.05
 """A person's body sways by this much beyond its radius."""
 
@@ -151,10 +151,10 @@ def last_check(
     ux: float,
     uy: float,
 ) -> tuple[float, float, bool]:
-    """The wish itself when nobody would be touched soon, else the way out that leaves most room.
+    """The wish itself if it touches nobody soon, else the evasion that leaves most room.
 
-    Ways out are stopping and sixteen directions at two speeds; the third value tells that one was
-    taken. Costs O(people) once and O(people near) for each way out.
+    Evasions are stopping and sixteen directions at two speeds; the third value tells whether they
+    were tried. Costs O(people) once and O(people near) for each evasion.
     """
     listed = np.empty(len(prediction.means), dtype=np.int64)
     near = listed[: _people_near(world, prediction, task, listed)]
@@ -248,7 +248,7 @@ def settle(
     cells: NDArray[np.int64],
     tick_s: float,
 ) -> None:
-    """Take over into `agents` what a tick has come to; an agent that walks faces where it goes."""
+    """Take the result of a tick over into `agents`; an agent that walks faces where it goes."""
     for a in range(len(positions)):
         vx = (positions[a, 0] - agents.positions[a, 0]) / tick_s
         vy = (positions[a, 1] - agents.positions[a, 1]) / tick_s

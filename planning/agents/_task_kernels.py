@@ -1,4 +1,4 @@
-"""One agent's question to the search, and the cost of a stretch of path to it, on bare arrays."""
+"""The task of one agent's search, and the costs of a stretch of its path, on bare arrays."""
 
 from typing import NamedTuple
 
@@ -18,7 +18,7 @@ WALL_COST_M = 0.15
 
 
 class Task(NamedTuple):
-    """One actor's question: from where, how it moves, what it minds."""
+    """The task of one search: an actor's place, goal, limits of motion and weights."""
 
     me: int
     body: int
@@ -47,11 +47,11 @@ class Task(NamedTuple):
     hurry_weight: float
     max_expansions: int
     edge_cells: int
-    """M of Huang & Li: so many cells in a row it may be at steps and edges."""
+    """M of Huang & Li, the bound on cells in a row at steps and edges."""
     lane: Lane
-    """The line to keep right of on the way."""
+    """The lane to keep to on the path."""
     hold: bool
-    """Stay where the start is rather than go anywhere: at the goal, or with no way to it."""
+    """Whether to stay at the start: there is no goal, it is reached, or no path leads to it."""
 
 
 class World(NamedTuple):
@@ -95,7 +95,7 @@ def on_ramp(
 
 @inlined
 def metres_left(potential: PotentialValues, task: Task, cell: int, x: float, y: float) -> float:
-    """Metres from a point, in a cell, to the goal, and what being left of a lane is like besides.
+    """Metres from a point, in a cell, to the goal, and the cost of being left of the lane.
 
     An agent that holds its place goes straight back to it.
     """
@@ -119,16 +119,16 @@ def time_cost(task: Task, left_m: float, speed: float, seconds: float) -> float:
 
 @inlined
 def risk_price(task: Task, seconds_ahead: float) -> float:
-    """Weight of risk at a time ahead. What lies far ahead will be decided anew, so it fades."""
+    """Weight of risk at a time ahead. It fades, since the path far ahead will be decided anew."""
     return float(task.risk_weight * np.exp(-seconds_ahead / task.foresight_s))
 
 
 @inlined
 def way_left(task: Task, left_m: float, speed: float) -> float:
-    """Seconds to the goal at the preferred speed, and what it costs to get to that speed.
+    """Seconds to the goal at the preferred speed, and the cost of getting to that speed.
 
-    Without the latter an agent that is slow would seem as well off as one that has speed already.
-    Shortly before it arrives it has no need to be fast any more.
+    Without that cost an agent that is slow would seem as well off as one that has speed already.
+    Shortly before it arrives an agent has no need to be fast any more.
     """
     if task.hold:
         return 0.0
@@ -149,6 +149,6 @@ def wall_cost(task: Task, clearance: float, seconds: float) -> float:
 
 @inlined
 def needed_clearance(world: World, task: Task) -> float:
-    """The radius; less for who starts closer to a wall than that, so that it can come out."""
+    """The radius, or less for an agent that starts closer to a wall, so that it can come out."""
     here = clearance_at(world.grid, task.body, task.cell, task.x, task.y)
     return min(task.radius_m, max(0.0, here)) - 1e-6

@@ -1,4 +1,4 @@
-"""The stages of a tick on what compiled code keeps of a zone, and all of them in one call."""
+"""The stages of a tick on a zone that compiled code keeps, one by one and all in one call."""
 
 from typing import NamedTuple
 
@@ -20,9 +20,9 @@ from esplanade.planning.people._risk_kernels import index_people
 
 
 class Zone(NamedTuple):
-    """Everything that the ticks of a zone work on, people's future apart.
+    """Everything that the ticks of a zone work on, except for people's future.
 
-    `order` (A,) and what is decided are written anew in every tick; `positions` (A, 2) and `cells`
+    `order` (A,) and `decisions` are written anew in every tick; `positions` (A, 2) and `cells`
     (A,) are those after it.
     """
 

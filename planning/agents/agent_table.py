@@ -1,4 +1,4 @@
-"""The one table of a zone's agents: a row each, from the planner to those who show them."""
+"""The one table of a zone's agents, with a row for each of them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from esplanade.planning.agents._passage_kernels import PASSAGE
 from esplanade.planning.agents.agents import PARAMETERS, WAITING, Agents
 
 VERSION: Final = 1
-"""Version of what `AgentTable.save` gives; `load` takes no other."""
+"""Version of the data that `AgentTable.save` gives; `load` takes no other."""
 FORMAT: Final = "esplanade.agents"
 
 
@@ -41,7 +41,7 @@ class Trips(NamedTuple):
 
 
 _DERIVED: Final = ("bodies", "contacts", "potential_rows", "ranks")
-"""Columns that point into what a zone derives of its own; whoever loads derives them anew."""
+"""Columns that point into what a zone derives of its own; they are derived anew after loading."""
 
 
 class AgentTable:
@@ -53,7 +53,7 @@ class AgentTable:
     """
 
     def __init__(self, slices: int) -> None:
-        """A table without agents, whose plans have so many `slices` after now."""
+        """A table without agents, whose plans have `slices` slices after now."""
         self.agents = _no_agents(slices + 1)
         self.trips = _no_trips()
         self.version = 0
@@ -139,7 +139,7 @@ class AgentTable:
     def save(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """Everything that the next tick of these agents depends on, as JSON and arrays.
 
-        The arrays are copies. Left out is what a zone derives of its own (`_DERIVED`).
+        The arrays are copies. The columns that a zone derives of its own are left out.
 
         Raises
         ------

@@ -46,13 +46,13 @@ class Agents(NamedTuple):
     Their bodies and tempers: `bodies` (A,) are rows of their kinds of body in the grid's
     clearances, `contacts` (A,) those of their contact distances in the tables of risk, `parameters`
     (A,) records of `PARAMETERS`; the agent with the smaller of `ranks` (A,) goes first of two with
-    equal ways left.
+    equal distances left.
 
     Their places: `positions` (A, 2) m, `velocities` (A, 2) m/s, `headings` (A,) rad from +x,
     `cells` (A,) that they stand in, -1 where nobody can stand, `heights` (A,) m of the floor there
     and `layers` (A,) of it; `reasons` (A,) codes of why they do what they do.
 
-    Their ways: `goals` (A, 2) m; `potential_rows` (A,) of the pool, -1 without a goal; `planned`
+    Their paths: `goals` (A, 2) m; `potential_rows` (A,) of the pool, -1 without a goal; `planned`
     (A, K, 3) m is the plan of the latest tick, from that tick's beginning, with heights. `known`
     (A,) tells whether `followed` holds a path; `followed` (A, K, 2) m begins at the tick that
     `ages` (A,) ticks ago was. `left_m` (A,) is the distance that was left a tick ago, nan at first;
@@ -87,7 +87,7 @@ class Decisions(NamedTuple):
     """Decisions of A agents; every array has A rows.
 
     `paths` (A, K, 2); `wishes` (A, 2) m/s for the next tick; `reasons`; `statuses` of the
-    searches; `expansions`; `renewed` tells that `paths` replaces what was followed.
+    searches; `expansions`; `renewed` tells that `paths` replaces the followed path.
     """
 
     paths: NDArray[np.float64]

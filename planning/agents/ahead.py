@@ -1,4 +1,4 @@
-"""Compiles what ticks of actors call, without a zone: in a process of its own, for another.
+"""Compiles the kernels that ticks of actors call, without a zone, for another process.
 
 Its types are told by empty arrays; a test holds them against those of a real zone. Were they ever
 others, kernels would be compiled in vain and a start take longer: nothing else.

@@ -94,7 +94,7 @@ class Batch:
     def _hand_over(
         self, agents: Agents, potentials: NDArray[np.float32], prediction: Prediction, tick_s: float
     ) -> None:
-        """Give compiled code this agents, and room for it."""
+        """Hand the agents over to compiled code, and make room for them."""
         budget = int(agents.parameters["max_expansions"].max())
         if budget > self._budget:
             self._budget = budget
@@ -115,7 +115,7 @@ class Batch:
         fastest_mps = max(float(agents.parameters["max_speed_mps"].max()), float(speeds.max()))
         self.field.make_room(prediction, fastest_mps * self.plan.step_s)
         risk = self.field.arrays
-        if actors == 1:  # whoever may be met is soon looked through; buckets are not worth it
+        if actors == 1:  # all people are soon looked through; buckets are not worth it
             risk = risk._replace(nx=1, ny=1)
         reservations = make_reservations(
             self.grid,

@@ -18,12 +18,12 @@ from esplanade.planning.people.risk import RiskField
 from esplanade.planning.routes.potential import Potential
 
 _MOST_NEAR = 64
-"""Room for the actors near a node; so many discs do not fit around it."""
+"""Room for the actors near a node; that many discs never fit around it."""
 _LEAST_BUCKET_M = 1.2
 _BUCKETS_AN_ACTOR = 4
-"""Of many more buckets than that, clearing would cost more than they save."""
+"""Clearing many more buckets than that would cost more than they save."""
 _MOST_PEOPLE = 256
-"""Room for the people who matter near a node. Beyond that it is risky enough."""
+"""Room for the people who matter near a node. A place with more of them is risky enough."""
 
 
 class SearchStatus(IntEnum):
@@ -38,7 +38,7 @@ class SearchStatus(IntEnum):
 
 
 class SearchForm(Enum):
-    """By what nodes are taken from the queue."""
+    """The key by which nodes are taken from the queue."""
 
     PRINTED = "printed"
     """U(q') = potential(q') + Risk(q'), as in fig. 5: greedy, forgets the risk already taken."""
@@ -107,10 +107,10 @@ def make_reservations(
     ranks: NDArray[np.int64],
     fastest_m: float,
 ) -> Reservations:
-    """Room for the planned ways of A actors, (A, K, 2) and (A, K); `index_paths` fills its index.
+    """Room for the planned paths of A actors, (A, K, 2) and (A, K); `index_paths` fills its index.
 
-    Nobody has a course yet, nor is held up. `fastest_m` is how far anyone can get from one slice,
-    or tick, to the next.
+    No actor has a course yet, and none is held up. `fastest_m` is the greatest distance that an
+    actor gets from one slice, or tick, to the next.
     """
     x0, y0, x1, y1 = grid.bounds
     widest = float(radii_m.max()) if len(radii_m) else 0.0
@@ -163,9 +163,9 @@ def uncertain_bfp(
 
     The horizon is the risk field's last slice. Nodes are configurations (layer, cell, step) that
     keep their exact position; with `lattice_moves`, a start at a cell's centre and unbounded
-    acceleration they are cells, as printed. A caller who already has a path only wants one that
-    costs less than `bound` (seconds): what would have to be much easier than that path from some
-    step on to get below it is not looked at.
+    acceleration they are cells, as printed. A caller that already has a path only wants one that
+    costs less than `bound` (seconds): nodes that get below it only if the rest is much easier than
+    on that path are not looked at.
 
     Raises
     ------

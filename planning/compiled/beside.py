@@ -48,7 +48,7 @@ def complete(name: str) -> None:
 
 @contextmanager
 def compiled_beside(module: str, one_more: Callable[[], None]) -> Iterator[Callable[[], None]]:
-    """Have `module.compile_all` run in a process of its own; yields what waits for its end.
+    """Run `module.compile_all` in a process of its own; yield a function that waits for its end.
 
     `one_more` is called, in a thread, for each function that it has compiled. Without a cache to
     fill there is no such process. If it fails, its kernels are compiled here when they are called.

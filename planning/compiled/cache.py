@@ -44,7 +44,7 @@ def sources() -> list[Path]:
 
 
 def _digest() -> str:
-    """Digest of every module that compiled code can reach, and of what compiles it.
+    """Digest of every module that compiled code can reach, and of the compiler with its settings.
 
     numba's own cache looks at the file of the outermost function alone, so an edit of a helper
     or a constant in another file would go unnoticed. One digest for all of them makes that
@@ -64,7 +64,7 @@ def _digest() -> str:
 
 
 def _forget_older(marker: Path) -> None:
-    """Remove what was compiled from sources that nobody ran for a month before this run."""
+    """Remove kernels whose sources were not run in the month before this run."""
     for other in marker.parent.parent.glob(f"kernels-*/{marker.name}"):
         with contextlib.suppress(OSError):
             if marker.stat().st_mtime - other.stat().st_mtime > _KEPT_S:
@@ -132,7 +132,7 @@ class KernelCache(_Cache):
             path.unlink(missing_ok=True)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """The compiled code for these types; None where there is none that can be read."""
+        """The compiled code for these types; None if none can be read."""
         if not self._enabled:
             return None
         target_context.refresh()
@@ -157,7 +157,7 @@ class KernelCache(_Cache):
             return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep compiled code. Where there is no room for it, the program goes on without."""
+        """Keep compiled code; without room for it, the program goes on."""
         if not self._enabled or data.lifted or data.library.has_dynamic_globals:
             return
         key = self._key(sig, data.codegen)

@@ -12,10 +12,10 @@ T = TypeVar("T")
 
 
 class Handle(Generic[T]):
-    """A tuple of arrays, handed over to compiled code once: `value` is what it was made of.
+    """A tuple of arrays, handed over to compiled code once; `value` is the tuple.
 
-    To hand a hundred arrays over takes 20 µs at every call, as long as all that is then done for
-    one actor; a `Handle` takes half a microsecond. The arrays are shared, numbers are copied.
+    Handing over a hundred arrays takes 20 µs at every call, as long as all the work for one actor
+    takes; a `Handle` takes half a microsecond. The arrays are shared, numbers are copied.
     """
 
     value: T
@@ -52,6 +52,6 @@ def make_handle(value: T) -> Handle[T]:
 
 
 def hold_for(value: types.Type) -> types.Type:
-    """The type of a `Handle` of values of this type; what makes one is compiled."""
+    """The type of a `Handle` of values of this type; the function that makes one is compiled."""
     compile_for(_hold, value)
     return _HandleType((("value", value),))  # type: ignore[no-untyped-call]

@@ -18,8 +18,8 @@ class Kernel(CPUDispatcher):
     """A function that is compiled for calls from Python and, apart from that, for other kernels.
 
     The code that takes arguments from Python unpacks every array of every tuple. It is as large as
-    many a kernel itself; what other kernels call does without it, and is not kept either: it is
-    part of those that call it.
+    many a kernel itself. The code that other kernels call does without it, and is not kept either:
+    it is part of those that call it.
     """
 
     def __init__(
@@ -34,7 +34,7 @@ class Kernel(CPUDispatcher):
         self._inner = CPUDispatcher(py_func, locals, options, **more)
 
     def enable_caching(self) -> None:
-        """Keep what is compiled for calls from Python, where there is a folder for it."""
+        """Keep the code compiled for calls from Python, if there is a folder for it."""
         kept_in = cache.folder()
         if kept_in is not None:
             self._cache = cache.KernelCache(self.py_func, kept_in)
@@ -69,8 +69,8 @@ def kernel(function: F) -> F:
 def inlined(function: F) -> F:
     """A kernel that is always compiled into those that call it.
 
-    For what runs in the innermost loops: numba counts references to every array that is handed to
-    a function, and the compiler removes that only where it sees both ends.
+    It is meant for the innermost loops: numba counts references to every array that is handed to a
+    function, and the compiler removes that only where it sees both ends.
     """
     return _compiled(function, forceinline=True, _nrt=False)
 

@@ -13,7 +13,7 @@ from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.ground.layered import TILE, LayeredArrays, cell_index
 
 FOLLOW_M = 1.0
-"""From one point to the next, `follow` goes to no surface further away in height than this."""
+"""`follow` goes to no surface further away in height than this, from one point to the next."""
 
 
 class GridArrays(NamedTuple):
@@ -54,7 +54,7 @@ def _inside(grid: GridArrays, x: float, y: float) -> bool:
 
 @inlined
 def follow(grid: GridArrays, cell: int, x: float, y: float) -> int:
-    """Cell of a point near a cell: on whatever layer, the surface nearest in height; -1 if none.
+    """Cell of a point near a cell: the surface nearest in height, on any layer; -1 if none.
 
     The point must be no further away than anyone gets in a time slice, since the cells in between
     are not looked at.
@@ -130,7 +130,7 @@ def surface_at(grid: GridArrays, x: float, y: float, z: float) -> int:
 
 @inlined
 def neighbour(grid: GridArrays, cell: int, dj: int, di: int) -> int:
-    """The cell next to a cell, on whatever layer; the cell itself where there is none."""
+    """The cell next to a cell, on any layer; the cell itself where there is none."""
     if grid.flat:  # within a tile a neighbour can be computed
         j = ((cell >> 3) & 7) + dj
         i = (cell & 7) + di

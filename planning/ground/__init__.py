@@ -1,1 +1,1 @@
-"""The shape of a zone, whatever the body: surfaces to stand on, layers of cells, barriers."""
+"""The shape of a zone for all bodies: surfaces to stand on, layers of cells, barriers."""

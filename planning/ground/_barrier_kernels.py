@@ -17,7 +17,7 @@ LISTED = np.dtype([("barrier", "i4"), ("next", "i4")])
 
 
 class NearBarriers(NamedTuple):
-    """For each of N cells a linked list of the barriers that pass near it."""
+    """A linked list of the barriers that pass near it, for each of N cells."""
 
     barriers: NDArray[np.void]
     """(S,) of `BARRIER`; a door that opens or closes changes its row in place."""

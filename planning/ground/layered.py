@@ -39,7 +39,7 @@ class LayeredArrays(NamedTuple):
     ceilings: NDArray[np.float32]
     """(N,): height of the underside above it, metres; inf under open sky, nan in a hole."""
     links: NDArray[np.int32]
-    """(N, 8): the neighbours in the order of `LINK_ROWS`, on whatever layer; -1 where there is
+    """(N, 8): the neighbours in the order of `LINK_ROWS`, on any layer; -1 where there is
     none. If a links to b, then b links to a."""
     places: NDArray[np.void]
     """(N,) of `PLACE`, also of holes."""

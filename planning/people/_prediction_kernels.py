@@ -22,8 +22,8 @@ class Prediction(NamedTuple):
     """Likely places of people, slice by slice; slice 0 is now.
 
     `means` (P, K, 2) m; `velocities` (P, K, 2) m/s; `sigmas` (P, K) m per axis; `heights` (P, K) m
-    of the feet; `newest` (P, 2) m/s, the newest velocity alone: the mean of eq. (1) follows those
-    who turn with a delay.
+    of the feet; `newest` (P, 2) m/s, the newest velocity alone: the mean of eq. (1) follows a
+    turn with a delay.
     """
 
     means: NDArray[np.float64]
@@ -34,12 +34,12 @@ class Prediction(NamedTuple):
 
 
 class Tracks(NamedTuple):
-    """Everyone's past; each person has a row.
+    """The past of all people; each person has a row.
 
     `positions` (R, D, 2) m is a ring of the last D ticks, of which `counts` (R,) are known;
-    `heights` (R,) m are those of the feet now; `expected` (R, L, 2) m is another, of L ticks:
-    where everyone was expected to be L ticks later; `growths2` (R,) m²/s² are the squares of the
-    growth of the deviations.
+    `heights` (R,) m are those of the feet now; `expected` (R, L, 2) m is another ring, of L ticks:
+    the places where people were expected to be L ticks later; `growths2` (R,) m²/s² are the
+    squares of the growth of the deviations.
     """
 
     positions: NDArray[np.float64]
@@ -54,7 +54,7 @@ def mean_velocity(track: NDArray[np.float64], known: int, sample_s: float) -> tu
     """Eq. (1) in the reading that holds on real people: an exponential mean of past velocities.
 
     `track` (n + 1, 2) holds positions `sample_s` apart, newest first, `known` of them valid.
-    Weights are 1/2, 1/4, ... with the oldest velocity taking what is left.
+    Weights are 1/2, 1/4, ... with the oldest velocity taking the rest.
     """
     vx = 0.0
     vy = 0.0
@@ -102,8 +102,8 @@ def note(
     """Add where P people are at a tick, given (P, 2 or 3), and work out where they are going.
 
     Fills `places` (P, 3), the predicted velocities of eq. (1), with samples `stride` ticks apart,
-    and the newest ones alone, (P, 2) each. What was expected of everyone `expected` ticks ago is
-    held against where they are now: the square of a person's growth is a running mean of their
+    and the newest ones alone, (P, 2) each. The places expected `expected` ticks ago are
+    compared with where people are now: the square of a person's growth is a running mean of their
     squared errors per axis over the squared time.
     """
     tracks = held.value

@@ -29,11 +29,11 @@ class RadialTables(NamedTuple):
 
 
 class RiskArrays(NamedTuple):
-    """People's future as risk is made of it, and an index of the people to ask, slice by slice.
+    """The future of people as risk is made of it, and an index of people to ask, slice by slice.
 
     `people` (K, P, 6) are x, y m, vx, vy m/s, height of the feet m, and how far they matter m;
     `rows` (K, P) those of the tables. `starts` (K, buckets + 1) and `members` (K, M) list for each
-    bucket who matters within `slack_m` of any place in it.
+    bucket the people who matter within `slack_m` of any place in it.
     """
 
     tables: RadialTables
@@ -70,9 +70,9 @@ def index_people(
 ) -> None:
     """Fill slices first, first + step, ... (a counting sort for each).
 
-    After slice `last_wider` deviations grow no more. Those who will ask are in the box `around`
-    (x0, y0, x1, y1) now, and get `slack_m` further in two slices: whom they cannot come near is
-    left out.
+    After slice `last_wider` deviations grow no more. The agents that will ask are in the box
+    `around` (x0, y0, x1, y1) now, and get `slack_m` further in two slices: people that they cannot
+    come near are left out.
     """
     tables = risk.tables
     people = len(prediction.means)
@@ -193,7 +193,7 @@ def risk_among(
 ) -> float:
     """Risk of being at (x, y) with velocity (vx, vy) at slice k, among the people listed.
 
-    `contact` is the table of the contact distance that holds for who asks.
+    `contact` is the table of the contact distance that holds for the agent that asks.
 
     proximity + closing_weight * max(0, sum of p (v_o - v_r)·n), n from the person to here.
     """
@@ -219,7 +219,7 @@ def risk_at(
     vy: float,
     closing_weight: float,
 ) -> float:
-    """`risk_among` everyone who matters there, on the floor of a cell."""
+    """`risk_among` all people who matter there, on the floor of a cell."""
     feet_m = floor_of(grid, cell)
     near = 0.0
     closing = 0.0

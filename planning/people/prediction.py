@@ -78,7 +78,7 @@ class TrackHistory:
 
     People are kept in the order of their ids, so that sums over them do not depend on how they
     were listed. Memory: `samples` x `sample_s` / `tick_s` positions a person. `observe` costs
-    O(people), and as much again for each who comes or leaves.
+    O(people), and as much again for each person who comes or leaves.
     """
 
     def __init__(self, model: PredictionModel, tick_s: float) -> None:
@@ -109,7 +109,7 @@ class TrackHistory:
 
     @property
     def ids(self) -> list[object]:
-        """Everyone present, in the order of `positions` and of every array made from them."""
+        """The ids of people present, in the order of `positions` and of all arrays made of them."""
         return list(self._ids)
 
     @property
@@ -123,7 +123,7 @@ class TrackHistory:
         return np.ascontiguousarray(self._places[:, 2])
 
     def observe(self, people: Mapping[object, Coordinates]) -> None:
-        """Add this tick's positions: id -> (x, y) or (x, y, z). Those who are absent have left.
+        """Add this tick's positions: id -> (x, y) or (x, y, z). People who are absent have left.
 
         Raises
         ------
@@ -163,7 +163,7 @@ class TrackHistory:
         self._note(places[self._array_order])
 
     def _listed_with(self, people: Mapping[object, object]) -> list[tuple[tuple[str, str], object]]:
-        """The sorted list of those who are present once these are."""
+        """The sorted list of the people present once `people` are."""
         listed = [pair for pair in self._listed if pair[1] in people]
         for who in people:
             if who not in self._rows:
@@ -225,7 +225,7 @@ class TrackHistory:
         return self._velocities
 
     def predict(self, grid: LayeredGrid, slices: int, slice_s: float) -> Prediction:
-        """Everyone's future: `slices` + 1 instants `slice_s` apart, beginning now. Cost O(P K)."""
+        """Predict `slices` + 1 instants `slice_s` apart, beginning now. Cost O(P K)."""
         people = len(self._order)
         shape = (people, slices + 1)
         prediction = Prediction(

@@ -21,7 +21,7 @@ _SQUARED_STEP_M2 = 0.04
 _LEAST = 1e-3
 _LEAST_BUCKET_M = 2.0
 _MOST_BUCKETS = 16384
-"""Of larger zones buckets are wider: all are cleared in every tick."""
+"""Larger zones have wider buckets, since all are cleared in every tick."""
 SLACK_M = 0.8
 """A step of 0.4 s at 2 m/s."""
 Box = tuple[float, float, float, float]
@@ -49,8 +49,8 @@ class RiskModel:
     """Deviation, per axis, of a body from where it was expected even a moment before:
     bodies sway, and are no discs. It adds to that of the prediction by squares, metres."""
     reaction_s: float = 1.2
-    """Deviations count as they are so far ahead at most, seconds: whoever is to be met later will
-    have been seen again before there is need to turn aside."""
+    """Deviations grow up to this time ahead, seconds: a person who is to be met later will have
+    been seen again before there is need to turn aside."""
 
     def contact_m(self, radius_m: float) -> float:
         """Distance of centres that counts as contact for an agent of this radius, metres."""
@@ -147,7 +147,7 @@ class RiskField:
     closing term of eq. (5) for an actor's velocity v_r is max(0, sum p·(v_o·n) - v_r·(sum p·n)),
     n pointing from the person: the bound at zero is taken of the sum, not of each person's term.
 
-    To index a prediction costs O(people × slices).
+    Indexing a prediction costs O(people × slices).
     """
 
     def __init__(
@@ -227,9 +227,10 @@ class RiskField:
     ) -> None:
         """Make it the field of a prediction with as many slices.
 
-        Searches ask once for everyone who matters within `slack_m` of a node: so far may a step
-        lead. It never gets less. Those who will search are in the box `around` now: whom they
-        cannot come near by the time of a slice is left out. Deviations grow up to the last slice.
+        Searches ask once for all people who matter within `slack_m` of a node, since a step may
+        lead so far. It never gets less. The agents that will search are in the box `around` now;
+        people that they cannot come near by the time of a slice are left out.
+        Deviations grow up to the last slice.
 
         Raises
         ------

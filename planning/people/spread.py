@@ -15,7 +15,8 @@ class Spread:
     """Shape of the errors of a prediction: even Gaussians around the same mean.
 
     The deviation of a prediction is the scale, person by person and slice by slice; the spread
-    says what lies how many deviations away. By default it is the one Gaussian of eq. (4).
+    tells the share of people within a number of deviations. By default it is the one Gaussian of
+    eq. (4).
     """
 
     scales: tuple[float, ...] = (1.0,)
@@ -77,7 +78,7 @@ class Spread:
         return np.asarray(np.exp(self.log_density(offset_m, sigma_m)))
 
     def share_within(self, radius: float) -> float:
-        """Share of people within so many deviations of the mean."""
+        """Share of people within some deviations of the mean."""
         return math.fsum(
             -weight * math.expm1(-(radius**2) / (2.0 * scale**2)) for scale, weight in self.parts
         )

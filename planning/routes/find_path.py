@@ -77,7 +77,7 @@ def _checked(name: str, point: Point3, grid: LayeredGrid) -> Point3:
 def find_path(
     grid: LayeredGrid, start: Point3, goal: Point3, body: Body | None = None
 ) -> LayeredPath:
-    """The shortest path that a body may walk from one point to another, on whatever floors.
+    """The shortest path that a body may walk from one point to another, on any floors.
 
     Parameters
     ----------

@@ -26,9 +26,9 @@ class Wave(Enum):
     """The measure of distance of a wave front."""
 
     SIGHT = 24.0
-    """Along lines of sight of at most 24 m, so that they cost no more in a large zone."""
+    """It goes along lines of sight of at most 24 m, so that they cost no more in a large zone."""
     NF1 = 0.0
-    """From cell to cell."""
+    """It goes from cell to cell."""
 
 
 class Potential:
@@ -96,7 +96,7 @@ class Potential:
         return out
 
     def direction(self, positions: ArrayLike, heights: ArrayLike) -> NDArray[np.float64]:
-        """Unit vectors down the potential, float64 (N, 2); zero at the goal or without a way."""
+        """Unit vectors down the potential, float64 (N, 2); zero at the goal or without a path."""
         points, cells = self.grid.on_ground(positions, heights)
         out = np.empty((len(points), 2))
         kernels.directions(self.grid.arrays, self.values, cells, points, out)

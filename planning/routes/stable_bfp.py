@@ -44,7 +44,7 @@ def stable_bfp(
         The goal's potential, of `spread_wave` or `spread_toward`.
     start, goal : cells
     longer : float
-        Only paths are considered that are at most so many times as long as the shortest path
+        Only paths are considered that are at most this many times as long as the shortest path
         without M; `spread_toward` knows the potential for these.
 
     Notes

@@ -35,7 +35,7 @@ class Doors:
     def set_open(self, name: str, is_open: bool) -> tuple[float, float, float, float]:
         """Open or close a door, in place; returns its rectangle x0, y0, x1, y1 in metres.
 
-        Floors and links stay as they are. Whatever was derived from barriers changes only near the
+        Floors and links stay as they are. All data derived from barriers change only near the
         rectangle.
 
         Raises

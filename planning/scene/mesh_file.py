@@ -1,4 +1,4 @@
-"""Reading meshes: OBJ, glTF and whatever else trimesh reads, checked before anything uses them."""
+"""Reading meshes: OBJ, glTF and all other formats of trimesh, checked before anything uses them."""
 
 from __future__ import annotations
 
@@ -84,11 +84,11 @@ def open_mesh(path: Path, *, materials: bool = False) -> Any:
         source: Path | io.StringIO = path
         beside: dict[str, Any] = {}
         if path.suffix.lower() == ".obj":
-            # Names and comments may be in whatever encoding; what counts is ASCII.
+            # Names and comments may be in any encoding; all that counts is ASCII.
             source = io.StringIO(path.read_text(encoding="utf-8", errors="replace"))
             beside = {"file_type": "obj", "resolver": trimesh.resolvers.FilePathResolver(str(path))}
         scene = trimesh.load_scene(source, process=False, skip_materials=not materials, **beside)
-    # Readers of a dozen formats raise whatever broken bytes make of them.
+    # Readers of a dozen formats raise many kinds of errors on broken bytes.
     except Exception as error:
         raise _unreadable(path, error) from error
     if not scene.geometry:

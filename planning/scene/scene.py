@@ -1,4 +1,4 @@
-"""A scene: what stands where, read from JSON and checked before anything uses it."""
+"""A scene and its parts, read from JSON and checked before anything uses them."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ class Ramp(_Line):
     """
 
     start_height_m: Annotated[float, Field(ge=0.0, le=500.0)] = 0.0
-    """From the polygon's underside to its top at the start."""
+    """Height of the polygon's top above its underside at the start."""
 
 
 class Polygon(_Part):
@@ -111,7 +111,7 @@ class Polygon(_Part):
     points: Ring
     """Corners in order, metres. The ring closes itself; it must not cross itself."""
     height_m: Annotated[float, Field(gt=0.0, le=500.0)]
-    """From its underside to its top."""
+    """Height of its top above its underside."""
     offset_m: Annotated[float, Field(ge=0.0, le=500.0)] = 0.0
     """Clearance of its underside above the ground."""
     ramp: Ramp | None = None

@@ -33,7 +33,7 @@ def all_tiles(arrays: LayeredArrays) -> TileBox:
 
 
 def near_barriers(arrays: LayeredArrays, barriers: Barriers, body: Body) -> NearBarriers:
-    """For each cell the barriers that a body in it could touch, or cross on a step out of it.
+    """The barriers of each cell that a body in it could touch, or cross on a step out of it.
 
     Cost O(barriers x cells near one). `barriers` (S,) are shared, not copied: a door that opens or
     closes changes its row in place, with a climb of 0 while it is open.

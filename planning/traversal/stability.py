@@ -63,7 +63,7 @@ def classify(
     - ground that rises by less than `RAMP_SLOPE` is flat, or no ramp could be longer than M;
     - a hole in the layer is an obstacle, the ground beyond the bounds is not;
     - the layer above is any higher layer, since a path may lead from any layer to any other;
-    - walls make a cell Forbidden on whatever layers; walls lower than leg length are edges;
+    - walls make a cell Forbidden on any layer; walls lower than leg length are edges;
     - a ceiling too low for the body's head is an obstacle like any other.
     """
     classes = np.zeros(len(arrays.floors), dtype=np.uint8) if out is None else out

@@ -20,11 +20,11 @@ class WalkerTraits:
     """The traits of one avatar that its walk depends on."""
 
     leg_m: float
-    """From the hip joint to the ground, the leg straight."""
+    """Height of the hip joint above the ground, the leg straight."""
     stature_m: float
-    """From the ground to the top of the head."""
+    """Height of the top of the head above the ground."""
     cadence_factor: float
-    """At any speed this avatar takes so many times as many steps a second as most people."""
+    """Steps a second of this avatar, at any speed, as a multiple of those of most people."""
 
 
 def traits_of(seed: int, avatar_id: int) -> WalkerTraits:

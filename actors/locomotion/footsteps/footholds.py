@@ -27,13 +27,13 @@ from esplanade.planning.compiled.arrays import Bools, Floats
 
 # Limits of the height up or down to which a foot is put.
 _TREAD_M: Final = 0.26
-"""Ahead of a body that takes one tread at a time."""
+"""Greatest rise or fall ahead of a body that takes one tread at a time."""
 _TWO_TREADS_M: Final = 0.42
-"""Ahead of a body that is too fast for that,"""
+"""Greatest rise or fall ahead of a body that is too fast for that."""
 _HASTY_MPS: Final = 1.6
-"""which is one faster than this."""
+"""A body faster than this is too fast to take one tread at a time."""
 _CLIMB_M: Final = 0.75
-"""At most, under a body that has gone there."""
+"""Greatest rise or fall under a body that has gone there."""
 
 _OPENING_RAD: Final = 1.6
 """The greatest angle by which a foot is turned outwards against the other one."""
@@ -77,7 +77,7 @@ def choose_footholds(
     step_s : float64 (N,), seconds
         How long the whole steps take.
     left_s : float64 (N,), seconds
-        What is left of them.
+        The time left of them.
     ground : where feet can be put
 
     Returns

@@ -94,7 +94,7 @@ class Ground:
         Parameters
         ----------
         footprints : float64 (N, 4), metres and radians
-            Their heights are about what is expected.
+            Their heights are about those expected.
         foot_m : float64 (N,), metres
 
         Returns

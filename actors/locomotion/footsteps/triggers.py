@@ -31,19 +31,20 @@ _SETTLED_M: Final = 0.004
 """Hips that are further from the body shift their weight."""
 
 _MOVED_M: Final = 0.06
-"""A step is re-aimed when its end has moved by more than this,"""
+"""A step is re-aimed when its end has moved by more than this."""
 _VEERED_RAD: Final = 0.26
-"""or when the body wants to face elsewhere by more than this angle,"""
+"""A step is re-aimed when the body wants to face elsewhere by more than this angle."""
 _LATEST: Final = 0.75
-"""but not after this share of it,"""
+"""A step is not re-aimed after this share of it, unless the foot would land far off."""
 _REST_S: Final = 0.15
-"""and not before this time has passed since it was last re-aimed."""
+"""A step is not re-aimed before this time has passed since it was last re-aimed, unless the
+foot would land far off."""
 _LEAPT_M: Final = 0.15
-"""If the foot would land elsewhere by more than this, the step is re-aimed later still,"""
+"""A foot would land far off if that is further than this from where it was to land."""
 _LAST: Final = 0.95
-"""up to this share of it,"""
+"""A step whose foot would land far off is re-aimed up to this share of it."""
 _QUICK_S: Final = 0.25
-"""and the foot comes down within this time."""
+"""A foot that would land far off comes down within this time."""
 _FEWEST_TICKS: Final = 2
 
 
@@ -82,7 +83,7 @@ class TriggeredSteps(NamedTuple):
 def steps_to_begin(
     tick: int, tick_s: float, idle: Steps, goals: StepGoals, course: Course
 ) -> tuple[TriggeredSteps, Ints]:
-    """Of N walkers whose steps are over: which take another step, and which shift their weight.
+    """Find which of N idle walkers take another step, and which only shift their weight.
 
     A body that goes, or turns, or has its feet apart, takes a step, which lands where the body will
     be over both feet. A body that stands on both feet, but beside them, only shifts its weight.

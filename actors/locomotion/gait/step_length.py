@@ -21,7 +21,7 @@ _TABLE_POINTS: Final = 513
 
 
 class StraightDoubleSupport(NamedTuple):
-    """Both legs at the end of a straight step, from the hip joint; leg lengths and radians."""
+    """Both legs at the end of a straight step, seen from the hip joint; leg lengths and radians."""
 
     front_forward: Floats
     front_up: Floats

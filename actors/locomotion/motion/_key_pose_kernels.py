@@ -113,7 +113,7 @@ def fill_interpolated(keys: Floats, u: Floats, out: Floats) -> None:
 def fill_samples(
     keys: Floats, landing: Floats, lift: Floats, u: Floats, foot_m: Floats, out: Floats
 ) -> None:
-    """Write what is drawn of N steps at shares u (N,) to out (N, WIDTH)."""
+    """Write the poses drawn of N steps at shares u (N,) to out (N, WIDTH)."""
     at = np.empty(WIDTH)
     for i in range(len(u)):
         interpolate(keys[i], u[i], out[i])

@@ -171,7 +171,7 @@ def standing_ankles(footprints: Floats, pitch: Floats, foot_m: Floats) -> Floats
 
 
 def sample_keys(steps: Steps, u: Floats, foot_m: Floats) -> Floats:
-    """Poses of N steps at shares of them, as keys: what is drawn then.
+    """Poses drawn of N steps at shares of them, as keys.
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ def leg_poses(steps: Steps, u: Floats, key: Floats, sizes: BodySizes) -> LegPose
     steps : N steps
     u : float64 (N,), shares, in [0, 1]
     key : float64 (N, WIDTH)
-        What `sample_keys` gives for these steps and shares.
+        The result of `sample_keys` for these steps and shares.
     sizes : of the N bodies
 
     Returns

@@ -38,9 +38,9 @@ _SHARES: Final = np.linspace(0.0, 1.0, KEYS)
 
 # A foot that stands lower than the other one leaves the ground earlier: lengths in legs.
 _LEVEL: Final = 0.15
-"""Up to this rise it does so as on level ground."""
+"""Up to this rise the lower foot leaves as on level ground."""
 _STEEP: Final = 0.35
-"""From this rise on it does so earliest."""
+"""From this rise on the lower foot leaves earliest."""
 _EARLIER: Final = 0.7
 """Share of the usual time to toe-off that is then left out."""
 
@@ -105,7 +105,7 @@ def step_keys(
     hips: Floats,
     room_m: Floats,
 ) -> tuple[Floats, Floats]:
-    """Keys of what is left of N steps, which begin with the current pose in value and speed.
+    """Keys of the rest of N steps, which begin with the current pose in value and speed.
 
     Parameters
     ----------

@@ -156,7 +156,7 @@ def swing_foot(
 ) -> Foot:
     """The swing foot: on its toe until toe-off, then along the curves, then down on its footprint.
 
-    `lift` is the share of toe-off, `raise_by` what the foot is raised by beyond the curves.
+    `lift` is the share of toe-off, `raise_by` the height added to the curves.
     """
     hip, knee, ankle = swing_leg(hips.rv, u)
     pitch = _pinned_pitch(before, lifted, hips, u, lift, hip - knee + ankle)
@@ -212,7 +212,7 @@ def clearance(
 ) -> float:
     """The height by which a swing foot is raised beyond the curves so that it clears the ground.
 
-    `table` is what `fill_clearances` wrote. Feet that hardly move are hardly raised.
+    `table` was written by `fill_clearances`. Feet that hardly move are hardly raised.
     """
     last = len(table) - 1
     row, column = before.rv / RV_LONGEST * last, after.rv / RV_LONGEST * last
@@ -229,7 +229,7 @@ def clearance(
 
 @kernel
 def fill_clearances(lengths: Floats, poses: PoseTable, table: Floats) -> None:
-    """Write what straight steps on level ground must be raised by, by their lengths at both ends.
+    """Write the heights to raise straight steps on level ground by, by their lengths at both ends.
 
     `lengths` is (M,), `table` (M, M), in leg lengths. Each value is the largest that any of 60
     moments of a step asks for.

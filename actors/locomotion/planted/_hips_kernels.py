@@ -38,7 +38,7 @@ class Hips(NamedTuple):
     lean: float
     roll: float
     joint: tuple[float, float, float]
-    """From the root to the hip joint of the standing (left) leg; the other one lies opposite."""
+    """Vector from the root to the hip joint of the standing (left) leg; the other lies opposite."""
     unswayed: tuple[float, float]
     """Place of the root on the map without its sway; the swing foot passes beside it."""
     heading: float

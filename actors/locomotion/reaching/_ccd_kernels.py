@@ -29,13 +29,13 @@ _YAWS = 8
 """Number of other turns of the limb about its Y axis that are tried when the present one breaks a
 limit, from the nearest outwards."""
 _PATIENCE = 2
-"""Number of sweeps after which the distance left must have shrunk,"""
+"""Number of sweeps after which the distance left must have shrunk to `_SHRUNK`."""
 _SHRUNK = 0.5
-"""namely to this share; else the limits are in the way."""
+"""Share of the distance left; if more is left, the limits are in the way."""
 
 
 class Effort(NamedTuple):
-    """When a solver stops."""
+    """The limits at which a solver stops."""
 
     tolerance: float
     """Leg lengths between effector and target that count as reached."""
@@ -69,7 +69,7 @@ def _bent_at(
     if abs(aside) > 0.5 * math.pi:  # the same plane, with the limb raised beyond the horizontal
         aside -= math.copysign(math.pi, aside)
     aside = clamped(aside, low[1], high[1])
-    # In the plane of the limb, so that flexion is the best one for the clamped angle aside too.
+    # `down` lies in the limb's plane, so that flexion is best for the clamped angle aside too.
     down = math.sin(aside) * x - math.cos(aside) * y
     lag = math.atan2(behind, along)
     flexion = clamped(math.atan2(z, down) + lag, low[2], high[2])

@@ -119,7 +119,7 @@ def reach(
 
     Parameters
     ----------
-    chain : what `heel_chain` or `arm_chain` gives
+    chain : the result of `heel_chain` or `arm_chain`
     targets : float64 (N, 3), leg lengths, in the frame of the chain's root
     start : float64 (J,) or (N, J), radians
         Angles to begin with; they are brought within the limits first.
@@ -166,7 +166,7 @@ def effector(chain: Hinges, angles: ArrayLike) -> Floats:
 
     Parameters
     ----------
-    chain : what `heel_chain` or `arm_chain` gives
+    chain : the result of `heel_chain` or `arm_chain`
     angles : float64 (J,) or (N, J), radians
 
     Returns

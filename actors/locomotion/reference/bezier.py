@@ -1,4 +1,4 @@
-"""From one step's poses to the next one's by Bezier weights (Jing et al. 2015, eq. (14))."""
+"""Blends from one step's poses to the next one's by Bezier weights (Jing et al. 2015, eq. (14))."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Floats = NDArray[np.float64]
 
 
 def bernstein(count: int, u: ArrayLike) -> Floats:
-    """Weights (..., count) of so many controls at shares u (...) in [0, 1]; they sum to 1."""
+    """Weights (..., count) of `count` controls at shares u (...) in [0, 1]; they sum to 1."""
     if count < 1:
         raise ValueError(f"count must be at least 1, got {count}")
     share = np.asarray(u, dtype=np.float64)

@@ -1,6 +1,6 @@
-"""From a step to the joints of a body that is taking it: a second time what a client draws.
+"""The joints of a body that is taking a step, computed a second time as a client draws them.
 
-All of it is a closed form of what a step holds; nothing depends on the frame before. The client
+All of it is a closed form of the fields of a step; nothing depends on the frame before. The client
 does the same in `client_web/src/world/steps.ts` and `body.ts`; shared vectors hold both together.
 """
 
