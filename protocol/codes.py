@@ -81,6 +81,9 @@ class ErrorCode(StrEnum):
     SERVER_FULL = "server_full"
     NO_PATH = "no_path"
     FORBIDDEN = "forbidden"
+    NAME_RESERVED = "name_reserved"
+    KEY_UNREAD = "key_unread"
+    LEASE_ENDED = "lease_ended"
 
 
 class CloseCode(IntEnum):
@@ -98,6 +101,8 @@ class CloseCode(IntEnum):
     SERVER_FULL = 4007
     TOO_SLOW = 4008
     REPLACED = 4009
+    SILENT = 4010
+    NAME_RESERVED = 4011
 
 
 class ByeCode(StrEnum):
@@ -105,3 +110,4 @@ class ByeCode(StrEnum):
 
     SHUTDOWN = "shutdown"
     REPLACED = "replaced"
+    SILENT = "silent"

@@ -13,7 +13,6 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstra
 from esplanade.protocol.codes import (
     MAX_CHAT_CHARS,
     MAX_DOOR_CHARS,
-    MAX_NAME_CHARS,
     MAX_TOKEN_CHARS,
     ByeCode,
     ClientCode,
@@ -22,6 +21,7 @@ from esplanade.protocol.codes import (
     Reason,
     ServerCode,
 )
+from esplanade.protocol.names import plain_name
 
 _DIRECTION_MARKS: Final = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
 
@@ -43,11 +43,7 @@ Layer = Annotated[int, Field(ge=0, le=255)]
 Token = Annotated[str, Field(max_length=MAX_TOKEN_CHARS)]
 EntityId = Annotated[int, Field(ge=0, le=0xFFFF_FFFF)]
 Sequence = Annotated[int, Field(ge=0, le=0xFFFF_FFFF)]
-Name = Annotated[
-    str,
-    StringConstraints(strip_whitespace=True, min_length=1, max_length=MAX_NAME_CHARS),
-    AfterValidator(_one_visible_line),
-]
+Name = Annotated[str, AfterValidator(plain_name)]
 Line = Annotated[
     str,
     StringConstraints(strip_whitespace=True, min_length=1, max_length=MAX_CHAT_CHARS),
@@ -80,7 +76,8 @@ class Hello(FromClient):
     version: Annotated[int, Field(ge=0, le=0xFFFF)]
     resume: Token | None = None
     at: Annotated[tuple[Metres, Metres, Metres], Field(strict=False)] | None = None
-    """Wished place (x, y, z) of a new avatar; the server takes the nearest free one."""
+    """Wished place (x, y, z) of a new avatar. In the world of a recorded crowd, and for operators,
+    the server takes the nearest free one; in others the place of arrival that is nearest."""
     operator: Token | None = None
     """The server's operator key; without the right key a client has no operator's rights."""
 

@@ -113,6 +113,12 @@ class Metrics:
             "floods", "Connections closed because of what they sent, before it was parsed", ["what"]
         )
         self.joins = self._counter("joins", "People who came in", ["way"])
+        self.operator_keys_refused = self._counter(
+            "operator_keys_refused", "Operator keys that were wrong or not read", ["why"]
+        )
+        self.seats_yielded = self._counter(
+            "seats_yielded", "Vacant seats given up for newcomers to a full world"
+        )
         self.chat_lines = self._counter("chat_lines", "Lines of chat that people have said")
         self.planning_failures = self._counter(
             "planning_failures", "Ticks in which the actors' planning failed and they stood still"

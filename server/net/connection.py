@@ -3,7 +3,7 @@
 import asyncio
 from typing import Final
 
-from websockets.asyncio.server import Server, ServerConnection
+from websockets.asyncio.server import Server
 from websockets.http11 import Request
 from websockets.protocol import State
 from websockets.server import ServerProtocol
@@ -13,6 +13,7 @@ from esplanade.protocol.messages import Error
 from esplanade.server.metrics import Metrics
 from esplanade.server.net import frames
 from esplanade.server.net.connections import Place
+from esplanade.server.net.leases import HeardConnection
 from esplanade.server.net.metering import Meter
 from esplanade.server.net.refusals import Refusals
 
@@ -37,7 +38,7 @@ _FAULTS: Final = {
 """What a client is told that breaks a limit of its meter, or of time."""
 
 
-class Connection(ServerConnection):
+class Connection(HeardConnection):
     """Charges every chunk before the library sees it, and ends a client that sends too much."""
 
     def __init__(
@@ -49,7 +50,8 @@ class Connection(ServerConnection):
         metrics: Metrics,
         refusals: Refusals,
     ) -> None:
-        super().__init__(protocol, server, close_timeout=CLOSE_S)
+        # Leases ping those who are silent, and end them.
+        super().__init__(protocol, server, ping_interval=None, close_timeout=CLOSE_S)
         self.place = place
         self.answering = False
         """Whether an HTTP answer is on its way: what the client sends meanwhile is not parsed."""
@@ -106,6 +108,7 @@ class Connection(ServerConnection):
         if excess is not None:
             self._refuse(excess)
             return
+        self.heard = True
         self._held += data
         self._held_frames += max(self._meter.began, 1)
         if self._turn is None:

@@ -1,7 +1,6 @@
 """The hub joins sessions and the world: it seats people, collects their wishes, passes chat on."""
 
 import asyncio
-import secrets
 from collections.abc import Callable, Iterable, Mapping
 from typing import Final
 
@@ -11,6 +10,9 @@ from esplanade.protocol import VERSION, ByeCode, CloseCode, ErrorCode, ProtocolE
 from esplanade.protocol.messages import Bye, Chat, Hello, Move, SetDoor, WalkTo, Welcome
 from esplanade.server.metrics import Metrics
 from esplanade.server.net import frames
+from esplanade.server.net.leases import ANSWER_S, PING_S, Leases
+from esplanade.server.net.names import Names, ReservedNameError
+from esplanade.server.net.operator_keys import OperatorKeys, TooManyKeysError
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.seats import Seat, Seats
 from esplanade.server.net.session import Session
@@ -24,6 +26,7 @@ from esplanade.server.world.inputs import (
     Leave,
     MoveDoor,
     Movement,
+    Stand,
     Steer,
 )
 from esplanade.server.world.routes import Route
@@ -62,9 +65,12 @@ class Hub:
         scene = world.scene.model_dump(mode="json", exclude={"mesh"})
         self._welcomes = frames.Welcomes({**scene, **derived})
         self._seats: Seats[Session] = Seats()
+        self._names = Names(world.actor_names)
+        self._leases = Leases(world.moves)
+        self._operator_keys = OperatorKeys(settings.operator_key.get_secret_value(), metrics)
         self._next_ticket = 1
         self._joining: dict[int, tuple[Session, Hello]] = {}
-        self._comings: list[Attach | Detach | Leave] = []
+        self._comings: list[Attach | Detach | Leave | Stand] = []
         self._movements: dict[int, Movement] = {}
         self._doors: dict[str, MoveDoor] = {}
         metrics.gauge("clients", "People connected", lambda: len(self.sessions))
@@ -89,19 +95,19 @@ class Hub:
         Raises
         ------
         ProtocolError
-            The world is full.
+            The world is full, or the name is one that nobody may bear.
         """
-        session.is_operator = self._knows_key(hello.operator)
+        self._check_key(session, hello.operator)
         seat = self._seats.find(hello.resume) if hello.resume else None
         if seat is not None:
-            self._resume(seat, session, hello)
+            self._resume(seat, session, hello.resume or "")
             return
         if len(self._seats) + len(self._joining) >= self._settings.max_clients:
-            raise ProtocolError(
-                ErrorCode.SERVER_FULL,
-                f"there is room for {self._settings.max_clients} people, all taken",
-                CloseCode.SERVER_FULL,
-            )
+            self._make_room()
+        try:
+            session.name = self._names.take(hello.name)
+        except ReservedNameError as error:
+            raise ProtocolError(ErrorCode.NAME_RESERVED, str(error), CloseCode.NAME_RESERVED) from None
         session.ticket = self._next_ticket
         self._joining[session.ticket] = session, hello
         self._next_ticket += 1
@@ -167,13 +173,17 @@ class Hub:
             return
         session.tell(ProtocolError(*fault, None))
 
-    def _knows_key(self, key: str | None) -> bool:
-        known = self._settings.operator_key.get_secret_value()
-        return bool(known and key) and secrets.compare_digest(known.encode(), (key or "").encode())
+    def confirm(self, session: Session) -> None:
+        """Note that a client that came back has its new token, so that the old one is void."""
+        session.unconfirmed = False
+        seat = None if session.avatar_id is None else self._seats.of(session.avatar_id)
+        if seat is not None and seat.occupant is session:
+            self._seats.confirm(seat)
 
     def depart(self, session: Session, comes_back: bool) -> None:
         """Let go of a session that has ended; its avatar waits if the person may come back."""
-        self._joining.pop(session.ticket, None)
+        if self._joining.pop(session.ticket, None) is not None:
+            self._names.give_back(session.name)
         if session.avatar_id is None:
             return
         seat = self._seats.of(session.avatar_id)
@@ -193,10 +203,12 @@ class Hub:
         """Return everything for the next tick: at most one movement a person, and a few joins."""
         for seat in self._seats.vacant_since(now - self._settings.resume_seconds):
             self._remove(seat)
+        self._check_leases(now)
         inputs: list[Input] = [*self._comings]
         for ticket in list(self._joining)[:MAX_JOINS_PER_TICK]:
-            hello = self._joining[ticket][1]
-            inputs.append(Join(ticket, hello.name, hello.at))
+            session, hello = self._joining[ticket]
+            anywhere = session.is_operator or self._settings.crowd is not None
+            inputs.append(Join(ticket, session.name, hello.at, anywhere))
         inputs.extend(self._movements.values())
         inputs.extend(self._doors.values())
         self._comings, self._movements, self._doors = [], {}, {}
@@ -205,9 +217,9 @@ class Hub:
     def welcome(self, inputs: Iterable[Input], joined: Joined) -> None:
         """Welcome the people whom the tick has let in, before anything else is sent to them."""
         for ticket, avatar_id in joined:
-            session, hello = self._joining.pop(ticket)
-            token = self._seats.issue(avatar_id, hello.name, session)
-            session.avatar_id, session.token = avatar_id, token
+            session, _ = self._joining.pop(ticket)
+            session.token = self._seats.issue(avatar_id, session.name, session.address, session)
+            session.avatar_id = avatar_id
             self._bind(session, avatar_id, resumed=False)
         # Two people may have come back to one avatar since the last tick: the later one has it.
         for avatar_id in dict.fromkeys(item.id for item in inputs if isinstance(item, Attach)):
@@ -226,15 +238,58 @@ class Hub:
 
     # --- seats --------------------------------------------------------------------------------
 
-    def _resume(self, seat: Seat[Session], session: Session, hello: Hello) -> None:
-        before = self._seats.occupy(seat, session)
+    def _make_room(self) -> None:
+        """Take a vacant seat away, so that a newcomer finds room.
+
+        Raises
+        ------
+        ProtocolError
+            None is vacant.
+        """
+        seat = self._seats.yielding()
+        if seat is None:
+            raise ProtocolError(
+                ErrorCode.SERVER_FULL,
+                f"there is room for {self._settings.max_clients} people, all taken",
+                CloseCode.SERVER_FULL,
+            )
+        self._metrics.seats_yielded.inc()
+        self._remove(seat)
+        log.info("vacant seat yielded", id=seat.avatar_id, name=seat.name, address=seat.address)
+
+    def _check_key(self, session: Session, key: str | None) -> None:
+        now = asyncio.get_running_loop().time()
+        try:
+            session.is_operator = self._operator_keys.opens(key, session.address, now)
+        except TooManyKeysError as error:
+            session.fault_at_welcome = ProtocolError(ErrorCode.KEY_UNREAD, str(error), None)
+
+    def _check_leases(self, now: float) -> None:
+        """Let avatars of silent clients stand, and end connections that are silent for long."""
+        leases = ((avatar_id, session.lease) for avatar_id, session in self.sessions.items())
+        lapsed, gone = self._leases.check(leases, now)
+        for avatar_id in lapsed:
+            self._movements.pop(avatar_id, None)
+            self._routes.forget(avatar_id)
+            self._comings.append(Stand(avatar_id))
+            text = f"your avatar stands, because nothing came from you for {PING_S + ANSWER_S:g} s"
+            self.sessions[avatar_id].tell(ProtocolError(ErrorCode.LEASE_ENDED, text, None))
+        for avatar_id in gone:
+            session = self.sessions[avatar_id]
+            text = "nothing came from you for too long"
+            farewell = frames.message(Bye(reason=ByeCode.SILENT, text=text))
+            self.depart(session, comes_back=True)
+            session.dismiss(farewell, CloseCode.SILENT, ByeCode.SILENT.value)
+
+    def _resume(self, seat: Seat[Session], session: Session, token: str) -> None:
+        before = self._seats.occupy(seat, session, session.address)
         if before is not None:
             self._unbind(seat)
             text = "somebody came in with your resume token"
             farewell = frames.message(Bye(reason=ByeCode.REPLACED, text=text))
             before.dismiss(farewell, CloseCode.REPLACED, ByeCode.REPLACED.value)
         session.avatar_id, session.name = seat.avatar_id, seat.name
-        session.token = hello.resume or ""
+        session.token = self._seats.renew(seat, token)
         self._comings += [Detach(seat.avatar_id), Attach(seat.avatar_id)]
 
     def _bind(self, session: Session, avatar_id: int, resumed: bool) -> None:
@@ -257,6 +312,9 @@ class Hub:
             operator=session.is_operator,
         )
         session.outbox.welcome(self._welcomes.frame(welcome))
+        session.unconfirmed = resumed
+        if session.fault_at_welcome is not None:
+            session.tell(session.fault_at_welcome)
         self._metrics.joins.labels("resumed" if resumed else "new").inc()
         log.info("person here", id=avatar_id, name=session.name, resumed=resumed)
 
@@ -273,6 +331,7 @@ class Hub:
 
     def _remove(self, seat: Seat[Session]) -> None:
         self._seats.remove(seat)
+        self._names.give_back(seat.name)
         self._comings.append(Leave(seat.avatar_id))
 
     def _vacant(self) -> int:

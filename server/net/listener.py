@@ -134,7 +134,6 @@ class Listener:
 
     async def _serve(self, connection: Connection) -> None:
         connection.server.all_connections.add(connection)
-        connection.start_keepalive()
         self._sessions += 1
         try:
             async with connection:

@@ -2,7 +2,7 @@
 
 import hashlib
 import secrets
-from collections import OrderedDict
+from collections import Counter, OrderedDict
 from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
@@ -15,12 +15,19 @@ class Seat(Generic[Occupant]):
 
     avatar_id: int
     name: str
+    address: str
+    """The address of the client that has or had the seat last."""
     occupant: Occupant | None
-    digest: bytes = field(repr=False)
+    digests: list[bytes] = field(repr=False)
+    """Hashes of the tokens that take the seat: the newest is the last, before it at most one."""
 
 
 class Seats(Generic[Occupant]):
-    """All seats by the hash of their token; the token itself is not kept."""
+    """All seats by the hashes of their tokens; the tokens themselves are not kept.
+
+    A token is renewed whenever it takes a seat. The one that was used stays valid beside the new
+    one until its holder is known to have the new one: a welcome that is lost loses no avatar.
+    """
 
     def __init__(self) -> None:
         self._by_digest: dict[bytes, Seat[Occupant]] = {}
@@ -34,12 +41,11 @@ class Seats(Generic[Occupant]):
     def vacant(self) -> int:
         return len(self._vacant)
 
-    def issue(self, avatar_id: int, name: str, occupant: Occupant) -> str:
+    def issue(self, avatar_id: int, name: str, address: str, occupant: Occupant) -> str:
         """Make a seat for a new avatar, and return the token that takes it again."""
-        token = secrets.token_urlsafe(24)
-        seat = Seat(avatar_id, name, occupant, _digest(token))
-        self._by_digest[seat.digest] = self._by_avatar[avatar_id] = seat
-        return token
+        seat = Seat(avatar_id, name, address, occupant, [])
+        self._by_avatar[avatar_id] = seat
+        return self._add_token(seat)
 
     def find(self, token: str) -> Seat[Occupant] | None:
         return self._by_digest.get(_digest(token))
@@ -47,9 +53,25 @@ class Seats(Generic[Occupant]):
     def of(self, avatar_id: int) -> Seat[Occupant] | None:
         return self._by_avatar.get(avatar_id)
 
-    def occupy(self, seat: Seat[Occupant], occupant: Occupant) -> Occupant | None:
+    def renew(self, seat: Seat[Occupant], token: str) -> str:
+        """Return a new token of a seat; of the old ones only the given one remains valid."""
+        used = _digest(token)
+        for digest in seat.digests:
+            if digest != used:
+                del self._by_digest[digest]
+        seat.digests = [used]
+        return self._add_token(seat)
+
+    def confirm(self, seat: Seat[Occupant]) -> None:
+        """Note that the newest token has arrived: no other one takes the seat any more."""
+        *old, newest = seat.digests
+        for digest in old:
+            del self._by_digest[digest]
+        seat.digests = [newest]
+
+    def occupy(self, seat: Seat[Occupant], occupant: Occupant, address: str) -> Occupant | None:
         """Take a seat, and return the occupant until now."""
-        before, seat.occupant = seat.occupant, occupant
+        before, seat.occupant, seat.address = seat.occupant, occupant, address
         self._vacant.pop(seat.avatar_id, None)
         return before
 
@@ -59,8 +81,10 @@ class Seats(Generic[Occupant]):
         self._vacant[seat.avatar_id] = now
 
     def remove(self, seat: Seat[Occupant]) -> None:
-        """Remove the seat of an avatar that is gone, and its token with it."""
-        del self._by_digest[seat.digest], self._by_avatar[seat.avatar_id]
+        """Remove the seat of an avatar that is gone, and its tokens with it."""
+        for digest in seat.digests:
+            del self._by_digest[digest]
+        del self._by_avatar[seat.avatar_id]
         self._vacant.pop(seat.avatar_id, None)
 
     def vacant_since(self, moment: float) -> list[Seat[Occupant]]:
@@ -71,6 +95,20 @@ class Seats(Generic[Occupant]):
                 break
             seats.append(self._by_avatar[avatar_id])
         return seats
+
+    def yielding(self) -> Seat[Occupant] | None:
+        """The seat that is given up first: the longest vacant one of the address with most."""
+        vacant = [self._by_avatar[avatar_id] for avatar_id in self._vacant]
+        crowds = Counter(seat.address for seat in vacant)
+        # Of the greatest, `max` returns the first: the one that has been vacant longest.
+        return max(vacant, key=lambda seat: crowds[seat.address], default=None)
+
+    def _add_token(self, seat: Seat[Occupant]) -> str:
+        token = secrets.token_urlsafe(24)
+        digest = _digest(token)
+        seat.digests.append(digest)
+        self._by_digest[digest] = seat
+        return token
 
 
 def _digest(token: str) -> bytes:

@@ -24,6 +24,7 @@ from esplanade.protocol.messages import (
 from esplanade.server.metrics import Metrics
 from esplanade.server.net import frames
 from esplanade.server.net.connection import CLOSE_S, Connection
+from esplanade.server.net.leases import Lease
 from esplanade.server.net.limits import TokenBucket
 from esplanade.server.net.outbox import Outbox, SlowPolicy
 from esplanade.server.settings import ServerSettings
@@ -56,6 +57,9 @@ class SessionRequests(Protocol):
     def set_door(self, session: "Session", wish: SetDoor) -> None:
         """Open or close a door in the next tick, if the session may."""
 
+    def confirm(self, session: "Session") -> None:
+        """Note that the client has read its welcome: it has sent something since."""
+
     def depart(self, session: "Session", comes_back: bool) -> None:
         """Let go of a session that has ended."""
 
@@ -72,6 +76,9 @@ class Session:
     ) -> None:
         now = asyncio.get_running_loop().time()
         self.outbox = Outbox(connection, SlowPolicy.of(settings), metrics.traffic)
+        self.address = connection.client_address
+        """The key by which limits of the client's address go."""
+        self.lease = Lease(connection)
         self.avatar_id: int | None = None
         """Set once the hub has a seat for this session."""
         self.ticket = 0
@@ -81,6 +88,10 @@ class Session:
         self.name = ""
         self.watching: int | None = None
         self.is_operator = False
+        self.fault_at_welcome: ProtocolError | None = None
+        """The fault of a hello that lets the client in all the same; it is told of it then."""
+        self.unconfirmed = False
+        """Whether the client got a renewed token that it may not have read yet."""
         self._connection = connection
         self._hub = hub
         self._metrics = metrics
@@ -160,6 +171,8 @@ class Session:
         return decode_client(frame)
 
     def _take(self, message: ClientMessage) -> None:
+        if self.unconfirmed:
+            self._hub.confirm(self)
         match message:
             case Move() | WalkTo():
                 self._hub.move(self, message)

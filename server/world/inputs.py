@@ -12,7 +12,9 @@ class Join:
     ticket: int
     name: str
     at: Point | None
-    """The wished place x, y and height, metres; None for a spawn point."""
+    """The wished place x, y and height, metres; None for any spawn point."""
+    anywhere: bool = True
+    """Whether the wished place itself is given; otherwise the spawn point nearest to it is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +34,13 @@ class Detach:
 @dataclass(frozen=True, slots=True)
 class Leave:
     """The avatar goes out of the world."""
+
+    id: int
+
+
+@dataclass(frozen=True, slots=True)
+class Stand:
+    """The avatar stands still where it is: its client has fallen silent."""
 
     id: int
 
@@ -64,4 +73,4 @@ class MoveDoor:
 
 
 Movement = Steer | Follow
-Input = Join | Attach | Detach | Leave | Steer | Follow | MoveDoor
+Input = Join | Attach | Detach | Leave | Stand | Steer | Follow | MoveDoor

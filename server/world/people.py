@@ -54,6 +54,10 @@ class People:
             self._blocked[slot] = 0
             self._targets[slot] = wish.route[0][:2]
 
+    def moves(self, slot: int) -> bool:
+        """Whether that person has an intention to move."""
+        return bool(self._following[slot] or self._velocities[slot].any())
+
     def move(self) -> None:
         """Move everyone by one tick."""
         state = self._state

@@ -21,6 +21,7 @@ from esplanade.server.world.inputs import (
     Join,
     Leave,
     MoveDoor,
+    Stand,
     Steer,
 )
 from esplanade.server.world.interest import Changes, Interest
@@ -212,6 +213,15 @@ class World:
         ids: list[int] = self.state.ids[viewers].tolist()
         return ids
 
+    def moves(self, avatar_id: int) -> bool:
+        """Whether that person means to move, by a direction or along a route."""
+        return avatar_id in self.state and self._people.moves(self.state.slot(avatar_id))
+
+    @property
+    def actor_names(self) -> list[str]:
+        """The names of all actors."""
+        return [self.state.names[slot] for slot in self.state.of_kind(ACTOR).tolist()]
+
     def is_actor(self, avatar_id: int) -> bool:
         return avatar_id in self.state and (
             int(self.state.kinds[self.state.slot(avatar_id)]) == ACTOR
@@ -229,7 +239,7 @@ class World:
     # --- inputs -------------------------------------------------------------------------------
 
     def _join(self, join: Join) -> int:
-        place = self._spawning.place(join.at)
+        place = self._spawning.place(join.at, join.anywhere)
         layer = self._grid.layer_at(place[:2], place[2])
         radius_m = self.rules.person_radius_m
         slot = self.state.add(PERSON, join.name, place, layer, radius_m)
@@ -243,7 +253,7 @@ class World:
         self._step_interest.attach(slot)
         self._encoder.attach(slot)
 
-    def _apply(self, item: Attach | Detach | Leave | Steer | Follow, slot: int) -> None:
+    def _apply(self, item: Attach | Detach | Leave | Stand | Steer | Follow, slot: int) -> None:
         match item:
             case Steer():
                 self._people.steer(slot, item)
@@ -251,6 +261,8 @@ class World:
             case Follow():
                 self._people.follow(slot, item)
                 self._encoder.acks[slot] = item.seq
+            case Stand():
+                self._people.stop(slot)
             case Attach():
                 self._attach(slot)
             case Detach():

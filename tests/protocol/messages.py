@@ -1,5 +1,6 @@
 """Hypothesis strategies for every message of both directions."""
 
+import unicodedata
 from typing import Any
 
 from hypothesis import strategies as st
@@ -33,6 +34,7 @@ from esplanade.protocol.messages import (
     Watch,
     Welcome,
 )
+from esplanade.protocol.names import plain_name
 
 u32 = st.integers(0, 0xFFFF_FFFF)
 layers = st.integers(0, 255)
@@ -51,6 +53,17 @@ def lines(max_chars: int) -> st.SearchStrategy[str]:
     return st.tuples(st.sampled_from("Aä漢🙂"), inner).map("".join)
 
 
+def is_plain(text: str) -> bool:
+    """Whether it is a name in its one way of writing."""
+    try:
+        return plain_name(text) == text
+    except ValueError:
+        return False
+
+
+names = st.text(st.characters(categories=["Ll", "Lu", "Lo", "Nd", "P", "S"]), min_size=1).map(
+    lambda text: unicodedata.normalize("NFKC", text)[:MAX_NAME_CHARS]
+).filter(is_plain)
 scenes: st.SearchStrategy[dict[str, Any]] = st.dictionaries(
     texts, st.recursive(st.none() | floats | texts, st.lists, max_leaves=8)
 )
@@ -58,7 +71,7 @@ scenes: st.SearchStrategy[dict[str, Any]] = st.dictionaries(
 client_messages: st.SearchStrategy[FromClient] = st.one_of(
     st.builds(
         Hello,
-        name=lines(MAX_NAME_CHARS),
+        name=names,
         version=st.integers(0, 0xFFFF),
         resume=st.none() | tokens,
         at=st.none() | st.tuples(metres, metres, metres),

@@ -26,6 +26,9 @@ from tests.patience import PATIENCE_S
 
 Message = TypeVar("Message")
 
+PLACING_KEY = "let me stand where I wish"
+"""The operator key of servers under test: with it clients come in at the place of their wish."""
+
 
 class Client:
     """One connection. `positions` and `entities` hold what is in view."""
@@ -135,8 +138,10 @@ async def joined(
     at: tuple[float, float, int] | None = None,
     resume: str | None = None,
 ) -> AsyncIterator[Client]:
-    """A person in the world who has had a first snapshot."""
+    """A person in the world who has had a first snapshot; an operator if `at` is given."""
+    key = None if at is None else PLACING_KEY
+    hello = Hello(name=name, version=VERSION, at=at, resume=resume, operator=key)
     async with connected(port) as client:
-        await client.send(Hello(name=name, version=VERSION, at=at, resume=resume))
+        await client.send(hello)
         await client.until(Snapshot)
         yield client

@@ -11,6 +11,7 @@ import pytest
 from esplanade.server.app import Running, running
 from esplanade.server.assets import Assets
 from esplanade.server.settings import ServerSettings
+from tests.server.client import PLACING_KEY
 from tests.server.worlds import ROOM
 
 NO_CLIENT = Assets.load(Path("no such folder"))
@@ -44,6 +45,7 @@ def serving_assets(room_file: Path) -> ServingAssets:
             "port": 0,
             "private_port": 0,
             "actors": 0,
+            "operator_key": PLACING_KEY,
         }
         async with running(ServerSettings(**{**values, **changes}), assets) as server:
             yield server

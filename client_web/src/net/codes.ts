@@ -55,6 +55,8 @@ export const CloseCode = {
   SERVER_FULL: 4007,
   TOO_SLOW: 4008,
   REPLACED: 4009,
+  SILENT: 4010,
+  NAME_RESERVED: 4011,
 } as const;
 
 export type Kind = "person" | "actor";
