@@ -101,7 +101,9 @@ def _check_marks(name: str) -> None:
             accents, marks, based = 0, 0, not char.isspace()
             continue
         if not based:
-            raise ValueError(f"the mark U+{ord(char):04X} is not allowed in a name without a letter")
+            raise ValueError(
+                f"the mark U+{ord(char):04X} is not allowed in a name without a letter"
+            )
         marks += 1
         accents += unicodedata.combining(char) != 0
         if accents > MAX_ACCENTS or marks > MAX_MARKS:

@@ -107,7 +107,9 @@ class Hub:
         try:
             session.name = self._names.take(hello.name)
         except ReservedNameError as error:
-            raise ProtocolError(ErrorCode.NAME_RESERVED, str(error), CloseCode.NAME_RESERVED) from None
+            raise ProtocolError(
+                ErrorCode.NAME_RESERVED, str(error), CloseCode.NAME_RESERVED
+            ) from None
         session.ticket = self._next_ticket
         self._joining[session.ticket] = session, hello
         self._next_ticket += 1

@@ -61,9 +61,11 @@ def is_plain(text: str) -> bool:
         return False
 
 
-names = st.text(st.characters(categories=["Ll", "Lu", "Lo", "Nd", "P", "S"]), min_size=1).map(
-    lambda text: unicodedata.normalize("NFKC", text)[:MAX_NAME_CHARS]
-).filter(is_plain)
+names = (
+    st.text(st.characters(categories=["Ll", "Lu", "Lo", "Nd", "P", "S"]), min_size=1)
+    .map(lambda text: unicodedata.normalize("NFKC", text)[:MAX_NAME_CHARS])
+    .filter(is_plain)
+)
 scenes: st.SearchStrategy[dict[str, Any]] = st.dictionaries(
     texts, st.recursive(st.none() | floats | texts, st.lists, max_leaves=8)
 )
