@@ -80,6 +80,7 @@ class World:
         self.tick_s = tick_s
         self.tick = 0
         self.people_seen = 0
+        self.actor_names = tuple(names.values())
         self.origin_m = (scene.bounds[0], scene.bounds[1])
         self.state = State(max_people + len(names))
         self.contacts = Contacts()
@@ -216,11 +217,6 @@ class World:
     def moves(self, avatar_id: int) -> bool:
         """Whether that person means to move, by a direction or along a route."""
         return avatar_id in self.state and self._people.moves(self.state.slot(avatar_id))
-
-    @property
-    def actor_names(self) -> list[str]:
-        """The names of all actors."""
-        return [self.state.names[slot] for slot in self.state.of_kind(ACTOR).tolist()]
 
     def is_actor(self, avatar_id: int) -> bool:
         return avatar_id in self.state and (
