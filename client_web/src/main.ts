@@ -1,10 +1,12 @@
 /** Puts the parts of the page together. */
 
+import { readAddress } from "./app/address";
 import { offerInspection } from "./app/inspection";
 import { Session } from "./app/session";
 import { View } from "./app/view";
 import { listenToPointer } from "./input/pointer";
-import { browserLocks, Seats } from "./net/seats";
+import { Seats } from "./net/seats";
+import { browserLocks, channelLocks } from "./net/tablocks";
 import { byId } from "./ui/dom";
 import { setUpHelp, storedChoice } from "./ui/help";
 
@@ -12,12 +14,21 @@ const picture = byId("picture", HTMLCanvasElement);
 const calm = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
 const view = new View(picture, byId("labels", HTMLElement), storedChoice(), calm);
 
-const seats = new Seats(sessionStorage, localStorage, browserLocks(navigator.locks), Date.now);
+const locks =
+  browserLocks(navigator.locks) ??
+  channelLocks(
+    new BroadcastChannel("esplanade.seats"),
+    crypto.getRandomValues(new Uint32Array(3)).join("-"),
+  );
+const seats = new Seats(sessionStorage, localStorage, locks, Date.now);
 const socketUrl = new URL("ws", document.baseURI);
 socketUrl.protocol = socketUrl.protocol === "https:" ? "wss:" : "ws:";
-// The key stands behind the #, so that it is in no request and no server's log.
-const operator = new URLSearchParams(location.hash.slice(1)).get("operator");
-const session = new Session(view, seats, socketUrl.href, operator);
+const { operator, at, rest } = readAddress(location.hash);
+// The key is kept in memory alone: not where others read it over a shoulder, nor in the history.
+if (operator !== null) {
+  history.replaceState(history.state, "", location.pathname + location.search + rest);
+}
+const session = new Session(view, seats, socketUrl.href, operator, at);
 
 listenToPointer(picture, {
   orbit: (yaw, pitch) => {

@@ -6,8 +6,10 @@ import { fetchTriangles } from "../net/triangles";
 import { Connection, type ConnectionState } from "../net/connection";
 import type { Seats } from "../net/seats";
 import type { ServerMessage, Welcome } from "../net/messages";
+import type { Place } from "../render/picking";
 import { ChatPanel } from "../ui/chat";
 import { byId } from "../ui/dom";
+import { Invitation } from "../ui/invitation";
 import { JoinDialog } from "../ui/join";
 import { Minimap } from "../ui/minimap";
 import { Panel } from "../ui/panels";
@@ -39,6 +41,8 @@ export class Session {
   private readonly people: PeopleList;
   private readonly planPanel = new PlanPanel();
   private readonly planSwitch: Panel;
+  /** The name that the person gave; the server may have added a number. */
+  private wishedName = "";
   private frameMs = performance.now();
   private panelsMs = 0;
 
@@ -48,6 +52,8 @@ export class Session {
     socketUrl: string,
     /** The operator key; null for people without one. */
     private readonly operator: string | null,
+    /** A place that a link names; null once the view was turned to it. */
+    private linked: Place | null,
   ) {
     this.connection = new Connection(() => new WebSocket(socketUrl), {
       state: (state) => {
@@ -87,9 +93,10 @@ export class Session {
       this.frame(ms);
     });
     const seat = await this.seats.ofThisTab();
-    if (seat)
+    if (seat) {
+      this.wishedName = seat.name;
       this.connection.join({ name: seat.name, resume: seat.token, operator: this.operator });
-    else this.join.open();
+    } else this.join.open();
   }
 
   /** A click on the picture: an actor to look into, a door to move, or a place to walk to. */
@@ -109,6 +116,7 @@ export class Session {
 
   private async comeIn(name: string): Promise<void> {
     this.join.busy(true);
+    this.wishedName = name;
     const seat = await this.seats.abandoned(name);
     this.connection.join({ name, resume: seat?.token ?? null, operator: this.operator });
   }
@@ -117,7 +125,7 @@ export class Session {
     this.status.show(state);
     if (state.phase === "live" && this.welcome) {
       const { name, resume, resumed } = this.welcome;
-      void this.seats.keep(name, resume);
+      void this.seats.keep(this.wishedName, resume);
       this.join.close();
       this.chat.note(
         resumed ? `Welcome back, ${name}.` : `Welcome, ${name}. See Help for how to get about.`,
@@ -166,7 +174,7 @@ export class Session {
         this.people.census(message.people, message.actors);
         break;
       case "error":
-        if (message.error === "no_path") this.walking.callOff();
+        if (message.error === "no_path" || message.error === "lease_ended") this.walking.callOff();
         this.chat.note(`The server says: ${message.text}.`);
         break;
       case "notice":
@@ -204,6 +212,15 @@ export class Session {
     }
   }
 
+  /** Look to where a link leads, and ask whether to walk there. */
+  private followLink(from: Place, to: Place): void {
+    this.linked = null;
+    this.view.camera.yaw = Math.atan2(to.y - from.y, to.x - from.x);
+    new Invitation(() => {
+      this.walking.walkTo(to);
+    }).open();
+  }
+
   private choose(id: number | null): void {
     this.chosenId = id;
     if (this.world) this.world.plan = null;
@@ -229,6 +246,7 @@ export class Session {
     this.frames++;
     const { world } = this;
     if (!world) return;
+    if (this.linked && world.own) this.followLink(world.own.pose, this.linked);
     const steppedS = Math.min(frameS, LONGEST_FRAME_S);
     this.view.camera.orbit(this.walking.turnPerS * steppedS, 0);
     this.walking.frame(this.view.camera.yaw);

@@ -26,6 +26,8 @@ const CLOSINGS = new Map<number, Closing>([
     CloseCode.REPLACED,
     { text: "Your avatar went on in another window. This one is at rest.", retry: false },
   ],
+  [CloseCode.SILENT, { text: "Nothing came from this page for a while.", retry: true }],
+  [CloseCode.NAME_RESERVED, { text: "That name cannot be had here.", retry: false }],
 ]);
 
 /** `stated` is what the server said before it closed (an error or a bye), if anything. */

@@ -138,9 +138,8 @@ export class Connection {
   }
 
   private welcome(message: Welcome): void {
-    const { name, resume } = message;
     this.attempt = 0;
-    this.greeting = { name, resume, operator: this.greeting?.operator ?? null };
+    if (this.greeting) this.greeting = { ...this.greeting, resume: message.resume };
     this.clock.seed(message.server_time, nowS());
     this.change({ phase: "live" });
     this.ping();

@@ -8,8 +8,11 @@
  * also when a tab was duplicated together with its `sessionStorage`.
  */
 
+import type { TryLock } from "./tablocks";
+
 export interface Seat {
   id: string;
+  /** The name that its person gave; in the world it may have a number. */
   name: string;
   token: string;
   /** The time at which its page was last alive, milliseconds since 1970. */
@@ -21,9 +24,6 @@ export const KEPT_MS = 30_000;
 
 const SEATS_KEY = "esplanade.seats";
 const MINE_KEY = "esplanade.seat";
-
-/** Takes the lock of that name for the page's life; false if another living page holds it. */
-export type TryLock = (name: string) => Promise<boolean>;
 
 export class Seats {
   private mine: Seat | null = null;
@@ -102,19 +102,6 @@ export class Seats {
   private write(seats: Seat[]): void {
     this.profile.setItem(SEATS_KEY, JSON.stringify(seats));
   }
-}
-
-/** The browser's own locks; null where it has none (pages that came over plain HTTP). */
-export function browserLocks(locks: LockManager | undefined): TryLock | null {
-  if (!locks) return null;
-  return (name) =>
-    new Promise((answer) => {
-      void locks.request(name, { ifAvailable: true }, (lock) => {
-        answer(lock !== null);
-        // Held until the page ends.
-        return lock ? new Promise<never>(() => undefined) : undefined;
-      });
-    });
 }
 
 function isSeat(value: unknown): value is Seat {

@@ -1,5 +1,6 @@
 import { beforeEach, describe, expect, it } from "vitest";
-import { KEPT_MS, Seats, type TryLock } from "../../src/net/seats";
+import { KEPT_MS, Seats } from "../../src/net/seats";
+import type { TryLock } from "../../src/net/tablocks";
 
 /** Storage of one tab or one profile. */
 function storage(entries = new Map<string, string>()): Storage {
@@ -98,6 +99,14 @@ describe("Seats", () => {
     await new Seats(tab, profile, null, () => nowMs).keep("Ann", "token");
     expect(await new Seats(storage(), profile, null, () => nowMs).abandoned("Ann")).toBeNull();
     expect(await new Seats(tab, profile, null, () => nowMs).ofThisTab()).not.toBeNull();
+  });
+
+  it("keeps the newest token for the next page", async () => {
+    const before = page();
+    await before.seats.keep("Ann", "token");
+    await before.seats.keep("Ann", "newer");
+    before.kill();
+    expect(await page(before.tab).seats.ofThisTab()).toMatchObject({ token: "newer" });
   });
 
   it("is not put out by rubbish in the storage", async () => {

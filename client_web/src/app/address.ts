@@ -1,0 +1,31 @@
+/** What the page's address says behind its #, where it is in no request and no server's log. */
+
+import type { Place } from "../render/picking";
+
+export interface AddressWish {
+  /** The operator key; null for people without one. */
+  operator: string | null;
+  /** A place to look at and to be asked to walk to. */
+  at: Place | null;
+  /** What may stay in the address: everything but the key. */
+  rest: string;
+}
+
+/** Read `#operator=KEY&at=x,y,z`; z may be left out. */
+export function readAddress(hash: string): AddressWish {
+  const parts = hash.replace(/^#/, "").split("&");
+  const rest = parts.filter((part) => part !== "" && !part.startsWith("operator="));
+  const wishes = new URLSearchParams(hash.slice(1));
+  return {
+    operator: wishes.get("operator"),
+    at: readPlace(wishes.get("at")),
+    rest: rest.length > 0 ? `#${rest.join("&")}` : "",
+  };
+}
+
+function readPlace(text: string | null): Place | null {
+  const numbers = (text ?? "").split(",").map((part) => (part.trim() === "" ? NaN : Number(part)));
+  const [x = NaN, y = NaN, z = 0] = numbers;
+  const fits = numbers.length <= 3 && [x, y, z].every((metres) => Math.abs(metres) <= 100_000);
+  return fits ? { x, y, z } : null;
+}

@@ -1,0 +1,24 @@
+import { describe, expect, it } from "vitest";
+import { readAddress } from "../../src/app/address";
+
+describe("readAddress", () => {
+  it("takes the operator key out and leaves the rest", () => {
+    expect(readAddress("#operator=KEY")).toEqual({ operator: "KEY", at: null, rest: "" });
+    const both = readAddress("#at=1,2,3&operator=a%20b&more");
+    expect(both.operator).toBe("a b");
+    expect(both.rest).toBe("#at=1,2,3&more");
+    expect(readAddress("")).toEqual({ operator: null, at: null, rest: "" });
+  });
+
+  it("reads a place, with or without a height", () => {
+    expect(readAddress("#at=1.5,-2").at).toEqual({ x: 1.5, y: -2, z: 0 });
+    expect(readAddress("#at=1,2,3").at).toEqual({ x: 1, y: 2, z: 3 });
+  });
+
+  it.each(["", "1", "1,", "a,b", "1,2,3,4", "1,NaN", "Infinity,0", "1,2,1e9"])(
+    "reads no place where there is none: %s",
+    (text) => {
+      expect(readAddress(`#at=${text}`).at).toBeNull();
+    },
+  );
+});
