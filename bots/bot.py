@@ -277,7 +277,8 @@ async def connect(
     ----------
     url : like ws://localhost:8080; the path /ws is added when there is none
     name : what others read above the avatar, up to 32 characters
-    at : wished place (x, y, z) of a new avatar, metres
+    at : wished place (x, y, z) of a new avatar, metres; granted to operators and in worlds of
+        recorded crowds, elsewhere the place of arrival nearest to it is taken
     resume : token of an earlier connection whose avatar is to be taken up again
     operator : the server's operator key; `welcome.operator` says whether it fits
 

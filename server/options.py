@@ -138,7 +138,8 @@ _LIMITS: Final = {
         "s",
     ),
     "operator_key": Setting(
-        "who says this key may open and close doors; better set in the environment than here; "
+        "who says this key may open and close doors and come in anywhere; better set in the "
+        "environment than here; "
         "empty: nobody",
         Text(),
         "",

@@ -1,7 +1,7 @@
 """What a page does before somebody is in the world: whose seat it takes, what its address asks."""
 
 import pytest
-from playwright.async_api import BrowserContext
+from playwright.async_api import BrowserContext, WebSocket
 
 from tests.browser.visitor import Visitor
 from tests.browser.worlds import world
@@ -43,7 +43,14 @@ async def test_the_operator_key_is_taken_out_of_the_address(profile: BrowserCont
         olga = await Visitor.arrive(profile, f"{address}#operator=sesame&at=20,1.5")
         assert olga.page.url == f"{address}#at=20,1.5"
         sent: list[str | bytes] = []
-        olga.page.on("websocket", lambda socket: socket.on("framesent", sent.append))
+
+        def keep(payload: str | bytes) -> None:
+            sent.append(payload)
+
+        def opened(socket: WebSocket) -> None:
+            socket.on("framesent", keep)
+
+        olga.page.on("websocket", opened)
         await olga.join("Olga")
         assert b"sesame" in sent[0]
         await olga.page.close()
