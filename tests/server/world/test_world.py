@@ -6,7 +6,7 @@ from esplanade.actors import Population
 from esplanade.planning import LayeredGrid
 from esplanade.protocol import Kind
 from esplanade.server.populating import populate
-from esplanade.server.world.inputs import Detach, Follow, Input, Join, Leave, Steer
+from esplanade.server.world.inputs import Detach, Follow, Input, Join, Leave, Stand, Steer
 from esplanade.server.world.stage_times import STAGES
 from esplanade.server.world.world import World
 from tests.server.doubles import ScriptedPopulation
@@ -30,6 +30,8 @@ def recorded(ticks: int) -> list[list[Input]]:
             )
         elif choice < 0.51:
             inputs.append(Detach(who))
+        elif choice < 0.515:
+            inputs.append(Stand(who))
         elif choice < 0.52:
             inputs += [Leave(who), Join(100 + tick, "late", (5.0, 5.0, 0))]
         record.append(inputs)
@@ -129,3 +131,22 @@ def test_what_an_actor_points_at_is_told_when_it_changes_and_to_who_comes() -> N
     population.pointed_at = {}
     assert trial.tick().pointing == {oak: None, elm: None}
     assert [trial.world.describe(slot)["points_at"] for slot in slots] == [None, None]
+
+
+def test_who_is_told_to_stand_stands_and_may_walk_again() -> None:
+    trial = Trial()
+    walker, follower = trial.join((3.0, 3.0), (3.0, 6.0))
+    route = ((9.0, 6.0, 0.0),)
+    trial.tick(Steer(walker, 1, 0.0, 1.0), Follow(follower, 1, route))
+    assert trial.world.moves(walker)
+    assert trial.world.moves(follower)
+    trial.tick(Stand(walker), Stand(follower))
+    stood = [trial.position(who) for who in (walker, follower)]
+    trial.ticks(5)
+    assert [trial.position(who) for who in (walker, follower)] == stood
+    assert not trial.world.moves(walker)
+    assert not trial.world.moves(follower)
+    trial.tick(Steer(walker, 2, 0.0, 1.0))
+    assert trial.position(walker)[0] > stood[0][0]
+    trial.tick(Leave(walker), Stand(walker))
+    assert not trial.world.moves(walker)
