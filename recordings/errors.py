@@ -1,6 +1,10 @@
 """The error of a file that cannot be read as a recording."""
 
 from pathlib import Path
+from typing import Final
+
+MAX_FILE_BYTES: Final = 128 * 2**20
+"""Some three million samples of people; a device that never ends is read no further either."""
 
 
 class RecordingError(ValueError):
@@ -23,10 +27,15 @@ def read_text(path: Path) -> str:
     Raises
     ------
     RecordingError
-        The file cannot be read, or is not UTF-8.
+        The file cannot be read, is not UTF-8, or has more than `MAX_FILE_BYTES`.
     """
     try:
-        return path.read_text(encoding="utf-8-sig")
+        with path.open("rb") as file:
+            content = file.read(MAX_FILE_BYTES + 1)
+        if len(content) > MAX_FILE_BYTES:
+            most = MAX_FILE_BYTES // 2**20
+            raise RecordingError(path, f"has more than {most} MiB, the most that is read")
+        return content.decode("utf-8-sig")
     except OSError as error:
         raise RecordingError(path, f"cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError as error:

@@ -10,6 +10,8 @@ from esplanade.commandline.errors import UsageError
 from esplanade.commandline.output import console, made_folder
 from esplanade.commandline.progress import progress
 from esplanade.planning import Scene
+from esplanade.planning.ground.surfaces import GroundError
+from esplanade.planning.scene.mesh_file import MeshError
 from esplanade.planning.scene.scene_file import SceneError, read_scene
 from esplanade.scenery import inventory, pictures
 from esplanade.scenery.bodies import made_body
@@ -26,7 +28,10 @@ def check(options: Namespace) -> int:
         if options.json:
             print(json.dumps({"faults": error.faults}, indent=1))
         return exit_codes.FAILED if options.json else _refuse(error)
-    found = inventory.take_inventory(scene, options.cell)
+    try:
+        found = inventory.take_inventory(scene, options.cell)
+    except (GroundError, MeshError) as error:
+        return _refuse(SceneError(options.scene, (str(error),)))
     if options.json:
         print(json.dumps(found.figures(), indent=1))
     else:
@@ -45,7 +50,10 @@ def render(options: Namespace) -> int:
     except SceneError as error:
         return _refuse(error)
     folder = made_folder("--out", options.out)
-    views = layer_maps(scene, options.cell, body, options.start, options.goal)
+    try:
+        views = layer_maps(scene, options.cell, body, options.start, options.goal)
+    except (GroundError, MeshError) as error:
+        return _refuse(SceneError(options.scene, (str(error),)))
     files = []
     with progress() as shown:
         task = shown.add_task("drawing", total=len(views))

@@ -138,9 +138,9 @@ def build_world(
 def _build_warm(
     loaded: LoadedScene, settings: ServerSettings, compiled_beside: Callable[[], None]
 ) -> tuple[Population, World, list[float]]:
-    grid = LayeredGrid.from_scene(loaded.scene)
     tick_s, seed = settings.tick_s, settings.seed
     try:
+        grid = LayeredGrid.from_scene(loaded.scene)
         population, names = populate(
             grid,
             loaded.scene,

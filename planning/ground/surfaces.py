@@ -34,10 +34,18 @@ from esplanade.planning.ground.layered import (
 )
 from esplanade.planning.scene.scene import Polygon, Scene
 
+MAX_COVERED = 50_000_000
+"""Most cells that solids cover, counted solid by solid: they take some seconds and 200 MB."""
+MAX_OFFSETS = 500
+"""Most heights of undersides: solids of each are a layer of their own at first."""
 MAX_COLUMNS = 43_000_000
 """Greatest number of columns of a grid: the largest scene has as many with cells of 0.1 m."""
 MAX_LAYERS = 255
 """Greatest number of layers: they are numbered by one byte on the wire."""
+
+
+class GroundError(ValueError):
+    """The ground of a scene would be too large, or have too many layers; the message says which."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +132,7 @@ def raster_of(bounds: tuple[float, float, float, float], cell_m: float) -> Raste
     nx = max(1, math.ceil((x1 - x0) / cell_m - 1e-9))
     if ny * nx > MAX_COLUMNS:
         least = math.sqrt((y1 - y0) * (x1 - x0) / MAX_COLUMNS)
-        raise ValueError(
+        raise GroundError(
             f"cell_m must be {least:.2g} m or more over {x1 - x0:g} x {y1 - y0:g} m, got {cell_m}"
         )
     return Raster(float(x0), float(y0), float(cell_m), ny, nx)
@@ -141,7 +149,8 @@ def surfaces_of_scene(scene: Scene, cell_m: float = 0.25) -> Surfaces:
     Raises
     ------
     ValueError
-        `cell_m` is not between 0.05 and 2 m; there are too many layers.
+        `cell_m` is not between 0.05 and 2 m; there are too many layers, or the solids cover too
+        many cells.
     """
     raster = raster_of(scene.bounds, cell_m)
     columns = solid_columns(scene, raster)
@@ -189,6 +198,12 @@ def solid_columns(scene: Scene, raster: Raster) -> SolidColumns:
         if used <= len(runs):
             break
         runs = np.empty(used, dtype=RUN)
+    covered = int(starts.sum(dtype=np.int64))
+    if covered > MAX_COVERED:
+        raise GroundError(
+            f"the solids cover {covered} cells of {raster.cell_m:g} m, counted solid by solid; "
+            f"{MAX_COVERED} are possible: make it of fewer, or of larger cells"
+        )
     np.cumsum(starts, out=starts)
     members = np.empty(starts[-1], dtype=np.int32)
     fill_columns(raster.nx, runs[:used], starts, members)
@@ -198,6 +213,11 @@ def solid_columns(scene: Scene, raster: Raster) -> SolidColumns:
 def _solid_arrays(scene: Scene) -> SolidArrays:
     solids = scene.solids()
     offsets = sorted({0.0, *(solid.offset_m for solid in solids)})
+    if len(offsets) > MAX_OFFSETS:
+        raise GroundError(
+            f"the solids have {len(offsets)} different undersides, {MAX_OFFSETS} are possible"
+        )
+    groups = {offset: group for group, offset in enumerate(offsets)}
     ends = itertools.accumulate((len(solid.points) for solid in solids), initial=0)
     return SolidArrays(
         np.array([p for solid in solids for p in solid.points], dtype=np.float64).reshape(-1, 2),
@@ -205,7 +225,7 @@ def _solid_arrays(scene: Scene) -> SolidArrays:
         np.array([solid.offset_m for solid in solids], dtype=np.float64),
         np.array([_top(solid) for solid in solids], dtype=TOP),
         np.array([solid.carries for solid in solids], dtype=np.bool_),
-        np.array([offsets.index(solid.offset_m) for solid in solids], dtype=np.int16),
+        np.array([groups[solid.offset_m] for solid in solids], dtype=np.int16),
     )
 
 
@@ -270,5 +290,5 @@ def _layers_of_groups(
         )
         layer_of[group] = next(free, layer_of.max() + 1)
     if layer_of.max() >= MAX_LAYERS:
-        raise ValueError(f"{layer_of.max() + 1} layers, but there may be {MAX_LAYERS}")
+        raise GroundError(f"{layer_of.max() + 1} layers, but there may be {MAX_LAYERS}")
     return layer_of[groups]

@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 import io
-import json
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.planning.scene.gltf_check import MAX_FILE_BYTES, check_gltf
 from esplanade.planning.scene.scene import MAX_EXTENT_M
 
 Up = Literal["y", "z"]
 
 FURTHEST_M = 1e6
 """Greatest coordinate, as in scene files: beyond, positions would no longer be exact."""
-
-_PACKED = frozenset(
-    ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_mesh_quantization")
-)
-"""Extensions of glTF that change where corners are; trimesh knows none of them."""
 
 
 class MeshError(ValueError):
@@ -79,8 +74,10 @@ def open_mesh(path: Path, *, materials: bool = False) -> Any:
 
     if not path.is_file():
         raise MeshError(f"{path.name}: there is no such file")
+    if path.stat().st_size > MAX_FILE_BYTES:
+        raise MeshError(f"{path.name}: it has more than {MAX_FILE_BYTES // 2**20} MiB")
     try:
-        _refuse_packed(path)
+        check_gltf(path)
         source: Path | io.StringIO = path
         beside: dict[str, Any] = {}
         if path.suffix.lower() == ".obj":
@@ -108,20 +105,6 @@ def _load(path: Path) -> NDArray[np.float64]:
 
 def _unreadable(path: Path, error: Exception) -> MeshError:
     return MeshError(f"{path.name}: it is not a mesh that can be read: {error}")
-
-
-def _refuse_packed(path: Path) -> None:
-    match path.suffix.lower():
-        case ".glb":
-            data = path.read_bytes()
-            text = data[20 : 20 + int.from_bytes(data[12:16], "little")]
-        case ".gltf":
-            text = path.read_bytes()
-        case _:
-            return
-    packed = _PACKED.intersection(json.loads(text).get("extensionsRequired", ()))
-    if packed:
-        raise ValueError(f"save it without {', '.join(sorted(packed))}")
 
 
 def _corners(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> NDArray[np.float64]:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+import unicodedata
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Literal, Self
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import (
     AfterValidator,
     BaseModel,
@@ -19,11 +22,42 @@ from pydantic import (
 MAX_EXTENT_M = 650.0
 """Longest side of a scene. Positions on the wire are 16-bit centimetres."""
 
+MAX_CORNERS = 1_000
+"""Most corners of one polygon; to check that it does not cross itself takes their square."""
+MAX_ALL_CORNERS = 100_000
+"""Most corners of all polygons of a scene."""
+MAX_SOLIDS = 30_000
+"""Most polygons and treads of stairs."""
+MAX_WALLS = 50_000
+MAX_SPOTS = 2_000
+"""Most doors, spawns or places."""
+
 Metres = Annotated[float, Field(allow_inf_nan=False, ge=-1e6, le=1e6)]
 Point = tuple[Metres, Metres]
+_Floats = NDArray[np.float64]
 Bounds = tuple[Metres, Metres, Metres, Metres]
-Name = Annotated[str, StringConstraints(strip_whitespace=True, max_length=64)]
-RequiredName = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=64)]
+
+
+def _printable(name: str) -> str:
+    """A name without characters that steer a terminal or turn the direction of writing."""
+    for place, character in enumerate(name):
+        if unicodedata.category(character) in ("Cc", "Zl", "Zp") or character in _TURNING:
+            raise ValueError(
+                f"character {place + 1} is U+{ord(character):04X}, a control character"
+            )
+    return name
+
+
+_TURNING = frozenset("\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
+
+Name = Annotated[
+    str, StringConstraints(strip_whitespace=True, max_length=64), AfterValidator(_printable)
+]
+RequiredName = Annotated[
+    str,
+    StringConstraints(strip_whitespace=True, min_length=1, max_length=64),
+    AfterValidator(_printable),
+]
 
 
 def _twice_area(points: tuple[Point, ...]) -> float:
@@ -32,33 +66,51 @@ def _twice_area(points: tuple[Point, ...]) -> float:
 
 
 def _crossing_edges(points: tuple[Point, ...]) -> tuple[int, int] | None:
-    """Indices of two edges of the ring that cross or touch although they are not neighbours."""
+    """Indices of the first two edges of the ring that cross or touch and are not neighbours.
+
+    Only edges that overlap along x are compared, found in the order of their least x.
+    """
+    begins = np.array(points)
+    ends = np.roll(begins, -1, axis=0)
     n = len(points)
-    for i in range(n):
-        for j in range(i + 2, n - (i == 0)):
-            if _segments_meet(points[i], points[(i + 1) % n], points[j], points[(j + 1) % n]):
-                return i, j
-    return None
+    low, high = np.minimum(begins, ends), np.maximum(begins, ends)
+    order = np.argsort(low[:, 0], kind="stable")
+    reach = np.searchsorted(low[order, 0], high[order, 0], side="right")
+    counts = reach - np.arange(n) - 1
+    place = np.repeat(np.arange(n), counts)
+    one = order[place]
+    other = order[np.arange(len(place)) - np.repeat(np.cumsum(counts) - counts, counts) + place + 1]
+    level = (low[one, 1] <= high[other, 1]) & (low[other, 1] <= high[one, 1])
+    first, second = np.minimum(one, other)[level], np.maximum(one, other)[level]
+    apart = (second - first > 1) & (second - first < n - 1)
+    first, second = first[apart], second[apart]
+    meeting = _segments_meet(begins[first], ends[first], begins[second], ends[second])
+    pairs = sorted(zip(first[meeting].tolist(), second[meeting].tolist(), strict=True))
+    return pairs[0] if pairs else None
 
 
-def _segments_meet(a: Point, b: Point, c: Point, d: Point) -> bool:
-    def side(p: Point, q: Point, r: Point) -> float:
-        return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
+def _segments_meet(a: _Floats, b: _Floats, c: _Floats, d: _Floats) -> NDArray[np.bool_]:
+    """Whether segments from a to b meet those from c to d, all (N, 2); bool (N,)."""
 
-    def between(p: Point, q: Point, r: Point) -> bool:
-        return min(p[0], q[0]) <= r[0] <= max(p[0], q[0]) and (
-            min(p[1], q[1]) <= r[1] <= max(p[1], q[1])
-        )
+    def side(p: _Floats, q: _Floats, r: _Floats) -> _Floats:
+        to_q, to_r = q - p, r - p
+        turned: _Floats = to_q[..., 0] * to_r[..., 1] - to_q[..., 1] * to_r[..., 0]
+        return turned
+
+    def between(p: _Floats, q: _Floats, r: _Floats) -> NDArray[np.bool_]:
+        within = (np.minimum(p, q) <= r) & (r <= np.maximum(p, q))
+        inside: NDArray[np.bool_] = within[..., 0] & within[..., 1]
+        return inside
 
     s1, s2, s3, s4 = side(a, b, c), side(a, b, d), side(c, d, a), side(c, d, b)
-    if s1 * s2 < 0 and s3 * s4 < 0:
-        return True
-    return (
-        (s1 == 0 and between(a, b, c))
-        or (s2 == 0 and between(a, b, d))
-        or (s3 == 0 and between(c, d, a))
-        or (s4 == 0 and between(c, d, b))
+    meet: NDArray[np.bool_] = (
+        ((s1 * s2 < 0) & (s3 * s4 < 0))
+        | ((s1 == 0) & between(a, b, c))
+        | ((s2 == 0) & between(a, b, d))
+        | ((s3 == 0) & between(c, d, a))
+        | ((s4 == 0) & between(c, d, b))
     )
+    return meet
 
 
 def _simple_ring(points: tuple[Point, ...]) -> tuple[Point, ...]:
@@ -71,7 +123,9 @@ def _simple_ring(points: tuple[Point, ...]) -> tuple[Point, ...]:
     return points
 
 
-Ring = Annotated[tuple[Point, ...], Field(min_length=3), AfterValidator(_simple_ring)]
+Ring = Annotated[
+    tuple[Point, ...], Field(min_length=3, max_length=MAX_CORNERS), AfterValidator(_simple_ring)
+]
 
 
 class _Part(BaseModel):
@@ -222,12 +276,12 @@ class Scene(_Part):
     name: Name = "scene"
     bounds: Bounds
     """x0, y0, x1, y1 in metres, x to the east and y to the north."""
-    polygons: tuple[Polygon, ...] = ()
-    walls: tuple[Wall, ...] = ()
-    stairs: tuple[Stairs, ...] = ()
-    doors: tuple[Door, ...] = ()
-    spawns: tuple[Spawn, ...] = ()
-    places: tuple[Place, ...] = ()
+    polygons: Annotated[tuple[Polygon, ...], Field(max_length=MAX_SOLIDS)] = ()
+    walls: Annotated[tuple[Wall, ...], Field(max_length=MAX_WALLS)] = ()
+    stairs: Annotated[tuple[Stairs, ...], Field(max_length=MAX_SPOTS)] = ()
+    doors: Annotated[tuple[Door, ...], Field(max_length=MAX_SPOTS)] = ()
+    spawns: Annotated[tuple[Spawn, ...], Field(max_length=MAX_SPOTS)] = ()
+    places: Annotated[tuple[Place, ...], Field(max_length=MAX_SPOTS)] = ()
     mesh: Path | None = None
     """A building in metres, y up, whose floors take the place of the ground and of all parts. In a
     file it is named relative to the file."""
@@ -254,9 +308,25 @@ class Scene(_Part):
             ("doors", [door.name for door in self.doors]),
             ("places", [place.name for place in self.places]),
         ):
+            known: set[str] = set()
             for i, name in enumerate(names):
-                if name in names[:i]:
+                if name in known:
                     raise ValueError(f"{group}.{i}: the name {name!r} is taken")
+                known.add(name)
+        return self
+
+    @model_validator(mode="after")
+    def _has_bounded_parts(self) -> Self:
+        corners = sum(len(polygon.points) for polygon in self.polygons)
+        if corners > MAX_ALL_CORNERS:
+            raise ValueError(
+                f"polygons: they have {corners} corners in all, {MAX_ALL_CORNERS} are possible"
+            )
+        solids = len(self.polygons) + sum(flight.steps for flight in self.stairs)
+        if solids > MAX_SOLIDS:
+            raise ValueError(
+                f"there are {solids} polygons and treads of stairs, {MAX_SOLIDS} are possible"
+            )
         return self
 
     def solids(self) -> tuple[Polygon, ...]:

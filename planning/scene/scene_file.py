@@ -7,7 +7,11 @@ from typing import Any, Final
 
 from pydantic import ValidationError
 
+from esplanade.planning.scene.bounded_reading import read_bounded
 from esplanade.planning.scene.scene import Scene
+
+MAX_FILE_BYTES: Final = 16 * 2**20
+"""A scene of as many parts as are possible has less."""
 
 _PHRASES: Final = {
     "greater_than": "must be > {gt:g}",
@@ -56,12 +60,12 @@ def read_scene(path: Path) -> Scene:
     Raises
     ------
     OSError
-        The file cannot be read.
+        The file cannot be read, or has more than `MAX_FILE_BYTES`.
     SceneError
         It holds no scene, or names a mesh that is not there.
     """
     try:
-        scene = Scene.model_validate_json(path.read_bytes())
+        scene = Scene.model_validate_json(read_bounded(path, MAX_FILE_BYTES))
     except ValidationError as error:
         raise SceneError(path, scene_faults(error)) from None
     if scene.mesh is None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from esplanade.recordings import RecordingError, read_crowd
+from esplanade.recordings.errors import read_text
 from tests.recordings.data import recorded
 
 HEADER = "t,id,x,y\n"
@@ -137,3 +138,8 @@ def test_recorded_crowds(
     assert crowd.duration_s == pytest.approx(duration_s)
     assert crowd.max_present == max_present
     assert crowd.max_speed_mps == pytest.approx(max_speed_mps, abs=1e-3)
+
+
+def test_a_device_without_an_end_is_refused() -> None:
+    with pytest.raises(RecordingError, match="has more than 128 MiB, the most that is read"):
+        read_text(Path("/dev/zero"))

@@ -1,12 +1,14 @@
 """Scene files: what is read, and the words in which faults are told."""
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from esplanade.planning.scene.scene_file import SceneError, read_scene
+from esplanade.planning.scene.bounded_reading import TooLargeError
+from esplanade.planning.scene.scene_file import MAX_FILE_BYTES, SceneError, read_scene
 
 TRIANGLE = [[1.0, 1.0], [3.0, 1.0], [3.0, 3.0]]
 
@@ -90,3 +92,50 @@ def test_a_scene_of_a_mesh_has_no_parts_of_its_own(tmp_path: Path) -> None:
 def test_a_file_that_is_not_there_is_an_error_of_the_system(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         read_scene(tmp_path / "none.json")
+
+
+def ring(corners: int) -> list[tuple[float, float]]:
+    turns = [2.0 * math.pi * k / corners for k in range(corners)]
+    return [(50.0 + 20.0 * math.cos(turn), 50.0 + 20.0 * math.sin(turn)) for turn in turns]
+
+
+@pytest.mark.parametrize(
+    ("parts", "fault"),
+    [
+        (
+            {"polygons": [{"points": ring(20_000), "height_m": 1.0}]},
+            "polygons.0.points: must have at most 1000 of them",
+        ),
+        (
+            {"polygons": [{"points": ring(1_000), "height_m": 1.0}] * 101},
+            "polygons: they have 101000 corners in all, 100000 are possible",
+        ),
+        (
+            {
+                "stairs": [{"start": (1, 1), "end": (9, 1), "width_m": 1, "top_m": 9, "steps": 500}]
+                * 61
+            },
+            "there are 30500 polygons and treads of stairs, 30000 are possible",
+        ),
+        (
+            {"spawns": [{"position": (1, 1)}] * 2_001},
+            "spawns: must have at most 2000 of them",
+        ),
+        ({"name": "a\x1b[31m"}, "name: character 2 is U+001B, a control character"),
+        (
+            {"places": [{"name": "x\u202ey", "position": (1, 1)}]},
+            "places.0.name: character 2 is U+202E, a control character",
+        ),
+    ],
+)
+def test_sizes_and_names_are_bounded(tmp_path: Path, parts: Any, fault: str) -> None:
+    bounds = (0.0, 0.0, 100.0, 100.0)
+    assert faults(write(tmp_path, bounds=bounds, **parts)) == [fault]
+
+
+def test_a_file_is_read_no_further_than_its_bound(tmp_path: Path) -> None:
+    large = tmp_path / "zeros.json"
+    large.write_text('{"bounds": [' + "0," * (MAX_FILE_BYTES // 2) + "0]}")
+    for endless in (large, Path("/dev/zero")):
+        with pytest.raises(TooLargeError, match="more than 16 MiB"):
+            read_scene(endless)
