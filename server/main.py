@@ -9,6 +9,7 @@ import structlog
 from esplanade.commandline import interrupts
 from esplanade.server import logs
 from esplanade.server.app import Running, running
+from esplanade.server.log_writer import LogWriter
 from esplanade.server.settings import ServerSettings
 
 log = structlog.get_logger(__name__)
@@ -24,16 +25,16 @@ def serve(settings: ServerSettings) -> None:
     OSError
         A port cannot be had.
     """
-    logs.configure(settings)
-    try:
-        import uvloop  # noqa: PLC0415
-    except ImportError:  # there is none for Windows
-        asyncio.run(_serve(settings))
-    else:
-        uvloop.run(_serve(settings))
+    with logs.written(settings) as writer:
+        try:
+            import uvloop  # noqa: PLC0415
+        except ImportError:  # there is none for Windows
+            asyncio.run(_serve(settings, writer))
+        else:
+            uvloop.run(_serve(settings, writer))
 
 
-async def _serve(settings: ServerSettings) -> None:
+async def _serve(settings: ServerSettings, writer: LogWriter) -> None:
     loop = asyncio.get_running_loop()
     stop = asyncio.Event()
     # Until people can come in there is nothing to put in order, but there is a thread that compiles
@@ -48,6 +49,11 @@ async def _serve(settings: ServerSettings) -> None:
             loop.remove_signal_handler(each)
 
     async with running(settings) as server:
+        server.metrics.total(
+            "log_lines_dropped",
+            "Lines of the log that were dropped, because nobody read them in time",
+            lambda: writer.dropped,
+        )
         for number in (signal.SIGINT, signal.SIGTERM):
             loop.add_signal_handler(number, on_signal, number)
         gc.collect()
