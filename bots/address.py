@@ -4,7 +4,8 @@ import socket
 from typing import Final
 from urllib.parse import urlsplit, urlunsplit
 
-DEFAULT_PATH: Final = "/ws"
+SOCKET_NAME: Final = "ws"
+"""The last part of the socket's path; before it stands the path of the page."""
 
 KNOCK_TIMEOUT_S: Final = 5.0
 
@@ -15,7 +16,9 @@ def websocket_url(text: str) -> str:
     """Full WebSocket address of a server.
 
     `localhost:8080`, `http://localhost:8080/` and `ws://localhost:8080` all mean
-    `ws://localhost:8080/ws`; a path that is given stays.
+    `ws://localhost:8080/ws`. A path that ends with a slash, and any path behind http:// or
+    https://, is that of the page: `ws://host/world/` and `https://host/world` mean the socket
+    `/world/ws`. Every other path stays.
 
     Raises
     ------
@@ -36,8 +39,15 @@ def websocket_url(text: str) -> str:
         raise ValueError(f"url {text!r}: expected host and port, like ws://localhost:8080")
     if parts.fragment:
         raise ValueError(f"url {text!r}: a fragment (#) means nothing here")
-    path = parts.path if parts.path not in {"", "/"} else DEFAULT_PATH
+    path = _socket_path(parts.path, is_page=parts.scheme in {"http", "https"})
     return urlunsplit((scheme, parts.netloc, path, parts.query, ""))
+
+
+def _socket_path(path: str, *, is_page: bool) -> str:
+    folder, _, name = path.rpartition("/")
+    if name == "index.html" or not name:
+        return f"{folder}/{SOCKET_NAME}"
+    return f"{path}/{SOCKET_NAME}" if is_page and name != SOCKET_NAME else path
 
 
 def refusal(url: str) -> str | None:

@@ -16,6 +16,11 @@ from esplanade.bots.address import websocket_url
         ("https://plaza.example", "wss://plaza.example/ws"),
         ("wss://plaza.example/worlds/1?x=2", "wss://plaza.example/worlds/1?x=2"),
         ("ws://[::1]:8080", "ws://[::1]:8080/ws"),
+        ("ws://plaza.example/world/", "ws://plaza.example/world/ws"),
+        ("plaza.example/world/?x=2", "ws://plaza.example/world/ws?x=2"),
+        ("https://plaza.example/world", "wss://plaza.example/world/ws"),
+        ("https://plaza.example/world/ws", "wss://plaza.example/world/ws"),
+        ("http://plaza.example/world/index.html", "ws://plaza.example/world/ws"),
     ],
 )
 def test_the_path_is_added_when_absent(text: str, url: str) -> None:
