@@ -8,7 +8,6 @@ from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
 
 import structlog
-from websockets.asyncio.server import Server
 
 from esplanade.actors import Population
 from esplanade.planning import LayeredGrid
@@ -19,10 +18,13 @@ from esplanade.server.metrics import Metrics
 from esplanade.server.net.delivery import Delivery
 from esplanade.server.net.hub import Hub
 from esplanade.server.net.listener import Listener
+from esplanade.server.net.listening import bound_sockets
 from esplanade.server.net.private import private_port
+from esplanade.server.net.readiness import Readiness
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.schedule import Schedule
 from esplanade.server.net.ticker import Ticker
+from esplanade.server.net.tls import Tls
 from esplanade.server.populating import populate
 from esplanade.server.rehearsal import rehearse
 from esplanade.server.settings import ServerSettings
@@ -65,24 +67,28 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     ------
     LoadingError
         The scene or crowd cannot be run.
+    TlsError
+        The certificate and its key cannot be used.
     OSError
         A port cannot be had.
     """
+    tls = None
+    if settings.tls_cert is not None and settings.tls_key is not None:
+        tls = Tls(settings.tls_cert, settings.tls_key)
     loaded = load_scene(settings)
     assets, mesh = assets or Assets.load(), None
     if loaded.triangles is not None:
         assets, mesh = assets.with_data("mesh", loaded.triangles)
     metrics = Metrics()
     loop = asyncio.get_running_loop()
-    ready = False
+    readiness = Readiness(metrics)
     async with AsyncExitStack() as stack:
         thread = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="actors"))
-        private = await stack.enter_async_context(private_port(settings, metrics, lambda: ready))
+        private = await stack.enter_async_context(private_port(settings, metrics, readiness))
         # This finds out now, not after a minute of compiling, whether the port can be had.
-        bound = await loop.create_server(
-            asyncio.Protocol, settings.host, settings.port, start_serving=False
-        )
-        bound.close()
+        sockets = await bound_sockets(settings.host, settings.port)
+        for each in sockets:
+            stack.callback(each.close)
         population, world, storeys = await loop.run_in_executor(
             thread, build_world, loaded, settings
         )
@@ -105,16 +111,19 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         )
         delivery = Delivery(world, hub.sessions, settings.tick_rate)
         ticker = Ticker(world, hub, delivery, schedule, metrics, thread)
-        listener = await stack.enter_async_context(
-            Listener(hub, assets, settings, metrics).listening()
+        await stack.enter_async_context(
+            Listener(hub, assets, settings, metrics).listening(sockets, tls)
         )
         ticking = asyncio.create_task(ticker.run())
         guiding = asyncio.create_task(route_requests.run(hub.route_found))
-        ready = True
+        renewing = asyncio.create_task(tls.renew()) if tls else None
+        readiness.open()
         try:
-            yield Running(_port(listener), private, world, metrics, ticking)
+            yield Running(sockets[0].getsockname()[1], private, world, metrics, ticking)
         finally:
-            ready = False
+            readiness.close()
+            if renewing:
+                renewing.cancel()
             guiding.cancel()
             await _stop(ticker, ticking, hub)
 
@@ -189,8 +198,3 @@ def _watch(world: World, metrics: Metrics) -> None:
     metrics.total("steps", "Steps that began or were re-aimed", lambda: feet.begun)
     metrics.total("walkers_lost", "Walkers set back onto their feet", lambda: feet.lost)
     metrics.total("stepping_failures", "Ticks in which nobody could step", lambda: feet.failures)
-
-
-def _port(server: Server) -> int:
-    port: int = server.sockets[0].getsockname()[1]
-    return port

@@ -7,6 +7,7 @@ from esplanade.commandline.errors import CommandError, UsageError
 from esplanade.commandline.settings import given_settings
 from esplanade.server.loading import LoadingError
 from esplanade.server.main import serve
+from esplanade.server.net.tls import TlsError
 from esplanade.server.options import SETTINGS
 from esplanade.server.settings import ServerSettings
 
@@ -16,7 +17,7 @@ def run(options: Namespace) -> int:
     settings = fields.made(ServerSettings, given_settings(options, SETTINGS))
     try:
         serve(settings)
-    except LoadingError as error:
+    except (LoadingError, TlsError) as error:
         raise UsageError(str(error)) from None
     except OSError as error:
         ports = f"{settings.host}:{settings.port}, {settings.private_host}:{settings.private_port}"

@@ -52,8 +52,7 @@ class _Queueing(logging.Handler):
     def emit(self, record: logging.LogRecord) -> None:
         try:
             line = self.format(record)
-        except Exception:
-            # What cannot be formatted must not end whoever logged it.
+        except Exception:  # noqa: BLE001 (it must not end whoever logged it)
             line = f"a line of {record.name} cannot be formatted: {record.msg!r:.200}"
         self._writer.put(line)
 

@@ -22,6 +22,8 @@ def serve(settings: ServerSettings) -> None:
     ------
     LoadingError
         The scene or crowd cannot be run.
+    TlsError
+        The certificate and its key cannot be used.
     OSError
         A port cannot be had.
     """
@@ -67,11 +69,18 @@ async def _serve(settings: ServerSettings, writer: LogWriter) -> None:
 
 def _announce(settings: ServerSettings, server: Running) -> None:
     host = "localhost" if settings.host in {"0.0.0.0", "::", ""} else settings.host  # noqa: S104
+    scheme = "http" if settings.tls_cert is None else "https"
+    root = settings.root_path.rstrip("/")
     log.info(
         "open",
-        url=f"http://{host}:{server.port}",
-        private=f"http://{settings.private_host}:{server.private_port}",
+        url=f"{scheme}://{_in_url(host)}:{server.port}{root and f'{root}/'}",
+        private=f"http://{_in_url(settings.private_host)}:{server.private_port}",
         scene=server.world.scene.name,
         actors=settings.actors,
         seed=settings.seed,
     )
+
+
+def _in_url(host: str) -> str:
+    """A host as it stands in an address: one of IPv6 in brackets."""
+    return f"[{host}]" if ":" in host else host

@@ -6,11 +6,12 @@ A count that grows thousands of times a second is a plain integer in `Traffic`, 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
+from time import monotonic
 from typing import Final
 
 import numpy as np
-from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
-from prometheus_client.core import CounterMetricFamily, Metric
+from prometheus_client import CollectorRegistry, Counter, Histogram, generate_latest
+from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
 from prometheus_client.registry import Collector
 
 _NAMESPACE: Final = "esplanade"
@@ -65,25 +66,60 @@ _TRAFFIC_HELP: Final = {
 }
 
 
-class _Total(Collector):
-    """A total that is kept elsewhere and read when scraped."""
+class _Figure(Collector):
+    """A figure that is kept elsewhere: `read` by the world's thread, collected by any."""
 
-    def __init__(self, name: str, text: str, read: Callable[[], float]) -> None:
-        self._name = name
+    def __init__(
+        self,
+        family: type[CounterMetricFamily] | type[GaugeMetricFamily],
+        name: str,
+        text: str,
+        read: Callable[[], float],
+    ) -> None:
+        self._family = family
+        self._name = f"{_NAMESPACE}_{name}"
         self._text = text
         self._read = read
+        self._value = 0.0
+
+    def sample(self) -> None:
+        self._value = self._read()
 
     def collect(self) -> Iterable[Metric]:
-        family = CounterMetricFamily(self._name, self._text)
-        family.add_metric([], self._read())
+        family = self._family(self._name, self._text)
+        family.add_metric([], self._value)
         yield family
 
 
+class _Age(Collector):
+    """The seconds since something, at the moment when it is collected."""
+
+    def __init__(self, name: str, text: str, since: Callable[[], float]) -> None:
+        self._name = f"{_NAMESPACE}_{name}"
+        self._text = text
+        self._since = since
+
+    def collect(self) -> Iterable[Metric]:
+        yield GaugeMetricFamily(self._name, self._text, max(0.0, monotonic() - self._since()))
+
+
 class Metrics:
-    """The server's metrics; names begin with `esplanade_`."""
+    """The server's metrics; names begin with `esplanade_`.
+
+    Figures that are kept elsewhere are read by `sample`, in the thread that changes them; all else
+    is safe in any thread.
+    """
 
     def __init__(self) -> None:
         self.registry = CollectorRegistry()
+        self._figures: list[_Figure] = []
+        self.sampled_at = self.ticked_at = monotonic()
+        """When the figures were last read, and when a tick last ended, seconds of `monotonic`."""
+        for name, text, since in (
+            ("tick_age_seconds", "Time since the last tick ended", lambda: self.ticked_at),
+            ("sample_age_seconds", "Time since the world gave figures", lambda: self.sampled_at),
+        ):
+            self.registry.register(_Age(name, text, since))
         self.traffic = Traffic()
         self.ticks = Durations()
         for name, text in _TRAFFIC_HELP.items():
@@ -132,22 +168,37 @@ class Metrics:
 
     def gauge(self, name: str, text: str, read: Callable[[], float]) -> None:
         """Add a value that is read when scraped."""
-        gauge = Gauge(name, text, namespace=_NAMESPACE, registry=self.registry)
-        gauge.set_function(read)
+        self._add(_Figure(GaugeMetricFamily, name, text, read))
 
     def total(self, name: str, text: str, read: Callable[[], float]) -> None:
         """Add a total that is kept elsewhere and never falls."""
-        self.registry.register(_Total(f"{_NAMESPACE}_{name}", text, read))
+        self._add(_Figure(CounterMetricFamily, name, text, read))
 
     def tick_took(self, seconds: float, stages: dict[str, float]) -> None:
+        self.ticked_at = monotonic()
         self.ticks.add(seconds)
         self._tick_seconds.observe(seconds)
         for stage, stage_seconds in stages.items():
             self._stage_seconds.labels(stage).inc(stage_seconds)
 
-    def exposition(self) -> bytes:
-        """All metrics in Prometheus' text format."""
+    def sample(self) -> None:
+        """Read all figures that are kept elsewhere, in the thread that changes them."""
+        for figure in self._figures:
+            figure.sample()
+        self.sampled_at = monotonic()
+
+    def render(self) -> bytes:
+        """All metrics in Prometheus' text format, with the figures last sampled."""
         return generate_latest(self.registry)
+
+    def exposition(self) -> bytes:
+        """All metrics as they are now, in the thread that changes them."""
+        self.sample()
+        return self.render()
+
+    def _add(self, figure: _Figure) -> None:
+        self._figures.append(figure)
+        self.registry.register(figure)
 
     def _counter(self, name: str, text: str, labels: Iterable[str] = ()) -> Counter:
         return Counter(name, text, labels, namespace=_NAMESPACE, registry=self.registry)

@@ -1,5 +1,6 @@
 """The settings of `esplanade serve`: what they are called, mean and may be, without pydantic."""
 
+import re
 from collections.abc import Mapping
 from typing import Any, Final
 
@@ -8,6 +9,7 @@ from esplanade.commandline.readers import SEED_LIMIT, Choice, InputFile, Number,
 from esplanade.commandline.settings import Setting, Settings, settings_parser
 
 _PORT: Final = Whole(0, 65535)
+_ROOT_PATH: Final = re.compile(r"(/(?!\.\.?(/|$))[A-Za-z0-9._~-]+)*/?")
 _SPEED: Final = Number(0.0, 100.0, above=True)
 _WORLD: Final = {
     "scene": Setting(
@@ -55,8 +57,27 @@ _PEOPLE: Final = {
     ),
 }
 _NETWORK: Final = {
-    "host": Setting("address for people: web client and WebSocket", Text(), "0.0.0.0"),  # noqa: S104
+    "host": Setting(
+        "address for people: web client and WebSocket; empty: every one, of IPv4 and of IPv6",
+        Text(),
+        "",
+    ),
     "port": Setting("port for people; 0 takes a free one", _PORT, 8080),
+    "tls_cert": Setting(
+        "certificate chain of people's port, PEM; pages are then https:// and the socket wss://; "
+        "taken anew when the file changes",
+        InputFile(),
+    ),
+    "tls_key": Setting(
+        "private key of the certificate, PEM, without a password; taken anew when the file changes",
+        InputFile(),
+    ),
+    "root_path": Setting(
+        "path under which a proxy in front has the world, such as /world; requests without it are "
+        "understood too",
+        Text(),
+        "",
+    ),
     "private_host": Setting(
         "address of /healthz, /readyz and /metrics; keep it private", Text(), "127.0.0.1"
     ),
@@ -165,6 +186,13 @@ def check(given: Mapping[str, Any]) -> None:
         raise ValueError("scene and crowd: give one of them, not both")
     if given.get("walls") and not given.get("crowd"):
         raise ValueError("walls: they belong to a crowd, but none is given")
+    if bool(given.get("tls_cert")) != bool(given.get("tls_key")):
+        raise ValueError("tls_cert and tls_key: give both of them, or none")
+    if not _ROOT_PATH.fullmatch(given.get("root_path", "")):
+        raise ValueError(
+            f"root_path: {given['root_path']!r} is no path such as /world, of letters, digits "
+            "and - . _ ~"
+        )
     if given.get("trusted_proxies"):
         from esplanade.server.net.addresses import TrustedProxies  # noqa: PLC0415
 

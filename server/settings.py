@@ -43,6 +43,9 @@ class ServerSettings(BaseSettings):
 
     host: str = _field("host")
     port: int = _field("port")
+    tls_cert: Path | None = _field("tls_cert")
+    tls_key: Path | None = _field("tls_key")
+    root_path: str = _field("root_path")
     private_host: str = _field("private_host")
     private_port: int = _field("private_port")
     trusted_proxies: str = _field("trusted_proxies")

@@ -9,8 +9,6 @@ offers no place where connections can be counted.
 """
 
 import asyncio
-import os
-import socket
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, contextmanager, suppress
 from typing import Any, Final
@@ -21,6 +19,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from esplanade.server.assets import SECURITY_HEADERS
 from esplanade.server.net.connections import SHUT_S
+from esplanade.server.net.listening import bound_sockets
 
 MAX_CONNECTIONS: Final = 64
 """Further connections are cut off as they come."""
@@ -34,6 +33,9 @@ MAX_BODY_BYTES: Final = 64 * 1024
 PATIENCE_S: Final = 30.0
 """A client is cut off when a request, or a pause in reading the answer, lasts longer than this."""
 
+_AT_ONCE: Final = 16
+"""Connections that are accepted before any is looked at; the event loop takes them in a row."""
+
 _WAITING_FOR_REQUEST: Final = (h11.IDLE, h11.SEND_BODY)
 
 
@@ -46,7 +48,9 @@ async def serving(app: Any, host: str, port: int) -> AsyncIterator[int]:
     OSError
         The address cannot be had.
     """
-    sockets = await _bound(host, port)
+    sockets = await bound_sockets(host, port)
+    for each in sockets:
+        each.listen()
     config = uvicorn.Config(
         app,
         http=_BoundedConnection,
@@ -61,6 +65,7 @@ async def serving(app: Any, host: str, port: int) -> AsyncIterator[int]:
         proxy_headers=False,
         server_header=False,
         headers=list(SECURITY_HEADERS.items()),
+        backlog=_AT_ONCE,
         timeout_graceful_shutdown=round(2 * SHUT_S),
     )
     server = _Server(config)
@@ -76,17 +81,6 @@ async def serving(app: Any, host: str, port: int) -> AsyncIterator[int]:
         for connection in list(server.server_state.connections):
             connection.transport.abort()
         await running
-
-
-async def _bound(host: str, port: int) -> list[socket.socket]:
-    """Listening sockets at all addresses of a host, found and refused as for any other port."""
-    loop = asyncio.get_running_loop()
-    server = await loop.create_server(asyncio.Protocol, host, port, start_serving=False)
-    sockets = [socket.socket(fileno=os.dup(bound.fileno())) for bound in server.sockets]
-    server.close()
-    for each in sockets:
-        each.listen()
-    return sockets
 
 
 class _Server(uvicorn.Server):

@@ -7,9 +7,7 @@ system calls, and one round of the event loop takes in a few only, however many 
 """
 
 import asyncio
-import os
 import socket
-import ssl
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Final
@@ -17,6 +15,7 @@ from typing import Final
 import structlog
 
 from esplanade.server.net.connections import Connections, Place
+from esplanade.server.net.tls import HANDSHAKE_S, Tls
 
 log = structlog.get_logger(__name__)
 
@@ -31,9 +30,14 @@ EXHAUSTED_PAUSE_S: Final = 0.2
 
 
 class Door:
-    """Accepts at all addresses of a host; it has what the library asks of an `asyncio.Server`.
+    """Accepts at bound sockets; it has what the library asks of an `asyncio.Server`.
 
     `make` makes the protocol of a connection that has been given a place.
+
+    Raises
+    ------
+    OSError
+        Somebody else listens there since the sockets were bound.
     """
 
     def __init__(
@@ -41,36 +45,17 @@ class Door:
         sockets: list[socket.socket],
         connections: Connections,
         make: Callable[[Place], asyncio.Protocol],
-        tls: ssl.SSLContext | None = None,
-        tls_timeout_s: float | None = None,
+        tls: Tls | None = None,
     ) -> None:
         self._loop = asyncio.get_running_loop()
         self.sockets = tuple(sockets)
         self._connections = connections
         self._make = make
         self._tls = tls
-        self._tls_timeout_s = tls_timeout_s
+        for each in sockets:
+            each.listen(BACKLOG)
         self._opening: set[asyncio.Task[None]] = set()
         self._accepting = [self._loop.create_task(self._accept(each)) for each in sockets]
-
-    @classmethod
-    async def open(
-        cls,
-        host: str,
-        port: int,
-        connections: Connections,
-        make: Callable[[Place], asyncio.Protocol],
-        tls: ssl.SSLContext | None = None,
-        tls_timeout_s: float | None = None,
-    ) -> "Door":
-        """Listen at a host and port.
-
-        Raises
-        ------
-        OSError
-            The address cannot be had.
-        """
-        return cls(await _listening(host, port), connections, make, tls, tls_timeout_s)
 
     def is_serving(self) -> bool:
         """Whether connections are accepted."""
@@ -128,23 +113,11 @@ class Door:
             await self._loop.connect_accepted_socket(
                 lambda: self._make(place),
                 taken,
-                ssl=self._tls,
-                ssl_handshake_timeout=self._tls_timeout_s if self._tls else None,
+                ssl=self._tls.context if self._tls else None,
+                ssl_handshake_timeout=HANDSHAKE_S if self._tls else None,
             )
         except (OSError, asyncio.CancelledError):
             # The connection has been made in vain, or its TLS handshake has failed.
             with suppress(OSError):
                 taken.close()
             place.leave()
-
-
-async def _listening(host: str, port: int) -> list[socket.socket]:
-    """Listening sockets at all addresses of a host, found and refused as the event loop does it."""
-    loop = asyncio.get_running_loop()
-    server = await loop.create_server(asyncio.Protocol, host, port, start_serving=False)
-    sockets = [socket.socket(fileno=os.dup(bound.fileno())) for bound in server.sockets]
-    server.close()
-    for each in sockets:
-        each.setblocking(False)
-        each.listen(BACKLOG)
-    return sockets

@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+import socket
 from collections.abc import AsyncIterator, Callable, Coroutine, Sequence
 from contextlib import asynccontextmanager
 from functools import partial
@@ -22,11 +23,14 @@ from esplanade.server.net.addresses import TrustedProxies
 from esplanade.server.net.answers import Answers, busy
 from esplanade.server.net.connection import Connection
 from esplanade.server.net.connections import Connections, Place
+from esplanade.server.net.descriptors import places_for_people
 from esplanade.server.net.door import Door
 from esplanade.server.net.hub import Hub
 from esplanade.server.net.metering import MAX_FRAME_BYTES, Meter
 from esplanade.server.net.refusals import Refusals
+from esplanade.server.net.root_path import RootPath
 from esplanade.server.net.session import Session
+from esplanade.server.net.tls import Tls
 from esplanade.server.settings import ServerSettings
 
 log = structlog.get_logger(__name__)
@@ -56,8 +60,9 @@ class Listener:
         self._refusals = Refusals(metrics)
         self._limits = AddressLimits(AddressBounds.of(settings))
         self._answers = Answers(settings.address_bytes, settings.answer_bytes, self._refusals)
+        self._root = RootPath(settings.root_path)
         self._connections = Connections(
-            settings.max_clients + MAX_UNGREETED + MAX_VISITS,
+            places_for_people(settings.max_clients + MAX_UNGREETED + MAX_VISITS),
             self._limits,
             TrustedProxies(settings.trusted_proxies),
             self._refusals,
@@ -74,8 +79,10 @@ class Listener:
         )
 
     @asynccontextmanager
-    async def listening(self) -> AsyncIterator[Server]:
-        """Listen on the settings' host and port; afterwards nobody is connected any more.
+    async def listening(
+        self, sockets: list[socket.socket], tls: Tls | None = None
+    ) -> AsyncIterator[Server]:
+        """Listen at bound sockets; afterwards nobody is connected any more.
 
         Raises
         ------
@@ -84,20 +91,17 @@ class Listener:
         """
         # The library hands over the connections that `_connect` makes.
         handler = cast(Callable[[ServerConnection], Coroutine[Any, Any, None]], self._handle)
-        server = Server(lambda: self._open(server), handler, self._logger)
+        server = Server(lambda: self._open(server, sockets, tls), handler, self._logger)
         await server
         try:
             yield server
         finally:
             await self._connections.shut(server)
 
-    async def _open(self, server: Server) -> asyncio.Server:
-        door = await Door.open(
-            self._settings.host,
-            self._settings.port,
-            self._connections,
-            partial(self._connect, server),
-        )
+    async def _open(
+        self, server: Server, sockets: list[socket.socket], tls: Tls | None
+    ) -> asyncio.Server:
+        door = Door(sockets, self._connections, partial(self._connect, server), tls)
         # The door has what the library asks of a server: it is no server of the event loop.
         return cast(asyncio.Server, door)
 
@@ -152,9 +156,15 @@ class Listener:
             )
         if connection.place.attribute(request.headers.get_all("X-Forwarded-For")) is not None:
             return busy("too many connections from your address\n")
-        if path_of(request) != SOCKET_PATH:
-            return self._assets.answer(request)
-        address = connection.client_address
+        within = self._root.enter(request)
+        if isinstance(within, Response):
+            return within
+        if path_of(within) != SOCKET_PATH:
+            return self._assets.answer(within)
+        return self._refusal(connection.client_address)
+
+    def _refusal(self, address: str) -> Response | None:
+        """The answer to a client that may not open a WebSocket now, or None if it may."""
         too_many = self._sessions >= self._settings.max_clients + MAX_UNGREETED
         if too_many and not self._connections.make_room(address):
             self._refusals.answer("port_full", address)

@@ -1,7 +1,14 @@
-"""The private port tells operators whether the server is alive and ready, and its metrics."""
+"""The private port tells operators whether the server is alive and ready, and its metrics.
 
+It has a thread and an event loop of its own, so that it tells the truth of a world that is busy or
+stuck, and is not kept waiting by people's connections.
+"""
+
+import asyncio
 from collections.abc import AsyncIterator, Callable
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import asynccontextmanager
+from functools import partial
 from http import HTTPStatus
 from typing import Final
 
@@ -10,28 +17,89 @@ from fastapi.responses import PlainTextResponse
 
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.asgi import MAX_BODY_BYTES, serving
+from esplanade.server.net.readiness import Readiness
 from esplanade.server.settings import ServerSettings
 
 METRICS_TYPE: Final = "text/plain; version=0.0.4; charset=utf-8"
 
+SAMPLE_LIMIT_S: Final = 1.0
+"""A world that does not give its figures within this time is shown with those it gave last."""
+
 
 @asynccontextmanager
 async def private_port(
-    settings: ServerSettings, metrics: Metrics, ready: Callable[[], bool]
+    settings: ServerSettings, metrics: Metrics, readiness: Readiness
 ) -> AsyncIterator[int]:
     """Listen for operators, and yield the number of the port.
+
+    The figures of the metrics are read on the event loop that calls this.
 
     Raises
     ------
     OSError
         The address cannot be had.
     """
-    app = operators_api(metrics, ready)
-    async with serving(app, settings.private_host, settings.private_port) as port:
-        yield port
+    loop = asyncio.get_running_loop()
+    app = operators_api(Figures(metrics, loop), readiness)
+    opened: Future[tuple[int, Callable[[], object]]] = Future()
+    serve = partial(_serve, app, settings.private_host, settings.private_port, opened)
+    with ThreadPoolExecutor(1, thread_name_prefix="private") as thread:
+        running = loop.run_in_executor(thread, lambda: asyncio.run(serve()))
+        port, stop = await asyncio.wrap_future(opened)
+        try:
+            yield port
+        finally:
+            stop()
+            await running
 
 
-def operators_api(metrics: Metrics, ready: Callable[[], bool]) -> FastAPI:
+async def _serve(
+    app: FastAPI, host: str, port: int, opened: "Future[tuple[int, Callable[[], object]]]"
+) -> None:
+    """Serve until stopped; `opened` is given the number of the port and what stops it."""
+    stopping = asyncio.Event()
+    try:
+        async with serving(app, host, port) as number:
+            stop = partial(asyncio.get_running_loop().call_soon_threadsafe, stopping.set)
+            opened.set_result((number, stop))
+            await stopping.wait()
+    except OSError as error:
+        if opened.done():
+            raise
+        opened.set_exception(error)
+
+
+class Figures:
+    """The metrics as text: their figures are read by the world's event loop, and told by another.
+
+    A world that is busy is asked once and shown with the figures that it gave last.
+    """
+
+    def __init__(self, metrics: Metrics, world: asyncio.AbstractEventLoop) -> None:
+        self._metrics = metrics
+        self._world = world
+        self._asked: Future[None] | None = None
+
+    async def text(self) -> bytes:
+        """All metrics in Prometheus' text format."""
+        if self._asked is None or self._asked.done():
+            self._asked = Future()
+            self._world.call_soon_threadsafe(self._sample, self._asked)
+        await asyncio.wait([asyncio.wrap_future(self._asked)], timeout=SAMPLE_LIMIT_S)
+        if self._asked.done():
+            self._asked.result()
+        return self._metrics.render()
+
+    def _sample(self, asked: "Future[None]") -> None:
+        try:
+            self._metrics.sample()
+        except Exception as error:  # noqa: BLE001 (it is raised where the figures were asked for)
+            asked.set_exception(error)
+        else:
+            asked.set_result(None)
+
+
+def operators_api(figures: Figures, readiness: Readiness) -> FastAPI:
     """The application behind the private port; it answers /healthz, /readyz and /metrics."""
     app = FastAPI(
         openapi_url=None,
@@ -45,14 +113,13 @@ def operators_api(metrics: Metrics, ready: Callable[[], bool]) -> FastAPI:
         return PlainTextResponse("alive\n", headers=_UNCACHED)
 
     async def is_ready(_: Request) -> Response:
-        if ready():
+        hindrance = readiness.hindrance()
+        if hindrance is None:
             return PlainTextResponse("ready\n", headers=_UNCACHED)
-        return PlainTextResponse(
-            "starting or stopping\n", HTTPStatus.SERVICE_UNAVAILABLE, _UNCACHED
-        )
+        return PlainTextResponse(f"{hindrance}\n", HTTPStatus.SERVICE_UNAVAILABLE, _UNCACHED)
 
     async def exposition(_: Request) -> Response:
-        return Response(metrics.exposition(), headers=_UNCACHED, media_type=METRICS_TYPE)
+        return Response(await figures.text(), headers=_UNCACHED, media_type=METRICS_TYPE)
 
     app.add_route("/healthz", alive)
     app.add_route("/readyz", is_ready)

@@ -3,6 +3,7 @@
 import os
 import threading
 from collections.abc import Iterator
+from contextlib import suppress
 from time import monotonic
 
 import pytest
@@ -19,10 +20,8 @@ def pipe() -> Iterator[Pipe]:
     reader, writer = os.pipe()
     yield reader, writer
     for end in (reader, writer):
-        try:
+        with suppress(OSError):
             os.close(end)
-        except OSError:
-            pass
 
 
 def notice(count: int) -> str:
