@@ -5,6 +5,7 @@ import { offerInspection } from "./app/inspection";
 import { Session } from "./app/session";
 import { View } from "./app/view";
 import { listenToPointer } from "./input/pointer";
+import { socketAddress } from "./net/address";
 import { Seats } from "./net/seats";
 import { browserLocks, channelLocks } from "./net/tablocks";
 import { byId } from "./ui/dom";
@@ -21,14 +22,12 @@ const locks =
     crypto.getRandomValues(new Uint32Array(3)).join("-"),
   );
 const seats = new Seats(sessionStorage, localStorage, locks, Date.now);
-const socketUrl = new URL("ws", document.baseURI);
-socketUrl.protocol = socketUrl.protocol === "https:" ? "wss:" : "ws:";
 const { operator, at, rest } = readAddress(location.hash);
 // The key is kept in memory alone: not where others read it over a shoulder, nor in the history.
 if (operator !== null) {
   history.replaceState(history.state, "", location.pathname + location.search + rest);
 }
-const session = new Session(view, seats, socketUrl.href, operator, at);
+const session = new Session(view, seats, socketAddress(document.baseURI), operator, at);
 
 listenToPointer(picture, {
   orbit: (yaw, pitch) => {
