@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from esplanade.bots.bot import Bot, connect
-    from esplanade.bots.errors import BotError, Disconnected, Refused, Unreachable
+    from esplanade.bots.errors import BotError, Disconnected, Refused, TimedOut, Unreachable
     from esplanade.bots.events import Event, SnapshotEvent, StepsEvent
+    from esplanade.bots.scenario import Scenario
     from esplanade.bots.view import Avatar
 
 __all__ = [
@@ -19,16 +20,19 @@ __all__ = [
     "Disconnected",
     "Event",
     "Refused",
+    "Scenario",
     "SnapshotEvent",
     "StepsEvent",
+    "TimedOut",
     "Unreachable",
     "connect",
 ]
 
 _MODULES = {
     "bot": ("Bot", "connect"),
-    "errors": ("BotError", "Disconnected", "Refused", "Unreachable"),
+    "errors": ("BotError", "Disconnected", "Refused", "TimedOut", "Unreachable"),
     "events": ("Event", "SnapshotEvent", "StepsEvent"),
+    "scenario": ("Scenario",),
     "view": ("Avatar",),
 }
 

@@ -11,9 +11,10 @@ from esplanade.bots.clock import ServerClock
 from esplanade.bots.connection import NO_CLOSE_CODE, OPEN_TIMEOUT_S, Connection
 from esplanade.bots.errors import Disconnected, Unreachable
 from esplanade.bots.events import Event, SnapshotEvent, StepsEvent
+from esplanade.bots.incoming import decode
 from esplanade.bots.mailbox import Mailbox
 from esplanade.bots.view import Avatar, View
-from esplanade.protocol import VERSION, ProtocolError, decode_server
+from esplanade.protocol import VERSION, ProtocolError
 from esplanade.protocol.messages import (
     Bye,
     ChatLine,
@@ -44,6 +45,7 @@ class Bot:
     def __init__(self, connection: Connection) -> None:
         welcome = connection.welcome
         self.welcome: Welcome = welcome
+        self._resume_token = welcome.resume
         self._connection = connection
         self._clock = ServerClock()
         self._clock.seed(welcome.server_time, time.monotonic())
@@ -86,8 +88,11 @@ class Bot:
 
     @property
     def resume_token(self) -> str:
-        """Hand it to `connect(resume=...)` to take this avatar up again after a lost connection."""
-        return self.welcome.resume
+        """The newest token for `connect(resume=...)`, which takes this avatar up again.
+
+        The server may give a new one at each welcome; it is wanted after a lost connection.
+        """
+        return self._resume_token
 
     @property
     def position(self) -> tuple[float, float, float]:
@@ -212,7 +217,8 @@ class Bot:
         try:
             while True:
                 frame = await self._connection.receive()
-                self._take(decode_server(frame))
+                if (message := decode(frame)) is not None:
+                    self._take(message)
         except Disconnected as ended:
             self._ended = ended
         except (ProtocolError, ValueError) as fault:
@@ -251,6 +257,7 @@ class Bot:
             case Bye():
                 self._said_bye = True
             case Welcome():
+                self._resume_token = message.resume
                 return
             case _:
                 pass

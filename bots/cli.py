@@ -12,15 +12,20 @@ from rich.console import Console
 
 from esplanade.bots.address import refusal
 from esplanade.bots.crew import Crew
+from esplanade.bots.csv_report import write_csv
+from esplanade.bots.figures import figures
+from esplanade.bots.html_report import page
 from esplanade.bots.load import LoadJob
 from esplanade.bots.options import SETTINGS
 from esplanade.bots.progress import Progress
 from esplanade.bots.replay import ReplayJob
-from esplanade.bots.report import figures, show
+from esplanade.bots.report import show
+from esplanade.bots.scenario_file import load_scenario
 from esplanade.bots.settings import BotsSettings
 from esplanade.bots.tally import Tally
+from esplanade.bots.verdict import exit_code, warnings
 from esplanade.bots.worker import Job
-from esplanade.commandline import exit_codes, fields
+from esplanade.commandline import fields
 from esplanade.commandline.errors import CommandError, UsageError
 from esplanade.commandline.output import console, write_json
 from esplanade.commandline.settings import given_settings
@@ -39,6 +44,11 @@ def run(options: Namespace) -> int:
             crowd = read_crowd(settings.replay)
         except RecordingError as error:
             raise UsageError(str(error)) from None
+    if settings.scenario is not None:
+        try:
+            load_scenario(settings.scenario)
+        except ValueError as error:
+            raise UsageError(f"--scenario: {error}") from None
     jobs, skipped = _load_jobs(settings), 0
     if crowd is not None:
         jobs, skipped = _replay_jobs(settings, crowd)
@@ -59,12 +69,14 @@ def _load_jobs(settings: BotsSettings) -> list[Job]:
     return [
         LoadJob(
             url=settings.url,
-            count=settings.count,
+            count=settings.most,
             first=first,
             step=step,
             seed=settings.seed,
             join_rate=settings.join_rate,
             duration_s=settings.duration,
+            stages=settings.plan,
+            scenario=settings.scenario,
         )
         for first in range(step)
     ]
@@ -96,13 +108,29 @@ def _conclude(
     settings: BotsSettings, crowd: Crowd | None, tally: Tally, faults: Sequence[str]
 ) -> int:
     """Show the result, write it where it is wanted, tell how it went."""
-    show(console(), tally)
-    for said in (*faults, *_hints(settings, crowd, tally)):
-        print(f"esplanade bots: {said}", file=sys.stderr)
+    verdicts = tuple(threshold.verdict(tally) for threshold in settings.thresholds)
+    show(console(), tally, verdicts)
+    said = [*warnings(tally, verdicts), *_hints(settings, crowd, tally)]
+    for line in (*faults, *said):
+        print(f"esplanade bots: {line}", file=sys.stderr)
+    code = exit_code(tally, verdicts, faults)
+    found = figures(
+        tally,
+        verdicts,
+        settings=settings.model_dump(mode="json"),
+        warnings=said,
+        exit_code=code,
+    )
     if settings.json_file is not None:
-        result = {"settings": settings.model_dump(mode="json"), **figures(tally)}
-        write_json("--json", settings.json_file, result)
-    return exit_codes.OK if tally.well and not faults else exit_codes.FAILED
+        write_json("--json", settings.json_file, found.plain())
+    try:
+        if settings.csv_file is not None:
+            write_csv(settings.csv_file, found.series)
+        if settings.html_file is not None:
+            settings.html_file.write_text(page(tally, verdicts, found), encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"the report cannot be written: {error}") from None
+    return code
 
 
 def _hints(settings: BotsSettings, crowd: Crowd | None, tally: Tally) -> Iterator[str]:

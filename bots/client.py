@@ -12,12 +12,14 @@ from typing import Any, Final
 
 from esplanade.bots.clock import ServerClock
 from esplanade.bots.connection import Connection
-from esplanade.bots.errors import BotError, Disconnected, Refused
+from esplanade.bots.due import DueTicks
+from esplanade.bots.errors import BotError, Disconnected, Refused, TimedOut
+from esplanade.bots.incoming import decode, error_code, is_error
 from esplanade.bots.tally import Tally
 from esplanade.bots.walkers import Walkers
-from esplanade.protocol import ErrorCode, ProtocolError, ServerCode, decode_server, peek_snapshot
+from esplanade.protocol import ErrorCode, ProtocolError, ServerCode, peek_snapshot
 from esplanade.protocol.codes import CloseCode
-from esplanade.protocol.messages import Error, FromClient, Hello, Ping, Pong, Welcome
+from esplanade.protocol.messages import FromClient, Hello, Ping, Pong, Welcome
 
 PING_EVERY_S: Final = 1.0
 FIRST_PINGS: Final = 3
@@ -26,12 +28,19 @@ FIRST_PINGS: Final = 3
 MAX_UNANSWERED: Final = 60
 """A pong later than this many pings is no longer waited for."""
 
+PONG_WITHIN_S: Final = 0.5
+"""A ping that was sent so shortly before the end is not called unanswered."""
+
+DOUBT_S: Final = 0.25
+"""A snapshot of this age is a reason to ask for the server's time anew, this often at most."""
+
 _CODE_BYTE: Final = 1
 """Position of the message code in a frame."""
 _STEPS: Final = bytes([ServerCode.STEPS])
-_LOOKED_INTO: Final = (bytes([ServerCode.PONG]), bytes([ServerCode.ERROR]))
+_PONG: Final = bytes([ServerCode.PONG])
 
 OnSnapshot = Callable[[int, int, bytes], Awaitable[None]]
+OnFrame = Callable[[bytes], None]
 
 
 class Client:
@@ -45,77 +54,108 @@ class Client:
         self._nonce = 0
         self._pinged_s: dict[int, float] = {}
         self._last_snapshot_s: float | None = None
+        self._in_doubt = asyncio.Event()
         self._walkers = Walkers(tally, self.welcome.tick_rate)
         self._tick_s = 1.0 / self.welcome.tick_rate
-        clock.seed(self.welcome.server_time, time.monotonic())
+        now_s = time.monotonic()
+        self._due = DueTicks(tally, self.welcome.tick_rate, now_s)
+        clock.seed(self.welcome.server_time, now_s)
 
     async def send(self, message: FromClient) -> None:
         """Send and count; raises Disconnected."""
-        self._tally.bytes_out += await self._connection.send(message)
+        size = await self._connection.send(message)
+        self._tally.bytes_out += size
         self._tally.messages_out += 1
+        self._tally.series.at(time.monotonic()).bytes_out += size
 
     async def keep_pinging(self) -> None:
-        """Ping once a second, with a few more at the start; never returns."""
+        """Ping once a second, with a few more at the start and in doubt; never returns."""
         for _ in range(FIRST_PINGS):
             await self._ping()
             await asyncio.sleep(self._tick_s)
         while True:
             await self._ping()
-            await asyncio.sleep(PING_EVERY_S)
+            self._in_doubt.clear()
+            with suppress(TimeoutError):
+                async with asyncio.timeout(PING_EVERY_S):
+                    await self._in_doubt.wait()
 
-    async def read(self, on_snapshot: OnSnapshot | None = None) -> None:
+    async def read(
+        self, on_snapshot: OnSnapshot | None = None, on_frame: OnFrame | None = None
+    ) -> None:
         """Take frames until the connection ends, which raises Disconnected.
 
-        `on_snapshot(tick, ack, frame)` is awaited before the next frame is read.
+        `on_snapshot(tick, ack, frame)` is awaited before the next frame is read;
+        `on_frame(frame)` is called with every frame.
         """
         tally = self._tally
         while True:
             frame = await self._connection.receive()
+            now_s = time.monotonic()
             tally.messages_in += 1
             tally.bytes_in += len(frame)
+            tally.series.at(now_s).bytes_in += len(frame)
             head = peek_snapshot(frame)
             if head is None:
-                self._take(frame)
-                continue
-            self._measure(head.tick)
-            if on_snapshot is not None:
+                self._take(frame, now_s)
+            else:
+                self._measure(head.tick, now_s)
+            if on_frame is not None:
+                on_frame(frame)
+            if head is not None and on_snapshot is not None:
                 await on_snapshot(head.tick, head.ack, frame)
 
+    def finish(self) -> None:
+        """Count what has not come and will not: snapshots that were due, and answers to pings."""
+        now_s = time.monotonic()
+        self._due.finish(now_s)
+        for sent_s in self._pinged_s.values():
+            if now_s - sent_s > PONG_WITHIN_S:
+                self._unanswered(now_s - sent_s)
+        self._pinged_s.clear()
+
     async def _ping(self) -> None:
+        now_s = time.monotonic()
         self._nonce += 1
-        self._pinged_s.pop(self._nonce - MAX_UNANSWERED, None)
-        self._pinged_s[self._nonce] = time.monotonic()
+        forgotten_s = self._pinged_s.pop(self._nonce - MAX_UNANSWERED, None)
+        if forgotten_s is not None:
+            self._unanswered(now_s - forgotten_s)
+        self._pinged_s[self._nonce] = now_s
+        self._tally.pings_sent += 1
         await self.send(Ping(nonce=self._nonce))
 
-    def _measure(self, tick: int) -> None:
-        now_s = time.monotonic()
+    def _unanswered(self, waited_s: float) -> None:
+        self._tally.pings_unanswered += 1
+        self._tally.round_trip_s.add(waited_s)
+
+    def _measure(self, tick: int, now_s: float) -> None:
         if self._last_snapshot_s is not None:
             self._tally.snapshot_interval_s.add(now_s - self._last_snapshot_s)
         self._last_snapshot_s = now_s
-        if self._clock.is_set:
-            age_s = self._clock.at(now_s) - tick * self._tick_s
-            self._tally.snapshot_age_s.add(max(0.0, age_s))
+        due_s = self._clock.local(tick * self._tick_s)
+        if now_s - due_s > DOUBT_S and self._clock.doubt(now_s, DOUBT_S):
+            self._in_doubt.set()
+        self._due.take(tick, due_s, now_s)
 
-    def _take(self, frame: bytes) -> None:
+    def _take(self, frame: bytes, now_s: float) -> None:
         """Look into steps, pongs and errors, and into nothing else."""
-        if frame[_CODE_BYTE : _CODE_BYTE + 1] == _STEPS:
+        code = frame[_CODE_BYTE : _CODE_BYTE + 1]
+        if code == _STEPS:
             self._walkers.take(frame)
-            return
-        if frame[_CODE_BYTE : _CODE_BYTE + 1] not in _LOOKED_INTO:
-            return
-        message = decode_server(frame)
-        if isinstance(message, Error):
-            self._complain(message.error)
-        elif isinstance(message, Pong) and message.nonce in self._pinged_s:
-            sent_s = self._pinged_s.pop(message.nonce)
-            round_trip_s = self._clock.add(sent_s, time.monotonic(), message.server_time)
-            self._tally.round_trip_s.add(round_trip_s)
+        elif is_error(frame):
+            self._complain(error_code(frame)[0])
+        elif code == _PONG:
+            message = decode(frame)
+            if isinstance(message, Pong) and message.nonce in self._pinged_s:
+                sent_s = self._pinged_s.pop(message.nonce)
+                round_trip_s = self._clock.add(sent_s, now_s, message.server_time)
+                self._tally.round_trip_s.add(round_trip_s)
 
-    def _complain(self, code: ErrorCode) -> None:
-        if code is ErrorCode.NO_PATH:
+    def _complain(self, code: str) -> None:
+        if code == ErrorCode.NO_PATH.value:
             self._tally.no_path += 1
         else:
-            self._tally.errors[code.value] += 1
+            self._tally.complain(code)
 
 
 async def visit(
@@ -129,25 +169,41 @@ async def visit(
 
     Whatever goes wrong is counted in the tally.
     """
+    began_s = time.monotonic()
     try:
         connection = await Connection.open(url, hello)
     except BotError as error:
+        now_s = time.monotonic()
         tally.failed += 1
-        tally.errors[error.code if isinstance(error, Refused) else "unreachable"] += 1
+        tally.series.at(now_s).failed += 1
+        tally.complain(_join_error(error))
+        if isinstance(error, TimedOut):
+            tally.join_s.add(now_s - began_s)
         return
+    joined_s = time.monotonic()
+    tally.join_s.add(joined_s - began_s)
     tally.joined += 1
-    began_s = time.monotonic()
+    tally.series.at(joined_s).joined += 1
+    client = Client(connection, clock, tally)
+    lost = ""
     try:
-        await stay(Client(connection, clock, tally))
-        tally.left += 1
+        await stay(client)
     except Disconnected as ended:
-        tally.lost += 1
-        tally.errors[_close_name(ended)] += 1
-    except ProtocolError:
-        tally.lost += 1
-        tally.errors["nonsense_from_server"] += 1
+        lost = _close_name(ended)
+    except (ProtocolError, ValueError):  # the second of blocks that are no records
+        lost = "nonsense_from_server"
     finally:
-        tally.client_seconds += time.monotonic() - began_s
+        client.finish()
+        now_s = time.monotonic()
+        tally.client_seconds += now_s - joined_s
+        bucket = tally.series.at(now_s)
+        if lost:
+            tally.lost += 1
+            bucket.lost += 1
+            tally.complain(lost)
+        else:
+            tally.left += 1
+            bucket.left += 1
         await connection.close()
 
 
@@ -177,3 +233,13 @@ def _close_name(ended: Disconnected) -> str:
         return f"closed_{CloseCode(ended.code).name.lower()}"
     except ValueError:
         return f"closed_{ended.code}"
+
+
+def _join_error(error: BotError) -> str:
+    """Name of what kept a client from joining, for the table of errors."""
+    match error:
+        case Refused():
+            return error.code
+        case TimedOut():
+            return "join_timed_out"
+    return "unreachable"

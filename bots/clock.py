@@ -22,6 +22,7 @@ class ServerClock:
     def __init__(self) -> None:
         self._samples: deque[tuple[float, float]] = deque(maxlen=KEPT)
         self._offset_s = 0.0
+        self._heard_s = float("-inf")
 
     def seed(self, server_time_s: float, now_s: float) -> None:
         """A reading without a round trip; only counts until the first pong."""
@@ -39,13 +40,20 @@ class ServerClock:
             self._samples.clear()
         self._samples.append((round_trip_s, offset_s))
         self._offset_s = min(self._samples)[1]
+        self._heard_s = received_s
         return round_trip_s
-
-    @property
-    def is_set(self) -> bool:
-        """Whether a round trip was measured."""
-        return bool(self._samples)
 
     def at(self, now_s: float) -> float:
         """The server's time at the local time `now_s`."""
         return now_s + self._offset_s
+
+    def doubt(self, now_s: float, every_s: float) -> bool:
+        """Whether a pong is wanted, because something came at an odd time; so often at most."""
+        if now_s - self._heard_s < every_s:
+            return False
+        self._heard_s = now_s
+        return True
+
+    def local(self, server_s: float) -> float:
+        """The local time at which the server's clock says `server_s`."""
+        return server_s - self._offset_s

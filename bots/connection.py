@@ -7,9 +7,10 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidURI
 
 from esplanade.bots.address import websocket_url
-from esplanade.bots.errors import Disconnected, Refused, Unreachable
-from esplanade.protocol import ProtocolError, decode_server, encode
-from esplanade.protocol.messages import Error, FromClient, Hello, Welcome
+from esplanade.bots.errors import Disconnected, Refused, TimedOut, Unreachable
+from esplanade.bots.incoming import decode, error_code, is_error
+from esplanade.protocol import ProtocolError, encode
+from esplanade.protocol.messages import FromClient, Hello, Welcome
 
 OPEN_TIMEOUT_S: Final = 10.0
 CLOSE_TIMEOUT_S: Final = 2.0
@@ -38,6 +39,8 @@ class Connection:
         ------
         ValueError
             `url` is no address.
+        TimedOut
+            It takes too long.
         Unreachable
             Nobody is there, or no server of ours.
         Refused
@@ -54,6 +57,8 @@ class Connection:
                 close_timeout=CLOSE_TIMEOUT_S,
                 proxy=None,
             )
+        except TimeoutError:
+            raise TimedOut(f"{address}: no connection within {OPEN_TIMEOUT_S:g} s") from None
         except (OSError, InvalidHandshake, InvalidURI) as error:
             raise Unreachable(f"{address}: {str(error) or type(error).__name__}") from error
         try:
@@ -62,7 +67,7 @@ class Connection:
                 return cls(socket, await _welcome(socket))
         except TimeoutError:
             socket.transport.abort()
-            raise Unreachable(f"{address}: no welcome within {OPEN_TIMEOUT_S:g} s") from None
+            raise TimedOut(f"{address}: no welcome within {OPEN_TIMEOUT_S:g} s") from None
         except BaseException:
             socket.transport.abort()
             raise
@@ -102,16 +107,19 @@ class Connection:
 
 
 async def _welcome(socket: ClientConnection) -> Welcome:
-    """The answer to hello."""
+    """The answer to hello; messages that this version does not know are passed over."""
     try:
-        message = decode_server(await socket.recv(decode=False))
+        message = None
+        while message is None:
+            frame = await socket.recv(decode=False)
+            if is_error(frame):
+                raise Refused(*error_code(frame))
+            message = decode(frame)
     except ProtocolError as error:
         raise Unreachable(f"what answers speaks another protocol: {error.text}") from None
     except ConnectionClosed as error:
         ended = _disconnected(error)
         raise Refused(str(ended.code), ended.reason or "closed without a word") from None
-    if isinstance(message, Error):
-        raise Refused(message.error.value, message.text)
     if not isinstance(message, Welcome):
         raise Unreachable(f"expected welcome, not {type(message).__name__.lower()}")
     return message

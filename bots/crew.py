@@ -10,7 +10,7 @@ from multiprocessing.context import SpawnProcess
 from typing import Final
 
 from esplanade.bots.tally import Tally, merged
-from esplanade.bots.worker import Job, Report, work
+from esplanade.bots.worker import BEGIN, Job, Report, work
 
 STOP_WITHIN_S: Final = 15.0
 """A worker that was told to stop and is not done by then is ended."""
@@ -34,6 +34,8 @@ class Crew:
             self._tallies[ours] = Tally()
             self._processes.append(process)
         self._running = set(self._tallies)
+        self._waiting = set(self._tallies)
+        """Workers that are not ready to begin yet."""
 
     @property
     def tally(self) -> Tally:
@@ -70,10 +72,22 @@ class Crew:
                 report: Report = pipe.recv()
             except (EOFError, OSError):
                 self._running.discard(pipe)
+                self._begin_without(pipe)
                 self.faults.append("a worker process ended without a word")
                 continue
+            self._begin_without(pipe)
             self._tallies[pipe] = report.tally
             if report.final:
                 self._running.discard(pipe)
             if report.fault is not None:
                 self.faults.append(report.fault)
+
+    def _begin_without(self, pipe: Pipe) -> None:
+        """Wait for this worker no longer; once the last of them is ready, all begin."""
+        if pipe not in self._waiting:
+            return
+        self._waiting.discard(pipe)
+        if not self._waiting:
+            for each in self._running:
+                with suppress(OSError):
+                    each.send(BEGIN)

@@ -9,6 +9,10 @@ class Unreachable(BotError):  # noqa: N818 (reads as what happened)
     """Nothing that speaks the protocol answers at the address."""
 
 
+class TimedOut(Unreachable):
+    """Somebody is there and does not let us in, nor refuses, for as long as we wait."""
+
+
 class Refused(BotError):  # noqa: N818 (reads as what happened)
     """The server answered hello with an error; `code` is for programs, `text` for people."""
 

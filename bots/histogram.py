@@ -31,13 +31,13 @@ class Histogram:
         for value in values:
             self.add(value)
 
-    def add(self, value: float) -> None:
-        """Count one finite value; negative ones count as 0."""
+    def add(self, value: float, times: int = 1) -> None:
+        """Count a finite value, once or a number of times; negative ones count as 0."""
         value = max(0.0, value)
         place = int(math.log(value / LEAST) * _SCALE) + 1 if value > LEAST else 0
-        self.counts[min(place, _BINS - 1)] += 1
-        self.count += 1
-        self.total += value
+        self.counts[min(place, _BINS - 1)] += times
+        self.count += times
+        self.total += value * times
         self.greatest = max(self.greatest, value)
 
     def merge(self, other: "Histogram") -> None:
@@ -51,6 +51,11 @@ class Histogram:
     def mean(self) -> float | None:
         """None while nothing was counted."""
         return self.total / self.count if self.count else None
+
+    @property
+    def highest(self) -> float | None:
+        """The greatest value; None while nothing was counted."""
+        return self.greatest if self.count else None
 
     def percentile(self, percent: float) -> float | None:
         """The value that `percent` of all do not exceed; it is at most 1 % too great.

@@ -1,20 +1,36 @@
-"""A load test's share of one process: many wanderers that join one after another."""
+"""A load test's share of one process: many bots that come and go at their times."""
 
 import asyncio
-from collections.abc import Iterator
+import math
+from collections.abc import Callable, Coroutine, Iterator
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 from esplanade.bots.client import Client, sleep_until, until_first, visit
 from esplanade.bots.clock import ServerClock
+from esplanade.bots.player import Player
+from esplanade.bots.scenario_file import load_scenario
+from esplanade.bots.stages import Stage, Stay, stays
 from esplanade.bots.tally import Tally
 from esplanade.bots.wanderer import Act, wander
 from esplanade.protocol import VERSION
 from esplanade.protocol.messages import Hello
 
 
+class Planned(NamedTuple):
+    """Bot `number` is to be in the world at this time, seconds from the beginning."""
+
+    stay: Stay
+    number: int
+
+
 @dataclass(frozen=True)
 class LoadJob:
-    """Visitors `first`, `first + step`, ... of `count`; number i joins at i / join_rate seconds."""
+    """Visitors `first`, `first + step`, ... of `count`.
+
+    With stages, these say when each comes and goes. Without, number i joins at i / join_rate
+    seconds.
+    """
 
     url: str
     count: int
@@ -24,51 +40,84 @@ class LoadJob:
     join_rate: float
     duration_s: float
     """Time with everyone there; 0 means until stopped."""
+    stages: tuple[Stage, ...] = ()
+    scenario: str | None = None
+    """The bots do what this class in a file says, FILE:CLASS; without it they wander."""
 
     async def run(self, tally: Tally, stop: asyncio.Event) -> None:
-        """Send the visitors in, keep them walking, take them out again."""
-        visitors = range(self.first, self.count, self.step)
-        tally.expected = len(visitors)
+        """Send the visitors in and take them out again, all at their times."""
+        play = self._wander if self.scenario is None else self._scenario(self.scenario, tally)
+        plan = self._plan()
+        tally.expected = len(plan)
         clock = ServerClock()
         began_s = asyncio.get_running_loop().time()
-        over = asyncio.Event()
-        timer = asyncio.create_task(self._end(over, stop))
         async with asyncio.TaskGroup() as group:
-            for index in visitors:
-                await sleep_until(began_s + index / self.join_rate, over)
-                if over.is_set():
+            for stay, index in plan:
+                await sleep_until(began_s + stay.begin_s, stop)
+                if stop.is_set():
                     break
-                group.create_task(self._visit(index, clock, tally, over))
-        timer.cancel()
+                group.create_task(
+                    self._visit(index, clock, tally, play, began_s + stay.end_s, stop)
+                )
 
-    async def _end(self, over: asyncio.Event, stop: asyncio.Event) -> None:
-        """Tell the visitors to leave once the time is over, or when stopped."""
-        if self.duration_s:
-            now_s = asyncio.get_running_loop().time()
-            await sleep_until(now_s + self.count / self.join_rate + self.duration_s, stop)
-        else:
-            await stop.wait()
-        over.set()
+    def _plan(self) -> list[Planned]:
+        """Every visit of this share, in the order in which they begin."""
+        visitors = range(self.first, self.count, self.step)
+        if self.stages:
+            plan = [
+                Planned(stay, index) for index in visitors for stay in stays(self.stages, index)
+            ]
+            return sorted(plan)
+        end_s = self.count / self.join_rate + self.duration_s if self.duration_s else math.inf
+        return [Planned(Stay(index / self.join_rate, end_s), index) for index in visitors]
 
     async def _visit(
-        self, index: int, clock: ServerClock, tally: Tally, over: asyncio.Event
+        self,
+        index: int,
+        clock: ServerClock,
+        tally: Tally,
+        play: "Play",
+        end_s: float,
+        stop: asyncio.Event,
     ) -> None:
         hello = Hello(name=f"Visitor {index + 1}", version=VERSION)
 
         async def stay(client: Client) -> None:
-            scene = client.welcome.scene
-            x0, y0, x1, y1 = scene["bounds"]
-            floors_m = sorted({0.0, *(place["z_m"] for place in scene.get("places", ()))})
-            speed_mps = client.welcome.max_speed
-            acts = wander(self.seed, index, (x0, y0, x1, y1), speed_mps, floors_m)
-            await until_first(
-                client.read(), client.keep_pinging(), _walk(client, acts), over.wait()
-            )
+            works = play(client, index)
+            await until_first(*works, client.keep_pinging(), _until(end_s, stop))
 
         await visit(self.url, hello, clock, tally, stay)
+
+    def _wander(self, client: Client, index: int) -> "Works":
+        scene = client.welcome.scene
+        x0, y0, x1, y1 = scene["bounds"]
+        floors_m = sorted({0.0, *(place["z_m"] for place in scene.get("places", ()))})
+        acts = wander(self.seed, index, (x0, y0, x1, y1), client.welcome.max_speed, floors_m)
+        return client.read(), _walk(client, acts)
+
+    def _scenario(self, place: str, tally: Tally) -> "Play":
+        kind = load_scenario(place)
+
+        def play(client: Client, index: int) -> Works:
+            player = Player(kind, client, index, self.seed, tally)
+            return client.read(on_frame=player.see), player.play()
+
+        return play
+
+
+Works = tuple[Coroutine[Any, Any, None], Coroutine[Any, Any, None]]
+Play = Callable[[Client, int], Works]
 
 
 async def _walk(client: Client, acts: Iterator[Act]) -> None:
     for act in acts:
         await client.send(act.message)
         await asyncio.sleep(act.pause_s)
+
+
+async def _until(time_s: float, stop: asyncio.Event) -> None:
+    """Wait until the loop's clock says `time_s`, or until stopped."""
+    if math.isinf(time_s):
+        await stop.wait()
+    else:
+        await sleep_until(time_s, stop)

@@ -38,6 +38,9 @@ class Progress(StatusLine):
             parts.append(f"{tally.failed} failed, {tally.lost} lost")
         if tally.present:
             parts.append(f"{self._bytes_per_s / tally.present / 1e3:.1f} kB/s each")
+        if tally.snapshots_due:
+            share = 100.0 * tally.snapshots_received / tally.snapshots_due
+            parts.append(f"{share:.1f} % of snapshots")
         for name, histogram, factor, unit in (
             ("round trip", tally.round_trip_s, 1e3, "ms"),
             ("age", tally.snapshot_age_s, 1e3, "ms"),

@@ -1,11 +1,14 @@
 """The view of a bot: itself and the others in view, kept up to date."""
 
 from dataclasses import dataclass
+from typing import Final
 
 from esplanade.bots.events import SnapshotEvent
 from esplanade.protocol import Kind, Reason
 from esplanade.protocol.messages import Enter, Entity, Leave, Place, Point, Welcome
 from esplanade.protocol.snapshot import HEADING_RAD, POSITION_M, SPEED_MPS
+
+_REASONS: Final = {reason.value: reason for reason in Reason}
 
 
 @dataclass(slots=True)
@@ -82,7 +85,7 @@ class View:
             else:
                 continue
             avatar.layer = layer
-            avatar.reason = Reason(reason)
+            avatar.reason = _REASONS.get(reason, Reason.NONE)
             avatar.x = x0 + x * POSITION_M
             avatar.y = y0 + y * POSITION_M
             avatar.z = z * POSITION_M

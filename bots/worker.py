@@ -13,6 +13,9 @@ from esplanade.bots.tally import Tally
 
 REPORT_EVERY_S: Final = 0.25
 
+BEGIN: Final = "begin"
+"""The word on the pipe that sets a worker going; any other, and its end, mean stop."""
+
 
 class Job(Protocol):
     """Something to do with clients until it is done, or until told to stop."""
@@ -21,7 +24,10 @@ class Job(Protocol):
 
 
 class Report(NamedTuple):
-    """A worker sends this up the pipe again and again; `fault` is a traceback."""
+    """A worker sends this up the pipe again and again; `fault` is a traceback.
+
+    The series is only in the final one.
+    """
 
     tally: Tally
     final: bool
@@ -29,9 +35,20 @@ class Report(NamedTuple):
 
 
 def work(job: Job, pipe: Pipe) -> None:
-    """Run the job; anything on the pipe, or its end, means stop. The target of the process."""
+    """Run the job once every worker is ready, so that seconds of the run are the same for all.
+
+    The first report says that this one is. The target of the process.
+    """
     # Ctrl-C reaches every process of the terminal; only the first one decides what it means.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _report(pipe, Report(Tally(), final=False))
+    try:
+        begins = pipe.recv() == BEGIN
+    except (EOFError, OSError):
+        return
+    if not begins:
+        _report(pipe, Report(Tally(), final=True))
+        return
     if sys.platform == "win32":
         asyncio.run(_run(job, pipe))
     else:
@@ -42,6 +59,7 @@ def work(job: Job, pipe: Pipe) -> None:
 
 async def _run(job: Job, pipe: Pipe) -> None:
     tally = Tally()
+    began_s = time.monotonic()
     idle_s = time.process_time()  # the start of the process is not the clients' time
     stop = asyncio.Event()
     task = asyncio.create_task(job.run(tally, stop))
@@ -50,8 +68,9 @@ async def _run(job: Job, pipe: Pipe) -> None:
         if pipe.poll():
             stop.set()
         tally.cpu_seconds = time.process_time() - idle_s
+        tally.run_seconds = time.monotonic() - began_s
         if not task.done():
-            _report(pipe, Report(tally, final=False))
+            _report(pipe, Report(tally.so_far(), final=False))
     error = task.exception()
     fault = None if error is None else "".join(traceback.format_exception(error))
     _report(pipe, Report(tally, final=True, fault=fault))

@@ -15,7 +15,10 @@ from esplanade.commandline.parser import Parser
 
 
 class Setting(NamedTuple):
-    """One setting: `read` is its reader, `option` its name on the command line if that differs."""
+    """One setting: `read` is its reader, `option` its name on the command line if that differs.
+
+    A reader with `several` returns a tuple; its option may be given again, and the tuples add up.
+    """
 
     text: str
     read: Any
@@ -26,7 +29,7 @@ class Setting(NamedTuple):
     @property
     def help(self) -> str:
         """The description with unit, range and default."""
-        default = "" if self.default in (None, "") else f"default {self.default}"
+        default = "" if self.default in (None, "", ()) else f"default {self.default}"
         facts = (self.unit, getattr(self.read, "range", ""), default)
         told = ", ".join(fact for fact in facts if fact)
         return (f"{self.text} [{told}]" if told else self.text).replace("%", "%%")
@@ -93,6 +96,7 @@ def settings_parser(
                 dest=name,
                 metavar=setting.read.metavar,
                 type=setting.read,
+                action="extend" if getattr(setting.read, "several", False) else "store",
                 choices=getattr(setting.read, "choices", None),
                 help=setting.help if explained is None or name in explained else SUPPRESS,
             )

@@ -25,12 +25,17 @@ def test_defaults() -> None:
         "duration": 60.0,
         "seed": 0,
         "join_rate": 50.0,
+        "stages": None,
+        "scenario": None,
         "processes": None,
         "replay": None,
         "speedup": 1.0,
         "limit": None,
         "linger": 0.0,
+        "fail_if": (),
         "json_file": None,
+        "csv_file": None,
+        "html_file": None,
     }
 
 

@@ -12,13 +12,19 @@ def test_every_field_is_added_up() -> None:
     some, others = Tally(**numbers), Tally(**numbers)  # type: ignore[arg-type]
     for tally in (some, others):
         tally.errors["flooding"] += 2
+        tally.scenario_faults["a.py:1"] += 1
+        tally.series.at(tally.series.begin_s + 3.5).received += 1
         for name in histograms:
             getattr(tally, name).add(0.5)
     total = merged([some, others])
     assert {name: getattr(total, name) for name in numbers} == dict.fromkeys(numbers, 2)
     assert total.errors == Counter(flooding=4)
+    assert total.scenario_faults == {"a.py:1": 2}
+    assert [bucket.received for bucket in total.series.buckets] == [0, 0, 0, 2]
     assert [getattr(total, name).count for name in histograms] == [2] * len(histograms)
-    assert len(numbers) + len(histograms) + 1 == len(vars(total))
+    assert len(numbers) + len(histograms) + len(["errors", "scenario_faults", "series"]) == len(
+        vars(total)
+    )
     assert some.errors == Counter(flooding=2)
 
 
