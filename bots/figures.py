@@ -4,6 +4,8 @@ Units are in the names; null stands where nothing was measured. Later versions a
 here keeps its name and meaning as long as `schema_version` does.
 """
 
+import json
+from pathlib import Path
 from typing import Any, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -271,3 +273,12 @@ def _ratio(amount: float, whole: float) -> float | None:
 
 def _times(value: float | None, factor: float) -> float | None:
     return None if value is None else round(value * factor, 4)
+
+
+def schema() -> str:
+    """The text of `figures.schema.json`."""
+    return json.dumps(Figures.model_json_schema(mode="serialization"), indent=1) + "\n"
+
+
+if __name__ == "__main__":
+    Path(__file__).with_name("figures.schema.json").write_text(schema())

@@ -9,7 +9,7 @@ import math
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from websockets.asyncio.server import ServerConnection, serve
@@ -100,7 +100,8 @@ class ScriptedServer:
             await socket.send(encode(self.welcome(person)))
             everyone = [*self.people.values(), person]
             for other in everyone:
-                await other.socket.send(encode(self._enter([person])))
+                with suppress(ConnectionClosed):
+                    await other.socket.send(encode(self._enter([person])))
             await socket.send(encode(self._enter(everyone[:-1])))
             self.people[person.id] = person
             try:
@@ -185,6 +186,7 @@ class ScriptedServer:
         while True:
             due_s += 1.0 / self.tick_rate
             await asyncio.sleep(max(0.0, due_s - loop.time()))
+            await self._before_tick()
             if loop.time() - due_s > 0.5 / self.tick_rate:
                 due_s = loop.time()
             await _let_messages_arrive()
@@ -194,6 +196,9 @@ class ScriptedServer:
                 if not self.silent:
                     with suppress(ConnectionClosed):
                         await person.socket.send(self._snapshot(person))
+
+    async def _before_tick(self) -> None:
+        """A place where a test can hold the world up."""
 
     def _apply(self) -> None:
         """Obey what has arrived, then move everyone one tick on."""
@@ -234,10 +239,19 @@ class ScriptedServer:
         return encode_snapshot(self.tick, person.ack, records.tobytes())
 
 
+Scripted = TypeVar("Scripted", bound=ScriptedServer)
+
+
 @asynccontextmanager
 async def scripted_server(**settings: Any) -> AsyncIterator[ScriptedServer]:
     """A scripted server on a free port of this machine."""
-    server = ScriptedServer(**settings)
+    async with listening(ScriptedServer(**settings)) as server:
+        yield server
+
+
+@asynccontextmanager
+async def listening(server: Scripted) -> AsyncIterator[Scripted]:
+    """This server, on a free port of this machine."""
     async with serve(server.talk, "127.0.0.1", 0, compression=None, close_timeout=1.0) as listener:
         server.port = next(iter(listener.sockets)).getsockname()[1]
         ticking = asyncio.create_task(server.run_ticks())

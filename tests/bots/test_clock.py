@@ -1,9 +1,8 @@
 """The estimate of the server's clock."""
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-import pytest
 
 from esplanade.bots.clock import KEPT, ServerClock
 

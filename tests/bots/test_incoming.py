@@ -1,0 +1,61 @@
+"""Bots outlive additions to the protocol."""
+
+import msgpack
+import pytest
+
+from esplanade import bots
+from esplanade.bots.incoming import decode
+from esplanade.protocol import ErrorCode, ProtocolError, encode
+from esplanade.protocol.messages import Error, Notice
+from tests.bots.scripted import scripted_server, until
+
+
+@pytest.mark.parametrize(
+    "frame",
+    [
+        msgpack.packb([99, {"what": 1}]),
+        msgpack.packb([200, {}]),
+        msgpack.packb([60_000, 1, 2, 3]),
+        msgpack.packb([99]),
+        msgpack.packb([70, {"error": "of_tomorrow", "text": "wait"}]),
+    ],
+)
+def test_what_a_later_version_says_is_passed_over(frame: bytes) -> None:
+    assert decode(frame) is None
+
+
+def test_what_this_version_knows_is_decoded_with_or_without_more_fields() -> None:
+    assert decode(msgpack.packb([69, {"text": "hello", "mood": "good"}])) == Notice(text="hello")
+    error = Error(error=ErrorCode.FLOODING, text="slower")
+    assert decode(encode(error)) == error
+
+
+@pytest.mark.parametrize(
+    "frame",
+    [b"", b"\x90", b"\x91", b"\x92\x63", b"\x92\xa1a\x01", b"\x92\x46\x80", b"\x92\x46\xc0"],
+)
+def test_nonsense_stays_nonsense(frame: bytes) -> None:
+    with pytest.raises(ProtocolError):
+        decode(frame)
+
+
+async def test_a_bot_goes_on_and_keeps_the_newest_token() -> None:
+    async with scripted_server() as server, bots.connect(server.url, name="Ann") as bot:
+        (person,) = server.all_people
+        await person.socket.send(msgpack.packb([99, {"what": 1}]))
+        await person.socket.send(msgpack.packb([70, {"error": "of_tomorrow", "text": "wait"}]))
+        again = server.welcome(person).model_copy(update={"resume": "token-next"})
+        await person.socket.send(encode(again))
+        await until(lambda: bot.resume_token == "token-next")
+        tick = bot.tick
+        await until(lambda: bot.tick > tick)
+
+
+async def test_a_refusal_of_a_later_version_has_its_name() -> None:
+    async with scripted_server() as server:
+        refused_with = msgpack.packb([70, {"error": "of_tomorrow", "text": "wait"}])
+        server.talk = lambda socket: socket.send(refused_with)  # type: ignore[method-assign]
+        with pytest.raises(bots.Refused, match="wait") as refused:
+            async with bots.connect(server.url):
+                pass
+        assert refused.value.code == "of_tomorrow"
