@@ -1,0 +1,84 @@
+"""Makes every attack beside a canary: `python -m chaos`, see `docs/chaos.md`."""
+
+import argparse
+import dataclasses
+import sys
+import tempfile
+from pathlib import Path
+
+from rich.console import Console
+
+from chaos import report, trial
+from chaos.attacks.catalogue import ATTACKS
+from chaos.judging import Bars, missed
+from chaos.processes import ProcessFault, raise_file_limit
+from chaos.server import ServerFault
+from esplanade.commandline.progress import progress
+
+MISSED = 1
+FAILED = 2
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(
+        prog="python -m chaos",
+        description="Serve a world, attack it, and tell what a well-behaved client saw.",
+    )
+    parser.add_argument("--seconds", type=float, default=8.0, help="of each attack (default 8)")
+    parser.add_argument(
+        "--only", action="append", choices=ATTACKS, metavar="NAME", help="this attack; repeatable"
+    )
+    parser.add_argument("--list", action="store_true", help="list the attacks and end")
+    parser.add_argument("--seed", type=int, default=0, help="of world, canary and attackers")
+    parser.add_argument("--actors", type=int, default=10, help="in the world (default 10)")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write everything seen to a file")
+    options = parser.parse_args()
+    console = Console()
+    if options.list:
+        for attack in ATTACKS.values():
+            console.print(f"{attack.name:16} {attack.about}", highlight=False, soft_wrap=True)
+        return 0
+    if not sys.platform.startswith("linux"):
+        parser.error("attackers come from 127.0.0.2, and memory is read from /proc: needs Linux")
+    try:
+        return _run(options, console)
+    except (ServerFault, ProcessFault) as fault:
+        console.print(str(fault), markup=False, style="red", soft_wrap=True)
+        return FAILED
+
+
+def _run(options: argparse.Namespace, console: Console) -> int:
+    raise_file_limit()  # the server inherits it
+    chosen = [ATTACKS[name] for name in dict.fromkeys(options.only or ATTACKS)]
+    each_s = trial.SETTLE_S + options.seconds + trial.AFTER_S
+    trials = []
+    with tempfile.TemporaryDirectory() as folder, progress(share=True, time_left=True) as bar:
+        task = bar.add_task("alone", total=each_s * (1 + len(chosen)))
+
+        def made(attack: trial.Attack | None) -> trial.Trial:
+            bar.update(task, description=attack.name if attack else "alone")
+            return trial.run(
+                attack,
+                Path(folder),
+                options.seconds,
+                options.seed,
+                actors=options.actors,
+                progress=lambda seconds: bar.advance(task, seconds),
+            )
+
+        alone = made(None)
+        bars = Bars.beside(alone.sighting)
+        for attack in chosen:
+            seen = made(attack)
+            seen = dataclasses.replace(seen, missed=missed(seen, attack, bars))
+            trials.append(seen)
+            verdict = "; ".join(seen.missed) or "ok"
+            bar.console.print(f"{attack.name}: {verdict}", markup=False, highlight=False)
+            if options.json:
+                report.write_json(options.json, alone, trials, bars)
+    report.show(console, alone, trials, bars)
+    return MISSED if any(seen.missed for seen in trials) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

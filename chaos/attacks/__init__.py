@@ -1,0 +1,1 @@
+"""All attacks, a file for each kind; `catalogue.py` lists them."""

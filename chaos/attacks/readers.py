@@ -1,0 +1,53 @@
+"""Readers that never read what the server sends, or that read it too slowly."""
+
+import time
+from functools import partial
+from typing import Final
+
+from chaos.attack import Attack, Attacker
+from chaos.wire import Wire
+
+CLIENTS: Final = 40
+_SMALL_BUFFER: Final = 4096
+
+
+def _read(attacker: Attacker, bytes_per_s: int) -> None:
+    """Join and come again when dropped; read so many bytes a second on each connection."""
+    attacker.start_clock()
+    wires: list[Wire] = []
+    while attacker.goes_on:
+        try:
+            if len(wires) < CLIENTS:
+                wire = Wire(attacker.port, receive_bytes=_SMALL_BUFFER)
+                wires.append(wire)
+                wire.join("Reader")
+                attacker.counts["joined"] += 1
+        except OSError as refused:
+            attacker.refused(refused)
+        if len(wires) >= CLIENTS or not attacker.counts["joined"]:
+            time.sleep(0.2)
+        wires = [each for each in wires if _open(each, round(0.2 * bytes_per_s))]
+    for each in wires:
+        each.close()
+
+
+def _open(wire: Wire, most: int) -> bool:
+    """Read so many bytes at most; whether the connection is still there."""
+    wire.socket.setblocking(False)
+    try:
+        if most and not wire.socket.recv(most):
+            return False
+        wire.socket.send(b"")
+    except BlockingIOError:
+        return True
+    except OSError:
+        return False
+    return True
+
+
+ATTACKS: Final = (
+    Attack("never-read", f"{CLIENTS} clients that read nothing", partial(_read, bytes_per_s=0)),
+    Attack(
+        "read-slowly", f"{CLIENTS} clients that read 500 bytes a second", partial(_read, bytes_per_s=500)
+    ),
+)
