@@ -17,6 +17,8 @@ from esplanade.commandline.progress import progress
 
 MISSED = 1
 FAILED = 2
+WIDTH = 140
+"""Characters of a line in a file or a pipe."""
 
 
 def main() -> int:
@@ -34,6 +36,8 @@ def main() -> int:
     parser.add_argument("--json", type=Path, metavar="FILE", help="write everything seen to a file")
     options = parser.parse_args()
     console = Console()
+    if not console.is_terminal:
+        console.width = WIDTH
     if options.list:
         for attack in ATTACKS.values():
             console.print(f"{attack.name:16} {attack.about}", highlight=False, soft_wrap=True)
@@ -72,7 +76,7 @@ def _run(options: argparse.Namespace, console: Console) -> int:
             seen = made(attack)
             seen = dataclasses.replace(seen, missed=missed(seen, attack, bars))
             trials.append(seen)
-            verdict = "; ".join(seen.missed) or "ok"
+            verdict = f"{len(seen.missed)} bars missed" if seen.missed else "ok"
             bar.console.print(f"{attack.name}: {verdict}", markup=False, highlight=False)
             if options.json:
                 report.write_json(options.json, alone, trials, bars)

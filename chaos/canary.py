@@ -9,8 +9,8 @@ import asyncio
 import math
 import random
 import time
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from typing import Final
@@ -120,7 +120,7 @@ class Canary:
     async def live(self, parent: Connection) -> None:
         """Be in the world until the parent says `end`; every `begin` and `tell` is a measurement."""
         loop = asyncio.get_running_loop()
-        async with self._joined("Canary") as ann, self._joined("Finch") as ben:
+        async with joined(self._url, "Canary") as ann, joined(self._url, "Finch") as ben:
             tasks = [
                 asyncio.create_task(each)
                 for each in (
@@ -173,9 +173,6 @@ class Canary:
         )
 
     # --- what they do -------------------------------------------------------------------------
-
-    def _joined(self, name: str) -> "_Joined":
-        return _Joined(self._url, name)
 
     async def _read(self, wire: ClientConnection, take: Callable[[bytes], None]) -> None:
         try:
@@ -246,7 +243,7 @@ class Canary:
             await asyncio.sleep(NEWCOMER_EVERY_S)
             began_s = time.monotonic()
             try:
-                async with asyncio.timeout(NEWCOMER_WAITS_S), self._joined("Newcomer"):
+                async with asyncio.timeout(NEWCOMER_WAITS_S), joined(self._url, "Newcomer"):
                     self._join_s = max(self._join_s, time.monotonic() - began_s)
             except (OSError, InvalidHandshake, WebSocketException):  # a timeout is an OSError
                 self._turned_away += 1
@@ -258,27 +255,34 @@ class Canary:
             self._lag_s = max(self._lag_s, time.monotonic() - due_s)
 
 
-class _Joined:
-    """A person in the world as a context: let in at its begin, gone in good order at its end."""
+@asynccontextmanager
+async def joined(url: str, name: str) -> AsyncIterator[ClientConnection]:
+    """A person in the world, who goes in good order at the end.
 
-    def __init__(self, url: str, name: str) -> None:
-        self._opening = connect(url, compression=None, max_size=None, max_queue=None, proxy=None)
-        self._name = name
+    Raises
+    ------
+    OSError, WebSocketException
+        The server does not let anybody in, or has closed the connection.
+    """
+    async with opened(url) as wire:
+        await greet(wire, name)
+        yield wire
 
-    async def __aenter__(self) -> ClientConnection:
-        wire = await self._opening.__aenter__()
-        try:
-            await wire.send(encode(Hello(name=self._name, version=VERSION)))
-            while not isinstance(decode_server(bytes(await wire.recv(decode=False))), Welcome):
-                pass
-        except BaseException:
-            await wire.close()
-            raise
-        return wire
 
-    async def __aexit__(self, *_: object) -> None:
-        with suppress(WebSocketException):
-            await self._opening.connection.close()
+def opened(url: str) -> connect:
+    """A connection that has not said hello."""
+    return connect(url, compression=None, max_size=None, max_queue=None, proxy=None)
+
+
+async def greet(wire: ClientConnection, name: str, resume: str | None = None) -> Welcome:
+    """Say hello and wait for the welcome."""
+    await wire.send(encode(Hello(name=name, version=VERSION, resume=resume)))
+    while True:
+        message = await wire.recv()
+        if isinstance(message, bytes) and peek_snapshot(message) is None:
+            answer = decode_server(message)
+            if isinstance(answer, Welcome):
+                return answer
 
 
 async def _say(wire: ClientConnection, message: FromClient) -> None:

@@ -16,13 +16,13 @@ from chaos.trial import Trial
 
 def show(console: Console, alone: Trial, trials: Sequence[Trial], bars: Bars) -> None:
     """Print what the canary saw, what the server said, and what was missed."""
-    table = Table(box=box.SIMPLE_HEAD, title="what the canary saw; times in ms", pad_edge=False)
+    table = Table(box=box.SIMPLE_HEAD, title="What the canary saw: times in ms, the longest or p99; lag is its own process'", pad_edge=False)
     table.add_column("attack", no_wrap=True)
     for title in (
-        *("gap", "missed/due", "dropped", "ping p99", "walk_to p99", "chat p99", "join", "lag"),
-        *("ticks/s", "cpu %", "MB before", "most", "after"),
+        *("gap", "missed/due", "dropped", "ping", "walk_to", "chat", "join", "lag"),
+        *("ticks/s", "cpu %", "MB", "most", "after"),
     ):
-        table.add_column(title, justify="right")
+        table.add_column(title, justify="right", no_wrap=True)
     table.add_column("", no_wrap=True)
     for trial in (alone, *trials):
         table.add_row(*_row(trial))

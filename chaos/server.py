@@ -65,12 +65,7 @@ class Server:
 
     def memory_mb(self) -> float:
         """Resident memory now; 0 if the process has ended."""
-        try:
-            status = Path(f"/proc/{self._process.pid}/status").read_text()
-        except FileNotFoundError:
-            return 0.0
-        sizes = [line.split()[1] for line in status.splitlines() if line.startswith("VmRSS:")]
-        return int(sizes[0]) / 1024 if sizes else 0.0
+        return resident_mb(self._process.pid)
 
     def read(self) -> Reading:
         """Memory, processor time and metrics.
@@ -139,6 +134,16 @@ def serving(folder: Path, *options: str, actors: int = 10, seed: int = 0) -> Ite
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
+
+
+def resident_mb(process: int | str) -> float:
+    """Resident memory of a process of this machine, or of `self`; 0 if it has ended."""
+    try:
+        status = Path(f"/proc/{process}/status").read_text()
+    except OSError:
+        return 0.0
+    sizes = [line.split()[1] for line in status.splitlines() if line.startswith("VmRSS:")]
+    return int(sizes[0]) / 1024 if sizes else 0.0
 
 
 def samples(exposition: str) -> Samples:
