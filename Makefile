@@ -18,7 +18,7 @@ BENCHMARKS ?= $(patsubst benchmarks/%.py,%,$(wildcard benchmarks/[a-z]*.py))
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PHONY: help serve test test-boundscheck test-nojit test-lowest test-pythons
-.PHONY: check release-check audit bench format lock client clean
+.PHONY: check release-check audit bench chaos format lock client clean
 
 help:  ## show what there is to do
 	@echo "Esplanade: people and computer-run actors walk among each other."
@@ -71,6 +71,9 @@ bench: $(VENV)/.test  ## measure what must stay fast, each part by itself
 	@for name in $(BENCHMARKS); do \
 	  echo "--- $$name"; $(RUN) -m benchmarks.$$name $(ARGS) || exit; \
 	done
+
+chaos: $(VENV)/.test $(CLIENT)  ## attack a server, and tell what a well-behaved client saw
+	@$(RUN) -m chaos $(ARGS)
 
 format: $(VENV)/.dev client_web/node_modules/.installed  ## format all sources
 	$(RUN) -m ruff check --fix-only

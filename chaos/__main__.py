@@ -9,10 +9,11 @@ from pathlib import Path
 from rich.console import Console
 
 from chaos import report, trial
+from chaos.attack import Attack
 from chaos.attacks.catalogue import ATTACKS
 from chaos.judging import Bars, missed
-from chaos.processes import ProcessFault, raise_file_limit
-from chaos.server import ServerFault
+from chaos.processes import ProcessError, raise_file_limit
+from chaos.server import ServerError
 from esplanade.commandline.progress import progress
 
 MISSED = 1
@@ -46,7 +47,7 @@ def main() -> int:
         parser.error("attackers come from 127.0.0.2, and memory is read from /proc: needs Linux")
     try:
         return _run(options, console)
-    except (ServerFault, ProcessFault) as fault:
+    except (ServerError, ProcessError) as fault:
         console.print(str(fault), markup=False, style="red", soft_wrap=True)
         return FAILED
 
@@ -54,12 +55,14 @@ def main() -> int:
 def _run(options: argparse.Namespace, console: Console) -> int:
     raise_file_limit()  # the server inherits it
     chosen = [ATTACKS[name] for name in dict.fromkeys(options.only or ATTACKS)]
-    each_s = trial.SETTLE_S + options.seconds + trial.AFTER_S
+    around_s = trial.SETTLE_S + trial.AFTER_S
+    total_s = around_s + options.seconds
+    total_s += sum(around_s + max(options.seconds, attack.least_s) for attack in chosen)
     trials = []
     with tempfile.TemporaryDirectory() as folder, progress(share=True, time_left=True) as bar:
-        task = bar.add_task("alone", total=each_s * (1 + len(chosen)))
+        task = bar.add_task("alone", total=total_s)
 
-        def made(attack: trial.Attack | None) -> trial.Trial:
+        def made(attack: Attack | None) -> trial.Trial:
             bar.update(task, description=attack.name if attack else "alone")
             return trial.run(
                 attack,

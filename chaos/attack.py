@@ -72,14 +72,14 @@ class Attacker:
             try:
                 wire = Wire(self.port)
                 wire.join(f"{name} {k}", **fields)
-            except OSError as refused:
+            except OSError:
                 self.refused(refused)
                 continue
             made.append(wire)
         self.counts["joined"] += len(made)
         return made
 
-    def refused(self, refused: OSError) -> None:
+    def refused(self) -> None:
         """Note that the server would not, and wait a moment."""
         self.counts["refused"] += 1
         time.sleep(TOO_MANY if self.left_s > TOO_MANY else 0.0)
@@ -94,5 +94,7 @@ class Attack:
     run: Callable[[Attacker], None]
     breaks_limit: bool = True
     """Whether it goes over a limit, so that log and metrics have to name its address."""
+    least_s: float = 0.0
+    """It takes this long at least, because what it breaks is a limit of time."""
     serve: tuple[str, ...] = ()
     """Options for the server, besides those that all attacks share."""

@@ -1,7 +1,7 @@
 """The canary: well-behaved people in a process of their own, who note how the world treats them.
 
-One walks about, pings and talks; another one stays beside the first and listens; a newcomer looks in
-once a second. Everything that was due and never came counts with the time for which it was
+One walks about, pings and talks; another one stays beside the first and listens; a newcomer looks
+in once a second. Everything that was due and never came counts with the time for which it was
 waited: a world that stands still must not look well because nothing could be measured in it.
 """
 
@@ -19,8 +19,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import InvalidHandshake, WebSocketException
 
 from chaos.wire import SERVER
-from esplanade.protocol import VERSION, decode_server, encode, peek_snapshot
-from esplanade.protocol.codec import ProtocolError
+from esplanade.protocol import VERSION, ProtocolError, decode_server, encode, peek_snapshot
 from esplanade.protocol.messages import (
     Chat,
     ChatLine,
@@ -39,6 +38,7 @@ TALK_EVERY_S: Final = 1.25
 """Lines of chat are limited to one a second."""
 
 WISH_EVERY_S: Final = 0.5
+WAY_WAITS_S: Final = 10.0
 NEWCOMER_EVERY_S: Final = 1.0
 NEWCOMER_WAITS_S: Final = 5.0
 PROBE_S: Final = 0.01
@@ -115,10 +115,11 @@ class Canary:
         self._tick_rate = 20
         self._tick = 0
         self._lost = ""
+        self._answered = asyncio.Event()
         self._begin()
 
     async def live(self, parent: Connection) -> None:
-        """Be in the world until the parent says `end`; every `begin` and `tell` is a measurement."""
+        """Be in the world until the parent says `end`; `begin` and `tell` make a measurement."""
         loop = asyncio.get_running_loop()
         async with joined(self._url, "Canary") as ann, joined(self._url, "Finch") as ben:
             tasks = [
@@ -193,13 +194,18 @@ class Canary:
             if self._tick:
                 self._dropped += head.tick - self._tick - 1
             self._tick = head.tick
-            self._ways.answer_up_to(head.ack)
+            self._answer_ways(head.ack)
             return
         match decode_server(message):
             case Pong() as pong:
                 self._pings.answer(pong.nonce)
             case Error() as error if error.error.value == "no_path":
-                self._ways.answer_up_to(self._seq)
+                self._answer_ways(self._seq)
+
+    def _answer_ways(self, seq: int) -> None:
+        self._ways.answer_up_to(seq)
+        if not self._ways.open:
+            self._answered.set()
 
     def _hear(self, message: bytes) -> None:
         if peek_snapshot(message) is None:
@@ -214,9 +220,14 @@ class Canary:
             for _ in range(4):
                 self._seq += 1
                 self._ways.ask(self._seq)
+                self._answered.clear()
                 aside = self._random.uniform(-0.5, 0.5)
                 await _say(ann, WalkTo(seq=self._seq, x=x + aside, y=y))
                 await _say(ben, WalkTo(seq=self._seq, x=x, y=y + 0.7))
+                # A wish that comes before the answer to the last one would take its place.
+                with suppress(TimeoutError):
+                    async with asyncio.timeout(WAY_WAITS_S):
+                        await self._answered.wait()
                 await asyncio.sleep(WISH_EVERY_S)
             self._seq += 1
             direction = self._random.uniform(-math.pi, math.pi)

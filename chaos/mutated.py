@@ -24,7 +24,7 @@ from websockets.exceptions import ConnectionClosed, WebSocketException
 
 from chaos.canary import greet, opened
 from chaos.mutations import Mutations
-from chaos.server import ServerFault, resident_mb, serving, unnamed
+from chaos.server import ServerError, resident_mb, serving, unnamed
 from chaos.wire import SERVER
 from chaos.wire import frame as framed
 from esplanade.commandline.progress import progress
@@ -102,7 +102,7 @@ def over_sockets(
 
     Raises
     ------
-    ServerFault
+    ServerError
         The server does not start.
     """
     tally = Tally(seed)
@@ -208,7 +208,7 @@ def main() -> int:
                 with _bar("over sockets", number) as advance:
                     tally = over_sockets(number, options.seed, Path(folder), advance)
                 passed &= _show(console, "over sockets", tally)
-    except ServerFault as fault:
+    except ServerError as fault:
         console.print(str(fault), markup=False, style="red", soft_wrap=True)
         return 2
     return 0 if passed else 1

@@ -115,7 +115,9 @@ def _long_lengths(chance: random.Random) -> bytes:
     """A value that says it is longer than all there is, or that is nested without end."""
     kind = chance.choice((0xC6, 0xDB, 0xDD, 0xDF, 0xC9))
     claimed = struct.pack(">BI", kind, chance.getrandbits(32))
-    return chance.choice((claimed, b"\x92\x01" + claimed, b"\x92\x04\x81\xa4text" + claimed, _NESTED))
+    return chance.choice(
+        (claimed, b"\x92\x01" + claimed, b"\x92\x04\x81\xa4text" + claimed, _NESTED)
+    )
 
 
 def _packed(value: Any) -> bytes:

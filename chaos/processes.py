@@ -26,7 +26,7 @@ NICENESS: Final = 10
 _SPAWNING: Final = multiprocessing.get_context("spawn")
 
 
-class ProcessFault(Exception):
+class ProcessError(Exception):
     """A process of the harness itself has failed."""
 
 
@@ -45,7 +45,7 @@ class CanaryProcess:
         self._pipe.send("tell")
         sighting = _received(self._pipe, "the canary")
         if not isinstance(sighting, Sighting):
-            raise ProcessFault(f"the canary answered {sighting!r}")
+            raise ProcessError(f"the canary answered {sighting!r}")
         return sighting
 
 
@@ -55,7 +55,7 @@ def canary_process(port: int, seed: int) -> Iterator[CanaryProcess]:
 
     Raises
     ------
-    ProcessFault
+    ProcessError
         It was not let in.
     """
     here, there = _SPAWNING.Pipe()
@@ -144,5 +144,5 @@ def _received(pipe: Connection, of_whom: str) -> object:
         if pipe.poll(deadline - time.monotonic()):
             return pipe.recv()
     except EOFError:
-        raise ProcessFault(f"{of_whom} has failed") from None
-    raise ProcessFault(f"{of_whom} has not answered for {READY_S:g} s")
+        raise ProcessError(f"{of_whom} has failed") from None
+    raise ProcessError(f"{of_whom} has not answered for {READY_S:g} s")

@@ -16,7 +16,11 @@ from chaos.trial import Trial
 
 def show(console: Console, alone: Trial, trials: Sequence[Trial], bars: Bars) -> None:
     """Print what the canary saw, what the server said, and what was missed."""
-    table = Table(box=box.SIMPLE_HEAD, title="What the canary saw: times in ms, the longest or p99; lag is its own process'", pad_edge=False)
+    table = Table(
+        box=box.SIMPLE_HEAD,
+        title="What the canary saw: times in ms, the longest or p99; lag is its own process'",
+        pad_edge=False,
+    )
     table.add_column("attack", no_wrap=True)
     for title in (
         *("gap", "missed/due", "dropped", "ping", "walk_to", "chat", "join", "lag"),

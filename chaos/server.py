@@ -29,7 +29,7 @@ _TICKS_PER_S: Final = os.sysconf("SC_CLK_TCK")
 Samples = dict[str, float]
 
 
-class ServerFault(Exception):
+class ServerError(Exception):
     """The server has not started, or has ended by itself; the text holds the end of its log."""
 
 
@@ -72,7 +72,7 @@ class Server:
 
         Raises
         ------
-        ServerFault
+        ServerError
             The server does not answer.
         """
         try:
@@ -80,7 +80,9 @@ class Server:
                 text = answer.read().decode()
             fields = Path(f"/proc/{self._process.pid}/stat").read_text().rpartition(")")[2].split()
         except OSError as fault:
-            raise ServerFault(f"the metrics cannot be read: {fault}\n{self._end_of_log()}") from None
+            raise ServerError(
+                f"the metrics cannot be read: {fault}\n{self._end_of_log()}"
+            ) from None
         used = (int(fields[11]) + int(fields[12])) / _TICKS_PER_S
         return Reading(time.monotonic(), self.memory_mb(), used, samples(text))
 
@@ -91,7 +93,7 @@ class Server:
                 if line.get("event") == "open":
                     return line
             time.sleep(0.05)
-        raise ServerFault(f"the server has not started\n{self._end_of_log()}")
+        raise ServerError(f"the server has not started\n{self._end_of_log()}")
 
     def _end_of_log(self) -> str:
         return "\n".join(self._log.read_text(errors="replace").splitlines()[-10:])
@@ -103,7 +105,7 @@ def serving(folder: Path, *options: str, actors: int = 10, seed: int = 0) -> Ite
 
     Raises
     ------
-    ServerFault
+    ServerError
         It does not start.
     """
     command = [
@@ -185,5 +187,5 @@ def _parsed(line: str) -> dict[str, Any]:
 def _port(url: str) -> int:
     port = urlsplit(url).port
     if port is None:
-        raise ServerFault(f"an address without a port: {url}")
+        raise ServerError(f"an address without a port: {url}")
     return port

@@ -68,12 +68,14 @@ def run(
 
     Raises
     ------
-    ServerFault
+    ServerError
         The server does not start, or does not answer.
-    ProcessFault
+    ProcessError
         Canary or attacker have failed.
     """
     options = attack.serve if attack else ()
+    if attack is not None:
+        seconds = max(seconds, attack.least_s)
     with (
         serving(folder, *options, actors=actors, seed=seed) as server,
         canary_process(server.port, seed) as canary,

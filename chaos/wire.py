@@ -6,6 +6,8 @@ import time
 from contextlib import suppress
 from typing import Final, Self
 
+import msgpack
+
 from esplanade.protocol import VERSION, decode_server, encode
 from esplanade.protocol.messages import Error, FromClient, Hello, ServerMessage, Welcome
 
@@ -24,7 +26,7 @@ _CLOSE: Final = 0x88
 _PIECE: Final = 1 << 16
 
 
-class Refused(OSError):
+class RefusedError(OSError):
     """The server has not let somebody in, or has ended the connection."""
 
 
@@ -68,7 +70,7 @@ class Wire:
     Raises
     ------
     OSError
-        The server does not take the connection; `Refused` if it answers with anything but 101.
+        The server does not take the connection; `RefusedError` if it answers with anything but 101.
     """
 
     def __init__(
@@ -91,7 +93,7 @@ class Wire:
         answer, _, self._buffer = self._buffer.partition(b"\r\n\r\n")
         if b" 101 " not in answer.split(b"\r\n")[0]:
             self.close()
-            raise Refused(answer.split(b"\r\n")[0].decode("latin-1"))
+            raise RefusedError(answer.split(b"\r\n")[0].decode("latin-1"))
 
     def __enter__(self) -> Self:
         return self
@@ -117,10 +119,11 @@ class Wire:
 
         Raises
         ------
-        Refused
+        RefusedError
             The server said why not.
         """
-        self.send(Hello.model_construct(None, **{"name": name, "version": VERSION, **fields}))
+        hello = {"name": name, "version": VERSION, **fields}  # nothing is checked at this end
+        self.socket.sendall(frame(msgpack.packb([int(Hello.code), hello])))
         return self.welcome()
 
     def welcome(self) -> Welcome:
@@ -130,14 +133,14 @@ class Wire:
             if isinstance(message, Welcome):
                 return message
             if isinstance(message, Error):
-                raise Refused(f"{message.error.value}: {message.text}")
+                raise RefusedError(f"{message.error.value}: {message.text}")
 
     def receive(self, within_s: float = ANSWER_S) -> ServerMessage:
         """Wait for the next message.
 
         Raises
         ------
-        Refused
+        RefusedError
             The connection has ended; `close_code` says how, if the server said it.
         TimeoutError
             Nothing came in time.
@@ -151,7 +154,7 @@ class Wire:
                     return decode_server(payload)
                 if head == _CLOSE:
                     self.close_code = int.from_bytes(payload[:2], "big") if payload else None
-                    raise Refused(f"closed with {self.close_code}")
+                    raise RefusedError(f"closed with {self.close_code}")
                 continue
             left = end - time.monotonic()
             if left <= 0.0:
@@ -164,7 +167,7 @@ class Wire:
 
         Raises
         ------
-        Refused
+        RefusedError
             The connection has ended.
         """
         self._buffer = b""
@@ -172,13 +175,13 @@ class Wire:
         with suppress(BlockingIOError):
             while self.socket.recv(_PIECE):
                 pass
-            raise Refused("the connection has ended")
+            raise RefusedError("the connection has ended")
         self.socket.settimeout(ANSWER_S)
 
     def _read(self) -> None:
         piece = self.socket.recv(_PIECE)
         if not piece:
-            raise Refused("the connection has ended")
+            raise RefusedError("the connection has ended")
         self._buffer += piece
 
     def _next_frame(self) -> tuple[int, bytes] | None:

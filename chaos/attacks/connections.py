@@ -25,8 +25,8 @@ def _hold(attacker: Attacker, first: bytes, drip: bytes) -> None:
                 if first:
                     made.sendall(first)
                 held.append(made)
-        except OSError as refused:
-            attacker.refused(refused)
+        except OSError:
+            attacker.refused()
         if len(held) >= SOCKETS or time.monotonic() - dripped_s > PAUSE_S:
             dripped_s = time.monotonic()
             held = [each for each in held if _alive(each, drip)]
@@ -59,7 +59,9 @@ def _alive(connection: socket.socket, drip: bytes) -> bool:
 
 
 ATTACKS: Final = (
-    Attack("silent", f"{SOCKETS} connections that say nothing", partial(_hold, first=b"", drip=b"")),
+    Attack(
+        "silent", f"{SOCKETS} connections that say nothing", partial(_hold, first=b"", drip=b"")
+    ),
     Attack(
         "half-open",
         "handshakes of a WebSocket that stop in the middle",

@@ -40,8 +40,8 @@ def _wrong_keys(attacker: Attacker) -> None:
                 attacker.counts["keys"] += 1
                 wire.send(SetDoor(name=DOORS[0], open=True))
                 wire.leave()
-        except OSError as refused:
-            attacker.refused(refused)
+        except OSError:
+            attacker.refused()
 
 
 ATTACKS: Final = (

@@ -30,8 +30,8 @@ def _flood(attacker: Attacker, first: bytes, repeated: bytes) -> None:
                 while attacker.goes_on:
                     wire.socket.sendall(many)
                     attacker.counts["frames"] += _AT_ONCE
-        except OSError as refused:
-            attacker.refused(refused)
+        except OSError:
+            attacker.refused()
 
 
 def _single_bytes(attacker: Attacker) -> None:
@@ -47,8 +47,8 @@ def _single_bytes(attacker: Attacker) -> None:
                         break
                     wire.socket.send(bytes([byte]))
                     attacker.counts["bytes"] += 1
-        except OSError as refused:
-            attacker.refused(refused)
+        except OSError:
+            attacker.refused()
 
 
 def _kind(name: str, about: str, first: bytes, repeated: bytes) -> Attack:

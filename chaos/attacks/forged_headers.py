@@ -18,8 +18,8 @@ def _forged(attacker: Attacker) -> None:
             wire = Wire(attacker.port, headers=header)
             kept.append(wire)
             attacker.counts["connections"] += 1
-        except OSError as refused:
-            attacker.refused(refused)
+        except OSError:
+            attacker.refused()
     for wire in kept:
         wire.close()
 

@@ -5,6 +5,7 @@ import multiprocessing
 import os
 import signal
 import time
+from itertools import pairwise
 from typing import Final
 
 from chaos.attack import Attack, Attacker
@@ -22,8 +23,8 @@ CORNERS: Final = ((5.5, 17.25, 3.5), (33.5, 11.25, 3.5), (6.0, 28.0, 3.5), (39.5
 STANDS_WITHIN_S: Final = 4.0
 """Silence is noticed after a second, and ends a movement after two more; a second is for slack."""
 
-FROZEN_S: Final = 12.0
-"""A frozen avatar is watched this long at most."""
+FROZEN_S: Final = 8.0
+"""A frozen avatar is watched this long."""
 
 
 def _walk_to(attacker: Attacker) -> None:
@@ -78,7 +79,7 @@ def _judge_standing(
                 places.append((found[0][0], found[0][1]))
                 moved_s = time.monotonic()
     walked_s = moved_s - stopped_s
-    walked_m = sum(math.dist(a, b) for a, b in zip(places, places[1:], strict=False))
+    walked_m = sum(math.dist(a, b) for a, b in pairwise(places))
     attacker.counts["frozen_ms_walked"] = round(1e3 * walked_s)
     attacker.counts["frozen_cm_walked"] = round(1e2 * walked_m)
     if walked_s > STANDS_WITHIN_S:
@@ -105,5 +106,11 @@ ATTACKS: Final = (
         _walk_to,
         breaks_limit=False,
     ),
-    Attack("frozen", "a client is stopped while it walks", _frozen, breaks_limit=False),
+    Attack(
+        "frozen",
+        "a client is stopped while it walks",
+        _frozen,
+        breaks_limit=False,
+        least_s=FROZEN_S,
+    ),
 )

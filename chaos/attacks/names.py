@@ -32,7 +32,11 @@ _CYRILLIC: Final = str.maketrans("AaBCceEHiKMopPTxy", "АаВСсеЕНіКМо�
 def _names(attacker: Attacker) -> None:
     attacker.start_clock()
     actor = _actor_name(attacker)
-    hostile = {**REFUSED, "of an actor": actor, "look-alike of an actor": actor.translate(_CYRILLIC)}
+    hostile = {
+        **REFUSED,
+        "of an actor": actor,
+        "look-alike of an actor": actor.translate(_CYRILLIC),
+    }
     for kind, name in hostile.items():
         try:
             with Wire(attacker.port) as wire:
@@ -62,6 +66,4 @@ def _actor_name(attacker: Attacker) -> str:
     return "Alder"
 
 
-ATTACKS: Final = (
-    Attack("names", "names that deceive", _names, breaks_limit=False),
-)
+ATTACKS: Final = (Attack("names", "names that deceive", _names, breaks_limit=False),)

@@ -19,8 +19,8 @@ def _requests(attacker: Attacker) -> None:
         try:
             _read_page(attacker.port, "/")
             attacker.counts["pages"] += 1
-        except OSError as refused:
-            attacker.refused(refused)
+        except OSError:
+            attacker.refused()
 
 
 def _unread(attacker: Attacker) -> None:
@@ -37,8 +37,8 @@ def _unread(attacker: Attacker) -> None:
             made.sendall(_request(path))
             held.append(made)
             attacker.counts["requests"] += 1
-        except OSError as refused:
-            attacker.refused(refused)
+        except OSError:
+            attacker.refused()
     for each in held:
         each.close()
 
@@ -68,5 +68,5 @@ def _request(path: str) -> bytes:
 
 ATTACKS: Final = (
     Attack("pages", "the page is fetched as fast as it comes", _requests),
-    Attack("unread-answers", f"{UNREAD} answers that nobody reads", _unread),
+    Attack("unread-answers", f"{UNREAD} answers that nobody reads", _unread, least_s=12.0),
 )

@@ -34,8 +34,8 @@ def _inside(attacker: Attacker) -> None:
                     if math.dist(place, INSIDE) < _NEAR_M:
                         attacker.faults.append("a newcomer was put into a closed room")
                     wire.leave()
-            except OSError as refused:
-                attacker.refused(refused)
+            except OSError:
+                attacker.refused()
             porter.discard()
             time.sleep(0.2)
 

@@ -39,7 +39,9 @@ def _watch(attacker: Attacker) -> FromClient:
 
 
 ATTACKS: Final = (
-    Attack("chat", f"{CLIENTS} clients talk {RATE:g} times a second", partial(_talk, message=_line)),
+    Attack(
+        "chat", f"{CLIENTS} clients talk {RATE:g} times a second", partial(_talk, message=_line)
+    ),
     Attack(
         "watch",
         f"{CLIENTS} clients watch another actor {RATE:g} times a second",
