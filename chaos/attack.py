@@ -73,7 +73,7 @@ class Attacker:
                 wire = Wire(self.port)
                 wire.join(f"{name} {k}", **fields)
             except OSError:
-                self.refused(refused)
+                self.refused()
                 continue
             made.append(wire)
         self.counts["joined"] += len(made)

@@ -18,7 +18,7 @@ def show(console: Console, alone: Trial, trials: Sequence[Trial], bars: Bars) ->
     """Print what the canary saw, what the server said, and what was missed."""
     table = Table(
         box=box.SIMPLE_HEAD,
-        title="What the canary saw: times in ms, the longest or p99; lag is its own process'",
+        title="What the canary saw; times in ms, the longest or p99",
         pad_edge=False,
     )
     table.add_column("attack", no_wrap=True)
