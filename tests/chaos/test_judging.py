@@ -45,7 +45,7 @@ def test_a_world_that_is_well_misses_nothing() -> None:
 
 
 def test_bars_are_fixed_or_twice_what_is_seen_alone() -> None:
-    assert BARS == Bars(gap_ms=150.0, way_ms=300.0)
+    assert Bars(gap_ms=150.0, way_ms=300.0) == BARS
     slow = replace(WELL, gap_ms=100.0, way_ms=200.0)
     assert Bars.beside(slow) == Bars(gap_ms=200.0, way_ms=400.0)
 
