@@ -8,6 +8,8 @@ from chaos.canary import Sighting
 from chaos.trial import Trial
 
 MEMORY_SHARE: Final = 0.05
+GAP_MS: Final = 150.0
+WAY_MS: Final = 300.0
 
 
 @dataclass(frozen=True)
@@ -18,14 +20,26 @@ class Bars:
     way_ms: float
 
     @classmethod
-    def beside(cls, alone: Sighting, *, gap_ms: float = 150.0, way_ms: float = 300.0) -> "Bars":
+    def beside(cls, alone: Sighting) -> "Bars":
         """Fixed times, or twice what the canary sees alone, whichever is more."""
-        return cls(max(gap_ms, 2.0 * alone.gap_ms), max(way_ms, 2.0 * alone.way_ms))
+        return cls(GAP_MS, WAY_MS).raised(alone)
+
+    def raised(self, alone: Sighting) -> "Bars":
+        """The same bars for a machine that has become busier since."""
+        return Bars(max(self.gap_ms, 2.0 * alone.gap_ms), max(self.way_ms, 2.0 * alone.way_ms))
 
 
 def missed(trial: Trial, attack: Attack, bars: Bars) -> list[str]:
-    """Every bar that a trial has missed, in words."""
-    return [*_canary(trial.sighting, bars), *_server(trial), *_naming(trial, attack), *trial.faults]
+    """Every bar that a trial has missed, in words.
+
+    The bars are raised to twice what the canary saw in the seconds before this attack.
+    """
+    return [
+        *_canary(trial.sighting, bars.raised(trial.before)),
+        *_server(trial),
+        *_naming(trial, attack),
+        *trial.faults,
+    ]
 
 
 def _canary(seen: Sighting, bars: Bars) -> list[str]:

@@ -36,6 +36,8 @@ class Trial:
     """Everything that was seen of one attack; `attack` is empty for the canary alone."""
 
     attack: str
+    before: Sighting
+    """What the canary saw on this server until the attack began."""
     sighting: Sighting
     memory_before_mb: float
     memory_most_mb: float
@@ -80,7 +82,9 @@ def run(
         serving(folder, *options, actors=actors, seed=seed) as server,
         canary_process(server.port, seed) as canary,
     ):
+        canary.begin()
         _pass(SETTLE_S, server, progress)
+        alone = canary.tell()
         before = server.read()
         counts: dict[str, int] = {}
         faults: list[str] = []
@@ -105,6 +109,7 @@ def run(
     passed_s = after.at_s - before.at_s
     return Trial(
         attack=attack.name if attack else "",
+        before=alone,
         sighting=sighting,
         memory_before_mb=before.memory_mb,
         memory_most_mb=max(most_mb, after.memory_mb),

@@ -27,6 +27,7 @@ WELL = Sighting(
 )
 GOOD = Trial(
     attack="pings",
+    before=WELL,
     sighting=WELL,
     memory_before_mb=300.0,
     memory_most_mb=310.0,
@@ -48,6 +49,9 @@ def test_bars_are_fixed_or_twice_what_is_seen_alone() -> None:
     assert Bars(gap_ms=150.0, way_ms=300.0) == BARS
     slow = replace(WELL, gap_ms=100.0, way_ms=200.0)
     assert Bars.beside(slow) == Bars(gap_ms=200.0, way_ms=400.0)
+    busy = replace(GOOD, before=slow, sighting=replace(WELL, gap_ms=190.0))
+    assert missed(busy, ATTACKS["pings"], BARS) == []
+    assert missed(replace(busy, before=WELL), ATTACKS["pings"], BARS) != []
 
 
 @pytest.mark.parametrize(
