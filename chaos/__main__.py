@@ -2,6 +2,7 @@
 
 import argparse
 import dataclasses
+import signal
 import sys
 import tempfile
 from pathlib import Path
@@ -45,6 +46,8 @@ def main() -> int:
         return 0
     if not sys.platform.startswith("linux"):
         parser.error("attackers come from 127.0.0.2, and memory is read from /proc: needs Linux")
+    # Whoever ends the harness ends with it all that it has started.
+    signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))
     try:
         return _run(options, console)
     except (ServerError, ProcessError) as fault:
