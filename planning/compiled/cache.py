@@ -28,7 +28,12 @@ from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
 _KEPT_S: Final = 30 * 24 * 3600.0
-_SOURCES: Final = ("planning", "actors/locomotion", "evaluation/policies")
+_SOURCES: Final = (
+    "planning",
+    "actors/locomotion",
+    "evaluation/policies",
+    "server/world/compiled",
+)
 """Folders that hold kernels, and all that kernels take functions and constants from."""
 _INDIFFERENT: Final = ("NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS")
 """Variables of numba that change nothing about compiled code."""

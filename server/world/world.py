@@ -137,7 +137,7 @@ class World:
                 for name, is_open in self._actors.doors_wanted.items():
                     self.doors.want(name, is_open)
             neighbours = Neighbours(self.state)
-            self.contacts.update(self.state, neighbours)
+            self.contacts.update(self.state)
         with self.times.stage("steps"):
             self.feet.update(self.tick)
         with self.times.stage("interest"):

@@ -2,39 +2,40 @@
 
 from __future__ import annotations
 
+import math
+
 from esplanade.planning.compiled.arrays import Floats
 from esplanade.planning.compiled.jit import inlined, kernel
 
 AHEAD_S = 0.2
 AHEAD = 7
+WALKING_MPS = 0.3
 
 
 @inlined
-def _along(ahead: Floats, seconds: float, axis: int) -> float:
+def along(ahead: Floats, seconds: float, axis: int) -> float:
     """A coordinate of a course (AHEAD, 3) after a time, linear between its places."""
     place = min(max(seconds / AHEAD_S, 0.0), AHEAD - 1.0)
     k = min(int(place), AHEAD - 2)
     return float(ahead[k, axis] + (place - k) * (ahead[k + 1, axis] - ahead[k, axis]))
 
 
-@kernel
-def fill_places(ahead: Floats, seconds: Floats, out: Floats) -> None:
-    """Write the places (N, 3) on courses (N, AHEAD, 3) after times (N,)."""
-    for i in range(len(seconds)):
-        for axis in range(3):
-            out[i, axis] = _along(ahead[i], seconds[i], axis)
-
-
-@kernel
-def fill_velocities(ahead: Floats, seconds: Floats, out: Floats) -> None:
-    """Write the velocities (N, 2) on courses about times (N,), taken over AHEAD_S at most."""
+@inlined
+def velocity_about(ahead: Floats, seconds: float) -> tuple[float, float]:
+    """Velocity on a course (AHEAD, 3) about a time, metres a second; over AHEAD_S at most."""
     half = 0.5 * AHEAD_S
-    for i in range(len(seconds)):
-        before = min(half, max(seconds[i], 0.0))
-        for axis in range(2):
-            moved = _along(ahead[i], seconds[i] + half, axis)
-            moved -= _along(ahead[i], seconds[i] - before, axis)
-            out[i, axis] = moved / (half + before)
+    before = min(half, max(seconds, 0.0))
+    x = along(ahead, seconds + half, 0) - along(ahead, seconds - before, 0)
+    y = along(ahead, seconds + half, 1) - along(ahead, seconds - before, 1)
+    return x / (half + before), y / (half + before)
+
+
+@inlined
+def desired_heading(heading: float, x_mps: float, y_mps: float) -> float:
+    """Where a body wants to face: in the direction it walks, else as its course says."""
+    if math.hypot(x_mps, y_mps) > WALKING_MPS:
+        return math.atan2(y_mps, x_mps)
+    return heading
 
 
 @kernel

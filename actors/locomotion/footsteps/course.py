@@ -14,7 +14,7 @@ AHEAD_S: Final = kernels.AHEAD_S
 AHEAD: Final = kernels.AHEAD
 """Number of places of a course."""
 
-WALKING_MPS: Final = 0.3
+WALKING_MPS: Final = kernels.WALKING_MPS
 """A body that is faster than this turns to where it goes."""
 
 
@@ -29,18 +29,6 @@ class Course(NamedTuple):
     def take(self, rows: Ints) -> Course:
         """The courses of some of the bodies."""
         return Course(self.headings[rows], self.ahead[rows])
-
-    def at(self, seconds: Floats) -> Floats:
-        """Places after times (N,), seconds from now: float64 (N, 3), metres."""
-        out = np.empty((len(seconds), 3))
-        kernels.fill_places(self.ahead, seconds, out)
-        return out
-
-    def velocity(self, seconds: Floats) -> Floats:
-        """Velocities about times (N,), seconds from now: float64 (N, 2), metres a second."""
-        out = np.empty((len(seconds), 2))
-        kernels.fill_velocities(self.ahead, seconds, out)
-        return out
 
 
 def planned_places(planned: Floats, slice_s: float, now_s: float, places: Floats) -> Floats:
@@ -61,19 +49,3 @@ def planned_places(planned: Floats, slice_s: float, now_s: float, places: Floats
     out = np.empty((len(planned), AHEAD, 3))
     kernels.follow_plans(planned, slice_s, now_s, places, out)
     return out
-
-
-def desired_headings(course: Course, velocity: Floats) -> Floats:
-    """Headings that bodies want: the direction in which they walk, else as their courses say.
-
-    Parameters
-    ----------
-    course : of N bodies
-    velocity : float64 (N, 2), metres a second
-
-    Returns
-    -------
-    float64 (N,), radians
-    """
-    walking = np.hypot(velocity[:, 0], velocity[:, 1]) > WALKING_MPS
-    return np.where(walking, np.arctan2(velocity[:, 1], velocity[:, 0]), course.headings)

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from esplanade.actors.locomotion.gait._curve_kernels import smooth
+from esplanade.actors.locomotion.motion._current_pose_kernels import CurrentPose
 from esplanade.actors.locomotion.motion._key_pose_kernels import (
     ANKLE,
     ARMS,
@@ -19,12 +20,22 @@ from esplanade.actors.locomotion.motion._key_pose_kernels import (
     WIDTH,
     make_unit,
 )
-from esplanade.actors.locomotion.planted.footprints import HEADING, StepFootprints
+from esplanade.actors.locomotion.planted._step_kernels import GaitTables, fill_targets
+from esplanade.actors.locomotion.planted.footprints import HEADING, StepFootprints, Z
 from esplanade.actors.locomotion.planted.targets import Targets
 from esplanade.planning.compiled.arrays import Bools, Floats, Ints
 from esplanade.planning.compiled.jit import inlined, kernel
 
 _TURN = 2.0 * math.pi
+_SHARES = np.linspace(0.0, 1.0, KEYS)
+
+# A foot that stands lower than the other one leaves the ground earlier: lengths in legs.
+_LEVEL = 0.15
+"""Up to this rise it does so as on level ground."""
+_STEEP = 0.35
+"""From this rise on it does so earliest."""
+_EARLIER = 0.7
+"""Share of the usual time to toe-off that is then left out."""
 
 
 @inlined
@@ -107,3 +118,114 @@ def inertialise(
         for k in range(KEYS):
             make_unit(keys[i, k], PELVIS)
             make_unit(keys[i, k], CHEST)
+
+
+@kernel
+def _new_targets(count: int) -> Targets:
+    """Targets at the keys of N = `count` steps that are yet to be written."""
+    return Targets(
+        np.empty((count, KEYS, 3)),
+        np.empty((count, KEYS)),
+        np.empty((count, KEYS)),
+        np.empty((count, KEYS)),
+        np.empty((count, KEYS, 3)),
+        np.empty((count, KEYS)),
+        np.empty((count, KEYS)),
+        np.empty((count, KEYS)),
+        np.empty((count, KEYS)),
+        np.empty((count, KEYS, 2)),
+        np.empty((count, KEYS, 2)),
+        np.empty(count),
+    )
+
+
+@kernel
+def _lift_early(
+    footprints: StepFootprints, share: Floats, tables: GaitTables, targets: Targets
+) -> None:
+    """Let swing feet leave a lower tread early, in targets at shares (N, KEYS); in place.
+
+    Otherwise such a foot would hold the hips down, which then had to jump.
+    """
+    early = _new_targets(1)
+    warped = np.empty((1, KEYS))
+    for i in range(len(share)):
+        climbed = (footprints.standing[i, Z] - footprints.lifted[i, Z]) / footprints.leg_m[i]
+        if climbed <= _LEVEL:
+            continue
+        usual = targets.lift[i]
+        lift = usual * (1.0 - _EARLIER * smooth((climbed - _LEVEL) / (_STEEP - _LEVEL)))
+        for k in range(KEYS):
+            swung = usual + (share[i, k] - lift) * (1.0 - usual) / (1.0 - lift)
+            warped[0, k] = share[i, k] * usual / lift if share[i, k] < lift else swung
+        one = StepFootprints(
+            footprints.on_right[i : i + 1],
+            footprints.lifted[i : i + 1],
+            footprints.standing[i : i + 1],
+            footprints.landing[i : i + 1],
+            footprints.leg_m[i : i + 1],
+        )
+        fill_targets(one, warped, tables.poses, tables.clearances, early)
+        targets.swing_ankle[i] = early.swing_ankle[0]
+        targets.swing_pitch[i] = early.swing_pitch[0]
+        targets.swing_heading[i] = early.swing_heading[0]
+        targets.lift[i] = lift
+
+
+@kernel
+def fill_step_keys(
+    footprints: StepFootprints,
+    elapsed: Floats,
+    now: CurrentPose,
+    ticks: Ints,
+    hips: Floats,
+    room_m: Floats,
+    tables: GaitTables,
+    keys: Floats,
+    lift: Floats,
+) -> None:
+    """Write the keys (N, KEYS, WIDTH) and the toe-offs (N,) of what is left of N steps.
+
+    They begin with the current pose in value and speed. `elapsed` (N,), in [0, 1), is the share of
+    each step that is over already, 0 for steps that begin; the steps take `ticks` (N,) from now on.
+    The hips should be at places `hips` (N, 2) at the end, metres, and may be for that as far as
+    `room_m` (N,) from where the footprints have them.
+    """
+    count = len(elapsed)
+    share = np.empty((count, KEYS))
+    for i in range(count):
+        for k in range(KEYS):
+            share[i, k] = elapsed[i] + (1.0 - elapsed[i]) * _SHARES[k]
+    targets = _new_targets(count)
+    fill_targets(footprints, share, tables.poses, tables.clearances, targets)
+    _lift_early(footprints, share, tables, targets)
+    fill_keys(targets, footprints, keys)
+    aside = np.empty((count, 2))
+    re_aimed = np.empty(count, np.bool_)
+    for i in range(count):
+        x = hips[i, 0] - footprints.standing[i, 0] - keys[i, KEYS - 1, 0]
+        y = hips[i, 1] - footprints.standing[i, 1] - keys[i, KEYS - 1, 1]
+        distance = max(math.hypot(x, y), 1e-9)
+        within = min(distance, room_m[i]) / distance
+        aside[i, 0], aside[i, 1] = x * within, y * within
+        re_aimed[i] = elapsed[i] > 0.0
+        left = (targets.lift[i] - elapsed[i]) / (1.0 - elapsed[i])
+        lift[i] = min(max(left, 0.0), 1.0)
+    inertialise(keys, now.key, now.speed, re_aimed, ticks, aside)
+
+
+@kernel
+def fill_shift_keys(
+    now: CurrentPose, footprints: StepFootprints, places: Floats, keys: Floats
+) -> None:
+    """Write the keys (N, KEYS, WIDTH) of bodies on both feet whose hips go to places (N, 2)."""
+    for i in range(len(keys)):
+        for k in range(KEYS):
+            share = smooth(_SHARES[k])
+            for d in range(WIDTH):
+                keys[i, k, d] = now.key[i, d]
+            for d in range(2):
+                shift = places[i, d] - footprints.standing[i, d] - now.key[i, d]
+                keys[i, k, d] += share * shift
+            for d in range(3):
+                keys[i, k, ANKLE + d] = 0.0

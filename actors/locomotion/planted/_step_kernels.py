@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from esplanade.actors.locomotion.gait._curve_kernels import arm, chest_torsion, mix, smooth
 from esplanade.actors.locomotion.gait.step_length import PoseTable
@@ -20,6 +21,14 @@ from esplanade.planning.compiled.arrays import Floats
 from esplanade.planning.compiled.jit import inlined, kernel
 
 _TURN = 2.0 * math.pi
+
+
+class GaitTables(NamedTuple):
+    """What planted steps are looked up in."""
+
+    poses: PoseTable
+    clearances: Floats
+    """(M, M), leg lengths: what `fill_clearances` wrote."""
 
 
 @kernel

@@ -11,7 +11,7 @@ import numpy as np
 
 from esplanade.actors.locomotion.gait.step_length import RV_LONGEST, pose_table, sl_planted
 from esplanade.actors.locomotion.planted._feet_kernels import fill_clearances
-from esplanade.actors.locomotion.planted._step_kernels import fill_targets
+from esplanade.actors.locomotion.planted._step_kernels import GaitTables, fill_targets
 from esplanade.actors.locomotion.planted.footprints import StepFootprints
 from esplanade.actors.locomotion.planted.targets import Targets, empty_targets
 from esplanade.planning.compiled.arrays import Floats
@@ -53,11 +53,17 @@ def step_targets(footprints: StepFootprints, u: Floats) -> Targets:
     if not np.all(footprints.leg_m > 0.0):
         raise ValueError("legs must be longer than 0 m")
     targets = empty_targets(count, shares.shape[1])
-    fill_targets(footprints, shares, pose_table(), _clearances(), targets)
+    tables = gait_tables()
+    fill_targets(footprints, shares, tables.poses, tables.clearances, targets)
     return targets
 
 
 @cache
+def gait_tables() -> GaitTables:
+    """The tables of all planted steps."""
+    return GaitTables(pose_table(), _clearances())
+
+
 def _clearances() -> Floats:
     """Rise of feet beyond the curves, (26, 26), by the relative velocities at both ends."""
     table = np.empty((_TABLE_SIDE, _TABLE_SIDE))

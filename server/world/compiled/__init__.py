@@ -1,0 +1,1 @@
+"""Compiled code of the live world; it takes nothing but from planning and locomotion."""
