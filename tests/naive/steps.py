@@ -7,7 +7,7 @@ from esplanade.actors.locomotion.body.headings import wrap_angle
 from esplanade.actors.locomotion.body.sizes import BodySizes
 from esplanade.actors.locomotion.body.skeleton import TRACK_HALF_WIDTH
 from esplanade.actors.locomotion.gait.curves import smooth
-from esplanade.actors.locomotion.motion._leg_pose_kernels import EASE_RAD, STEEPEST_RAD
+from esplanade.actors.locomotion.motion._leg_pose_kernels import EASE_RAD, KEY_REACH, STEEPEST_RAD
 from esplanade.actors.locomotion.motion.key_poses import (
     ANKLE,
     CHEST,
@@ -26,7 +26,7 @@ from esplanade.actors.locomotion.motion.key_poses import (
     standing_ankles,
 )
 from esplanade.actors.locomotion.motion.leg_poses import REACH, LegPoses
-from esplanade.actors.locomotion.motion.transitions import CurrentPose
+from esplanade.actors.locomotion.motion._current_pose_kernels import CurrentPose
 from esplanade.actors.locomotion.planted.footprints import StepFootprints
 from esplanade.actors.locomotion.planted.targets import Targets
 from esplanade.actors.locomotion.reference.posing import left_and_right
@@ -107,7 +107,9 @@ def sample_keys(steps: Steps, u: Floats, foot_m: Floats) -> Floats:
     return out
 
 
-def leg_poses(steps: Steps, u: Floats, key: Floats, sizes: BodySizes) -> LegPoses:
+def leg_poses(
+    steps: Steps, u: Floats, key: Floats, sizes: BodySizes, reach_share: float = REACH
+) -> LegPoses:
     """Legs of N steps at shares u (N,), where `sample_keys` has given keys (N, WIDTH)."""
     root = steps.standing[:, :3] + key[:, ROOT]
     ankles, pitches, headings, raised = _feet(steps, u, key, sizes)
@@ -115,8 +117,9 @@ def leg_poses(steps: Steps, u: Floats, key: Floats, sizes: BodySizes) -> LegPose
         key[:, None, PELVIS],
         left_and_right(TRACK_HALF_WIDTH * sizes.leg_m, np.zeros_like(sizes.leg_m)),
     )
-    _raise_heels(hips, ankles, pitches, headings, raised, sizes)
-    root, hips = _lower(root, hips, ankles, sizes)
+    reach = reach_share * sizes.leg_m[:, None]
+    _raise_heels(hips, ankles, pitches, headings, raised, sizes, reach)
+    root, hips = _lower(root, hips, ankles, reach)
     return LegPoses(root, hips, ankles, pitches, headings)
 
 
@@ -147,9 +150,9 @@ def _raise_heels(
     headings: Floats,
     raised: Floats,
     sizes: BodySizes,
+    reach: Floats,
 ) -> None:
     """Turn feet on their toes about the toe where the leg is too short for them; in place."""
-    reach = REACH * sizes.leg_m[:, None]
     short = (np.linalg.norm(ankles - hips, axis=2) > reach) & (raised > 0.0)
     if not short.any():
         return
@@ -170,10 +173,9 @@ def _raise_heels(
     ankles[short] = toe + heel_from_toe(pitch, heading, foot)
 
 
-def _lower(root: Floats, hips: Floats, ankles: Floats, sizes: BodySizes) -> tuple[Floats, Floats]:
+def _lower(root: Floats, hips: Floats, ankles: Floats, reach: Floats) -> tuple[Floats, Floats]:
     """Bring the hips down until both legs reach their feet."""
     legs = hips - ankles
-    reach = REACH * sizes.leg_m[:, None]
     level2 = np.minimum(legs[..., 0] ** 2 + legs[..., 1] ** 2, reach**2)
     drop = np.maximum(legs[..., 2] - np.sqrt(reach**2 - level2), 0.0).max(axis=1)
     down = np.zeros_like(root)
@@ -227,3 +229,14 @@ def keys_of(targets: Targets, footprints: StepFootprints) -> Floats:
     keys[..., SHOULDERS] = targets.shoulders
     keys[..., ELBOWS] = targets.elbows
     return keys
+
+
+def let_legs_reach(steps: Steps, sizes: BodySizes) -> None:
+    """Bring the last keys of N steps to what is drawn of them; in place."""
+    legs = leg_poses(steps, np.ones(len(steps.lift)), steps.keys[:, -1], sizes, KEY_REACH)
+    rows, stands = np.arange(len(steps.lift)), steps.on_right.astype(np.int64)
+    last = steps.keys[:, -1]
+    last[:, ROOT] = legs.root - steps.standing[:, :3]
+    last[:, ANKLE] = legs.ankles[rows, 1 - stands] - steps.landing[:, :3]
+    last[:, STANDING_PITCH] = legs.pitches[rows, stands]
+    last[:, SWING_PITCH] = legs.pitches[rows, 1 - stands]

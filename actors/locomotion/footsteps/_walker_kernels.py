@@ -28,6 +28,7 @@ from esplanade.actors.locomotion.motion._current_pose_kernels import (
     share_at,
 )
 from esplanade.actors.locomotion.motion._key_pose_kernels import KEYS, WIDTH
+from esplanade.actors.locomotion.motion._leg_pose_kernels import Placement, let_legs_reach
 from esplanade.actors.locomotion.motion._transition_kernels import (
     fill_shift_keys,
     fill_step_keys,
@@ -251,6 +252,10 @@ def begin_steps(
         hips[begun:],
         keys[begun:],
     )
+    placement = Placement(
+        footprints.on_right, footprints.standing, footprints.landing, lift, footprints.leg_m
+    )
+    let_legs_reach(placement, keys)
     walkers.lifted[at] = footprints.lifted
     start = np.full(count, tick)
     return at, Steps(

@@ -97,6 +97,8 @@ class Walkers:
             self._stand(tick, slots[lost], course.take(lost))
             self.lost += len(lost)
         begun, steps = kernels.begin_steps(self._held, tick, self._tick_s, slots, headings, ahead)
+        if not np.isfinite(steps.keys).all():
+            raise ValueError("a key of a step is not a finite number")
         if len(begun):
             self.steps.put(begun, self._publish(steps, begun))
 

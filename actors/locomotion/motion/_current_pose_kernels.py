@@ -17,9 +17,10 @@ from esplanade.actors.locomotion.motion._key_pose_kernels import (
     fill_samples,
 )
 from esplanade.actors.locomotion.motion._leg_pose_kernels import (
-    LegPoses,
+    REACH,
     Placement,
     fill_leg_poses,
+    new_leg_poses,
 )
 from esplanade.actors.locomotion.motion.key_poses import Steps
 from esplanade.actors.locomotion.planted.footprints import HEADING, StepFootprints
@@ -49,18 +50,6 @@ def share_at(start: int, ticks: int, tick: int) -> float:
 
 
 @kernel
-def new_leg_poses(count: int) -> LegPoses:
-    """Legs of N = `count` bodies that are yet to be written."""
-    return LegPoses(
-        np.empty((count, 3)),
-        np.empty((count, 2, 3)),
-        np.empty((count, 2, 3)),
-        np.empty((count, 2)),
-        np.empty((count, 2)),
-    )
-
-
-@kernel
 def current_pose(
     old: Steps, tick: int, footprints: StepFootprints, swapped: Bools
 ) -> CurrentPose:
@@ -81,7 +70,7 @@ def current_pose(
     fill_samples(old.keys, old.landing, old.lift, before, foot_m, speed)
     legs = new_leg_poses(count)
     placement = Placement(old.on_right, old.standing, old.landing, old.lift, footprints.leg_m)
-    fill_leg_poses(placement, share, now, legs)
+    fill_leg_poses(placement, share, now, REACH, legs)
     for i in range(count):
         passed = (share[i] - before[i]) * old.ticks[i]
         # A body that stands, or has stood since its step ended, does not move.

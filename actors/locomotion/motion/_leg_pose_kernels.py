@@ -22,6 +22,9 @@ from esplanade.planning.compiled.arrays import Bools, Floats
 from esplanade.planning.compiled.jit import inlined, kernel
 
 REACH = 0.9995
+KEY_REACH = 0.9991
+"""Legs are stretched to this share at the ends of steps, as they are sent: numbers that are rounded
+to a tenth of a millimetre leave them within REACH still."""
 STEEPEST_RAD = -1.3
 """A heel is raised about its toe no further than to this pitch."""
 EASE_RAD = 0.1
@@ -94,14 +97,31 @@ def _distance(a: Floats, b: Floats) -> float:
 
 
 @kernel
-def fill_leg_poses(given: Placement, u: Floats, key: Floats, out: LegPoses) -> None:
-    """Write the legs of N steps at shares u (N,), where `sample_keys` has given key (N, WIDTH)."""
+def new_leg_poses(count: int) -> LegPoses:
+    """Legs of N = `count` bodies that are yet to be written."""
+    return LegPoses(
+        np.empty((count, 3)),
+        np.empty((count, 2, 3)),
+        np.empty((count, 2, 3)),
+        np.empty((count, 2)),
+        np.empty((count, 2)),
+    )
+
+
+@kernel
+def fill_leg_poses(
+    given: Placement, u: Floats, key: Floats, reach_share: float, out: LegPoses
+) -> None:
+    """Write the legs of N steps at shares u (N,), where `sample_keys` has given key (N, WIDTH).
+
+    Legs are stretched to that share of their length at most.
+    """
     root, hips, ankles, pitches, headings = out
     standing, landing, lift = given.standing, given.landing, given.lift
     toe = np.empty(3)
     for i in range(len(u)):
         leg = given.leg_m[i]
-        foot, reach = FOOT * leg, REACH * leg
+        foot, reach = FOOT * leg, reach_share * leg
         stands = 1 if given.on_right[i] else 0
         swings = 1 - stands
         w, x, y, z = key[i, PELVIS], key[i, PELVIS + 1], key[i, PELVIS + 2], key[i, PELVIS + 3]
@@ -138,3 +158,26 @@ def fill_leg_poses(given: Placement, u: Floats, key: Floats, out: LegPoses) -> N
         root[i, 2] -= drop
         hips[i, 0, 2] -= drop
         hips[i, 1, 2] -= drop
+
+
+@kernel
+def let_legs_reach(given: Placement, keys: Floats) -> None:
+    """Bring the last of keys (N, KEYS, WIDTH) to what is drawn of it; in place.
+
+    Heels are raised, and hips come down, until both legs reach their feet. What is drawn at the end
+    of a step is then what its record says, and the next step begins with the same numbers.
+    """
+    count, last = len(keys), keys.shape[1] - 1
+    key, ends = np.empty((count, keys.shape[2])), np.ones(count)
+    for i in range(count):
+        key[i] = keys[i, last]
+    legs = new_leg_poses(count)
+    fill_leg_poses(given, ends, key, KEY_REACH, legs)
+    for i in range(count):
+        stands = 1 if given.on_right[i] else 0
+        swings = 1 - stands
+        keys[i, last, 2] = legs.root[i, 2] - given.standing[i, 2]
+        keys[i, last, STANDING_PITCH] = legs.pitches[i, stands]
+        keys[i, last, SWING_PITCH] = legs.pitches[i, swings]
+        for d in range(3):
+            keys[i, last, ANKLE + d] = legs.ankles[i, swings, d] - given.landing[i, d]

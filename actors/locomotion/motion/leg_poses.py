@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Final
 
-import numpy as np
-
 from esplanade.actors.locomotion.body.sizes import BodySizes
 from esplanade.actors.locomotion.motion import _leg_pose_kernels as kernels
 from esplanade.actors.locomotion.motion._leg_pose_kernels import LegPoses, Placement
@@ -36,14 +34,7 @@ def leg_poses(steps: Steps, u: Floats, key: Floats, sizes: BodySizes) -> LegPose
     -------
     LegPoses of N bodies, metres and radians, world axes
     """
-    count = len(u)
-    poses = LegPoses(
-        np.empty((count, 3)),
-        np.empty((count, 2, 3)),
-        np.empty((count, 2, 3)),
-        np.empty((count, 2)),
-        np.empty((count, 2)),
-    )
+    poses = kernels.new_leg_poses(len(u))
     given = Placement(steps.on_right, steps.standing, steps.landing, steps.lift, sizes.leg_m)
-    kernels.fill_leg_poses(given, u, key, poses)
+    kernels.fill_leg_poses(given, u, key, REACH, poses)
     return poses

@@ -29,6 +29,11 @@ _VALUE_BITS = 0x7FFF
 _SHORT = 0x7FFF
 _BYTE = 0x7F
 
+SAME = 1e-9
+"""Components of a rotation that differ by less are as large."""
+ROUNDS = 3
+"""How often a rotation is packed at most, until what is read would be packed alike."""
+
 
 class Layout(NamedTuple):
     """Flags and quanta of the records, as in `esplanade.protocol.steps`."""
@@ -51,22 +56,14 @@ def _quantised(value: float, quantum: float, most: int) -> int:
     return int(min(max(np.rint(value / quantum), -float(most)), float(most)))
 
 
-@kernel
-def _write_rotation(rotation: Floats, words: NDArray[np.uint16], quantum: float) -> None:
-    """Write a quaternion (4,) as its smallest three, as `pack_smallest_three` does."""
-    place = 0
-    for d in range(1, 4):
-        if abs(rotation[d]) > abs(rotation[place]):
-            place = d
-    word = 0
+@inlined
+def _make_unit(rotation: Floats) -> None:
+    square = 0.0
     for d in range(4):
-        if d != place:
-            signed = math.copysign(rotation[d], rotation[d] * rotation[place])
-            value = _quantised(signed, quantum, _ZERO - 1) + _ZERO
-            if word < 2:
-                value |= ((place >> word) & 1) << 15
-            words[word] = value
-            word += 1
+        square += rotation[d] * rotation[d]
+    length = math.sqrt(square)
+    for d in range(4):
+        rotation[d] /= length
 
 
 @kernel
@@ -84,13 +81,39 @@ def _read_rotation(words: NDArray[np.uint16], quantum: float, out: Floats) -> No
 
 
 @inlined
-def _make_unit(rotation: Floats) -> None:
-    square = 0.0
+def _largest(rotation: Floats) -> int:
+    """The place of the largest component; of those that are as large the first."""
+    place = 0
+    for d in range(1, 4):
+        if abs(rotation[d]) > abs(rotation[place]) + SAME:
+            place = d
+    return place
+
+
+@kernel
+def _write_rotation(
+    rotation: Floats, words: NDArray[np.uint16], quantum: float, known: Floats
+) -> None:
+    """Write a quaternion (4,) as its smallest three, as `pack_smallest_three` does.
+
+    `known` (4,) becomes what readers know of it.
+    """
     for d in range(4):
-        square += rotation[d] * rotation[d]
-    length = math.sqrt(square)
-    for d in range(4):
-        rotation[d] /= length
+        known[d] = rotation[d]
+    for _ in range(ROUNDS):
+        place = _largest(known)
+        word = 0
+        for d in range(4):
+            if d != place:
+                signed = math.copysign(known[d], known[d] * known[place])
+                value = _quantised(signed, quantum, _ZERO - 1) + _ZERO
+                if word < 2:
+                    value |= ((place >> word) & 1) << 15
+                words[word] = value
+                word += 1
+        _read_rotation(words, quantum, known)
+        if _largest(known) == place:
+            break
 
 
 @kernel
@@ -101,6 +124,7 @@ def write_records(
 
     Keys are relative to the quantised footprints, which readers add to them.
     """
+    known = np.empty(4)
     for i in range(len(records)):
         record = records[i]
         record.id = ids[i]
@@ -127,7 +151,7 @@ def write_records(
                 place = key[ANKLE + d] + steps.landing[i, d]
                 from_m = record.landing.position[d] * layout.footprint_m
                 out.ankle[d] = _quantised(place - from_m, layout.key_m, _SHORT)
-            _write_rotation(key[PELVIS : PELVIS + 4], out.pelvis, layout.smallest_three)
+            _write_rotation(key[PELVIS : PELVIS + 4], out.pelvis, layout.smallest_three, known)
             out.swing_pitch = _quantised(key[SWING_PITCH], layout.foot_rad, _SHORT)
             out.standing_pitch = _quantised(key[STANDING_PITCH], layout.foot_rad, _SHORT)
             apart = key[SWING_HEADING] + steps.landing[i, HEADING] - landing_heading

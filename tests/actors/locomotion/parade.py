@@ -15,7 +15,10 @@ from esplanade.actors.locomotion.motion.key_poses import Steps, no_steps
 from esplanade.actors.locomotion.reference.posing import Pose, pose
 from esplanade.planning import LayeredGrid, Scene
 from esplanade.planning.compiled.arrays import Floats
+from esplanade.protocol.steps import StepRecords
 from esplanade.server.world.step_records import from_records, to_records
+from tests.naive.footsteps.ground import Ground as NaiveGround
+from tests.naive.footsteps.walkers import Walkers as NaiveWalkers
 
 TICK_S = 0.05
 FIELD = Scene.open_space((-40.0, -40.0, 40.0, 40.0))
@@ -30,6 +33,8 @@ class Begun:
     tick: int
     slots: Slots
     steps: Steps
+    records: StepRecords
+    """The same as they are sent."""
 
 
 @dataclass(frozen=True)
@@ -48,15 +53,20 @@ class Frame:
 
 
 class Parade:
-    """N bodies that go as they are told, and their walkers."""
+    """N bodies that go as they are told, and their walkers, or the plain twins of these."""
 
-    def __init__(self, count: int, scene: Scene = FIELD, seed: int = 0) -> None:
+    def __init__(
+        self, count: int, scene: Scene = FIELD, seed: int = 0, *, naive: bool = False
+    ) -> None:
         self.count = count
         self.tick = 0
-        self.ground = Ground(scene, LayeredGrid.from_scene(scene))
+        grid = LayeredGrid.from_scene(scene)
+        self.ground = Ground(scene, grid)
         self.positions = np.zeros((count, 3))
         self.headings = np.zeros(count)
-        self.walkers = Walkers(count, self.ground, TICK_S, self._publish)
+        self.walkers: Walkers | NaiveWalkers = Walkers(count, self.ground, TICK_S, self._publish)
+        if naive:
+            self.walkers = NaiveWalkers(count, NaiveGround(scene, grid), TICK_S, self._publish)
         self.begun: list[Begun] = []
         self.places: list[Floats] = []
         self._traits = [traits_of(seed, number) for number in range(count)]
@@ -157,8 +167,9 @@ class Parade:
         return Course(self.headings, ahead)
 
     def _publish(self, steps: Steps, slots: Slots) -> Steps:
-        told = from_records(to_records(steps, slots))
-        self.begun.append(Begun(self.tick, slots.copy(), told))
+        records = to_records(steps, slots)
+        told = from_records(records)
+        self.begun.append(Begun(self.tick, slots.copy(), told, records))
         return told
 
 

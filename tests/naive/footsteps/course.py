@@ -1,79 +1,43 @@
-"""Courses: where bodies are and are going, as far as is known."""
+"""Courses, and where bodies are on them after a time."""
 
 from __future__ import annotations
 
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from esplanade.actors.locomotion.footsteps import _course_kernels as kernels
+from esplanade.actors.locomotion.footsteps.course import AHEAD, AHEAD_S, WALKING_MPS
 from esplanade.planning.compiled.arrays import Floats, Ints
 
-AHEAD_S: Final = kernels.AHEAD_S
-"""Time between the places of a course."""
-AHEAD: Final = kernels.AHEAD
-"""Number of places of a course."""
-
-WALKING_MPS: Final = 0.3
-"""A body that is faster than this turns to where it goes."""
+__all__ = ["AHEAD", "AHEAD_S", "WALKING_MPS", "Course", "desired_headings"]
 
 
 class Course(NamedTuple):
-    """Reference trajectories of N bodies over the next 1.2 seconds."""
+    """As `esplanade.actors.locomotion.footsteps.course.Course`."""
 
     headings: Floats
-    """(N,), radians from +x: where the bodies face while they stand."""
     ahead: Floats
-    """(N, AHEAD, 3), metres: places from now on, AHEAD_S apart."""
 
     def take(self, rows: Ints) -> Course:
-        """The courses of some of the bodies."""
         return Course(self.headings[rows], self.ahead[rows])
 
     def at(self, seconds: Floats) -> Floats:
         """Places after times (N,), seconds from now: float64 (N, 3), metres."""
-        out = np.empty((len(seconds), 3))
-        kernels.fill_places(self.ahead, seconds, out)
-        return out
+        place = np.clip(seconds / AHEAD_S, 0.0, AHEAD - 1.0)
+        k = np.minimum(place.astype(np.int64), AHEAD - 2)
+        rows = np.arange(len(k))
+        before, after = self.ahead[rows, k], self.ahead[rows, k + 1]
+        return np.asarray(before + (place - k)[:, None] * (after - before))
 
     def velocity(self, seconds: Floats) -> Floats:
         """Velocities about times (N,), seconds from now: float64 (N, 2), metres a second."""
-        out = np.empty((len(seconds), 2))
-        kernels.fill_velocities(self.ahead, seconds, out)
-        return out
-
-
-def planned_places(planned: Floats, slice_s: float, now_s: float, places: Floats) -> Floats:
-    """Places of bodies from now on that follow plans, as in `Course.ahead`.
-
-    Parameters
-    ----------
-    planned : float64 (N, K, 3), metres, `slice_s` seconds apart
-    slice_s : seconds between the places of a plan
-    now_s : seconds since the plans began
-    places : float64 (N, 3), metres: where the bodies are, wherever limits of speed have let them
-        get; within a second they are back on their plans
-
-    Returns
-    -------
-    float64 (N, AHEAD, 3), metres
-    """
-    out = np.empty((len(planned), AHEAD, 3))
-    kernels.follow_plans(planned, slice_s, now_s, places, out)
-    return out
+        half = 0.5 * AHEAD_S
+        before = np.minimum(half, np.maximum(seconds, 0.0))
+        moved = self.at(seconds + half) - self.at(seconds - before)
+        return np.asarray(moved[:, :2] / (half + before)[:, None])
 
 
 def desired_headings(course: Course, velocity: Floats) -> Floats:
-    """Where bodies want to face: in the direction they walk, else as their courses say.
-
-    Parameters
-    ----------
-    course : of N bodies
-    velocity : float64 (N, 2), metres a second
-
-    Returns
-    -------
-    float64 (N,), radians
-    """
+    """Where bodies want to face: in the direction they walk, else as their courses say."""
     walking = np.hypot(velocity[:, 0], velocity[:, 1]) > WALKING_MPS
     return np.where(walking, np.arctan2(velocity[:, 1], velocity[:, 0]), course.headings)

@@ -8,9 +8,9 @@ import numpy as np
 
 from esplanade.actors.locomotion.body.headings import forward_and_left, wrap_angle
 from esplanade.actors.locomotion.body.skeleton import FOOT, TRACK_HALF_WIDTH
-from esplanade.actors.locomotion.footsteps.course import Course, desired_headings
-from esplanade.actors.locomotion.footsteps.ground import Ground
-from esplanade.actors.locomotion.footsteps.limits import (
+from tests.naive.footsteps.course import Course, desired_headings
+from tests.naive.footsteps.ground import Ground
+from tests.naive.footsteps.limits import (
     BEHIND_LANDING,
     clamped_distance,
     clamped_foot,

@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from esplanade.actors.locomotion.footsteps.course import AHEAD_S, WALKING_MPS, Course
-from esplanade.actors.locomotion.footsteps.limits import distance_and_limit
+from tests.naive.footsteps.course import AHEAD_S, WALKING_MPS, Course
+from tests.naive.footsteps.limits import distance_and_limit
 from esplanade.actors.locomotion.gait.durations import step_duration_s
 from esplanade.actors.locomotion.planted.footprints import Z
 from esplanade.planning.compiled.arrays import Floats

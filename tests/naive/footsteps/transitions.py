@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
 from esplanade.actors.locomotion.body.headings import wrap_angle
 from esplanade.actors.locomotion.body.sizes import BodySizes
 from esplanade.actors.locomotion.gait.curves import smooth
+from esplanade.actors.locomotion.motion._current_pose_kernels import CurrentPose
 from esplanade.actors.locomotion.motion._transition_kernels import fill_keys, inertialise
 from esplanade.actors.locomotion.motion.key_poses import (
     ANKLE,
@@ -46,15 +47,6 @@ _EARLIER: Final = 0.7
 
 _BACK: Final = 0.02
 """Share of a step over which the speed of the current pose is taken."""
-
-
-class CurrentPose(NamedTuple):
-    """What is drawn of N bodies at one moment, as keys of the steps that they begin."""
-
-    key: Floats
-    """(N, WIDTH)."""
-    speed: Floats
-    """(N, WIDTH): its change in a tick."""
 
 
 def current_pose(

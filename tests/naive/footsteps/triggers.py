@@ -8,8 +8,8 @@ import numpy as np
 
 from esplanade.actors.locomotion.body.headings import wrap_angle
 from esplanade.actors.locomotion.body.skeleton import TRACK_HALF_WIDTH
-from esplanade.actors.locomotion.footsteps.course import WALKING_MPS, Course, desired_headings
-from esplanade.actors.locomotion.footsteps.timing import durations_s, within_reach_s
+from tests.naive.footsteps.course import WALKING_MPS, Course, desired_headings
+from tests.naive.footsteps.timing import durations_s, within_reach_s
 from esplanade.actors.locomotion.motion.key_poses import (
     ROOT_ON_MAP,
     STANDING_PITCH,

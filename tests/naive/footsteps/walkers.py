@@ -1,4 +1,4 @@
-"""Walkers: the feet of everyone in a zone, which follow the bodies with real steps."""
+"""Walkers, whole arrays at a time: first those lost, then steps, then shifts of weight."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ import numpy as np
 from esplanade.actors.locomotion.body.sizes import BodySizes
 from esplanade.actors.locomotion.body.skeleton import FOOT, TRACK_HALF_WIDTH
 from esplanade.actors.locomotion.body.traits import WalkerTraits
-from esplanade.actors.locomotion.footsteps.course import Course
-from esplanade.actors.locomotion.footsteps.footholds import choose_footholds
-from esplanade.actors.locomotion.footsteps.ground import Ground
-from esplanade.actors.locomotion.footsteps.triggers import (
+from tests.naive.footsteps.course import Course
+from tests.naive.footsteps.footholds import choose_footholds
+from tests.naive.footsteps.ground import Ground
+from tests.naive.footsteps.triggers import (
     StepGoals,
     TriggeredSteps,
     steps_to_begin,
     steps_to_re_aim,
 )
 from esplanade.actors.locomotion.motion.key_poses import Steps, no_steps
-from esplanade.actors.locomotion.motion.transitions import (
+from tests.naive.footsteps.transitions import (
     current_pose,
     standing_keys,
     step_keys,
@@ -34,6 +34,7 @@ from esplanade.actors.locomotion.planted.footprints import (
     Z,
 )
 from esplanade.planning.compiled.arrays import Bools, Floats, Ints
+from tests.naive.steps import let_legs_reach
 
 Publish = Callable[[Steps, Ints], Steps]
 """Sends the steps that begin in these slots to everyone; returns them as they were quantised."""
@@ -74,6 +75,7 @@ class Walkers:
 
     def join(self, tick: int, slots: Ints, traits: Sequence[WalkerTraits], course: Course) -> None:
         """Let a new walker stand in each of slots (N,), at the beginning of its course."""
+        course = Course(*course)
         self._sizes.leg_m[slots] = [each.leg_m for each in traits]
         self._sizes.stature_m[slots] = [each.stature_m for each in traits]
         self._goals.cadence_factor[slots] = [each.cadence_factor for each in traits]
@@ -93,6 +95,7 @@ class Walkers:
         ValueError
             A course holds something that is not a finite number. Nothing is changed then.
         """
+        course = Course(*course)
         if not (np.isfinite(course.ahead).all() and np.isfinite(course.headings).all()):
             raise ValueError("courses must be finite")
         self._stand_where_lost(tick, slots, course)
@@ -210,5 +213,7 @@ class Walkers:
             lift,
             keys,
         )
+        if ticks.all():
+            let_legs_reach(steps, self._sizes.take(slots))
         self.steps.put(slots, self._publish(steps, slots))
         self._lifted[slots] = footprints.lifted

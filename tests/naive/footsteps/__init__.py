@@ -1,0 +1,1 @@
+"""Steps that begin in a tick, whole arrays at a time; tests hold the kernels to them."""
