@@ -3,8 +3,9 @@
     python -m benchmarks.walking                                  everything, a minute
     python -m benchmarks.walking --avatars 10 1000 --ticks 400 --json walking.json
 
-Cost: all avatars walk in circles of their own at 1.3 m/s. The benchmark measures what a tick of
-the server spends on their feet (`Walkers.update`), against the 50 ms of a tick, and what posing all
+Cost: all avatars walk in circles of their own at 1.3 m/s, on a level field and over flights of
+stairs. The benchmark measures what a tick of the server spends on their feet (`Walkers.update` and
+the records that are sent) and on their contacts, against the 50 ms of a tick, and what posing all
 of them once costs in Python. Reaching: 1000 seeded targets of a heel's chain are reached for by
 plain CCD and by both ways of two stages. Table 3 is shown as printed, by its own equation, by the
 source's curves, and with the offset that was fitted. The exit code is 1 if a tick of the most
@@ -38,12 +39,24 @@ from esplanade.actors.locomotion.reference import rotations
 from esplanade.actors.locomotion.reference import table3 as third
 from esplanade.actors.locomotion.reference.posing import pose
 from esplanade.footage.targets import SHARES, random_targets
-from esplanade.planning import LayeredGrid, Scene
+from esplanade.planning import LayeredGrid, Scene, Stairs
 from esplanade.planning.compiled.arrays import Floats, Ints
+from esplanade.server.world.contacts import Contacts
+from esplanade.server.world.state import State
+from esplanade.server.world.step_records import from_records, to_records
 
 TICK_S: Final = 0.05
 TICK_LIMIT_MS: Final = 20.0
 SPEED_MPS: Final = 1.3
+_FLIGHTS: Final = tuple(
+    Stairs(start=(x, y), end=(x + 1.2, y), width_m=3.0, top_m=0.7, steps=4)
+    for x in range(-50, 50, 4)
+    for y in range(-50, 50, 4)
+)
+GROUNDS: Final = {
+    "level": Scene(bounds=(-60.0, -60.0, 60.0, 60.0)),
+    "stairs": Scene(bounds=(-60.0, -60.0, 60.0, 60.0), stairs=_FLIGHTS),
+}
 TARGETS: Final = 1000
 TRUNK_DOF: Final = 6
 PRODUCT: Final = "... and restarts"
@@ -53,12 +66,15 @@ LEAST_SAVED: Final = {"limb is enough": 0.80, "half and half": 0.60, "all of the
 class Cost(NamedTuple):
     """The cost of the feet of a number of avatars."""
 
+    ground: str
     avatars: int
     tick_p50_ms: float
     tick_p99_ms: float
     steps_a_tick: float
     us_an_avatar_and_tick: float
     us_a_step: float
+    contacts_us: float
+    """Time for the contacts of an avatar and tick, the half of all being actors."""
     frame_ms: float
     """Time to pose all of them once."""
 
@@ -78,7 +94,9 @@ class Work(NamedTuple):
 
 def main(argv: Sequence[str] | None = None) -> int:
     options = parser().parse_args(argv)
-    costs = [cost_of(count, options.ticks) for count in options.avatars]
+    costs = [
+        cost_of(ground, count, options.ticks) for ground in GROUNDS for count in options.avatars
+    ]
     reaching = {name: compare_reaching(share, options.seed) for name, share in SHARES.items()}
     rows = {
         "eq. (12)": third.reproduce_as_printed(),
@@ -116,22 +134,22 @@ def parser() -> argparse.ArgumentParser:
 # --- cost -------------------------------------------------------------------------------------
 
 
-def cost_of(avatars: int, ticks: int) -> Cost:
+def cost_of(ground_name: str, avatars: int, ticks: int) -> Cost:
     """Let a number of avatars walk in circles for some ticks."""
     random = np.random.default_rng(1)
-    scene = Scene(bounds=(-200.0, -200.0, 200.0, 200.0))
+    scene = GROUNDS[ground_name]
     ground = Ground(scene, LayeredGrid.from_scene(scene, 2.0))
     begun = 0
 
     def publish(steps: Steps, slots: Ints) -> Steps:
         nonlocal begun
         begun += len(slots)
-        return steps
+        return from_records(to_records(steps, slots))
 
     slots = np.arange(avatars)
     radius_m = random.uniform(2.0, 20.0, avatars)
     angle = random.uniform(0.0, 2.0 * np.pi, avatars)
-    centres = random.uniform(-150.0, 150.0, (avatars, 2))
+    centres = random.uniform(-30.0, 30.0, (avatars, 2))
 
     def course(tick: int) -> Course:
         seconds = tick * TICK_S + AHEAD_S * np.arange(AHEAD)
@@ -139,6 +157,9 @@ def cost_of(avatars: int, ticks: int) -> Cost:
         ahead = np.zeros((avatars, AHEAD, 3))
         ahead[..., 0] = centres[:, :1] + radius_m[:, None] * np.cos(turned)
         ahead[..., 1] = centres[:, 1:] + radius_m[:, None] * np.sin(turned)
+        level = np.full(ahead[..., 0].size, 0.35)
+        heights = ground.height(ahead[..., :2].reshape(-1, 2), level)
+        ahead[..., 2] = np.nan_to_num(heights).reshape(ahead.shape[:2])
         return Course(turned[:, 0] + 0.5 * np.pi, ahead)
 
     traits = [traits_of(0, avatar) for avatar in range(avatars)]
@@ -149,7 +170,10 @@ def cost_of(avatars: int, ticks: int) -> Cost:
     walkers = Walkers(avatars, ground, TICK_S, publish)
     walkers.join(0, slots, traits, course(0))
     settled = round(3.0 / TICK_S)
-    tick_ms = []
+    tick_ms, contacts_us = [], []
+    state, contacts = State(avatars), Contacts()
+    for slot in range(avatars):
+        state.add(slot % 2, "", (0.0, 0.0, 0.0), 0, 0.25)
     for tick in track(
         range(settled + ticks),
         description=f"{avatars} avatars",
@@ -163,6 +187,11 @@ def cost_of(avatars: int, ticks: int) -> Cost:
         start = time.perf_counter()
         walkers.update(tick, slots, here)
         tick_ms.append(1e3 * (time.perf_counter() - start))
+        state.before[:] = state.positions if tick else here.ahead[:, 0, :2]
+        state.positions[:], state.heights[:] = here.ahead[:, 0, :2], here.ahead[:, 0, 2]
+        start = time.perf_counter()
+        contacts.update(state)
+        contacts_us.append(1e6 * (time.perf_counter() - start))
     measured = np.array(tick_ms[settled:])
     frames_ms = []
     for k in range(10):
@@ -170,12 +199,14 @@ def cost_of(avatars: int, ticks: int) -> Cost:
         pose(walkers.steps, walkers.steps.share(settled + ticks - 1 + 0.1 * k), sizes)
         frames_ms.append(1e3 * (time.perf_counter() - start))
     return Cost(
+        ground_name,
         avatars,
         float(np.median(measured)),
         float(np.percentile(measured, 99)),
         begun / ticks,
         1e3 * float(measured.mean()) / avatars,
         1e3 * float(measured.sum()) / max(begun, 1),
+        float(np.mean(contacts_us[settled:])) / avatars,
         float(np.median(frames_ms)),
     )
 
@@ -247,11 +278,13 @@ def saved(ways: dict[str, Work], way: str) -> float:
 
 def show_costs(console: Console, costs: Sequence[Cost]) -> None:
     table = Table(box=box.SIMPLE, title="feet of everyone, a tick of 50 ms", title_justify="left")
+    table.add_column("ground")
     columns = "avatars", "p50 ms", "p99 ms", "of a tick", "steps a tick", "µs each", "µs a step"
-    for column in (*columns, "posed once, ms"):
+    for column in (*columns, "contacts, µs each", "posed once, ms"):
         table.add_column(column, justify="right")
     for cost in costs:
         table.add_row(
+            cost.ground,
             str(cost.avatars),
             f"{cost.tick_p50_ms:.2f}",
             f"{cost.tick_p99_ms:.2f}",
@@ -259,6 +292,7 @@ def show_costs(console: Console, costs: Sequence[Cost]) -> None:
             f"{cost.steps_a_tick:.1f}",
             f"{cost.us_an_avatar_and_tick:.1f}",
             f"{cost.us_a_step:.0f}",
+            f"{cost.contacts_us:.2f}",
             f"{cost.frame_ms:.2f}",
         )
     console.print(table)

@@ -16,9 +16,10 @@ SMALLEST_THREE: Final = np.sqrt(0.5) / 16383.0
 NEAR_IDENTITY: Final = 0.5 / 127.0
 """Quantum of x, y, z of a small rotation in 8 bits with a sign."""
 
-_SAME: Final = 1e-9
-"""Components that differ by less are as large; the first of them is left out."""
-_ROUNDS: Final = 3
+_EXACT: Final = 1e-6
+"""A component is a multiple of its quantum if it is no more of them away from one."""
+_LARGE: Final = 0.49
+"""A component that is left out is larger than this."""
 _ZERO: Final = 0x4000
 _VALUE_BITS: Final = 0x7FFF
 _OTHERS: Final = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])
@@ -30,22 +31,26 @@ def pack_smallest_three(quaternions: Floats) -> npt.NDArray[np.uint16]:
 
     They are at most 0.01 degrees off. The largest of the four components is left out. The low 15
     bits of each word are one of the others, in their order, plus 0x4000. The top bits of the first
-    and the second word are the low and the high bit of the place of the one left out. What is
-    unpacked is packed alike again: where two components are about as large, rounding may make the
-    other one the largest, which then is the one to leave out.
+    and the second word are the low and the high bit of the place of the one left out. A
+    rotation that was unpacked is packed alike again: the component that was left out of it is known
+    by the others, which are multiples of their quantum, even if rounding made another one larger.
     """
-    words = _pack_once(quaternions)
-    for _ in range(_ROUNDS - 1):
-        words = _pack_once(unpack_smallest_three(words))
-    return words
+    return _pack_once(unpack_smallest_three(_pack_once(quaternions)))
+
+
+def _left_out(quaternions: Floats) -> npt.NDArray[np.int64]:
+    """The place of the component that is left out of each, int64 (...)."""
+    multiples = quaternions / SMALLEST_THREE
+    exact = np.abs(multiples - np.rint(multiples)) < _EXACT
+    exact &= np.abs(multiples) < _ZERO - 0.5
+    without = np.stack([exact[..., others].all(axis=-1) for others in _OTHERS], axis=-1)
+    without &= np.abs(quaternions) > _LARGE
+    largest = np.abs(quaternions).argmax(axis=-1)
+    return np.where(without.any(axis=-1), without.argmax(axis=-1), largest)
 
 
 def _pack_once(quaternions: Floats) -> npt.NDArray[np.uint16]:
-    sizes = np.abs(quaternions)
-    place = np.zeros((*quaternions.shape[:-1], 1), dtype=np.int64)
-    for component in range(1, 4):
-        larger = sizes[..., component, None] > np.take_along_axis(sizes, place, axis=-1) + _SAME
-        place = np.where(larger, component, place)
+    place = _left_out(quaternions)[..., None]
     largest = np.take_along_axis(quaternions, place, axis=-1)
     others = np.take_along_axis(quaternions, _OTHERS[place[..., 0]], axis=-1)
     words = np.rint(np.copysign(others, others * largest) / SMALLEST_THREE).astype(np.int64)

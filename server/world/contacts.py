@@ -16,14 +16,10 @@ class Contacts:
 
     def update(self, state: State) -> None:
         """Take in the motion from the tick before to this one."""
-        found = find_touching(bodies_of(state), state.live(), ACTOR, self._touching)
+        bodies = Bodies(
+            state.ids, state.kinds, state.positions, state.before, state.heights, state.radii
+        )
+        found = find_touching(bodies, state.live(), ACTOR, self._touching)
         self._touching = found.pairs
         self.actor_person += found.new_with_people
         self.actor_actor += found.new_among_actors
-
-
-def bodies_of(state: State) -> Bodies:
-    """Everyone's body, as compiled code takes it."""
-    return Bodies(
-        state.ids, state.kinds, state.positions, state.before, state.heights, state.radii
-    )

@@ -8,9 +8,10 @@ from benchmarks import walking
 from benchmarks.walking import PRODUCT, TICK_LIMIT_MS, Cost, Work
 
 
-def test_everyone_takes_steps() -> None:
-    cost = walking.cost_of(avatars=5, ticks=20)
-    assert cost.avatars == 5
+@pytest.mark.parametrize("ground", walking.GROUNDS)
+def test_everyone_takes_steps(ground: str) -> None:
+    cost = walking.cost_of(ground, avatars=5, ticks=20)
+    assert (cost.ground, cost.avatars) == (ground, 5)
     # About two steps a second and avatar.
     assert 0.2 < cost.steps_a_tick < 1.0
     assert 0.0 < cost.tick_p50_ms <= cost.tick_p99_ms
@@ -30,7 +31,7 @@ def work(turned: float, reached_percent: float = 100.0) -> Work:
     ],
 )
 def test_verdict(tick_ms: float, turned: float, reached: float, short: bool) -> None:
-    cost = Cost(1000, tick_ms, 2.0 * tick_ms, 100.0, 1.0, 1.0, 1.0)
+    cost = Cost("level", 1000, tick_ms, 2.0 * tick_ms, 100.0, 1.0, 1.0, 0.2, 1.0)
     ways = {"plain CCD": work(100.0), PRODUCT: work(turned, reached)}
     reaching = dict.fromkeys(walking.LEAST_SAVED, ways)
     assert walking.falls_short([cost], reaching) is short

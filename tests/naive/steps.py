@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.actors.locomotion.body.headings import wrap_angle
 from esplanade.actors.locomotion.body.sizes import BodySizes
 from esplanade.actors.locomotion.body.skeleton import TRACK_HALF_WIDTH
 from esplanade.actors.locomotion.gait.curves import smooth
+from esplanade.actors.locomotion.motion._current_pose_kernels import CurrentPose
 from esplanade.actors.locomotion.motion._leg_pose_kernels import EASE_RAD, KEY_REACH, STEEPEST_RAD
 from esplanade.actors.locomotion.motion.key_poses import (
     ANKLE,
@@ -26,12 +26,12 @@ from esplanade.actors.locomotion.motion.key_poses import (
     standing_ankles,
 )
 from esplanade.actors.locomotion.motion.leg_poses import REACH, LegPoses
-from esplanade.actors.locomotion.motion._current_pose_kernels import CurrentPose
 from esplanade.actors.locomotion.planted.footprints import StepFootprints
 from esplanade.actors.locomotion.planted.targets import Targets
 from esplanade.actors.locomotion.reference.posing import left_and_right
 from esplanade.actors.locomotion.reference.rotations import about, multiply, normalise, rotate
 from esplanade.planning.compiled.arrays import Floats
+from tests.naive.headings import wrap_angle
 
 LANDING = [7, 8, 9, 10, 12]
 
@@ -240,3 +240,11 @@ def let_legs_reach(steps: Steps, sizes: BodySizes) -> None:
     last[:, ANKLE] = legs.ankles[rows, 1 - stands] - steps.landing[:, :3]
     last[:, STANDING_PITCH] = legs.pitches[rows, stands]
     last[:, SWING_PITCH] = legs.pitches[rows, 1 - stands]
+
+
+def align(keys: Floats) -> None:
+    """Give quaternions of keys (N, KEYS, WIDTH) the sign nearest to the key before; in place."""
+    for part in (PELVIS, CHEST):
+        for k in range(1, KEYS):
+            dots = np.einsum("nd,nd->n", keys[:, k, part], keys[:, k - 1, part])
+            keys[dots < 0.0, k, part] *= -1.0

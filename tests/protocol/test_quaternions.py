@@ -44,6 +44,15 @@ def test_ties_for_the_largest(known: tuple[float, ...]) -> None:
     assert worst_degrees(read, quaternion) < 0.01
 
 
+def test_what_is_read_is_packed_alike() -> None:
+    """Even where rounding changes which component is the largest."""
+    near = np.random.default_rng(2).normal(0.0, 2e-5, (20_000, 4))
+    tied = np.concatenate([near + known for known in ((1, 0, 0, 1), (1, 1, 1, -1), (0, 1, -1, 0))])
+    known = np.concatenate([rotations(20_000), tied])
+    words = pack_smallest_three(known / np.linalg.norm(known, axis=-1, keepdims=True))
+    np.testing.assert_array_equal(pack_smallest_three(unpack_smallest_three(words)), words)
+
+
 def test_small_rotations_in_three_bytes() -> None:
     known = rotations(100_000)
     known = known[np.abs(known[:, 1:]).max(axis=1) <= 0.5]

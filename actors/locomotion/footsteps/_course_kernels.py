@@ -32,7 +32,7 @@ def velocity_about(ahead: Floats, seconds: float) -> tuple[float, float]:
 
 @inlined
 def desired_heading(heading: float, x_mps: float, y_mps: float) -> float:
-    """Where a body wants to face: in the direction it walks, else as its course says."""
+    """Heading that a body wants: the direction in which it walks, else as its course says."""
     if math.hypot(x_mps, y_mps) > WALKING_MPS:
         return math.atan2(y_mps, x_mps)
     return heading

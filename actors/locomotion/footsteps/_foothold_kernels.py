@@ -1,4 +1,4 @@
-"""Footholds: where the swing foot lands, from where a body is going and where there is ground."""
+"""Footholds of swing feet, from where a body is going and where there is ground."""
 
 from __future__ import annotations
 
@@ -29,20 +29,20 @@ from esplanade.actors.locomotion.planted.footprints import HEADING, Z
 from esplanade.planning.compiled.arrays import Floats
 from esplanade.planning.compiled.jit import inlined
 
-# How far up or down a foot is put.
+# Limits of the height up or down to which a foot is put.
 _TREAD_M = 0.26
-"""Ahead of a body that takes one tread at a time."""
+"""Greatest rise or fall ahead of a body that takes one tread at a time."""
 _TWO_TREADS_M = 0.42
-"""Ahead of a body that is too fast for that,"""
+"""Greatest rise or fall ahead of a body that is too fast for that."""
 _HASTY_MPS = 1.6
-"""which is one faster than this."""
+"""A body faster than this is too fast to take one tread at a time."""
 _CLIMB_M = 0.75
-"""At most, under a body that has gone there."""
+"""Greatest rise or fall under a body that has gone there."""
 
 _OPENING_RAD = 1.6
-"""How far a foot may be turned outwards against the other one."""
+"""The greatest angle by which a foot is turned outwards against the other one."""
 _CLOSING_RAD = 1.0
-"""How far a foot may be turned inwards against the other one."""
+"""The greatest angle by which a foot is turned inwards against the other one."""
 
 _PLACES = 5
 _AHEAD, _HALFWAY, _UNDER, _FAR_UNDER = 0, 1, 2, 3
@@ -50,7 +50,7 @@ _AHEAD, _HALFWAY, _UNDER, _FAR_UNDER = 0, 1, 2, 3
 
 
 class HeelTable(NamedTuple):
-    """How far ahead of the hips the heel of a step lands, by the length of the step; in legs."""
+    """Distances ahead of the hips where heels land, by the lengths of steps; in legs."""
 
     length: Floats
     """(M,), ascending."""
@@ -59,24 +59,24 @@ class HeelTable(NamedTuple):
 
 
 class Foothold(NamedTuple):
-    """What a step is to reach besides its footprint."""
+    """The targets of a step besides its footprint."""
 
     hips_x: float
-    """Where the hips are to be at the end, metres."""
+    """Place of the hips at the end, metres."""
     hips_y: float
     body_x: float
-    """Where the body is at the end, metres, which the hips may not get to."""
+    """Place of the body at the end, metres, which the hips may not get to."""
     body_y: float
     x_mps: float
-    """How fast the body goes then."""
+    """Velocity of the body then."""
     y_mps: float
     heading: float
-    """Where the body wants to face then, radians."""
+    """Heading that the body wants then, radians."""
 
 
 @inlined
 def _heel_ahead_of_hips(table: HeelTable, length: float) -> float:
-    """How far ahead of the hips the heel of a step of a length lands, leg lengths."""
+    """Distance ahead of the hips, leg lengths, where the heel of a step of a length lands."""
     last = len(table.length) - 1
     if length >= table.length[last]:
         return float(table.ahead[last])

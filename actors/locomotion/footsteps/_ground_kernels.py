@@ -1,4 +1,4 @@
-"""Where a foot can be put, one foot after the other: how high the ground is, and on which tread."""
+"""The ground under feet, one foot after the other: its height, and the treads to put a foot on."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ _SHIFTS_M = np.array([0.0, *(s * k * 0.025 for k in range(1, 9) for s in (1.0, -
 
 
 class SolidArrays(NamedTuple):
-    """S solids, and which of them stand about each bucket of the map."""
+    """S solids, with an index of those about each bucket of the map."""
 
     corners: Floats
     """(K, 2), metres: the rings, one after the other."""
     begins: Ints
-    """(S + 1,): where the ring of each begins among the corners."""
+    """(S + 1,): the corner with which the ring of each begins."""
     boxes: Floats
     """(S, 4), metres: least x, least y, greatest x, greatest y."""
     bottoms: Floats
@@ -47,7 +47,7 @@ class SolidArrays(NamedTuple):
     carries: Bools
     """(S,): whether one can stand on it."""
     first: Ints
-    """(nx * ny + 1,): where the members of each bucket begin, row by row."""
+    """(nx * ny + 1,): the place of the first member of each bucket, row by row."""
     members: Ints
     """(M,): solids whose box meets a bucket, ascending in each."""
     x0: float
@@ -163,9 +163,7 @@ def height_at(ground: GroundArrays, covering: Covering, x: float, y: float, near
 
 
 @inlined
-def settle_foot(
-    ground: GroundArrays, covering: Covering, footprint: Floats, foot_m: float
-) -> bool:
+def settle_foot(ground: GroundArrays, covering: Covering, footprint: Floats, foot_m: float) -> bool:
     """Put a foot (4,) on the ground, in place; whether there is any. See `Ground.settle`."""
     if ground.flat:
         footprint[Z] = 0.0

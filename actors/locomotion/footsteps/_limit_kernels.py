@@ -1,4 +1,4 @@
-"""How far a foot and a body may get from one another, so that legs reach and do not cross."""
+"""Limits of the distances of feet and bodies, so that legs reach and do not cross."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How long a step takes, from how fast a body goes and how far its legs reach."""
+"""The duration of a step, from the speed of a body and the reach of its legs."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ LONGEST_S = 0.8
 _LONGEST = 0.68
 """Longest step that is walked, leg lengths: a body that is faster takes it in less time."""
 _RISE_M = 0.15
-"""Stairs are walked tread by tread: a step that would climb more than this is shortened,"""
+"""Stairs are walked tread by tread: a step that would climb more than this is shortened."""
 _HURRY = 2.5
-"""but to no less than its length divided by this."""
+"""A step on stairs is shortened to no less than its length divided by this."""
 _UNEVEN_M = 0.12
 """A step with a rise above this is one on stairs."""
 _FREE = float(step_duration_s(0.6)) * 0.6
@@ -41,15 +41,17 @@ _FREE = float(step_duration_s(0.6)) * 0.6
 def within_reach_s(ahead: Floats, standing: Floats, leg_m: float, seconds: float) -> float:
     """A duration cut so that a body does not get too far past its standing foot (4,) by then.
 
-    `seconds` is how long the step would take from now on; the result is SHORTEST_REST_S or more.
+    The step would take `seconds` from now on; the result is SHORTEST_REST_S or more.
     """
-    distance, limit = distance_and_limit(along(ahead, seconds, 0), along(ahead, seconds, 1), standing)
+    distance, limit = distance_and_limit(
+        along(ahead, seconds, 0), along(ahead, seconds, 1), standing
+    )
     rise = abs(along(ahead, seconds, 2) - ahead[0, 2])
     x_mps, y_mps = velocity_about(ahead, seconds)
     speed = max(math.hypot(x_mps, y_mps), 0.1)
     left = seconds - max(distance - limit * leg_m, 0.0) / speed
     steep = max(rise / _RISE_M, 1.0)
-    return max(left / min(steep, _HURRY), SHORTEST_REST_S)
+    return float(max(left / min(steep, _HURRY), SHORTEST_REST_S))
 
 
 @inlined

@@ -1,4 +1,4 @@
-"""Step triggers: which body takes a step now, and which step under way has to end elsewhere."""
+"""Step triggers: whether a body takes a step now, and whether one has to end elsewhere."""
 
 from __future__ import annotations
 
@@ -39,39 +39,40 @@ _SETTLED_M = 0.004
 """Hips that are further from the body shift their weight."""
 
 _MOVED_M = 0.06
-"""A step is re-aimed when its end has moved by more than this,"""
+"""A step is re-aimed when its end has moved by more than this."""
 _VEERED_RAD = 0.26
-"""or when the body wants to face elsewhere by more than this angle,"""
+"""A step is re-aimed when the body wants to face elsewhere by more than this angle."""
 _LATEST = 0.75
-"""but not after this share of it,"""
+"""A step is not re-aimed after this share of it, unless the foot would land far off."""
 _REST_S = 0.15
-"""and not before this time has passed since it was last re-aimed."""
+"""A step is not re-aimed before this time has passed since it was last re-aimed, unless the
+foot would land far off."""
 _LEAPT_M = 0.15
-"""If the foot would land elsewhere by more than this, the step is re-aimed later still,"""
+"""A foot would land far off if that is further than this from where it was to land."""
 _LAST = 0.95
-"""up to this share of it,"""
+"""A step whose foot would land far off is re-aimed up to this share of it."""
 _QUICK_S = 0.25
-"""and the foot comes down within this time."""
+"""A foot that would land far off comes down within this time."""
 _FEWEST_TICKS = 2
 
 GOES_ON = 0
 STEPS = 1
 RE_AIMS = 2
 SHIFTS = 3
-"""What a walker does in a tick: nothing new, a step, the rest of a step anew, a shift of weight."""
+"""A walker does nothing new in a tick, or a step, the rest of a step anew, or a shift of weight."""
 
 
 class StepGoals(NamedTuple):
-    """What the steps under way of N walkers were to reach, and traits of their bodies."""
+    """The targets of the steps under way of N walkers, and traits of their bodies."""
 
     body: Floats
-    """(N, 2), metres: where the body was to be at the end."""
+    """(N, 2), metres: place of the body at the end."""
     velocity: Floats
-    """(N, 2), metres a second: how fast it was to go then."""
+    """(N, 2), metres a second: its velocity then."""
     heading: Floats
-    """(N,), radians: where it was to face."""
+    """(N,), radians: the heading that it wanted."""
     whole_s: Floats
-    """(N,): how long the step takes in all."""
+    """(N,): duration of the whole step."""
     leg_m: Floats
     """(N,)."""
     cadence_factor: Floats
@@ -79,16 +80,16 @@ class StepGoals(NamedTuple):
 
 
 class Trigger(NamedTuple):
-    """What a walker does in a tick."""
+    """Decision of one walker in a tick."""
 
     kind: int
     """GOES_ON, STEPS, RE_AIMS or SHIFTS."""
     swapped: bool
     """Whether the foot that swung last stands now."""
     ticks: int
-    """How long the step takes from now on."""
+    """Duration of the step from now on."""
     whole_s: float
-    """How long it takes in all."""
+    """Duration of the whole step."""
 
 
 @inlined

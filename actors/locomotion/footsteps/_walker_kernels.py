@@ -9,7 +9,6 @@ import numpy as np
 
 from esplanade.actors.locomotion.footsteps._foothold_kernels import HeelTable, choose_foothold
 from esplanade.actors.locomotion.footsteps._ground_kernels import (
-    Covering,
     GroundArrays,
     new_covering,
 )
@@ -43,13 +42,13 @@ from esplanade.planning.compiled.jit import kernel
 SHIFT_S = 0.4
 """Duration of a shift of weight from foot to foot."""
 _MOST_ELAPSED = 0.99
-"""However often a step is re-aimed, the rest above this share of it is left."""
+"""The rest above this share of a step is left, however often the step is re-aimed."""
 _ROOM = 0.4
 """Hips may be this far from where footprints have them, leg lengths."""
 
 
 class WalkerArrays(NamedTuple):
-    """The feet of everyone, by slot, and what their steps are made with."""
+    """The feet of everyone, by slot, with the ground and the tables of their steps."""
 
     steps: Steps
     """The step of everyone that is under way or was the last, as it is drawn."""
@@ -79,7 +78,7 @@ class _Triggered(NamedTuple):
 def _triggered(
     walkers: WalkerArrays, tick: int, tick_s: float, slots: Ints, headings: Floats, ahead: Floats
 ) -> _Triggered:
-    """Who begins a step, or the rest of one, or shifts its weight."""
+    """Find the walkers that begin a step, or the rest of one, or shift their weight."""
     steps, goals = walkers.steps, walkers.goals
     count = len(slots)
     rows, shifting = np.empty(count, np.int64), np.empty(count, np.int64)
@@ -172,7 +171,9 @@ def _footprints(
 
 
 @kernel
-def _elapsed(walkers: WalkerArrays, old: Steps, triggered: _Triggered, at: Ints, tick: int) -> Floats:
+def _elapsed(
+    walkers: WalkerArrays, old: Steps, triggered: _Triggered, at: Ints, tick: int
+) -> Floats:
     """Shares of the steps that are over already, which are kept: 0 but for those re-aimed."""
     out = np.zeros(len(at))
     for k in range(len(at)):

@@ -1,4 +1,4 @@
-"""Where a foot can be put: how high the ground is, exactly, and on which tread."""
+"""The ground under feet: its exact height, and the treads that a foot can be put on."""
 
 from __future__ import annotations
 
@@ -30,10 +30,8 @@ class Ground:
     def __init__(self, scene: Scene, grid: LayeredGrid) -> None:
         solids = () if scene.mesh is not None else scene.solids()
         self.flat = bool(grid.arrays.flat)
-        self.arrays = GroundArrays(
-            self.flat, scene.mesh is None, _solid_arrays(solids), grid.arrays
-        )
-        """What compiled code knows of it."""
+        self.arrays = GroundArrays(self.flat, scene.mesh is None, solid_arrays(solids), grid.arrays)
+        """The same surfaces as compiled code takes them."""
 
     def height(self, points: Floats, near_m: Floats) -> Floats:
         """Heights of the ground at points.
@@ -63,7 +61,7 @@ class Ground:
         Parameters
         ----------
         footprints : float64 (N, 4), metres and radians
-            Their heights are about what is expected.
+            Their heights are about those expected.
         foot_m : float64 (N,), metres
 
         Returns
@@ -76,7 +74,7 @@ class Ground:
         return out, found
 
 
-def _solid_arrays(solids: Sequence[Polygon]) -> SolidArrays:
+def solid_arrays(solids: Sequence[Polygon]) -> SolidArrays:
     """Solids in the order given, with an index of those about each bucket of the map."""
     counts = np.array([0, *(len(solid.points) for solid in solids)], dtype=np.int64)
     corners = np.array([xy for solid in solids for xy in solid.points], dtype=np.float64)
@@ -113,7 +111,7 @@ def _solid_arrays(solids: Sequence[Polygon]) -> SolidArrays:
 
 
 def _ramp(solid: Polygon) -> tuple[float, float, float, float, float, float]:
-    """Beginning, way and square of the length of a solid's ramp, and its height at the beginning."""
+    """Beginning, way and squared length of a solid's ramp, and its height at the beginning."""
     if solid.ramp is None:
         return 0.0, 0.0, 0.0, 0.0, 1.0, 0.0
     (ax, ay), (bx, by) = solid.ramp.start, solid.ramp.end
@@ -134,7 +132,7 @@ def _bucket_size_m(boxes: Floats, low: Floats) -> float:
 
 
 def _members(cells: Ints, nx: int, ny: int) -> tuple[Ints, Ints]:
-    """Where the members of each of nx * ny buckets begin, and the solids in them, ascending.
+    """Find the first member of each of nx * ny buckets, and the solids in them, ascending.
 
     `cells` (S, 4) are the least column and row, and the greatest column and row, of each solid.
     """

@@ -49,7 +49,7 @@ class Walkers:
         self.steps = no_steps(capacity)
         """The step of everyone that is under way or was the last, as it is drawn."""
         self.lost = 0
-        """How often a body was too far from its feet and stood anew."""
+        """Number of times that a body was too far from its feet and stood anew."""
         self._arrays = WalkerArrays(
             self.steps,
             np.zeros((capacity, 4)),
@@ -64,7 +64,7 @@ class Walkers:
             ),
             ground.arrays,
             gait_tables(),
-            _heel_table(),
+            heel_table(),
         )
         self._held = make_handle(self._arrays)
 
@@ -134,7 +134,7 @@ class Walkers:
 
 
 @cache
-def _heel_table() -> HeelTable:
-    """How far ahead of the hips heels land, by the length of a straight step."""
+def heel_table() -> HeelTable:
+    """The table of the places of heels ahead of the hips, of straight steps."""
     poses = straight_double_support(np.linspace(0.0, RV_LONGEST, 65))
     return HeelTable(planted_length(poses), np.ascontiguousarray(poses.front_forward))

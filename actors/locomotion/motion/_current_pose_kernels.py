@@ -1,4 +1,4 @@
-"""What is drawn of bodies now, as keys of the steps that they begin, one body after the other."""
+"""The drawn poses of bodies as keys of the steps that they begin, one body after the other."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _TURN = 2.0 * math.pi
 
 
 class CurrentPose(NamedTuple):
-    """What is drawn of N bodies at one moment, as keys of the steps that they begin."""
+    """The drawn poses of N bodies at one moment, as keys of the steps that they begin."""
 
     key: Floats
     """(N, WIDTH)."""
@@ -50,9 +50,7 @@ def share_at(start: int, ticks: int, tick: int) -> float:
 
 
 @kernel
-def current_pose(
-    old: Steps, tick: int, footprints: StepFootprints, swapped: Bools
-) -> CurrentPose:
+def current_pose(old: Steps, tick: int, footprints: StepFootprints, swapped: Bools) -> CurrentPose:
     """The pose of N bodies at a tick, as keys of their next steps.
 
     `old` are the steps that are under way or were the last ones, `footprints` those of the next

@@ -162,10 +162,10 @@ def fill_leg_poses(
 
 @kernel
 def let_legs_reach(given: Placement, keys: Floats) -> None:
-    """Bring the last of keys (N, KEYS, WIDTH) to what is drawn of it; in place.
+    """Bring the last of keys (N, KEYS, WIDTH) to the pose that is drawn of it; in place.
 
-    Heels are raised, and hips come down, until both legs reach their feet. What is drawn at the end
-    of a step is then what its record says, and the next step begins with the same numbers.
+    Heels are raised, and hips come down, until both legs reach their feet. At the end of a step its
+    record then says the pose that is drawn, and the next step begins with the same numbers.
     """
     count, last = len(keys), keys.shape[1] - 1
     key, ends = np.empty((count, keys.shape[2])), np.ones(count)

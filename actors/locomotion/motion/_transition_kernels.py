@@ -31,9 +31,9 @@ _SHARES = np.linspace(0.0, 1.0, KEYS)
 
 # A foot that stands lower than the other one leaves the ground earlier: lengths in legs.
 _LEVEL = 0.15
-"""Up to this rise it does so as on level ground."""
+"""Up to this rise the lower foot leaves as on level ground."""
 _STEEP = 0.35
-"""From this rise on it does so earliest."""
+"""From this rise on the lower foot leaves earliest."""
 _EARLIER = 0.7
 """Share of the usual time to toe-off that is then left out."""
 
@@ -184,7 +184,7 @@ def fill_step_keys(
     keys: Floats,
     lift: Floats,
 ) -> None:
-    """Write the keys (N, KEYS, WIDTH) and the toe-offs (N,) of what is left of N steps.
+    """Write the keys (N, KEYS, WIDTH) and the toe-offs (N,) of the rest of N steps.
 
     They begin with the current pose in value and speed. `elapsed` (N,), in [0, 1), is the share of
     each step that is over already, 0 for steps that begin; the steps take `ticks` (N,) from now on.

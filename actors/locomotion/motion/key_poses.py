@@ -75,10 +75,6 @@ class Steps(NamedTuple):
         """Some of the steps."""
         return Steps._make(column[rows] for column in self)
 
-    def without_keys(self, rows: Ints) -> Steps:
-        """Some of the steps without their keys, which are most of their size."""
-        return Steps._make((*(column[rows] for column in self[:-1]), self.keys[:0]))
-
     def put(self, rows: Ints | Bools, steps: Steps) -> None:
         """Write other steps over some of these."""
         for column, new in zip(self, steps, strict=True):
@@ -105,7 +101,7 @@ def interpolate(keys: Floats, u: Floats) -> Floats:
     Parameters
     ----------
     keys : float64 (N, KEYS, WIDTH)
-        Quaternions of neighbouring keys must have the same sign, see `align`.
+        Quaternions of neighbouring keys must have the same sign.
     u : float64 (N,), shares of the step, in [0, 1]
 
     Returns
@@ -122,14 +118,6 @@ def interpolate(keys: Floats, u: Floats) -> Floats:
     out = np.empty((len(u), WIDTH))
     kernels.fill_interpolated(keys, u, out)
     return out
-
-
-def align(keys: Floats) -> None:
-    """Give quaternions of keys (N, KEYS, WIDTH) the sign nearest to the key before; in place."""
-    for part in (PELVIS, CHEST):
-        for k in range(1, KEYS):
-            dots = np.einsum("nd,nd->n", keys[:, k, part], keys[:, k - 1, part])
-            keys[dots < 0.0, k, part] *= -1.0
 
 
 def heel_from_toe(pitch: Floats, heading: Floats, foot_m: Floats) -> Floats:

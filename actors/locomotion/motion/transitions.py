@@ -1,4 +1,4 @@
-"""Keys of bodies that stand, and what the keys of steps are made of."""
+"""Keys of bodies that stand."""
 
 from __future__ import annotations
 

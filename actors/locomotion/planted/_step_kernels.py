@@ -24,11 +24,11 @@ _TURN = 2.0 * math.pi
 
 
 class GaitTables(NamedTuple):
-    """What planted steps are looked up in."""
+    """The tables of planted steps."""
 
     poses: PoseTable
     clearances: Floats
-    """(M, M), leg lengths: what `fill_clearances` wrote."""
+    """(M, M), leg lengths: written by `fill_clearances`."""
 
 
 @kernel

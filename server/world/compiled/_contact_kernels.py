@@ -1,4 +1,4 @@
-"""Which bodies touched during a tick: only those in neighbouring buckets are looked at."""
+"""The bodies that touched during a tick: only those in neighbouring buckets are looked at."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Buckets(NamedTuple):
     """N bodies by their places on the map."""
 
     first: Ints
-    """(nx * ny + 1,): where the members of each bucket begin, row by row."""
+    """(nx * ny + 1,): the place of the first member of each bucket, row by row."""
     members: Ints
     """(N,): slots."""
     columns: Ints
@@ -73,13 +73,6 @@ def _moved_m(bodies: Bodies, slot: int) -> float:
         bodies.positions[slot, 0] - bodies.before[slot, 0],
         bodies.positions[slot, 1] - bodies.before[slot, 1],
     )
-
-
-@kernel
-def closest_approaches(bodies: Bodies, one: Ints, other: Ints, out: Floats) -> None:
-    """Write the least distance of each of N pairs of slots during the tick to out (N,), metres."""
-    for i in range(len(one)):
-        out[i] = _approach(bodies, one[i], other[i])
 
 
 @kernel

@@ -29,10 +29,10 @@ _VALUE_BITS = 0x7FFF
 _SHORT = 0x7FFF
 _BYTE = 0x7F
 
-SAME = 1e-9
-"""Components of a rotation that differ by less are as large."""
-ROUNDS = 3
-"""How often a rotation is packed at most, until what is read would be packed alike."""
+EXACT = 1e-6
+"""A component is a multiple of its quantum if it is no more of them away from one."""
+LARGE = 0.49
+"""A component that is left out is larger than this."""
 
 
 class Layout(NamedTuple):
@@ -81,13 +81,22 @@ def _read_rotation(words: NDArray[np.uint16], quantum: float, out: Floats) -> No
 
 
 @inlined
-def _largest(rotation: Floats) -> int:
-    """The place of the largest component; of those that are as large the first."""
-    place = 0
-    for d in range(1, 4):
-        if abs(rotation[d]) > abs(rotation[place]) + SAME:
-            place = d
-    return place
+def _left_out(rotation: Floats, quantum: float) -> int:
+    """The place of the component that is left out, as `esplanade.protocol.quaternions` has it."""
+    largest = 0
+    for place in range(4):
+        if abs(rotation[place]) > abs(rotation[largest]):
+            largest = place
+    for place in range(4):
+        exact = abs(rotation[place]) > LARGE
+        for d in range(4):
+            if d != place:
+                multiple = rotation[d] / quantum
+                near = abs(multiple - np.rint(multiple)) < EXACT
+                exact = exact and near and abs(multiple) < _ZERO - 0.5
+        if exact:
+            return place
+    return largest
 
 
 @kernel
@@ -96,12 +105,12 @@ def _write_rotation(
 ) -> None:
     """Write a quaternion (4,) as its smallest three, as `pack_smallest_three` does.
 
-    `known` (4,) becomes what readers know of it.
+    `known` (4,) becomes the rotation that readers know.
     """
     for d in range(4):
         known[d] = rotation[d]
-    for _ in range(ROUNDS):
-        place = _largest(known)
+    for _ in range(2):
+        place = _left_out(known, quantum)
         word = 0
         for d in range(4):
             if d != place:
@@ -112,14 +121,10 @@ def _write_rotation(
                 words[word] = value
                 word += 1
         _read_rotation(words, quantum, known)
-        if _largest(known) == place:
-            break
 
 
 @kernel
-def write_records(
-    steps: Steps, ids: Ints, layout: Layout, records: NDArray[np.void]
-) -> None:
+def write_records(steps: Steps, ids: Ints, layout: Layout, records: NDArray[np.void]) -> None:
     """Quantise N steps of the avatars with ids (N,) into records, STEP (N,).
 
     Keys are relative to the quantised footprints, which readers add to them.
@@ -167,7 +172,7 @@ def write_records(
 
 @kernel
 def read_records(records: NDArray[np.void], layout: Layout, out: Steps) -> None:
-    """Write to N steps what readers of records, STEP (N,), know of them.
+    """Write N steps as readers of records, STEP (N,), know them.
 
     Quaternions of keys get the sign nearest to the key before.
     """

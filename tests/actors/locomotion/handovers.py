@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.actors.locomotion.reference.posing import pose
 from esplanade.actors.locomotion.body.sizes import BodySizes
+from esplanade.actors.locomotion.reference.posing import pose
 from esplanade.planning.compiled.arrays import Floats
 from esplanade.protocol.steps import RE_AIMED, STANDS_ON_RIGHT, StepRecords
 from esplanade.server.world.step_records import from_records

@@ -6,16 +6,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from esplanade.actors.locomotion.body.headings import forward_and_left, wrap_angle
 from esplanade.actors.locomotion.body.skeleton import FOOT, TRACK_HALF_WIDTH
-from tests.naive.footsteps.course import Course, desired_headings
-from tests.naive.footsteps.ground import Ground
-from tests.naive.footsteps.limits import (
-    BEHIND_LANDING,
-    clamped_distance,
-    clamped_foot,
-    distance_and_limit,
-)
 from esplanade.actors.locomotion.gait.step_length import (
     RV_LONGEST,
     longest_step,
@@ -24,6 +15,15 @@ from esplanade.actors.locomotion.gait.step_length import (
 )
 from esplanade.actors.locomotion.planted.footprints import HEADING, ON_MAP, PLACE, Z
 from esplanade.planning.compiled.arrays import Bools, Floats
+from tests.naive.footsteps.course import Course, desired_headings
+from tests.naive.footsteps.ground import Ground
+from tests.naive.footsteps.limits import (
+    BEHIND_LANDING,
+    clamped_distance,
+    clamped_foot,
+    distance_and_limit,
+)
+from tests.naive.headings import forward_and_left, wrap_angle
 
 # Limits of the height up or down to which a foot is put.
 _TREAD_M: Final = 0.26

@@ -6,10 +6,10 @@ from typing import Final
 
 import numpy as np
 
-from esplanade.actors.locomotion.body.headings import forward_and_left
 from esplanade.actors.locomotion.body.skeleton import TRACK_HALF_WIDTH
 from esplanade.actors.locomotion.planted.footprints import HEADING, ON_MAP
 from esplanade.planning.compiled.arrays import Floats
+from tests.naive.headings import forward_and_left
 
 # Lengths in legs.
 PAST_STANDING: Final = 0.5

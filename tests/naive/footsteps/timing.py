@@ -6,11 +6,11 @@ from typing import Final
 
 import numpy as np
 
-from tests.naive.footsteps.course import AHEAD_S, WALKING_MPS, Course
-from tests.naive.footsteps.limits import distance_and_limit
 from esplanade.actors.locomotion.gait.durations import step_duration_s
 from esplanade.actors.locomotion.planted.footprints import Z
 from esplanade.planning.compiled.arrays import Floats
+from tests.naive.footsteps.course import AHEAD_S, WALKING_MPS, Course
+from tests.naive.footsteps.limits import distance_and_limit
 
 CLOSING_S: Final = 0.5
 """Duration of a step that goes nowhere: a foot is drawn up to the other, or the body turns."""

@@ -6,7 +6,6 @@ from typing import Final
 
 import numpy as np
 
-from esplanade.actors.locomotion.body.headings import wrap_angle
 from esplanade.actors.locomotion.body.sizes import BodySizes
 from esplanade.actors.locomotion.gait.curves import smooth
 from esplanade.actors.locomotion.motion._current_pose_kernels import CurrentPose
@@ -34,6 +33,7 @@ from esplanade.actors.locomotion.planted.footprints import (
 from esplanade.actors.locomotion.planted.step import step_targets
 from esplanade.actors.locomotion.planted.targets import Targets
 from esplanade.planning.compiled.arrays import Bools, Floats, Ints
+from tests.naive.headings import wrap_angle
 
 _SHARES: Final = np.linspace(0.0, 1.0, KEYS)
 

@@ -6,10 +6,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from esplanade.actors.locomotion.body.headings import wrap_angle
 from esplanade.actors.locomotion.body.skeleton import TRACK_HALF_WIDTH
-from tests.naive.footsteps.course import WALKING_MPS, Course, desired_headings
-from tests.naive.footsteps.timing import durations_s, within_reach_s
 from esplanade.actors.locomotion.motion.key_poses import (
     ROOT_ON_MAP,
     STANDING_PITCH,
@@ -18,6 +15,9 @@ from esplanade.actors.locomotion.motion.key_poses import (
 )
 from esplanade.actors.locomotion.planted.footprints import HEADING, ON_MAP
 from esplanade.planning.compiled.arrays import Bools, Floats, Ints
+from tests.naive.footsteps.course import WALKING_MPS, Course, desired_headings
+from tests.naive.footsteps.timing import durations_s, within_reach_s
+from tests.naive.headings import wrap_angle
 
 _SOON_S: Final = 0.3
 """Feet follow where a body will be after this time."""

@@ -10,22 +10,7 @@ import numpy as np
 from esplanade.actors.locomotion.body.sizes import BodySizes
 from esplanade.actors.locomotion.body.skeleton import FOOT, TRACK_HALF_WIDTH
 from esplanade.actors.locomotion.body.traits import WalkerTraits
-from tests.naive.footsteps.course import Course
-from tests.naive.footsteps.footholds import choose_footholds
-from tests.naive.footsteps.ground import Ground
-from tests.naive.footsteps.triggers import (
-    StepGoals,
-    TriggeredSteps,
-    steps_to_begin,
-    steps_to_re_aim,
-)
 from esplanade.actors.locomotion.motion.key_poses import Steps, no_steps
-from tests.naive.footsteps.transitions import (
-    current_pose,
-    standing_keys,
-    step_keys,
-    weight_shift_keys,
-)
 from esplanade.actors.locomotion.planted.footprints import (
     HEADING,
     ON_MAP,
@@ -34,6 +19,21 @@ from esplanade.actors.locomotion.planted.footprints import (
     Z,
 )
 from esplanade.planning.compiled.arrays import Bools, Floats, Ints
+from tests.naive.footsteps.course import Course
+from tests.naive.footsteps.footholds import choose_footholds
+from tests.naive.footsteps.ground import Ground
+from tests.naive.footsteps.transitions import (
+    current_pose,
+    standing_keys,
+    step_keys,
+    weight_shift_keys,
+)
+from tests.naive.footsteps.triggers import (
+    StepGoals,
+    TriggeredSteps,
+    steps_to_begin,
+    steps_to_re_aim,
+)
 from tests.naive.steps import let_legs_reach
 
 Publish = Callable[[Steps, Ints], Steps]
@@ -100,7 +100,7 @@ class Walkers:
             raise ValueError("courses must be finite")
         self._stand_where_lost(tick, slots, course)
         goals = StepGoals._make(column[slots] for column in self._goals)
-        steps = self.steps.without_keys(slots)
+        steps = self.steps.take(slots)
         re_aimed = steps_to_re_aim(tick, self._tick_s, steps, goals, course)
         idle = np.flatnonzero(tick >= steps.start + steps.ticks)
         begun, shifting = steps_to_begin(

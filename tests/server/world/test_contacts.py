@@ -2,10 +2,13 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from esplanade.server.world.contacts import closest_approach
+from esplanade.server.world.contacts import Contacts
 from esplanade.server.world.inputs import Leave, Steer
 from esplanade.server.world.state import PERSON, State
+from tests.naive.contacts import NaiveContacts, closest_approach
 from tests.server.doubles import ScriptedPopulation
 from tests.server.worlds import FIELD, TICK_S, Trial
 
@@ -74,8 +77,37 @@ def test_closest_approach_matches_sampling_the_motion() -> None:
         state.add(PERSON, "p", (float(x), float(y), 0.0), 0, 0.25)
     state.before[:] = state.positions
     state.positions += random.normal(0.0, 0.8, (40, 2))
-    first, second = np.arange(0, 40, 2), np.arange(1, 40, 2)
     part = np.linspace(0.0, 1.0, 2001)[:, None, None]
     way = state.before + part * (state.positions - state.before)
-    sampled = np.linalg.norm(way[:, first] - way[:, second], axis=2).min(axis=0)
-    assert closest_approach(state, first, second) == pytest.approx(sampled, abs=2e-3)
+    for one, other in zip(range(0, 40, 2), range(1, 40, 2), strict=True):
+        sampled = np.linalg.norm(way[:, one] - way[:, other], axis=1).min()
+        assert closest_approach(state, one, other) == pytest.approx(sampled, abs=2e-3)
+
+
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 2.0, 12.0, 300.0]))
+def test_contacts_are_those_of_everyone_against_everyone(seed: int, wide_m: float) -> None:
+    """In crowds and in the open, on two floors, with jumps, departures and arrivals."""
+    random = np.random.default_rng(seed)
+    state = State(30)
+
+    def arrive() -> None:
+        kind, (x, y) = int(random.integers(2)), random.uniform(0.0, wide_m, 2)
+        z = float(random.choice([0.0, 1.0, 3.0]))
+        state.add(kind, "a", (float(x), float(y), z), 0, float(random.uniform(0.1, 0.4)))
+
+    for _ in range(25):
+        arrive()
+    contacts, naive = Contacts(), NaiveContacts()
+    for _ in range(12):
+        state.before[:] = state.positions
+        state.positions += random.normal(0.0, 0.1, (30, 2))
+        jumps = random.random(30) < 0.1
+        state.positions[jumps] += random.normal(0.0, 3.0, (int(jumps.sum()), 2))
+        if random.random() < 0.4:
+            state.remove(int(random.choice(state.ids[state.live()])))
+        if random.random() < 0.4:
+            arrive()
+        contacts.update(state)
+        naive.update(state)
+        found = contacts.actor_person, contacts.actor_actor
+        assert found == (naive.actor_person, naive.actor_actor)

@@ -5,17 +5,19 @@ import numpy as np
 import pytest
 
 from esplanade import scenes
+from esplanade.actors import Population
 from esplanade.actors.locomotion.body.sizes import BodySizes
 from esplanade.actors.locomotion.motion.key_poses import Steps, no_steps
 from esplanade.actors.locomotion.reference.posing import pose
 from esplanade.planning import LayeredGrid
 from esplanade.planning.scene.scene_file import read_scene
-from esplanade.protocol.steps import RE_AIMED
+from esplanade.protocol.steps import KEY_M, RE_AIMED
 from esplanade.server.populating import populate
 from esplanade.server.world.inputs import Detach, Leave, Steer
 from esplanade.server.world.state import Floats
 from esplanade.server.world.step_records import from_records, to_records
 from esplanade.server.world.world import World
+from tests.actors.locomotion.handovers import handovers
 from tests.server.worlds import FIELD, TICK_S, Trial, rules
 
 
@@ -128,8 +130,8 @@ def test_same_inputs_give_the_same_steps() -> None:
     assert worlds[0] == worlds[1]
 
 
-@pytest.mark.parametrize("name", ["plaza.json", "gallery.json"])
-def test_actors_on_their_ways_are_drawn_where_they_are(name: str) -> None:
+def with_actors(name: str) -> tuple[World, Population]:
+    """A world of that scene in which twelve actors are on their ways."""
     scene = read_scene(Path(scenes.__path__[0], name))
     grid = LayeredGrid.from_scene(scene)
     population, bodies = populate(grid, scene, 12, TICK_S, 5)
@@ -137,6 +139,12 @@ def test_actors_on_their_ways_are_drawn_where_they_are(name: str) -> None:
         scene, grid, population, bodies, rules(), tick_s=TICK_S, max_people=1, seed=5,
         clock=time.perf_counter,
     )  # fmt: skip
+    return world, population
+
+
+@pytest.mark.parametrize("name", ["plaza.json", "gallery.json"])
+def test_actors_on_their_ways_are_drawn_where_they_are(name: str) -> None:
+    world, population = with_actors(name)
     off = []
     for _ in range(300):
         world.begin([])
@@ -147,6 +155,30 @@ def test_actors_on_their_ways_are_drawn_where_they_are(name: str) -> None:
     assert world.feet.failures == world.feet.lost == 0
     assert np.percentile(np.concatenate(off), 99) < 0.15
     assert np.percentile(np.concatenate(off), 50) < 0.05
+
+
+def test_steps_of_actors_go_on_where_the_ones_before_ended() -> None:
+    world, population = with_actors("gallery.json")
+    state, pairs, slots = world.state, [], []
+    before = world.steps.records.copy()
+    for _ in range(400):
+        world.begin([])
+        world.finish(world.think())
+        for slot in np.flatnonzero(world.steps.begun == world.tick).tolist():
+            now = world.steps.records[slot : slot + 1].copy()
+            if before["id"][slot] and now["ticks"][0]:
+                pairs.append((before[slot : slot + 1].copy(), now))
+                slots.append(slot)
+            before[slot] = now[0]
+    population.close()
+    found = handovers(pairs, BodySizes(state.legs_m[slots], state.statures_m[slots]))
+    whole = ~found.re_aimed
+    assert whole.sum() > 200
+    assert (np.array([old["standing"]["position"][0, 2] for old, _ in pairs]) > 0).any()
+    for difference in (found.root, found.pelvis, found.pitches):
+        assert not difference[whole].any()
+    assert not found.footprint.any()
+    assert found.drawn_ankles_m.max() < 3.0 * KEY_M
 
 
 def test_records_keep_what_steps_are() -> None:

@@ -7,6 +7,7 @@ from esplanade.actors.locomotion.footsteps._limit_kernels import (
     clamped_distance,
     clamped_foot,
     distance_and_limit,
+    wrapped,
 )
 from tests.actors.locomotion.courses import standing_on
 
@@ -37,3 +38,10 @@ def test_a_foot_stays_on_its_own_side_and_within_reach(side: float) -> None:
 def test_points_are_drawn_to_their_origin_only_beyond_the_limit() -> None:
     assert clamped_distance(3.0, 4.0, 0.0, 0.0, 1.0) == pytest.approx((0.6, 0.8))
     assert clamped_distance(0.3, 0.4, 0.0, 0.0, 1.0) == pytest.approx((0.3, 0.4))
+
+
+def test_angles_are_wrapped_to_half_a_turn_on_either_side() -> None:
+    for angle in (-np.pi, -0.5, 0.0, 3.0):
+        assert wrapped(angle) == pytest.approx(angle)
+        assert wrapped(angle + 4.0 * np.pi) == pytest.approx(angle)
+    assert wrapped(np.pi) == -np.pi

@@ -19,9 +19,7 @@ def duration(way: Course, under: Floats) -> float:
 @pytest.mark.parametrize("speed", [0.8, 1.0, 1.3, 1.8])
 def test_faster_bodies_take_longer_and_quicker_steps(speed: float) -> None:
     under = standing_on(0.3, -0.09)
-    slower, faster = (
-        duration(course((v, 0.0)), under) for v in (speed, 1.2 * speed)
-    )
+    slower, faster = (duration(course((v, 0.0)), under) for v in (speed, 1.2 * speed))
     assert faster < slower
     assert 1.2 * speed * faster > speed * slower - 1e-9
     assert speed * slower <= 0.73 * 0.9

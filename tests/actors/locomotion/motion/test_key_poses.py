@@ -12,7 +12,6 @@ from esplanade.actors.locomotion.motion.key_poses import (
     SWING_HEADING,
     SWING_PITCH,
     WIDTH,
-    align,
     heel_from_toe,
     interpolate,
     sample_keys,
@@ -113,12 +112,3 @@ def test_a_standing_foot_turns_about_the_end_it_stands_on(pitch: float, stays: s
         np.testing.assert_allclose(toe, flat, atol=1e-15)
     assert ankle[0, 2] >= 0.5
     assert toe[0, 2] >= 0.5 - 1e-12
-
-
-def test_neighbouring_quaternions_get_one_sign() -> None:
-    keys = some_keys(2)
-    keys[0, 3, PELVIS] *= -1.0
-    keys[1, 0, CHEST] *= -1.0
-    align(keys)
-    for part in (PELVIS, CHEST):
-        assert (np.einsum("nkd,nkd->nk", keys[:, 1:, part], keys[:, :-1, part]) > 0.0).all()

@@ -1,16 +1,17 @@
 import numpy as np
 
-from esplanade.actors.locomotion.motion._transition_kernels import fill_keys, inertialise
-from esplanade.actors.locomotion.motion.key_poses import KEYS, PELVIS, WIDTH, interpolate
-from esplanade.actors.locomotion.motion.transitions import (
-    CurrentPose,
-    standing_keys,
-    step_keys,
-    weight_shift_keys,
+from esplanade.actors.locomotion.motion._current_pose_kernels import CurrentPose
+from esplanade.actors.locomotion.motion._transition_kernels import (
+    fill_keys,
+    fill_shift_keys,
+    fill_step_keys,
+    inertialise,
 )
+from esplanade.actors.locomotion.motion.key_poses import KEYS, PELVIS, WIDTH, interpolate
+from esplanade.actors.locomotion.motion.transitions import standing_keys
 from esplanade.actors.locomotion.planted.footprints import StepFootprints
-from esplanade.actors.locomotion.planted.step import step_targets
-from esplanade.planning.compiled.arrays import Floats
+from esplanade.actors.locomotion.planted.step import gait_tables, step_targets
+from esplanade.planning.compiled.arrays import Floats, Ints
 from tests.naive import steps as naive
 
 SHARES = np.linspace(0.0, 1.0, KEYS)
@@ -41,6 +42,21 @@ def some_pose(keys: Floats) -> CurrentPose:
     return CurrentPose(key, 0.01 * random.normal(size=(len(keys), WIDTH)))
 
 
+def step_keys(
+    footprints: StepFootprints,
+    elapsed: Floats,
+    now: CurrentPose,
+    ticks: Ints,
+    hips: Floats,
+    room_m: Floats,
+) -> tuple[Floats, Floats]:
+    """Keys and toe-offs of what `fill_step_keys` writes."""
+    keys, lift = np.empty((len(elapsed), KEYS, WIDTH)), np.empty(len(elapsed))
+    own = CurrentPose(now.key.copy(), now.speed.copy())
+    fill_step_keys(footprints, elapsed, own, ticks, hips, room_m, gait_tables(), keys, lift)
+    return keys, lift
+
+
 def test_kernels_agree_with_their_plain_twins() -> None:
     footprints = some_footprints(9)
     targets = step_targets(footprints, SHARES)
@@ -64,7 +80,7 @@ def test_a_step_re_aimed_from_what_is_drawn_in_place_and_speed() -> None:
     now.key[:, PELVIS] /= np.linalg.norm(now.key[:, PELVIS], axis=1, keepdims=True)
     ticks = np.full(8, 9)
     elapsed = np.full(8, 0.4)
-    hips = footprints.landing[:, :2]
+    hips = footprints.landing[:, :2].copy()
     keys, lift = step_keys(footprints, elapsed, now, ticks, hips, np.full(8, 0.1))
     body = [0, 1, 2, 7, 8, 9, 10, 11]
     start = interpolate(keys, np.zeros(8))
@@ -77,7 +93,7 @@ def test_a_step_re_aimed_from_what_is_drawn_in_place_and_speed() -> None:
 
 def test_hips_end_where_they_should_within_their_room() -> None:
     footprints = some_footprints(6)
-    now = CurrentPose(standing_keys(footprints)[:, 0], np.zeros((6, WIDTH)))
+    now = CurrentPose(standing_keys(footprints)[:, 0].copy(), np.zeros((6, WIDTH)))
     elapsed, ticks = np.zeros(6), np.full(6, 10)
     free, _ = step_keys(footprints, elapsed, now, ticks, np.zeros((6, 2)), np.zeros(6))
     ends = free[:, -1, :2] + footprints.standing[:, :2]
@@ -90,11 +106,13 @@ def test_hips_end_where_they_should_within_their_room() -> None:
 
 
 def test_a_shift_of_weight_keeps_both_feet_where_they_are() -> None:
-    footprints = some_footprints(4)._replace()
+    footprints = some_footprints(4)
     footprints = footprints._replace(landing=footprints.lifted)
     still = standing_keys(footprints)
     places = np.full((4, 2), 0.03)
-    keys = weight_shift_keys(CurrentPose(still[:, 0], np.zeros((4, WIDTH))), footprints, places)
+    keys = np.empty((4, KEYS, WIDTH))
+    now = CurrentPose(still[:, 0].copy(), np.zeros((4, WIDTH)))
+    fill_shift_keys(now, footprints, places, keys)
     np.testing.assert_allclose(keys[:, 0, :7], still[:, 0, :7])
     np.testing.assert_allclose(keys[:, -1, :2] + footprints.standing[:, :2], places, atol=1e-12)
     assert (keys[..., 7:10] == 0.0).all()
