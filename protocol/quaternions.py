@@ -46,7 +46,8 @@ def _left_out(quaternions: Floats) -> npt.NDArray[np.int64]:
     without = np.stack([exact[..., others].all(axis=-1) for others in _OTHERS], axis=-1)
     without &= np.abs(quaternions) > _LARGE
     largest = np.abs(quaternions).argmax(axis=-1)
-    return np.where(without.any(axis=-1), without.argmax(axis=-1), largest)
+    places: npt.NDArray[np.int64] = np.where(without.any(axis=-1), without.argmax(axis=-1), largest)
+    return places
 
 
 def _pack_once(quaternions: Floats) -> npt.NDArray[np.uint16]:
