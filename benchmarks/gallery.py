@@ -77,8 +77,8 @@ def serve(parent: Connection, settings: ServerSettings) -> None:
             await asyncio.to_thread(parent.recv)
             parent.send(server.summary())
 
-    logs.configure(settings)
-    uvloop.run(run())
+    with logs.written(settings):
+        uvloop.run(run())
 
 
 async def watch(port: int, visitors: int, seconds: float, seed: int) -> Points:

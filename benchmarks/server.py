@@ -197,8 +197,8 @@ def serve_world(parent: Connection, settings: object) -> None:
             await asyncio.to_thread(parent.recv)
             parent.send((processor_s() - used_s, server.world.tick - tick))
 
-    logs.configure(settings)
-    uvloop.run(serve())
+    with logs.written(settings):
+        uvloop.run(serve())
 
 
 def serve_bare(parent: Connection, size: object) -> None:

@@ -49,9 +49,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         private_port=0,
         log_level="error",
     )
-    logs.configure(settings)
     crowd = None if options.crowd is None else read_crowd(options.crowd)
-    log, everyone, seconds = asyncio.run(watch(settings, crowd, options.seconds))
+    with logs.written(settings):
+        log, everyone, seconds = asyncio.run(watch(settings, crowd, options.seconds))
     findings, cost = judge(everyone, log.tick_rate), cost_of(log, everyone, seconds)
     show(Console(), findings, cost)
     if options.json is not None:

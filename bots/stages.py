@@ -65,7 +65,7 @@ def stays(stages: tuple[Stage, ...], index: int) -> list[Stay]:
         if rises or falls:
             # A bot goes as soon as fewer are wanted than it needs, and comes once it is wanted.
             crossed = wanted - count if rises else count - wanted
-            at_s = now_s + stage.duration_s * crossed / abs(stage.bots - count)
+            at_s = min(end_s, now_s + stage.duration_s * crossed / abs(stage.bots - count))
             if rises:
                 begin_s = at_s
             elif begin_s is not None:

@@ -105,7 +105,7 @@ def test_contacts_are_those_of_everyone_against_everyone(seed: int, wide_m: floa
         state.positions[jumps] += random.normal(0.0, 3.0, (int(jumps.sum()), 2))
         if random.random() < 0.4:
             state.remove(int(random.choice(state.ids[state.live()])))
-        if random.random() < 0.4:
+        if random.random() < 0.4 and len(state.live()) < state.capacity:
             arrive()
         contacts.update(state)
         naive.update(state)
