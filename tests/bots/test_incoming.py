@@ -2,12 +2,13 @@
 
 import msgpack
 import pytest
+from websockets.asyncio.server import ServerConnection
 
 from esplanade import bots
 from esplanade.bots.incoming import decode
 from esplanade.protocol import ErrorCode, ProtocolError, encode
 from esplanade.protocol.messages import Error, Notice
-from tests.bots.scripted import scripted_server, until
+from tests.bots.scripted import ScriptedServer, listening, scripted_server, until
 
 
 @pytest.mark.parametrize(
@@ -51,10 +52,17 @@ async def test_a_bot_goes_on_and_keeps_the_newest_token() -> None:
         await until(lambda: bot.tick > tick)
 
 
+class Tomorrow(ScriptedServer):
+    """Refuses everyone for a reason that is not known yet, after a message that is not either."""
+
+    async def talk(self, socket: ServerConnection) -> None:
+        await socket.send(msgpack.packb([99, {}]))
+        await socket.send(msgpack.packb([70, {"error": "of_tomorrow", "text": "wait"}]))
+        await socket.wait_closed()
+
+
 async def test_a_refusal_of_a_later_version_has_its_name() -> None:
-    async with scripted_server() as server:
-        refused_with = msgpack.packb([70, {"error": "of_tomorrow", "text": "wait"}])
-        server.talk = lambda socket: socket.send(refused_with)  # type: ignore[method-assign]
+    async with listening(Tomorrow()) as server:
         with pytest.raises(bots.Refused, match="wait") as refused:
             async with bots.connect(server.url):
                 pass
