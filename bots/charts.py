@@ -136,7 +136,7 @@ def _legend(lines: Sequence[Line]) -> list[str]:
     parts, x = [], WIDTH - RIGHT
     for number, line in reversed(list(enumerate(lines))):
         parts.append(f'<text class="mark y" x="{x:.1f}" y="15">{escape(line.name)}</text>')
-        x -= 7.0 * len(line.name) + 8.0
+        x -= 6.3 * len(line.name) + 6.0
         parts.append(f'<path class="line key c{number}" d="M{x - 14:.1f} 11H{x:.1f}"/>')
         x -= 28.0
     return parts

@@ -5,7 +5,7 @@ from rich.table import Table
 
 from esplanade.bots.measures import PERCENTILES, SPREADS
 from esplanade.bots.tally import Tally
-from esplanade.bots.thresholds import Verdict
+from esplanade.bots.thresholds import Verdict, told
 
 
 def show(console: Console, tally: Tally, verdicts: tuple[Verdict, ...] = ()) -> None:
@@ -31,7 +31,7 @@ def show(console: Console, tally: Tally, verdicts: tuple[Verdict, ...] = ()) -> 
 def verdict_row(verdict: Verdict) -> tuple[str, str, str]:
     """The limit, whether it was kept, and what was measured."""
     value, unit = verdict.value, verdict.threshold.unit
-    measured = "nothing" if value is None else f"{value:,.6g} {unit}".strip()
+    measured = "nothing" if value is None else f"{told(value)} {unit}".strip()
     return verdict.threshold.text, "crossed" if verdict.failed else "kept", measured
 
 

@@ -54,8 +54,13 @@ class Verdict(NamedTuple):
         measured = "nothing was measured"
         if self.value is not None:
             gap = "" if self.threshold.unit in {"", "%"} else " "
-            measured = f"it is {self.value:.6g}{gap}{self.threshold.unit}"
+            measured = f"it is {told(self.value)}{gap}{self.threshold.unit}"
         return f"{self.threshold.text}: {measured}"
+
+
+def told(value: float) -> str:
+    """A measured value as people read it."""
+    return f"{value:.4g}" if abs(value) < 1000.0 else f"{value:,.0f}"
 
 
 def read_thresholds(text: str) -> tuple[Threshold, ...]:

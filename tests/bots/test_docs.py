@@ -6,14 +6,16 @@ import sys
 from pathlib import Path
 
 from esplanade import bots
-from esplanade.protocol.messages import Chat
+from esplanade.bots.load import LoadJob
+from esplanade.bots.measures import AMOUNTS, SPREADS
+from esplanade.bots.tally import Tally
+from esplanade.protocol.messages import Chat, ChatLine, WalkTo
 from tests.bots.scripted import scripted_server, until
 from tests.patience import PATIENCE_S
 
 ROOT = Path(__file__).resolve().parents[2]
-EXAMPLES = re.findall(
-    r"^```python\n(.*?)^```", (ROOT / "docs" / "bots.md").read_text(), re.MULTILINE | re.DOTALL
-)
+TEXT = (ROOT / "docs" / "bots.md").read_text()
+EXAMPLES = re.findall(r"^```python\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
 
 
 async def start(example: str, url: str) -> asyncio.subprocess.Process:
@@ -63,5 +65,26 @@ async def test_the_steady_one_comes_back_with_its_token() -> None:
         await process.communicate()
 
 
+async def test_the_tour_is_a_scenario(tmp_path: Path) -> None:
+    path = tmp_path / "tour.py"
+    path.write_text(EXAMPLES[2])
+    tally, stop = Tally(), asyncio.Event()
+    async with scripted_server() as server:
+        job = LoadJob(server.url, 1, 0, 1, 0, 100.0, duration_s=0.0, scenario=f"{path}:Tour")
+        running = asyncio.create_task(job.run(tally, stop))
+        await until(lambda: bool(server.all_people) and len(server.all_people[0].heard) > 4)
+        stop.set()
+        await running
+    heard = server.all_people[0].heard
+    assert sum(isinstance(message, WalkTo) for message in heard) == 1
+    assert any(isinstance(each, ChatLine) and "I go to (" in each.text for each in heard)
+    assert tally.well
+
+
+def test_every_measure_is_explained() -> None:
+    for name in (*SPREADS, *AMOUNTS):
+        assert f"`{name}`" in TEXT
+
+
 def test_there_are_no_other_examples() -> None:
-    assert len(EXAMPLES) == 2
+    assert len(EXAMPLES) == 3
