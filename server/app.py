@@ -26,7 +26,7 @@ from esplanade.server.net.schedule import Schedule
 from esplanade.server.net.ticker import Ticker
 from esplanade.server.net.tls import Tls
 from esplanade.server.populating import populate
-from esplanade.server.rehearsal import rehearse
+from esplanade.server.rehearsal import rehearse, rehearse_walking
 from esplanade.server.settings import ServerSettings
 from esplanade.server.warming import kernels_compiled
 from esplanade.server.world.world import World
@@ -140,12 +140,12 @@ def build_world(
     LoadingError
         The scene has no room for the actors.
     """
-    with kernels_compiled() as compiled_beside:
-        return _build_warm(loaded, settings, compiled_beside)
+    with kernels_compiled(lambda: rehearse_walking(loaded.rules, settings.tick_s)) as ready_to_plan:
+        return _build_warm(loaded, settings, ready_to_plan)
 
 
 def _build_warm(
-    loaded: LoadedScene, settings: ServerSettings, compiled_beside: Callable[[], None]
+    loaded: LoadedScene, settings: ServerSettings, ready_to_plan: Callable[[], None]
 ) -> tuple[Population, World, list[float]]:
     tick_s, seed = settings.tick_s, settings.seed
     try:
@@ -171,7 +171,7 @@ def _build_warm(
         )
     except ValueError as error:
         raise LoadingError(f"scene {loaded.scene.name!r}: {error}") from error
-    population.warm_up(compiled_beside)
+    population.warm_up(ready_to_plan)
     rehearse(loaded.rules, tick_s)
     starts = [(*spawn.position, spawn.z_m) for spawn in loaded.scene.spawns]
     storeys = storeys_of(grid, reached_from(grid, starts))

@@ -1,12 +1,14 @@
 """A small world runs for some ticks, so that all that a tick calls is compiled beforehand."""
 
 import time
+from collections.abc import Mapping
 from typing import Final
 
 from esplanade.actors import ActorParameters, GoTo, Population
 from esplanade.planning import LayeredGrid, Polygon, Scene
 from esplanade.server.world.inputs import Detach, Follow, Input, Join, Leave, Steer
 from esplanade.server.world.rules import Rules
+from esplanade.server.world.state import ACTOR
 from esplanade.server.world.world import World
 
 SCENE: Final = Scene.open_space(
@@ -15,16 +17,45 @@ SCENE: Final = Scene.open_space(
     polygons=[Polygon(points=((4.5, 4.5), (5.5, 4.5), (5.5, 5.5), (4.5, 5.5)), height_m=0.3)],
 )
 """It is not all level: on level ground some kernels are not called."""
+START: Final = (1.0, 4.0)
 TICKS: Final = 30
 PERSON: Final = 2
 """The id of the person: the actor is the first avatar, and the person the second."""
+INPUTS: Final[Mapping[int, list[Input]]] = {
+    1: [Join(0, "P", None)],
+    2: [Steer(PERSON, 1, 0.5, 1.0)],
+    TICKS // 2: [Follow(PERSON, 2, ((1.0, 1.0, 0.0), (2.0, 1.0, 0.0)))],
+    TICKS - 1: [Detach(PERSON)],
+    TICKS: [Leave(PERSON)],
+}
 
 
 def rehearse(rules: Rules, tick_s: float) -> None:
     """Let an actor and a person of a world of their own walk, stand, and leave."""
+    world, population = _world(rules, tick_s)
+    population.add("a", GoTo((5.0, 3.0, 0.0)), ActorParameters(), position=START)
+    for tick in range(1, TICKS + 1):
+        world.begin(INPUTS.get(tick, []))
+        world.finish(world.think())
+    population.close()
+
+
+def rehearse_walking(rules: Rules, tick_s: float) -> None:
+    """Let a person walk beside an actor that stands: nothing is planned, all else is called.
+
+    On a first start this is compiled while another process still compiles what plans.
+    """
+    world, population = _world(rules, tick_s)
+    world.state.add(ACTOR, "A", (*START, 0.0), 0, ActorParameters().radius_m)
+    for tick in range(1, TICKS // 2):
+        world.begin(INPUTS.get(tick, []))
+        world.finish(actors_moved=False)
+    population.close()
+
+
+def _world(rules: Rules, tick_s: float) -> tuple[World, Population]:
     grid = LayeredGrid.from_scene(SCENE)
     population = Population(grid, SCENE, tick_s=tick_s, person_radius_m=rules.person_radius_m)
-    population.add("a", GoTo((5.0, 3.0, 0.0)), ActorParameters(), position=(1.0, 4.0))
     world = World(
         SCENE,
         grid,
@@ -36,14 +67,4 @@ def rehearse(rules: Rules, tick_s: float) -> None:
         seed=0,
         clock=time.perf_counter,
     )
-    inputs: dict[int, list[Input]] = {
-        1: [Join(0, "P", None)],
-        2: [Steer(PERSON, 1, 0.5, 1.0)],
-        TICKS // 2: [Follow(PERSON, 2, ((1.0, 1.0, 0.0), (2.0, 1.0, 0.0)))],
-        TICKS - 1: [Detach(PERSON)],
-        TICKS: [Leave(PERSON)],
-    }
-    for tick in range(1, TICKS + 1):
-        world.begin(inputs.get(tick, []))
-        world.finish(world.think())
-    population.close()
+    return world, population

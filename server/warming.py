@@ -14,7 +14,7 @@ from esplanade.planning.compiled.notice import heard
 
 AHEAD: Final = "esplanade.planning.agents.ahead"
 """The second process compiles this: about half of all, and nothing that the first half needs."""
-FUNCTIONS: Final = 430
+FUNCTIONS: Final = 600
 """The approximate number of functions that a world needs compiled; only the display uses it."""
 SERVED: Final = "served"
 TOLD_EVERY_S: Final = 10.0
@@ -23,10 +23,11 @@ log = structlog.get_logger(__name__)
 
 
 @contextmanager
-def kernels_compiled() -> Iterator[Callable[[], None]]:
+def kernels_compiled(meanwhile: Callable[[], None]) -> Iterator[Callable[[], None]]:
     """Yield while a world is built and warmed up; the value waits for the second process.
 
-    Where an earlier start has left all kernels in the cache, it does nothing.
+    Before it waits, it calls `meanwhile`, which compiles more of what this process needs. Where an
+    earlier start has left all kernels in the cache, it does nothing.
     """
     if beside.is_complete(SERVED):
         yield lambda: None
@@ -36,7 +37,12 @@ def kernels_compiled() -> Iterator[Callable[[], None]]:
         heard(one_more),
         beside.compiled_beside(AHEAD, one_more) as wait_for_it,
     ):
-        yield wait_for_it
+
+        def wait() -> None:
+            meanwhile()
+            wait_for_it()
+
+        yield wait
     beside.complete(SERVED)
 
 
