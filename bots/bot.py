@@ -13,17 +13,16 @@ from esplanade.bots.errors import Disconnected, Unreachable
 from esplanade.bots.events import Event, SnapshotEvent, StepsEvent
 from esplanade.bots.incoming import decode
 from esplanade.bots.mailbox import Mailbox
+from esplanade.bots.person import Person
 from esplanade.bots.view import Avatar, View
 from esplanade.protocol import VERSION, ProtocolError
 from esplanade.protocol.messages import (
     Bye,
-    ChatLine,
     Doors,
     Enter,
     FromClient,
     Hello,
     Leave,
-    Move,
     Ping,
     Point,
     Pong,
@@ -31,20 +30,18 @@ from esplanade.protocol.messages import (
     SetDoor,
     Snapshot,
     StepBlock,
-    WalkTo,
-    Watch,
     Welcome,
 )
 from esplanade.protocol.snapshot import unpack_block
 from esplanade.protocol.steps import step_records
 
 
-class Bot:
+class Bot(Person):
     """A person in the world, moved by a script. Made by `connect`, which also closes it."""
 
     def __init__(self, connection: Connection) -> None:
         welcome = connection.welcome
-        self.welcome: Welcome = welcome
+        self.welcome = welcome
         self._resume_token = welcome.resume
         self._connection = connection
         self._clock = ServerClock()
@@ -52,7 +49,6 @@ class Bot:
         self._view = View(welcome)
         self._mailbox = Mailbox()
         self._placed = asyncio.Event()
-        self._sequence = 0
         self._nonce = 0
         self._pings: dict[int, tuple[float, asyncio.Future[float]]] = {}
         self._ended: Disconnected | None = None
@@ -79,14 +75,6 @@ class Bot:
     # --- what it knows --------------------------------------------------------------------------
 
     @property
-    def id(self) -> int:
-        return self.welcome.id
-
-    @property
-    def name(self) -> str:
-        return self.welcome.name
-
-    @property
     def resume_token(self) -> str:
         """The newest token for `connect(resume=...)`, which takes this avatar up again.
 
@@ -95,20 +83,9 @@ class Bot:
         return self._resume_token
 
     @property
-    def position(self) -> tuple[float, float, float]:
-        """Own place (x, y, z) of the newest snapshot, metres; z is the height of the feet."""
-        own = self._view.own
-        return own.x, own.y, own.z
-
-    @property
     def avatar(self) -> Avatar:
         """The own avatar: place, heading and speed of the newest snapshot."""
         return self._view.own
-
-    @property
-    def others(self) -> Mapping[int, Avatar]:
-        """Everyone else in view, by id; changes as snapshots come in."""
-        return MappingProxyType(self._view.others)
 
     @property
     def doors(self) -> Mapping[str, bool]:
@@ -136,36 +113,6 @@ class Bot:
         return self._mailbox.dropped
 
     # --- what it does ---------------------------------------------------------------------------
-
-    async def move(self, direction: float, speed: float) -> int:
-        """Walk in `direction` (radians from +x) at `speed` (m/s) until told otherwise.
-
-        Returns the sequence number, which `acknowledged` reaches once the server has heeded it.
-        """
-        self._sequence += 1
-        await self._send(Move(seq=self._sequence, direction=direction, speed=speed))
-        return self._sequence
-
-    async def stop(self) -> int:
-        """Stand still."""
-        return await self.move(self._view.own.heading, 0.0)
-
-    async def walk_to(self, x: float, y: float, z: float = 0.0) -> int:
-        """Walk to a point (metres) around what stands in the way; returns as `move` does.
-
-        Of several floors at (x, y) the one nearest in height to z is meant.
-        """
-        self._sequence += 1
-        await self._send(WalkTo(seq=self._sequence, x=x, y=y, z=z))
-        return self._sequence
-
-    async def chat(self, text: str) -> None:
-        """Say a line to everyone who has this avatar in view."""
-        await self._send(ChatLine(text=text))
-
-    async def watch(self, actor_id: int | None) -> None:
-        """Ask for the plans of an actor in view, or for none any more."""
-        await self._send(Watch(id=actor_id))
 
     async def set_door(self, name: str, is_open: bool) -> None:
         """Open or close a door of the scene; only for those who joined with the operator key."""

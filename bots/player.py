@@ -61,6 +61,7 @@ class Player:
         try:
             scenario = self._kind()
             scenario._client, scenario._view = self._client, self._view  # noqa: SLF001
+            scenario.welcome = self._client.welcome
             scenario.index = self._index
             scenario.random = random.Random(f"{self._seed}/{self._index}")
             await scenario.on_join()

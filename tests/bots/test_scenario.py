@@ -8,8 +8,8 @@ import pytest
 from esplanade.bots.load import LoadJob
 from esplanade.bots.scenario_file import load_scenario
 from esplanade.bots.tally import Tally
-from esplanade.protocol.messages import ChatLine, Move, WalkTo, Watch
-from tests.bots.scripted import ScriptedServer, scripted_server, until
+from esplanade.protocol.messages import ChatLine, Move, Ping, WalkTo, Watch
+from tests.bots.scripted import Person, ScriptedServer, scripted_server, until
 from tests.bots.test_cli import finish, run, start
 
 TOUR = """\
@@ -76,6 +76,11 @@ def job(server: ScriptedServer, scenario: str, count: int = 2) -> LoadJob:
     return LoadJob(server.url, count, 0, 1, 1, 100.0, duration_s=0.0, scenario=scenario)
 
 
+def heard(person: Person, kind: type) -> int:
+    """The number of messages of a kind that a person has sent."""
+    return sum(isinstance(message, kind) for message in person.heard)
+
+
 async def test_a_scenario_walks_talks_and_watches(tour: Path) -> None:
     tally, stop = Tally(), asyncio.Event()
     async with scripted_server() as server:
@@ -83,11 +88,7 @@ async def test_a_scenario_walks_talks_and_watches(tour: Path) -> None:
         await until(
             lambda: (
                 len(server.all_people) == 2
-                and all(
-                    isinstance(each.heard[-1], Move) and len(each.heard) > 5
-                    for each in server.all_people
-                    if each.heard
-                )
+                and all(heard(each, Move) == 2 and heard(each, Ping) for each in server.all_people)
             )
         )
         stop.set()
