@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from chaos.wire import Wire
+from esplanade.protocol.messages import FromClient
 
 TOO_MANY: Final = 0.01
 """Seconds that an attacker waits after it was refused: a refusal is quicker than any program."""
@@ -25,12 +26,12 @@ class Target:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What an attacker tells of itself at its end."""
+    """The report that an attacker makes at its end."""
 
     counts: dict[str, int]
-    """What it has done, in its own words."""
+    """Counts of its actions, by names of its own."""
     faults: list[str]
-    """What it was granted and should not have been."""
+    """Things that it was granted and should not have been."""
 
 
 @dataclass
@@ -66,7 +67,7 @@ class Attacker:
         self.begin()
 
     def wires(self, number: int, name: str, **fields: object) -> list[Wire]:
-        """So many clients that have come in; fewer if the server wants no more of them."""
+        """Let this number of clients come in; fewer if the server wants no more of them."""
         made = []
         for k in range(number):
             try:
@@ -78,6 +79,27 @@ class Attacker:
             made.append(wire)
         self.counts["joined"] += len(made)
         return made
+
+    def send_at(
+        self, rate: float, wires: list[Wire], message: Callable[[int, int], FromClient]
+    ) -> None:
+        """Send at a rate on every wire until the time is over; those that are closed are left out.
+
+        `message` is called with the number of the round and that of the wire.
+        """
+        turn, next_s = 0, time.monotonic()
+        while self.goes_on:
+            turn += 1
+            for number, wire in enumerate(list(wires)):
+                try:
+                    wire.discard()
+                    wire.send(message(turn, number))
+                    self.counts["sent"] += 1
+                except OSError:
+                    wires.remove(wire)
+                    self.counts["closed"] += 1
+            next_s += 1.0 / rate
+            time.sleep(max(0.0, next_s - time.monotonic()))
 
     def refused(self) -> None:
         """Note that the server would not, and wait a moment."""

@@ -5,16 +5,16 @@ from typing import Final
 
 from chaos.attack import Attack
 from chaos.canary import Sighting
+from chaos.memory import MEMORY_SHARE, Memory
 from chaos.trial import Trial
 
-MEMORY_SHARE: Final = 0.05
 GAP_MS: Final = 150.0
 WAY_MS: Final = 300.0
 
 
 @dataclass(frozen=True)
 class Bars:
-    """What the canary may see at most; times in milliseconds."""
+    """The worst service that the canary may have; times in milliseconds."""
 
     gap_ms: float
     way_ms: float
@@ -61,7 +61,7 @@ def _canary(seen: Sighting, bars: Bars) -> list[str]:
 
 def _server(trial: Trial) -> list[str]:
     found = []
-    growth = trial.memory_most_mb / trial.memory_before_mb - 1.0
+    growth = Memory(trial.memory_before_mb, trial.memory_most_mb).growth
     if growth > MEMORY_SHARE:
         found.append(f"memory grew by {100 * growth:.0f} %, bar {100 * MEMORY_SHARE:.0f} %")
     if trial.unnamed:

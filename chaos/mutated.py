@@ -23,6 +23,7 @@ from websockets.asyncio.client import ClientConnection
 from websockets.exceptions import ConnectionClosed, WebSocketException
 
 from chaos.canary import greet, opened
+from chaos.memory import MEMORY_SHARE, Memory
 from chaos.mutations import Mutations
 from chaos.server import ServerError, resident_mb, serving, unnamed
 from chaos.wire import SERVER
@@ -35,7 +36,6 @@ from esplanade.protocol.messages import Error, Ping, Pong
 LANES: Final = 20
 ANSWER_S: Final = 60.0
 UNNAMED: Final = "no answer"
-MEMORY_SHARE: Final = 0.05
 WARM_UP_SHARE: Final = 0.1
 """Memory is compared with what it is after this part of the frames."""
 
@@ -48,25 +48,19 @@ Progress = Callable[[int], None]
 
 @dataclass
 class Tally:
-    """What became of the frames."""
+    """Counts of what became of the frames."""
 
     seed: int
     frames: int = 0
     outcomes: Counter[str] = field(default_factory=Counter)
     """Times by outcome: `taken`, an error's name, or how a connection was closed without one."""
     faults: list[str] = field(default_factory=list)
-    memory_mb: tuple[float, float] = (0.0, 0.0)
+    memory: Memory = field(default_factory=Memory)
     """After the warm-up, and at the end."""
 
     @property
-    def growth(self) -> float:
-        """Growth of memory as a share of what it was."""
-        before, after = self.memory_mb
-        return after / before - 1.0 if before else 0.0
-
-    @property
     def passed(self) -> bool:
-        return not self.faults and self.growth <= MEMORY_SHARE
+        return not self.faults and self.memory.growth <= MEMORY_SHARE
 
 
 def in_process(number: int, seed: int, advance: Progress = lambda _: None) -> Tally:
@@ -91,7 +85,7 @@ def in_process(number: int, seed: int, advance: Progress = lambda _: None) -> Ta
         if k % _AT_ONCE == 0:
             advance(min(_AT_ONCE, number - k))
     tally.frames = number
-    tally.memory_mb = (before_mb, resident_mb("self"))
+    tally.memory = Memory(before_mb, resident_mb("self"))
     return tally
 
 
@@ -111,7 +105,7 @@ def over_sockets(
         asyncio.run(_send(server.port, tally, range(warm), advance))
         before_mb = server.memory_mb()
         asyncio.run(_send(server.port, tally, range(warm, number), advance))
-        tally.memory_mb = (before_mb, server.memory_mb())
+        tally.memory = Memory(before_mb, server.memory_mb())
         if not server.alive:
             tally.faults.append("the server has ended")
         tally.faults += unnamed(server.lines())
@@ -222,11 +216,10 @@ def _bar(what: str, total: int) -> Iterator[Progress]:
 
 
 def _show(console: Console, what: str, tally: Tally) -> bool:
-    before, after = tally.memory_mb
     lines = [
         f"{what}: {tally.frames} frames, seed {tally.seed}",
         *(f"  {name:28} {times}" for name, times in tally.outcomes.most_common()),
-        f"  memory {before:.1f} -> {after:.1f} MB ({100 * tally.growth:+.1f} %)",
+        f"  {tally.memory}",
         *(f"  FAULT {fault[:2000]}" for fault in tally.faults[:20]),
         f"  {len(tally.faults)} faults",
     ]

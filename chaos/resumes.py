@@ -20,13 +20,13 @@ from websockets.asyncio.client import ClientConnection
 from websockets.exceptions import WebSocketException
 
 from chaos.canary import greet, opened
+from chaos.memory import MEMORY_SHARE, Memory
 from chaos.server import Reading, Server, ServerError, serving, unnamed
 from chaos.wire import SERVER
 from esplanade.commandline.progress import progress
 from esplanade.protocol import decode_server, encode, peek_snapshot
 from esplanade.protocol.messages import Census, Move, Welcome
 
-MEMORY_SHARE: Final = 0.05
 WARM_UP_SHARE: Final = 0.1
 LIVES_S: Final = (0.2, 4.0)
 AWAY_S: Final = (0.0, 2.0)
@@ -39,24 +39,19 @@ CENSUS_S: Final = 60.0
 
 @dataclass
 class Run:
-    """What happened to all bots together."""
+    """Counts of all bots together."""
 
     kills: int = 0
     takeovers: int = 0
     resumes: int = 0
     faults: list[str] = field(default_factory=list)
-    memory_mb: tuple[float, float] = (0.0, 0.0)
+    memory: Memory = field(default_factory=Memory)
     people: int = 0
     """People in the world at the end, by the census."""
 
     @property
-    def growth(self) -> float:
-        before, after = self.memory_mb
-        return after / before - 1.0 if before else 0.0
-
-    @property
     def passed(self) -> bool:
-        return not self.faults and abs(self.growth) <= MEMORY_SHARE
+        return not self.faults and abs(self.memory.growth) <= MEMORY_SHARE
 
 
 class _Bot:
@@ -160,7 +155,7 @@ async def _live(
             before_mb = server.memory_mb()
     wires = await asyncio.gather(*lives)
     after: Reading = await asyncio.to_thread(server.read)
-    run.memory_mb = (before_mb, after.memory_mb)
+    run.memory = Memory(before_mb, after.memory_mb)
     await _look(wires[0], run, number)
     if len({bot.id for bot in bots}) != number:
         run.faults.append("two bots have one avatar")
@@ -209,11 +204,10 @@ def main() -> int:
     except ServerError as fault:
         console.print(str(fault), markup=False, style="red", soft_wrap=True)
         return 2
-    before, after = run.memory_mb
     for line in (
         f"{options.bots} bots: {run.kills} kills, {run.takeovers} takeovers, {run.resumes} resumes",
         f"people in the world at the end: {run.people}",
-        f"memory {before:.1f} -> {after:.1f} MB ({100 * run.growth:+.1f} %)",
+        str(run.memory),
         *(f"FAULT {fault[:2000]}" for fault in run.faults[:20]),
         f"{len(run.faults)} faults",
     ):

@@ -10,7 +10,7 @@ from typing import Final
 
 from chaos.attack import Attack, Attacker
 from chaos.wire import Wire
-from esplanade.protocol.messages import Enter, Move, Snapshot, WalkTo
+from esplanade.protocol.messages import Enter, FromClient, Move, Snapshot, WalkTo
 from esplanade.protocol.snapshot import positions_m, unpack_block
 
 CLIENTS: Final = 30
@@ -30,20 +30,12 @@ FROZEN_S: Final = 8.0
 def _walk_to(attacker: Attacker) -> None:
     wires = attacker.wires(CLIENTS, "Rover")
     attacker.start_clock()
-    seq, next_s = 0, time.monotonic()
-    while attacker.goes_on:
-        seq += 1
-        for k, wire in enumerate(list(wires)):
-            x, y, z = CORNERS[(seq + k) % len(CORNERS)]
-            try:
-                wire.discard()
-                wire.send(WalkTo(seq=seq, x=x + attacker.random.random(), y=y, z=z))
-                attacker.counts["asked"] += 1
-            except OSError:
-                wires.remove(wire)
-                attacker.counts["closed"] += 1
-        next_s += 1.0 / RATE
-        time.sleep(max(0.0, next_s - time.monotonic()))
+
+    def elsewhere(turn: int, number: int) -> FromClient:
+        x, y, z = CORNERS[(turn + number) % len(CORNERS)]
+        return WalkTo(seq=turn, x=x + attacker.random.random(), y=y, z=z)
+
+    attacker.send_at(RATE, wires, elsewhere)
 
 
 def _frozen(attacker: Attacker) -> None:

@@ -1,6 +1,5 @@
 """Lines of chat and watching, faster than anybody needs them."""
 
-import time
 from collections.abc import Callable
 from functools import partial
 from typing import Final
@@ -16,18 +15,7 @@ def _talk(attacker: Attacker, message: Callable[[Attacker], FromClient]) -> None
     """Send messages of one kind just below the rate of all messages."""
     wires = attacker.wires(CLIENTS, "Talker")
     attacker.start_clock()
-    next_s = time.monotonic()
-    while attacker.goes_on:
-        for wire in list(wires):
-            try:
-                wire.discard()
-                wire.send(message(attacker))
-                attacker.counts["sent"] += 1
-            except OSError:
-                wires.remove(wire)
-                attacker.counts["closed"] += 1
-        next_s += 1.0 / RATE
-        time.sleep(max(0.0, next_s - time.monotonic()))
+    attacker.send_at(RATE, wires, lambda *_: message(attacker))
 
 
 def _line(attacker: Attacker) -> FromClient:
