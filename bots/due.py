@@ -56,7 +56,7 @@ class DueTicks:
         self._miss(self._due_s, int(waited_s * self._tick_rate), now_s)
 
     def _miss(self, before_s: float, ticks: int, now_s: float) -> None:
-        """So many ticks were due after `before_s`, and nothing newer came before now."""
+        """Count `ticks` that were due after `before_s` and were not overtaken before now."""
         if ticks <= 0:
             return
         self._tally.snapshots_missing += ticks

@@ -124,7 +124,7 @@ class ThresholdFigures(_Part):
 
 
 class Moment(_Part):
-    """What happened in a stretch of time that begins at `at_s`."""
+    """The figures of a stretch of time that begins at `at_s`."""
 
     at_s: float
     connected: int

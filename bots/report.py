@@ -55,7 +55,7 @@ SPREAD_HEADS = [*(f"p{percent:g}" for percent in PERCENTILES), "max", "count"]
 
 
 def count_rows(tally: Tally) -> list[tuple[str, str, str]]:
-    """What was counted: its name, the sum, and the share or the rate that belongs to it."""
+    """Rows of counts: a name, the sum, and the share or the rate that belongs to it."""
     rate = 1.0 / tally.client_seconds if tally.client_seconds else 0.0
     rows = [
         ("clients joined", f"{tally.joined:,} of {tally.expected:,}", ""),

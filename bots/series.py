@@ -20,7 +20,7 @@ _SCALE: Final = 1.0 / math.log(STEP)
 
 @dataclass(slots=True)
 class Bucket:
-    """What happened in one stretch of time, summed over clients."""
+    """The counts of one stretch of time, summed over clients."""
 
     joined: int = 0
     failed: int = 0

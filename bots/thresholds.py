@@ -31,7 +31,7 @@ class Threshold(NamedTuple):
     text: str
     measure: str
     value: Callable[[Tally], float | None]
-    """What was measured, in units of the threshold; None where nothing was."""
+    """The measured value, in units of the threshold; None where nothing was measured."""
     sign: str
     limit: float
     unit: str

@@ -15,7 +15,7 @@ BUSY: Final = 0.85
 
 
 def warnings(tally: Tally, verdicts: Sequence[Verdict]) -> Iterator[str]:
-    """What the reader of the report must know, worst first."""
+    """Lines that the reader of the report must know, worst first."""
     for each in verdicts:
         if each.failed:
             yield f"limit crossed: {each}"
@@ -39,7 +39,7 @@ def warnings(tally: Tally, verdicts: Sequence[Verdict]) -> Iterator[str]:
 
 
 def exit_code(tally: Tally, verdicts: Sequence[Verdict], faults: Sequence[str]) -> int:
-    """What the run ends with.
+    """Return the exit code of the run.
 
     Without a threshold on them, no bot may fail or be lost, and none be complained of. Nobody in
     the world, an error in the scenario or in a worker process are failures in any case.

@@ -46,7 +46,7 @@ def main() -> int:
         return 0
     if not sys.platform.startswith("linux"):
         parser.error("attackers come from 127.0.0.2, and memory is read from /proc: needs Linux")
-    # Whoever ends the harness ends with it all that it has started.
+    # When the harness is ended, it ends all that it has started.
     signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))
     try:
         return _run(options, console)

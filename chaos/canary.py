@@ -48,7 +48,7 @@ PLACES: Final = ((20.0, 1.5), (20.0, 8.0), (7.5, 8.0), (32.0, 8.0), (20.0, 12.5)
 
 @dataclass(frozen=True)
 class Sighting:
-    """What the canary saw; times in milliseconds."""
+    """The service that the canary had; times in milliseconds."""
 
     seconds: float
     gap_ms: float

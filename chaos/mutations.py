@@ -44,7 +44,7 @@ class Mutations:
         self._seed = seed << 40
 
     def payload(self, number: int) -> bytes:
-        """What a message would hold, changed: for the decoder."""
+        """Return the content of a message, changed, for the decoder."""
         chance = random.Random(self._seed + number)
         return _MUTATIONS[number % len(_MUTATIONS)](chance)
 

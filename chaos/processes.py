@@ -41,7 +41,7 @@ class CanaryProcess:
         self._pipe.send("begin")
 
     def tell(self) -> Sighting:
-        """What it saw since `begin`."""
+        """Return the canary's service since `begin`."""
         self._pipe.send("tell")
         sighting = _received(self._pipe, "the canary")
         if not isinstance(sighting, Sighting):

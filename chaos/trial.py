@@ -16,7 +16,7 @@ SETTLE_S: Final = 2.0
 """The world runs this long with the canary before memory is read."""
 
 AFTER_S: Final = 1.0
-"""What the server frees after an attack is free by then."""
+"""The server has freed the memory of an attack by then."""
 
 NAMING: Final = (
     "esplanade_floods_total",
@@ -37,7 +37,7 @@ class Trial:
 
     attack: str
     before: Sighting
-    """What the canary saw on this server until the attack began."""
+    """The canary's service on this server until the attack began."""
     sighting: Sighting
     memory_before_mb: float
     memory_most_mb: float
@@ -46,7 +46,7 @@ class Trial:
     processor: float
     """The server's use of one core, 1 being all of it."""
     named: Samples
-    """What the server counted of the attacker, by metric."""
+    """The server's counts of the attacker, by metric."""
     lines: list[str]
     """Events of the server's log that name the attacker's address."""
     unnamed: list[str]
@@ -125,7 +125,7 @@ def run(
 
 
 def naming(lines: list[dict[str, Any]]) -> list[str]:
-    """What the log says of the attacker's address: event and reason, each once."""
+    """Lines of the log about the attacker's address: event and reason, each once."""
     said = [line for line in lines if line.get("address") == ATTACKER]
     texts = [" ".join(filter(None, (line.get("event"), line.get("why")))) for line in said]
     return list(dict.fromkeys(texts))

@@ -14,7 +14,7 @@ from typing import Final
 
 MAX_LINES: Final = 10_000
 MAX_BYTES: Final = 4 * 1024 * 1024
-"""So many lines, and bytes of them, may wait."""
+"""The most lines that may wait, and the most bytes of them."""
 
 CHUNK_BYTES: Final = 4096
 """A write to a pipe that is no longer than this is never torn apart (PIPE_BUF of Linux)."""

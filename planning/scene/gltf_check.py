@@ -1,4 +1,4 @@
-"""What a glTF file asks for is checked before its meshes are read: sizes, counts, extensions."""
+"""Sizes, counts and extensions of a glTF file are checked before its meshes are read."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ class AddressBounds:
 
 
 class _Account:
-    """What one address has open, and what it may still do in this moment."""
+    """The open connections of one address, and the credit that it has in this moment."""
 
     __slots__ = ("connects", "frames", "joins", "sockets")
 

@@ -35,7 +35,7 @@ _FAULTS: Final = {
         f"a frame was not whole within {FRAME_S:g} s",
     ),
 }
-"""What a client is told that breaks a limit of its meter, or of time."""
+"""The error and close code for each limit of the meter, or of time."""
 
 
 class Connection(HeardConnection):

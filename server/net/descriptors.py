@@ -1,4 +1,4 @@
-"""How many connections of people there may be, so that the process never runs out of descriptors.
+"""Connections of people are bounded, so that the process never runs out of descriptors.
 
 Every open file and socket takes a descriptor, and a process may have so many. People's port is the
 only part that takes more and more of them; it leaves a reserve for the private port, so that health
@@ -22,7 +22,7 @@ _LEAST: Final = 8
 
 
 def places_for_people(wanted: int) -> int:
-    """How many connections people may have, at most as many as wanted.
+    """Return the number of connections that people may have, at most as many as wanted.
 
     The limit of the process is raised as far as that takes and the system allows. A warning tells
     when it does not suffice.

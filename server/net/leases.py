@@ -50,7 +50,7 @@ class HeardConnection(ServerConnection):
 
 @dataclass(eq=False, slots=True)
 class Lease:
-    """How long one client has been silent, and what was done about it."""
+    """The silence of one client, and what was done about it."""
 
     connection: HeardConnection = field(repr=False)
     silent_s: float = 0.0

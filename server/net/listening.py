@@ -34,7 +34,7 @@ async def bound_sockets(host: str, port: int) -> list[socket.socket]:
     found = await asyncio.get_running_loop().getaddrinfo(
         host or None, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
     )
-    # Which comes first depends on the resolver; nothing else here does.
+    # Their order depends on the resolver; nothing else here does.
     places: list[_Place] = sorted({(family, address) for family, *_, address in found})
     for _ in range(_TRIES):
         try:

@@ -13,7 +13,7 @@ import disarm
 from esplanade.protocol.codes import MAX_NAME_CHARS
 
 RESERVED: Final = ("admin", "administrator", "moderator", "operator", "server", "system")
-"""Nobody may bear these names, with whatever digits and signs around or between the letters."""
+"""These names are refused, with any digits and signs around or between the letters."""
 
 
 class ReservedNameError(ValueError):
@@ -30,7 +30,7 @@ _RESERVED_SKELETONS: Final = frozenset(skeleton(name) for name in RESERVED)
 
 
 class _Given(NamedTuple):
-    """What has to be given back with a name."""
+    """The entry that has to be given back with a name."""
 
     skeleton: str
     wished: str

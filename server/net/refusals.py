@@ -1,4 +1,4 @@
-"""What is refused at the door is counted by its reason, and the log names who was refused.
+"""Refusals at the door are counted by their reasons, and the log names the addresses.
 
 An attack refuses thousands of connections a second: one line stands for all refusals of one
 address and reason within some seconds, and lines of all addresses together are bounded too.
@@ -61,7 +61,7 @@ class Refusals:
 
 
 class _Note:
-    """What has not been told yet of one address and reason."""
+    """The refusals of one address and reason that are not told yet."""
 
     __slots__ = ("silent_until", "times")
 

@@ -21,7 +21,7 @@ class TlsError(ValueError):
 
 
 _MISMATCHES: Final = {"KEY_VALUES_MISMATCH", "KEY_TYPE_MISMATCH", "NO_CERTIFICATE_ASSIGNED"}
-"""What OpenSSL says of a key of another pair, the last of one of another kind."""
+"""OpenSSL's reasons for a key of another pair; the last is for a key of another kind."""
 
 
 class Tls:
@@ -64,7 +64,7 @@ class Tls:
             log.info("certificate renewed", file=str(self._certificate))
 
     def _stamps(self) -> list[tuple[int, int, int] | None]:
-        """What differs when a file was written or replaced, also behind a symbolic link."""
+        """Return stamps that differ when a file was written or replaced, also behind a link."""
         return [_stamp(path) for path in (self._certificate, self._key)]
 
 

@@ -1,4 +1,4 @@
-"""What a load test says of servers that are broken, and of one that is not."""
+"""A load test tells broken servers from one that is not."""
 
 import asyncio
 from pathlib import Path
@@ -29,7 +29,7 @@ async def run(server: ScriptedServer, duration_s: float) -> Tally:
 
 
 def ages_above(tally: Tally, age_s: float) -> int:
-    """How many ticks that were due are known to have been older than this."""
+    """The number of due ticks that are known to have been older than this."""
     whole = tally.snapshot_age_s.count
     return sum(
         (tally.snapshot_age_s.percentile(100.0 * (place + 0.5) / whole) or 0.0) > age_s

@@ -93,7 +93,7 @@ def test_a_snapshot_that_comes_twice_counts_once() -> None:
 
 @given(st.integers(1, 20_000))
 def test_long_gaps_are_counted_whole(ticks: int) -> None:
-    """Those of a long gap are counted a second at a time, and their ages stay within a second."""
+    """Ticks of a long gap are counted a second at a time; ages are right within a second."""
     gap_s = ticks * TICK_S
     tally = counted([(1, TICK_S, TICK_S), (2, 2 * TICK_S + gap_s, 2 * TICK_S + gap_s)], gap_s)
     assert tally.snapshots_missing == ticks

@@ -1,4 +1,4 @@
-"""What a page does before somebody is in the world: whose seat it takes, what its address asks."""
+"""The page before somebody is in the world: the seat that it takes, the wishes in its address."""
 
 import pytest
 from playwright.async_api import BrowserContext, WebSocket

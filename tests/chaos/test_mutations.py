@@ -42,7 +42,7 @@ def test_frames_that_are_half_are_completed() -> None:
     assert completed(whole) == whole
     assert completed(whole[:-2]) == whole[:-2] + bytes(2)
     assert completed(whole[:1]) == whole[:1] + bytes(1)
-    # What claims more than any frame may have is refused at its head.
+    # A frame that claims more than any may have is refused at its head.
     assert len(completed(b"\x82\xff" + b"\x7f" * 8)) < 1 << 16
 
 

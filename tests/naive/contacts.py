@@ -9,7 +9,7 @@ Pair = tuple[int, int]
 
 
 class NaiveContacts:
-    """As `esplanade.server.world.contacts.Contacts`."""
+    """The plain twin of `esplanade.server.world.contacts.Contacts`."""
 
     def __init__(self) -> None:
         self.actor_person = 0

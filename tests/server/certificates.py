@@ -18,7 +18,7 @@ class Pair:
         return {"tls_cert": self.cert, "tls_key": self.key}
 
     def trusting(self) -> ssl.SSLContext:
-        """What a client needs that trusts this certificate only."""
+        """The context of a client that trusts this certificate only."""
         return ssl.create_default_context(cafile=self.cert)
 
     def replace_by(self, other: "Pair") -> None:

@@ -1,4 +1,4 @@
-/** What the page's address says behind its #, where it is in no request and no server's log. */
+/** The wishes in the page's address behind its #, which is in no request and no server's log. */
 
 import type { Place } from "../render/picking";
 
@@ -7,7 +7,7 @@ export interface AddressWish {
   operator: string | null;
   /** A place to look at and to be asked to walk to. */
   at: Place | null;
-  /** What may stay in the address: everything but the key. */
+  /** The part that may stay in the address: everything but the key. */
   rest: string;
 }
 

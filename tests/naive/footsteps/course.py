@@ -38,6 +38,6 @@ class Course(NamedTuple):
 
 
 def desired_headings(course: Course, velocity: Floats) -> Floats:
-    """Where bodies want to face: in the direction they walk, else as their courses say."""
+    """Headings that bodies want: the direction in which they walk, else as their courses say."""
     walking = np.hypot(velocity[:, 0], velocity[:, 1]) > WALKING_MPS
     return np.where(walking, np.arctan2(velocity[:, 1], velocity[:, 0]), course.headings)

@@ -1,4 +1,4 @@
-"""Where a foot can be put: how high the ground is, exactly, and on which tread."""
+"""The ground under feet: its exact height, and the treads that a foot can be put on."""
 
 from __future__ import annotations
 
@@ -159,7 +159,7 @@ class Ground:
         return tops
 
     def _cell_heights(self, points: Floats, near_m: Floats) -> Floats:
-        """As `height`, from the cells of the grid."""
+        """Return the same as `height`, from the cells of the grid."""
         _, cells = self._grid.on_ground(points, near_m)
         floors = np.where(cells >= 0, self._grid.layered.floors[cells], np.nan)
         return np.where(np.abs(floors - near_m) <= NEAR_M, floors, np.nan)

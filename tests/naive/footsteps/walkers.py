@@ -59,7 +59,7 @@ class Walkers:
         self.steps = no_steps(capacity)
         """The step of everyone that is under way or was the last, as it is drawn."""
         self.lost = 0
-        """How often a body was too far from its feet and stood anew."""
+        """Number of times that a body was too far from its feet and stood anew."""
         self._sizes = BodySizes(np.ones(capacity), np.ones(capacity))
         self._lifted = np.zeros((capacity, 4))
         self._elapsed = np.zeros(capacity)

@@ -64,7 +64,7 @@ def test_a_crowd_of_addresses_is_not_remembered_for_ever() -> None:
         limits.disconnect(str(number))
     assert len(limits._idle) == MAX_REMEMBERED
     assert len(limits) == 1
-    # Who is connected is never forgotten.
+    # An address with a connection is never forgotten.
     assert [limits.connect("busy", 0.0) for _ in range(3)] == [None, None, "address_sockets"]
 
 

@@ -44,7 +44,7 @@ def test_no_address_has_no_key(text: str) -> None:
         (["[2001:db8::5]:4711"], "2001:db8::/64"),
         (["2001:db8::5"], "2001:db8::/64"),
         (["::ffff:203.0.113.9"], "203.0.113.9"),
-        # What cannot be read counts as the proxy that passed it on.
+        # An entry that cannot be read counts as the proxy that passed it on.
         (["unknown"], "10.0.0.1"),
         (["203.0.113.9, unknown, 10.0.0.2"], "10.0.0.2"),
         (["203.0.113.9,, 10.0.0.2"], "10.0.0.2"),

@@ -1,4 +1,4 @@
-"""What one address may have, with real sockets: 127.0.0.2 is an address like any other."""
+"""Limits of one address, with real sockets: 127.0.0.2 is an address like any other."""
 
 import asyncio
 import errno
@@ -129,7 +129,7 @@ async def test_addresses_of_one_ipv6_network_are_one(serving: Serving) -> None:
 
 
 async def test_strangers_cannot_say_who_they_are(serving: Serving) -> None:
-    """Whoever is no trusted proxy is counted by the address of its socket."""
+    """A client that is no trusted proxy is counted by the address of its socket."""
     async with (
         serving(trusted_proxies="127.0.0.9", address_sockets=2) as server,
         behind(server, "203.0.113.1"),

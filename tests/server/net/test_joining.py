@@ -1,4 +1,4 @@
-"""How people come in: by which name, at which place, with which key, to which seat."""
+"""People come in: their names, places, keys and seats."""
 
 import asyncio
 import math

@@ -21,7 +21,7 @@ def stack() -> Iterator[ExitStack]:
 
 
 async def bound(stack: ExitStack, host: str, port: int = 0) -> list[tuple[str, int]]:
-    """Where the sockets of a host are bound; they are closed at the end of the test."""
+    """The addresses at which sockets of a host are bound until the end of the test."""
     sockets = await bound_sockets(host, port)
     for each in sockets:
         stack.callback(each.close)
@@ -45,7 +45,7 @@ async def test_a_port_that_is_taken_at_one_address_is_refused(stack: ExitStack) 
     with pytest.raises(OSError, match=f":: port {port}: ") as refused:
         await bound(stack, "", port)
     assert refused.value.errno == errno.EADDRINUSE
-    # What was bound until then is free again.
+    # The address that was bound until then is free again.
     assert await bound(stack, "127.0.0.1", port) == [("127.0.0.1", port)]
 
 

@@ -1,4 +1,4 @@
-"""What a meter counts is what the library's parser finds, whatever the chunks."""
+"""A meter counts the frames that the library's parser finds, whatever the chunks."""
 
 import struct
 from itertools import pairwise

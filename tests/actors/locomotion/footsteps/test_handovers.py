@@ -1,4 +1,4 @@
-"""What a client receives: a step goes on where the one before ended."""
+"""A step that a client receives goes on where the one before ended."""
 
 import numpy as np
 import pytest
