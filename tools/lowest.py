@@ -23,6 +23,7 @@ GROUPS: Final = (
         ("gait", "scene", "test"),
         (
             "tests/bots",
+            "tests/commandline",
             "tests/esplanade",
             "tests/footage",
             "tests/planning/people",
