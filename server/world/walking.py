@@ -40,7 +40,11 @@ class Feet:
         return self._walkers.lost
 
     def update(self, tick: int) -> None:
-        """Begin and re-aim steps after where everyone is and is going; newcomers stand."""
+        """Begin and re-aim steps after where everyone is and is going; newcomers stand.
+
+        It reads the state and writes the latest steps, and newcomers' legs and statures. Any thread
+        may call it while nobody changes the state; most of the time it holds no interpreter lock.
+        """
         self._tick = tick
         state = self._state
         live = state.live()

@@ -1,4 +1,5 @@
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -28,6 +29,17 @@ def drawn(world: World) -> tuple[Floats, Floats]:
     sizes = BodySizes(world.state.legs_m[slots], world.state.statures_m[slots])
     hips = pose(steps, steps.share(world.tick), sizes).root[:, :2]
     return hips, world.state.positions[slots]
+
+
+def in_a_thread(world: World) -> None:
+    """Let a thread of its own take each tick's steps."""
+    update = world.feet.update
+
+    def elsewhere(tick: int) -> None:
+        with ThreadPoolExecutor(1) as pool:
+            pool.submit(update, tick).result()
+
+    world.feet.update = elsewhere  # type: ignore[method-assign]
 
 
 def test_who_comes_in_stands_there_on_legs_of_their_own() -> None:
@@ -119,10 +131,12 @@ def test_the_world_goes_on_without_steps(monkeypatch: pytest.MonkeyPatch) -> Non
     assert np.hypot(*(hips - places).T).max() < 0.15
 
 
-def test_same_inputs_give_the_same_steps() -> None:
+def test_same_inputs_give_the_same_steps_in_whatever_thread() -> None:
     worlds = []
-    for _ in range(2):
+    for elsewhere in (False, True):
         trial = Trial(scene=FIELD)
+        if elsewhere:
+            in_a_thread(trial.world)
         ids = trial.join((50.0, 50.0), (52.0, 51.0))
         trial.tick(*(Steer(avatar, 1, 0.3 * avatar, 1.4) for avatar in ids))
         trial.ticks(30)
