@@ -11,11 +11,10 @@ from esplanade.bots.clock import ServerClock
 from esplanade.bots.connection import NO_CLOSE_CODE, OPEN_TIMEOUT_S, Connection
 from esplanade.bots.errors import Disconnected, Unreachable
 from esplanade.bots.events import Event, SnapshotEvent, StepsEvent
-from esplanade.bots.incoming import decode
 from esplanade.bots.mailbox import Mailbox
 from esplanade.bots.person import Person
 from esplanade.bots.view import Avatar, View
-from esplanade.protocol import VERSION, ProtocolError
+from esplanade.protocol import VERSION, ProtocolError, decode_server
 from esplanade.protocol.messages import (
     Bye,
     Doors,
@@ -164,7 +163,7 @@ class Bot(Person):
         try:
             while True:
                 frame = await self._connection.receive()
-                if (message := decode(frame)) is not None:
+                if (message := decode_server(frame)) is not None:
                     self._take(message)
         except Disconnected as ended:
             self._ended = ended

@@ -14,12 +14,11 @@ from esplanade.bots.clock import ServerClock
 from esplanade.bots.connection import Connection
 from esplanade.bots.due import DueTicks
 from esplanade.bots.errors import BotError, Disconnected, Refused, TimedOut
-from esplanade.bots.incoming import decode, error_code, is_error
 from esplanade.bots.tally import Tally
 from esplanade.bots.walkers import Walkers
-from esplanade.protocol import ErrorCode, ProtocolError, ServerCode, peek_snapshot
+from esplanade.protocol import ErrorCode, ProtocolError, ServerCode, decode_server, peek_snapshot
 from esplanade.protocol.codes import CloseCode
-from esplanade.protocol.messages import FromClient, Hello, Ping, Pong, Welcome
+from esplanade.protocol.messages import Error, FromClient, Hello, Ping, Pong, Welcome
 
 PING_EVERY_S: Final = 1.0
 FIRST_PINGS: Final = 3
@@ -37,7 +36,7 @@ DOUBT_S: Final = 0.25
 _CODE_BYTE: Final = 1
 """Position of the message code in a frame."""
 _STEPS: Final = bytes([ServerCode.STEPS])
-_PONG: Final = bytes([ServerCode.PONG])
+_LOOKED_INTO: Final = (bytes([ServerCode.ERROR]), bytes([ServerCode.PONG]))
 
 OnSnapshot = Callable[[int, int, bytes], Awaitable[None]]
 OnFrame = Callable[[bytes], None]
@@ -142,20 +141,20 @@ class Client:
         code = frame[_CODE_BYTE : _CODE_BYTE + 1]
         if code == _STEPS:
             self._walkers.take(frame)
-        elif is_error(frame):
-            self._complain(error_code(frame)[0])
-        elif code == _PONG:
-            message = decode(frame)
-            if isinstance(message, Pong) and message.nonce in self._pinged_s:
+        elif code in _LOOKED_INTO:
+            message = decode_server(frame)
+            if isinstance(message, Error):
+                self._complain(message.error)
+            elif isinstance(message, Pong) and message.nonce in self._pinged_s:
                 sent_s = self._pinged_s.pop(message.nonce)
                 round_trip_s = self._clock.add(sent_s, now_s, message.server_time)
                 self._tally.round_trip_s.add(round_trip_s)
 
-    def _complain(self, code: str) -> None:
-        if code == ErrorCode.NO_PATH.value:
+    def _complain(self, code: ErrorCode | str) -> None:
+        if code == ErrorCode.NO_PATH:
             self._tally.no_path += 1
         else:
-            self._tally.complain(code)
+            self._tally.complain(str(code))
 
 
 async def visit(

@@ -8,9 +8,8 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidURI
 
 from esplanade.bots.address import websocket_url
 from esplanade.bots.errors import Disconnected, Refused, TimedOut, Unreachable
-from esplanade.bots.incoming import decode, error_code, is_error
-from esplanade.protocol import ProtocolError, encode
-from esplanade.protocol.messages import FromClient, Hello, Welcome
+from esplanade.protocol import ProtocolError, decode_server, encode
+from esplanade.protocol.messages import Error, FromClient, Hello, Welcome
 
 OPEN_TIMEOUT_S: Final = 10.0
 CLOSE_TIMEOUT_S: Final = 2.0
@@ -111,15 +110,14 @@ async def _welcome(socket: ClientConnection) -> Welcome:
     try:
         message = None
         while message is None:
-            frame = await socket.recv(decode=False)
-            if is_error(frame):
-                raise Refused(*error_code(frame))
-            message = decode(frame)
+            message = decode_server(await socket.recv(decode=False))
     except ProtocolError as error:
         raise Unreachable(f"what answers speaks another protocol: {error.text}") from None
     except ConnectionClosed as error:
         ended = _disconnected(error)
         raise Refused(str(ended.code), ended.reason or "closed without a word") from None
+    if isinstance(message, Error):
+        raise Refused(str(message.error), message.text)
     if not isinstance(message, Welcome):
         raise Unreachable(f"expected welcome, not {type(message).__name__.lower()}")
     return message

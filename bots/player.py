@@ -7,12 +7,11 @@ from typing import Final
 from esplanade.bots.client import Client
 from esplanade.bots.errors import BotError
 from esplanade.bots.events import SnapshotEvent
-from esplanade.bots.incoming import decode
 from esplanade.bots.scenario import Scenario
 from esplanade.bots.scenario_file import where
 from esplanade.bots.tally import Tally
 from esplanade.bots.view import View
-from esplanade.protocol import ServerCode
+from esplanade.protocol import ServerCode, decode_server
 from esplanade.protocol.messages import Enter, Leave, Point, Snapshot
 from esplanade.protocol.snapshot import unpack_block
 
@@ -42,7 +41,7 @@ class Player:
         """Keep up to date who is where."""
         if len(frame) < 2 or frame[1] not in _SEEN:
             return
-        match decode(frame):
+        match decode_server(frame):
             case Snapshot(tick=tick, ack=ack, block=block):
                 origin = self._client.welcome.origin
                 self._view.snapshot(SnapshotEvent(tick, ack, unpack_block(block), origin))

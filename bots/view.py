@@ -8,7 +8,7 @@ from esplanade.protocol import Kind, Reason
 from esplanade.protocol.messages import Enter, Entity, Leave, Place, Point, Welcome
 from esplanade.protocol.snapshot import HEADING_RAD, POSITION_M, SPEED_MPS
 
-_REASONS: Final = {reason.value: reason for reason in Reason}
+_REASONS: Final[dict[int, Reason]] = {int(reason): reason for reason in Reason}
 
 
 @dataclass(slots=True)
@@ -16,7 +16,8 @@ class Avatar:
     """An avatar in view as of the newest snapshot. Metres, radians from +x, metres a second."""
 
     id: int
-    kind: Kind
+    kind: Kind | str
+    """One of `Kind`, or the name of one that came with a later version; so is `reason`."""
     name: str
     layer: int
     x: float
@@ -24,7 +25,7 @@ class Avatar:
     z: float
     heading: float
     speed: float
-    reason: Reason
+    reason: Reason | int
     radius: float
     leg_m: float = 0.0
     """Length of a leg; 0 until it is known."""
@@ -85,7 +86,7 @@ class View:
             else:
                 continue
             avatar.layer = layer
-            avatar.reason = _REASONS.get(reason, Reason.NONE)
+            avatar.reason = _REASONS.get(reason, reason)
             avatar.x = x0 + x * POSITION_M
             avatar.y = y0 + y * POSITION_M
             avatar.z = z * POSITION_M

@@ -7,8 +7,10 @@ from esplanade.protocol.codec import (
     encode_snapshot,
     encode_steps,
     peek_snapshot,
+    peek_version,
 )
 from esplanade.protocol.codes import (
+    SERVED_VERSIONS,
     VERSION,
     ByeCode,
     ClientCode,
@@ -21,6 +23,7 @@ from esplanade.protocol.codes import (
 from esplanade.protocol.errors import ProtocolError
 
 __all__ = [
+    "SERVED_VERSIONS",
     "VERSION",
     "ByeCode",
     "ClientCode",
@@ -36,4 +39,5 @@ __all__ = [
     "encode_snapshot",
     "encode_steps",
     "peek_snapshot",
+    "peek_version",
 ]

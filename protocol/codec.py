@@ -59,6 +59,7 @@ SERVER_MESSAGES: Final[dict[int, type[FromServer]]] = {
     )
 }
 
+_FLAT: Final = frozenset({int(ServerCode.SNAPSHOT), int(ServerCode.STEPS)})
 _SNAPSHOT_HEAD = struct.Struct(">BBBIBIBH")
 _STEPS_HEAD = struct.Struct(">BBBIBH")
 SNAPSHOT_HEAD_BYTES: Final = _SNAPSHOT_HEAD.size
@@ -107,7 +108,7 @@ def encode_steps(tick: int, block: bytes | memoryview) -> bytes:
     Raises
     ------
     ValueError
-        The block is longer than 65 535 bytes (291 records).
+        The block is longer than 65 535 bytes (287 steps).
     """
     _check_length(block)
     head = _STEPS_HEAD.pack(0x93, ServerCode.STEPS, 0xCE, tick & 0xFFFF_FFFF, 0xC5, len(block))
@@ -120,6 +121,20 @@ def peek_snapshot(frame: bytes) -> SnapshotHead | None:
         return None
     _, _, _, tick, _, ack, _, _ = _SNAPSHOT_HEAD.unpack_from(frame)
     return SnapshotHead(tick, ack)
+
+
+def peek_version(frame: bytes | str) -> int | None:
+    """The version that a hello asks for, whatever its other fields are; None for other frames."""
+    if isinstance(frame, str) or len(frame) > MAX_CLIENT_FRAME_BYTES:
+        return None
+    try:
+        parts = _unpack(frame)
+    except ProtocolError:
+        return None
+    if len(parts) != 2 or parts[0] != ClientCode.HELLO or not isinstance(parts[1], dict):
+        return None
+    version = parts[1].get("version")
+    return version if type(version) is int else None
 
 
 def decode_client(frame: bytes) -> ClientMessage:
@@ -155,13 +170,13 @@ def decode_client(frame: bytes) -> ClientMessage:
         ) from None
 
 
-def decode_server(frame: bytes) -> ServerMessage:
-    """Decode a message of the server.
+def decode_server(frame: bytes) -> ServerMessage | None:
+    """Decode a message of the server; None for a code that is not known, to be passed over.
 
     Raises
     ------
     ProtocolError
-        No msgpack, unknown code, or fields that break their model.
+        No msgpack, not an array that begins with a code, or fields that break their model.
     """
     code, *rest = _unpack(frame)
     if type(code) is not int:
@@ -171,9 +186,12 @@ def decode_server(frame: bytes) -> ServerMessage:
             return Snapshot(tick=rest[0], ack=rest[1], block=rest[2])
         if code == ServerCode.STEPS and len(rest) == 2:
             return StepBlock(tick=rest[0], block=rest[1])
-        if code not in SERVER_MESSAGES or len(rest) != 1 or not isinstance(rest[0], dict):
+        model = SERVER_MESSAGES.get(code)
+        if model is None and code not in _FLAT:
+            return None
+        if model is None or len(rest) != 1 or not isinstance(rest[0], dict):
             raise _malformed(f"no server message: code {code} with {len(rest)} parts")
-        return SERVER_MESSAGES[code].model_validate(rest[0])  # type: ignore[return-value]
+        return model.model_validate(rest[0])  # type: ignore[return-value]
     except ValidationError as error:
         raise _malformed(_first_fault(error)) from None
 

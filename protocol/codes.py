@@ -6,8 +6,12 @@ the browser and `tests/protocol/test_codes.py` holds the two together.
 
 from enum import IntEnum, StrEnum
 
-VERSION = 3
-"""Version of the protocol. Both sides must speak the same one."""
+VERSION = 4
+"""The newest version of the protocol, which our own clients speak."""
+
+SERVED_VERSIONS = (4,)
+"""Every version that the server speaks, the oldest first. From 4 on it also serves the version
+before its own: a client tells its version in hello, and welcome repeats it."""
 
 MAX_CLIENT_FRAME_BYTES = 2048
 """A larger frame from a client ends the connection (close code 1009)."""

@@ -59,7 +59,8 @@ class FromClient(BaseModel):
 
 
 class FromServer(BaseModel):
-    """Base of what the server sends. Unknown fields are ignored: clients outlive additions."""
+    """Base of what the server sends. Clients outlive additions: unknown fields are ignored, and
+    names and numbers of kinds, reasons and faults that are not known are taken as they are."""
 
     model_config = ConfigDict(frozen=True, extra="ignore")
     code: ClassVar[ServerCode]
@@ -139,10 +140,11 @@ ClientMessage = Hello | Move | WalkTo | ChatLine | Ping | Watch | SetDoor
 
 
 class Welcome(FromServer):
-    """Answer to hello: the avatar's id, the whole scene, and how time runs here."""
+    """Answer to hello: the avatar's id, the whole scene, and what a client predicts with."""
 
     code = ServerCode.WELCOME
     version: int
+    """The version that is spoken on this connection: the one that hello asked for."""
     id: EntityId
     name: str
     resume: str
@@ -151,8 +153,18 @@ class Welcome(FromServer):
     tick: int
     tick_rate: int
     server_time: float
+    resume_seconds: float
+    """How long an avatar waits for a client whose connection was lost."""
     radius: float
+    clearance: float
+    """Distance that a person's centre keeps from walls."""
+    body_height: float
+    """What hangs lower than this above the feet stops a person."""
+    step_height: float
+    """Greatest difference in height that a person steps up or down."""
     max_speed: float
+    walk_speed: float
+    """Speed of a walk to a point, and of a walk in no hurry."""
     origin: tuple[float, float]
     """World position (x, y) of the snapshot's coordinate (0, 0), metres."""
     doors: dict[str, bool]
@@ -166,7 +178,7 @@ class Entity(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="ignore")
     id: EntityId
-    kind: Kind
+    kind: Annotated[Kind | str, Field(union_mode="left_to_right")]
     name: str
     layer: Layer
     x: float
@@ -226,7 +238,7 @@ class Error(FromServer):
     """A fault in something that the client sent. `error` is for programs, `text` for people."""
 
     code = ServerCode.ERROR
-    error: ErrorCode
+    error: Annotated[ErrorCode | str, Field(union_mode="left_to_right")]
     text: str
 
 
@@ -234,7 +246,7 @@ class Bye(FromServer):
     """The server ends the connection in good order."""
 
     code = ServerCode.BYE
-    reason: ByeCode
+    reason: Annotated[ByeCode | str, Field(union_mode="left_to_right")]
     text: str
 
 
@@ -262,8 +274,8 @@ class Plan(FromServer):
     code = ServerCode.PLAN
     tick: int
     id: EntityId
-    reason: Reason
-    behaviour: Literal["go_to", "wander", "patrol", "guide", "idle"]
+    reason: Annotated[Reason | int, Field(union_mode="left_to_right")]
+    behaviour: Literal["go_to", "wander", "patrol", "guide", "idle"] | str
     goal: Place | None
     path: list[tuple[float, float, float, float]]
     """Points (x, y, z, seconds from now)."""

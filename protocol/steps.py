@@ -1,4 +1,7 @@
-"""The packed block of a `steps` message: one fixed record for each step of a foot, little-endian.
+"""The packed block of a `steps` message: a record for each step of a foot, little-endian.
+
+Every record begins with its kind and its length, so that a reader passes over kinds that it does
+not know. The one kind so far is the walking step; what follows is about that.
 
 During a step the standing foot stays on its footprint while the other one, the swing foot, goes to
 its landing footprint, on which it stands during the next step. A footprint is the place of the
@@ -9,6 +12,8 @@ The server quantises a step once and goes on from what the record holds: the lan
 one step is the standing footprint of the next, bit for bit.
 """
 
+import struct
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
@@ -43,8 +48,17 @@ KEY = np.dtype(
 )
 """A key, 31 bytes: root and ankle in 0.1 mm from the standing and from the landing footprint."""
 
+HEAD = np.dtype([("kind", "u1"), ("length", "<u2")])
+"""The beginning of every record, 3 bytes; the length is that of the whole record in bytes."""
+
+_HEAD: Final = struct.Struct("<BH")
+
+WALKING: Final = 1
+"""Kind of a walking step."""
+
 STEP = np.dtype(
     [
+        *((name, HEAD[name]) for name in ("kind", "length")),
         ("id", "<u4"),
         ("flags", "u1"),
         ("tick", "<u4"),
@@ -55,7 +69,7 @@ STEP = np.dtype(
         ("keys", KEY, KEYS),
     ]
 )
-"""A step, 225 bytes."""
+"""A walking step, 228 bytes."""
 
 STANDS_ON_RIGHT: Final = 1
 """Flag of a step during which the right foot stands."""
@@ -125,6 +139,14 @@ class Steps:
     keys: Keys
 
 
+def new_step_records(count: int) -> StepRecords:
+    """STEP (count,): records of walking steps that say their kind and length, and are else zero."""
+    records = np.zeros(count, dtype=STEP)
+    records["kind"] = WALKING
+    records["length"] = STEP.itemsize
+    return records
+
+
 def pack_steps(steps: Steps) -> StepRecords:
     """Quantise N steps into records.
 
@@ -136,7 +158,7 @@ def pack_steps(steps: Steps) -> StepRecords:
         arms.
     """
     keys = steps.keys
-    records = np.zeros(len(steps.ids), dtype=STEP)
+    records = new_step_records(len(steps.ids))
     records["id"] = steps.ids
     records["flags"] = STANDS_ON_RIGHT * steps.on_right + RE_AIMED * steps.re_aimed
     records["tick"] = steps.begin_ticks & 0xFFFF_FFFF
@@ -186,17 +208,43 @@ def unpack_steps(records: StepRecords) -> Steps:
 
 
 def step_records(block: bytes) -> StepRecords:
-    """The records of a block, as a read-only view.
+    """The walking steps of a block, in their order, as a read-only array.
+
+    Records of other kinds are passed over, and so are bytes that a walking step has beyond those
+    of STEP.
 
     Raises
     ------
     ValueError
-        The length of the block is no multiple of that of a record.
+        A record runs over the end of the block, or its length is too small for its kind.
     """
-    if len(block) % STEP.itemsize:
-        size = STEP.itemsize
-        raise ValueError(f"a block of steps must be a multiple of {size} bytes, got {len(block)}")
-    return np.frombuffer(block, dtype=STEP)
+    if len(block) % STEP.itemsize == 0:
+        records = np.frombuffer(block, dtype=STEP)
+        alike = (records["kind"] == WALKING) & (records["length"] == STEP.itemsize)
+        if alike.all():
+            return records
+    return np.frombuffer(b"".join(_walking_records(block)), dtype=STEP)
+
+
+def _walking_records(block: bytes) -> Iterator[bytes]:
+    """The bytes of every walking step, without those that later versions add at its end."""
+    number = at = 0
+    while at < len(block):
+        left = len(block) - at
+        where = f"record {number} at byte {at} of a block of steps"
+        if left < HEAD.itemsize:
+            raise ValueError(f"{where} ends after {left} of the {HEAD.itemsize} bytes of its head")
+        kind, length = _HEAD.unpack_from(block, at)
+        least = STEP.itemsize if kind == WALKING else HEAD.itemsize
+        if length < least:
+            raise ValueError(
+                f"{where} says a length of {length} bytes, one of kind {kind} has at least {least}"
+            )
+        if length > left:
+            raise ValueError(f"{where} says a length of {length} bytes, {left} are left")
+        if kind == WALKING:
+            yield block[at : at + STEP.itemsize]
+        number, at = number + 1, at + length
 
 
 def _pack_footprints(packed: StepRecords, footprints: Footprints) -> None:

@@ -1,6 +1,11 @@
-/** Small scenes for tests. */
+/** Small scenes for tests, and those who walk in them. */
 
 import type { SceneData, ScenePolygon, SceneWall } from "../src/net/messages";
+import type { Reach } from "../src/world/barriers";
+import type { Gait } from "../src/world/prediction";
+
+export const adult: Reach = { heightM: 1.8, stepM: 0.6 };
+export const gait: Gait = { clearanceM: 0.25, maxSpeedMps: 2.5, walkSpeedMps: 1.4 };
 
 export const box = (
   [x0, y0]: [number, number],

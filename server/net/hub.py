@@ -6,8 +6,9 @@ from typing import Final
 
 import structlog
 
-from esplanade.protocol import VERSION, ByeCode, CloseCode, ErrorCode, ProtocolError
+from esplanade.protocol import ByeCode, CloseCode, ErrorCode, ProtocolError
 from esplanade.protocol.messages import Bye, Chat, Hello, Move, SetDoor, WalkTo, Welcome
+from esplanade.planning.grid.grid import ADULT
 from esplanade.server.metrics import Metrics
 from esplanade.server.net import frames
 from esplanade.server.net.leases import ANSWER_S, PING_S, Leases
@@ -298,7 +299,7 @@ class Hub:
         world = self._world
         self.sessions[avatar_id] = session
         welcome = Welcome(
-            version=VERSION,
+            version=session.version,
             id=avatar_id,
             name=session.name,
             resume=session.token,
@@ -307,8 +308,13 @@ class Hub:
             tick=world.tick,
             tick_rate=self._settings.tick_rate,
             server_time=self.server_time(),
+            resume_seconds=self._settings.resume_seconds,
             radius=world.rules.person_radius_m,
+            clearance=world.rules.person_clearance_m,
+            body_height=ADULT.height_m,
+            step_height=ADULT.step_on_m,
             max_speed=world.rules.person_max_speed_mps,
+            walk_speed=min(world.rules.person_walk_speed_mps, world.rules.person_max_speed_mps),
             origin=world.origin_m,
             doors=world.doors.states(),
             operator=session.is_operator,

@@ -8,7 +8,15 @@ import structlog
 from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode as LibraryCode
 
-from esplanade.protocol import VERSION, CloseCode, ErrorCode, ProtocolError, decode_client
+from esplanade.protocol import (
+    SERVED_VERSIONS,
+    VERSION,
+    CloseCode,
+    ErrorCode,
+    ProtocolError,
+    decode_client,
+    peek_version,
+)
 from esplanade.protocol.messages import (
     ChatLine,
     ClientMessage,
@@ -86,6 +94,8 @@ class Session:
         self.token = ""
         """The seat's resume token, which is never logged."""
         self.name = ""
+        self.version = VERSION
+        """The version that the client speaks, once it has said hello."""
         self.watching: int | None = None
         self.is_operator = False
         self.fault_at_welcome: ProtocolError | None = None
@@ -146,6 +156,15 @@ class Session:
                 f"no hello within {self._hello_timeout_s:g} s",
                 CloseCode.HELLO_TIMEOUT,
             ) from None
+        # The hello of a version that is not served may hold anything else.
+        version = peek_version(frame)
+        if version is not None and version not in SERVED_VERSIONS:
+            served = " and ".join(map(str, SERVED_VERSIONS))
+            raise ProtocolError(
+                ErrorCode.UNSUPPORTED_VERSION,
+                f"this server speaks version {served}, the client {version}",
+                CloseCode.UNSUPPORTED_VERSION,
+            )
         message = self._decode(frame)
         if not isinstance(message, Hello):
             raise ProtocolError(
@@ -153,12 +172,7 @@ class Session:
                 f"the first message must be hello, not {message.code.name.lower()}",
                 CloseCode.HELLO_EXPECTED,
             )
-        if message.version != VERSION:
-            raise ProtocolError(
-                ErrorCode.UNSUPPORTED_VERSION,
-                f"this server speaks version {VERSION}, the client {message.version}",
-                CloseCode.UNSUPPORTED_VERSION,
-            )
+        self.version = message.version
         return message
 
     def _decode(self, frame: bytes | str) -> ClientMessage:

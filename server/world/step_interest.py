@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from esplanade.protocol.steps import STEP, StepRecords
+from esplanade.protocol.steps import STEP, StepRecords, new_step_records
 from esplanade.server.world.interest import LEAVE_RATIO, Interest
 from esplanade.server.world.neighbours import STOREY_WEIGHT
 from esplanade.server.world.rules import Rules
@@ -22,7 +22,7 @@ class LatestSteps:
     """
 
     def __init__(self, capacity: int) -> None:
-        self.records: StepRecords = np.zeros(capacity + 1, dtype=STEP)
+        self.records: StepRecords = new_step_records(capacity + 1)
         self.begun = np.zeros(capacity + 1, dtype=np.int32)
 
     def begin(self, slots: Slots, records: StepRecords, tick: int) -> None:

@@ -2,8 +2,6 @@
 
 from typing import Final
 
-import numpy as np
-
 from esplanade.actors.locomotion.motion import key_poses as motion
 from esplanade.protocol import steps as wire
 from esplanade.protocol.quaternions import NEAR_IDENTITY, SMALLEST_THREE
@@ -31,7 +29,7 @@ _LAYOUT: Final = Layout(
 
 def to_records(steps: motion.Steps, ids: Slots) -> StepRecords:
     """Quantise N steps of the avatars with these ids (N,)."""
-    records = np.zeros(len(ids), dtype=wire.STEP)
+    records = wire.new_step_records(len(ids))
     write_records(steps, ids, _LAYOUT, records)
     return records
 

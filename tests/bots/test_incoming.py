@@ -5,39 +5,8 @@ import pytest
 from websockets.asyncio.server import ServerConnection
 
 from esplanade import bots
-from esplanade.bots.incoming import decode
-from esplanade.protocol import ErrorCode, ProtocolError, encode
-from esplanade.protocol.messages import Error, Notice
+from esplanade.protocol import encode
 from tests.bots.scripted import ScriptedServer, listening, scripted_server, until
-
-
-@pytest.mark.parametrize(
-    "frame",
-    [
-        msgpack.packb([99, {"what": 1}]),
-        msgpack.packb([200, {}]),
-        msgpack.packb([60_000, 1, 2, 3]),
-        msgpack.packb([99]),
-        msgpack.packb([70, {"error": "of_tomorrow", "text": "wait"}]),
-    ],
-)
-def test_what_a_later_version_says_is_passed_over(frame: bytes) -> None:
-    assert decode(frame) is None
-
-
-def test_what_this_version_knows_is_decoded_with_or_without_more_fields() -> None:
-    assert decode(msgpack.packb([69, {"text": "hello", "mood": "good"}])) == Notice(text="hello")
-    error = Error(error=ErrorCode.FLOODING, text="slower")
-    assert decode(encode(error)) == error
-
-
-@pytest.mark.parametrize(
-    "frame",
-    [b"", b"\x90", b"\x91", b"\x92\x63", b"\x92\xa1a\x01", b"\x92\x46\x80", b"\x92\x46\xc0"],
-)
-def test_nonsense_stays_nonsense(frame: bytes) -> None:
-    with pytest.raises(ProtocolError):
-        decode(frame)
 
 
 async def test_a_bot_goes_on_and_keeps_the_newest_token() -> None:

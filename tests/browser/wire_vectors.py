@@ -51,7 +51,7 @@ from esplanade.protocol.messages import (
 )
 from esplanade.protocol.snapshot import pack_records
 from esplanade.protocol.steps import Footprints, Steps, pack_steps, unpack_steps
-from tests.protocol.steps import made_up_steps
+from tests.protocol.steps import made_up_steps, mixed_block
 
 FIXTURE: Final = Path(__file__).parents[2] / "client_web" / "tests" / "fixtures" / "wire.json"
 
@@ -80,8 +80,13 @@ FROM_SERVER: Final[tuple[FromServer, ...]] = (
         tick=1200,
         tick_rate=20,
         server_time=60.0,
+        resume_seconds=30.0,
         radius=0.25,
+        clearance=0.25,
+        body_height=1.8,
+        step_height=0.6,
         max_speed=2.5,
+        walk_speed=1.4,
         origin=ORIGIN,
         doors={"Gate": True},
         operator=False,
@@ -208,6 +213,7 @@ def _steps() -> dict[str, Any]:
     return {
         "tick": 4000000000,
         "frame": encode_steps(4000000000, records.tobytes()).hex(),
+        "mixed": mixed_block(records).hex(),
         "records": [_step(steps, row) for row in range(len(records))],
     }
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from esplanade.protocol.steps import KEYS, Floats, Footprints, Keys, Steps
+from esplanade.protocol.steps import KEYS, Floats, Footprints, Keys, StepRecords, Steps
 
 
 def made_up_steps(count: int, seed: int = 0) -> Steps:
@@ -34,6 +34,22 @@ def made_up_steps(count: int, seed: int = 0) -> Steps:
             arms_rad=within(-3.0, 3.0, KEYS, 4),
         ),
     )
+
+
+def mixed_block(records: StepRecords) -> bytes:
+    """A block as a later version may send it: other kinds, and walking steps with more at the end.
+
+    It begins with the first of the records (N,) and ends with the last.
+    """
+    of_other_kinds = [b"\x02\x03\x00", b"\x07\x05\x00\x01\x01", b"\xff\x04\x01" + bytes(257)]
+    parts = [records[0].tobytes()]
+    for place, record in enumerate(records[1:]):
+        parts.append(of_other_kinds[place % 3])
+        longer = record.copy()
+        longer["length"] += place
+        parts.append(longer.tobytes() + b"\x55" * place)
+    parts[-1] = records[-1].tobytes()
+    return b"".join(parts)
 
 
 def _unit(quaternions: Floats) -> Floats:

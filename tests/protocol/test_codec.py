@@ -19,6 +19,7 @@ from esplanade.protocol import (
     encode_snapshot,
     encode_steps,
     peek_snapshot,
+    peek_version,
 )
 from esplanade.protocol.codec import (
     CLIENT_MESSAGES,
@@ -28,7 +29,17 @@ from esplanade.protocol.codec import (
     STEPS_HEAD_BYTES,
 )
 from esplanade.protocol.codes import MAX_CLIENT_FRAME_BYTES, ClientCode
-from esplanade.protocol.messages import FromClient, FromServer, Hello, Snapshot
+from esplanade.protocol.messages import (
+    Bye,
+    Enter,
+    Entity,
+    Error,
+    FromClient,
+    FromServer,
+    Hello,
+    Snapshot,
+    StepBlock,
+)
 from tests.protocol.messages import client_messages, server_messages
 
 
@@ -46,6 +57,60 @@ def test_every_code_has_a_model() -> None:
     assert {int(code) for code in ClientCode} == set(CLIENT_MESSAGES)
     flat = {int(ServerCode.SNAPSHOT), int(ServerCode.STEPS)}
     assert {int(code) for code in ServerCode} == set(SERVER_MESSAGES) | flat
+
+
+# --- later versions -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("rest", [[], [{"field": 1}], [1, 2, b"block"]])
+def test_a_message_of_the_server_with_an_unknown_code_is_passed_over(rest: list[Any]) -> None:
+    assert decode_server(msgpack.packb([99, *rest])) is None
+
+
+@given(server_messages.filter(lambda message: not isinstance(message, (Snapshot, StepBlock))))
+def test_unknown_fields_of_the_server_are_passed_over(message: FromServer) -> None:
+    code, fields = msgpack.unpackb(encode(message))
+    assert decode_server(msgpack.packb([code, {**fields, "later": [1, {"a": None}]}])) == message
+
+
+def test_unknown_fields_of_a_part_are_passed_over() -> None:
+    entity = {"id": 1, "kind": "actor", "name": "Oak", "layer": 0, "x": 0, "y": 0, "z": 0}
+    sizes = {"heading": 0, "radius": 0.25, "leg_m": 0.9, "stature_m": 1.7, "points_at": None}
+    frame = msgpack.packb([65, {"tick": 1, "entities": [{**entity, **sizes, "hat": "red"}]}])
+    assert decode_server(frame) == Enter(tick=1, entities=[Entity(**entity, **sizes)])
+
+
+def test_unknown_names_and_numbers_of_the_server_are_taken_as_they_are() -> None:
+    error = decode_server(msgpack.packb([70, {"error": "too_windy", "text": "hold on"}]))
+    assert isinstance(error, Error)
+    assert error.error == "too_windy"
+    bye = decode_server(msgpack.packb([71, {"reason": "moved", "text": "elsewhere"}]))
+    assert isinstance(bye, Bye)
+    assert bye.reason == "moved"
+    known = decode_server(msgpack.packb([70, {"error": "no_path", "text": "none"}]))
+    assert isinstance(known, Error)
+    assert known.error is ErrorCode.NO_PATH
+
+
+@pytest.mark.parametrize(
+    ("frame", "version"),
+    [
+        (encode(Hello(name="Ann", version=7)), 7),
+        (msgpack.packb([1, {"version": 9, "later": None}]), 9),
+        (msgpack.packb([1, {"version": "9"}]), None),
+        (msgpack.packb([1, {"version": True}]), None),
+        (msgpack.packb([1, {}]), None),
+        (msgpack.packb([1, 9]), None),
+        (msgpack.packb([2, {"version": 9}]), None),
+        (b"\xc1", None),
+        (msgpack.packb([1, {"version": 9, "long": "x" * MAX_CLIENT_FRAME_BYTES}]), None),
+        ("text", None),
+    ],
+)
+def test_the_version_of_a_hello_is_found_whatever_else_it_holds(
+    frame: bytes | str, version: int | None
+) -> None:
+    assert peek_version(frame) == version
 
 
 # --- hostile frames -----------------------------------------------------------------------------

@@ -16,15 +16,17 @@ from esplanade.protocol.steps import (
     KEY_M,
     KEYS,
     STEP,
+    WALKING,
     Floats,
     Footprints,
     Keys,
     Steps,
+    new_step_records,
     pack_steps,
     step_records,
     unpack_steps,
 )
-from tests.protocol.steps import made_up_steps
+from tests.protocol.steps import made_up_steps, mixed_block
 
 LEGS_M = 0.3e-3
 LEGS_RAD = np.radians(0.05)
@@ -131,17 +133,17 @@ def test_the_layout_byte_by_byte() -> None:
         ),
     )
     block = pack_steps(steps).tobytes()
-    assert len(block) == STEP.itemsize == 225
-    assert block[:39].hex(" ") == (
-        "04 03 02 01 03 08 07 06 05 09 "
+    assert len(block) == STEP.itemsize == 228
+    assert block[:42].hex(" ") == (
+        "01 e4 00 04 03 02 01 03 08 07 06 05 09 "
         "10 27 00 00 f0 d8 ff ff c4 09 00 00 00 40 "
         "98 3a 00 00 f0 d8 ff ff c4 09 00 00 00 c0 ff"
     )
-    assert block[39:70].hex(" ") == (
+    assert block[42:73].hex(" ") == (
         "c4 09 00 00 2e 22 00 40 00 40 00 40 78 ec 00 00 00 00 e8 03 18 fc 64 00 "
         "00 00 00 14 14 14 14"
     )
-    assert block[39:] == block[39:70] * KEYS
+    assert block[42:] == block[42:73] * KEYS
 
 
 def test_every_field_has_a_row_for_each_step() -> None:
@@ -156,15 +158,63 @@ def test_nobody_near_is_an_empty_block() -> None:
     assert unpack_steps(step_records(b"")).keys.roots_m.shape == (0, KEYS, 3)
 
 
-@pytest.mark.parametrize("length", [1, 224, 226])
-def test_a_block_cut_short_is_refused(length: int) -> None:
-    with pytest.raises(ValueError, match=f"multiple of 225 bytes, got {length}$"):
-        step_records(bytes(length))
+def test_records_of_other_kinds_and_of_later_versions_are_passed_over() -> None:
+    records = pack_steps(made_up_steps(7))
+    read = step_records(mixed_block(records))
+    known = [name for name in STEP.names or () if name != "length"]
+    np.testing.assert_array_equal(read[known], records[known])
 
 
-@given(st.binary(min_size=STEP.itemsize, max_size=STEP.itemsize))
-def test_whatever_the_bytes_the_values_are_finite(block: bytes) -> None:
-    keys = unpack_steps(step_records(block)).keys
+def test_a_block_of_another_kind_alone_holds_no_steps() -> None:
+    assert len(step_records(b"\x02\x03\x00")) == 0
+    # As long as a walking step, which must not make it one.
+    assert len(step_records(b"\x02\xe4\x00" + bytes(STEP.itemsize - 3))) == 0
+
+
+def test_a_walking_step_of_a_later_version_may_be_twice_as_long() -> None:
+    longer = new_step_records(1)
+    longer["id"], longer["length"] = 12, 2 * STEP.itemsize
+    assert step_records(longer.tobytes() + bytes(STEP.itemsize))["id"].tolist() == [12]
+
+
+WALK = new_step_records(1).tobytes()
+
+
+@pytest.mark.parametrize(
+    ("block", "fault"),
+    [
+        (b"\x01", "record 0 at byte 0 of a block of steps ends after 1 of the 3 bytes of its head"),
+        (WALK + b"\x02\x03", "record 1 at byte 228 .* ends after 2 of the 3 bytes of its head"),
+        (bytes(228), "record 0 at byte 0 .* length of 0 bytes, one of kind 0 has at least 3"),
+        (WALK + b"\x02\x00\x00", "record 1 at byte 228 .* length of 0 bytes, .* at least 3"),
+        (WALK + b"\x02\x02\x00", "record 1 at byte 228 .* length of 2 bytes, .* at least 3"),
+        (
+            b"\x02\x04\x00\x00\x01\xe3\x00" + WALK[3:-1],
+            "record 1 at byte 4 .* length of 227 bytes, one of kind 1 has at least 228",
+        ),
+        (WALK[:-1], "record 0 at byte 0 .* length of 228 bytes, 227 are left"),
+        (WALK + b"\x02\xff\xff", "record 1 at byte 228 .* length of 65535 bytes, 3 are left"),
+    ],
+    ids=["one", "head", "zeros", "zero", "short head", "short step", "cut", "runs over"],
+)
+def test_a_record_that_does_not_fit_is_named_with_its_place(block: bytes, fault: str) -> None:
+    with pytest.raises(ValueError, match=f"^{fault}$"):
+        step_records(block)
+
+
+@given(st.binary(max_size=2 * STEP.itemsize))
+def test_whatever_the_block_it_is_read_or_named(block: bytes) -> None:
+    try:
+        records = step_records(block)
+    except ValueError as fault:
+        assert "of a block of steps" in str(fault)  # noqa: PT017 (any other outcome is right)
+    else:
+        assert (records["kind"] == WALKING).all()
+
+
+@given(st.binary(min_size=STEP.itemsize - 3, max_size=STEP.itemsize - 3))
+def test_whatever_the_bytes_the_values_are_finite(fields_of_a_step: bytes) -> None:
+    keys = unpack_steps(step_records(WALK[:3] + fields_of_a_step)).keys
     for field in fields(keys):
         assert np.isfinite(getattr(keys, field.name)).all(), field.name
     np.testing.assert_allclose(np.linalg.norm(keys.pelvises, axis=-1), 1.0)

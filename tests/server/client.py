@@ -63,6 +63,7 @@ class Client:
         frame = await self.connection.recv()
         assert isinstance(frame, bytes)
         message = decode_server(frame)
+        assert message is not None
         match message:
             case Welcome():
                 self.welcome = message
@@ -116,7 +117,7 @@ class Client:
     async def refusal(self) -> tuple[str, int | None]:
         """Read to the end of the connection: the last error's name, and the close code."""
         messages, code = await self.last_words()
-        errors = [message.error.value for message in messages if isinstance(message, Error)]
+        errors = [str(message.error) for message in messages if isinstance(message, Error)]
         return errors[-1], code
 
 

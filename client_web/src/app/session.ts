@@ -124,8 +124,8 @@ export class Session {
   private stateChanged(state: ConnectionState): void {
     this.status.show(state);
     if (state.phase === "live" && this.welcome) {
-      const { name, resume, resumed } = this.welcome;
-      void this.seats.keep(this.wishedName, resume);
+      const { name, resume, resumed, resume_seconds: keptS } = this.welcome;
+      void this.seats.keep(this.wishedName, resume, keptS * 1000);
       this.join.close();
       this.chat.note(
         resumed ? `Welcome back, ${name}.` : `Welcome, ${name}. See Help for how to get about.`,

@@ -70,7 +70,7 @@ export class Walking {
   frame(cameraYaw: number): void {
     const own = this.world?.own;
     if (!own || !this.world) return;
-    const wish = headingOf(this.keys.wish, this.stick.value, cameraYaw, this.world.maxSpeedMps);
+    const wish = headingOf(this.keys.wish, this.stick.value, cameraYaw, this.world.gait);
     this.steering.update(wish, performance.now());
     const { target } = this;
     if (target && isThere(own.pose, target)) this.setTarget(null);

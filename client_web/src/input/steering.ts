@@ -1,6 +1,6 @@
 /** From wishes to `move` messages: relative to the camera, only on change, with a slow repeat. */
 
-import { WALK_MPS } from "../world/prediction";
+import type { Gait } from "../world/prediction";
 import type { Wish } from "./keyboard";
 
 export interface Heading {
@@ -23,7 +23,7 @@ export function headingOf(
   keys: Wish,
   stick: { x: number; y: number } | null,
   cameraYaw: number,
-  maxSpeedMps: number,
+  { maxSpeedMps, walkSpeedMps }: Gait,
 ): Heading {
   const byStick = stick !== null && Math.hypot(stick.x, stick.y) > DEAD;
   const right = byStick ? stick.x : keys.right;
@@ -32,7 +32,7 @@ export function headingOf(
   const direction = cameraYaw + Math.atan2(-right, forward);
   const effort = byStick ? Math.min(1, Math.hypot(stick.x, stick.y)) : 1;
   const hurries = keys.hurry || (byStick && effort > 0.95);
-  const speed = hurries ? maxSpeedMps : Math.min(WALK_MPS, maxSpeedMps) * effort;
+  const speed = hurries ? maxSpeedMps : walkSpeedMps * effort;
   return { direction: Math.atan2(Math.sin(direction), Math.cos(direction)), speed };
 }
 

@@ -1,6 +1,6 @@
 /** The numbers and names on the wire; the same table as `protocol/codes.py`. */
 
-export const VERSION = 3;
+export const VERSION = 4;
 
 export const MAX_NAME_CHARS = 32;
 export const MAX_CHAT_CHARS = 300;

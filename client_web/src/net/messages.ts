@@ -80,6 +80,7 @@ export interface SceneData {
 
 export interface Welcome {
   type: "welcome";
+  /** The version that is spoken: the one that this client asked for. */
   version: number;
   id: number;
   name: string;
@@ -89,8 +90,18 @@ export interface Welcome {
   tick: number;
   tick_rate: number;
   server_time: number;
+  /** How long the avatar waits for a client whose connection was lost. */
+  resume_seconds: number;
   radius: number;
+  /** Distance that a person's centre keeps from walls. */
+  clearance: number;
+  /** What hangs lower than this above the feet stops a person. */
+  body_height: number;
+  /** Greatest difference in height that a person steps up or down. */
+  step_height: number;
   max_speed: number;
+  /** Speed of a walk to a point, and of a walk in no hurry. */
+  walk_speed: number;
   origin: Point;
   doors: Doors;
   operator: boolean;

@@ -17,10 +17,9 @@ export interface Seat {
   token: string;
   /** The time at which its page was last alive, milliseconds since 1970. */
   seenMs: number;
+  /** The server keeps its avatar for this long when the connection is gone. */
+  keptMs: number;
 }
-
-/** The server keeps an avatar whose connection is gone for this long. */
-export const KEPT_MS = 30_000;
 
 const SEATS_KEY = "esplanade.seats";
 const MINE_KEY = "esplanade.seat";
@@ -55,10 +54,10 @@ export class Seats {
   }
 
   /** Remember what a welcome gave: at once, for the page may be reloaded before a lock is had. */
-  async keep(name: string, token: string): Promise<void> {
+  async keep(name: string, token: string, keptMs: number): Promise<void> {
     const known = this.mine;
     const id = known?.id ?? crypto.getRandomValues(new Uint32Array(3)).join("-");
-    this.mine = { id, name, token, seenMs: 0 };
+    this.mine = { id, name, token, seenMs: 0, keptMs };
     this.touch();
     if (!known) await this.claim(this.mine);
   }
@@ -93,9 +92,9 @@ export class Seats {
     } catch {
       stored = [];
     }
-    const oldestMs = this.nowMs() - KEPT_MS;
+    const nowMs = this.nowMs();
     return Array.isArray(stored)
-      ? stored.filter((each): each is Seat => isSeat(each) && each.seenMs > oldestMs)
+      ? stored.filter((each): each is Seat => isSeat(each) && nowMs < each.seenMs + each.keptMs)
       : [];
   }
 
@@ -111,6 +110,7 @@ function isSeat(value: unknown): value is Seat {
     typeof seat.id === "string" &&
     typeof seat.name === "string" &&
     typeof seat.token === "string" &&
-    typeof seat.seenMs === "number"
+    typeof seat.seenMs === "number" &&
+    typeof seat.keptMs === "number"
   );
 }

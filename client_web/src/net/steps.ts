@@ -52,8 +52,11 @@ export const KeyNumber = {
 
 export const KEY_NUMBERS = 21;
 
-const STEP_BYTES = 225;
-const HEAD_BYTES = 39;
+/** Every record begins with its kind and its length, so that others than walking steps may come. */
+const RECORD_HEAD_BYTES = 3;
+const WALKING = 1;
+const STEP_BYTES = 228;
+const KEYS_AT = 42;
 const KEY_BYTES = 31;
 const FOOTPRINT_M = 1e-4;
 const FOOTPRINT_RAD = (2 * Math.PI) / 65536;
@@ -63,27 +66,52 @@ const ARM_RAD = 1 / 40;
 const SMALLEST_THREE = Math.SQRT1_2 / 16383;
 const NEAR_IDENTITY = 0.5 / 127;
 
+/**
+ * The walking steps of a block, in their order. Records of other kinds are passed over, and so is
+ * what later versions add at the end of a walking step.
+ */
 export function unpackSteps(block: Uint8Array): StepRecord[] {
-  if (block.byteLength % STEP_BYTES !== 0) {
-    throw new WireError(`a block of ${block.byteLength} bytes is no multiple of ${STEP_BYTES}`);
-  }
   const view = new DataView(block.buffer, block.byteOffset, block.byteLength);
   const records: StepRecord[] = [];
-  for (let at = 0; at < block.byteLength; at += STEP_BYTES) {
-    const flags = view.getUint8(at + 4);
-    records.push({
-      id: view.getUint32(at, true),
-      rightStands: (flags & 1) !== 0,
-      continues: (flags & 2) !== 0,
-      tick: view.getUint32(at + 5, true),
-      ticks: view.getUint8(at + 9),
-      standing: footprint(view, at + 10),
-      landing: footprint(view, at + 24),
-      lift: view.getUint8(at + 38) / 255,
-      keys: keys(view, at + HEAD_BYTES),
-    });
+  let number = 0;
+  for (let at = 0; at < block.byteLength; number++) {
+    const left = block.byteLength - at;
+    const where = `record ${number} at byte ${at} of a block of steps`;
+    if (left < RECORD_HEAD_BYTES) {
+      throw new WireError(
+        `${where} ends after ${left} of the ${RECORD_HEAD_BYTES} bytes of its head`,
+      );
+    }
+    const kind = view.getUint8(at);
+    const length = view.getUint16(at + 1, true);
+    const least = kind === WALKING ? STEP_BYTES : RECORD_HEAD_BYTES;
+    if (length < least) {
+      throw new WireError(
+        `${where} says a length of ${length} bytes, one of kind ${kind} has at least ${least}`,
+      );
+    }
+    if (length > left) {
+      throw new WireError(`${where} says a length of ${length} bytes, ${left} are left`);
+    }
+    if (kind === WALKING) records.push(walkingStep(view, at));
+    at += length;
   }
   return records;
+}
+
+function walkingStep(view: DataView, at: number): StepRecord {
+  const flags = view.getUint8(at + 7);
+  return {
+    id: view.getUint32(at + 3, true),
+    rightStands: (flags & 1) !== 0,
+    continues: (flags & 2) !== 0,
+    tick: view.getUint32(at + 8, true),
+    ticks: view.getUint8(at + 12),
+    standing: footprint(view, at + 13),
+    landing: footprint(view, at + 27),
+    lift: view.getUint8(at + 41) / 255,
+    keys: keys(view, at + KEYS_AT),
+  };
 }
 
 function footprint(view: DataView, at: number): Footprint {

@@ -15,7 +15,6 @@ import {
   RingGeometry,
 } from "three";
 import type { Plan } from "../net/messages";
-import { STEP_ON_M } from "../world/barriers";
 import type { Floors } from "../world/floors";
 import { ACTOR } from "./palette";
 import { painted } from "./shapes";
@@ -26,6 +25,8 @@ const RIBBON_M = 0.045;
 /** A path that rises more from point to point is laid in pieces. */
 const LEVEL_M = 0.03;
 const PIECE_M = 0.1;
+/** A floor further than this from a path is not the one that it leads over. */
+const ON_IT_M = 0.6;
 const MOST_DOTS = 128;
 const MOST_CIRCLES = 512;
 const SOON = new Color("#e2483d");
@@ -115,7 +116,7 @@ function onFloors(path: Plan["path"], floors: Floors): Spot[] {
       const [px, py] = [ax + ((x - ax) * k) / pieces, ay + ((y - ay) * k) / pieces];
       const pz = az + ((z - az) * k) / pieces;
       const floor = floors.at(px, py, pz);
-      spots.push([px, py, floor !== null && Math.abs(floor - pz) < STEP_ON_M ? floor : pz]);
+      spots.push([px, py, floor !== null && Math.abs(floor - pz) < ON_IT_M ? floor : pz]);
     }
   });
   return spots;

@@ -18,8 +18,13 @@ export interface Barrier {
   inward?: Vec2;
 }
 
-/** A person can step up or down this far. */
-export const STEP_ON_M = 0.6;
+/** The measures of a body that decide what stops it, as the server's welcome has them. */
+export interface Reach {
+  /** What hangs lower than this above the feet stops the body. */
+  heightM: number;
+  /** Greatest difference in height that the body steps up or down. */
+  stepM: number;
+}
 
 /** Things that nobody climbs, such as furniture, stop people however low they are. */
 const UNCLIMBED_M = 1.2;
@@ -34,6 +39,7 @@ const LEDGE_ABOVE_M = 2;
 export function barriersOf(
   { walls, doors }: Pick<SceneData, "walls" | "doors">,
   floors: Floors,
+  stepM: number,
 ): Barrier[] {
   const thin = [...walls.map((wall) => ({ ...wall, name: null })), ...doors];
   return [
@@ -46,7 +52,7 @@ export function barriersOf(
     })),
     ...floors.solids.flatMap((solid) => [
       ...(solid.sheet ? [] : sidesOf(solid)),
-      ...(solid.carries ? ledgesOf(solid, floors) : []),
+      ...(solid.carries ? ledgesOf(solid, floors, stepM) : []),
     ]),
   ];
 }
@@ -66,7 +72,7 @@ function sidesOf({ ring, bottomM, topM, carries }: Solid): Barrier[] {
 }
 
 /** Pieces of a top's edge beyond which there is no floor within a step. */
-function ledgesOf({ ring, topM }: Solid, floors: Floors): Barrier[] {
+function ledgesOf({ ring, topM }: Solid, floors: Floors, stepM: number): Barrier[] {
   const outwards = isClockwise(ring) ? -1 : 1;
   return edgesOf(ring).flatMap(([a, b]) => {
     const ledges: Barrier[] = [];
@@ -82,7 +88,7 @@ function ledgesOf({ ring, topM }: Solid, floors: Floors): Barrier[] {
       const [x, y] = at(i + 0.5);
       const top = topM(x, y);
       const beyond = floors.at(x + nx, y + ny, top);
-      if (beyond !== null && beyond > top - STEP_ON_M - 1e-6) continue;
+      if (beyond !== null && beyond > top - stepM - 1e-6) continue;
       const bottomM = top - LEDGE_BELOW_M;
       const last = ledges.at(-1);
       if (last && last.bottomM === bottomM && same(last.b, at(i))) last.b = at(i + 1);

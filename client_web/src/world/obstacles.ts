@@ -4,17 +4,18 @@
  */
 
 import type { Doors, SceneData } from "../net/messages";
-import { type Barrier, barriersOf, STEP_ON_M, type Vec2 } from "./barriers";
+import { type Barrier, barriersOf, type Reach, type Vec2 } from "./barriers";
 import { SpatialGrid } from "./spatialgrid";
 import { Floors } from "./floors";
-import { BODIES_OVERLAP_M } from "./heights";
 
 /** The place of the feet. */
 export type Vec3 = readonly [x: number, y: number, z: number];
 
-/** Bodies may be as wide as this. */
-const LARGEST_RADIUS_M = 0.75;
+/** No server lets bodies keep further from walls than this. */
+const LARGEST_RADIUS_M = 1;
 const STEP_M = 0.1;
+/** A body that kept nearer to a wall than a step is long could step through it. */
+const LEAST_RADIUS_M = STEP_M;
 const PUSHES = 4;
 /** Floors are looked for this far around: the server's cells reach beyond edges by as much. */
 const CRACK_M = 0.13;
@@ -36,15 +37,17 @@ export class Obstacles {
 
   constructor(
     scene: Built,
+    private readonly reach: Reach,
     private readonly floors = new Floors(scene),
     more: readonly Barrier[] = [],
   ) {
     this.bounds = scene.bounds;
-    for (const barrier of [...barriersOf(scene, floors), ...more]) this.add(barrier);
+    for (const barrier of [...barriersOf(scene, floors, reach.stepM), ...more]) this.add(barrier);
   }
 
   /** The place that a body reaches when it wants to move by (dx, dy). */
-  walk(from: Vec3, dx: number, dy: number, radiusM: number): Vec3 {
+  walk(from: Vec3, dx: number, dy: number, clearanceM: number): Vec3 {
+    const radiusM = Math.max(clearanceM, LEAST_RADIUS_M);
     const steps = Math.max(1, Math.ceil(Math.hypot(dx, dy) / STEP_M));
     let at = from;
     for (let i = 0; i < steps; i++) {
@@ -58,7 +61,8 @@ export class Obstacles {
   }
 
   /** Whether a body can go straight from one place to the other. */
-  clear(from: Vec3, to: Vec3, radiusM: number): boolean {
+  clear(from: Vec3, to: Vec3, clearanceM: number): boolean {
+    const radiusM = Math.max(clearanceM, LEAST_RADIUS_M);
     const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
     const steps = Math.ceil(length / STEP_M);
     let z = from[2];
@@ -73,14 +77,14 @@ export class Obstacles {
       if (meets) return false;
       z = this.foothold([x, y, z]) ?? z;
     }
-    return Math.abs(z - to[2]) <= STEP_ON_M;
+    return Math.abs(z - to[2]) <= this.reach.stepM;
   }
 
   /** Height of the floor that is a step away at most. */
   private foothold([x, y, z]: Vec3): number | null {
     for (const [aside, ahead] of NEAR_BY) {
       const floor = this.floors.at(x + aside * CRACK_M, y + ahead * CRACK_M, z);
-      if (floor !== null && Math.abs(floor - z) <= STEP_ON_M) return floor;
+      if (floor !== null && Math.abs(floor - z) <= this.reach.stepM) return floor;
     }
     return null;
   }
@@ -110,8 +114,8 @@ export class Obstacles {
       .at(x, y)
       .filter(
         ({ bottomM, topM, door }) =>
-          bottomM < z + BODIES_OVERLAP_M &&
-          topM > z + STEP_ON_M &&
+          bottomM < z + this.reach.heightM &&
+          topM > z + this.reach.stepM &&
           (door === null || this.doors[door] === false),
       );
   }

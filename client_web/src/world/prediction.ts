@@ -28,8 +28,6 @@ interface Body {
   speed: number;
 }
 
-/** Pace of a walk to a point. */
-export const WALK_MPS = 1.6;
 const STAND: Command = { kind: "move", seq: 0, direction: 0, speed: 0 };
 const STEP_S = 1 / 30;
 const FADE_S = 0.25;
@@ -43,6 +41,15 @@ const TURN_PER_S = 12;
 const SETTLED_S = 0.4;
 const MOST_PENDING = 64;
 
+/** How the server lets people walk, as its welcome says. */
+export interface Gait {
+  /** Distance that the body's centre keeps from walls. */
+  clearanceM: number;
+  maxSpeedMps: number;
+  /** Speed of a walk to a point, and of a walk in no hurry. */
+  walkSpeedMps: number;
+}
+
 export class Prediction {
   private pending: Pending[] = [{ command: STAND, playedS: 0 }];
   private body: Body;
@@ -54,8 +61,7 @@ export class Prediction {
   constructor(
     start: Pose,
     public obstacles: Obstacles,
-    private readonly radiusM: number,
-    private readonly maxSpeedMps: number,
+    private readonly gait: Gait,
     private readonly tickS: number,
   ) {
     this.server = start;
@@ -132,7 +138,7 @@ export class Prediction {
     for (let i = 0; i < steps; i++) {
       const [vx, vy] = this.velocity(command, stepS);
       const from: Vec3 = [this.body.x, this.body.y, this.body.z];
-      const to = this.obstacles.walk(from, vx * stepS, vy * stepS, this.radiusM);
+      const to = this.obstacles.walk(from, vx * stepS, vy * stepS, this.gait.clearanceM);
       this.body.x = to[0];
       this.body.y = to[1];
       this.body.z = to[2];
@@ -143,7 +149,7 @@ export class Prediction {
 
   private velocity(command: Command, stepS: number): Vec2 {
     if (command.kind === "move") {
-      const speed = Math.min(command.speed, this.maxSpeedMps);
+      const speed = Math.min(command.speed, this.gait.maxSpeedMps);
       return [Math.cos(command.direction) * speed, Math.sin(command.direction) * speed];
     }
     const dx = command.x - this.body.x;
@@ -151,8 +157,8 @@ export class Prediction {
     const distance = Math.hypot(dx, dy);
     if (distance < ARRIVED_M) return [0, 0];
     const here: Vec3 = [this.body.x, this.body.y, this.body.z];
-    if (this.obstacles.clear(here, [command.x, command.y, command.z], this.radiusM)) {
-      const speed = Math.min(WALK_MPS, this.maxSpeedMps, distance / stepS);
+    if (this.obstacles.clear(here, [command.x, command.y, command.z], this.gait.clearanceM)) {
+      const speed = Math.min(this.gait.walkSpeedMps, distance / stepS);
       return [(dx / distance) * speed, (dy / distance) * speed];
     }
     // The way around is the server's: go on as it goes.

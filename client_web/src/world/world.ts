@@ -13,8 +13,9 @@ import { Floors } from "./floors";
 import { meshParts, type Triangles } from "./mesh";
 import { Interpolator, type Pose } from "./interpolation";
 import { Obstacles } from "./obstacles";
+import type { Reach } from "./barriers";
 import { Playout } from "./playout";
-import { Prediction, type Command } from "./prediction";
+import { type Command, type Gait, Prediction } from "./prediction";
 import type { StepRecord } from "../net/steps";
 import { buildOf } from "./skeleton";
 import { Animator } from "./animator";
@@ -41,7 +42,7 @@ interface Followed extends Avatar {
 export class World {
   readonly scene: SceneData;
   readonly ownId: number;
-  readonly maxSpeedMps: number;
+  readonly gait: Gait;
   floors: Floors;
   /** The newest plan of the watched actor. */
   plan: Plan | null = null;
@@ -50,6 +51,7 @@ export class World {
   /** The own steps are drawn as soon as they are there. */
   private readonly ownPlayout = new Playout(0, OWN_LEAST_S);
   private obstacles: Obstacles;
+  private readonly reach: Reach;
   private readonly tickS: number;
   private prediction: Prediction | null = null;
   private heardS: number;
@@ -57,11 +59,16 @@ export class World {
   constructor(private readonly welcome: Welcome) {
     this.scene = welcome.scene;
     this.ownId = welcome.id;
-    this.maxSpeedMps = welcome.max_speed;
+    this.gait = {
+      clearanceM: welcome.clearance,
+      maxSpeedMps: welcome.max_speed,
+      walkSpeedMps: welcome.walk_speed,
+    };
+    this.reach = { heightM: welcome.body_height, stepM: welcome.step_height };
     this.tickS = 1 / welcome.tick_rate;
     this.playout = new Playout(this.tickS);
     this.floors = new Floors(welcome.scene);
-    this.obstacles = new Obstacles(welcome.scene, this.floors);
+    this.obstacles = new Obstacles(welcome.scene, this.reach, this.floors);
     this.obstacles.doors = welcome.doors;
     this.heardS = welcome.server_time;
   }
@@ -108,7 +115,7 @@ export class World {
         interpolator,
       });
       this.point(info.id, info.points_at);
-      if (own) this.prediction ??= this.predict(pose, info.radius);
+      if (own) this.prediction ??= this.predict(pose);
     }
   }
 
@@ -160,7 +167,7 @@ export class World {
   built(triangles: Triangles): void {
     const { solids, steep } = meshParts(triangles);
     this.floors = new Floors(this.scene, solids);
-    this.obstacles = new Obstacles(this.scene, this.floors, steep);
+    this.obstacles = new Obstacles(this.scene, this.reach, this.floors, steep);
     if (this.prediction) this.prediction.obstacles = this.obstacles;
   }
 
@@ -186,8 +193,8 @@ export class World {
     }
   }
 
-  private predict(pose: Pose, radius: number): Prediction {
-    return new Prediction(pose, this.obstacles, radius, this.maxSpeedMps, this.tickS);
+  private predict(pose: Pose): Prediction {
+    return new Prediction(pose, this.obstacles, this.gait, this.tickS);
   }
 
   private timeOf(tick: number): number {

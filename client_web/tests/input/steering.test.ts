@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { WalkKeys, type Wish } from "../../src/input/keyboard";
 import { type Heading, headingOf, Steering } from "../../src/input/steering";
-import { WALK_MPS } from "../../src/world/prediction";
+import { gait } from "../scenes";
 
 const EAST = 0;
 const NORTH = Math.PI / 2;
@@ -47,21 +47,22 @@ describe("headingOf", () => {
     ["back, camera to the east", { forward: -1 }, EAST, Math.PI],
     ["forward and left, camera to the east", { forward: 1, right: -1 }, EAST, Math.PI / 4],
   ])("%s", (_what, wish, yaw, direction) => {
-    const heading = headingOf({ ...REST, ...wish }, null, yaw, 2.5);
+    const heading = headingOf({ ...REST, ...wish }, null, yaw, gait);
     expect(Math.cos(heading.direction - direction)).toBeCloseTo(1);
-    expect(heading.speed).toBe(WALK_MPS);
+    expect(heading.speed).toBe(1.4);
   });
 
   it("stands still without a wish", () => {
-    expect(headingOf(REST, null, NORTH, 2.5).speed).toBe(0);
-    expect(headingOf(REST, { x: 0.05, y: 0.05 }, NORTH, 2.5).speed).toBe(0);
+    expect(headingOf(REST, null, NORTH, gait).speed).toBe(0);
+    expect(headingOf(REST, { x: 0.05, y: 0.05 }, NORTH, gait).speed).toBe(0);
   });
 
   it("hurries with shift or a stick that is pushed all the way, within what is allowed", () => {
-    expect(headingOf({ ...REST, forward: 1, hurry: true }, null, NORTH, 2.5).speed).toBe(2.5);
-    expect(headingOf(REST, { x: 0, y: 1 }, NORTH, 2.5).speed).toBe(2.5);
-    expect(headingOf(REST, { x: 0, y: 0.5 }, NORTH, 2.5).speed).toBeCloseTo(WALK_MPS / 2);
-    expect(headingOf({ ...REST, forward: 1 }, null, NORTH, 1).speed).toBe(1);
+    expect(headingOf({ ...REST, forward: 1, hurry: true }, null, NORTH, gait).speed).toBe(2.5);
+    expect(headingOf(REST, { x: 0, y: 1 }, NORTH, gait).speed).toBe(2.5);
+    expect(headingOf(REST, { x: 0, y: 0.5 }, NORTH, gait).speed).toBeCloseTo(0.7);
+    const slow = { ...gait, maxSpeedMps: 1, walkSpeedMps: 0.8 };
+    expect(headingOf({ ...REST, forward: 1 }, null, NORTH, slow).speed).toBe(0.8);
   });
 });
 

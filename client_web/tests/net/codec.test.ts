@@ -1,4 +1,4 @@
-import { decode } from "@msgpack/msgpack";
+import { decode, encode } from "@msgpack/msgpack";
 import { describe, expect, it } from "vitest";
 import * as codes from "../../src/net/codes";
 import { decodeServer, encodeClient, unpackBlock } from "../../src/net/codec";
@@ -66,6 +66,8 @@ describe("decodeServer", () => {
 
   it("passes over message codes that it does not know", () => {
     expect(decodeServer(Uint8Array.of(0x92, 0x7f, 0x80))).toBeNull();
+    expect(decodeServer(encode([99]))).toBeNull();
+    expect(decodeServer(encode([99, 1, "two", new Uint8Array(3)]))).toBeNull();
   });
 
   it.each([

@@ -83,6 +83,19 @@ describe("pings", () => {
   });
 });
 
+describe("a later version of the server's messages", () => {
+  it("is no fault: unknown codes, fields and names are passed over", () => {
+    connection.join({ name: "Ann", resume: null, operator: null });
+    newest().accept();
+    newest().say(99, { before: "welcome" });
+    newest().say(ServerCode.WELCOME, { ...WELCOME, later: { a: [1] } });
+    newest().say(100, {});
+    newest().say(ServerCode.BYE, { reason: "moved", text: "elsewhere", to: "there" });
+    expect(connection.state.phase).toBe("live");
+    expect(messages.map(({ type }) => type)).toEqual(["welcome", "bye"]);
+  });
+});
+
 describe("a lost connection", () => {
   it("comes back with the token of the last welcome", () => {
     comeIn();

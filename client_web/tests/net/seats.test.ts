@@ -1,5 +1,5 @@
 import { beforeEach, describe, expect, it } from "vitest";
-import { KEPT_MS, Seats } from "../../src/net/seats";
+import { Seats } from "../../src/net/seats";
 import type { TryLock } from "../../src/net/tablocks";
 
 /** Storage of one tab or one profile. */
@@ -15,6 +15,8 @@ function storage(entries = new Map<string, string>()): Storage {
     length: 0,
   };
 }
+
+const KEPT_MS = 12_000;
 
 let profile: Storage;
 let nowMs: number;
@@ -43,7 +45,7 @@ beforeEach(() => {
 describe("Seats", () => {
   it("gives a reloaded tab its seat again", async () => {
     const before = page();
-    await before.seats.keep("Ann", "token");
+    await before.seats.keep("Ann", "token", KEPT_MS);
     before.kill();
     const seat = await page(before.tab).seats.ofThisTab();
     expect(seat).toMatchObject({ name: "Ann", token: "token" });
@@ -51,33 +53,33 @@ describe("Seats", () => {
 
   it("gives it again to a tab that was reloaded before it had its lock", async () => {
     const before = page();
-    void before.seats.keep("Ann", "token");
+    void before.seats.keep("Ann", "token", KEPT_MS);
     before.kill();
     expect(await page(before.tab).seats.ofThisTab()).toMatchObject({ token: "token" });
   });
 
   it("gives the seat of a killed page to a new one of the same name", async () => {
     const killed = page();
-    await killed.seats.keep("Ann", "token");
+    await killed.seats.keep("Ann", "token", KEPT_MS);
     killed.kill();
     expect(await page().seats.abandoned("Ben")).toBeNull();
     expect(await page().seats.abandoned("Ann")).toMatchObject({ token: "token" });
   });
 
   it("keeps two open pages of one name two people", async () => {
-    await page().seats.keep("Ann", "token");
+    await page().seats.keep("Ann", "token", KEPT_MS);
     expect(await page().seats.abandoned("Ann")).toBeNull();
   });
 
   it("keeps a duplicated tab from taking its twin's seat", async () => {
     const first = page();
-    await first.seats.keep("Ann", "token");
+    await first.seats.keep("Ann", "token", KEPT_MS);
     expect(await page(first.tab).seats.ofThisTab()).toBeNull();
   });
 
   it("forgets seats whose avatar is gone", async () => {
     const killed = page();
-    await killed.seats.keep("Ann", "token");
+    await killed.seats.keep("Ann", "token", KEPT_MS);
     killed.kill();
     nowMs += KEPT_MS + 1;
     expect(await page(killed.tab).seats.ofThisTab()).toBeNull();
@@ -86,7 +88,7 @@ describe("Seats", () => {
 
   it("counts from when the page was last alive", async () => {
     const killed = page();
-    await killed.seats.keep("Ann", "token");
+    await killed.seats.keep("Ann", "token", KEPT_MS);
     nowMs += KEPT_MS - 1;
     killed.seats.touch();
     killed.kill();
@@ -96,17 +98,29 @@ describe("Seats", () => {
 
   it("takes no seat but its own where the browser has no locks", async () => {
     const tab = storage();
-    await new Seats(tab, profile, null, () => nowMs).keep("Ann", "token");
+    await new Seats(tab, profile, null, () => nowMs).keep("Ann", "token", KEPT_MS);
     expect(await new Seats(storage(), profile, null, () => nowMs).abandoned("Ann")).toBeNull();
     expect(await new Seats(tab, profile, null, () => nowMs).ofThisTab()).not.toBeNull();
   });
 
   it("keeps the newest token for the next page", async () => {
     const before = page();
-    await before.seats.keep("Ann", "token");
-    await before.seats.keep("Ann", "newer");
+    await before.seats.keep("Ann", "token", KEPT_MS);
+    await before.seats.keep("Ann", "newer", KEPT_MS);
     before.kill();
     expect(await page(before.tab).seats.ofThisTab()).toMatchObject({ token: "newer" });
+  });
+
+  it("goes by how long each server keeps its avatars", async () => {
+    const [short, long] = [page(), page()];
+    await short.seats.keep("Ann", "short", 1000);
+    await long.seats.keep("Ben", "long", 60_000);
+    short.kill();
+    long.kill();
+    nowMs += 1001;
+    expect(await page().seats.abandoned("Ann")).toBeNull();
+    nowMs += 58_000;
+    expect(await page().seats.abandoned("Ben")).toMatchObject({ token: "long" });
   });
 
   it("is not put out by rubbish in the storage", async () => {

@@ -1,9 +1,14 @@
 import { describe, expect, it } from "vitest";
 import { decodeServer } from "../../src/net/codec";
+import { WireError } from "../../src/net/errors";
 import { KEY_NUMBERS, STEP_KEYS, unpackSteps } from "../../src/net/steps";
 import wire from "../fixtures/wire.json";
 
-const frame = Uint8Array.from(wire.steps.frame.match(/../g) ?? [], (pair) => parseInt(pair, 16));
+const bytes = (hex: string): Uint8Array =>
+  Uint8Array.from(hex.match(/../g) ?? [], (pair) => parseInt(pair, 16));
+const frame = bytes(wire.steps.frame);
+const join = (...parts: ArrayLike<number>[]): Uint8Array =>
+  Uint8Array.from(parts.flatMap((part) => Array.from(part)));
 
 function block(): Uint8Array {
   const message = decodeServer(frame);
@@ -33,8 +38,28 @@ describe("unpackSteps", () => {
     },
   );
 
-  it("refuses a block that is cut off", () => {
-    expect(() => unpackSteps(block().subarray(1))).toThrow("no multiple of 225");
+  it("passes over records of other kinds, and over what later versions add to steps", () => {
+    expect(unpackSteps(bytes(wire.steps.mixed))).toEqual(read);
+    expect(unpackSteps(Uint8Array.of(2, 3, 0))).toEqual([]);
+  });
+
+  const whole = block().subarray(0, 228);
+  it.each<[string, Uint8Array, string]>([
+    ["a head cut off", Uint8Array.of(1), "record 0 at byte 0 of a block of steps ends after 1 of"],
+    ["a second head cut off", join(whole, [2, 3]), "record 1 at byte 228 of a block of steps ends"],
+    ["zeros", new Uint8Array(228), "length of 0 bytes, one of kind 0 has at least 3"],
+    [
+      "length 0",
+      join(whole, [2, 0, 0]),
+      "record 1 at byte 228 of a block of steps says a length of 0",
+    ],
+    ["length 2", join(whole, [2, 2, 0]), "length of 2 bytes, one of kind 2 has at least 3"],
+    ["a step too short", join([1, 227, 0], whole.subarray(3, 227)), "kind 1 has at least 228"],
+    ["a step cut off", whole.subarray(0, 227), "length of 228 bytes, 227 are left"],
+    ["a record over the end", join(whole, [2, 255, 255]), "length of 65535 bytes, 3 are left"],
+  ])("refuses %s by name", (_what, broken, fault) => {
+    expect(() => unpackSteps(broken)).toThrow(WireError);
+    expect(() => unpackSteps(broken)).toThrow(fault);
   });
 
   it("reads an empty block", () => {

@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import { Floors } from "../../src/world/floors";
 import { meshParts } from "../../src/world/mesh";
 import { Obstacles, type Vec3 } from "../../src/world/obstacles";
-import { bare } from "../scenes";
+import { adult, bare } from "../scenes";
 
 type Corner = [x: number, y: number, z: number];
 
@@ -18,7 +18,7 @@ const scene = { ...bare, bounds: [0, 0, 20, 10] as const, mesh: "mesh" };
 const built = { ...scene, bounds: [...scene.bounds] as [number, number, number, number] };
 const { solids, steep } = meshParts(triangles);
 const floors = new Floors(built, solids);
-const obstacles = new Obstacles(built, floors, steep);
+const obstacles = new Obstacles(built, adult, floors, steep);
 
 const stroll = (from: Vec3, dx: number, dy: number, metres: number): Vec3 => {
   let at = from;
@@ -46,7 +46,7 @@ describe("a building from a mesh", () => {
   });
 
   it("holds nobody in the air while it is being fetched", () => {
-    const nothing = new Obstacles(built, new Floors(built));
+    const nothing = new Obstacles(built, adult, new Floors(built));
     expect(nothing.walk([5, 5, 2], 0.5, 0, 0.25)).toEqual([expect.closeTo(5.5), 5, 2]);
   });
 

@@ -1,15 +1,18 @@
 import { describe, expect, it } from "vitest";
 import type { Vec2 } from "../../src/world/barriers";
 import { Obstacles, type Vec3 } from "../../src/world/obstacles";
-import { bare, box, twoFloors, wall } from "../scenes";
+import { adult, bare, box, twoFloors, wall } from "../scenes";
 
 const RADIUS_M = 0.25;
-const obstacles = new Obstacles({
-  ...bare,
-  bounds: [0, 0, 20, 20],
-  polygons: [box([8, 8], [12, 12])],
-  walls: [wall([5, 0], [5, 6])],
-});
+const obstacles = new Obstacles(
+  {
+    ...bare,
+    bounds: [0, 0, 20, 20],
+    polygons: [box([8, 8], [12, 12])],
+    walls: [wall([5, 0], [5, 6])],
+  },
+  adult,
+);
 
 describe("walking", () => {
   it("goes where nothing is in the way", () => {
@@ -59,9 +62,34 @@ describe("a straight way", () => {
   });
 });
 
+describe("the measures of a body", () => {
+  const beam = wall([5, 0], [5, 6], { offset_m: 1.5, height_m: 1 });
+  const kerb = box([4, 10], [20, 20], { height_m: 0.4 });
+  const ways = { ...bare, bounds: [0, 0, 20, 20], walls: [beam], polygons: [kerb] } as typeof bare;
+  const east = (obstacles: Obstacles, y: number, clearanceM = RADIUS_M): Vec3 => {
+    let at: Vec3 = [2, y, 0];
+    for (let i = 0; i < 100; i++) at = obstacles.walk(at, 0.05, 0, clearanceM);
+    return at;
+  };
+
+  it("say what it walks under", () => {
+    expect(east(new Obstacles(ways, adult), 3)[0]).toBeCloseTo(5 - RADIUS_M);
+    expect(east(new Obstacles(ways, { ...adult, heightM: 1.4 }), 3)[0]).toBeCloseTo(7);
+  });
+
+  it("say what it steps on", () => {
+    expect(east(new Obstacles(ways, adult), 15)[2]).toBeCloseTo(0.4);
+    expect(east(new Obstacles(ways, { ...adult, stepM: 0.3 }), 15)[0]).toBeCloseTo(4 - RADIUS_M);
+  });
+
+  it("let nobody through a wall, even one who keeps no distance", () => {
+    expect(east(new Obstacles(ways, adult), 3, 0)[0]).toBeLessThan(5);
+  });
+});
+
 describe("several floors", () => {
   const { walls } = twoFloors;
-  const built = new Obstacles(twoFloors);
+  const built = new Obstacles(twoFloors, adult);
   /** Walk on and on in one direction. */
   const stroll = (from: Vec3, dx: number, dy: number, metres: number): Vec3 => {
     let at = from;

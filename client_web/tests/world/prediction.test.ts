@@ -1,14 +1,14 @@
 import { describe, expect, it } from "vitest";
 import type { Pose } from "../../src/world/interpolation";
 import { Obstacles } from "../../src/world/obstacles";
-import { bare, twoFloors, wall } from "../scenes";
-import { type Command, Prediction, WALK_MPS } from "../../src/world/prediction";
+import { adult, bare, gait, twoFloors, wall } from "../scenes";
+import { type Command, Prediction } from "../../src/world/prediction";
 
 const TICK_S = 0.05;
 const FRAME_S = 1 / 60;
 const FRAMES_PER_TICK = 3;
-const open = new Obstacles(bare);
-const walled = new Obstacles({ ...bare, walls: [wall([52, 0], [52, 100])] });
+const open = new Obstacles(bare, adult);
+const walled = new Obstacles({ ...bare, walls: [wall([52, 0], [52, 100])] }, adult);
 const start: Pose = { x: 50, y: 50, z: 0, layer: 0, heading: 0, speed: 0, reason: 0 };
 const move = (seq: number, speed: number, direction = 0): Command => ({
   kind: "move",
@@ -33,7 +33,7 @@ class Rehearsal {
     private readonly lagTicks: number,
     private readonly obstacles = open,
   ) {
-    this.prediction = new Prediction(start, obstacles, 0.25, 2.5, TICK_S);
+    this.prediction = new Prediction(start, obstacles, gait, TICK_S);
   }
 
   give(command: Command): void {
@@ -132,7 +132,7 @@ describe("Prediction", () => {
     const { prediction } = new Rehearsal(1);
     prediction.command({ kind: "walk_to", seq: 1, x: 53, y: 50, z: 0 });
     for (let i = 0; i < 60; i++) prediction.advance(FRAME_S);
-    expect(prediction.shown.x).toBeCloseTo(50 + WALK_MPS, 1);
+    expect(prediction.shown.x).toBeCloseTo(50 + gait.walkSpeedMps, 1);
     for (let i = 0; i < 120; i++) prediction.advance(FRAME_S);
     expect(prediction.shown.x).toBeCloseTo(53, 1);
     expect(prediction.shown.speed).toBe(0);
@@ -161,7 +161,7 @@ describe("Prediction", () => {
 
   it("climbs ahead of the server, which has the last word on the height", () => {
     const foot: Pose = { ...start, x: 4.5, y: 13 };
-    const prediction = new Prediction(foot, new Obstacles(twoFloors), 0.25, 2.5, TICK_S);
+    const prediction = new Prediction(foot, new Obstacles(twoFloors, adult), gait, TICK_S);
     prediction.command(move(1, 1.5));
     for (let i = 0; i < 60; i++) prediction.advance(FRAME_S);
     expect(prediction.shown.z).toBeGreaterThan(0.4);

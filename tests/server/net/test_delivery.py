@@ -17,7 +17,7 @@ from esplanade.protocol.messages import (
     StepBlock,
     Watch,
 )
-from esplanade.protocol.steps import STEP, step_records
+from esplanade.protocol.steps import new_step_records, step_records
 from esplanade.server.metrics import Traffic
 from esplanade.server.net.delivery import Delivery, plan
 from esplanade.server.net.outbox import Outbox, SlowPolicy
@@ -128,7 +128,7 @@ def delivery(trial: Trial, listener: Listener) -> Delivery:
 
 
 def begin_step(trial: Trial, lift: int) -> None:
-    records = np.zeros(1, dtype=STEP)
+    records = new_step_records(1)
     records["lift"] = lift
     oak = trial.world.state.of_kind(ACTOR)
     trial.world.steps.begin(oak, records, trial.world.tick + 1)

@@ -35,8 +35,8 @@ def test_a_snapshot_is_what_the_protocol_says() -> None:
 
 
 def test_steps_are_what_the_protocol_says() -> None:
-    block = memoryview(bytes(225))
-    assert decode_server(payload_of(frames.steps(7, block))) == StepBlock(tick=7, block=bytes(225))
+    block = memoryview(bytes(228))
+    assert decode_server(payload_of(frames.steps(7, block))) == StepBlock(tick=7, block=bytes(228))
 
 
 def test_hand_packed_messages_are_the_models_messages() -> None:
@@ -76,8 +76,13 @@ def test_a_welcome_carries_the_scene_that_was_packed_once() -> None:
         tick=1,
         tick_rate=20,
         server_time=0.05,
+        resume_seconds=30.0,
         radius=0.25,
+        clearance=0.25,
+        body_height=1.8,
+        step_height=0.6,
         max_speed=3.0,
+        walk_speed=1.4,
         origin=(0.0, 0.0),
         doors={"gate": True},
         operator=False,

@@ -9,7 +9,8 @@ import pytest
 
 from esplanade.protocol import VERSION, ClientCode, CloseCode, ErrorCode, encode
 from esplanade.protocol.codes import MAX_CLIENT_FRAME_BYTES
-from esplanade.protocol.messages import ChatLine, Error, Hello, Move, Ping, Pong
+from esplanade.protocol.messages import ChatLine, Error, Hello, Move, Ping, Pong, Welcome
+from esplanade.server.net import session
 from tests.server.client import connected, joined
 from tests.server.conftest import Serving
 
@@ -24,16 +25,21 @@ HELLO = encode(Hello(name="Ann", version=VERSION))
             ErrorCode.UNSUPPORTED_VERSION,
             CloseCode.UNSUPPORTED_VERSION,
         ),
+        (
+            msgpack.packb([1, {"who": "Ann", "version": VERSION + 1, "of": "a later version"}]),
+            ErrorCode.UNSUPPORTED_VERSION,
+            CloseCode.UNSUPPORTED_VERSION,
+        ),
         (b"\xc1garbage", ErrorCode.MALFORMED, CloseCode.MALFORMED),
         (b"", ErrorCode.MALFORMED, CloseCode.MALFORMED),
         ("text", ErrorCode.MALFORMED, CloseCode.MALFORMED),
         (msgpack.packb([250, {}]), ErrorCode.INVALID, CloseCode.INVALID),
-        (msgpack.packb([1, {"name": 5, "version": 1}]), ErrorCode.INVALID, CloseCode.INVALID),
-        (msgpack.packb([1, {"name": " ", "version": 1}]), ErrorCode.INVALID, CloseCode.INVALID),
+        (msgpack.packb([1, {"name": 5, "version": VERSION}]), ErrorCode.INVALID, CloseCode.INVALID),
+        (msgpack.packb([1, {"name": " ", "version": VERSION}]), ErrorCode.INVALID, CloseCode.INVALID),
         (encode(Ping(nonce=1)), ErrorCode.HELLO_EXPECTED, CloseCode.HELLO_EXPECTED),
         (bytes(MAX_CLIENT_FRAME_BYTES + 1), ErrorCode.TOO_LARGE, CloseCode.TOO_LARGE),
     ],
-    ids=["version", "garbage", "empty", "text", "code", "type", "name", "ping", "large"],
+    ids=["version", "unlike", "garbage", "empty", "text", "code", "type", "name", "ping", "large"],
 )
 async def test_a_bad_first_message_is_refused_by_name(
     serving: Serving, frame: bytes | str, error: ErrorCode, close: CloseCode
@@ -43,6 +49,38 @@ async def test_a_bad_first_message_is_refused_by_name(
         assert await client.refusal() == (error.value, close)
         async with joined(server.port) as other:
             assert other.position
+
+
+async def test_a_server_may_speak_several_versions(
+    serving: Serving, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A client is told which one it is spoken to in, and a refusal names all of them."""
+    monkeypatch.setattr(session, "SERVED_VERSIONS", (VERSION, VERSION + 1))
+    async with serving() as server:
+        for version in (VERSION, VERSION + 1):
+            async with connected(server.port) as client:
+                await client.send(Hello(name="Ann", version=version))
+                assert (await client.until(Welcome)).version == version
+        for version in (VERSION - 1, VERSION + 2):
+            async with connected(server.port) as client:
+                await client.send(Hello(name="Ann", version=version))
+                error = await client.until(Error)
+                assert error.text == (
+                    f"this server speaks version {VERSION} and {VERSION + 1}, the client {version}"
+                )
+
+
+async def test_a_welcome_has_what_a_client_predicts_with(serving: Serving) -> None:
+    changes = {"resume_seconds": 12.5, "person_radius_m": 0.3, "person_walk_speed_mps": 1.2}
+    async with serving(person_max_speed_mps=2.0, **changes) as server, joined(server.port) as ann:
+        assert ann.welcome is not None
+        assert ann.welcome.resume_seconds == 12.5
+        assert ann.welcome.radius == ann.welcome.clearance == 0.3
+        assert (ann.welcome.walk_speed, ann.welcome.max_speed) == (1.2, 2.0)
+    async with serving(person_walk_speed_mps=3.0, person_max_speed_mps=2.0) as server:
+        async with joined(server.port) as ann:
+            assert ann.welcome is not None
+            assert ann.welcome.walk_speed == 2.0
 
 
 @pytest.mark.parametrize(

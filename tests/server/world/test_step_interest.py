@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from esplanade.protocol.steps import STEP, step_records
+from esplanade.protocol.steps import new_step_records, step_records
 from esplanade.server.world.inputs import Attach, Detach, Leave
 from esplanade.server.world.interest import LEAVE_RATIO, PERIOD_TICKS
 from esplanade.server.world.walking import Feet
@@ -19,7 +19,7 @@ def begin(trial: Trial, *avatar_ids: int, lift: int = 0) -> None:
     """These avatars begin a step in the tick that comes; tests know it by its `lift`."""
     world = trial.world
     slots = np.array([world.state.slot(avatar_id) for avatar_id in avatar_ids])
-    records = np.zeros(len(slots), dtype=STEP)
+    records = new_step_records(len(slots))
     records["id"], records["tick"], records["lift"] = avatar_ids, world.tick + 1, lift
     world.steps.begin(slots, records, world.tick + 1)
 
