@@ -6,9 +6,9 @@ from typing import Final
 
 import structlog
 
+from esplanade.planning.grid.grid import ADULT
 from esplanade.protocol import ByeCode, CloseCode, ErrorCode, ProtocolError
 from esplanade.protocol.messages import Bye, Chat, Hello, Move, SetDoor, WalkTo, Welcome
-from esplanade.planning.grid.grid import ADULT
 from esplanade.server.metrics import Metrics
 from esplanade.server.net import frames
 from esplanade.server.net.leases import ANSWER_S, PING_S, Leases

@@ -11,6 +11,7 @@ from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 
 from esplanade.protocol import (
+    SERVED_VERSIONS,
     VERSION,
     ByeCode,
     ErrorCode,
@@ -41,7 +42,7 @@ from esplanade.protocol.snapshot import (
     speeds_mps,
     unpack_block,
 )
-from esplanade.protocol.steps import FOOTPRINT, KEY, STEP, step_records, unpack_steps
+from esplanade.protocol.steps import FOOTPRINT, KEY, STEP, WALKING, step_records, unpack_steps
 
 TEXT = (Path(__file__).resolve().parents[2] / "docs" / "protocol.md").read_text(encoding="utf-8")
 
@@ -121,7 +122,7 @@ def documented_type(kind: Any) -> str:
         return names[kind]
     origin, inner = get_origin(kind), get_args(kind)
     if origin is UnionType or str(origin) == "typing.Union":
-        return " or ".join(documented_type(part) for part in inner)
+        return " or ".join(dict.fromkeys(documented_type(part) for part in inner))
     if kind is type(None):
         return "null"
     if str(origin) == "<class 'typing.Annotated'>" or hasattr(kind, "__metadata__"):
@@ -158,8 +159,8 @@ def test_names_in_running_text() -> None:
         assert f"`{reason.value}`:" in section("bye")
     for kind in Kind:
         assert f"`{kind.value}`" in section("enter")
-    behaviours = get_args(Plan.model_fields["behaviour"].annotation)
-    for behaviour in behaviours:
+    behaviours, _ = get_args(Plan.model_fields["behaviour"].annotation)
+    for behaviour in get_args(behaviours):
         assert f"`{behaviour}`" in section("plan")
     assert f"# The protocol, version {VERSION}\n" in TEXT
 
@@ -196,8 +197,17 @@ def test_the_layout_of_a_record(title: str, place: int, record: np.dtype[np.void
     ]
 
 
+def test_versions() -> None:
+    text = " ".join(section("Versions").split())
+    served = " and ".join(map(str, SERVED_VERSIONS))
+    assert f"here {VERSION}." in text
+    assert f"This server serves version {served}." in text
+    # From version 4 on the server serves the version before its own, too.
+    assert set(SERVED_VERSIONS) >= {max(4, VERSION - 1), VERSION}
+
+
 def test_lengths_in_running_text() -> None:
-    assert f"{STEP.itemsize} bytes each" in section("Steps")
+    assert f"Kind {WALKING}, a walking step, has {STEP.itemsize} bytes" in section("Steps")
     assert f"same {STEPS_HEAD_BYTES} bytes" in section("Steps")
     assert f"{RECORD.itemsize} bytes each" in section("Snapshots")
     assert f"same {SNAPSHOT_HEAD_BYTES} bytes" in section("Snapshots")

@@ -65,7 +65,7 @@ describe("a straight way", () => {
 describe("the measures of a body", () => {
   const beam = wall([5, 0], [5, 6], { offset_m: 1.5, height_m: 1 });
   const kerb = box([4, 10], [20, 20], { height_m: 0.4 });
-  const ways = { ...bare, bounds: [0, 0, 20, 20], walls: [beam], polygons: [kerb] } as typeof bare;
+  const ways = { ...bare, walls: [beam], polygons: [kerb] };
   const east = (obstacles: Obstacles, y: number, clearanceM = RADIUS_M): Vec3 => {
     let at: Vec3 = [2, y, 0];
     for (let i = 0; i < 100; i++) at = obstacles.walk(at, 0.05, 0, clearanceM);

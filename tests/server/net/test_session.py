@@ -35,7 +35,11 @@ HELLO = encode(Hello(name="Ann", version=VERSION))
         ("text", ErrorCode.MALFORMED, CloseCode.MALFORMED),
         (msgpack.packb([250, {}]), ErrorCode.INVALID, CloseCode.INVALID),
         (msgpack.packb([1, {"name": 5, "version": VERSION}]), ErrorCode.INVALID, CloseCode.INVALID),
-        (msgpack.packb([1, {"name": " ", "version": VERSION}]), ErrorCode.INVALID, CloseCode.INVALID),
+        (
+            msgpack.packb([1, {"name": " ", "version": VERSION}]),
+            ErrorCode.INVALID,
+            CloseCode.INVALID,
+        ),
         (encode(Ping(nonce=1)), ErrorCode.HELLO_EXPECTED, CloseCode.HELLO_EXPECTED),
         (bytes(MAX_CLIENT_FRAME_BYTES + 1), ErrorCode.TOO_LARGE, CloseCode.TOO_LARGE),
     ],
@@ -77,10 +81,12 @@ async def test_a_welcome_has_what_a_client_predicts_with(serving: Serving) -> No
         assert ann.welcome.resume_seconds == 12.5
         assert ann.welcome.radius == ann.welcome.clearance == 0.3
         assert (ann.welcome.walk_speed, ann.welcome.max_speed) == (1.2, 2.0)
-    async with serving(person_walk_speed_mps=3.0, person_max_speed_mps=2.0) as server:
-        async with joined(server.port) as ann:
-            assert ann.welcome is not None
-            assert ann.welcome.walk_speed == 2.0
+    async with (
+        serving(person_walk_speed_mps=3.0, person_max_speed_mps=2.0) as server,
+        joined(server.port) as ann,
+    ):
+        assert ann.welcome is not None
+        assert ann.welcome.walk_speed == 2.0
 
 
 @pytest.mark.parametrize(
