@@ -4,6 +4,7 @@ import asyncio
 import math
 import time
 
+import msgpack
 import numpy as np
 import pytest
 from pydantic import ValidationError
@@ -15,18 +16,21 @@ from esplanade.protocol.messages import (
     Bye,
     Chat,
     Enter,
+    Entity,
     Error,
     FromServer,
     Hello,
     Move,
     Notice,
     Point,
+    Snapshot,
     StepBlock,
     Watch,
 )
+from esplanade.protocol.snapshot import pack_records
 from esplanade.protocol.steps import FOOTPRINT_M, pack_steps
 from tests.bots.scripted import OPERATOR, scripted_server, until
-from tests.protocol.steps import made_up_steps
+from tests.protocol.steps import made_up_steps, mixed_block
 
 
 async def test_a_bot_stands_where_it_wished_to() -> None:
@@ -252,3 +256,52 @@ async def test_move_is_sent_with_rising_numbers() -> None:
         heard = server.all_people[0].heard
         await until(lambda: len(heard) == 3)
         assert [message.seq for message in heard if isinstance(message, Move)] == [1, 2, 3]
+
+
+async def test_what_a_later_version_adds_is_passed_over() -> None:
+    """Unknown codes, fields, kinds, reasons and records of steps end no connection."""
+    async with scripted_server() as server, bots.connect(server.url, name="Ann") as ann:
+        socket = server.all_people[0].socket
+        await socket.send(msgpack.packb([99, "anything", [1, 2]]))
+        dog = Entity(
+            id=77,
+            kind="dog",
+            name="Rex",
+            layer=0,
+            x=1.0,
+            y=2.0,
+            z=0.0,
+            heading=0.0,
+            radius=0.25,
+            leg_m=0.4,
+            stature_m=0.6,
+            points_at=None,
+        )
+        _, fields = msgpack.unpackb(encode(Enter(tick=server.tick, entities=[dog])))
+        fields["entities"][0]["collar"] = {"colour": "red"}
+        await socket.send(msgpack.packb([65, {**fields, "later": True}]))
+        records = pack_steps(made_up_steps(3))
+        await socket.send(encode(StepBlock(tick=server.tick, block=mixed_block(records))))
+        place = pack_records(
+            ids=np.array([77]),
+            layers=np.array([0]),
+            reasons=np.array([200]),
+            positions_m=np.array([[1.0, 2.0]]),
+            heights_m=np.zeros(1),
+            headings_rad=np.zeros(1),
+            speeds_mps=np.zeros(1),
+            origin_m=ann.welcome.origin,
+        )
+        await socket.send(encode(Snapshot(tick=server.tick, ack=0, block=place.tobytes())))
+        await socket.send(msgpack.packb([70, {"error": "too_windy", "text": "hold on"}]))
+        known = []
+        async for event in ann.events():
+            known.append(event)
+            if isinstance(event, Error):
+                break
+        assert isinstance(known[-1], Error)
+        assert known[-1].error == "too_windy"
+        (steps,) = [event for event in known if isinstance(event, StepsEvent)]
+        assert steps.records["id"].tolist() == records["id"].tolist()
+        assert (ann.others[77].kind, ann.others[77].reason) == ("dog", 200)
+        assert await ann.ping() > 0.0
