@@ -71,6 +71,8 @@ STEP = np.dtype(
 )
 """A walking step, 228 bytes."""
 
+_STEP_HEAD: Final = [bytes([byte]) for byte in _HEAD.pack(WALKING, STEP.itemsize)]
+
 STANDS_ON_RIGHT: Final = 1
 """Flag of a step during which the right foot stands."""
 RE_AIMED: Final = 2
@@ -218,11 +220,10 @@ def step_records(block: bytes) -> StepRecords:
     ValueError
         A record runs over the end of the block, or its length is too small for its kind.
     """
-    if len(block) % STEP.itemsize == 0:
-        records = np.frombuffer(block, dtype=STEP)
-        alike = (records["kind"] == WALKING) & (records["length"] == STEP.itemsize)
-        if alike.all():
-            return records
+    count, rest = divmod(len(block), STEP.itemsize)
+    heads = (block[place :: STEP.itemsize] for place in range(HEAD.itemsize))
+    if rest == 0 and all(seen == count * byte for seen, byte in zip(heads, _STEP_HEAD, strict=True)):
+        return np.frombuffer(block, dtype=STEP)
     return np.frombuffer(b"".join(_walking_records(block)), dtype=STEP)
 
 
