@@ -199,7 +199,7 @@ class Canary:
         match decode_server(message):
             case Pong() as pong:
                 self._pings.answer(pong.nonce)
-            case Error() as error if error.error.value == "no_path":
+            case Error() as error if error.error == "no_path":
                 self._answer_ways(self._seq)
 
     def _answer_ways(self, seq: int) -> None:

@@ -155,7 +155,7 @@ async def _outcome(wire: ClientConnection, frame: bytes, number: int) -> tuple[s
                     continue
                 answer = decode_server(message)
                 if isinstance(answer, Error):
-                    told = answer.error.value
+                    told = str(answer.error)
                 elif isinstance(answer, Pong) and answer.nonce == nonce:
                     return f"{told}, goes on" if told else "taken", True
     except ConnectionClosed as closed:

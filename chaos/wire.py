@@ -133,7 +133,7 @@ class Wire:
             if isinstance(message, Welcome):
                 return message
             if isinstance(message, Error):
-                raise RefusedError(f"{message.error.value}: {message.text}")
+                raise RefusedError(f"{message.error}: {message.text}")
 
     def receive(self, within_s: float = ANSWER_S) -> ServerMessage:
         """Wait for the next message.
@@ -151,7 +151,9 @@ class Wire:
             if found is not None:
                 head, payload = found
                 if head == _BINARY:
-                    return decode_server(payload)
+                    message = decode_server(payload)
+                    if message is not None:
+                        return message
                 if head == _CLOSE:
                     self.close_code = int.from_bytes(payload[:2], "big") if payload else None
                     raise RefusedError(f"closed with {self.close_code}")

@@ -12,6 +12,7 @@ The server quantises a step once and goes on from what the record holds: the lan
 one step is the standing footprint of the next, bit for bit.
 """
 
+import operator
 import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -222,7 +223,8 @@ def step_records(block: bytes) -> StepRecords:
     """
     count, rest = divmod(len(block), STEP.itemsize)
     heads = (block[place :: STEP.itemsize] for place in range(HEAD.itemsize))
-    if rest == 0 and all(seen == count * byte for seen, byte in zip(heads, _STEP_HEAD, strict=True)):
+    expected = (count * byte for byte in _STEP_HEAD)
+    if rest == 0 and all(map(operator.eq, heads, expected)):
         return np.frombuffer(block, dtype=STEP)
     return np.frombuffer(b"".join(_walking_records(block)), dtype=STEP)
 

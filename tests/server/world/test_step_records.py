@@ -43,7 +43,7 @@ def test_records_are_those_of_the_protocol(seed: int) -> None:
     made_up = made_up_steps(6, seed)
     records = to_records(as_motion(made_up), made_up.ids)
     expected = pack_steps(made_up)
-    for name in ("id", "flags", "tick", "ticks", "standing", "landing", "lift"):
+    for name in ("kind", "length", "id", "flags", "tick", "ticks", "standing", "landing", "lift"):
         np.testing.assert_array_equal(records[name], expected[name])
     for name in expected["keys"].dtype.names:
         # Sums with a footprint and without may round to either side of half a quantum.
