@@ -116,6 +116,9 @@ class Attack:
     run: Callable[[Attacker], None]
     breaks_limit: bool = True
     """Whether it goes over a limit, so that log and metrics have to name its address."""
+    by_speed: bool = False
+    """Whether it goes over its limit only on a machine that is fast enough: it is over it once
+    the server has refused it something."""
     least_s: float = 0.0
     """It takes this long at least, because what it breaks is a limit of time."""
     serve: tuple[str, ...] = ()

@@ -70,7 +70,7 @@ def _server(trial: Trial) -> list[str]:
 
 
 def _naming(trial: Trial, attack: Attack) -> list[str]:
-    if not attack.breaks_limit:
+    if not attack.breaks_limit or (attack.by_speed and not trial.counts.get("refused")):
         return []
     found = []
     if not trial.lines:

@@ -57,17 +57,17 @@ def _mutated(attacker: Attacker) -> None:
     number = 0
     while attacker.goes_on:
         try:
-            with Wire(attacker.port) as wire:
-                if number % 2:
-                    wire.join("Mutant")
-                wire.socket.sendall(mutations.framed(number))
-                number += 1
-                attacker.counts["frames"] += 1
-                wire.receive(0.1)
-        except TimeoutError:
-            pass
+            wire = Wire(attacker.port)
         except OSError:
             attacker.refused()
+            continue
+        with wire, suppress(OSError):
+            if number % 2:
+                wire.join("Mutant")
+            wire.socket.sendall(mutations.framed(number))
+            number += 1
+            attacker.counts["frames"] += 1
+            wire.receive(0.1)
 
 
 ATTACKS: Final = (
@@ -78,5 +78,5 @@ ATTACKS: Final = (
         least_s=18.0,
     ),
     Attack("oversize", "frames of 2049 bytes to 1 MiB", _oversize),
-    Attack("mutated", "frames changed at random, as many as are let in", _mutated),
+    Attack("mutated", "frames changed at random, as many as are let in", _mutated, by_speed=True),
 )

@@ -25,5 +25,7 @@ def _forged(attacker: Attacker) -> None:
 
 
 ATTACKS: Final = (
-    Attack("forged-headers", "X-Forwarded-For names another client each time", _forged),
+    Attack(
+        "forged-headers", "X-Forwarded-For names another client each time", _forged, by_speed=True
+    ),
 )

@@ -67,6 +67,6 @@ def _request(path: str) -> bytes:
 
 
 ATTACKS: Final = (
-    Attack("pages", "the page is fetched as fast as it comes", _requests),
+    Attack("pages", "the page is fetched as fast as it comes", _requests, by_speed=True),
     Attack("unread-answers", f"{UNREAD} answers that nobody reads", _unread, least_s=12.0),
 )

@@ -59,16 +59,19 @@ ATTACKS: Final = (
         "ghosts",
         f"people who join and drop, in a world of {SEATS} seats",
         partial(_join, stay=False, token=False),
+        by_speed=True,
         serve=("--max-clients", str(SEATS)),
     ),
     Attack(
         "joins",
         "people who join as fast as they are let in",
         partial(_join, stay=True, token=False),
+        by_speed=True,
     ),
     Attack(
         "resume-tokens",
         "resumes with tokens that were guessed",
         partial(_join, stay=False, token=True),
+        by_speed=True,
     ),
 )

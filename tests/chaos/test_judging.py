@@ -92,6 +92,12 @@ def test_an_attack_within_its_limits_need_not_be_named() -> None:
     assert missed(quiet, ATTACKS["frozen"], BARS) == []
 
 
+def test_an_attack_that_needs_speed_is_named_once_it_was_refused_something() -> None:
+    quiet = replace(GOOD, lines=[], named={})
+    assert missed(quiet, ATTACKS["joins"], BARS) == []
+    assert len(missed(replace(quiet, counts={"refused": 1}), ATTACKS["joins"], BARS)) == 2
+
+
 def test_totals_are_compared_by_their_labels() -> None:
     text = (
         "# TYPE floods counter\n"
