@@ -6,7 +6,6 @@ from typing import Final
 
 import numpy as np
 
-from esplanade.server.world.neighbours import Neighbours
 from esplanade.server.world.rules import Rules
 from esplanade.server.world.state import Slots, State
 
@@ -82,27 +81,42 @@ class Interest:
     def viewers(self) -> Slots:
         return np.flatnonzero(self.viewing)
 
-    def update(self, neighbours: Neighbours, tick: int) -> Changes:
+    def update(self, places_cm: Slots, tick: int) -> Changes:
         """Look again for those whose turn it is; returns all changes since the last call."""
         viewers = self.viewers()
-        in_turn = (viewers + tick) % PERIOD_TICKS == 0
+        in_turn = (self._state.ids[viewers] + tick) % PERIOD_TICKS == 0
         due = viewers[in_turn | self._unseeing[viewers]]
         self.looked = due
         if len(due):
-            self._look(due, neighbours, tick)
+            self._look(due, places_cm, tick)
             self._unseeing[due] = False
         changes, self._changes = self._changes, Changes()
         return changes
 
-    def _look(self, due: Slots, neighbours: Neighbours, tick: int) -> None:
+    def _nearest(self, due: Slots, places_cm: Slots) -> tuple[Slots, Slots]:
+        """Squared distances (V, C), cm2, and slots of the nearest; of equals the older first."""
+        live = self._state.live()
+        live = live[np.argsort(self._state.ids[live])]
+        apart2 = ((places_cm[live] - places_cm[due][:, None]) ** 2).sum(axis=-1)
+        order = np.argsort(apart2, axis=1, kind="stable")[:, : self._columns]
+        shape = len(due), self._columns
+        found, least = np.full(shape, self._nobody), np.full(shape, np.iinfo(np.int64).max)
+        found[:, : order.shape[1]] = live[order]
+        least[:, : order.shape[1]] = np.take_along_axis(apart2, order, axis=1)
+        found[least > (100.0 * self._leave_m) ** 2] = self._nobody
+        return least, found
+
+    def _look(self, due: Slots, places_cm: Slots, tick: int) -> None:
         viewer = due[:, None]
-        distances, found = neighbours.nearest(due, self._columns, self._leave_m)
+        distances2, found = self._nearest(due, places_cm)
         # If many avatars stand on one spot, a viewer may not be among its own nearest.
         hidden = ~(found == viewer).any(axis=1)
         found[hidden, -1] = due[hidden]
 
         since = self.since[viewer, found]
-        near = (distances <= self._enter_m) & (np.arange(self._columns) < self._enter_columns)
+        near = (distances2 <= (100.0 * self._enter_m) ** 2) & (
+            np.arange(self._columns) < self._enter_columns
+        )
         keep = (found != self._nobody) & ((since > 0) | near | (found == viewer))
         row, column = np.nonzero(keep)
 

@@ -5,8 +5,16 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from esplanade.protocol.snapshot import RECORD, Records, pack_records
+from esplanade.protocol.snapshot import (
+    RECORD,
+    Records,
+    headings_rad,
+    heights_m,
+    pack_records,
+    positions_m,
+)
 from esplanade.server.world.interest import Interest
+from esplanade.server.world.neighbours import STOREY_WEIGHT
 from esplanade.server.world.state import Slots, State
 
 RECORD_BYTES = RECORD.itemsize
@@ -51,7 +59,6 @@ class SnapshotEncoder:
 
     def encode(self, interest: Interest, tick: int) -> Snapshots:
         """Snapshots for every viewer against what it has; its own avatar is always in it."""
-        self._refresh(tick)
         viewers = interest.viewers()
         in_view = interest.rows[viewers]
         written = self.written[viewers][:, None]
@@ -71,7 +78,20 @@ class SnapshotEncoder:
             data=memoryview(data),
         )
 
-    def _refresh(self, tick: int) -> None:
+    def places_cm(self) -> Slots:
+        """Where the records have everyone, (capacity, 3), cm: x, y and the weighted height."""
+        records = self._records[:-1]
+        z = int(STOREY_WEIGHT) * records["z"].astype(np.int64)
+        return np.column_stack([records["x"].astype(np.int64), records["y"], z])
+
+    def shown(self, slot: int) -> tuple[float, float, float, float]:
+        """x, y, height (metres) and heading (radians) of an avatar, as its record has them."""
+        record = self._records[slot : slot + 1]
+        x, y = positions_m(record, self._origin_m)[0].tolist()
+        return x, y, float(heights_m(record)[0]), float(headings_rad(record)[0])
+
+    def refresh(self, tick: int) -> None:
+        """Quantise everyone, as this tick leaves them."""
         live: Slots = self._state.live()
         state = self._state
         records = pack_records(

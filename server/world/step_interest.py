@@ -7,7 +7,6 @@ import numpy.typing as npt
 
 from esplanade.protocol.steps import STEP, StepRecords, new_step_records
 from esplanade.server.world.interest import LEAVE_RATIO, Interest
-from esplanade.server.world.neighbours import STOREY_WEIGHT
 from esplanade.server.world.rules import Rules
 from esplanade.server.world.state import Slots, State
 
@@ -77,16 +76,18 @@ class StepInterest:
         self.detach(slot)
         self.since[:, slot] = 0
 
-    def update(self, interest: Interest, tick: int) -> None:
+    def update(self, interest: Interest, places_cm: Slots, tick: int) -> None:
         """Look again for those whose view was looked at in this tick."""
         due = interest.looked
         viewer = due[:, None]
         rows = interest.rows[due]
         known = self.since[viewer, rows]
-        distances = self._distances(due, rows)
+        distances2 = self._distances2(due, rows, places_cm)
         rank = np.cumsum(rows != self._nobody, axis=1)
-        near = (distances <= self._near_m) & (rank <= self._near_rank)
-        near |= (known > 0) & (distances <= self._leave_m) & (rank <= self._leave_rank)
+        near = (distances2 <= (100.0 * self._near_m) ** 2) & (rank <= self._near_rank)
+        near |= (
+            (known > 0) & (distances2 <= (100.0 * self._leave_m) ** 2) & (rank <= self._leave_rank)
+        )
         near &= rows != self._nobody
         near |= rows == viewer
         self.since[due] = 0
@@ -116,11 +117,8 @@ class StepInterest:
         data = steps.records.view(np.uint8).reshape(-1, STEP_BYTES).take(slots, axis=0).tobytes()
         return StepBlocks(ends.tolist(), memoryview(data))
 
-    def _distances(self, viewers: Slots, rows: Slots) -> npt.NDArray[np.float64]:
-        """Distances (V, C) from each viewer to those in its row; unused places hold any number."""
-        state = self._state
-        places = np.column_stack([state.positions, state.heights * STOREY_WEIGHT])
-        apart: npt.NDArray[np.float64] = np.linalg.norm(
-            places.take(rows, axis=0, mode="clip") - places[viewers][:, None], axis=-1
-        )
-        return apart
+    def _distances2(self, viewers: Slots, rows: Slots, places_cm: Slots) -> Slots:
+        """Squared distances (V, C), cm2, to those in each row; unused places hold any number."""
+        apart = places_cm.take(rows, axis=0, mode="clip") - places_cm[viewers][:, None]
+        squares: Slots = (apart**2).sum(axis=-1)
+        return squares

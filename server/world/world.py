@@ -25,7 +25,6 @@ from esplanade.server.world.inputs import (
     Steer,
 )
 from esplanade.server.world.interest import Changes, Interest
-from esplanade.server.world.neighbours import Neighbours
 from esplanade.server.world.people import People
 from esplanade.server.world.routes import Point, Route, find_route, straight_route
 from esplanade.server.world.rules import Rules
@@ -136,13 +135,14 @@ class World:
             if actors_moved:
                 for name, is_open in self._actors.doors_wanted.items():
                     self.doors.want(name, is_open)
-            neighbours = Neighbours(self.state)
             self.contacts.update(self.state)
         with self.times.stage("steps"):
             self.feet.update(self.tick)
         with self.times.stage("interest"):
-            changes = self._interest.update(neighbours, self.tick)
-            self._step_interest.update(self._interest, self.tick)
+            self._encoder.refresh(self.tick)
+            places_cm = self._encoder.places_cm()
+            changes = self._interest.update(places_cm, self.tick)
+            self._step_interest.update(self._interest, places_cm, self.tick)
         with self.times.stage("encode"):
             viewers = self._interest.viewers()
             snapshots = self._encoder.encode(self._interest, self.tick)
@@ -168,7 +168,7 @@ class World:
     def describe(self, slot: int) -> dict[str, object]:
         """An avatar as the fields of `esplanade.protocol.messages.Entity`."""
         state = self.state
-        x, y = state.positions[slot].tolist()
+        x, y, z, heading = self._encoder.shown(slot)
         return {
             "id": int(state.ids[slot]),
             "kind": KINDS[state.kinds[slot]].value,
@@ -176,8 +176,8 @@ class World:
             "layer": int(state.layers[slot]),
             "x": x,
             "y": y,
-            "z": float(state.heights[slot]),
-            "heading": float(state.headings[slot]),
+            "z": z,
+            "heading": heading,
             "radius": float(state.radii[slot]),
             "leg_m": float(state.legs_m[slot]),
             "stature_m": float(state.statures_m[slot]),
