@@ -11,6 +11,7 @@ otherwise on another kind of processor.
 import argparse
 import asyncio
 import hashlib
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Final, cast
 
@@ -29,6 +30,7 @@ from esplanade.server.net.hub import Hub
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.session import Session
 from esplanade.server.settings import ServerSettings
+from esplanade.server.world.audience import Audience
 
 KEY: Final = "key"
 LEFT_OUT: Final = {int(ServerCode.WELCOME), int(ServerCode.PONG)}
@@ -141,8 +143,7 @@ class Visitors:
         """Add what everyone was sent to the digests."""
         for session, digest in zip(self.sessions, self.digests, strict=True):
             kept = cast(KeptConnection, session._connection)  # noqa: SLF001 - made in `_come`
-            for frame in kept.frames:
-                payload = _payload(frame)
+            for payload in _payloads(b"".join(kept.frames)):
                 if payload[0] != 0x92 or payload[1] not in LEFT_OUT:
                     digest.update(payload)
             kept.frames.clear()
@@ -152,9 +153,16 @@ class Visitors:
         return hashlib.sha256("".join(d.hexdigest() for d in self.digests).encode()).hexdigest()
 
 
-def _payload(frame: bytes) -> bytes:
-    size = frame[1] & 127
-    return frame[2:] if size < 126 else frame[4:] if size == 126 else frame[10:]
+def _payloads(written: bytes) -> Iterator[bytes]:
+    """The payload of each frame; a client that reads cannot tell how they were written."""
+    at = 0
+    while at < len(written):
+        size, begin = written[at + 1] & 127, at + 2
+        if size >= 126:
+            begin += 2 if size == 126 else 8
+            size = int.from_bytes(written[at + 2 : begin])
+        at = begin + size
+        yield written[begin:at]
 
 
 async def run(ticks: int, clients: int) -> str:
@@ -163,15 +171,17 @@ async def run(ticks: int, clients: int) -> str:
     with ThreadPoolExecutor(1) as routes, progress() as shown:
         population, world, storeys = build_world(load_scene(settings), settings)
         requests = RouteRequests(world, routes)
+        audience = Audience(world.rules, world.origin_m, world.times)
         hub = Hub(
             world,
+            audience,
             requests,
             settings,
             Metrics(),
             lambda: world.tick * world.tick_s,
             {"storeys": storeys},
         )
-        delivery = Delivery(world, hub.sessions, settings.tick_rate)
+        delivery = Delivery(audience, hub.sessions, settings.tick_rate, hub.stop_watching)
         visitors = Visitors(hub, world, settings, clients)
         finding = asyncio.create_task(requests.run(hub.route_found))
         for tick in shown.track(range(ticks), description="ticks"):
@@ -180,9 +190,10 @@ async def run(ticks: int, clients: int) -> str:
             # A route that is asked for in a tick is found before its end, so that runs are alike.
             while requests.waiting:  # noqa: ASYNC110 - the requests tell nobody when they are done
                 await asyncio.sleep(0.0002)
-            inputs = hub.drain(now)
-            hub.welcome(inputs, world.begin(inputs))
-            delivery.deliver(world.finish(world.think()), now)
+            world.begin(hub.drain(now))
+            frame = world.finish(world.think())
+            hub.welcome(frame)
+            delivery.deliver(audience.take(frame), now)
             visitors.take_in()
         finding.cancel()
         population.close()

@@ -28,14 +28,14 @@ import uvloop
 from esplanade.planning import LayeredGrid, Scene
 from esplanade.protocol import VERSION, encode
 from esplanade.protocol.messages import Hello, Move
-from esplanade.protocol.snapshot import RECORD
 from esplanade.server import logs
 from esplanade.server.app import running
 from esplanade.server.loading import load_scene
 from esplanade.server.populating import populate
 from esplanade.server.settings import ServerSettings
+from esplanade.server.world.audience import Audience
 from esplanade.server.world.inputs import Join, Steer
-from esplanade.server.world.world import World
+from esplanade.server.world.zone import Zone
 
 SIDE_M = 100.0
 WARM_UP_TICKS = 40
@@ -70,7 +70,7 @@ def print_stages(settings: ServerSettings, people: int) -> None:
     stage = load_scene(settings)
     grid = LayeredGrid.from_scene(stage.scene)
     actors, bodies = populate(grid, stage.scene, 0, TICK_S, 0)
-    world = World(
+    world = Zone(
         stage.scene,
         grid,
         actors,
@@ -81,8 +81,12 @@ def print_stages(settings: ServerSettings, people: int) -> None:
         seed=0,
         clock=time.perf_counter,
     )
+    audience = Audience(world.rules, world.origin_m, world.times)
     random = np.random.default_rng(1)
-    ids = [i for _, i in world.begin([Join(k, "p", None) for k in range(people)])]
+    world.begin([Join(k, "p", None) for k in range(people)])
+    frame = world.finish(world.think())
+    audience.take(frame)
+    ids = [i for _, i in frame.joined]
     times: dict[str, list[float]] = {}
     in_view = 0.0
     for tick in range(WARM_UP_TICKS + MEASURED_TICKS):
@@ -91,10 +95,10 @@ def print_stages(settings: ServerSettings, people: int) -> None:
         world.begin(
             [Steer(ids[k], tick, float(angles[k]), 1.3) for k in np.flatnonzero(turning).tolist()]
         )
-        update = world.finish(world.think())
-        world.wrote(update.snapshots, list(range(people)))
+        news = audience.take(world.finish(world.think()))
+        audience.wrote(news.snapshots, list(range(people)))
         if tick >= WARM_UP_TICKS:
-            in_view = len(update.snapshots.data) / RECORD.itemsize / people
+            in_view = len(news.snapshots.records) / people
             for name, seconds in world.times.seconds.items():
                 times.setdefault(name, []).append(seconds)
     actors.close()

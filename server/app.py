@@ -13,6 +13,7 @@ from esplanade.actors import Population
 from esplanade.planning import LayeredGrid
 from esplanade.planning.routes.storey_heights import reached_from, storeys_of
 from esplanade.server.assets import Assets
+from esplanade.server.link.local import LocalLink
 from esplanade.server.loading import LoadedScene, LoadingError, load_scene
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.delivery import Delivery
@@ -29,7 +30,8 @@ from esplanade.server.populating import populate
 from esplanade.server.rehearsal import rehearse, rehearse_walking
 from esplanade.server.settings import ServerSettings
 from esplanade.server.warming import kernels_compiled
-from esplanade.server.world.world import World
+from esplanade.server.world.audience import Audience
+from esplanade.server.world.zone import Zone
 
 log = structlog.get_logger(__name__)
 
@@ -40,7 +42,7 @@ class Running:
 
     port: int
     private_port: int
-    world: World
+    world: Zone
     metrics: Metrics
     ticking: "asyncio.Task[None]"
     """Runs as long as the world does; ends early only by a fault."""
@@ -101,16 +103,19 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         metrics.gauge(
             "routes_waiting", "People who wait for a route", lambda: route_requests.waiting
         )
+        audience = Audience(world.rules, world.origin_m, world.times)
         hub = Hub(
             world,
+            audience,
             route_requests,
             settings,
             metrics,
             lambda: schedule.world_time(world.tick, loop.time()),
             {"storeys": storeys} if mesh is None else {"storeys": storeys, "mesh": mesh},
         )
-        delivery = Delivery(world, hub.sessions, settings.tick_rate)
-        ticker = Ticker(world, hub, delivery, schedule, metrics, thread)
+        delivery = Delivery(audience, hub.sessions, settings.tick_rate, hub.stop_watching)
+        link = LocalLink()
+        ticker = Ticker(world, audience, link, hub, delivery, schedule, metrics, thread)
         await stack.enter_async_context(
             Listener(hub, assets, settings, metrics).listening(sockets, tls)
         )
@@ -130,7 +135,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
 
 def build_world(
     loaded: LoadedScene, settings: ServerSettings
-) -> tuple[Population, World, list[float]]:
+) -> tuple[Population, Zone, list[float]]:
     """The world of a loaded scene, ready to tick: its actors, itself, the heights of its storeys.
 
     It compiles what is not compiled yet, and takes a while.
@@ -146,7 +151,7 @@ def build_world(
 
 def _build_warm(
     loaded: LoadedScene, settings: ServerSettings, ready_to_plan: Callable[[], None]
-) -> tuple[Population, World, list[float]]:
+) -> tuple[Population, Zone, list[float]]:
     tick_s, seed = settings.tick_s, settings.seed
     try:
         grid = LayeredGrid.from_scene(loaded.scene)
@@ -158,7 +163,7 @@ def _build_warm(
             seed,
             person_radius_m=settings.person_radius_m,
         )
-        world = World(
+        world = Zone(
             loaded.scene,
             grid,
             population,
@@ -186,7 +191,7 @@ async def _stop(ticker: Ticker, ticking: "asyncio.Task[None]", hub: Hub) -> None
         await hub.close()
 
 
-def _watch(world: World, metrics: Metrics) -> None:
+def _watch(world: Zone, metrics: Metrics) -> None:
     metrics.gauge("people", "People in the world", lambda: world.count()[0])
     metrics.gauge("actors", "Actors in the world", lambda: world.count()[1])
     metrics.total("people_seen", "People who came in", lambda: world.people_seen)

@@ -6,10 +6,12 @@ from typing import Final
 
 from esplanade.actors import ActorParameters, GoTo, Population
 from esplanade.planning import LayeredGrid, Polygon, Scene
+from esplanade.server.net.packing import Packing
+from esplanade.server.world.audience import Audience
 from esplanade.server.world.inputs import Detach, Follow, Input, Join, Leave, Steer
 from esplanade.server.world.rules import Rules
 from esplanade.server.world.state import ACTOR
-from esplanade.server.world.world import World
+from esplanade.server.world.zone import Zone
 
 SCENE: Final = Scene.open_space(
     (0.0, 0.0, 6.0, 6.0),
@@ -34,9 +36,10 @@ def rehearse(rules: Rules, tick_s: float) -> None:
     """Let an actor and a person of a world of their own walk, stand, and leave."""
     world, population = _world(rules, tick_s)
     population.add("a", GoTo((5.0, 3.0, 0.0)), ActorParameters(), position=START)
+    audience, packing = Audience(rules, world.origin_m, world.times), Packing()
     for tick in range(1, TICKS + 1):
         world.begin(INPUTS.get(tick, []))
-        world.finish(world.think())
+        packing.pack(audience.take(world.finish(world.think())).snapshots)
     population.close()
 
 
@@ -47,16 +50,17 @@ def rehearse_walking(rules: Rules, tick_s: float) -> None:
     """
     world, population = _world(rules, tick_s)
     world.state.add(ACTOR, "A", (*START, 0.0), 0, ActorParameters().radius_m)
+    audience, packing = Audience(rules, world.origin_m, world.times), Packing()
     for tick in range(1, TICKS // 2):
         world.begin(INPUTS.get(tick, []))
-        world.finish(actors_moved=False)
+        packing.pack(audience.take(world.finish(actors_moved=False)).snapshots)
     population.close()
 
 
-def _world(rules: Rules, tick_s: float) -> tuple[World, Population]:
+def _world(rules: Rules, tick_s: float) -> tuple[Zone, Population]:
     grid = LayeredGrid.from_scene(SCENE)
     population = Population(grid, SCENE, tick_s=tick_s, person_radius_m=rules.person_radius_m)
-    world = World(
+    world = Zone(
         SCENE,
         grid,
         population,

@@ -1,7 +1,6 @@
 """Delivery tells everyone the news of a tick, in one pass that never waits."""
 
-from collections.abc import Mapping
-from typing import Final
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -9,96 +8,90 @@ from esplanade.actors import Explanation
 from esplanade.protocol import Reason
 from esplanade.protocol.messages import Census, Circle, Doors, Plan, Point
 from esplanade.server.net import frames
-from esplanade.server.net.outbox import Outbox
+from esplanade.server.net.packing import Packing
 from esplanade.server.net.session import Session
-from esplanade.server.world.world import World, WorldUpdate
-
-PLANS_PER_SECOND: Final = 5
+from esplanade.server.world.audience import Audience, News, Snapshots
 
 
 class Delivery:
     """Writes one tick's news into the outboxes of the sessions that are there."""
 
-    def __init__(self, world: World, sessions: Mapping[int, Session], tick_rate: int) -> None:
-        self._world = world
+    def __init__(
+        self,
+        audience: Audience,
+        sessions: Mapping[int, Session],
+        tick_rate: int,
+        stop_watching: Callable[[Session], None],
+    ) -> None:
+        """`stop_watching` is called for those who watch an actor that went out of view."""
+        self._audience = audience
         self._sessions = sessions
-        self._plan_period = max(1, tick_rate // PLANS_PER_SECOND)
         self._census_period = tick_rate
+        self._stop_watching = stop_watching
+        self._packing = Packing()
 
-    def deliver(self, update: WorldUpdate, now: float) -> None:
+    def deliver(self, news: News, now: float) -> None:
         """Write doors and changes of view first, then snapshots, then plans and the census."""
-        if update.doors:
-            doors = frames.message(Doors(doors=update.doors))
-            for session in self._sessions.values():
-                session.outbox.post(doors)
-        self._changes(update)
-        self._pointing(update)
-        self._snapshots(update, now)
-        self._plans()
-        if self._world.tick % self._census_period == 0:
-            people, actors = self._world.count()
-            census = frames.message(Census(people=people, actors=actors))
+        if news.doors:
+            self._post_to_all(frames.message(Doors(doors=news.doors)))
+        first = self._changes(news)
+        self._snapshots(news.snapshots, first, now)
+        self._plans(news)
+        if news.tick % self._census_period == 0:
+            census = frames.message(Census(people=news.people, actors=news.actors))
             for session in self._sessions.values():
                 session.outbox.offer(census)
 
-    def _changes(self, update: WorldUpdate) -> None:
-        tick = self._world.tick
-        for viewer, ids in update.changes.left.items():
-            if (outbox := self._outbox(viewer)) is not None:
-                outbox.post(frames.leave(tick, ids))
-        packed: dict[int, bytes] = {}
-        for viewer, slots in update.changes.entered.items():
-            if (outbox := self._outbox(viewer)) is None:
-                continue
-            for slot in slots:
-                if slot not in packed:
-                    packed[slot] = frames.entity(self._world.describe(slot))
-            outbox.post(frames.enter(tick, [packed[slot] for slot in slots]))
+    def _post_to_all(self, frame: bytes) -> None:
+        for session in self._sessions.values():
+            session.outbox.post(frame)
 
-    def _pointing(self, update: WorldUpdate) -> None:
-        for actor, target in update.pointing.items():
+    def _changes(self, news: News) -> dict[int, list[bytes]]:
+        """The frames that no viewer must miss, by its id: changes of view, then pointing."""
+        first: dict[int, list[bytes]] = {}
+        for viewer, ids in news.left.items():
+            first[viewer] = [frames.leave(news.tick, ids)]
+        for viewer, entities in news.entered.items():
+            first.setdefault(viewer, []).append(frames.enter(news.tick, entities))
+        for actor, (target, viewers) in news.pointing.items():
             frame = frames.message(Point(id=actor, target=target))
-            for viewer in self._world.seen_by(actor):
-                if (outbox := self._outbox(viewer)) is not None:
-                    outbox.post(frame)
+            for viewer in viewers:
+                first.setdefault(viewer, []).append(frame)
+        return first
 
-    def _snapshots(self, update: WorldUpdate, now: float) -> None:
-        snapshots = update.snapshots
-        sessions, tick, data = self._sessions, snapshots.tick, snapshots.data
+    def _snapshots(
+        self, snapshots: Snapshots, first: Mapping[int, list[bytes]], now: float
+    ) -> None:
+        packed, ends = self._packing.pack(snapshots)
+        sessions = self._sessions
         written: list[int] = []
-        begin = 0
-        begin_steps = 0
-        places = zip(
-            snapshots.viewers, snapshots.ends, snapshots.acks, update.steps.ends, strict=True
-        )
-        for place, (viewer, end, ack, end_steps) in enumerate(places):
+        begin = steps_before = 0
+        places = zip(snapshots.viewers, ends, snapshots.step_ends.tolist(), strict=True)
+        for place, (viewer, end, steps_until) in enumerate(places):
             session = sessions.get(viewer)
-            steps = update.steps.data[begin_steps:end_steps]
             if session is not None and session.outbox.snapshot(
-                tick, ack, data[begin:end], steps, now
+                packed[begin:end], steps_until - steps_before, now, first.get(viewer, ())
             ):
                 written.append(place)
-            begin, begin_steps = end, end_steps
-        self._world.wrote(snapshots, written)
+            begin, steps_before = end, steps_until
+        self._audience.wrote(snapshots, written)
 
-    def _plans(self) -> None:
-        """Offer the plans of the actors whose turn it is, each packed once, to their watchers."""
-        tick = self._world.tick
+    def _plans(self, news: News) -> None:
+        """Offer the plans in the news, each packed once, to those who watch and see the actor."""
+        plans = news.events.plans
+        if not plans:
+            return
         packed: dict[int, bytes] = {}
         for viewer, session in self._sessions.items():
             actor = session.watching
-            if actor is None or (tick + actor) % self._plan_period:
+            if actor is None or actor not in plans:
                 continue
-            if not self._world.sees(viewer, actor):
-                session.watching = None
+            if not self._audience.sees(viewer, actor):
+                self._stop_watching(session)
                 continue
             if actor not in packed:
-                packed[actor] = frames.message(plan(tick, actor, self._world.explain(actor)))
+                packed[actor] = frames.message(plan(news.tick, actor, plans[actor]))
             session.outbox.offer(packed[actor])
-
-    def _outbox(self, viewer: int) -> Outbox | None:
-        session = self._sessions.get(viewer)
-        return session.outbox if session else None
 
 
 def plan(tick: int, actor: int, explanation: Explanation) -> Plan:

@@ -10,7 +10,7 @@ from typing import Final
 
 import msgpack
 
-from esplanade.protocol import ServerCode, encode, encode_snapshot, encode_steps
+from esplanade.protocol import ServerCode, encode
 from esplanade.protocol.messages import FromServer, Welcome
 
 _FINAL_BINARY: Final = 0x82
@@ -30,16 +30,8 @@ def frame(payload: bytes) -> bytes:
 
 
 def message(content: FromServer) -> bytes:
-    """The frame of any message but the welcome, the snapshot and steps."""
+    """The frame of any message but the welcome, and snapshots and steps, which `packing` packs."""
     return frame(encode(content))
-
-
-def snapshot(tick: int, ack: int, block: memoryview) -> bytes:
-    return frame(encode_snapshot(tick, ack, block))
-
-
-def steps(tick: int, block: memoryview) -> bytes:
-    return frame(encode_steps(tick, block))
 
 
 def leave(tick: int, ids: Sequence[int]) -> bytes:
@@ -47,14 +39,8 @@ def leave(tick: int, ids: Sequence[int]) -> bytes:
     return frame(packed)
 
 
-def entity(fields: Mapping[str, object]) -> bytes:
-    """One avatar of an enter message, to be joined by `enter`."""
-    packed: bytes = msgpack.packb(fields)
-    return packed
-
-
 def enter(tick: int, entities: Sequence[bytes]) -> bytes:
-    """An enter message from avatars that `entity` has packed."""
+    """An enter message from avatars that `esplanade.protocol.entities` has packed."""
     packer = msgpack.Packer(autoreset=False)
     packer.pack_array_header(2)
     packer.pack(int(ServerCode.ENTER))

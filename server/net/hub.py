@@ -1,7 +1,7 @@
 """The hub joins sessions and the world: it seats people, collects their wishes, passes chat on."""
 
 import asyncio
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from typing import Final
 
 import structlog
@@ -18,6 +18,8 @@ from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.seats import Seat, Seats
 from esplanade.server.net.session import Session
 from esplanade.server.settings import ServerSettings
+from esplanade.server.world.audience import Audience
+from esplanade.server.world.frame import Frame
 from esplanade.server.world.inputs import (
     Attach,
     Detach,
@@ -29,9 +31,10 @@ from esplanade.server.world.inputs import (
     Movement,
     Stand,
     Steer,
+    Watch,
 )
 from esplanade.server.world.routes import Route
-from esplanade.server.world.world import Joined, World
+from esplanade.server.world.zone import Zone
 
 MAX_JOINS_PER_TICK: Final = 16
 """Each join costs every neighbour an enter message, so a crowd comes in over some ticks."""
@@ -49,7 +52,8 @@ class Hub:
 
     def __init__(
         self,
-        world: World,
+        world: Zone,
+        audience: Audience,
         route_requests: RouteRequests,
         settings: ServerSettings,
         metrics: Metrics,
@@ -60,6 +64,7 @@ class Hub:
         self.sessions: dict[int, Session] = {}
         """Sessions that have been welcomed, by their avatar's id."""
         self._world = world
+        self._audience = audience
         self._routes = route_requests
         self._settings = settings
         self._metrics = metrics
@@ -74,6 +79,9 @@ class Hub:
         self._comings: list[Attach | Detach | Leave | Stand] = []
         self._movements: dict[int, Movement] = {}
         self._doors: dict[str, MoveDoor] = {}
+        self._watches: dict[int, Watch] = {}
+        self._asked: set[int] = set()
+        """Tickets of those who wait to join and have been sent to the zone."""
         metrics.gauge("clients", "People connected", lambda: len(self.sessions))
         metrics.gauge(
             "clients_away",
@@ -146,7 +154,7 @@ class Hub:
             return
         self._metrics.chat_lines.inc()
         frame = frames.message(Chat(id=session.avatar_id, name=session.name, text=text))
-        for viewer in self._world.seen_by(session.avatar_id):
+        for viewer in self._audience.seen_by(session.avatar_id):
             listener = self.sessions.get(viewer)
             if listener is not None:
                 listener.outbox.post(frame)
@@ -155,14 +163,23 @@ class Hub:
         """Send the plans of an actor from now on, or of none."""
         if actor_id is not None and not (
             session.avatar_id is not None
-            and self._world.is_actor(actor_id)
-            and self._world.sees(session.avatar_id, actor_id)
+            and self._audience.is_actor(actor_id)
+            and self._audience.sees(session.avatar_id, actor_id)
         ):
             session.tell(
                 ProtocolError(ErrorCode.INVALID, f"watch: {actor_id} is no actor in view", None)
             )
             actor_id = None
+        self._watch(session, actor_id)
+
+    def stop_watching(self, session: Session) -> None:
+        """Send no more plans: the actor is out of view."""
+        self._watch(session, None)
+
+    def _watch(self, session: Session, actor_id: int | None) -> None:
         session.watching = actor_id
+        if session.avatar_id is not None:
+            self._watches[session.avatar_id] = Watch(session.avatar_id, actor_id)
 
     def set_door(self, session: Session, wish: SetDoor) -> None:
         """Open or close a door in the next tick, if the session may; the latest wish wins."""
@@ -208,26 +225,34 @@ class Hub:
             self._remove(seat)
         self._check_leases(now)
         inputs: list[Input] = [*self._comings]
-        for ticket in list(self._joining)[:MAX_JOINS_PER_TICK]:
+        at_the_door = [ticket for ticket in self._joining if ticket not in self._asked]
+        for ticket in at_the_door[:MAX_JOINS_PER_TICK]:
             session, hello = self._joining[ticket]
             anywhere = session.is_operator or self._settings.crowd is not None
             inputs.append(Join(ticket, session.name, hello.at, anywhere))
+            self._asked.add(ticket)
         inputs.extend(self._movements.values())
         inputs.extend(self._doors.values())
-        self._comings, self._movements, self._doors = [], {}, {}
+        inputs.extend(self._watches.values())
+        self._comings, self._movements, self._doors, self._watches = [], {}, {}, {}
         return inputs
 
-    def welcome(self, inputs: Iterable[Input], joined: Joined) -> None:
+    def welcome(self, frame: Frame) -> None:
         """Welcome the people whom the tick has let in, before anything else is sent to them."""
-        for ticket, avatar_id in joined:
+        for ticket, avatar_id in frame.joined:
+            self._asked.discard(ticket)
+            if ticket not in self._joining:
+                # The person went while the zone made the avatar.
+                self._comings.append(Leave(avatar_id))
+                continue
             session, _ = self._joining.pop(ticket)
             session.token = self._seats.issue(avatar_id, session.name, session.address, session)
             session.avatar_id = avatar_id
             self._bind(session, avatar_id, resumed=False)
-        # Two people may have come back to one avatar since the last tick: the later one has it.
-        for avatar_id in dict.fromkeys(item.id for item in inputs if isinstance(item, Attach)):
+        for ticket, avatar_id in frame.attached:
             seat = self._seats.of(avatar_id)
-            if seat is not None and seat.occupant is not None:
+            # Somebody else may have come back to the avatar since; the later one has it.
+            if seat is not None and seat.occupant is not None and seat.occupant.ticket == ticket:
                 self._bind(seat.occupant, avatar_id, resumed=True)
 
     async def close(self) -> None:
@@ -293,7 +318,9 @@ class Hub:
             before.dismiss(farewell, CloseCode.REPLACED, ByeCode.REPLACED.value)
         session.avatar_id, session.name = seat.avatar_id, seat.name
         session.token = self._seats.renew(seat, token)
-        self._comings += [Detach(seat.avatar_id), Attach(seat.avatar_id)]
+        session.ticket = self._next_ticket
+        self._next_ticket += 1
+        self._comings += [Detach(seat.avatar_id), Attach(seat.avatar_id, session.ticket)]
 
     def _bind(self, session: Session, avatar_id: int, resumed: bool) -> None:
         world = self._world
@@ -329,6 +356,7 @@ class Hub:
     def _unbind(self, seat: Seat[Session]) -> None:
         self.sessions.pop(seat.avatar_id, None)
         self._movements.pop(seat.avatar_id, None)
+        self._watches.pop(seat.avatar_id, None)
         self._routes.forget(seat.avatar_id)
 
     def _want(self, movement: Movement) -> None:

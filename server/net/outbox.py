@@ -10,6 +10,7 @@ slow for `drop_seconds`, when `drop_bytes` lie unsent, or when the list overflow
 
 import socket
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -17,9 +18,8 @@ from websockets.asyncio.server import ServerConnection
 from websockets.protocol import State
 
 from esplanade.server.metrics import Traffic
-from esplanade.server.net import frames
 from esplanade.server.settings import ServerSettings
-from esplanade.server.world.step_interest import STEP_BYTES
+from esplanade.server.world.audience import STEP_BYTES
 
 MAX_WAITING_FRAMES: Final = 256
 JOINING_PATIENCE_S: Final = 30.0
@@ -91,16 +91,22 @@ class Outbox:
         self._write(frame)
         return True
 
-    def snapshot(
-        self, tick: int, ack: int, block: memoryview, steps: memoryview, now: float
-    ) -> bool:
-        """Send the frames that wait, then steps if there are any and a snapshot, once a tick.
+    def snapshot(self, block: bytes, steps: int, now: float, first: Sequence[bytes] = ()) -> bool:
+        """Send the frames that wait, then `first`, then a snapshot with the steps of its tick.
 
-        False if they were left out, both together.
+        `block` holds the frame of so many steps, if there are any, and that of the snapshot. It is
+        called once a tick. The frames in `first` must not be lost; they wait while the client is
+        slow. False if steps and snapshot were left out, both together.
         """
         if not self.open:
             return False
         unsent = self._unsent()
+        if first and (self._waiting or unsent > self._policy.slow_bytes):
+            for frame in first:
+                self.post(frame)
+            first = ()
+            if not self.open:
+                return False
         if unsent > self._policy.slow_bytes:
             self._traffic.snapshots_skipped += 1
             self._judge(unsent, now)
@@ -114,10 +120,10 @@ class Outbox:
             self._traffic.snapshots_skipped += 1
             return False
         if steps:
-            self._write(frames.steps(tick, steps))
-            self._traffic.steps_out += len(steps) // STEP_BYTES
-            self._traffic.step_bytes_out += len(steps)
-        self._write(frames.snapshot(tick, ack, block))
+            self._traffic.steps_out += steps
+            self._traffic.step_bytes_out += steps * STEP_BYTES
+        messages = len(first) + (2 if steps else 1)
+        self._write(b"".join((*first, block)) if first else block, messages)
         return True
 
     def flush(self) -> None:
@@ -142,9 +148,9 @@ class Outbox:
     def _unsent(self) -> int:
         return self._connection.transport.get_write_buffer_size()
 
-    def _write(self, frame: bytes) -> None:
+    def _write(self, frame: bytes, messages: int = 1) -> None:
         self._connection.transport.write(frame)
-        self._traffic.messages_out += 1
+        self._traffic.messages_out += messages
         self._traffic.bytes_out += len(frame)
 
 

@@ -8,7 +8,7 @@ import structlog
 
 from esplanade.protocol.messages import WalkTo
 from esplanade.server.world.routes import Route
-from esplanade.server.world.world import World
+from esplanade.server.world.zone import Zone
 
 log = structlog.get_logger(__name__)
 
@@ -19,7 +19,7 @@ Found = Callable[[int, WalkTo, Route | None], None]
 class RouteRequests:
     """Keeps the latest wish of each person and searches in the order in which people asked."""
 
-    def __init__(self, world: World, thread: Executor) -> None:
+    def __init__(self, world: Zone, thread: Executor) -> None:
         self._world = world
         self._thread = thread
         self._wishes: dict[int, WalkTo] = {}

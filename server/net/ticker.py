@@ -1,4 +1,4 @@
-"""The ticker runs the world's ticks at their times, and the actors' planning in its own thread."""
+"""The ticker runs the zone's ticks at their times, and the actors' planning in its own thread."""
 
 import asyncio
 from concurrent.futures import Executor
@@ -6,11 +6,13 @@ from time import perf_counter
 
 import structlog
 
+from esplanade.server.link.local import LocalLink
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.delivery import Delivery
 from esplanade.server.net.hub import Hub
 from esplanade.server.net.schedule import Schedule
-from esplanade.server.world.world import World
+from esplanade.server.world.audience import Audience
+from esplanade.server.world.zone import Zone
 
 log = structlog.get_logger(__name__)
 
@@ -20,7 +22,9 @@ class Ticker:
 
     def __init__(
         self,
-        world: World,
+        world: Zone,
+        audience: Audience,
+        link: LocalLink,
         hub: Hub,
         delivery: Delivery,
         schedule: Schedule,
@@ -28,6 +32,8 @@ class Ticker:
         thread: Executor,
     ) -> None:
         self._world = world
+        self._audience = audience
+        self._link = link
         self._hub = hub
         self._delivery = delivery
         self._schedule = schedule
@@ -37,7 +43,7 @@ class Ticker:
         metrics.gauge(
             "walkers_shown",
             "Walkers whose steps are sent, counted for each viewer",
-            lambda: world.walkers_shown,
+            lambda: audience.walkers_shown,
         )
         metrics.total("ticks", "Ticks of the world", lambda: world.tick)
         metrics.total("ticks_late", "Ticks that began late", lambda: schedule.late_ticks)
@@ -65,13 +71,15 @@ class Ticker:
         loop = asyncio.get_running_loop()
         start = perf_counter()
         self._schedule.begin(loop.time())
-        inputs = self._hub.drain(loop.time())
-        joined = self._world.begin(inputs)
-        self._hub.welcome(inputs, joined)
+        self._link.send(self._hub.drain(loop.time()))
+        self._world.begin(self._link.inputs())
         actors_moved = await loop.run_in_executor(self._thread, self._think)
-        update = self._world.finish(actors_moved)
-        with self._world.times.stage("write"):
-            self._delivery.deliver(update, loop.time())
+        self._link.publish(self._world.finish(actors_moved))
+        for frame in self._link.frames():
+            self._hub.welcome(frame)
+            news = self._audience.take(frame)
+            with self._world.times.stage("write"):
+                self._delivery.deliver(news, loop.time())
         self._metrics.tick_took(perf_counter() - start, self._world.times.seconds)
 
     def _think(self) -> bool:

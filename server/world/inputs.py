@@ -19,9 +19,13 @@ class Join:
 
 @dataclass(frozen=True, slots=True)
 class Attach:
-    """Somebody looks through this person's eyes again, knowing nothing of the world."""
+    """Somebody looks through this person's eyes again, knowing nothing of the world.
+
+    `ticket` is the caller's mark, and comes back in the frame.
+    """
 
     id: int
+    ticket: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,5 +76,13 @@ class MoveDoor:
     is_open: bool
 
 
+@dataclass(frozen=True, slots=True)
+class Watch:
+    """A person wants the plans of an actor from now on, or of none."""
+
+    id: int
+    actor_id: int | None
+
+
 Movement = Steer | Follow
-Input = Join | Attach | Detach | Leave | Stand | Steer | Follow | MoveDoor
+Input = Join | Attach | Detach | Leave | Stand | Steer | Follow | MoveDoor | Watch

@@ -1,13 +1,25 @@
-"""Interest management: each viewer sees the nearest avatars, with hysteresis at the edge."""
+"""Interest management: each viewer sees the nearest avatars, with hysteresis at the edge.
 
-from collections import defaultdict
-from dataclasses import dataclass, field
+Of those in view, the steps of the nearest are sent too, likewise with hysteresis.
+"""
+
+from collections.abc import Iterable
 from typing import Final
 
 import numpy as np
 
+from esplanade.server.world._interest_kernels import (
+    NOT_NEAR,
+    Limits,
+    Views,
+    drop_gone,
+    look,
+    settle_all,
+)
+from esplanade.server.world.avatars import Avatars
+from esplanade.server.world.buckets import sort_into_buckets
 from esplanade.server.world.rules import Rules
-from esplanade.server.world.state import Slots, State
+from esplanade.server.world.state import Slots
 
 LEAVE_RATIO: Final = 1.15
 """An avatar goes out of view at this multiple of the distance at which it comes into view."""
@@ -15,121 +27,160 @@ LEAVE_RATIO: Final = 1.15
 PERIOD_TICKS: Final = 4
 """Each viewer's view is computed anew every so many ticks; an avatar that leaves goes at once."""
 
-
-@dataclass(frozen=True)
-class Changes:
-    """The avatars that came into view and went out of it, by the viewer's id."""
-
-    entered: dict[int, list[int]] = field(default_factory=lambda: defaultdict(list))
-    """Slots that came into view."""
-    left: dict[int, list[int]] = field(default_factory=lambda: defaultdict(list))
-    """Ids that went out of view or out of the world."""
+FIRST_VIEWERS: Final = 16
 
 
 class Interest:
-    """The avatars in view of each viewer: always itself, and at most `view_limit` others.
+    """The avatars in view of each viewer: always its own, and at most `view_limit` others.
 
-    `rows[viewer]` lists the slots in view, when they were looked at the nearest first; unused
-    places hold the capacity, a slot that no avatar ever has. `rows_since` has beside each the tick
-    at which it came into view, and `since[viewer, slot]` the same by slot, 0 for what is not in
-    view.
+    The tables have a row for each viewer and a column for each avatar in view, so that they grow
+    with what is seen and not with the zone.
     """
 
-    def __init__(self, state: State, rules: Rules) -> None:
-        self._state = state
-        self._nobody = state.capacity
-        limit = min(rules.view_limit, state.capacity)
-        self._columns = limit + 1
-        self._enter_columns = self._columns - limit // 8
-        self._enter_m = rules.view_radius_m
-        self._leave_m = rules.view_radius_m * LEAVE_RATIO
-        self.viewing = np.zeros(state.capacity, dtype=np.bool_)
-        self.looked: Slots = np.zeros(0, dtype=np.int64)
-        """Viewers whose turn it was in the latest update."""
-        self.rows = np.full((state.capacity, self._columns), self._nobody, dtype=np.int64)
-        self.rows_since = np.zeros((state.capacity, self._columns), dtype=np.int32)
-        self.since = np.zeros((state.capacity, state.capacity + 1), dtype=np.int32)
-        self._unseeing = np.zeros(state.capacity, dtype=np.bool_)
-        self._changes = Changes()
+    def __init__(self, avatars: Avatars, rules: Rules) -> None:
+        self._avatars = avatars
+        columns = rules.view_limit + 1
+        steps = rules.steps_limit + 1
+        self._limits = Limits(
+            enter=100.0 * rules.view_radius_m,
+            leave=100.0 * rules.view_radius_m * LEAVE_RATIO,
+            enter_rank=columns - rules.view_limit // 8,
+            step_enter=100.0 * rules.steps_radius_m,
+            step_leave=100.0 * rules.steps_radius_m * LEAVE_RATIO,
+            step_enter_rank=steps - rules.steps_limit // 8,
+            step_leave_rank=steps,
+        )
+        self._places: dict[int, int] = {}
+        self._free = list(range(FIRST_VIEWERS - 1, -1, -1))
+        self._unseeing: set[int] = set()
+        shape = FIRST_VIEWERS, columns
+        self.views = Views(
+            avatar=np.zeros(FIRST_VIEWERS, dtype=np.int64),
+            seen=np.zeros(FIRST_VIEWERS, dtype=np.int32),
+            encoded=np.zeros(FIRST_VIEWERS, dtype=np.int32),
+            written=np.zeros(FIRST_VIEWERS, dtype=np.int32),
+            ack=np.zeros(FIRST_VIEWERS, dtype=np.int64),
+            rows=np.zeros(shape, dtype=np.int32),
+            record_sent=np.zeros(shape, dtype=np.int32),
+            step_sent=np.zeros(shape, dtype=np.int32),
+            under_way=np.zeros(shape, dtype=np.uint8),
+        )
 
-    def attach(self, slot: int) -> None:
+    @property
+    def walkers_shown(self) -> int:
+        """Number of avatars whose steps are sent, counted for each viewer."""
+        views = self.views
+        used = np.arange(views.rows.shape[1]) < views.seen[:, None]
+        return int(np.count_nonzero(used & (views.step_sent != NOT_NEAR)))
+
+    def attach(self, avatar_id: int) -> None:
         """Let this avatar look, with nothing in view so far."""
-        self.detach(slot)
-        self.viewing[slot] = self._unseeing[slot] = True
+        self.detach(avatar_id)
+        if not self._free:
+            self._grow()
+        place = self._places[avatar_id] = self._free.pop()
+        self.views.avatar[place] = self._avatars.row(avatar_id)
+        self._unseeing.add(place)
 
-    def detach(self, slot: int) -> None:
+    def detach(self, avatar_id: int) -> None:
         """Let this avatar look no more."""
-        self.viewing[slot] = self._unseeing[slot] = False
-        self.rows[slot] = self._nobody
-        self.since[slot] = 0
-        self._changes.left.pop(int(self._state.ids[slot]), None)
-
-    def remove(self, slot: int, avatar_id: int) -> None:
-        """Take an avatar that left the world out of every view, at once."""
-        self.detach(slot)
-        for viewer in self.seen_by(slot).tolist():
-            place = self.rows[viewer] == slot
-            self.rows[viewer, place] = self._nobody
-            self.rows_since[viewer, place] = 0
-            self._changes.left[int(self._state.ids[viewer])].append(avatar_id)
-        self.since[:, slot] = 0
-
-    def seen_by(self, slot: int) -> Slots:
-        """Slots of those who have this avatar in view."""
-        return np.flatnonzero(self.since[:, slot])
+        place = self._places.pop(avatar_id, None)
+        if place is None:
+            return
+        views = self.views
+        views.avatar[place] = views.seen[place] = views.ack[place] = 0
+        views.encoded[place] = views.written[place] = 0
+        self._unseeing.discard(place)
+        self._free.append(place)
 
     def viewers(self) -> Slots:
-        return np.flatnonzero(self.viewing)
+        """Places of those who look, int64 (V,)."""
+        return np.flatnonzero(self.views.avatar)
 
-    def update(self, places_cm: Slots, tick: int) -> Changes:
-        """Look again for those whose turn it is; returns all changes since the last call."""
+    def ids(self, viewers: Slots) -> Slots:
+        """Ids of the avatars through whose eyes these viewers look."""
+        return self._avatars.ids[self.views.avatar[viewers]]
+
+    def acknowledge(self, avatar_id: int, seq: int) -> None:
+        """The avatar has begun this movement; its viewer, if there is one, is told so."""
+        place = self._places.get(avatar_id)
+        if place is not None:
+            self.views.ack[place] = seq
+
+    def sees(self, viewer_id: int, avatar_id: int) -> bool:
+        """Whether that viewer has that avatar in view."""
+        place, row = self._places.get(viewer_id), self._avatars.row(avatar_id)
+        if place is None or not row:
+            return False
+        return bool((self.views.rows[place, : self.views.seen[place]] == row).any())
+
+    def seen_by(self, avatar_id: int) -> list[int]:
+        """Ids of the viewers who have that avatar in view."""
+        row = self._avatars.row(avatar_id)
+        if not row:
+            return []
+        views = self.views
+        used = np.arange(views.rows.shape[1]) < views.seen[:, None]
+        found = np.flatnonzero(((views.rows == row) & used).any(axis=1))
+        ids: list[int] = self.ids(found).tolist()
+        return ids
+
+    def settle(self) -> None:
+        """Take down what was written of the snapshots of the tick before."""
+        settle_all(self.views)
+
+    def drop(self, ids: Iterable[int]) -> dict[int, list[int]]:
+        """Take avatars that leave the world out of every view; returns their ids, by viewer."""
+        rows = [row for row in map(self._avatars.row, ids) if row]
+        if not rows:
+            return {}
+        for avatar_id in self._avatars.ids[rows].tolist():
+            self.detach(avatar_id)
+        gone = np.zeros(len(self._avatars.ids), dtype=np.bool_)
+        gone[rows] = True
+        left = np.empty((int(self.views.seen.sum()), 2), dtype=np.int64)
+        left = left[: drop_gone(self.views, gone, left)]
+        pairs: dict[int, list[int]] = {}
+        viewers, others = self.ids(left[:, 0]).tolist(), self._avatars.ids[left[:, 1]].tolist()
+        for viewer, other in zip(viewers, others, strict=True):
+            pairs.setdefault(viewer, []).append(other)
+        return pairs
+
+    def look(self, tick: int) -> tuple[dict[int, list[int]], dict[int, list[int]]]:
+        """Look again for those whose turn it is.
+
+        Returns the rows of avatars that came into view, and the ids of those that went out of it,
+        both by the viewer's id.
+        """
         viewers = self.viewers()
-        in_turn = (self._state.ids[viewers] + tick) % PERIOD_TICKS == 0
-        due = viewers[in_turn | self._unseeing[viewers]]
-        self.looked = due
-        if len(due):
-            self._look(due, places_cm, tick)
-            self._unseeing[due] = False
-        changes, self._changes = self._changes, Changes()
-        return changes
+        in_turn = (self.ids(viewers) + tick) % PERIOD_TICKS == 0
+        if self._unseeing:
+            in_turn |= np.isin(viewers, list(self._unseeing))
+            self._unseeing.clear()
+        due = viewers[in_turn]
+        if not len(due):
+            return {}, {}
+        shape = len(due), self.views.rows.shape[1]
+        entered, left = np.empty(shape, dtype=np.int64), np.empty(shape, dtype=np.int64)
+        ends = np.empty((len(due), 2), dtype=np.int64)
+        buckets = sort_into_buckets(self._avatars)
+        look(self.views, due, buckets, self._limits, entered, left, ends)
+        ids = self._avatars.ids
+        came = self._by_viewer(due, entered, ends[:, 0])
+        went = self._by_viewer(due, left, ends[:, 1])
+        return came, {viewer: ids[rows].tolist() for viewer, rows in went.items()}
 
-    def _nearest(self, due: Slots, places_cm: Slots) -> tuple[Slots, Slots]:
-        """Squared distances (V, C), cm2, and slots of the nearest; of equals the older first."""
-        live = self._state.live()
-        live = live[np.argsort(self._state.ids[live])]
-        apart2 = ((places_cm[live] - places_cm[due][:, None]) ** 2).sum(axis=-1)
-        order = np.argsort(apart2, axis=1, kind="stable")[:, : self._columns]
-        shape = len(due), self._columns
-        found, least = np.full(shape, self._nobody), np.full(shape, np.iinfo(np.int64).max)
-        found[:, : order.shape[1]] = live[order]
-        least[:, : order.shape[1]] = np.take_along_axis(apart2, order, axis=1)
-        found[least > (100.0 * self._leave_m) ** 2] = self._nobody
-        return least, found
+    def _by_viewer(self, viewers: Slots, found: Slots, ends: Slots) -> dict[int, list[int]]:
+        """The first `ends` of each row of `found`, by the viewer's id, where there are any."""
+        some = np.flatnonzero(ends)
+        places, lasts = self.ids(viewers[some]).tolist(), ends[some].tolist()
+        return {
+            viewer: found[i, :last].tolist()
+            for viewer, i, last in zip(places, some.tolist(), lasts, strict=True)
+        }
 
-    def _look(self, due: Slots, places_cm: Slots, tick: int) -> None:
-        viewer = due[:, None]
-        distances2, found = self._nearest(due, places_cm)
-        # If many avatars stand on one spot, a viewer may not be among its own nearest.
-        hidden = ~(found == viewer).any(axis=1)
-        found[hidden, -1] = due[hidden]
-
-        since = self.since[viewer, found]
-        near = (distances2 <= (100.0 * self._enter_m) ** 2) & (
-            np.arange(self._columns) < self._enter_columns
-        )
-        keep = (found != self._nobody) & ((since > 0) | near | (found == viewer))
-        row, column = np.nonzero(keep)
-
-        old = self.rows[due]
-        stamps = np.where(since > 0, since, tick)
-        self.since[viewer, old] = 0
-        self.since[due[row], found[row, column]] = stamps[row, column]
-        self.rows[due] = np.where(keep, found, self._nobody)
-        self.rows_since[due] = np.where(keep, stamps, 0)
-
-        gone = (old != self._nobody) & (self.since[viewer, old] == 0)
-        ids = self._state.ids
-        for r, c in np.argwhere(gone).tolist():
-            self._changes.left[int(ids[due[r]])].append(int(ids[old[r, c]]))
-        for r, c in np.argwhere(keep & (since == 0)).tolist():
-            self._changes.entered[int(ids[due[r]])].append(int(found[r, c]))
+    def _grow(self) -> None:
+        """Make room for twice as many viewers."""
+        before = len(self.views.avatar)
+        self.views = Views(*(np.concatenate([one, np.zeros_like(one)]) for one in self.views))
+        self._free = list(range(2 * before - 1, before - 1, -1))

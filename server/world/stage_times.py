@@ -5,7 +5,8 @@ from contextlib import contextmanager
 from typing import Final
 
 STAGES: Final = ("drain", "people", "actors", "contacts", "steps", "interest", "encode")
-"""The stages of a world's tick in their order; the ticker adds `write` at the end."""
+"""The stages of a tick in their order. The zone's are up to `steps`, and quantising in `encode`;
+the audience's are `interest` and `encode`; the ticker adds `write` at the end."""
 
 
 class StageTimes:
@@ -18,10 +19,15 @@ class StageTimes:
         self._clock = clock
         self.seconds: dict[str, float] = {}
 
+    def begin(self) -> None:
+        """A new tick begins."""
+        self.seconds = {}
+
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
+        """Add the time that passes within to that stage."""
         start = self._clock()
         try:
             yield
         finally:
-            self.seconds[name] = self._clock() - start
+            self.seconds[name] = self.seconds.get(name, 0.0) + self._clock() - start

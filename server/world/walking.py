@@ -8,8 +8,8 @@ from esplanade.actors.locomotion.footsteps.course import AHEAD, Course
 from esplanade.actors.locomotion.footsteps.ground import Ground
 from esplanade.actors.locomotion.footsteps.walkers import Walkers
 from esplanade.actors.locomotion.motion.key_poses import Steps
+from esplanade.server.world.latest_steps import LatestSteps
 from esplanade.server.world.state import Slots, State
-from esplanade.server.world.step_interest import LatestSteps
 from esplanade.server.world.step_records import from_records, to_records
 
 log = structlog.get_logger(__name__)

@@ -6,10 +6,14 @@ from functools import cache
 from itertools import count
 from pathlib import Path
 
+import msgpack
+
 from esplanade.planning import LayeredGrid, Place, Scene, Spawn, Wall
+from esplanade.server.world.audience import Audience, News
+from esplanade.server.world.frame import Frame, Tickets
 from esplanade.server.world.inputs import Input, Join
 from esplanade.server.world.rules import Rules
-from esplanade.server.world.world import Joined, World, WorldUpdate
+from esplanade.server.world.zone import Zone
 from tests.server.doubles import ScriptedPopulation
 
 TICK_S = 0.05
@@ -80,7 +84,7 @@ class Trial:
         self.population = population or ScriptedPopulation(TICK_S)
         self.grid = grid_of(scene)
         ticks = count()
-        self.world = World(
+        self.world = Zone(
             scene,
             self.grid,
             self.population.as_population(),
@@ -91,16 +95,23 @@ class Trial:
             seed=seed,
             clock=lambda: float(next(ticks)),
         )
-        self.joined: Joined = []
+        self.audience = Audience(self.world.rules, self.world.origin_m, self.world.times)
+        self.joined: Tickets = []
 
-    def tick(self, *inputs: Input, writing: bool = True) -> WorldUpdate:
+    def frame(self, *inputs: Input) -> Frame:
+        """One tick of the zone, which the audience is not told of."""
+        self.world.begin(inputs)
+        frame = self.world.finish(self.world.think())
+        self.joined = frame.joined
+        return frame
+
+    def tick(self, *inputs: Input, writing: bool = True) -> News:
         """One whole tick; with `writing`, every viewer is sent its snapshot."""
-        self.joined = self.world.begin(inputs)
-        update = self.world.finish(self.world.think())
+        news = self.audience.take(self.frame(*inputs))
         if writing:
-            places = list(range(len(update.snapshots.viewers)))
-            self.world.wrote(update.snapshots, places)
-        return update
+            places = list(range(len(news.snapshots.viewers)))
+            self.audience.wrote(news.snapshots, places)
+        return news
 
     def ticks(self, number: int) -> None:
         for _ in range(number):
@@ -119,12 +130,25 @@ class Trial:
         return float(self.world.state.speeds[self.world.state.slot(avatar_id)])
 
 
-def block_of(update: WorldUpdate, viewer: int) -> bytes:
+def block_of(news: News, viewer: int) -> bytes:
     """The packed records that this viewer is to be sent."""
-    snapshots = update.snapshots
+    snapshots = news.snapshots
     place = snapshots.viewers.index(viewer)
-    begin = snapshots.ends[place - 1] if place else 0
-    return bytes(snapshots.data[begin : snapshots.ends[place]])
+    begin = snapshots.record_ends[place - 1] if place else 0
+    return snapshots.records[begin : snapshots.record_ends[place]].tobytes()
+
+
+def steps_of(news: News, viewer: int) -> bytes:
+    """The packed steps that this viewer is to be sent."""
+    snapshots = news.snapshots
+    place = snapshots.viewers.index(viewer)
+    begin = snapshots.step_ends[place - 1] if place else 0
+    return snapshots.steps[begin : snapshots.step_ends[place]].tobytes()
+
+
+def entered_ids(news: News, viewer: int) -> list[int]:
+    """Ids of the avatars that came into this viewer's view."""
+    return [msgpack.unpackb(packed)["id"] for packed in news.entered.get(viewer, [])]
 
 
 def ids_in(records: Iterable[tuple[int, ...]]) -> list[int]:

@@ -27,7 +27,7 @@ from esplanade.server.world.walking import Feet
 from tests.server.client import joined
 from tests.server.conftest import Serving
 from tests.server.doubles import ScriptedPopulation
-from tests.server.net.test_frames import payload_of
+from tests.server.net.test_frames import payloads_of
 from tests.server.net.test_outbox import StuffedConnection
 from tests.server.worlds import FIELD, TICK_S, Trial
 
@@ -95,7 +95,7 @@ class Listener:
     def heard(self) -> list[ServerMessage]:
         """The messages that came since the last call."""
         frames, self.line.frames = self.line.frames, []
-        return [decode_server(payload_of(frame)) for frame in frames]
+        return [decode_server(payload) for payload in payloads_of(b"".join(frames))]
 
 
 def lifts_of(messages: list[ServerMessage]) -> list[int]:
@@ -121,7 +121,7 @@ def listener() -> Listener:
 @pytest.fixture
 def delivery(trial: Trial, listener: Listener) -> Delivery:
     (ann,) = trial.join((50.0, 50.0))
-    delivery = Delivery(trial.world, cast(Any, {ann: listener}), tick_rate=20)
+    delivery = Delivery(trial.audience, cast(Any, {ann: listener}), 20, lambda _: None)
     delivery.deliver(trial.tick(writing=False), now=0.0)
     listener.heard()
     return delivery

@@ -2,24 +2,34 @@ import pytest
 from websockets.frames import Frame, Opcode
 from websockets.streams import StreamReader
 
-from esplanade.protocol import VERSION, ByeCode, Kind, decode_server
-from esplanade.protocol.messages import Bye, Enter, Entity, Leave, Snapshot, StepBlock, Welcome
+from esplanade.protocol import VERSION, ByeCode, Kind, decode_server, entities
+from esplanade.protocol.messages import Bye, Enter, Entity, Leave, Welcome
 from esplanade.server.net import frames
 from tests.server.worlds import ROOM
 
 
+def payloads_of(written: bytes) -> list[bytes]:
+    """The payloads that the library, as a client, reads from frames one after the other."""
+    reader = StreamReader()
+    reader.feed_data(written)
+    reader.feed_eof()
+    payloads = []
+    while reader.buffer:
+        parser = Frame.parse(reader.read_exact, mask=False, max_size=None)
+        try:
+            next(parser)
+        except StopIteration as done:
+            parsed: Frame = done.value
+        assert parsed.opcode is Opcode.BINARY
+        assert parsed.fin
+        payloads.append(bytes(parsed.data))
+    return payloads
+
+
 def payload_of(frame: bytes) -> bytes:
     """The payload that the library, as a client, reads from a frame."""
-    reader = StreamReader()
-    reader.feed_data(frame)
-    parser = Frame.parse(reader.read_exact, mask=False, max_size=None)
-    try:
-        next(parser)
-    except StopIteration as done:
-        parsed: Frame = done.value
-    assert parsed.opcode is Opcode.BINARY
-    assert parsed.fin
-    return bytes(parsed.data)
+    (payload,) = payloads_of(frame)
+    return payload
 
 
 @pytest.mark.parametrize("size", [0, 1, 125, 126, 127, 65535, 65536, 100_000])
@@ -28,24 +38,26 @@ def test_every_length_is_framed_as_the_library_reads_it(size: int) -> None:
     assert payload_of(frames.frame(payload[:size])) == payload[:size]
 
 
-def test_a_snapshot_is_what_the_protocol_says() -> None:
-    block = memoryview(bytes(24))
-    frame = frames.snapshot(7, 3, block)
-    assert decode_server(payload_of(frame)) == Snapshot(tick=7, ack=3, block=bytes(24))
-
-
-def test_steps_are_what_the_protocol_says() -> None:
-    block = memoryview(bytes(228))
-    assert decode_server(payload_of(frames.steps(7, block))) == StepBlock(tick=7, block=bytes(228))
+def packed_entity(entity: Entity) -> bytes:
+    constants = entities.Entity(
+        entity.id, entity.kind, entity.name, entity.radius, entity.leg_m, entity.stature_m
+    )
+    return entities.pack_entity(
+        entities.pack_constants(constants),
+        entity.layer,
+        (entity.x, entity.y, entity.z),
+        entity.heading,
+        entity.points_at,
+    )
 
 
 def test_hand_packed_messages_are_the_models_messages() -> None:
-    entities = [
+    everyone = [
         Entity(
             id=k,
             kind=Kind.ACTOR,
             name=f"é{k}",
-            layer=0,
+            layer=k * 6,
             x=1.5,
             y=2.0,
             z=0.0,
@@ -57,10 +69,10 @@ def test_hand_packed_messages_are_the_models_messages() -> None:
         )
         for k in range(40)
     ]
-    packed = [frames.entity(entity.model_dump(mode="json")) for entity in entities]
+    packed = [packed_entity(entity) for entity in everyone]
     enter = frames.enter(9, packed)
-    assert decode_server(payload_of(enter)) == Enter(tick=9, entities=entities)
-    assert enter == frames.message(Enter(tick=9, entities=entities))
+    assert decode_server(payload_of(enter)) == Enter(tick=9, entities=everyone)
+    assert enter == frames.message(Enter(tick=9, entities=everyone))
     assert frames.leave(9, [1, 2]) == frames.message(Leave(tick=9, ids=[1, 2]))
 
 

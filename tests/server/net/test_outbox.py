@@ -6,19 +6,17 @@ import pytest
 from websockets.asyncio.server import ServerConnection
 from websockets.protocol import State
 
-from esplanade.protocol import ByeCode, decode_server
-from esplanade.protocol.messages import Bye, Snapshot, StepBlock
-from esplanade.protocol.steps import pack_steps
+from esplanade.protocol import ByeCode, encode_snapshot
+from esplanade.protocol.messages import Bye, Snapshot
 from esplanade.server.metrics import Traffic
 from esplanade.server.net import frames
 from esplanade.server.net.outbox import JOINING_PATIENCE_S, MAX_WAITING_FRAMES, Outbox, SlowPolicy
-from tests.protocol.steps import made_up_steps
+from esplanade.server.world.audience import STEP_BYTES
 from tests.server.client import joined
 from tests.server.conftest import Serving
-from tests.server.net.test_frames import payload_of
 
 POLICY = SlowPolicy(slow_bytes=1000, drop_bytes=4000, drop_seconds=5.0)
-NOTHING = memoryview(b"")
+SNAPSHOT = frames.frame(encode_snapshot(4, 2, b""))
 PING = b"\x89\xfd" + bytes(4 + 125)
 """A ping of a client with the largest payload there may be."""
 
@@ -69,9 +67,9 @@ def test_a_client_that_reads_gets_everything_at_once(
     outbox.welcome(b"welcome")
     outbox.post(b"important")
     assert outbox.offer(b"offered")
-    assert outbox.snapshot(4, 2, NOTHING, NOTHING, now=0.0)
+    assert outbox.snapshot(SNAPSHOT, 0, now=0.0)
     assert line.frames[:3] == [b"welcome", b"important", b"offered"]
-    assert decode_server(payload_of(line.frames[3])) == Snapshot(tick=4, ack=2, block=b"")
+    assert line.frames[3] == SNAPSHOT
     assert traffic.messages_out == 4
     assert traffic.bytes_out == sum(map(len, line.frames))
 
@@ -80,7 +78,7 @@ def test_a_slow_client_misses_snapshots_but_nothing_important_and_in_order(
     outbox: Outbox, line: StuffedConnection, traffic: Traffic
 ) -> None:
     line.unsent = 1001
-    assert not outbox.snapshot(1, 0, NOTHING, NOTHING, now=0.0)
+    assert not outbox.snapshot(SNAPSHOT, 0, now=0.0)
     assert not outbox.offer(b"offered")
     outbox.post(b"first")
     outbox.post(b"second")
@@ -88,7 +86,7 @@ def test_a_slow_client_misses_snapshots_but_nothing_important_and_in_order(
     line.unsent = 0
     outbox.post(b"third")
     assert line.frames == []
-    assert outbox.snapshot(2, 0, NOTHING, NOTHING, now=0.1)
+    assert outbox.snapshot(SNAPSHOT, 0, now=0.1)
     assert line.frames[:3] == [b"first", b"second", b"third"]
     assert traffic.snapshots_skipped == 1
     assert not line.aborted
@@ -97,27 +95,42 @@ def test_a_slow_client_misses_snapshots_but_nothing_important_and_in_order(
 def test_steps_go_out_before_their_snapshot_or_both_are_left_out(
     outbox: Outbox, line: StuffedConnection, traffic: Traffic
 ) -> None:
-    steps = pack_steps(made_up_steps(3)).tobytes()
     line.unsent = 1001
-    assert not outbox.snapshot(4, 2, NOTHING, memoryview(steps), now=0.0)
+    assert not outbox.snapshot(b"steps and snapshot", 3, now=0.0)
     assert (line.frames, traffic.steps_out) == ([], 0)
     line.unsent = 0
-    assert outbox.snapshot(5, 2, NOTHING, memoryview(steps), now=0.1)
-    assert [decode_server(payload_of(frame)) for frame in line.frames] == [
-        StepBlock(tick=5, block=steps),
-        Snapshot(tick=5, ack=2, block=b""),
-    ]
-    assert (traffic.steps_out, traffic.step_bytes_out) == (3, len(steps))
-    assert outbox.snapshot(6, 2, NOTHING, NOTHING, now=0.2)
-    assert len(line.frames) == 3
+    assert outbox.snapshot(b"steps and snapshot", 3, now=0.1)
+    assert line.frames == [b"steps and snapshot"]
+    assert (traffic.steps_out, traffic.step_bytes_out) == (3, 3 * STEP_BYTES)
+    assert traffic.messages_out == 2
+    assert outbox.snapshot(SNAPSHOT, 0, now=0.2)
+    assert (traffic.steps_out, traffic.messages_out) == (3, 3)
+
+
+def test_what_must_not_be_lost_goes_first_with_the_snapshot_or_waits(
+    outbox: Outbox, line: StuffedConnection, traffic: Traffic
+) -> None:
+    assert outbox.snapshot(b"snapshot", 0, now=0.0, first=[b"leave ", b"enter "])
+    assert line.frames == [b"leave enter snapshot"]
+    assert traffic.messages_out == 3
+    line.unsent = 1001
+    assert not outbox.snapshot(b"left out", 0, now=0.1, first=[b"leave", b"enter"])
+    assert outbox.waiting == 2
+    line.unsent = 0
+    assert outbox.snapshot(b"snapshot", 0, now=0.2, first=[b"later"])
+    assert line.frames[1:] == [b"leave", b"enter", b"later", b"snapshot"]
+    line.unsent = 1001
+    many = [b"important"] * (MAX_WAITING_FRAMES + 1)
+    assert not outbox.snapshot(b"left out", 0, now=0.3, first=many)
+    assert outbox.dropped == "waiting"
 
 
 def test_a_client_that_stays_slow_is_dropped(outbox: Outbox, line: StuffedConnection) -> None:
     line.unsent = 1001
-    outbox.snapshot(1, 0, NOTHING, NOTHING, now=0.0)
-    outbox.snapshot(2, 0, NOTHING, NOTHING, now=5.0)
+    outbox.snapshot(SNAPSHOT, 0, now=0.0)
+    outbox.snapshot(SNAPSHOT, 0, now=5.0)
     assert not line.aborted
-    outbox.snapshot(3, 0, NOTHING, NOTHING, now=5.1)
+    outbox.snapshot(SNAPSHOT, 0, now=5.1)
     assert line.aborted
     assert outbox.dropped == "seconds"
 
@@ -125,13 +138,13 @@ def test_a_client_that_stays_slow_is_dropped(outbox: Outbox, line: StuffedConnec
 def test_being_slow_now_and_then_is_forgiven(outbox: Outbox, line: StuffedConnection) -> None:
     for second in range(20):
         line.unsent = 1001 if second % 4 else 0
-        outbox.snapshot(second, 0, NOTHING, NOTHING, now=float(second))
+        outbox.snapshot(SNAPSHOT, 0, now=float(second))
     assert not line.aborted
 
 
 def test_too_much_unsent_drops_at_once(outbox: Outbox, line: StuffedConnection) -> None:
     line.unsent = 4001
-    outbox.snapshot(1, 0, NOTHING, NOTHING, now=0.0)
+    outbox.snapshot(SNAPSHOT, 0, now=0.0)
     assert outbox.dropped == "bytes"
 
 
@@ -153,13 +166,13 @@ def test_the_list_of_what_must_not_be_lost_is_bounded(
 def test_a_large_scene_may_take_its_time(outbox: Outbox, line: StuffedConnection) -> None:
     outbox.welcome(bytes(100_000))
     line.unsent = 101_000
-    outbox.snapshot(1, 0, NOTHING, NOTHING, now=0.0)
-    outbox.snapshot(2, 0, NOTHING, NOTHING, now=JOINING_PATIENCE_S - 1.0)
+    outbox.snapshot(SNAPSHOT, 0, now=0.0)
+    outbox.snapshot(SNAPSHOT, 0, now=JOINING_PATIENCE_S - 1.0)
     assert not line.aborted
     line.unsent = 0
-    assert outbox.snapshot(3, 0, NOTHING, NOTHING, now=JOINING_PATIENCE_S)
+    assert outbox.snapshot(SNAPSHOT, 0, now=JOINING_PATIENCE_S)
     line.unsent = 4001
-    outbox.snapshot(4, 0, NOTHING, NOTHING, now=JOINING_PATIENCE_S + 0.1)
+    outbox.snapshot(SNAPSHOT, 0, now=JOINING_PATIENCE_S + 0.1)
     assert line.aborted
 
 
@@ -169,7 +182,7 @@ def test_nothing_is_written_to_a_connection_that_closes(
     line.state = State.CLOSING
     outbox.post(b"important")
     assert not outbox.offer(b"offered")
-    assert not outbox.snapshot(1, 0, NOTHING, NOTHING, now=0.0)
+    assert not outbox.snapshot(SNAPSHOT, 0, now=0.0)
     assert line.frames == []
 
 

@@ -7,7 +7,7 @@ from typing import cast
 from esplanade.protocol.messages import WalkTo
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.world.routes import Point, Route
-from esplanade.server.world.world import World
+from esplanade.server.world.zone import Zone
 from tests.patience import PATIENCE_S
 
 Answer = tuple[int, int, Route | None]
@@ -34,7 +34,7 @@ async def test_who_changes_their_mind_all_the_time_keeps_nobody_waiting() -> Non
     world.go.set()
     asked: list[int] = []
     with ThreadPoolExecutor(1) as thread:
-        route_requests = RouteRequests(cast(World, world), thread)
+        route_requests = RouteRequests(cast(Zone, world), thread)
 
         def change_minds(avatar_id: int, goal: Point) -> Callable[[], Route | None]:
             asked.append(avatar_id)
@@ -60,7 +60,7 @@ async def test_wishes_are_taken_in_turn_the_latest_of_each_person() -> None:
             done.set()
 
     with ThreadPoolExecutor(1) as thread:
-        route_requests = RouteRequests(cast(World, world), thread)
+        route_requests = RouteRequests(cast(Zone, world), thread)
         running = asyncio.create_task(route_requests.run(found))
         route_requests.ask(1, WalkTo(seq=1, x=1.0, y=0.0))
         await asyncio.sleep(0)

@@ -2,12 +2,13 @@ import numpy as np
 import pytest
 
 from esplanade.protocol.steps import new_step_records, step_records
+from esplanade.server.world.audience import News
 from esplanade.server.world.inputs import Attach, Detach, Leave
 from esplanade.server.world.interest import LEAVE_RATIO, PERIOD_TICKS
 from esplanade.server.world.walking import Feet
-from esplanade.server.world.world import WorldUpdate
 from tests.server.doubles import ScriptedPopulation
 from tests.server.worlds import FIELD, TICK_S, Trial
+from tests.server.worlds import steps_of as steps_block
 
 
 @pytest.fixture(autouse=True)
@@ -24,11 +25,9 @@ def begin(trial: Trial, *avatar_ids: int, lift: int = 0) -> None:
     world.steps.begin(slots, records, world.tick + 1)
 
 
-def steps_of(update: WorldUpdate, viewer: int) -> dict[int, int]:
+def steps_of(news: News, viewer: int) -> dict[int, int]:
     """The steps that this viewer is to be sent: id of the walker -> lift."""
-    place = update.snapshots.viewers.index(viewer)
-    first = update.steps.ends[place - 1] if place else 0
-    records = step_records(bytes(update.steps.data[first : update.steps.ends[place]]))
+    records = step_records(steps_block(news, viewer))
     return dict(zip(records["id"].tolist(), records["lift"].tolist(), strict=True))
 
 
@@ -39,7 +38,7 @@ def test_a_step_is_told_once_to_those_who_are_near() -> None:
     update = trial.tick()
     assert steps_of(update, ann) == {ann: 3, ben: 3}
     assert steps_of(update, far) == {ben: 3, far: 3}
-    assert trial.world.sees(ann, far)
+    assert trial.audience.sees(ann, far)
     assert steps_of(trial.tick(), ann) == {}
     begin(trial, ben, lift=4)
     assert steps_of(trial.tick(), ann) == {ben: 4}
@@ -91,7 +90,7 @@ def test_the_nearest_are_shown_when_there_are_too_many() -> None:
     trial.ticks(PERIOD_TICKS)
     begin(trial, *everyone)
     assert sorted(steps_of(trial.tick(), everyone[0])) == everyone[:4]
-    assert trial.world.walkers_shown == 40
+    assert trial.audience.walkers_shown == 40
 
 
 def test_at_the_limit_the_near_ones_stay_until_they_fall_well_behind() -> None:
@@ -148,7 +147,7 @@ def test_who_comes_back_is_told_everything_anew() -> None:
     begin(trial, ann, ben)
     trial.tick()
     trial.tick(Detach(ann))
-    assert trial.world.walkers_shown == 2
+    assert trial.audience.walkers_shown == 2
     assert steps_of(trial.tick(Attach(ann)), ann) == {ann: 0, ben: 0}
 
 
@@ -157,7 +156,7 @@ def test_who_takes_the_place_of_somebody_gone_does_not_step_as_they_did() -> Non
     ann, ben = trial.join((50.0, 50.0), (52.0, 50.0))
     begin(trial, ben)
     trial.tick(Leave(ben))
-    assert trial.world.walkers_shown == 1
+    assert trial.audience.walkers_shown == 1
     (cy,) = trial.join((52.0, 50.0))
     begin(trial, cy, lift=5)
     update = trial.tick()

@@ -17,12 +17,12 @@ from esplanade.server.populating import populate
 from esplanade.server.world.inputs import Detach, Leave, Steer
 from esplanade.server.world.state import Floats
 from esplanade.server.world.step_records import from_records, to_records
-from esplanade.server.world.world import World
+from esplanade.server.world.zone import Zone
 from tests.actors.locomotion.handovers import handovers
 from tests.server.worlds import FIELD, TICK_S, Trial, rules
 
 
-def drawn(world: World) -> tuple[Floats, Floats]:
+def drawn(world: Zone) -> tuple[Floats, Floats]:
     """Hips as a client draws them at the end of this tick, and places of everyone, (N, 2) each."""
     slots = world.state.live()
     steps = from_records(world.steps.records[slots])
@@ -149,7 +149,7 @@ def with_actors(name: str) -> tuple[World, Population]:
     scene = read_scene(Path(scenes.__path__[0], name))
     grid = LayeredGrid.from_scene(scene)
     population, bodies = populate(grid, scene, 12, TICK_S, 5)
-    world = World(
+    world = Zone(
         scene, grid, population, bodies, rules(), tick_s=TICK_S, max_people=1, seed=5,
         clock=time.perf_counter,
     )  # fmt: skip

@@ -1,0 +1,168 @@
+"""The audience of a zone: from each frame, what every viewer of this server is to be told."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from esplanade.protocol.snapshot import RECORD
+from esplanade.protocol.steps import STEP
+from esplanade.server.world._snapshot_kernels import choose, gather
+from esplanade.server.world.avatars import Avatars
+from esplanade.server.world.frame import Events, Frame
+from esplanade.server.world.interest import Interest
+from esplanade.server.world.routes import Point
+from esplanade.server.world.rules import Rules
+from esplanade.server.world.stage_times import StageTimes
+from esplanade.server.world.state import Slots
+
+RECORD_BYTES = RECORD.itemsize
+STEP_BYTES = STEP.itemsize
+
+
+@dataclass(frozen=True)
+class Snapshots:
+    """One tick's snapshots and steps of all viewers, packed one after the other.
+
+    The viewer with id `viewers[i]` is to get the records up to `record_ends[i]`, from where the
+    one before it ends, and likewise the steps.
+    """
+
+    tick: int
+    places: Slots
+    """The viewers' places in the tables of interest."""
+    viewers: list[int]
+    acks: npt.NDArray[np.int64]
+    record_ends: npt.NDArray[np.int64]
+    step_ends: npt.NDArray[np.int64]
+    records: npt.NDArray[np.uint8]
+    """(N, bytes of a record)."""
+    steps: npt.NDArray[np.uint8]
+    """(M, bytes of a step)."""
+
+
+@dataclass(frozen=True)
+class News:
+    """News of a tick for its viewers, by their ids, in the order in which they are told."""
+
+    tick: int
+    doors: Mapping[str, bool]
+    left: Mapping[int, list[int]]
+    """Ids of avatars that went out of view or out of the world."""
+    entered: Mapping[int, list[bytes]]
+    """Avatars that came into view, each packed for an enter message."""
+    pointing: Mapping[int, tuple[Point | None, list[int]]]
+    """What an actor points at since this tick, and who sees that; by the actor's id."""
+    snapshots: Snapshots
+    events: Events
+    people: int
+    actors: int
+
+
+class Audience:
+    """The viewers of one server. It knows of the zone what frames say, and nothing else.
+
+    Frames and calls of `wrote` in the same order give the same news, bit for bit.
+    """
+
+    def __init__(self, rules: Rules, origin_m: tuple[float, float], times: StageTimes) -> None:
+        self._avatars = Avatars(origin_m)
+        self._interest = Interest(self._avatars, rules)
+        self._times = times
+
+    def take(self, frame: Frame) -> News:
+        """Take in the next frame, and work out what each viewer is to be told."""
+        with self._times.stage("interest"):
+            left = self._come_and_go(frame)
+            entered = self._look(frame, left)
+            pointing = {
+                actor: (target, self._interest.seen_by(actor))
+                for actor, target in frame.events.pointing.items()
+            }
+        with self._times.stage("encode"):
+            snapshots = self._encode(frame.tick)
+        return News(
+            tick=frame.tick,
+            doors=frame.events.doors,
+            left=left,
+            entered=entered,
+            pointing=pointing,
+            snapshots=snapshots,
+            events=frame.events,
+            people=frame.people,
+            actors=frame.actors,
+        )
+
+    def wrote(self, snapshots: Snapshots, places: list[int]) -> None:
+        """Of the snapshots, those at these places were sent; the next ones build on them."""
+        self._interest.views.written[snapshots.places[places]] = snapshots.tick
+
+    # --- questions ----------------------------------------------------------------------------
+
+    @property
+    def walkers_shown(self) -> int:
+        """Number of avatars whose steps are sent, counted for each viewer."""
+        return self._interest.walkers_shown
+
+    def sees(self, viewer_id: int, avatar_id: int) -> bool:
+        """Whether that viewer has that avatar in view."""
+        return self._interest.sees(viewer_id, avatar_id)
+
+    def seen_by(self, avatar_id: int) -> list[int]:
+        """Ids of the viewers who have that avatar in view."""
+        return self._interest.seen_by(avatar_id)
+
+    def is_actor(self, avatar_id: int) -> bool:
+        return self._avatars.is_actor(avatar_id)
+
+    # --- a frame ------------------------------------------------------------------------------
+
+    def _come_and_go(self, frame: Frame) -> dict[int, list[int]]:
+        """Take in who is there and who looks; returns the ids that left views, by viewer."""
+        interest, avatars = self._interest, self._avatars
+        interest.settle()
+        left = interest.drop(frame.left)
+        avatars.remove(frame.left)
+        for avatar_id in frame.detached:
+            interest.detach(avatar_id)
+            left.pop(avatar_id, None)
+        avatars.add(frame.entered)
+        avatars.update(frame)
+        for _, avatar_id in frame.joined + frame.attached:
+            interest.attach(avatar_id)
+            left.pop(avatar_id, None)
+        for avatar_id, seq in frame.acks.items():
+            interest.acknowledge(avatar_id, seq)
+        return left
+
+    def _look(self, frame: Frame, left: dict[int, list[int]]) -> dict[int, list[bytes]]:
+        """Look again; adds to `left`, and returns the avatars that came into view, by viewer."""
+        came, went = self._interest.look(frame.tick)
+        for viewer, ids in went.items():
+            left.setdefault(viewer, []).extend(ids)
+        rows = np.array(sorted({row for rows in came.values() for row in rows}), dtype=np.int64)
+        packed = dict(zip(rows.tolist(), self._avatars.pack(rows), strict=True))
+        return {viewer: [packed[row] for row in rows] for viewer, rows in came.items()}
+
+    def _encode(self, tick: int) -> Snapshots:
+        """Snapshots for every viewer against what it has; its own avatar is always in it."""
+        avatars, interest = self._avatars, self._interest
+        viewers = interest.viewers()
+        counts = np.empty((len(viewers), 2), dtype=np.int64)
+        choose(interest.views, viewers, avatars.changed, avatars.begun, tick, counts)
+        ends = counts.cumsum(axis=0)
+        records, steps = ends[-1].tolist() if len(ends) else (0, 0)
+        record_block = np.empty((records, RECORD_BYTES), dtype=np.uint8)
+        step_block = np.empty((steps, STEP_BYTES), dtype=np.uint8)
+        gather(interest.views, viewers, avatars.records, avatars.steps, record_block, step_block)
+        return Snapshots(
+            tick=tick,
+            places=viewers,
+            viewers=interest.ids(viewers).tolist(),
+            acks=interest.views.ack[viewers],
+            record_ends=ends[:, 0],
+            step_ends=ends[:, 1],
+            records=record_block,
+            steps=step_block,
+        )
