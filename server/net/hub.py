@@ -8,7 +8,7 @@ import structlog
 
 from esplanade.planning.grid.grid import ADULT
 from esplanade.protocol import ByeCode, CloseCode, ErrorCode, ProtocolError
-from esplanade.protocol.messages import Bye, Chat, Hello, Move, SetDoor, WalkTo, Welcome
+from esplanade.protocol.messages import Bye, Hello, Move, SetDoor, WalkTo, Welcome
 from esplanade.server.metrics import Metrics
 from esplanade.server.net import frames
 from esplanade.server.net.leases import ANSWER_S, PING_S, Leases
@@ -29,6 +29,7 @@ from esplanade.server.world.inputs import (
     Leave,
     MoveDoor,
     Movement,
+    Say,
     Stand,
     Steer,
     Watch,
@@ -38,6 +39,8 @@ from esplanade.server.world.zone import Zone
 
 MAX_JOINS_PER_TICK: Final = 16
 """Each join costs every neighbour an enter message, so a crowd comes in over some ticks."""
+MAX_LINES: Final = 1024
+"""Lines of chat that may wait for the next tick, of all people together."""
 
 log = structlog.get_logger(__name__)
 
@@ -80,6 +83,7 @@ class Hub:
         self._movements: dict[int, Movement] = {}
         self._doors: dict[str, MoveDoor] = {}
         self._watches: dict[int, Watch] = {}
+        self._lines: list[tuple[Session, str]] = []
         self._asked: set[int] = set()
         """Tickets of those who wait to join and have been sent to the zone."""
         metrics.gauge("clients", "People connected", lambda: len(self.sessions))
@@ -89,6 +93,11 @@ class Hub:
             self._vacant,
         )
         metrics.gauge("joining", "People who wait to join", lambda: len(self._joining))
+        metrics.gauge(
+            "lines_waiting",
+            "Lines of chat that wait for the next tick",
+            lambda: len(self._lines),
+        )
         metrics.gauge("frames_waiting", "Frames that wait for slow clients", self._frames_waiting)
         metrics.gauge(
             "movements_waiting",
@@ -149,15 +158,13 @@ class Hub:
             session.tell(ProtocolError(ErrorCode.NO_PATH, text, None))
 
     def say(self, session: Session, text: str) -> None:
-        """Pass a line on to everyone who has the speaker in view, the speaker included."""
-        if session.avatar_id is None:
+        """Say a line in the next tick; that of somebody at the door waits until they are in."""
+        if len(self._lines) >= MAX_LINES:
+            fault = ErrorCode.FLOODING, "too many people talk at once; nobody heard your line"
+            session.tell(ProtocolError(*fault, None))
             return
         self._metrics.chat_lines.inc()
-        frame = frames.message(Chat(id=session.avatar_id, name=session.name, text=text))
-        for viewer in self._audience.seen_by(session.avatar_id):
-            listener = self.sessions.get(viewer)
-            if listener is not None:
-                listener.outbox.post(frame)
+        self._lines.append((session, text))
 
     def watch(self, session: Session, actor_id: int | None) -> None:
         """Send the plans of an actor from now on, or of none."""
@@ -224,7 +231,8 @@ class Hub:
         for seat in self._seats.vacant_since(now - self._settings.resume_seconds):
             self._remove(seat)
         self._check_leases(now)
-        inputs: list[Input] = [*self._comings]
+        # A line is said before its speaker goes.
+        inputs: list[Input] = [*self._spoken(), *self._comings]
         at_the_door = [ticket for ticket in self._joining if ticket not in self._asked]
         for ticket in at_the_door[:MAX_JOINS_PER_TICK]:
             session, hello = self._joining[ticket]
@@ -236,6 +244,14 @@ class Hub:
         inputs.extend(self._watches.values())
         self._comings, self._movements, self._doors, self._watches = [], {}, {}, {}
         return inputs
+
+    def _spoken(self) -> list[Say]:
+        """The lines of those who are in the world; those at the door go on waiting."""
+        lines, self._lines = self._lines, []
+        self._lines = [line for line in lines if line[0].ticket in self._joining]
+        return [
+            Say(session.avatar_id, text) for session, text in lines if session.avatar_id is not None
+        ]
 
     def welcome(self, frame: Frame) -> None:
         """Welcome the people whom the tick has let in, before anything else is sent to them."""

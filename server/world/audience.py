@@ -10,7 +10,7 @@ from esplanade.protocol.snapshot import RECORD
 from esplanade.protocol.steps import STEP
 from esplanade.server.world._snapshot_kernels import choose, gather
 from esplanade.server.world.avatars import Avatars
-from esplanade.server.world.frame import Events, Frame
+from esplanade.server.world.frame import Events, Frame, Line
 from esplanade.server.world.interest import Interest
 from esplanade.server.world.routes import Point
 from esplanade.server.world.rules import Rules
@@ -43,6 +43,15 @@ class Snapshots:
 
 
 @dataclass(frozen=True)
+class Heard:
+    """A line of chat, what its speaker is called, and the ids of the viewers who hear it."""
+
+    line: Line
+    name: str
+    viewers: list[int]
+
+
+@dataclass(frozen=True)
 class News:
     """News of a tick for its viewers, by their ids, in the order in which they are told."""
 
@@ -54,6 +63,8 @@ class News:
     """Avatars that came into view, each packed for an enter message."""
     pointing: Mapping[int, tuple[Point | None, list[int]]]
     """What an actor points at since this tick, and who sees that; by the actor's id."""
+    chat: list[Heard]
+    """In the order in which people spoke."""
     snapshots: Snapshots
     events: Events
     people: int
@@ -74,12 +85,16 @@ class Audience:
     def take(self, frame: Frame) -> News:
         """Take in the next frame, and work out what each viewer is to be told."""
         with self._times.stage("interest"):
+            heard = self._last_words(frame)
             left = self._come_and_go(frame)
             entered = self._look(frame, left)
-            pointing = {
-                actor: (target, self._interest.seen_by(actor))
-                for actor, target in frame.events.pointing.items()
-            }
+            pointed = frame.events.pointing
+            seen = self._interest.seen_by([*pointed, *(line.id for line in frame.events.chat)])
+            pointing = {actor: (target, seen[actor]) for actor, target in pointed.items()}
+            for k, line in enumerate(frame.events.chat):
+                if line.id in self._avatars:
+                    heard[k] = Heard(line, self._avatars.name(line.id), seen[line.id])
+            chat = [heard[k] for k in sorted(heard)]
         with self._times.stage("encode"):
             snapshots = self._encode(frame.tick)
         return News(
@@ -88,6 +103,7 @@ class Audience:
             left=left,
             entered=entered,
             pointing=pointing,
+            chat=chat,
             snapshots=snapshots,
             events=frame.events,
             people=frame.people,
@@ -111,12 +127,23 @@ class Audience:
 
     def seen_by(self, avatar_id: int) -> list[int]:
         """Ids of the viewers who have that avatar in view."""
-        return self._interest.seen_by(avatar_id)
+        return self._interest.seen_by([avatar_id]).get(avatar_id, [])
 
     def is_actor(self, avatar_id: int) -> bool:
         return self._avatars.is_actor(avatar_id)
 
     # --- a frame ------------------------------------------------------------------------------
+
+    def _last_words(self, frame: Frame) -> dict[int, Heard]:
+        """The lines of those who left in this tick, for whoever saw them until now; by place."""
+        gone = set(frame.left)
+        lines = [(k, line) for k, line in enumerate(frame.events.chat) if line.id in gone]
+        seen = self._interest.seen_by([line.id for _, line in lines])
+        return {
+            k: Heard(line, self._avatars.name(line.id), seen[line.id])
+            for k, line in lines
+            if line.id in self._avatars
+        }
 
     def _come_and_go(self, frame: Frame) -> dict[int, list[int]]:
         """Take in who is there and who looks; returns the ids that left views, by viewer."""
@@ -129,6 +156,7 @@ class Audience:
             left.pop(avatar_id, None)
         avatars.add(frame.entered)
         avatars.update(frame)
+        interest.notice(entered.id for entered in frame.entered)
         for _, avatar_id in frame.joined + frame.attached:
             interest.attach(avatar_id)
             left.pop(avatar_id, None)

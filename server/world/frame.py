@@ -28,6 +28,14 @@ class Entered:
 
 
 @dataclass(frozen=True)
+class Line:
+    """A line of chat, and the avatar that said it."""
+
+    id: int
+    text: str
+
+
+@dataclass(frozen=True)
 class Events:
     """Everything in a frame that is not about bodies and their feet."""
 
@@ -35,6 +43,8 @@ class Events:
     """Doors that opened or closed."""
     pointing: Mapping[int, Point | None] = field(default_factory=dict)
     """The places that actors point at since this tick, by their ids; None for none any more."""
+    chat: list[Line] = field(default_factory=list)
+    """In the order in which people spoke; of somebody who left in this tick, before they did."""
     plans: Mapping[int, Explanation] = field(default_factory=dict)
     """Of the actors that somebody watches and whose turn it is, by their ids."""
 

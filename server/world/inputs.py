@@ -77,6 +77,14 @@ class MoveDoor:
 
 
 @dataclass(frozen=True, slots=True)
+class Say:
+    """A person says a line."""
+
+    id: int
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Watch:
     """A person wants the plans of an actor from now on, or of none."""
 
@@ -85,4 +93,6 @@ class Watch:
 
 
 Movement = Steer | Follow
-Input = Join | Attach | Detach | Leave | Stand | Steer | Follow | MoveDoor | Watch
+OfPerson = Attach | Detach | Leave | Stand | Steer | Follow | Say | Watch
+"""Inputs of one avatar, by its `id`."""
+Input = Join | MoveDoor | OfPerson

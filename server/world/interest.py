@@ -52,7 +52,8 @@ class Interest:
         )
         self._places: dict[int, int] = {}
         self._free = list(range(FIRST_VIEWERS - 1, -1, -1))
-        self._unseeing: set[int] = set()
+        self._at_once: set[int] = set()
+        """Places of viewers who look in the next tick, whether it is their turn or not."""
         shape = FIRST_VIEWERS, columns
         self.views = Views(
             avatar=np.zeros(FIRST_VIEWERS, dtype=np.int64),
@@ -80,7 +81,7 @@ class Interest:
             self._grow()
         place = self._places[avatar_id] = self._free.pop()
         self.views.avatar[place] = self._avatars.row(avatar_id)
-        self._unseeing.add(place)
+        self._at_once.add(place)
 
     def detach(self, avatar_id: int) -> None:
         """Let this avatar look no more."""
@@ -90,7 +91,7 @@ class Interest:
         views = self.views
         views.avatar[place] = views.seen[place] = views.ack[place] = 0
         views.encoded[place] = views.written[place] = 0
-        self._unseeing.discard(place)
+        self._at_once.discard(place)
         self._free.append(place)
 
     def viewers(self) -> Slots:
@@ -114,16 +115,28 @@ class Interest:
             return False
         return bool((self.views.rows[place, : self.views.seen[place]] == row).any())
 
-    def seen_by(self, avatar_id: int) -> list[int]:
-        """Ids of the viewers who have that avatar in view."""
-        row = self._avatars.row(avatar_id)
-        if not row:
-            return []
+    def seen_by(self, avatar_ids: Iterable[int]) -> dict[int, list[int]]:
+        """Ids of the viewers who have each of these avatars in view, by the avatar's id."""
+        rows = [row for row in map(self._avatars.row, set(avatar_ids)) if row]
+        wanted = np.zeros(len(self._avatars.ids), dtype=np.bool_)
+        wanted[rows] = True
         views = self.views
         used = np.arange(views.rows.shape[1]) < views.seen[:, None]
-        found = np.flatnonzero(((views.rows == row) & used).any(axis=1))
-        ids: list[int] = self.ids(found).tolist()
-        return ids
+        viewers, columns = np.nonzero(wanted[views.rows] & used)
+        seen: dict[int, list[int]] = {one: [] for one in self._avatars.ids[rows].tolist()}
+        ids = self._avatars.ids[views.rows[viewers, columns]].tolist()
+        for avatar_id, viewer in zip(ids, self.ids(viewers).tolist(), strict=True):
+            seen[avatar_id].append(viewer)
+        return seen
+
+    def notice(self, newcomers: Iterable[int]) -> None:
+        """Let everyone whose view these avatars may be in look in this tick."""
+        viewers = self.viewers()
+        here = self._avatars.places[self.views.avatar[viewers]]
+        for newcomer in newcomers:
+            there = self._avatars.places[self._avatars.row(newcomer)]
+            near = ((here - there) ** 2).sum(axis=1) <= self._limits.enter**2
+            self._at_once.update(viewers[near].tolist())
 
     def settle(self) -> None:
         """Take down what was written of the snapshots of the tick before."""
@@ -154,9 +167,9 @@ class Interest:
         """
         viewers = self.viewers()
         in_turn = (self.ids(viewers) + tick) % PERIOD_TICKS == 0
-        if self._unseeing:
-            in_turn |= np.isin(viewers, list(self._unseeing))
-            self._unseeing.clear()
+        if self._at_once:
+            in_turn |= np.isin(viewers, list(self._at_once))
+            self._at_once.clear()
         due = viewers[in_turn]
         if not len(due):
             return {}, {}

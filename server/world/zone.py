@@ -13,7 +13,7 @@ from esplanade.planning import LayeredGrid, Scene
 from esplanade.server.world.actors import ActorAvatars
 from esplanade.server.world.contacts import Contacts
 from esplanade.server.world.doors import Doors
-from esplanade.server.world.frame import Events, Frame, Recorder, Tickets
+from esplanade.server.world.frame import Events, Frame, Line, Recorder, Tickets
 from esplanade.server.world.inputs import (
     Attach,
     Detach,
@@ -22,6 +22,8 @@ from esplanade.server.world.inputs import (
     Join,
     Leave,
     MoveDoor,
+    OfPerson,
+    Say,
     Stand,
     Steer,
     Watch,
@@ -140,7 +142,7 @@ class Zone:
                 acks=self._acks,
                 records=self._recorder.changed(),
                 steps=self.steps.begun_in(self.tick, self.state.live()),
-                events=Events(self._moved_doors, pointing, self._plans()),
+                events=Events(self._moved_doors, pointing, self._chat, self._plans()),
             )
 
     # --- questions ----------------------------------------------------------------------------
@@ -190,6 +192,7 @@ class Zone:
         self._detached: list[int] = []
         self._left: list[int] = []
         self._acks: dict[int, int] = {}
+        self._chat: list[Line] = []
 
     def _join(self, join: Join) -> int:
         place = self._spawning.place(join.at, join.anywhere)
@@ -200,9 +203,7 @@ class Zone:
         self.people_seen += 1
         return int(self.state.ids[slot])
 
-    def _apply(
-        self, item: Attach | Detach | Leave | Stand | Steer | Follow | Watch, slot: int
-    ) -> None:
+    def _apply(self, item: OfPerson, slot: int) -> None:
         match item:
             case Steer():
                 self._people.steer(slot, item)
@@ -223,6 +224,8 @@ class Zone:
                 self._look_no_more(item.id)
                 self._left.append(item.id)
                 self.state.remove(item.id)
+            case Say():
+                self._chat.append(Line(item.id, item.text))
             case Watch():
                 self._watched.pop(item.id, None)
                 if item.actor_id is not None and self.is_actor(item.actor_id):

@@ -153,6 +153,38 @@ async def test_chat_is_heard_by_those_who_see_the_speaker(serving: Serving) -> N
         assert (heard.name, heard.text) == ("Far", "anybody?")
 
 
+async def test_what_is_said_with_the_hello_is_heard_by_everyone_near(serving: Serving) -> None:
+    async with serving() as server, joined(server.port, "Eve", at=(6.0, 6.0, 0)) as eve:
+        for k in range(6):
+            async with connected(server.port) as client:
+                await client.send(Hello(name=f"p{k}", version=VERSION, at=(5.0, 6.0, 0)))
+                await client.send(ChatLine(text="hello"))
+                own, heard = await client.until(Chat), await eve.until(Chat)
+                assert (own.id, own.name, own.text) == (client.id, f"p{k}", "hello")
+                assert heard == own
+                assert client.id in eve.entities
+
+
+async def test_what_is_said_on_going_is_heard(serving: Serving) -> None:
+    async with serving() as server, joined(server.port, "Eve", at=(6.0, 6.0, 0)) as eve:
+        async with joined(server.port, "Ann", at=(5.0, 6.0, 0)) as ann:
+            await eve.wait_for(lambda: ann.id in eve.positions)
+            await ann.send(ChatLine(text="goodbye"))
+        heard = await eve.until(Chat)
+        assert (heard.name, heard.text) == ("Ann", "goodbye")
+
+
+async def test_where_too_many_talk_at_once_a_speaker_is_told(
+    serving: Serving, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("esplanade.server.net.hub.MAX_LINES", 0)
+    async with serving() as server, joined(server.port) as client:
+        await client.send(ChatLine(text="hello"))
+        error = await client.until(Error)
+        assert error.error is ErrorCode.FLOODING
+        assert "nobody heard" in error.text
+
+
 async def test_a_lost_connection_comes_back_as_the_same_avatar(serving: Serving) -> None:
     async with serving() as server, joined(server.port, "Eve", at=(6.0, 6.0, 0)) as eve:
         async with joined(server.port, "Ann", at=(2.0, 2.0, 0)) as ann:

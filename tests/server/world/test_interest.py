@@ -2,7 +2,7 @@ import math
 
 import numpy as np
 
-from esplanade.server.world.inputs import Attach, Detach, Leave, Steer
+from esplanade.server.world.inputs import Attach, Detach, Join, Leave, Say, Steer
 from esplanade.server.world.interest import LEAVE_RATIO, PERIOD_TICKS
 from tests.server.doubles import ScriptedPopulation
 from tests.server.worlds import FIELD, TICK_S, Trial, entered_ids
@@ -64,6 +64,28 @@ def test_oneself_is_seen_even_in_a_heap_of_people() -> None:
     assert all(trial.audience.sees(who, who) for who in people)
     views = [sum(trial.audience.sees(who, other) for other in people) for who in people]
     assert max(views) <= 4
+
+
+def test_everyone_near_sees_a_newcomer_at_once() -> None:
+    trial = Trial(scene=FIELD, view_radius_m=20.0)
+    early = trial.join(*((50.0 + k, 50.0) for k in range(8)))
+    trial.ticks(2)
+    news = trial.tick(Join(0, "late", (60.0, 50.0, 0)), Join(1, "far", (90.0, 50.0, 0)))
+    late, far = (avatar_id for _, avatar_id in trial.joined)
+    assert all(entered_ids(news, who) == [late] for who in early)
+    assert set(entered_ids(news, late)) == {*early, late}
+    assert entered_ids(news, far) == [far]
+
+
+def test_a_line_reaches_those_who_see_its_speaker_and_the_last_one_too() -> None:
+    trial = Trial(scene=FIELD, view_radius_m=20.0)
+    ann, ben, far = trial.join((50.0, 50.0), (52.0, 50.0), (90.0, 50.0))
+    news = trial.tick(Say(far, "anybody?"), Say(ann, "here"), Say(ben, "bye"), Leave(ben))
+    heard = [(one.line.text, one.name, one.viewers) for one in news.chat]
+    assert heard[:2] == [("anybody?", "p2", [far]), ("here", "p0", [ann])]
+    text, name, viewers = heard[2]
+    assert (text, name, set(viewers)) == ("bye", "p1", {ann, ben})
+    assert trial.tick(Say(ben, "I am gone")).chat == []
 
 
 def test_who_leaves_the_world_leaves_every_view_at_once() -> None:
