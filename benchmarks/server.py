@@ -2,11 +2,15 @@
 
     python -m benchmarks.server                      worlds of 100, 300 and 1000, then 200 sockets
     python -m benchmarks.server --clients 1000
+    python -m benchmarks.server --people 4000 --viewers 1000 --actors 100 --clients 0
 
-The first part runs a world without sockets, in which simulated people steer, and times everything
-but the writing. The second part runs a server with real sockets in a process of its own, and then
-a bare server that only sends frames of the same size at the same times and discards the same
-input. The ratio of the two is the cost of sessions, world and encoding on top of the sockets.
+The first part runs a world without sockets, in which simulated people steer; 70 % of them walk.
+There `write` is the time of cutting frames and handing them to transports that discard them. On a
+busy machine `--processor-time` leaves out what others take; planning of actors has threads of its
+own, which are then not counted. The second part runs a server with real sockets in a process of
+its own, and then a bare server that only sends frames of the same size at the same times and
+discards the same input. The ratio of the two is the cost of sessions, world and encoding on top of
+the sockets.
 """
 
 import argparse
@@ -24,28 +28,25 @@ from typing import cast
 
 import numpy as np
 import uvloop
+from benchmarks._stages import STEER_EVERY_S, Crowd, print_stages
 
-from esplanade.planning import LayeredGrid, Scene
+from esplanade.planning import Scene
 from esplanade.protocol import VERSION, encode
 from esplanade.protocol.messages import Hello, Move
 from esplanade.server import logs
 from esplanade.server.app import running
-from esplanade.server.loading import load_scene
-from esplanade.server.populating import populate
 from esplanade.server.settings import ServerSettings
-from esplanade.server.world.audience import Audience
-from esplanade.server.world.inputs import Join, Steer
-from esplanade.server.world.zone import Zone
 
 SIDE_M = 100.0
-WARM_UP_TICKS = 40
-MEASURED_TICKS = 200
-STEER_EVERY_S = 2.0
 TICK_S = 0.05
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--people", type=int, nargs="+", default=[100, 300, 1000])
+    parser.add_argument("--viewers", type=int, help="those who look [everyone]")
+    parser.add_argument("--actors", type=int, default=0)
+    parser.add_argument("--processor-time", action="store_true")
     parser.add_argument("--clients", type=int, default=200)
     parser.add_argument("--seconds", type=float, default=10.0)
     options = parser.parse_args()
@@ -56,59 +57,14 @@ def main() -> None:
             scene=scene, actors=0, host="127.0.0.1", port=0, private_port=0, log_level="error"
         )
         print(f"world without sockets, {SIDE_M:g} m square, milliseconds a tick, median")
-        for people in (100, 300, 1000):
-            print_stages(settings, people)
+        clock = time.thread_time if options.processor_time else time.perf_counter
+        for people in options.people:
+            crowd = Crowd(people, min(options.viewers or people, people), options.actors)
+            print_stages(settings, crowd, clock)
+        if not options.clients:
+            return
         print(f"\n{options.clients} clients over sockets for {options.seconds:g} s, 20 ticks/s")
         print_sockets(settings, options.clients, options.seconds)
-
-
-# --- the world alone --------------------------------------------------------------------------
-
-
-def print_stages(settings: ServerSettings, people: int) -> None:
-    """Print the median time of each stage, and that of all stages for each client."""
-    stage = load_scene(settings)
-    grid = LayeredGrid.from_scene(stage.scene)
-    actors, bodies = populate(grid, stage.scene, 0, TICK_S, 0)
-    world = Zone(
-        stage.scene,
-        grid,
-        actors,
-        bodies,
-        stage.rules,
-        tick_s=TICK_S,
-        max_people=people,
-        seed=0,
-        clock=time.perf_counter,
-    )
-    audience = Audience(world.rules, world.origin_m, world.times)
-    random = np.random.default_rng(1)
-    world.begin([Join(k, "p", None) for k in range(people)])
-    frame = world.finish(world.think())
-    audience.take(frame)
-    ids = [i for _, i in frame.joined]
-    times: dict[str, list[float]] = {}
-    in_view = 0.0
-    for tick in range(WARM_UP_TICKS + MEASURED_TICKS):
-        turning = random.random(people) < TICK_S / STEER_EVERY_S if tick else np.ones(people, bool)
-        angles = random.uniform(0.0, 2.0 * math.pi, people)
-        world.begin(
-            [Steer(ids[k], tick, float(angles[k]), 1.3) for k in np.flatnonzero(turning).tolist()]
-        )
-        news = audience.take(world.finish(world.think()))
-        audience.wrote(news.snapshots, list(range(people)))
-        if tick >= WARM_UP_TICKS:
-            in_view = len(news.snapshots.records) / people
-            for name, seconds in world.times.seconds.items():
-                times.setdefault(name, []).append(seconds)
-    actors.close()
-    medians = {name: float(np.median(values)) for name, values in times.items()}
-    total = sum(medians.values())
-    parts = "  ".join(f"{name} {1e3 * seconds:6.3f}" for name, seconds in medians.items())
-    print(
-        f"{people:5d} people  {parts}  all {1e3 * total:6.3f}"
-        f"  = {1e6 * total / people:5.1f} µs a client ({in_view:.0f} records each)"
-    )
 
 
 # --- with sockets -----------------------------------------------------------------------------

@@ -13,6 +13,7 @@ from esplanade.actors import Population
 from esplanade.planning import LayeredGrid
 from esplanade.planning.routes.storey_heights import reached_from, storeys_of
 from esplanade.server.assets import Assets
+from esplanade.server.crowding import warn_of_crowding
 from esplanade.server.link.local import LocalLink
 from esplanade.server.loading import LoadedScene, LoadingError, load_scene
 from esplanade.server.metrics import Metrics
@@ -74,6 +75,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     OSError
         A port cannot be had.
     """
+    warn_of_crowding(settings)
     tls = None
     if settings.tls_cert is not None and settings.tls_key is not None:
         tls = Tls(settings.tls_cert, settings.tls_key)

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
+from esplanade.server.world._snapshot_kernels import copy
 
 Bytes = NDArray[np.uint8]
 Ints = NDArray[np.int64]
@@ -40,14 +41,6 @@ def put_number(out: Bytes, at: int, value: int, size: int) -> None:
     """Write a big-endian number of so many bytes."""
     for k in range(size):
         out[at + k] = (value >> (8 * (size - 1 - k))) & 0xFF
-
-
-@inlined
-def put_bytes(out: Bytes, at: int, source: Bytes, begin: int, size: int) -> int:
-    """Copy so many bytes of a flat source; returns where they end."""
-    for k in range(size):
-        out[at + k] = source[begin + k]
-    return at + size
 
 
 @kernel
@@ -96,10 +89,14 @@ def pack(
             size = (step_ends[i] - first_step) * step_bytes
             at = put_head(out, at, len(steps_head) + size, steps_head)
             put_number(out, at - 2, size, 2)
-            at = put_bytes(out, at, steps, first_step * step_bytes, size)
+            begin = first_step * step_bytes
+            copy(steps[begin : begin + size], out[at : at + size])
+            at += size
         size = (record_ends[i] - first_record) * record_bytes
         at = put_head(out, at, len(snapshot_head) + size, snapshot_head)
         put_number(out, at - len(snapshot_head) + ack_at, acks[i], 4)
         put_number(out, at - 2, size, 2)
-        at = put_bytes(out, at, records, first_record * record_bytes, size)
+        begin = first_record * record_bytes
+        copy(records[begin : begin + size], out[at : at + size])
+        at += size
         first_record, first_step = record_ends[i], step_ends[i]

@@ -98,9 +98,21 @@ class Outbox:
         called once a tick. The frames in `first` must not be lost; they wait while the client is
         slow. False if steps and snapshot were left out, both together.
         """
-        if not self.open:
+        connection = self._connection
+        if connection.state is not State.OPEN or self.dropped is not None:
             return False
-        unsent = self._unsent()
+        unsent = connection.transport.get_write_buffer_size()
+        if self._waiting or self._slow_since is not None or unsent > self._policy.slow_bytes:
+            return self._snapshot_when_slow(block, steps, now, first, unsent)
+        if self._allowance_bytes:
+            self._patience_s, self._allowance_bytes = self._policy.drop_seconds, 0
+        self._write_snapshot(block, steps, first)
+        return True
+
+    def _snapshot_when_slow(
+        self, block: bytes, steps: int, now: float, first: Sequence[bytes], unsent: int
+    ) -> bool:
+        """The same for a client that is slow, or was until now."""
         if first and (self._waiting or unsent > self._policy.slow_bytes):
             for frame in first:
                 self.post(frame)
@@ -111,20 +123,29 @@ class Outbox:
             self._traffic.snapshots_skipped += 1
             self._judge(unsent, now)
             return False
-        if self._slow_since is not None or self._allowance_bytes:
-            self._slow_since = None
-            self._patience_s, self._allowance_bytes = self._policy.drop_seconds, 0
+        self._slow_since = None
+        self._patience_s, self._allowance_bytes = self._policy.drop_seconds, 0
         while self._waiting and self._unsent() <= self._policy.slow_bytes:
             self._write(self._waiting.popleft())
         if self._waiting:
             self._traffic.snapshots_skipped += 1
             return False
-        if steps:
-            self._traffic.steps_out += steps
-            self._traffic.step_bytes_out += steps * STEP_BYTES
-        messages = len(first) + (2 if steps else 1)
-        self._write(b"".join((*first, block)) if first else block, messages)
+        self._write_snapshot(block, steps, first)
         return True
+
+    def _write_snapshot(self, block: bytes, steps: int, first: Sequence[bytes]) -> None:
+        """Write everything of a tick at once."""
+        traffic, messages = self._traffic, 1
+        if first:
+            block = b"".join((*first, block))
+            messages += len(first)
+        if steps:
+            messages += 1
+            traffic.steps_out += steps
+            traffic.step_bytes_out += steps * STEP_BYTES
+        self._connection.transport.write(block)
+        traffic.messages_out += messages
+        traffic.bytes_out += len(block)
 
     def flush(self) -> None:
         """Send all frames that wait, before the end of the connection."""
@@ -148,9 +169,9 @@ class Outbox:
     def _unsent(self) -> int:
         return self._connection.transport.get_write_buffer_size()
 
-    def _write(self, frame: bytes, messages: int = 1) -> None:
+    def _write(self, frame: bytes) -> None:
         self._connection.transport.write(frame)
-        self._traffic.messages_out += messages
+        self._traffic.messages_out += 1
         self._traffic.bytes_out += len(frame)
 
 

@@ -118,6 +118,8 @@ class Interest:
     def seen_by(self, avatar_ids: Iterable[int]) -> dict[int, list[int]]:
         """Ids of the viewers who have each of these avatars in view, by the avatar's id."""
         rows = [row for row in map(self._avatars.row, set(avatar_ids)) if row]
+        if not rows:
+            return {}
         wanted = np.zeros(len(self._avatars.ids), dtype=np.bool_)
         wanted[rows] = True
         views = self.views
