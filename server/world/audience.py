@@ -179,8 +179,8 @@ class Audience:
         viewers = interest.viewers()
         counts = np.empty((len(viewers), 2), dtype=np.int64)
         choose(interest.views, viewers, avatars.changed, avatars.begun, tick, counts)
-        ends = counts.cumsum(axis=0)
-        records, steps = ends[-1].tolist() if len(ends) else (0, 0)
+        ends = np.ascontiguousarray(counts.cumsum(axis=0).T)
+        records, steps = counts.sum(axis=0).tolist()
         record_block = np.empty((records, RECORD_BYTES), dtype=np.uint8)
         step_block = np.empty((steps, STEP_BYTES), dtype=np.uint8)
         gather(interest.views, viewers, avatars.records, avatars.steps, record_block, step_block)
@@ -189,8 +189,8 @@ class Audience:
             places=viewers,
             viewers=interest.ids(viewers).tolist(),
             acks=interest.views.ack[viewers],
-            record_ends=ends[:, 0],
-            step_ends=ends[:, 1],
+            record_ends=ends[0],
+            step_ends=ends[1],
             records=record_block,
             steps=step_block,
         )
