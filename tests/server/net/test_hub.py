@@ -2,10 +2,12 @@
 
 import asyncio
 import math
+import threading
 from pathlib import Path
 
 import pytest
 
+from esplanade.actors import Population
 from esplanade.planning import Door, Wall
 from esplanade.protocol import VERSION, ByeCode, CloseCode, ErrorCode
 from esplanade.protocol.messages import (
@@ -20,6 +22,7 @@ from esplanade.protocol.messages import (
     WalkTo,
     Welcome,
 )
+from tests.patience import PATIENCE_S
 from tests.server.client import connected, joined
 from tests.server.conftest import Serving
 from tests.server.worlds import ROOM
@@ -285,6 +288,31 @@ async def test_a_full_world_turns_people_away_but_lets_its_own_back_in(serving: 
         assert ann.welcome is not None
         async with joined(server.port, "Ann", resume=ann.welcome.resume) as again:
             assert again.id == ann.id
+
+
+async def test_who_goes_while_the_zone_makes_the_avatar_leaves_nobody_behind(
+    serving: Serving, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made, go_on = threading.Event(), threading.Event()
+    async with serving(actors=1) as server, joined(server.port) as client:
+
+        def think(*_: object) -> None:
+            if server.world.people_seen == 2:
+                made.set()
+                assert go_on.wait(PATIENCE_S)
+
+        monkeypatch.setattr(Population, "advance", think)
+        async with connected(server.port) as shy:
+            await shy.send(Hello(name="Shy", version=VERSION))
+            assert await asyncio.to_thread(made.wait, PATIENCE_S)
+        async with asyncio.timeout(PATIENCE_S):
+            # No tick ends meanwhile, so that no client hears anything.
+            while b"esplanade_joining 0.0" not in server.metrics.exposition():  # noqa: ASYNC110
+                await asyncio.sleep(0.01)
+        go_on.set()
+        await client.wait_for(lambda: server.world.count()[0] == 1)
+        await client.ticks(2)
+        assert server.world.people_seen == 2
 
 
 async def test_who_leaves_at_the_door_leaves_nobody_behind(serving: Serving) -> None:

@@ -144,7 +144,7 @@ def test_same_inputs_give_the_same_steps_in_whatever_thread() -> None:
     assert worlds[0] == worlds[1]
 
 
-def with_actors(name: str) -> tuple[World, Population]:
+def with_actors(name: str) -> tuple[Zone, Population]:
     """A world of that scene in which twelve actors are on their ways."""
     scene = read_scene(Path(scenes.__path__[0], name))
     grid = LayeredGrid.from_scene(scene)
