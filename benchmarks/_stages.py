@@ -1,5 +1,6 @@
 """The stages of a tick without sockets: people steer, and what is written is discarded."""
 
+import gc
 import math
 import time
 from collections.abc import Callable
@@ -88,6 +89,8 @@ def print_stages(
     delivery = Delivery(audience, cast(Any, sessions), settings.tick_rate, lambda _: None)
     zone.begin([Detach(one) for one in ids[crowd.viewers :]])
     audience.take(zone.finish(zone.think()))
+    gc.collect()
+    gc.freeze()  # the server does the same
     times: list[dict[str, float]] = []
     bytes_before = 0
     for tick, steering in enumerate(_steering(ids, settings.tick_s)):
@@ -99,6 +102,7 @@ def print_stages(
             bytes_before = traffic.bytes_out
         elif tick >= WARM_UP_TICKS:
             times.append(dict(zone.times.seconds))
+    gc.unfreeze()
     actors.close()
     _print(crowd, times, (traffic.bytes_out - bytes_before) / MEASURED_TICKS / crowd.viewers)
 

@@ -6,7 +6,7 @@ import structlog
 
 from esplanade.server.settings import ServerSettings
 
-PERSON_S: Final = 4e-6
+PERSON_S: Final = 2.5e-6
 """To move one person who walks, and its feet."""
 VIEWER_S: Final = 17e-6
 """To find, encode and write what one viewer in a dense crowd is told: half of it is the socket."""

@@ -17,4 +17,4 @@ def test_of_more_people_than_a_tick_has_time_for_one_is_warned_with_the_figure()
         warn_of_crowding(ServerSettings(max_clients=4000))
     (line,) = logs
     assert (line["log_level"], line["max_clients"]) == ("warning", 4000)
-    assert (line["tick_ms"], line["of_ms"], line["enough_for"]) == (84, 50, 2380)
+    assert (line["tick_ms"], line["of_ms"], line["enough_for"]) == (78, 50, 2564)
