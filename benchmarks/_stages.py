@@ -79,6 +79,7 @@ def print_stages(
         seed=0,
         clock=clock,
     )
+    actors.warm_up()
     audience = Audience(zone.rules, zone.origin_m, zone.times)
     zone.begin([Join(k, "p", None) for k in range(crowd.people)])
     frame = zone.finish(zone.think())
