@@ -12,6 +12,8 @@ from esplanade.planning.compiled.jit import Kernel
 from esplanade.server.app import build_world
 from esplanade.server.loading import load_scene
 from esplanade.server.settings import ServerSettings
+from esplanade.server.net.packing import Packing
+from esplanade.server.world.audience import Audience
 from esplanade.server.world.inputs import Join, Leave, Steer
 
 def compiled():
@@ -21,12 +23,15 @@ def compiled():
 settings = ServerSettings(actors=3, log_level="error")
 population, world, _ = build_world(load_scene(settings), settings)
 before = compiled()
+audience, packing = Audience(world.rules, world.origin_m, world.times), Packing()
 avatar = 0
 for tick in range(60):
     inputs = {5: [Join(0, "Ada", None)], 6: [Steer(avatar, 1, 0.3, 1.0)], 50: [Leave(avatar)]}
-    for _, avatar in world.begin(inputs.get(tick, [])):
+    world.begin(inputs.get(tick, []))
+    frame = world.finish(world.think())
+    packing.pack(audience.take(frame).snapshots)
+    for _, avatar in frame.joined:
         pass
-    world.finish(world.think())
 population.close()
 print(len(before) > 20, sorted(name for name, _ in compiled() - before))
 """
