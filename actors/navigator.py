@@ -66,7 +66,8 @@ class Navigator:
         self._batch = Batch(grid, self.plan, risk or RiskModel(), people.spread)
         self._history = TrackHistory(people, tick_s)
         self._prediction = self._history.predict(grid, self.plan.slices, self.plan.slice_s)
-        self._potentials = PotentialPool(grid)
+        self.potentials = PotentialPool(grid)
+        """Of the goals that actors are on their way to."""
         self.table = AgentTable(self.plan.slices)
         """Every actor's state; read it freely between two ticks."""
 
@@ -114,7 +115,7 @@ class Navigator:
     def remove_actor(self, actor_id: Hashable) -> None:
         """Take an actor out; KeyError when there is none of that id."""
         row = self.table.row(actor_id)
-        self._potentials.release(int(self.table.agents.potential_rows[row]))
+        self.potentials.release(int(self.table.agents.potential_rows[row]))
         self.table.remove(actor_id)
         self._rank()
 
@@ -142,7 +143,7 @@ class Navigator:
         agents.left_m[row] = np.nan
         agents.behind_s[row] = 0.0
         agents.passages[row] = 0.0
-        self._potentials.release(old)
+        self.potentials.release(old)
 
     def _potential_row(self, row: int, target: tuple[float, float, float]) -> int:
         """The potential of an actor's goal, -1 where none can be; its `goals` are moved out of
@@ -152,7 +153,7 @@ class Navigator:
         if free is None:
             return -1
         self.table.agents.goals[row] = free
-        return self._potentials.take(free, target[2], body)
+        return self.potentials.take(free, target[2], body)
 
     def prepare_goals(
         self, goals: Iterable[tuple[Point, float]], parameters: ActorParameters
@@ -165,7 +166,7 @@ class Navigator:
         fits_m = body.radius_m - _SLACK_M
         free = [(self.grid.nearest_free(goal, z_m, fits_m, body), z_m) for goal, z_m in goals]
         keys = [(*goal, z_m, body) for goal, z_m in free if goal is not None]
-        self._potentials.prepare(keys, self.plan.threads)
+        self.potentials.prepare(keys, self.plan.threads)
 
     def set_parameters(self, actor_id: Hashable, parameters: ActorParameters) -> None:
         """Change an actor's parameters from the next tick on."""
@@ -203,12 +204,16 @@ class Navigator:
         agents.heights[row] = self._floor(cell)
         agents.layers[row] = self._layer(cell)
 
-    def ground_changed(self) -> None:
+    def ground_changed(self, *, renewed_outside: bool = False) -> None:
         """The ground has changed: potentials are derived anew, one a tick, used ones first.
 
+        With `renewed_outside`, they are as they were until somebody renews them in `potentials`.
         Until its turn comes an actor may walk up to what has closed; it never walks through.
         """
-        self._potentials.forget()
+        if renewed_outside:
+            self.potentials.outdate()
+        else:
+            self.potentials.forget()
 
     def parameters(self, actor_id: Hashable) -> ActorParameters:
         """An actor's parameters."""
@@ -229,7 +234,7 @@ class Navigator:
                 f"this zone {self.plan.slices}"
             )
         for slot in self.table.agents.potential_rows.tolist():
-            self._potentials.release(slot)
+            self.potentials.release(slot)
         self.table = table
         for row in range(len(table)):
             self._fit_body(row)
@@ -257,11 +262,11 @@ class Navigator:
 
     def advance(self) -> None:
         """Plan and take one step for every actor; `table` holds the result."""
-        self._potentials.renew_one()
+        self.potentials.renew_one()
         self._prediction = self._history.predict(self.grid, self.plan.slices, self.plan.slice_s)
         if len(self.table):
             agents = self.table.agents
-            self._batch.tick(agents, self._potentials.arrays, self._prediction, self.tick_s)
+            self._batch.tick(agents, self.potentials.arrays, self._prediction, self.tick_s)
             self._batch.settle(self.tick_s)
 
     def tick(self) -> dict[Hashable, ActorState]:

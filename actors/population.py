@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from esplanade.actors.behaviour import Behaviour, BehaviourName, Goal, Perception
 from esplanade.actors.navigator import Navigator
 from esplanade.actors.parameters import ActorParameters, body_of
+from esplanade.actors.potential_pool import RenewedPotential
 from esplanade.actors.state import ActorState, Reason
 from esplanade.planning import AgentTable, Body, LayeredGrid, Polygon, Potential, RiskModel, Scene
 from esplanade.planning.scene.heights import SAME_FLOOR_M
@@ -221,10 +222,21 @@ class Population:
         ids = self.table.ids
         return {ids[row]: target for row in rows if (target := self.table.points_at(row))}
 
-    def ground_changed(self) -> None:
-        """The ground has changed, as when a door closes: potentials of goals are derived anew."""
+    def ground_changed(self, *, renewed_outside: bool = False) -> None:
+        """The ground has changed, as when a door closes: potentials of goals are derived anew.
+
+        With `renewed_outside`, by whoever calls `outdated_potential` and `renew_potential`.
+        """
         self._entrances.clear()
-        self.navigator.ground_changed()
+        self.navigator.ground_changed(renewed_outside=renewed_outside)
+
+    def outdated_potential(self) -> Callable[[], RenewedPotential] | None:
+        """Derives the next potential that is out of date, in any thread; None if there is none."""
+        return self.navigator.potentials.outdated()
+
+    def renew_potential(self, renewed: RenewedPotential) -> None:
+        """Let actors go by a potential that was derived anew."""
+        self.navigator.potentials.renew(renewed)
 
     def explain(self, actor_id: Hashable) -> Explanation:
         """Why an actor does what it does; KeyError when there is none of that id."""

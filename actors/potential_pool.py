@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +14,17 @@ from esplanade.planning import Body, LayeredGrid, Potential
 
 _Key = tuple[float, float, float, Body]
 _IDLE_KEPT = 32
+
+
+@dataclass(frozen=True, eq=False)
+class RenewedPotential:
+    """The potential of a goal, derived anew outside of ticks."""
+
+    goal: _Key
+    """x, y, height and body."""
+    changes: int
+    """How often the ground had changed when it was derived."""
+    values: NDArray[np.float32]
 
 
 class PotentialPool:
@@ -31,6 +44,9 @@ class PotentialPool:
         self._users: list[int] = []
         self._idle: list[int] = []
         self._stale: list[int] = []
+        self._changes = 0
+        self._outdated: dict[int, None] = {}
+        """Rows that wait to be renewed outside of ticks, the longest out of date first."""
 
     def take(self, goal: tuple[float, float], z_m: float, body: Body) -> int:
         """Row of a goal, for one more user."""
@@ -55,6 +71,7 @@ class PotentialPool:
     def _keep(self, key: _Key, values: NDArray[np.float32]) -> int:
         slot = self._fresh_slot()
         self.arrays[slot] = values
+        self._outdated.pop(slot, None)
         self._slots[key] = slot
         self._keys[slot] = key
         return slot
@@ -84,6 +101,40 @@ class PotentialPool:
             if key is not None and self._users[slot]:
                 self.arrays[slot] = self._potential(key)
                 return
+
+    def outdate(self) -> None:
+        """The ground has changed: rows are used as they are until each is given to `renew`."""
+        self._changes += 1
+        for slot, key in enumerate(self._keys):
+            if key is not None:
+                self._outdated.setdefault(slot)
+
+    @property
+    def outdated_rows(self) -> int:
+        """Number of rows that wait for `renew`."""
+        return len(self._outdated)
+
+    def outdated(self) -> Callable[[], RenewedPotential] | None:
+        """Derives the potential that is out of date for longest, those in use first.
+
+        What is returned is heavy and runs in any thread; None if nothing is out of date.
+        """
+        slot = min(self._outdated, key=lambda slot: not self._users[slot], default=None)
+        key = None if slot is None else self._keys[slot]
+        return None if key is None else partial(self._renewed, key, self._changes)
+
+    def renew(self, renewed: RenewedPotential) -> None:
+        """Take a potential that was derived anew; it is derived again if the ground has changed."""
+        slot = self._slots.get(renewed.goal)
+        if slot is None or slot not in self._outdated:
+            return
+        self.arrays[slot] = renewed.values
+        del self._outdated[slot]
+        if renewed.changes != self._changes:
+            self._outdated[slot] = None
+
+    def _renewed(self, key: _Key, changes: int) -> RenewedPotential:
+        return RenewedPotential(key, changes, self._potential(key))
 
     def _potential(self, key: _Key) -> NDArray[np.float32]:
         x, y, z_m, body = key

@@ -28,6 +28,7 @@ from esplanade.server.net.connection import Connection
 from esplanade.server.net.delivery import Delivery
 from esplanade.server.net.hub import Hub
 from esplanade.server.net.route_requests import RouteRequests
+from esplanade.server.net.search_budget import SearchBudget, Share
 from esplanade.server.net.session import Session
 from esplanade.server.settings import ServerSettings
 from esplanade.server.world.audience import Audience
@@ -170,7 +171,8 @@ async def run(ticks: int, clients: int) -> str:
     settings = ServerSettings(**SETTINGS)  # type: ignore[arg-type]
     with ThreadPoolExecutor(1) as routes, progress() as shown:
         population, world, storeys = build_world(load_scene(settings), settings)
-        requests = RouteRequests(world, routes)
+        # Ticks run faster than the clock by which searches are limited.
+        requests = RouteRequests(world, routes, SearchBudget(Share(1e9, 1e9), Share(1e9, 1e9)))
         audience = Audience(world.rules, world.origin_m, world.times)
         hub = Hub(
             world,

@@ -14,7 +14,8 @@ from esplanade.planning.people.prediction import PredictionModel, TrackHistory
 from esplanade.planning.people.risk import RiskField, RiskModel
 from esplanade.planning.people.spread import GAUSSIAN, PEOPLE, Spread
 from esplanade.planning.routes.find_path import LayeredPath, PathStatus, find_path
-from esplanade.planning.routes.potential import Potential, Wave
+from esplanade.planning.routes.potential import Potential
+from esplanade.planning.routes.wave_front import Wave
 from esplanade.planning.scene.bodies import Body
 from esplanade.planning.scene.scene import Door, Place, Polygon, Ramp, Scene, Spawn, Stairs, Wall
 

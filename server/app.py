@@ -18,6 +18,7 @@ from esplanade.server.link.local import LocalLink
 from esplanade.server.loading import LoadedScene, LoadingError, load_scene
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.delivery import Delivery
+from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.hub import Hub
 from esplanade.server.net.listener import Listener
 from esplanade.server.net.listening import bound_sockets
@@ -25,6 +26,7 @@ from esplanade.server.net.private import private_port
 from esplanade.server.net.readiness import Readiness
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.schedule import Schedule
+from esplanade.server.net.search_budget import SearchBudget
 from esplanade.server.net.ticker import Ticker
 from esplanade.server.net.tls import Tls
 from esplanade.server.populating import populate
@@ -101,9 +103,19 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
 
         schedule = Schedule(world.tick_s, loop.time())
         searching = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="routes"))
-        route_requests = RouteRequests(world, searching)
+        route_requests = RouteRequests(world, searching, SearchBudget())
         metrics.gauge(
             "routes_waiting", "People who wait for a route", lambda: route_requests.waiting
+        )
+        metrics.total(
+            "routes_refused",
+            "Routes not sought because searches had cost too much",
+            lambda: route_requests.refused,
+        )
+        metrics.total(
+            "route_search_seconds",
+            "Processor time of searches for routes",
+            lambda: route_requests.search_s,
         )
         audience = Audience(world.rules, world.origin_m, world.times)
         hub = Hub(
@@ -117,7 +129,11 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         )
         delivery = Delivery(audience, hub.sessions, settings.tick_rate, hub.stop_watching)
         link = LocalLink()
-        ticker = Ticker(world, audience, link, hub, delivery, schedule, metrics, thread)
+        deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
+        ground_work = GroundWork(world, deriving)
+        ticker = Ticker(
+            world, ground_work, audience, link, hub, delivery, schedule, metrics, thread
+        )
         await stack.enter_async_context(
             Listener(hub, assets, settings, metrics).listening(sockets, tls)
         )

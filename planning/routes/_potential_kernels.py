@@ -68,27 +68,19 @@ def _passable_neighbour(
 
 
 @kernel
-def spread_wave(
-    grid: GridArrays,
-    body: int,
-    step_on_m: float,
-    radius: float,
+def begin_wave(
     goal_cell: int,
     goal_x: float,
     goal_y: float,
-    longest_sight: float,
-    centres: NDArray[np.float64],
     potential: PotentialValues,
     settled: NDArray[np.uint8],
     keys: NDArray[np.float64],
     items: NDArray[np.int64],
-) -> int:
-    """Fill a potential; returns the number of cells that were reached.
+    state: NDArray[np.int64],
+) -> None:
+    """Make the arrays of a wave ready for `grow_wave`; nothing but the goal is reached yet.
 
-    The wave spreads from cell to cell over the links, never cutting a corner. A cell that sees its
-    neighbour's waypoint within `longest_sight` metres takes that waypoint over, else the neighbour
-    itself is its waypoint; at zero sight this is NF1. Lines of sight are tested once a cell, when
-    it leaves the heap. `keys` and `items` hold 8 entries a cell plus one; `centres` (N, 2).
+    `state` (2,) holds the number of entries in the heap and the number of cells reached.
     """
     potential[:, 0] = np.inf
     potential[:, 1:] = 0.0
@@ -96,9 +88,50 @@ def spread_wave(
     potential[goal_cell, 0] = 0.0
     potential[goal_cell, 1] = goal_x
     potential[goal_cell, 2] = goal_y
-    size = heap_push(keys, items, 0, 0.0, goal_cell)
-    reached = 0
+    state[0] = heap_push(keys, items, 0, 0.0, goal_cell)
+    state[1] = 0
+
+
+@kernel
+def grow_wave(
+    grid: GridArrays,
+    body: int,
+    step_on_m: float,
+    radius: float,
+    longest_sight: float,
+    centres: NDArray[np.float64],
+    potential: PotentialValues,
+    settled: NDArray[np.uint8],
+    keys: NDArray[np.float64],
+    items: NDArray[np.int64],
+    state: NDArray[np.int64],
+    targets: NDArray[np.int64],
+    margin: float,
+    most: int,
+) -> bool:
+    """Let a wave spread on; returns whether it has gone as far as it is wanted, or is over.
+
+    The wave spreads from cell to cell over the links, never cutting a corner. A cell that sees its
+    neighbour's waypoint within `longest_sight` metres takes that waypoint over, else the neighbour
+    itself is its waypoint; at zero sight this is NF1. Lines of sight are tested once a cell, when
+    it leaves the heap. `keys` and `items` hold 8 entries a cell plus one; `centres` (N, 2).
+
+    It is wanted up to `margin` metres further than the nearest of the cells `targets` (K,); without
+    any it spreads over all cells. At most `most` cells are settled in one call. Wherever a wave is
+    stopped, the cells that it has settled are as they will be when it is over.
+    """
+    size = state[0]
+    reached = state[1]
+    until = np.inf
+    for k in range(len(targets)):
+        target = targets[k]
+        if settled[target]:
+            there = potential_at(potential, target, centres[target, 0], centres[target, 1])
+            until = min(until, there + margin)
+    last = reached + most
     while size > 0:
+        if keys[0] > until or reached >= last:
+            break
         cell = items[0]
         size = heap_pop(keys, items, size)
         if settled[cell]:
@@ -124,6 +157,9 @@ def spread_wave(
                 continue
         settled[cell] = 1
         reached += 1
+        for k in range(len(targets)):
+            if targets[k] == cell:
+                until = min(until, potential_at(potential, cell, x, y) + margin)
         for direction in range(8):
             other = _passable_neighbour(grid, body, step_on_m, radius, cell, direction)
             if other < 0 or settled[other]:
@@ -143,7 +179,9 @@ def spread_wave(
                 potential[other, 1] = wx
                 potential[other, 2] = wy
                 size = heap_push(keys, items, size, cost, other)
-    return reached
+    state[0] = size
+    state[1] = reached
+    return bool(size == 0 or keys[0] > until)
 
 
 @kernel

@@ -9,26 +9,17 @@ are shortest at any angle. `Wave.NF1` stays as the reference.
 from __future__ import annotations
 
 import math
-from enum import Enum
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from esplanade.planning.grid.grid import LayeredGrid
 from esplanade.planning.routes import _potential_kernels as kernels
+from esplanade.planning.routes.wave_front import NO_TARGETS, Wave, WaveFront
 from esplanade.planning.scene.bodies import Body
 
 _MOVED_M = 0.5
 """Greatest distance that a goal is moved to where the disc fits."""
-
-
-class Wave(Enum):
-    """The measure of distance of a wave front."""
-
-    SIGHT = 24.0
-    """It goes along lines of sight of at most 24 m, so that they cost no more in a large zone."""
-    NF1 = 0.0
-    """It goes from cell to cell."""
 
 
 class Potential:
@@ -56,7 +47,7 @@ class Potential:
         self.height = height
         self.radius_m = radius_m
         self.body = body or Body.adult()
-        row = grid.row_of(self.body)
+        grid.row_of(self.body)
         if not grid.is_free([goal], [height], radius_m, self.body)[0]:
             free = grid.nearest_free(goal, height, radius_m, self.body)
             goal = free if free and math.dist(goal, free) <= _MOVED_M else goal
@@ -64,28 +55,13 @@ class Potential:
         cell = int(grid.on_ground([goal], [height])[1][0])
         if cell < 0:
             raise ValueError(f"nobody can stand at the goal {goal}, height {height:g} m")
-        cells = len(grid.arrays.layered.floors)
-        self.values: NDArray[np.float32] = np.empty((cells, 3), dtype=np.float32)
-        x, y = goal if wave is Wave.SIGHT else grid.centres[cell].tolist()
-        settled = np.empty(cells, dtype=np.uint8)
-        self.reached_cells = kernels.spread_wave(
-            grid.arrays,
-            row,
-            self.body.step_on_m,
-            radius_m,
-            cell,
-            x,
-            y,
-            wave.value,
-            grid.centres,
-            self.values,
-            settled,
-            np.empty(8 * cells + 1, dtype=np.float64),
-            np.empty(8 * cells + 1, dtype=np.int64),
-        )
+        front = WaveFront(grid, goal, cell, radius_m, wave, self.body)
+        front.grow(NO_TARGETS)
+        self.values: NDArray[np.float32] = front.values
+        self.reached_cells = front.reached_cells
         if wave is Wave.SIGHT:
             kernels.extend_into_obstacles(
-                grid.arrays, self.body.step_on_m, grid.centres, self.values, settled
+                front.arrays, self.body.step_on_m, grid.centres, self.values, front.settled
             )
 
     def distance(self, positions: ArrayLike, heights: ArrayLike) -> NDArray[np.float64]:

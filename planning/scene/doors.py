@@ -32,11 +32,13 @@ class Doors:
         """Whether a door is open; raises KeyError if there is no door of that name."""
         return bool(self.barriers["climb_m"][self.rows[name]] == 0.0)
 
-    def set_open(self, name: str, is_open: bool) -> tuple[float, float, float, float]:
+    def set_open(
+        self, name: str, is_open: bool, barriers: NDArray[np.void] | None = None
+    ) -> tuple[float, float, float, float]:
         """Open or close a door, in place; returns its rectangle x0, y0, x1, y1 in metres.
 
-        Floors and links stay as they are. All data derived from barriers change only near the
-        rectangle.
+        With `barriers`, a copy of those of the zone, it moves there and not in the zone. Floors and
+        links stay as they are. All data derived from barriers change only near the rectangle.
 
         Raises
         ------
@@ -44,6 +46,7 @@ class Doors:
             There is no door of that name.
         """
         row = self.rows[name]
-        self.barriers["climb_m"][row] = 0.0 if is_open else math.inf
-        x0, y0, x1, y1 = self.barriers[["x0", "y0", "x1", "y1"]][row].tolist()
+        barriers = self.barriers if barriers is None else barriers
+        barriers["climb_m"][row] = 0.0 if is_open else math.inf
+        x0, y0, x1, y1 = barriers[["x0", "y0", "x1", "y1"]][row].tolist()
         return min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)

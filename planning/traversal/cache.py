@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections import OrderedDict
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,7 +62,7 @@ def renew_traversability(
 
 
 @dataclass
-class _Known:
+class KnownTraversability:
     """A traversability, the climbs of doors it was derived from, and its regions if known."""
 
     traversability: Traversability
@@ -77,7 +78,7 @@ class TraversabilityCache:
 
     def __init__(self, floors: Floors) -> None:
         self._floors = floors
-        self._known: OrderedDict[Body, _Known] = OrderedDict()
+        self._known: OrderedDict[Body, KnownTraversability] = OrderedDict()
 
     def of(self, body: Body) -> Traversability:
         """The traversability of the zone for a body."""
@@ -90,23 +91,48 @@ class TraversabilityCache:
             known.regions = number_regions(known.traversability)
         return known.regions
 
-    def _up_to_date(self, body: Body) -> _Known:
+    def prepare(self, body: Body, barriers: Barriers) -> KnownTraversability:
+        """Derive the traversability for a body if the barriers of the zone were these.
+
+        They are a copy (S,) of the zone's in which doors have moved. Nothing is kept; what is
+        returned becomes true for `keep` once the doors of the zone have moved as well.
+        """
+        known = self._derived(body, self._known.get(body), barriers)
+        shared = known.traversability.near._replace(barriers=self._floors.barriers)
+        return replace(known, traversability=known.traversability._replace(near=shared))
+
+    def keep(self, prepared: Mapping[Body, KnownTraversability]) -> None:
+        """Keep what `prepare` has derived, now that the doors have moved."""
+        for body, known in prepared.items():
+            self._keep(body, known)
+
+    def _up_to_date(self, body: Body) -> KnownTraversability:
+        known = self._derived(body, self._known.get(body), self._floors.barriers)
+        self._keep(body, known)
+        return known
+
+    def _derived(
+        self, body: Body, known: KnownTraversability | None, barriers: Barriers
+    ) -> KnownTraversability:
+        """What is known if it still holds, else derived anew: around doors that have moved."""
         floors = self._floors
-        doors = floors.barriers[: len(floors.doors)]
+        doors = barriers[: len(floors.doors)]
         climbs = doors["climb_m"].copy()
-        known = self._known.get(body)
         if known is None:
-            found = find_traversability(floors.layered, floors.barriers, body)
-            known = _Known(found, climbs)
-        elif not np.array_equal(climbs, known.door_climbs):
-            found = known.traversability
-            moved = doors[climbs != known.door_climbs]
-            for x0, y0, x1, y1 in moved[["x0", "y0", "x1", "y1"]].tolist():
-                around = min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)
-                found = renew_traversability(found, body, around)
-            known = _Known(found, climbs)
+            found = find_traversability(floors.layered, barriers, body)
+            return KnownTraversability(found, climbs)
+        if np.array_equal(climbs, known.door_climbs):
+            return known
+        found = known.traversability
+        found = found._replace(near=found.near._replace(barriers=barriers))
+        moved = doors[climbs != known.door_climbs]
+        for x0, y0, x1, y1 in moved[["x0", "y0", "x1", "y1"]].tolist():
+            around = min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)
+            found = renew_traversability(found, body, around)
+        return KnownTraversability(found, climbs)
+
+    def _keep(self, body: Body, known: KnownTraversability) -> None:
         self._known[body] = known
         self._known.move_to_end(body)
         if len(self._known) > _KEPT:
             self._known.popitem(last=False)
-        return known

@@ -11,6 +11,8 @@ from esplanade.protocol import ByeCode, CloseCode, ErrorCode, ProtocolError
 from esplanade.protocol.messages import Bye, Hello, Move, SetDoor, WalkTo, Welcome
 from esplanade.server.metrics import Metrics
 from esplanade.server.net import frames
+from esplanade.server.net.fair_queue import Asker
+from esplanade.server.net.ground_work import DOOR_PAUSE_S
 from esplanade.server.net.leases import ANSWER_S, PING_S, Leases
 from esplanade.server.net.names import Names, ReservedNameError
 from esplanade.server.net.operator_keys import OperatorKeys, TooManyKeysError
@@ -86,6 +88,8 @@ class Hub:
         self._lines: list[tuple[Session, str]] = []
         self._asked: set[int] = set()
         """Tickets of those who wait to join and have been sent to the zone."""
+        self._door_lines: dict[str, float] = {}
+        """Wishes for a door are logged as often as it may move: from when on, by its name."""
         metrics.gauge("clients", "People connected", lambda: len(self.sessions))
         metrics.gauge(
             "clients_away",
@@ -140,11 +144,10 @@ class Hub:
         if isinstance(wish, Move):
             self._want(Steer(avatar_id, wish.seq, wish.direction, wish.speed))
             return
-        straight = self._world.straight_route(avatar_id, (wish.x, wish.y, wish.z))
-        if straight is not None:
-            self._want(Follow(avatar_id, wish.seq, straight))
-        else:
-            self._routes.ask(avatar_id, wish)
+        try:
+            self._routes.ask(Asker(session.address, avatar_id), wish)
+        except ProtocolError as refusal:
+            session.tell(refusal)
 
     def route_found(self, avatar_id: int, wish: WalkTo, route: Route | None) -> None:
         """Send a person along the route that was found, or tell them that there is none."""
@@ -189,14 +192,17 @@ class Hub:
             self._watches[session.avatar_id] = Watch(session.avatar_id, actor_id)
 
     def set_door(self, session: Session, wish: SetDoor) -> None:
-        """Open or close a door in the next tick, if the session may; the latest wish wins."""
+        """Open or close a door soon, if the session may; the latest wish for a door wins."""
         if not session.is_operator:
             fault = ErrorCode.FORBIDDEN, "only operators open and close doors"
         elif wish.name not in self._world.doors.states():
             fault = ErrorCode.INVALID, f"set_door: the scene has no door {wish.name!r}"
         else:
+            now = asyncio.get_running_loop().time()
+            if now >= self._door_lines.get(wish.name, now):
+                self._door_lines[wish.name] = now + DOOR_PAUSE_S
+                log.info("door", name=wish.name, open=wish.open, id=session.avatar_id)
             self._doors[wish.name] = MoveDoor(wish.name, wish.open)
-            log.info("door", name=wish.name, open=wish.open, id=session.avatar_id)
             return
         session.tell(ProtocolError(*fault, None))
 

@@ -1,14 +1,24 @@
-"""Finds routes for people in a thread of its own, so that no tick waits for them."""
+"""Finds routes for people in a thread of its own; no tick waits for it, and nobody for others."""
 
 import asyncio
+import math
+from collections import OrderedDict
 from collections.abc import Callable
 from concurrent.futures import Executor
+from time import thread_time
+from typing import Final, NamedTuple
 
 import structlog
 
+from esplanade.protocol import ErrorCode, ProtocolError
 from esplanade.protocol.messages import WalkTo
-from esplanade.server.world.routes import Route
+from esplanade.server.net.fair_queue import Asker, FairQueue
+from esplanade.server.net.search_budget import REQUEST_S, SearchBudget
+from esplanade.server.world.routes import Route, RouteSearch
 from esplanade.server.world.zone import Zone
+
+LONG_SEARCHES: Final = 3
+"""Searches of more than one piece that are under way at once, each of another address."""
 
 log = structlog.get_logger(__name__)
 
@@ -16,52 +26,134 @@ Found = Callable[[int, WalkTo, Route | None], None]
 """It is called with the avatar's id, its wish, and the route; None where there is no route."""
 
 
-class RouteRequests:
-    """Keeps the latest wish of each person and searches in the order in which people asked."""
+class _Job(NamedTuple):
+    asker: Asker
+    wish: WalkTo
+    search: RouteSearch
 
-    def __init__(self, world: Zone, thread: Executor) -> None:
+
+class RouteRequests:
+    """Keeps the latest wish of each person, and searches for all of them piece by piece.
+
+    Addresses take turns, and so do the people of one address. The first piece of a search is done
+    as soon as it is the person's turn: short searches end with it. Those that go on wait for a
+    place among `LONG_SEARCHES`, whose pieces alternate with first pieces. So a short search waits
+    for no long one, and a long one for at most one of each other address.
+    """
+
+    def __init__(self, world: Zone, thread: Executor, budget: SearchBudget) -> None:
         self._world = world
         self._thread = thread
-        self._wishes: dict[int, WalkTo] = {}
+        self._budget = budget
+        self._wishes: FairQueue[WalkTo] = FairQueue()
+        self._long: FairQueue[_Job] = FairQueue()
+        self._under_way: OrderedDict[str, _Job] = OrderedDict()
+        self._latest: dict[int, WalkTo] = {}
+        """The wish of each person that is to be answered, whatever stage it is at."""
         self._wanted = asyncio.Event()
+        self.refused = 0
+        """Requests that were refused because searches had cost too much."""
+        self.search_s = 0.0
+        """Processor seconds of all searches."""
 
     @property
     def waiting(self) -> int:
-        return len(self._wishes)
+        """People who wait for an answer."""
+        return len(self._latest)
 
-    def ask(self, avatar_id: int, wish: WalkTo) -> None:
-        self._wishes[avatar_id] = wish
+    def ask(self, asker: Asker, wish: WalkTo) -> None:
+        """Seek a route for a person, in place of the one that they wanted before.
+
+        Raises
+        ------
+        ProtocolError
+            This person's searches, or those of their address, have cost too much of late. The text
+            says when to ask again; the connection goes on.
+        """
+        now = asyncio.get_running_loop().time()
+        wait_s = self._budget.wait_s(asker, now)
+        if wait_s > 0.0:
+            self.refused += 1
+            text = f"walk_to: too many routes to find; ask again in {math.ceil(10 * wait_s) / 10} s"
+            raise ProtocolError(ErrorCode.FLOODING, text, None)
+        self._budget.spend(asker, REQUEST_S, now)
+        self._long.discard(asker.avatar_id)
+        self._latest[asker.avatar_id] = wish
+        self._wishes.put(asker, wish)
         self._wanted.set()
 
     def forget(self, avatar_id: int) -> None:
         """Drop the wish of a person who wants something else, or is gone."""
-        self._wishes.pop(avatar_id, None)
+        self._latest.pop(avatar_id, None)
+        self._wishes.discard(avatar_id)
+        self._long.discard(avatar_id)
 
     async def run(self, found: Found) -> None:
         """Find routes until cancelled."""
         while True:
             await self._wanted.wait()
-            while self._wishes:
-                await self._next(found)
             self._wanted.clear()
+            while self._wishes or self._long or self._under_way:
+                await self._first_piece(found)
+                await self._next_piece(found)
 
-    async def _next(self, found: Found) -> None:
-        avatar_id, wish = next(iter(self._wishes.items()))
+    async def _first_piece(self, found: Found) -> None:
+        turn = self._wishes.pop()
+        if turn is None:
+            return
+        asker, wish = turn
+        try:
+            search = self._world.route_search(asker.avatar_id, (wish.x, wish.y, wish.z))
+        except Exception:
+            log.exception("no route found because of a fault", id=asker.avatar_id)
+            self._answer(asker.avatar_id, wish, None, found)
+            return
+        job = _Job(asker, wish, search)
+        if not await self._piece(job, found):
+            self._long.put(asker, job)
+
+    async def _next_piece(self, found: Found) -> None:
+        while len(self._under_way) < LONG_SEARCHES and self._long:
+            turn = self._long.pop(but_for=self._under_way)
+            if turn is None:
+                break
+            self._under_way[turn[0].address] = turn[1]
+        if not self._under_way:
+            return
+        address, job = self._under_way.popitem(last=False)
+        if not await self._piece(job, found):
+            self._under_way[address] = job
+
+    async def _piece(self, job: _Job, found: Found) -> bool:
+        """Do a piece of a search, if it is still wanted; whether that was all of it."""
+        avatar_id = job.asker.avatar_id
+        if self._latest.get(avatar_id) is not job.wish:
+            return True
         loop = asyncio.get_running_loop()
         start = loop.time()
-        goal = (wish.x, wish.y, wish.z)
+        route: Route | None = None
         try:
-            find = self._world.route_finder(avatar_id, goal)
-            route = await loop.run_in_executor(self._thread, find)
+            over, seconds = await loop.run_in_executor(self._thread, _timed, job.search.advance)
+            route = job.search.route
         except Exception:
-            log.exception("no route found because of a fault", id=avatar_id, goal=goal)
-            route = None
-        # While the route was sought, the person may have changed their mind.
-        latest = self._wishes.pop(avatar_id, None)
-        if latest is wish:
-            found(avatar_id, wish, route)
-        elif latest is not None:
-            # It goes behind the others: changing one's mind often delays nobody else.
-            self._wishes[avatar_id] = latest
+            log.exception("no route found because of a fault", id=avatar_id, goal=job.wish)
+            over, seconds = True, 0.0
+        self.search_s += seconds
+        self._budget.spend(job.asker, seconds, loop.time())
+        if over:
+            self._answer(avatar_id, job.wish, route, found)
         # Resting as long as it worked, this never takes more than half a core from the actors.
         await asyncio.sleep(loop.time() - start)
+        return over or self._latest.get(avatar_id) is not job.wish
+
+    def _answer(self, avatar_id: int, wish: WalkTo, route: Route | None, found: Found) -> None:
+        # While the route was sought, the person may have changed their mind.
+        if self._latest.get(avatar_id) is wish:
+            del self._latest[avatar_id]
+            found(avatar_id, wish, route)
+
+
+def _timed(work: Callable[[], bool]) -> tuple[bool, float]:
+    """What some work returns, and the processor seconds that it took in this thread."""
+    start = thread_time()
+    return work(), thread_time() - start

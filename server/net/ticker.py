@@ -9,6 +9,7 @@ import structlog
 from esplanade.server.link.local import LocalLink
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.delivery import Delivery
+from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.hub import Hub
 from esplanade.server.net.schedule import Schedule
 from esplanade.server.world.audience import Audience
@@ -23,6 +24,7 @@ class Ticker:
     def __init__(
         self,
         world: Zone,
+        ground_work: GroundWork,
         audience: Audience,
         link: LocalLink,
         hub: Hub,
@@ -71,6 +73,7 @@ class Ticker:
         loop = asyncio.get_running_loop()
         start = perf_counter()
         self._schedule.begin(loop.time())
+        self._ground_work = ground_work
         self._link.send(self._hub.drain(loop.time()))
         self._world.begin(self._link.inputs())
         actors_moved = await loop.run_in_executor(self._thread, self._think)

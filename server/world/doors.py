@@ -3,6 +3,7 @@
 import numpy as np
 
 from esplanade.planning import LayeredGrid
+from esplanade.planning.grid.door_change import DoorChange
 from esplanade.planning.scene.heights import BODIES_OVERLAP_M
 from esplanade.server.world.state import State
 
@@ -17,6 +18,8 @@ class Doors:
         self._state = state
         self._grid = grid
         self._wanted: dict[str, bool] = {}
+        self.derived_outside = False
+        """Whether doors move by `take` alone: what changes is derived outside of ticks."""
 
     def states(self) -> dict[str, bool]:
         """Whether each door stands open now, by name."""
@@ -27,17 +30,37 @@ class Doors:
         if name in self._grid.doors:
             self._wanted[name] = is_open
 
+    def due(self) -> list[tuple[str, bool]]:
+        """The doors that are wanted elsewhere and can be moved now, the longest wanted first."""
+        return [
+            (name, is_open)
+            for name, is_open in self._wanted.items()
+            if is_open != self._grid.doors.is_open(name) and (is_open or not self._in_the_way(name))
+        ]
+
     def update(self) -> dict[str, bool]:
-        """Move the doors that can be moved; returns those that did, and their new state."""
-        moved: dict[str, bool] = {}
+        """Move the doors that can be moved here; returns those that did, and their new state."""
+        moved = {} if self.derived_outside else dict(self.due())
+        for name, is_open in moved.items():
+            self._grid.set_door(name, is_open)
         for name, is_open in list(self._wanted.items()):
             if is_open == self._grid.doors.is_open(name):
                 del self._wanted[name]
-            elif is_open or not self._in_the_way(name):
-                self._grid.set_door(name, is_open)
-                del self._wanted[name]
-                moved[name] = is_open
         return moved
+
+    def prepare(self, name: str, is_open: bool) -> DoorChange:
+        """Derive what changes when a door moves; heavy, and safe in any thread until one moves."""
+        return self._grid.prepare_door(name, is_open)
+
+    def take(self, change: DoorChange) -> dict[str, bool]:
+        """Move a door for which that was derived; it stays if that is wanted no more, or blocked.
+
+        Returns the door that did and its new state.
+        """
+        if (change.name, change.is_open) not in self.due():
+            return {}
+        self._grid.apply_door(change)
+        return {change.name: change.is_open}
 
     def _in_the_way(self, name: str) -> bool:
         """Whether the leaf would touch anybody."""

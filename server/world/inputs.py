@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from esplanade.actors.potential_pool import RenewedPotential
+from esplanade.planning.grid.door_change import DoorChange
 from esplanade.server.world.routes import Point, Route
 
 
@@ -92,7 +94,22 @@ class Watch:
     actor_id: int | None
 
 
+@dataclass(frozen=True, slots=True)
+class DoorDerived:
+    """What changes on the ground with a door is derived: the door moves, if it still may."""
+
+    change: DoorChange
+
+
+@dataclass(frozen=True, slots=True)
+class PotentialDerived:
+    """The potential of a goal is derived anew, since the ground has changed."""
+
+    potential: RenewedPotential
+
+
 Movement = Steer | Follow
 OfPerson = Attach | Detach | Leave | Stand | Steer | Follow | Say | Watch
 """Inputs of one avatar, by its `id`."""
-Input = Join | MoveDoor | OfPerson
+GroundInput = DoorDerived | PotentialDerived
+Input = Join | MoveDoor | OfPerson | GroundInput

@@ -1,7 +1,6 @@
 """A zone, tick by tick: begin (people), think (actors, elsewhere), finish (what is told of it)."""
 
 from collections.abc import Callable, Hashable, Iterable, Mapping
-from functools import partial
 from typing import Final
 
 import numpy as np
@@ -9,6 +8,7 @@ import numpy as np
 from esplanade.actors import Explanation, ObservedPeople, Population
 from esplanade.actors.locomotion.footsteps.ground import Ground
 from esplanade.actors.people import NOBODY
+from esplanade.actors.potential_pool import RenewedPotential
 from esplanade.planning import LayeredGrid, Scene
 from esplanade.server.world.actors import ActorAvatars
 from esplanade.server.world.contacts import Contacts
@@ -17,12 +17,14 @@ from esplanade.server.world.frame import Events, Frame, Line, Recorder, Tickets
 from esplanade.server.world.inputs import (
     Attach,
     Detach,
+    DoorDerived,
     Follow,
     Input,
     Join,
     Leave,
     MoveDoor,
     OfPerson,
+    PotentialDerived,
     Say,
     Stand,
     Steer,
@@ -30,7 +32,7 @@ from esplanade.server.world.inputs import (
 )
 from esplanade.server.world.latest_steps import LatestSteps
 from esplanade.server.world.people import People
-from esplanade.server.world.routes import Point, Route, find_route, straight_route
+from esplanade.server.world.routes import Point, RouteSearch, SharedWaves
 from esplanade.server.world.rules import Rules
 from esplanade.server.world.spawning import Spawning
 from esplanade.server.world.stage_times import StageTimes
@@ -74,6 +76,7 @@ class Zone:
         self.contacts = Contacts()
         self.times = StageTimes(clock)
         self._grid = grid
+        self._waves = SharedWaves(grid)
         self.doors = Doors(self.state, grid)
         self._moved_doors: dict[str, bool] = {}
         self._people = People(self.state, grid, rules, tick_s)
@@ -98,17 +101,22 @@ class Zone:
         self.times.begin()
         self._begin_frame()
         self.state.before[:] = self.state.positions
+        moved_doors: dict[str, bool] = {}
         with self.times.stage("drain"):
             for item in inputs:
                 if isinstance(item, Join):
                     self._joined.append((item.ticket, self._join(item)))
                 elif isinstance(item, MoveDoor):
                     self.doors.want(item.name, item.is_open)
+                elif isinstance(item, DoorDerived):
+                    moved_doors |= self.doors.take(item.change)
+                elif isinstance(item, PotentialDerived):
+                    self._population.renew_potential(item.potential)
                 elif item.id in self.state:
                     self._apply(item, self.state.slot(item.id))
-            self._moved_doors = self.doors.update()
+            self._moved_doors = moved_doors | self.doors.update()
             if self._moved_doors:
-                self._population.ground_changed()
+                self._population.ground_changed(renewed_outside=self.doors.derived_outside)
         with self.times.stage("people"):
             self._people.move()
             self._observed = self._observe()
@@ -156,15 +164,16 @@ class Zone:
         """People and actors in the world."""
         return len(self.state.of_kind(PERSON)), len(self.state.of_kind(ACTOR))
 
-    def straight_route(self, avatar_id: int, goal: Point) -> Route | None:
-        """The straight way from where that avatar is, if nothing stands between; quick."""
-        here = self._where(avatar_id)
-        return straight_route(self._grid, here, goal, self.rules.person_clearance_m)
+    def route_search(self, avatar_id: int, goal: Point) -> RouteSearch:
+        """A search for a way from where that avatar is now; heavy, and meant for another thread."""
+        return RouteSearch(self._waves, self._where(avatar_id), goal, self.rules.person_clearance_m)
 
-    def route_finder(self, avatar_id: int, goal: Point) -> Callable[[], Route | None]:
-        """A search for a way from where that avatar is now; heavy, and safe in any thread."""
-        clearance_m = self.rules.person_clearance_m
-        return partial(find_route, self._grid, self._where(avatar_id), goal, clearance_m)
+    def outdated_potential(self) -> Callable[[], RenewedPotential] | None:
+        """Derives the next potential that is out of date, if any; heavy, safe in any thread.
+
+        Ask between two ticks; potentials are out of date where `doors.derived_outside`.
+        """
+        return self._population.outdated_potential()
 
     def moves(self, avatar_id: int) -> bool:
         """Whether that person means to move, by a direction or along a route."""

@@ -65,8 +65,12 @@ class ScriptedPopulation:
     def pointing(self) -> dict[Hashable, Place]:
         return self.pointed_at
 
-    def ground_changed(self) -> None:
+    def ground_changed(self, *, renewed_outside: bool = False) -> None:
         self.found_anew += 1
+        self.renewed_outside = renewed_outside
+
+    def outdated_potential(self) -> None:
+        return None
 
     def explain(self, actor_id: Hashable) -> Explanation:
         x, y = self.positions[actor_id]

@@ -31,7 +31,7 @@ def drawn(world: Zone) -> tuple[Floats, Floats]:
     return hips, world.state.positions[slots]
 
 
-def in_a_thread(world: World) -> None:
+def in_a_thread(world: Zone) -> None:
     """Let a thread of its own take each tick's steps."""
     update = world.feet.update
 

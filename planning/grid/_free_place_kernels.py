@@ -1,0 +1,61 @@
+"""The free cell nearest to a place, on bare arrays."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.planning.compiled.jit import kernel
+from esplanade.planning.grid._walking_kernels import GroundArrays
+from esplanade.planning.ground._geometry_kernels import Placement, crosses_any
+
+NEAR_M = 1.0
+"""Within this, a cell on this side of walls is taken before a nearer one behind them."""
+
+
+@kernel
+def nearest_free_cell(
+    ground: GroundArrays,
+    body: int,
+    clearance: float,
+    centres: NDArray[np.float64],
+    placement: Placement,
+    x: float,
+    y: float,
+    z: float,
+    within: float,
+) -> int:
+    """The free cell nearest to a place; -1 if none is.
+
+    Only floors that differ from `z` by less than `within` metres count. `placement` is that of a
+    body at the place; `centres` (N, 2). What a floor is higher or lower counts as distance.
+    """
+    floors, clear = ground.grid.layered.floors, ground.grid.clearance[body]
+    near = np.empty(64, dtype=np.int64)
+    aways = np.empty(64, dtype=np.float64)
+    count = 0
+    best = -1
+    least = np.inf
+    for cell in range(len(floors)):
+        apart = abs(floors[cell] - np.float32(z))
+        if not (clear[cell] >= np.float32(clearance) and apart < np.float32(within)):
+            continue
+        away = np.hypot(centres[cell, 0] - x, centres[cell, 1] - y) + apart
+        if away < least:
+            least = away
+            best = cell
+        if away < NEAR_M:
+            if count == len(near):
+                near = np.concatenate((near, np.empty_like(near)))
+                aways = np.concatenate((aways, np.empty_like(aways)))
+            near[count] = cell
+            aways[count] = away
+            count += 1
+    for _ in range(count):
+        nearest = 0
+        for k in range(1, count):
+            if aways[k] < aways[nearest]:
+                nearest = k
+        cell = near[nearest]
+        if not crosses_any(ground.barriers, placement, x, y, centres[cell, 0], centres[cell, 1]):
+            return int(cell)
+        aways[nearest] = np.inf
+    return best

@@ -1,0 +1,83 @@
+"""Derives what doors change, in a thread of its own, so that no tick waits for it."""
+
+from collections.abc import Callable
+from concurrent.futures import Executor, Future
+from functools import partial
+from time import perf_counter
+from typing import Final
+
+import structlog
+
+from esplanade.actors.potential_pool import RenewedPotential
+from esplanade.server.world.inputs import DoorDerived, GroundInput, PotentialDerived
+from esplanade.server.world.zone import Zone
+
+DOOR_PAUSE_S: Final = 0.5
+"""A door is moved no more often than this; of the wishes that come meanwhile the last counts."""
+
+log = structlog.get_logger(__name__)
+
+
+class GroundWork:
+    """Derives one thing at a time: doors that are to move and potentials out of date take turns.
+
+    From now on doors of the world move by the inputs that `drain` returns, and no other way. After
+    each piece of work it rests as long as that took, so that actors have the other half of a core.
+    """
+
+    def __init__(self, world: Zone, thread: Executor) -> None:
+        self._world = world
+        self._thread = thread
+        self._work: Future[tuple[GroundInput, float]] | None = None
+        self._rests_until_s = 0.0
+        self._door_was_last = False
+        self._begun_at_s: dict[str, float] = {}
+        world.doors.derived_outside = True
+
+    def drain(self) -> list[GroundInput]:
+        """What was derived since the last call, for the next tick. Call it between two ticks."""
+        done: list[GroundInput] = []
+        if self._work is not None and self._work.done():
+            try:
+                derived, seconds = self._work.result()
+                done.append(derived)
+                self._rests_until_s = perf_counter() + seconds
+            except Exception:
+                log.exception("the ground cannot be derived because of a fault")
+            self._work = None
+        if self._work is None and not done and perf_counter() >= self._rests_until_s:
+            self._begin()
+        return done
+
+    def _begin(self) -> None:
+        door, derive = self._next_door(), self._world.outdated_potential()
+        if door is not None and (derive is None or not self._door_was_last):
+            name, is_open = door
+            self._begun_at_s[name] = self._now_s()
+            self._work = self._thread.submit(_timed, partial(_door, self._world, name, is_open))
+        elif derive is not None:
+            self._work = self._thread.submit(_timed, partial(_potential, derive))
+        self._door_was_last = not self._door_was_last
+
+    def _next_door(self) -> tuple[str, bool] | None:
+        latest_s = self._now_s() - DOOR_PAUSE_S
+        for name, is_open in self._world.doors.due():
+            if self._begun_at_s.get(name, latest_s) <= latest_s:
+                return name, is_open
+        return None
+
+    def _now_s(self) -> float:
+        return self._world.tick * self._world.tick_s
+
+
+def _door(world: Zone, name: str, is_open: bool) -> GroundInput:
+    return DoorDerived(world.doors.prepare(name, is_open))
+
+
+def _potential(derive: Callable[[], RenewedPotential]) -> GroundInput:
+    return PotentialDerived(derive())
+
+
+def _timed(derive: Callable[[], GroundInput]) -> tuple[GroundInput, float]:
+    start = perf_counter()
+    return derive(), perf_counter() - start
