@@ -97,7 +97,7 @@ class RouteSearch:
         return True
 
     def _begin(self) -> WaveFront | None:
-        """Find a free goal and try the straight line; a wave if the search is not over with that."""
+        """Find a free goal and try the straight line; a wave if the search goes on."""
         grid, clearance_m = self._grid, self._clearance_m
         x, y, z = self._goal
         free = grid.nearest_free((x, y), z, clearance_m)
