@@ -129,6 +129,16 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         )
         delivery = Delivery(audience, hub.sessions, settings.tick_rate, hub.stop_watching)
         link = LocalLink()
+        metrics.gauge(
+            "doors_waiting",
+            "Doors that are wanted open or closed, and are not",
+            world.doors.waiting,
+        )
+        metrics.gauge(
+            "potentials_outdated",
+            "Potentials of goals that wait to be derived anew since a door has moved",
+            lambda: population.navigator.potentials.outdated_rows,
+        )
         deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
         ground_work = GroundWork(world, deriving)
         ticker = Ticker(

@@ -5,10 +5,11 @@ from collections.abc import Mapping
 from typing import Final
 
 from esplanade.actors import ActorParameters, GoTo, Population
-from esplanade.planning import LayeredGrid, Polygon, Scene
+from esplanade.planning import Door, LayeredGrid, Polygon, Scene
 from esplanade.server.net.packing import Packing
 from esplanade.server.world.audience import Audience
-from esplanade.server.world.inputs import Detach, Follow, Input, Join, Leave, Steer
+from esplanade.server.world.inputs import Detach, Follow, Input, Join, Leave, MoveDoor, Steer
+from esplanade.server.world.routes import find_route
 from esplanade.server.world.rules import Rules
 from esplanade.server.world.state import ACTOR
 from esplanade.server.world.zone import Zone
@@ -17,7 +18,7 @@ SCENE: Final = Scene.open_space(
     (0.0, 0.0, 6.0, 6.0),
     walls=[((3.0, 0.0), (3.0, 2.0))],
     polygons=[Polygon(points=((4.5, 4.5), (5.5, 4.5), (5.5, 5.5), (4.5, 5.5)), height_m=0.3)],
-)
+).model_copy(update={"doors": (Door(name="door", start=(3.0, 2.0), end=(3.0, 3.0)),)})
 """It is not all level: on level ground some kernels are not called."""
 START: Final = (1.0, 4.0)
 TICKS: Final = 30
@@ -26,20 +27,27 @@ PERSON: Final = 2
 INPUTS: Final[Mapping[int, list[Input]]] = {
     1: [Join(0, "P", None)],
     2: [Steer(PERSON, 1, 0.5, 1.0)],
+    TICKS // 3: [MoveDoor("door", is_open=False)],
     TICKS // 2: [Follow(PERSON, 2, ((1.0, 1.0, 0.0), (2.0, 1.0, 0.0)))],
     TICKS - 1: [Detach(PERSON)],
     TICKS: [Leave(PERSON)],
 }
+WAYS: Final = (((1.0, 1.0, 0.0), (5.0, 1.0, 0.0)), ((2.9, 1.0, 0.0), (3.05, 1.0, 0.0)))
+"""Starts and goals: one way leads around a wall, the other's ends stand beside one another."""
 
 
 def rehearse(rules: Rules, tick_s: float) -> None:
-    """Let an actor and a person of a world of their own walk, stand, and leave."""
-    world, population = _world(rules, tick_s)
+    """Let an actor and a person of a world of their own walk, stand, find a way, and leave."""
+    grid = LayeredGrid.from_scene(SCENE)
+    world, population = _world(grid, rules, tick_s)
     population.add("a", GoTo((5.0, 3.0, 0.0)), ActorParameters(), position=START)
     audience, packing = Audience(rules, world.origin_m, world.times), Packing()
     for tick in range(1, TICKS + 1):
         world.begin(INPUTS.get(tick, []))
         packing.pack(audience.take(world.finish(world.think())).snapshots)
+        if tick == TICKS // 2:
+            for start, goal in WAYS:
+                find_route(grid, start, goal, rules.person_clearance_m)
     population.close()
 
 
@@ -48,7 +56,7 @@ def rehearse_walking(rules: Rules, tick_s: float) -> None:
 
     On a first start this is compiled while another process still compiles what plans.
     """
-    world, population = _world(rules, tick_s)
+    world, population = _world(LayeredGrid.from_scene(SCENE), rules, tick_s)
     world.state.add(ACTOR, "A", (*START, 0.0), 0, ActorParameters().radius_m)
     audience, packing = Audience(rules, world.origin_m, world.times), Packing()
     for tick in range(1, TICKS // 2):
@@ -57,8 +65,7 @@ def rehearse_walking(rules: Rules, tick_s: float) -> None:
     population.close()
 
 
-def _world(rules: Rules, tick_s: float) -> tuple[Zone, Population]:
-    grid = LayeredGrid.from_scene(SCENE)
+def _world(grid: LayeredGrid, rules: Rules, tick_s: float) -> tuple[Zone, Population]:
     population = Population(grid, SCENE, tick_s=tick_s, person_radius_m=rules.person_radius_m)
     world = Zone(
         SCENE,

@@ -2,6 +2,7 @@
 
 from typing import Final, NamedTuple
 
+from esplanade.server.net.addresses import LOCAL_KEYS
 from esplanade.server.net.fair_queue import Asker
 
 
@@ -20,9 +21,6 @@ ADDRESS: Final = Share(0.25, 4.0)
 
 REQUEST_S: Final = 0.001
 """A request costs at least this, however short the search."""
-
-UNLIMITED: Final = frozenset({"127.0.0.1", "::1"})
-"""Addresses without a budget, which bots of the same machine share; their people have theirs."""
 
 _KEPT: Final = 1024
 
@@ -56,7 +54,10 @@ class _Account:
 
 
 class SearchBudget:
-    """Accounts of people and addresses; those that are full again are forgotten."""
+    """Accounts of people and addresses; those that are full again are forgotten.
+
+    People who share one of `LOCAL_KEYS` have their own accounts only.
+    """
 
     def __init__(self, person: Share = PERSON, address: Share = ADDRESS) -> None:
         self._person = person
@@ -74,7 +75,7 @@ class SearchBudget:
         self._sweep(now)
         if asker.avatar_id not in self._people:
             self._people[asker.avatar_id] = _Account(self._person, now)
-        if asker.address not in UNLIMITED and asker.address not in self._addresses:
+        if asker.address not in LOCAL_KEYS and asker.address not in self._addresses:
             self._addresses[asker.address] = _Account(self._address, now)
         for account in self._known(asker):
             account.spend(seconds, now)

@@ -83,7 +83,7 @@ class Session:
         metrics: Metrics,
     ) -> None:
         now = asyncio.get_running_loop().time()
-        self.address = str(connection.remote_address[0])
+        self.address = connection.client_address
         """The client's address, by which limits go."""
         self.outbox = Outbox(connection, SlowPolicy.of(settings), metrics.traffic)
         self.address = connection.client_address

@@ -25,6 +25,10 @@ class Doors:
         """Whether each door stands open now, by name."""
         return {name: self._grid.doors.is_open(name) for name in self._grid.doors}
 
+    def waiting(self) -> int:
+        """Number of doors that are wanted otherwise than they are."""
+        return len(self._wanted)
+
     def want(self, name: str, is_open: bool) -> None:
         """Open or close a door as soon as that is possible; unknown names are void."""
         if name in self._grid.doors:

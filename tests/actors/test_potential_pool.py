@@ -3,7 +3,7 @@
 import numpy as np
 
 from esplanade.actors.potential_pool import PotentialPool
-from esplanade.planning import Body, LayeredGrid, Scene
+from esplanade.planning import Body, Door, LayeredGrid, Scene
 from tests.planning.storeys import storeyed
 from tests.planning.worlds import UPPER_M
 
@@ -64,3 +64,47 @@ def test_nobodys_row_may_be_given_back() -> None:
     guides = pool()
     guides.release(-1)
     assert guides.take((1.0, 1.0), 0.0, BODY) == 0
+
+
+def test_rows_are_used_as_they_are_until_somebody_renews_them() -> None:
+    grid = LayeredGrid.from_scene(
+        Scene(
+            bounds=(0.0, 0.0, 6.0, 6.0), doors=(Door(name="d", start=(3.0, 0.0), end=(3.0, 5.0)),)
+        )
+    )
+    guides = PotentialPool(grid)
+    idle = guides.take((2.0, 1.0), 0.0, BODY)
+    guides.release(idle)
+    used = guides.take((1.0, 1.0), 0.0, BODY)
+    before = guides.arrays[used].copy()
+    grid.set_door("d", False)
+    guides.outdate()
+    guides.renew_one()
+    assert guides.take((2.0, 1.0), 0.0, BODY) == idle, "nobody waits for a goal that is known"
+    assert np.array_equal(guides.arrays[used], before)
+    assert guides.outdated_rows == 2
+    guides.release(idle)
+
+    derive = guides.outdated()
+    assert derive is not None
+    first = derive()
+    assert first.goal[:2] == (1.0, 1.0), "those in use come first"
+    grid.set_door("d", True)
+    guides.outdate()
+    guides.renew(first)
+    assert not np.array_equal(guides.arrays[used], before)
+    assert guides.outdated_rows == 2, "the ground has changed since"
+    while (derive := guides.outdated()) is not None:
+        guides.renew(derive())
+    assert np.array_equal(guides.arrays[used], before)
+
+
+def test_a_renewed_potential_that_nobody_knows_any_more_is_void() -> None:
+    guides, others = pool(), pool()
+    others.take((1.0, 1.0), 0.0, BODY)
+    others.outdate()
+    derive = others.outdated()
+    assert derive is not None
+    guides.renew(derive())
+    assert guides.outdated() is None
+    assert len(guides.arrays) == 0

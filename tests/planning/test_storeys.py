@@ -275,6 +275,44 @@ def test_a_closed_door_stops_who_is_on_its_floor(floor_m) -> None:
 
 
 @pytest.mark.parametrize("floor_m", [0.0, UPPER_M], ids=["ground", "upper"])
+def test_what_a_door_will_change_can_be_derived_while_nothing_changes(floor_m) -> None:
+    grid = LayeredGrid.from_scene(doored(floor_m=floor_m))
+    for body in (ADULT, CHILD):
+        grid.row_of(body)
+    arrays, barriers = grid.arrays, grid.barriers.copy()
+    feet = grid.traversability.of(ADULT)
+    change = grid.prepare_door("gate", False)
+    assert grid.arrays is arrays
+    assert np.array_equal(grid.barriers, barriers)
+    assert grid.traversability.of(ADULT) is feet
+    grid.apply_door(change)
+    assert grid.arrays is change.arrays
+    assert not grid.doors.is_open("gate")
+    other = LayeredGrid.from_scene(doored(False, floor_m))
+    for body in (ADULT, CHILD):
+        row, anew = grid.row_of(body), other.row_of(body)
+        assert np.array_equal(grid.arrays.clearance[row], other.arrays.clearance[anew])
+        assert np.array_equal(grid.arrays.edges[row], other.arrays.edges[anew])
+        found, expected = grid.traversability.of(body), other.traversability.of(body)
+        assert found.near.barriers is grid.barriers
+        assert np.array_equal(found.steps, expected.steps)
+        assert np.array_equal(found.classes, expected.classes)
+    with pytest.raises(KeyError, match="trapdoor"):
+        grid.prepare_door("trapdoor", True)
+
+
+def test_a_change_that_was_prepared_for_another_grid_is_derived_anew() -> None:
+    grid, other = (LayeredGrid.from_scene(doored()) for _ in range(2))
+    grid.apply_door(other.prepare_door("gate", False))
+    late = grid.prepare_door("back", False)
+    grid.set_door("gate", True)
+    grid.apply_door(late)
+    other.set_door("back", False)
+    assert (grid.doors.is_open("gate"), grid.doors.is_open("back")) == (True, False)
+    assert np.array_equal(grid.arrays.clearance, other.arrays.clearance)
+
+
+@pytest.mark.parametrize("floor_m", [0.0, UPPER_M], ids=["ground", "upper"])
 def test_what_a_door_changes_is_what_is_derived_anew(floor_m) -> None:
     grid = LayeredGrid.from_scene(doored(floor_m=floor_m))
     bodies = (ADULT, CHILD)

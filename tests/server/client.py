@@ -122,12 +122,17 @@ class Client:
 
 
 @asynccontextmanager
-async def connected(port: int) -> AsyncIterator[Client]:
+async def connected(port: int, source: str = "127.0.0.1") -> AsyncIterator[Client]:
     """A connection that has not said hello."""
     url = f"ws://127.0.0.1:{port}/ws"
     # Without a bound on its queue, a client that a test does not read from can still close.
     async with connect(
-        url, compression=None, max_size=None, max_queue=None, proxy=None
+        url,
+        compression=None,
+        max_size=None,
+        max_queue=None,
+        proxy=None,
+        local_addr=(source, 0),
     ) as connection:
         yield Client(connection)
 
@@ -138,11 +143,15 @@ async def joined(
     name: str = "Ann",
     at: tuple[float, float, int] | None = None,
     resume: str | None = None,
+    source: str = "127.0.0.1",
 ) -> AsyncIterator[Client]:
-    """A person in the world who has had a first snapshot; an operator if `at` is given."""
+    """A person in the world who has had a first snapshot; an operator if `at` is given.
+
+    `source` is the address that the client connects from.
+    """
     key = None if at is None else PLACING_KEY
     hello = Hello(name=name, version=VERSION, at=at, resume=resume, operator=key)
-    async with connected(port) as client:
+    async with connected(port, source) as client:
         await client.send(hello)
         await client.until(Snapshot)
         yield client

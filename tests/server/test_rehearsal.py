@@ -14,7 +14,7 @@ from esplanade.server.loading import load_scene
 from esplanade.server.settings import ServerSettings
 from esplanade.server.net.packing import Packing
 from esplanade.server.world.audience import Audience
-from esplanade.server.world.inputs import Join, Leave, Steer
+from esplanade.server.world.inputs import Join, Leave, MoveDoor, Steer
 
 def compiled():
     kernels = [each for each in gc.get_objects() if type(each) is Kernel]
@@ -27,6 +27,12 @@ audience, packing = Audience(world.rules, world.origin_m, world.times), Packing(
 avatar = 0
 for tick in range(60):
     inputs = {5: [Join(0, "Ada", None)], 6: [Steer(avatar, 1, 0.3, 1.0)], 50: [Leave(avatar)]}
+    inputs[9] = [MoveDoor(name, not is_open) for name, is_open in world.doors.states().items()]
+    if tick == 20:
+        for goal in ((30.0, 20.0, 3.5), (13.9, 7.0, 0.0), (-3.0, 0.0, 0.0)):
+            search = world.route_search(avatar, goal)
+            while not search.advance():
+                pass
     world.begin(inputs.get(tick, []))
     frame = world.finish(world.think())
     packing.pack(audience.take(frame).snapshots)

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from esplanade.planning import Body, LayeredGrid, Polygon, Scene, Wall
 from esplanade.planning.grid._grid_kernels import line_is_clear
+from esplanade.planning.ground._geometry_kernels import Placement, crosses_any
 from tests.naive.geometry import point_segment_distance, segment_distance
 from tests.naive.waves import clearance_field
 from tests.planning.worlds import UPPER_M, as_rows, holds, lines, open_grid, points, two_floors
@@ -157,3 +158,37 @@ def test_positions_and_heights_are_checked() -> None:
     with pytest.raises(ValueError, match="1 positions but 2 heights"):
         grid.clearance([(1.0, 1.0)], [0, 0])
     assert grid.clearance(np.zeros((0, 2)), []).shape == (0,)
+
+
+def plain_nearest_free(grid, position, height, clearance_m, body):
+    """`LayeredGrid.nearest_free` over whole arrays, cell by cell in order of distance."""
+    floors, centres = grid.layered.floors, grid.centres
+    clear = grid.arrays.clearance[grid.row_of(body)]
+    floor = grid.floor_at(position, height)
+    free_here = grid.is_free([position], [height], clearance_m, body)[0]
+    apart = np.abs(floors - height)
+    for near_m in (0.5 * body.height_m, math.inf):
+        if free_here and floor - height < near_m:
+            return position
+        cells = np.flatnonzero((clear >= clearance_m) & (apart < near_m))
+        if not len(cells):
+            continue
+        away = np.hypot(*(centres[cells] - position).T) + apart[cells]
+        placement = Placement(floor, floor, body.height_m, body.step_on_m)
+        for k in np.argsort(away, kind="stable"):
+            x, y = centres[cells[k]].tolist()
+            if away[k] < 1.0 and not crosses_any(grid.index, placement, *position, x, y):
+                return x, y
+        x, y = centres[cells[away.argmin()]].tolist()
+        return x, y
+    return None
+
+
+@given(lines(0.0, 5.0, 4), st.lists(st.sampled_from([SQUARE, HOOK]), max_size=2, unique_by=id))
+@holds(30, 8)
+def test_the_nearest_free_place_is_that_of_the_plain_search(walls, rings) -> None:
+    grid = open_grid(5.0, walls, [Polygon(points=tuple(ring), height_m=2.0) for ring in rings])
+    for x, y in np.random.default_rng(1).uniform(-0.5, 5.5, (20, 2)).tolist():
+        for clearance_m in (0.25, 0.6):
+            expected = plain_nearest_free(grid, (x, y), 0.0, clearance_m, Body.adult())
+            assert grid.nearest_free((x, y), 0.0, clearance_m) == expected

@@ -1,8 +1,10 @@
 """People in a running server: coming in, moving, talking, coming back, going."""
 
 import asyncio
+import itertools
 import math
 import threading
+from contextlib import AsyncExitStack
 from pathlib import Path
 
 import pytest
@@ -23,7 +25,7 @@ from esplanade.protocol.messages import (
     Welcome,
 )
 from tests.patience import PATIENCE_S
-from tests.server.client import connected, joined
+from tests.server.client import Client, connected, joined
 from tests.server.conftest import Serving
 from tests.server.worlds import ROOM
 
@@ -94,6 +96,48 @@ async def test_where_no_way_leads_a_person_is_told_and_stays(
         assert error.error is ErrorCode.NO_PATH
         assert "(15.00, 5.00, 0.50)" in error.text
         await client.ticks(2)
+
+
+async def test_a_way_is_found_for_one_address_while_another_asks_all_the_time(
+    serving: Serving,
+) -> None:
+    async with serving() as server, AsyncExitStack() as stack:
+        crowd = [
+            await stack.enter_async_context(joined(server.port, f"P{k}", source="127.0.0.2"))
+            for k in range(8)
+        ]
+        ann = await stack.enter_async_context(joined(server.port, at=(8.0, 5.0, 0)))
+
+        async def ask_on(client: Client, number: int) -> None:
+            for seq in itertools.count(1):
+                goal = 11.0 + 0.01 * (seq % 800), 1.0 + 0.3 * number
+                await client.send(WalkTo(seq=seq, x=goal[0], y=goal[1]))
+                await asyncio.sleep(0.04)
+
+        asking = [asyncio.create_task(ask_on(client, k)) for k, client in enumerate(crowd)]
+        await asyncio.sleep(0.5)
+        for seq in range(1, 6):
+            asked_at = ann.tick
+            await ann.send(WalkTo(seq=seq, x=12.0, y=2.0 + seq))
+            await ann.wait_for(lambda: ann.ack == seq)  # noqa: B023 - called in this round only
+            assert ann.tick - asked_at <= 60
+        for task in asking:
+            task.cancel()
+
+
+async def test_who_causes_too_much_searching_is_told_and_stays(
+    serving: Serving, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("esplanade.server.net.route_requests.REQUEST_S", 1.0)
+    async with serving() as server, joined(server.port) as client:
+        for seq in range(1, 4):
+            await client.send(WalkTo(seq=seq, x=5.0, y=5.0))
+        error = await client.until(Error)
+        assert error.error is ErrorCode.FLOODING
+        assert "ask again in" in error.text
+        await client.move(0.0, 1.0)
+        await client.ticks(2)
+        assert b"esplanade_routes_refused_total 1.0" in server.metrics.exposition()
 
 
 async def test_only_operators_move_doors(serving: Serving) -> None:

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from esplanade.planning import Polygon, Scene
-from esplanade.server.world.routes import Point, Route, find_route, straight_route
+from esplanade.server.world.routes import Point, Route, find_route
 from tests.server.worlds import ROOM, grid_of
 
 COURTYARD = Scene.open_space(
@@ -29,13 +29,11 @@ def length_m(start: Point, way: Route) -> float:
 
 def test_where_nothing_stands_between_the_way_is_straight() -> None:
     goal = (8.0, 9.0, 0)
-    assert straight_route(grid_of(ROOM), (3.0, 3.0, 0), goal, 0.25) == (goal,)
     assert find_route(grid_of(ROOM), (3.0, 3.0, 0), goal, 0.25) == (goal,)
 
 
 def test_around_a_wall_the_way_is_short_and_has_few_legs() -> None:
     start, goal = (8.0, 5.0, 0), (12.0, 5.0, 0)
-    assert straight_route(grid_of(ROOM), start, goal, 0.25) is None
     way = find_route(grid_of(ROOM), start, goal, 0.25)
     assert way is not None
     assert way[-1] == goal
