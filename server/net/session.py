@@ -83,8 +83,6 @@ class Session:
         metrics: Metrics,
     ) -> None:
         now = asyncio.get_running_loop().time()
-        self.address = connection.client_address
-        """The client's address, by which limits go."""
         self.outbox = Outbox(connection, SlowPolicy.of(settings), metrics.traffic)
         self.address = connection.client_address
         """The key by which limits of the client's address go."""
