@@ -37,8 +37,9 @@ class RouteRequests:
 
     Addresses take turns, and so do the people of one address. The first piece of a search is done
     as soon as it is the person's turn: short searches end with it. Those that go on wait for a
-    place among `LONG_SEARCHES`, whose pieces alternate with first pieces. So a short search waits
-    for no long one, and a long one for at most one of each other address.
+    place among `LONG_SEARCHES`, whose pieces alternate with first pieces, and with those of other
+    addresses first. So a short search waits for no long one, and beside one other address, however
+    much that wants, every second piece of work is for the only search of somebody else.
     """
 
     def __init__(self, world: Zone, thread: Executor, budget: SearchBudget) -> None:
@@ -94,25 +95,28 @@ class RouteRequests:
             await self._wanted.wait()
             self._wanted.clear()
             while self._wishes or self._long or self._under_way:
-                await self._first_piece(found)
-                await self._next_piece(found)
+                served = await self._first_piece(found)
+                await self._next_piece(found, served)
 
-    async def _first_piece(self, found: Found) -> None:
+    async def _first_piece(self, found: Found) -> str | None:
+        """Begin the search whose turn it is, if any; the address that this was for."""
         turn = self._wishes.pop()
         if turn is None:
-            return
+            return None
         asker, wish = turn
         try:
             search = self._world.route_search(asker.avatar_id, (wish.x, wish.y, wish.z))
         except Exception:
             log.exception("no route found because of a fault", id=asker.avatar_id)
             self._answer(asker.avatar_id, wish, None, found)
-            return
+            return asker.address
         job = _Job(asker, wish, search)
         if not await self._piece(job, found):
             self._long.put(asker, job)
+        return asker.address
 
-    async def _next_piece(self, found: Found) -> None:
+    async def _next_piece(self, found: Found, served: str | None) -> None:
+        """Go on with a long search, of another address than was just served if there is one."""
         while len(self._under_way) < LONG_SEARCHES and self._long:
             turn = self._long.pop(but_for=self._under_way)
             if turn is None:
@@ -120,7 +124,9 @@ class RouteRequests:
             self._under_way[turn[0].address] = turn[1]
         if not self._under_way:
             return
-        address, job = self._under_way.popitem(last=False)
+        first = next(iter(self._under_way))
+        address = next((one for one in self._under_way if one != served), first)
+        job = self._under_way.pop(address)
         if not await self._piece(job, found):
             self._under_way[address] = job
 

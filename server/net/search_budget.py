@@ -16,7 +16,7 @@ class Share(NamedTuple):
 
 
 PERSON: Final = Share(0.1, 1.5)
-ADDRESS: Final = Share(0.25, 4.0)
+ADDRESS: Final = Share(0.25, 2.0)
 """For all people of one address together: half of what all addresses have together."""
 
 REQUEST_S: Final = 0.001

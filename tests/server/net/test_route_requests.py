@@ -124,10 +124,10 @@ async def test_a_long_search_alternates_with_those_of_a_crowd() -> None:
         a.world.go.set()
         answered = await a.until_answered(2)
         assert 1000 in answered
-        # First pieces, pieces of the crowd's one long search, and own pieces take turns.
+        # Besides the first pieces of the crowd, no piece of a long search of it comes between.
         assert a.world.pieces.index(1000) <= 3
         last = max(k for k, avatar_id in enumerate(a.world.pieces) if avatar_id == 1000)
-        assert last <= 4 * 6 + 3
+        assert last <= 2 * 6 + 3
 
 
 async def test_short_searches_wait_for_no_long_one() -> None:
