@@ -13,12 +13,15 @@ import structlog
 from esplanade.protocol import ErrorCode, ProtocolError
 from esplanade.protocol.messages import WalkTo
 from esplanade.server.net.fair_queue import Asker, FairQueue
-from esplanade.server.net.search_budget import REQUEST_S, SearchBudget
+from esplanade.server.net.search_budget import REQUEST_S, Account, SearchBudget, Share
 from esplanade.server.world.routes import Route, RouteSearch
 from esplanade.server.world.zone import Zone
 
 LONG_SEARCHES: Final = 3
 """Searches of more than one piece that are under way at once, each of another address."""
+
+ALL_SEARCHES: Final = Share(0.5, 0.1)
+"""Time of all searches together: half a core, so that actors have the rest, after a short burst."""
 
 log = structlog.get_logger(__name__)
 
@@ -52,6 +55,7 @@ class RouteRequests:
         self._latest: dict[int, WalkTo] = {}
         """The wish of each person that is to be answered, whatever stage it is at."""
         self._wanted = asyncio.Event()
+        self._time = Account(ALL_SEARCHES, 0.0)
         self.refused = 0
         """Requests that were refused because searches had cost too much."""
         self.search_s = 0.0
@@ -148,8 +152,10 @@ class RouteRequests:
         self._budget.spend(job.asker, seconds, loop.time())
         if over:
             self._answer(avatar_id, job.wish, route, found)
-        # Resting as long as it worked, this never takes more than half a core from the actors.
-        await asyncio.sleep(loop.time() - start)
+        now = loop.time()
+        self._time.spend(now - start, now)
+        if (rest_s := self._time.wait_s(now)) > 0.0:
+            await asyncio.sleep(rest_s)
         return over or self._latest.get(avatar_id) is not job.wish
 
     def _answer(self, avatar_id: int, wish: WalkTo, route: Route | None, found: Found) -> None:

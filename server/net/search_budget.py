@@ -25,8 +25,8 @@ REQUEST_S: Final = 0.001
 _KEPT: Final = 1024
 
 
-class _Account:
-    """Seconds that are left, refilled with time."""
+class Account:
+    """Seconds that are left of a share, refilled with time. `now` is in seconds of any one clock."""
 
     __slots__ = ("_left_s", "_share", "_then")
 
@@ -41,14 +41,17 @@ class _Account:
         self._then = now
 
     def spend(self, seconds: float, now: float) -> None:
+        """Take seconds, be it more than are left."""
         self._refill(now)
         self._left_s = max(-self._share.burst_s, self._left_s - seconds)
 
     def wait_s(self, now: float) -> float:
+        """Seconds until the debt is paid; 0 without one."""
         self._refill(now)
         return max(0.0, -self._left_s / self._share.per_s)
 
     def is_full(self, now: float) -> bool:
+        """Whether there is no need to remember it."""
         self._refill(now)
         return self._left_s >= self._share.burst_s
 
@@ -62,8 +65,8 @@ class SearchBudget:
     def __init__(self, person: Share = PERSON, address: Share = ADDRESS) -> None:
         self._person = person
         self._address = address
-        self._people: dict[int, _Account] = {}
-        self._addresses: dict[str, _Account] = {}
+        self._people: dict[int, Account] = {}
+        self._addresses: dict[str, Account] = {}
         self._swept_at = _KEPT
 
     def wait_s(self, asker: Asker, now: float) -> float:
@@ -74,13 +77,13 @@ class SearchBudget:
         """Charge a person and their address with some work, be it more than is left."""
         self._sweep(now)
         if asker.avatar_id not in self._people:
-            self._people[asker.avatar_id] = _Account(self._person, now)
+            self._people[asker.avatar_id] = Account(self._person, now)
         if asker.address not in LOCAL_KEYS and asker.address not in self._addresses:
-            self._addresses[asker.address] = _Account(self._address, now)
+            self._addresses[asker.address] = Account(self._address, now)
         for account in self._known(asker):
             account.spend(seconds, now)
 
-    def _known(self, asker: Asker) -> list[_Account]:
+    def _known(self, asker: Asker) -> list[Account]:
         accounts = self._people.get(asker.avatar_id), self._addresses.get(asker.address)
         return [account for account in accounts if account is not None]
 

@@ -168,9 +168,9 @@ async def test_an_operator_moves_doors_and_everyone_is_told(
         await client.send(SetDoor(name="gate", open=False))
         assert (await client.until(Doors)).doors == {"gate": False}
         assert (await ann.until(Doors)).doors == {"gate": False}
-        figures = server.metrics.exposition()
-        assert b"esplanade_doors_waiting 0.0" in figures
-        assert b"esplanade_potentials_outdated 0.0" in figures
+        figures = server.metrics.exposition
+        await client.wait_for(lambda: b"esplanade_doors_waiting 0.0" in figures())
+        await client.wait_for(lambda: b"esplanade_potentials_outdated 0.0" in figures())
         await client.send(SetDoor(name="window", open=False))
         error = await client.until(Error)
         assert (error.error, "window" in error.text) == (ErrorCode.INVALID, True)

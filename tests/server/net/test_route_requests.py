@@ -187,3 +187,28 @@ async def test_work_is_charged_to_who_caused_it() -> None:
         a.ask("a", 1, pieces=20)
         await a.until_answered(1)
         assert a.requests.search_s > 0.0
+
+
+async def test_all_searches_together_rest_as_long_as_they_work(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    clock, rested = [0.0], []
+
+    async def rest(seconds: float) -> None:
+        rested.append(seconds)
+        clock[0] += seconds
+
+    def work(search: ScriptedSearch) -> bool:
+        clock[0] += 0.02
+        search._left -= 1
+        return search._left <= 0
+
+    async with asking() as a:
+        monkeypatch.setattr(ScriptedSearch, "advance", work)
+        monkeypatch.setattr(asyncio.get_running_loop(), "time", lambda: clock[0])
+        monkeypatch.setattr("esplanade.server.net.route_requests.asyncio.sleep", rest)
+        a.ask("a", 1, pieces=100)
+        while not a.answers:
+            await asyncio.wait([asyncio.ensure_future(asyncio.to_thread(lambda: None))])
+        monkeypatch.undo()
+    assert sum(rested) == pytest.approx(100 * 0.02, abs=2 * 0.1 + 0.05)
