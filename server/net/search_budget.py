@@ -26,7 +26,7 @@ _KEPT: Final = 1024
 
 
 class Account:
-    """Seconds that are left of a share, refilled with time. `now` is in seconds of any one clock."""
+    """Seconds that are left of a share, refilled with time; `now` is of any one clock."""
 
     __slots__ = ("_left_s", "_share", "_then")
 
