@@ -34,6 +34,7 @@ class Ticker:
         thread: Executor,
     ) -> None:
         self._world = world
+        self._ground_work = ground_work
         self._audience = audience
         self._link = link
         self._hub = hub
@@ -73,9 +74,8 @@ class Ticker:
         loop = asyncio.get_running_loop()
         start = perf_counter()
         self._schedule.begin(loop.time())
-        self._ground_work = ground_work
         self._link.send(self._hub.drain(loop.time()))
-        self._world.begin(self._link.inputs())
+        self._world.begin([*self._link.inputs(), *self._ground_work.drain()])
         actors_moved = await loop.run_in_executor(self._thread, self._think)
         self._link.publish(self._world.finish(actors_moved))
         for frame in self._link.frames():

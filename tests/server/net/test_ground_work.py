@@ -131,7 +131,7 @@ def test_work_that_fails_is_passed_over(at_once: AtOnce, monkeypatch: pytest.Mon
     assert {"gate": False} in moves_of(trial, work, [[]] * 20)
 
 
-def populated() -> tuple[World, Population]:
+def populated() -> tuple[Zone, Population]:
     grid = LayeredGrid.from_scene(GATED)
     population = Population(grid, GATED, TICK_S)
     for k in range(4):

@@ -56,7 +56,7 @@ class Asking:
 
     def __init__(self, thread: ThreadPoolExecutor, budget: SearchBudget) -> None:
         self.world = ScriptedWorld()
-        self.requests = RouteRequests(cast(World, self.world), thread, budget)
+        self.requests = RouteRequests(cast(Zone, self.world), thread, budget)
         self.answers: list[Answer] = []
         self._changed = asyncio.Event()
 
