@@ -32,6 +32,7 @@ _SOURCES: Final = (
     "planning",
     "actors/locomotion",
     "evaluation/policies",
+    "server/net/compiled",
     "server/world/compiled",
 )
 """Folders that hold kernels, and all that kernels take functions and constants from."""

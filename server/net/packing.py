@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from esplanade.protocol import encode_snapshot, encode_steps
-from esplanade.server.net._frame_kernels import measure, pack
+from esplanade.server.net.compiled._frame_kernels import measure, pack
 from esplanade.server.world.audience import RECORD_BYTES, STEP_BYTES, Snapshots
 
 _ACK_MARK: Final = 0x01020304

@@ -8,8 +8,8 @@ import numpy.typing as npt
 
 from esplanade.protocol.snapshot import RECORD
 from esplanade.protocol.steps import STEP
-from esplanade.server.world._snapshot_kernels import choose, gather
 from esplanade.server.world.avatars import Avatars
+from esplanade.server.world.compiled._snapshot_kernels import choose, gather
 from esplanade.server.world.frame import Events, Frame, Line
 from esplanade.server.world.interest import Interest
 from esplanade.server.world.routes import Point

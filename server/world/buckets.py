@@ -4,8 +4,8 @@ from typing import Final
 
 import numpy as np
 
-from esplanade.server.world._bucket_kernels import ORDER_BITS, Buckets, fill_buckets
 from esplanade.server.world.avatars import Avatars
+from esplanade.server.world.compiled._bucket_kernels import ORDER_BITS, Buckets, fill_buckets
 
 MAX_AVATARS: Final = 1 << ORDER_BITS
 PER_BUCKET: Final = 4

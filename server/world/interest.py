@@ -8,7 +8,9 @@ from typing import Final
 
 import numpy as np
 
-from esplanade.server.world._interest_kernels import (
+from esplanade.server.world.avatars import Avatars
+from esplanade.server.world.buckets import sort_into_buckets
+from esplanade.server.world.compiled._interest_kernels import (
     NOT_NEAR,
     Limits,
     Views,
@@ -16,8 +18,6 @@ from esplanade.server.world._interest_kernels import (
     look,
     settle_all,
 )
-from esplanade.server.world.avatars import Avatars
-from esplanade.server.world.buckets import sort_into_buckets
 from esplanade.server.world.rules import Rules
 from esplanade.server.world.state import Slots
 

@@ -5,9 +5,9 @@ import pytest
 
 from esplanade.protocol.snapshot import pack_records
 from esplanade.protocol.steps import STEP
-from esplanade.server.world._bucket_kernels import ORDER_BITS, find_nearest
 from esplanade.server.world.avatars import STOREY_WEIGHT, Avatars
 from esplanade.server.world.buckets import sort_into_buckets
+from esplanade.server.world.compiled._bucket_kernels import ORDER_BITS, find_nearest
 from esplanade.server.world.frame import Entered, Events, Frame
 from esplanade.server.world.state import PERSON
 

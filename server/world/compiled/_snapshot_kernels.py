@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
-from esplanade.server.world._interest_kernels import (
+from esplanade.server.world.compiled._interest_kernels import (
     NOT_NEAR,
     RECORD_UNDER_WAY,
     STEP_UNDER_WAY,

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
-from esplanade.server.world._snapshot_kernels import copy
+from esplanade.server.world.compiled._snapshot_kernels import copy
 
 Bytes = NDArray[np.uint8]
 Ints = NDArray[np.int64]

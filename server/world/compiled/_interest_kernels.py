@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
-from esplanade.server.world._bucket_kernels import ORDER_BITS, Buckets, find_nearest
+from esplanade.server.world.compiled._bucket_kernels import ORDER_BITS, Buckets, find_nearest
 
 Ints = NDArray[np.int64]
 Ticks = NDArray[np.int32]
