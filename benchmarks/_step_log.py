@@ -10,7 +10,7 @@ import numpy.typing as npt
 from esplanade.bots import Bot, SnapshotEvent, StepsEvent
 from esplanade.protocol.codec import STEPS_HEAD_BYTES
 from esplanade.protocol.messages import Enter, Leave
-from esplanade.protocol.steps import STEP, StepRecords
+from esplanade.protocol.steps import STEP, StepRecords, landing_footprints
 
 Floats = npt.NDArray[np.float64]
 
@@ -46,7 +46,9 @@ class Seen:
         """
         steps = self.steps
         before, now = steps[:-1], steps[1:]
-        linked = (now["standing"] == before["landing"]) | (now["standing"] == before["standing"])
+        linked = (now["standing"] == landing_footprints(before)) | (
+            now["standing"] == before["standing"]
+        )
         return np.append(False, linked & (now["ticks"] > 0))
 
     @property

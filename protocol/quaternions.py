@@ -1,99 +1,58 @@
-"""Rotations in few bytes. Quaternions are w, x, y, z in the last axis, of length 1.
+"""Rotations of a walking body as few angles. Quaternions are w, x, y, z in the last axis.
 
-q and -q are the same rotation: what is unpacked may have the other sign.
+They have length 1. q and -q are the same rotation: what comes back may have the other sign.
 """
-
-from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
 Floats = npt.NDArray[np.float64]
 
-SMALLEST_THREE: Final = np.sqrt(0.5) / 16383.0
-"""Quantum of components that are at most the root of 1/2, in 15 bits with a sign."""
 
-NEAR_IDENTITY: Final = 0.5 / 127.0
-"""Quantum of x, y, z of a small rotation in 8 bits with a sign."""
+def to_angles(quaternions: Floats) -> Floats:
+    """Yaw, lean and roll (..., 3), radians, of rotations (..., 4).
 
-_EXACT: Final = 1e-6
-"""A component is a multiple of its quantum if it is no more of them away from one."""
-_LARGE: Final = 0.49
-"""A component that is left out is larger than this."""
-_ZERO: Final = 0x4000
-_VALUE_BITS: Final = 0x7FFF
-_OTHERS: Final = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])
-"""The three other components, by the place of the largest one."""
-
-
-def pack_smallest_three(quaternions: Floats) -> npt.NDArray[np.uint16]:
-    """Pack any rotations, float64 (..., 4), into three words each, uint16 (..., 3).
-
-    They are at most 0.01 degrees off. The largest of the four components is left out. The low 15
-    bits of each word are one of the others, in their order, plus 0x4000. The top bits of the first
-    and the second word are the low and the high bit of the place of the one left out. A
-    rotation that was unpacked is packed alike again: the component that was left out of it is known
-    by the others, which are multiples of their quantum, even if rounding made another one larger.
+    The rotation turns about the axis forward by roll, then about left by lean, then about up by
+    yaw. Lean is within a quarter turn, the others within half a turn.
     """
-    return _pack_once(unpack_smallest_three(_pack_once(quaternions)))
+    w, x, y, z = np.moveaxis(quaternions, -1, 0)
+    return np.stack(
+        [
+            np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
+            np.arcsin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0)),
+            np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)),
+        ],
+        axis=-1,
+    )
 
 
-def _left_out(quaternions: Floats) -> npt.NDArray[np.int64]:
-    """The place of the component that is left out of each, int64 (...)."""
-    multiples = quaternions / SMALLEST_THREE
-    exact = np.abs(multiples - np.rint(multiples)) < _EXACT
-    exact &= np.abs(multiples) < _ZERO - 0.5
-    without = np.stack([exact[..., others].all(axis=-1) for others in _OTHERS], axis=-1)
-    without &= np.abs(quaternions) > _LARGE
-    largest = np.abs(quaternions).argmax(axis=-1)
-    places: npt.NDArray[np.int64] = np.where(without.any(axis=-1), without.argmax(axis=-1), largest)
-    return places
+def from_angles(angles: Floats) -> Floats:
+    """The rotations (..., 4) of yaw, lean and roll (..., 3), radians."""
+    cz, cy, cx = np.moveaxis(np.cos(0.5 * angles), -1, 0)
+    sz, sy, sx = np.moveaxis(np.sin(0.5 * angles), -1, 0)
+    return np.stack(
+        [
+            cz * cy * cx + sz * sy * sx,
+            cz * cy * sx - sz * sy * cx,
+            cz * sy * cx + sz * cy * sx,
+            sz * cy * cx - cz * sy * sx,
+        ],
+        axis=-1,
+    )
 
 
-def _pack_once(quaternions: Floats) -> npt.NDArray[np.uint16]:
-    place = _left_out(quaternions)[..., None]
-    largest = np.take_along_axis(quaternions, place, axis=-1)
-    others = np.take_along_axis(quaternions, _OTHERS[place[..., 0]], axis=-1)
-    words = np.rint(np.copysign(others, others * largest) / SMALLEST_THREE).astype(np.int64)
-    words = np.clip(words, -_ZERO + 1, _ZERO - 1) + _ZERO
-    words[..., :2] |= np.concatenate([place & 1, place >> 1], axis=-1) << 15
-    packed: npt.NDArray[np.uint16] = words.astype(np.uint16)
-    return packed
+def to_twist(chests: Floats, roll: Floats) -> Floats:
+    """The twist (...), radians, nearest to chests (..., 4) on pelvises with that roll (...)."""
+    w, x, y, z = np.moveaxis(chests, -1, 0)
+    c, s = np.cos(0.5 * roll), np.sin(0.5 * roll)
+    along, across = c * w - s * x, c * z + s * y
+    sign = np.where(along < 0.0, -1.0, 1.0)
+    twists: Floats = 2.0 * np.arctan2(sign * across, sign * along)
+    return twists
 
 
-def unpack_smallest_three(words: npt.NDArray[np.uint16]) -> Floats:
-    """Unpack what `pack_smallest_three` made: rotations, float64 (..., 4)."""
-    place = ((words[..., 0] >> 15) | (words[..., 1] >> 15 << 1)).astype(np.int64)
-    others = ((words & _VALUE_BITS).astype(np.int64) - _ZERO) * SMALLEST_THREE
-    quaternions = np.empty((*words.shape[:-1], 4))
-    np.put_along_axis(quaternions, place[..., None], _missing(others), axis=-1)
-    np.put_along_axis(quaternions, _OTHERS[place], others, axis=-1)
-    return _unit(quaternions)
-
-
-def pack_near_identity(quaternions: Floats) -> npt.NDArray[np.int8]:
-    """Pack small rotations, float64 (..., 4), into their x, y, z with w >= 0, int8 (..., 3).
-
-    Each of x, y, z is clamped to 0.5, which is a turn by 60 degrees about one axis. Within that
-    rotations are at most 0.7 degrees off, and below 0.5 degrees if they are up to 60 degrees.
-    """
-    upward = quaternions[..., 1:] * np.where(quaternions[..., :1] < 0.0, -1.0, 1.0)
-    packed: npt.NDArray[np.int8] = np.rint(upward / NEAR_IDENTITY).clip(-0x7F, 0x7F).astype(np.int8)
-    return packed
-
-
-def unpack_near_identity(vectors: npt.NDArray[np.int8]) -> Floats:
-    """Unpack what `pack_near_identity` made: rotations, float64 (..., 4)."""
-    others: Floats = vectors.astype(np.float64) * NEAR_IDENTITY
-    return _unit(np.concatenate([_missing(others), others], axis=-1))
-
-
-def _missing(others: Floats) -> Floats:
-    """The component, never negative, that makes the length 1."""
-    rest: Floats = 1.0 - np.square(others).sum(axis=-1, keepdims=True)
-    return np.sqrt(np.maximum(rest, 0.0))
-
-
-def _unit(quaternions: Floats) -> Floats:
-    unit: Floats = quaternions / np.linalg.norm(quaternions, axis=-1, keepdims=True)
-    return unit
+def from_twist(twist: Floats, roll: Floats) -> Floats:
+    """Rotations (..., 4) from pelvis to chest, which undo the roll (...) and twist the spine."""
+    c, s = np.cos(0.5 * roll), np.sin(0.5 * roll)
+    ct, st = np.cos(0.5 * twist), np.sin(0.5 * twist)
+    return np.stack([c * ct, -(s * ct), s * st, c * st], axis=-1)

@@ -21,33 +21,51 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from esplanade.protocol.quaternions import (
-    Floats,
-    pack_near_identity,
-    pack_smallest_three,
-    unpack_near_identity,
-    unpack_smallest_three,
+from esplanade.protocol.keys_between import (
+    ANKLE,
+    BETWEEN,
+    BYTES,
+    NUMBERS,
+    STANDING_PITCH,
+    YAW,
+    Flags,
+    Integers,
+    pack_between,
+    unpack_between,
 )
-
-KEYS: Final = 6
-"""Keys of a step, at the shares 0, 0.2, 0.4, 0.6, 0.8 and 1 of its duration."""
+from esplanade.protocol.quaternions import Floats, from_angles, from_twist, to_angles, to_twist
 
 FOOTPRINT = np.dtype([("position", "<i4", 3), ("heading", "<u2")])
 """A footprint, 14 bytes: the place in 0.1 mm, the heading in 1/65536 turns from +x."""
 
-KEY = np.dtype(
+LANDING = np.dtype([("offset", "<i2", 3), ("heading", "<u2")])
+"""A footprint by its offset from another one, 8 bytes."""
+
+END = np.dtype(
     [
         ("root", "<i2", 3),
-        ("pelvis", "<u2", 3),
-        ("ankle", "<i2", 3),
+        ("yaw", "<u2"),
         ("swing_pitch", "<i2"),
         ("standing_pitch", "<i2"),
-        ("swing_heading", "<i2"),
-        ("chest", "i1", 3),
+        ("lean", "i1"),
+        ("roll", "i1"),
+        ("twist", "i1"),
         ("arms", "i1", 4),
     ]
 )
-"""A key, 31 bytes: root and ankle in 0.1 mm from the standing and from the landing footprint."""
+"""What a record says of the first key and of the last one, 19 bytes."""
+
+DIFFERENCES = np.dtype(
+    [
+        ("root", "i1", 3),
+        ("ankle", "i1", 3),
+        ("yaw", "i1"),
+        ("swing_pitch", "i1"),
+        ("standing_pitch", "i1"),
+        ("swing_heading", "i1"),
+    ]
+)
+"""Differences of one of the keys between, 10 bytes; see `esplanade.protocol.keys_between`."""
 
 HEAD = np.dtype([("kind", "u1"), ("length", "<u2")])
 """The beginning of every record, 3 bytes; the length is that of the whole record in bytes."""
@@ -64,13 +82,20 @@ STEP = np.dtype(
         ("flags", "u1"),
         ("tick", "<u4"),
         ("ticks", "u1"),
-        ("standing", FOOTPRINT),
-        ("landing", FOOTPRINT),
         ("lift", "u1"),
-        ("keys", KEY, KEYS),
+        ("standing", FOOTPRINT),
+        ("landing", LANDING),
+        ("first", END),
+        ("last", END),
+        ("ankle", "<i2", 3),
+        ("swing_heading", "<i2"),
+        ("shifts", "<u4"),
+        ("between", DIFFERENCES, BETWEEN),
+        ("trunk", "<u2", 3),
+        ("arms", "<u2", 4),
     ]
 )
-"""A walking step, 228 bytes."""
+"""A walking step, 140 bytes."""
 
 _STEP_HEAD: Final = [bytes([byte]) for byte in _HEAD.pack(WALKING, STEP.itemsize)]
 
@@ -84,12 +109,29 @@ FOOTPRINT_M: Final = 1e-4
 FOOTPRINT_RAD: Final = 2.0 * np.pi / 65536.0
 KEY_M: Final = 1e-4
 FOOT_RAD: Final = 1e-4
-ARM_RAD: Final = 1.0 / 40.0
+TRUNK_RAD: Final = 1.0 / 512.0
+ARM_RAD: Final = 1.0 / 80.0
 MAX_TICKS: Final = 255
 
+# Columns of the numbers of a key, beside those that are known already.
+_ROOT: Final = slice(0, 3)
+_SWING_PITCH: Final = 7
+_SWING_HEADING: Final = 9
+_LEAN_AND_ROLL: Final = slice(10, 12)
+_TWIST: Final = 12
+_ARMS: Final = slice(13, 17)
+_OF_END: Final = {
+    "root": _ROOT,
+    "yaw": YAW,
+    "swing_pitch": _SWING_PITCH,
+    "standing_pitch": STANDING_PITCH,
+    "lean": 10,
+    "roll": 11,
+    "twist": _TWIST,
+    "arms": _ARMS,
+}
+
 StepRecords = npt.NDArray[np.void]
-Integers = npt.NDArray[np.int64]
-Flags = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -109,15 +151,17 @@ class Keys:
     pelvises: Floats
     """(N, K, 4): from the axes forward, left, up of a body with heading 0 to the pelvis."""
     ankles_m: Floats
-    """(N, K, 3): ankle of the swing foot, metres in the world."""
+    """(N, K, 3): ankle of the swing foot, metres in the world; at the end on its footprint."""
     swing_pitches_rad: Floats
     """(N, K): pitch of the swing foot, positive with the toe up."""
     standing_pitches_rad: Floats
     """(N, K): pitch of the standing foot, positive with the toe up."""
     swing_headings_rad: Floats
-    """(N, K): heading of the swing foot, within half a turn of the landing footprint's."""
+    """(N, K): heading of the swing foot, within half a turn of the landing footprint's; at the end
+    it is that."""
     chests: Floats
-    """(N, K, 4): from the pelvis to the chest; none of x, y, z is beyond 0.5."""
+    """(N, K, 4): from the pelvis to the chest. The spine undoes the roll of the pelvis, so that the
+    shoulders stay level, and twists about its length."""
     arms_rad: Floats
     """(N, K, 4): flexion of shoulder left, shoulder right, elbow left, elbow right."""
 
@@ -156,9 +200,10 @@ def pack_steps(steps: Steps) -> StepRecords:
     Returns
     -------
     STEP (N,)
-        Values outside the range of a field are clamped to its edge. The pose is off by at most
-        0.05 mm and 0.01 degrees in root, pelvis and feet, and by less than 1 degree in chest and
-        arms.
+        Values outside the range of a field are clamped to its edge. At the ends, the pose is off by
+        at most 0.05 mm and 0.003 degrees in root, yaw and feet, by 0.06 degrees in the trunk, and
+        by 0.4 degrees in the arms. Between, it is off by half a multiple; docs/protocol.md has the
+        figures of walks.
     """
     keys = steps.keys
     records = new_step_records(len(steps.ids))
@@ -167,47 +212,58 @@ def pack_steps(steps: Steps) -> StepRecords:
     records["tick"] = steps.begin_ticks & 0xFFFF_FFFF
     records["ticks"] = np.clip(steps.durations_ticks, 0, MAX_TICKS)
     records["lift"] = np.rint(np.clip(steps.lifts, 0.0, 1.0) * 0xFF)
-    _pack_footprints(records["standing"], steps.standing)
-    _pack_footprints(records["landing"], steps.landing)
+    _pack_footprints(records, steps.standing, steps.landing)
     # Keys are relative to the quantised footprints, which readers add to them.
-    standing, landing = _footprints(records["standing"]), _footprints(records["landing"])
-    packed = records["keys"]
-    packed["root"] = _short(keys.roots_m - standing.positions_m[:, None], KEY_M)
-    packed["pelvis"] = pack_smallest_three(keys.pelvises)
-    packed["ankle"] = _short(keys.ankles_m - landing.positions_m[:, None], KEY_M)
-    packed["swing_pitch"] = _short(keys.swing_pitches_rad, FOOT_RAD)
-    packed["standing_pitch"] = _short(keys.standing_pitches_rad, FOOT_RAD)
-    turned = keys.swing_headings_rad - landing.headings_rad[:, None]
-    packed["swing_heading"] = _short(np.remainder(turned + np.pi, 2.0 * np.pi) - np.pi, FOOT_RAD)
-    packed["chest"] = pack_near_identity(keys.chests)
-    packed["arms"] = np.clip(np.rint(keys.arms_rad / ARM_RAD), -0x7F, 0x7F)
+    standing, landing = _footprints(records["standing"]), _footprints(landing_footprints(records))
+    numbers = _quantised(keys, standing, landing)
+    for end, row in (("first", 0), ("last", -1)):
+        for name, columns in _OF_END.items():
+            records[end][name] = numbers[:, row, columns]
+    records["ankle"] = numbers[:, 0, ANKLE]
+    records["swing_heading"] = numbers[:, 0, _SWING_HEADING]
+    shifts, bytes_, words = pack_between(numbers, steps.re_aimed)
+    records["shifts"] = shifts
+    differences(records)[:] = bytes_
+    records["trunk"], records["arms"] = words[:, :3], words[:, 3:]
     return records
 
 
 def unpack_steps(records: StepRecords) -> Steps:
     """The steps of records (N,), in world coordinates."""
-    standing, landing = _footprints(records["standing"]), _footprints(records["landing"])
-    packed = records["keys"]
+    standing, landing = _footprints(records["standing"]), _footprints(landing_footprints(records))
+    ends = np.zeros((2, len(records), NUMBERS), dtype=np.int64)
+    for end, numbers in zip(("first", "last"), ends, strict=True):
+        for name, columns in _OF_END.items():
+            numbers[:, columns] = records[end][name]
+    ends[0, :, ANKLE] = records["ankle"]
+    ends[0, :, _SWING_HEADING] = records["swing_heading"]
+    re_aimed = records["flags"] & RE_AIMED != 0
+    words = np.concatenate([records["trunk"], records["arms"]], axis=1).astype(np.int64)
+    packed = (records["shifts"].astype(np.int64), differences(records).astype(np.int64), words)
     return Steps(
         ids=records["id"].astype(np.int64),
         on_right=records["flags"] & STANDS_ON_RIGHT != 0,
-        re_aimed=records["flags"] & RE_AIMED != 0,
+        re_aimed=re_aimed,
         begin_ticks=records["tick"].astype(np.int64),
         durations_ticks=records["ticks"].astype(np.int64),
         standing=standing,
         landing=landing,
         lifts=records["lift"] / 0xFF,
-        keys=Keys(
-            roots_m=packed["root"] * KEY_M + standing.positions_m[:, None],
-            pelvises=unpack_smallest_three(packed["pelvis"]),
-            ankles_m=packed["ankle"] * KEY_M + landing.positions_m[:, None],
-            swing_pitches_rad=packed["swing_pitch"] * FOOT_RAD,
-            standing_pitches_rad=packed["standing_pitch"] * FOOT_RAD,
-            swing_headings_rad=packed["swing_heading"] * FOOT_RAD + landing.headings_rad[:, None],
-            chests=unpack_near_identity(packed["chest"]),
-            arms_rad=packed["arms"] * ARM_RAD,
-        ),
+        keys=_keys(unpack_between(*ends, re_aimed, packed), standing, landing),
     )
+
+
+def landing_footprints(records: StepRecords) -> StepRecords:
+    """The landing footprints of steps, FOOTPRINT (N,), with the numbers of standing ones."""
+    landing = records["standing"].copy()
+    landing["position"] += records["landing"]["offset"]
+    landing["heading"] = records["landing"]["heading"]
+    return landing
+
+
+def differences(records: StepRecords) -> npt.NDArray[np.int8]:
+    """The differences of bytes in records, as a view (N, BETWEEN, BYTES) of them."""
+    return records["between"].view(np.int8).reshape(len(records), BETWEEN, BYTES)
 
 
 def step_records(block: bytes) -> StepRecords:
@@ -250,16 +306,59 @@ def _walking_records(block: bytes) -> Iterator[bytes]:
         number, at = number + 1, at + length
 
 
-def _pack_footprints(packed: StepRecords, footprints: Footprints) -> None:
-    packed["position"] = np.rint(footprints.positions_m / FOOTPRINT_M)
-    packed["heading"] = np.rint(footprints.headings_rad / FOOTPRINT_RAD).astype(np.int64) & 0xFFFF
+def _pack_footprints(packed: StepRecords, standing: Footprints, landing: Footprints) -> None:
+    for name, footprints in (("standing", standing), ("landing", landing)):
+        turned = np.rint(footprints.headings_rad / FOOTPRINT_RAD).astype(np.int64)
+        packed[name]["heading"] = turned & 0xFFFF
+    packed["standing"]["position"] = np.rint(standing.positions_m / FOOTPRINT_M)
+    places = np.rint(landing.positions_m / FOOTPRINT_M)
+    packed["landing"]["offset"] = _short(places - packed["standing"]["position"])
 
 
 def _footprints(packed: StepRecords) -> Footprints:
     return Footprints(packed["position"] * FOOTPRINT_M, packed["heading"] * FOOTPRINT_RAD)
 
 
-def _short(values: Floats, quantum: float) -> Floats:
-    """Multiples of a quantum, clamped to 16 bits."""
-    rounded: Floats = np.clip(np.rint(values / quantum), -0x7FFF, 0x7FFF)
-    return rounded
+def _quantised(keys: Keys, standing: Footprints, landing: Footprints) -> Integers:
+    """The numbers of keys, (N, KEYS, NUMBERS); see `esplanade.protocol.keys_between`."""
+    numbers = np.zeros((*keys.swing_pitches_rad.shape, NUMBERS), dtype=np.int64)
+    numbers[..., _ROOT] = _short((keys.roots_m - standing.positions_m[:, None]) / KEY_M)
+    numbers[..., ANKLE] = _short((keys.ankles_m - landing.positions_m[:, None]) / KEY_M)
+    angles = to_angles(keys.pelvises)
+    numbers[..., YAW] = np.rint(angles[..., 0] / FOOTPRINT_RAD).astype(np.int64) & 0xFFFF
+    numbers[..., _SWING_PITCH] = _short(keys.swing_pitches_rad / FOOT_RAD)
+    numbers[..., STANDING_PITCH] = _short(keys.standing_pitches_rad / FOOT_RAD)
+    turned = keys.swing_headings_rad - landing.headings_rad[:, None]
+    turned = np.remainder(turned + np.pi, 2.0 * np.pi) - np.pi
+    numbers[..., _SWING_HEADING] = _short(turned / FOOT_RAD)
+    numbers[..., _LEAN_AND_ROLL] = _byte(angles[..., 1:] / TRUNK_RAD)
+    numbers[..., _TWIST] = _byte(to_twist(keys.chests, angles[..., 2]) / TRUNK_RAD)
+    numbers[..., _ARMS] = _byte(keys.arms_rad / ARM_RAD)
+    # The swing foot lands on its footprint.
+    numbers[:, -1, ANKLE] = numbers[:, -1, _SWING_HEADING] = 0
+    return numbers
+
+
+def _keys(numbers: Integers, standing: Footprints, landing: Footprints) -> Keys:
+    lean_and_roll = numbers[..., _LEAN_AND_ROLL] * TRUNK_RAD
+    angles = np.concatenate([numbers[..., YAW, None] * FOOTPRINT_RAD, lean_and_roll], axis=-1)
+    return Keys(
+        roots_m=numbers[..., _ROOT] * KEY_M + standing.positions_m[:, None],
+        pelvises=from_angles(angles),
+        ankles_m=numbers[..., ANKLE] * KEY_M + landing.positions_m[:, None],
+        swing_pitches_rad=numbers[..., _SWING_PITCH] * FOOT_RAD,
+        standing_pitches_rad=numbers[..., STANDING_PITCH] * FOOT_RAD,
+        swing_headings_rad=numbers[..., _SWING_HEADING] * FOOT_RAD + landing.headings_rad[:, None],
+        chests=from_twist(numbers[..., _TWIST] * TRUNK_RAD, angles[..., 2]),
+        arms_rad=numbers[..., _ARMS] * ARM_RAD,
+    )
+
+
+def _short(multiples: Floats) -> Floats:
+    """Multiples of a quantum, rounded and clamped to 16 bits."""
+    return np.clip(np.rint(multiples), -0x7FFF, 0x7FFF)
+
+
+def _byte(multiples: Floats) -> Floats:
+    """Multiples of a quantum, rounded and clamped to 8 bits."""
+    return np.clip(np.rint(multiples), -0x7F, 0x7F)

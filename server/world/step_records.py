@@ -4,7 +4,6 @@ from typing import Final
 
 from esplanade.actors.locomotion.motion import key_poses as motion
 from esplanade.protocol import steps as wire
-from esplanade.protocol.quaternions import NEAR_IDENTITY, SMALLEST_THREE
 from esplanade.protocol.steps import StepRecords
 from esplanade.server.world.compiled._step_record_kernels import (
     Layout,
@@ -21,21 +20,20 @@ _LAYOUT: Final = Layout(
     wire.FOOTPRINT_RAD,
     wire.KEY_M,
     wire.FOOT_RAD,
+    wire.TRUNK_RAD,
     wire.ARM_RAD,
-    float(SMALLEST_THREE),
-    NEAR_IDENTITY,
 )
 
 
 def to_records(steps: motion.Steps, ids: Slots) -> StepRecords:
     """Quantise N steps of the avatars with these ids (N,)."""
     records = wire.new_step_records(len(ids))
-    write_records(steps, ids, _LAYOUT, records)
+    write_records(steps, ids, _LAYOUT, records, wire.differences(records))
     return records
 
 
 def from_records(records: StepRecords) -> motion.Steps:
     """The steps as readers of these records know them."""
     steps = motion.no_steps(len(records))
-    read_records(records, _LAYOUT, steps)
+    read_records(records, wire.differences(records), _LAYOUT, steps)
     return steps

@@ -10,10 +10,12 @@ from benchmarks import steps as benchmark
 from benchmarks._slide import judge
 from benchmarks._step_log import Seen, cost_of
 
+from esplanade.actors.locomotion.motion.key_poses import ANKLE
 from esplanade.protocol.steps import RE_AIMED
 from esplanade.recordings import Crowd, Track, read_crowd
 from esplanade.server.settings import ServerSettings
 from esplanade.server.world.inputs import Steer
+from esplanade.server.world.step_records import from_records
 from tests.recordings.data import recorded
 from tests.server.worlds import FIELD, Trial
 
@@ -68,6 +70,7 @@ def test_the_feet_of_a_walk_stay_where_they_stand() -> None:
 def test_a_footprint_that_moves_is_seen_as_a_slide() -> None:
     def slide(record: np.void) -> None:
         record["standing"]["position"][0] += 200
+        record["landing"]["offset"][0] -= 200
 
     found = judge([spoilt(a_walk(), slide)], TICK_RATE)
     assert found.slide.max() == pytest.approx(0.02, abs=0.003)
@@ -76,17 +79,19 @@ def test_a_footprint_that_moves_is_seen_as_a_slide() -> None:
 
 def test_a_pose_that_jumps_is_seen() -> None:
     def jump(record: np.void) -> None:
-        record["keys"]["root"][:, 2] -= 500
+        for end in ("first", "last"):
+            record[end]["root"][2] -= 500
 
     found = judge([spoilt(a_walk(), jump)], TICK_RATE)
     assert found.jump_root.max() > 0.045
 
 
-def test_a_foot_that_misses_its_footprint_is_seen() -> None:
+def test_a_foot_that_misses_its_footprint_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     seen = a_walk()
     row = len(seen.records) // 2
-    seen.records[row]["landing"]["position"][1] += 300
-    seen.records[row]["keys"]["ankle"][:, 1] -= 300
+    steps = from_records(seen.steps)
+    steps.keys[row, -1, ANKLE.start + 1] -= 0.03
+    monkeypatch.setattr("benchmarks._slide.from_records", lambda _: steps)
     assert judge([seen], TICK_RATE).landing.max() == pytest.approx(0.03, abs=0.003)
 
 

@@ -28,7 +28,7 @@ from esplanade.protocol.messages import (
     Watch,
 )
 from esplanade.protocol.snapshot import pack_records
-from esplanade.protocol.steps import FOOTPRINT_M, pack_steps
+from esplanade.protocol.steps import FOOTPRINT_M, landing_footprints, pack_steps
 from tests.bots.scripted import OPERATOR, scripted_server, until
 from tests.protocol.steps import made_up_steps, mixed_block
 
@@ -118,7 +118,7 @@ async def test_steps_come_as_records_and_in_world_units() -> None:
         assert event.tick == 9
         np.testing.assert_array_equal(event.records, records)
         landing = event.steps.landing.positions_m
-        np.testing.assert_allclose(landing, records["landing"]["position"] * FOOTPRINT_M)
+        np.testing.assert_allclose(landing, landing_footprints(records)["position"] * FOOTPRINT_M)
 
 
 async def test_it_knows_the_build_of_those_in_view_and_where_they_point() -> None:

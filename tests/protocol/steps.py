@@ -2,11 +2,13 @@
 
 import numpy as np
 
-from esplanade.protocol.steps import KEYS, Floats, Footprints, Keys, StepRecords, Steps
+from esplanade.protocol.keys_between import KEYS
+from esplanade.protocol.quaternions import Floats, from_angles, from_twist
+from esplanade.protocol.steps import Footprints, Keys, StepRecords, Steps
 
 
 def made_up_steps(count: int, seed: int = 0) -> Steps:
-    """Random steps, all values within the range of a record."""
+    """Random steps, all values within the range of a record; the swing foot lands on its place."""
     random = np.random.default_rng(seed)
 
     def within(low: float, high: float, *shape: int) -> Floats:
@@ -14,6 +16,11 @@ def made_up_steps(count: int, seed: int = 0) -> Steps:
 
     landing = Footprints(within(-300.0, 300.0, 3), within(0.0, 2.0 * np.pi))
     standing = Footprints(landing.positions_m + within(-1.0, 1.0, 3), within(-9.0, 9.0))
+    yaws, trunks = within(-3.1, 3.1, KEYS, 1), within(-0.2, 0.2, KEYS, 2)
+    angles = np.concatenate([yaws, trunks], axis=-1)
+    ankles_m = landing.positions_m[:, None] + within(-3.2, 3.2, KEYS, 3)
+    swing_headings_rad = landing.headings_rad[:, None] + within(-3.0, 3.0, KEYS)
+    ankles_m[:, -1], swing_headings_rad[:, -1] = landing.positions_m, landing.headings_rad
     return Steps(
         ids=random.integers(0, 2**32, count),
         on_right=random.random(count) < 0.5,
@@ -25,13 +32,13 @@ def made_up_steps(count: int, seed: int = 0) -> Steps:
         lifts=within(0.0, 1.0),
         keys=Keys(
             roots_m=standing.positions_m[:, None] + within(-3.2, 3.2, KEYS, 3),
-            pelvises=_unit(random.normal(size=(count, KEYS, 4))),
-            ankles_m=landing.positions_m[:, None] + within(-3.2, 3.2, KEYS, 3),
+            pelvises=from_angles(angles),
+            ankles_m=ankles_m,
             swing_pitches_rad=within(-3.0, 3.0, KEYS),
             standing_pitches_rad=within(-3.0, 3.0, KEYS),
-            swing_headings_rad=landing.headings_rad[:, None] + within(-3.0, 3.0, KEYS),
-            chests=_unit(within(-0.3, 0.3, KEYS, 4) + np.array([1.0, 0.0, 0.0, 0.0])),
-            arms_rad=within(-3.0, 3.0, KEYS, 4),
+            swing_headings_rad=swing_headings_rad,
+            chests=from_twist(within(-0.2, 0.2, KEYS), angles[..., 2]),
+            arms_rad=within(-1.5, 1.5, KEYS, 4),
         ),
     )
 
@@ -50,8 +57,3 @@ def mixed_block(records: StepRecords) -> bytes:
         parts.append(longer.tobytes() + b"\x55" * place)
     parts[-1] = records[-1].tobytes()
     return b"".join(parts)
-
-
-def _unit(quaternions: Floats) -> Floats:
-    unit: Floats = quaternions / np.linalg.norm(quaternions, axis=-1, keepdims=True)
-    return unit

@@ -1,6 +1,7 @@
 /** The records of a message of steps (see `protocol/steps.py`). */
 
 import { WireError } from "./errors";
+import { number, STEP_KEYS, WHOLE_NUMBERS, Whole, wholeKeys } from "./step_keys";
 
 /** The place of a heel on the ground, metres; `heading` is that of the toe, radians from +x. */
 export interface Footprint {
@@ -30,8 +31,6 @@ export interface StepRecord {
   keys: Float64Array;
 }
 
-export const STEP_KEYS = 6;
-
 /** Metres, radians, quaternions w, x, y, z; places in the world's axes. */
 export const KeyNumber = {
   /** Centre between the hips x, y, z from the standing footprint. */
@@ -44,27 +43,26 @@ export const KeyNumber = {
   STANDING_PITCH: 11,
   /** From the landing footprint's heading. */
   SWING_HEADING: 12,
-  /** Against the pelvis. */
+  /** Against the pelvis, whose roll it undoes. */
   CHEST: 13,
   /** Flexion of shoulder left, shoulder right, elbow left, elbow right. */
   ARMS: 17,
 } as const;
 
 export const KEY_NUMBERS = 21;
+export { STEP_KEYS };
 
 /** Every record begins with its kind and its length, so that others than walking steps may come. */
 const RECORD_HEAD_BYTES = 3;
 const WALKING = 1;
-const STEP_BYTES = 228;
-const KEYS_AT = 42;
-const KEY_BYTES = 31;
+const STEP_BYTES = 140;
+const RE_AIMED = 2;
 const FOOTPRINT_M = 1e-4;
 const FOOTPRINT_RAD = (2 * Math.PI) / 65536;
 const KEY_M = 1e-4;
 const FOOT_RAD = 1e-4;
-const ARM_RAD = 1 / 40;
-const SMALLEST_THREE = Math.SQRT1_2 / 16383;
-const NEAR_IDENTITY = 0.5 / 127;
+const TRUNK_RAD = 1 / 512;
+const ARM_RAD = 1 / 80;
 
 /**
  * The walking steps of a block, in their order. Records of other kinds are passed over, and so is
@@ -101,66 +99,67 @@ export function unpackSteps(block: Uint8Array): StepRecord[] {
 
 function walkingStep(view: DataView, at: number): StepRecord {
   const flags = view.getUint8(at + 7);
+  const standing = whole(view, at + 14);
+  const landing = [0, 1, 2].map((i) => number(standing, i) + view.getInt16(at + 28 + 2 * i, true));
   return {
     id: view.getUint32(at + 3, true),
     rightStands: (flags & 1) !== 0,
-    continues: (flags & 2) !== 0,
+    continues: (flags & RE_AIMED) !== 0,
     tick: view.getUint32(at + 8, true),
     ticks: view.getUint8(at + 12),
-    standing: footprint(view, at + 13),
-    landing: footprint(view, at + 27),
-    lift: view.getUint8(at + 41) / 255,
-    keys: keys(view, at + KEYS_AT),
+    lift: view.getUint8(at + 13) / 255,
+    standing: footprint(standing, view.getUint16(at + 26, true)),
+    landing: footprint(landing, view.getUint16(at + 34, true)),
+    keys: keys(wholeKeys(view, at, (flags & RE_AIMED) !== 0)),
   };
 }
 
-function footprint(view: DataView, at: number): Footprint {
+function whole(view: DataView, at: number): number[] {
+  return [0, 4, 8].map((offset) => view.getInt32(at + offset, true));
+}
+
+function footprint(place: number[], heading: number): Footprint {
   return {
-    x: view.getInt32(at, true) * FOOTPRINT_M,
-    y: view.getInt32(at + 4, true) * FOOTPRINT_M,
-    z: view.getInt32(at + 8, true) * FOOTPRINT_M,
-    heading: view.getUint16(at + 12, true) * FOOTPRINT_RAD,
+    x: number(place, 0) * FOOTPRINT_M,
+    y: number(place, 1) * FOOTPRINT_M,
+    z: number(place, 2) * FOOTPRINT_M,
+    heading: heading * FOOTPRINT_RAD,
   };
 }
 
-function keys(view: DataView, begin: number): Float64Array {
-  const numbers = new Float64Array(STEP_KEYS * KEY_NUMBERS);
-  for (let key = 0; key < STEP_KEYS; key++) {
-    const at = begin + key * KEY_BYTES;
-    const row = numbers.subarray(key * KEY_NUMBERS, (key + 1) * KEY_NUMBERS);
+/** Poses from the whole numbers of keys. */
+function keys(rows: Float64Array): Float64Array {
+  const out = new Float64Array(STEP_KEYS * KEY_NUMBERS);
+  for (let k = 0; k < STEP_KEYS; k++) {
+    const from = rows.subarray(k * WHOLE_NUMBERS, (k + 1) * WHOLE_NUMBERS);
+    const row = out.subarray(k * KEY_NUMBERS, (k + 1) * KEY_NUMBERS);
     for (let i = 0; i < 3; i++) {
-      row[KeyNumber.ROOT + i] = view.getInt16(at + 2 * i, true) * KEY_M;
-      row[KeyNumber.ANKLE + i] = view.getInt16(at + 12 + 2 * i, true) * KEY_M;
+      row[KeyNumber.ROOT + i] = number(from, Whole.ROOT + i) * KEY_M;
+      row[KeyNumber.ANKLE + i] = number(from, Whole.ANKLE + i) * KEY_M;
     }
-    row.set(smallestThree(view, at + 6), KeyNumber.PELVIS);
-    row[KeyNumber.SWING_PITCH] = view.getInt16(at + 18, true) * FOOT_RAD;
-    row[KeyNumber.STANDING_PITCH] = view.getInt16(at + 20, true) * FOOT_RAD;
-    row[KeyNumber.SWING_HEADING] = view.getInt16(at + 22, true) * FOOT_RAD;
-    row.set(nearIdentity(view, at + 24), KeyNumber.CHEST);
-    for (let i = 0; i < 4; i++) row[KeyNumber.ARMS + i] = view.getInt8(at + 27 + i) * ARM_RAD;
+    row[KeyNumber.SWING_PITCH] = number(from, Whole.SWING_PITCH) * FOOT_RAD;
+    row[KeyNumber.STANDING_PITCH] = number(from, Whole.STANDING_PITCH) * FOOT_RAD;
+    row[KeyNumber.SWING_HEADING] = number(from, Whole.SWING_HEADING) * FOOT_RAD;
+    for (let i = 0; i < 4; i++) row[KeyNumber.ARMS + i] = number(from, Whole.ARMS + i) * ARM_RAD;
+    turnTrunk(from, row);
   }
-  return numbers;
+  return out;
 }
 
-/** The largest of the four is left out; the top bits of the first two words say which it was. */
-function smallestThree(view: DataView, at: number): number[] {
-  const words = [0, 2, 4].map((offset) => view.getUint16(at + offset, true));
-  const others = words.map((word) => ((word & 0x7fff) - 0x4000) * SMALLEST_THREE);
-  const place = ((words[0] ?? 0) >> 15) | (((words[1] ?? 0) >> 15) << 1);
-  return unit([...others.slice(0, place), missing(others), ...others.slice(place)]);
-}
-
-function nearIdentity(view: DataView, at: number): number[] {
-  const others = [0, 1, 2].map((offset) => view.getInt8(at + offset) * NEAR_IDENTITY);
-  return unit([missing(others), ...others]);
-}
-
-/** The component that makes the length 1, not negative. */
-function missing(others: number[]): number {
-  return Math.sqrt(Math.max(0, 1 - others.reduce((sum, value) => sum + value * value, 0)));
-}
-
-function unit(quaternion: number[]): number[] {
-  const length = Math.hypot(...quaternion);
-  return quaternion.map((value) => value / length);
+/** The pelvis rolls, leans and turns; the spine undoes the roll and twists. */
+function turnTrunk(from: Float64Array, row: Float64Array): void {
+  const yaw = 0.5 * number(from, Whole.YAW) * FOOTPRINT_RAD;
+  const lean = 0.5 * number(from, Whole.LEAN) * TRUNK_RAD;
+  const roll = 0.5 * number(from, Whole.ROLL) * TRUNK_RAD;
+  const twist = 0.5 * number(from, Whole.TWIST) * TRUNK_RAD;
+  const [cz, cy, cx, ct] = [Math.cos(yaw), Math.cos(lean), Math.cos(roll), Math.cos(twist)];
+  const [sz, sy, sx, st] = [Math.sin(yaw), Math.sin(lean), Math.sin(roll), Math.sin(twist)];
+  row[KeyNumber.PELVIS] = cz * cy * cx + sz * sy * sx;
+  row[KeyNumber.PELVIS + 1] = cz * cy * sx - sz * sy * cx;
+  row[KeyNumber.PELVIS + 2] = cz * sy * cx + sz * cy * sx;
+  row[KeyNumber.PELVIS + 3] = sz * cy * cx - cz * sy * sx;
+  row[KeyNumber.CHEST] = cx * ct;
+  row[KeyNumber.CHEST + 1] = -sx * ct;
+  row[KeyNumber.CHEST + 2] = sx * st;
+  row[KeyNumber.CHEST + 3] = cx * st;
 }

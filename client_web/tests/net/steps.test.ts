@@ -43,19 +43,19 @@ describe("unpackSteps", () => {
     expect(unpackSteps(Uint8Array.of(2, 3, 0))).toEqual([]);
   });
 
-  const whole = block().subarray(0, 228);
+  const whole = block().subarray(0, 140);
   it.each<[string, Uint8Array, string]>([
     ["a head cut off", Uint8Array.of(1), "record 0 at byte 0 of a block of steps ends after 1 of"],
-    ["a second head cut off", join(whole, [2, 3]), "record 1 at byte 228 of a block of steps ends"],
-    ["zeros", new Uint8Array(228), "length of 0 bytes, one of kind 0 has at least 3"],
+    ["a second head cut off", join(whole, [2, 3]), "record 1 at byte 140 of a block of steps ends"],
+    ["zeros", new Uint8Array(140), "length of 0 bytes, one of kind 0 has at least 3"],
     [
       "length 0",
       join(whole, [2, 0, 0]),
-      "record 1 at byte 228 of a block of steps says a length of 0",
+      "record 1 at byte 140 of a block of steps says a length of 0",
     ],
     ["length 2", join(whole, [2, 2, 0]), "length of 2 bytes, one of kind 2 has at least 3"],
-    ["a step too short", join([1, 227, 0], whole.subarray(3, 227)), "kind 1 has at least 228"],
-    ["a step cut off", whole.subarray(0, 227), "length of 228 bytes, 227 are left"],
+    ["a step too short", join([1, 139, 0], whole.subarray(3, 139)), "kind 1 has at least 140"],
+    ["a step cut off", whole.subarray(0, 139), "length of 140 bytes, 139 are left"],
     ["a record over the end", join(whole, [2, 255, 255]), "length of 65535 bytes, 3 are left"],
   ])("refuses %s by name", (_what, broken, fault) => {
     expect(() => unpackSteps(broken)).toThrow(WireError);

@@ -9,8 +9,15 @@ from numpy.typing import NDArray
 from esplanade.actors.locomotion.body.sizes import BodySizes
 from esplanade.actors.locomotion.reference.posing import pose
 from esplanade.planning.compiled.arrays import Floats
-from esplanade.protocol.steps import RE_AIMED, STANDS_ON_RIGHT, StepRecords
+from esplanade.protocol.steps import (
+    RE_AIMED,
+    STANDS_ON_RIGHT,
+    StepRecords,
+    landing_footprints,
+)
 from esplanade.server.world.step_records import from_records
+
+PELVIS = ("yaw", "lean", "roll")
 
 
 @dataclass(frozen=True)
@@ -25,11 +32,13 @@ class Handovers:
     root: NDArray[np.int64]
     """(N, 3): of the root's place in the world at the last key and the first one."""
     pelvis: NDArray[np.int64]
-    """(N, 3): of the words of the pelvis' rotation."""
+    """(N, 3): of the yaw, lean and roll of the pelvis."""
     pitches: NDArray[np.int64]
     """(N, 2): of the pitches of the foot that stands next, and of the one that swings next."""
     footprint: NDArray[np.int64]
     """(N, 4): of the footprint of the foot that stands next."""
+    upper_body: NDArray[np.int64]
+    """(N, 5): of the twist of the chest and the bends of the arms."""
     drawn_root_m: Floats
     """(N,): distance of the hips from record to record, as they are drawn."""
     drawn_ankles_m: Floats
@@ -42,14 +51,14 @@ def handovers(pairs: Iterable[tuple[StepRecords, StepRecords]], sizes: BodySizes
     """Of pairs of records (1,) of one avatar, in the order in which a client receives them."""
     first, second = (np.concatenate(side) for side in zip(*pairs, strict=True))
     swapped = (first["flags"] ^ second["flags"]) & STANDS_ON_RIGHT != 0
-    last, begin = first["keys"][:, -1], second["keys"][:, 0]
+    last, begin = first["last"], second["first"]
 
     def whole(column: NDArray[np.generic]) -> NDArray[np.int64]:
         return column.astype(np.int64)
 
     stands_next = np.where(swapped, last["swing_pitch"], last["standing_pitch"])
     swings_next = np.where(swapped, last["standing_pitch"], last["swing_pitch"])
-    before = np.where(swapped, first["landing"], first["standing"])
+    before = np.where(swapped, landing_footprints(first), first["standing"])
     footprint = whole(second["standing"]["position"]) - whole(before["position"])
     turned = whole(second["standing"]["heading"]) - whole(before["heading"])
     old, new = from_records(first), from_records(second)
@@ -62,7 +71,8 @@ def handovers(pairs: Iterable[tuple[StepRecords, StepRecords]], sizes: BodySizes
         + whole(begin["root"])
         - whole(first["standing"]["position"])
         - whole(last["root"]),
-        whole(begin["pelvis"]) - whole(last["pelvis"]),
+        whole(np.stack([begin[name] for name in PELVIS], axis=1))
+        - whole(np.stack([last[name] for name in PELVIS], axis=1)),
         np.stack(
             [
                 whole(begin["standing_pitch"]) - whole(stands_next),
@@ -71,6 +81,12 @@ def handovers(pairs: Iterable[tuple[StepRecords, StepRecords]], sizes: BodySizes
             axis=1,
         ),
         np.column_stack([footprint, turned]),
+        np.column_stack(
+            [
+                whole(begin["twist"]) - whole(last["twist"]),
+                whole(begin["arms"]) - whole(last["arms"]),
+            ]
+        ),
         np.linalg.norm(begins.root - ends.root, axis=1),
         np.linalg.norm(begins.ankles - ends.ankles, axis=2).max(axis=1),
         np.abs((headings + np.pi) % (2.0 * np.pi) - np.pi).max(axis=1),

@@ -8,10 +8,24 @@ import pytest
 from esplanade import scenes
 from esplanade.actors import Population
 from esplanade.actors.locomotion.body.sizes import BodySizes
-from esplanade.actors.locomotion.motion.key_poses import Steps, no_steps
+from esplanade.actors.locomotion.motion.key_poses import (
+    ANKLE,
+    ARMS,
+    CHEST,
+    KEYS,
+    PELVIS,
+    ROOT,
+    STANDING_PITCH,
+    SWING_HEADING,
+    SWING_PITCH,
+    WIDTH,
+    Steps,
+    no_steps,
+)
 from esplanade.actors.locomotion.reference.posing import pose
 from esplanade.planning import LayeredGrid
 from esplanade.planning.scene.scene_file import read_scene
+from esplanade.protocol.quaternions import from_angles, from_twist
 from esplanade.protocol.steps import KEY_M, RE_AIMED
 from esplanade.server.populating import populate
 from esplanade.server.world.inputs import Detach, Leave, Steer
@@ -201,25 +215,41 @@ def test_records_keep_what_steps_are() -> None:
     steps.on_right[:] = [True, False, True]
     steps.re_aimed[:] = [False, False, True]
     steps.start[:], steps.ticks[:] = [3, 70000, 12], [9, 0, 12]
-    steps.standing[:], steps.landing[:] = random.uniform(-3.0, 3.0, (2, 3, 4))
+    steps.standing[:] = random.uniform(-3.0, 3.0, (3, 4))
+    steps.landing[:] = steps.standing + random.uniform(-0.9, 0.9, (3, 4))
     steps.lift[:] = [0.0, 1.0, 51 / 255]
-    steps.keys[:] = random.uniform(-0.4, 0.4, steps.keys.shape)
-    steps.keys[..., 3] = steps.keys[..., 13] = 1.0
-    steps.keys[..., 3:7] /= np.linalg.norm(steps.keys[..., 3:7], axis=-1, keepdims=True)
-    steps.keys[..., 13:17] /= np.linalg.norm(steps.keys[..., 13:17], axis=-1, keepdims=True)
+    # Walks bend at the ends and go straight on between.
+    ends = random.uniform(-0.2, 0.2, (2, 3, WIDTH))
+    shares = np.linspace(0.0, 1.0, KEYS)[:, None]
+    steps.keys[:] = (1.0 - shares) * ends[0][:, None] + shares * ends[1][:, None]
+    steps.keys[:, -1, ANKLE] = steps.keys[:, -1, SWING_HEADING] = 0.0
+    steps.keys[..., PELVIS] = from_angles(steps.keys[..., :3])
+    steps.keys[..., CHEST] = from_twist(steps.keys[..., 14], steps.keys[..., 2])
     records = to_records(steps, np.array([4, 5, 6]))
     known = from_records(records)
     assert records["id"].tolist() == [4, 5, 6]
     for name in ("on_right", "re_aimed", "start", "ticks", "lift"):
         np.testing.assert_array_equal(getattr(known, name), getattr(steps, name))
-    np.testing.assert_allclose(known.keys[..., :3], steps.keys[..., :3], atol=1.5e-4)
-    np.testing.assert_allclose(known.keys[..., 7:10], steps.keys[..., 7:10], atol=1.5e-4)
-    np.testing.assert_allclose(known.keys[..., 10:13], steps.keys[..., 10:13], atol=1.5e-4)
-    np.testing.assert_allclose(known.keys[..., 3:7], steps.keys[..., 3:7], atol=1e-4)
-    np.testing.assert_allclose(known.keys[..., 13:], steps.keys[..., 13:], atol=1.3e-2)
+    same = np.sign(np.einsum("nkd,nkd->nk", known.keys[..., PELVIS], steps.keys[..., PELVIS]))
+    keys = known.keys.copy()
+    keys[..., PELVIS] *= same[..., None]
+    for columns, ends_within, within in (
+        (ROOT, 1.5e-4, 1.5e-3),
+        (PELVIS, 2e-3, 5e-3),
+        (ANKLE, 1.5e-4, 3e-3),
+        (SWING_PITCH, 1e-4, 2e-3),
+        (STANDING_PITCH, 1e-4, 2e-3),
+        (SWING_HEADING, 1.5e-4, 2e-3),
+        (CHEST, 2e-3, 5e-3),
+        (ARMS, 7e-3, 1.3e-2),
+    ):
+        apart = np.abs(keys[..., columns] - steps.keys[..., columns])
+        assert apart.max() <= within, columns
+        assert apart[:, [0, -1]].max() <= ends_within, columns
     again = from_records(to_records(known, np.array([4, 5, 6])))
-    for one, other in zip(known, again, strict=True):
+    for one, other in zip(known[:-1], again[:-1], strict=True):
         np.testing.assert_allclose(one, other, atol=1e-12)
+    np.testing.assert_allclose(known.keys[:, [0, -1]], again.keys[:, [0, -1]], atol=1e-12)
 
 
 def test_a_step_over_stands_in_its_last_pose() -> None:

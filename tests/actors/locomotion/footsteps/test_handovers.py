@@ -82,6 +82,7 @@ def test_a_step_goes_on_where_the_one_before_ended_bit_for_bit(walk) -> None:
     assert not found.root[whole].any()
     assert not found.pelvis[whole].any()
     assert not found.pitches[whole].any()
+    assert not found.upper_body[whole].any()
     assert not found.footprint.any()
 
 
