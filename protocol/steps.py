@@ -120,7 +120,7 @@ _SWING_HEADING: Final = 9
 _LEAN_AND_ROLL: Final = slice(10, 12)
 _TWIST: Final = 12
 _ARMS: Final = slice(13, 17)
-_OF_END: Final = {
+_OF_END: Final[dict[str, int | slice]] = {
     "root": _ROOT,
     "yaw": YAW,
     "swing_pitch": _SWING_PITCH,
@@ -249,7 +249,7 @@ def unpack_steps(records: StepRecords) -> Steps:
         standing=standing,
         landing=landing,
         lifts=records["lift"] / 0xFF,
-        keys=_keys(unpack_between(*ends, re_aimed, packed), standing, landing),
+        keys=_keys(unpack_between(ends[0], ends[1], re_aimed, packed), standing, landing),
     )
 
 
@@ -340,17 +340,19 @@ def _quantised(keys: Keys, standing: Footprints, landing: Footprints) -> Integer
 
 
 def _keys(numbers: Integers, standing: Footprints, landing: Footprints) -> Keys:
-    lean_and_roll = numbers[..., _LEAN_AND_ROLL] * TRUNK_RAD
-    angles = np.concatenate([numbers[..., YAW, None] * FOOTPRINT_RAD, lean_and_roll], axis=-1)
+    multiples = numbers.astype(np.float64)
+    lean_and_roll = multiples[..., _LEAN_AND_ROLL] * TRUNK_RAD
+    angles = np.concatenate([multiples[..., YAW, None] * FOOTPRINT_RAD, lean_and_roll], axis=-1)
+    turned = multiples[..., _SWING_HEADING] * FOOT_RAD
     return Keys(
-        roots_m=numbers[..., _ROOT] * KEY_M + standing.positions_m[:, None],
+        roots_m=multiples[..., _ROOT] * KEY_M + standing.positions_m[:, None],
         pelvises=from_angles(angles),
-        ankles_m=numbers[..., ANKLE] * KEY_M + landing.positions_m[:, None],
-        swing_pitches_rad=numbers[..., _SWING_PITCH] * FOOT_RAD,
-        standing_pitches_rad=numbers[..., STANDING_PITCH] * FOOT_RAD,
-        swing_headings_rad=numbers[..., _SWING_HEADING] * FOOT_RAD + landing.headings_rad[:, None],
-        chests=from_twist(numbers[..., _TWIST] * TRUNK_RAD, angles[..., 2]),
-        arms_rad=numbers[..., _ARMS] * ARM_RAD,
+        ankles_m=multiples[..., ANKLE] * KEY_M + landing.positions_m[:, None],
+        swing_pitches_rad=multiples[..., _SWING_PITCH] * FOOT_RAD,
+        standing_pitches_rad=multiples[..., STANDING_PITCH] * FOOT_RAD,
+        swing_headings_rad=turned + landing.headings_rad[:, None],
+        chests=from_twist(multiples[..., _TWIST] * TRUNK_RAD, angles[..., 2]),
+        arms_rad=multiples[..., _ARMS] * ARM_RAD,
     )
 
 

@@ -23,6 +23,7 @@ from esplanade.protocol import (
 from esplanade.protocol import codes as table
 from esplanade.protocol.codec import MAX_BLOCK_BYTES, SNAPSHOT_HEAD_BYTES, STEPS_HEAD_BYTES
 from esplanade.protocol.codes import ClientCode, CloseCode, ServerCode
+from esplanade.protocol.keys_between import FAR
 from esplanade.protocol.messages import (
     Circle,
     Entity,
@@ -42,7 +43,16 @@ from esplanade.protocol.snapshot import (
     speeds_mps,
     unpack_block,
 )
-from esplanade.protocol.steps import FOOTPRINT, KEY, STEP, WALKING, step_records, unpack_steps
+from esplanade.protocol.steps import (
+    DIFFERENCES,
+    END,
+    FOOTPRINT,
+    LANDING,
+    STEP,
+    WALKING,
+    step_records,
+    unpack_steps,
+)
 
 TEXT = (Path(__file__).resolve().parents[2] / "docs" / "protocol.md").read_text(encoding="utf-8")
 
@@ -186,7 +196,14 @@ def test_the_servers_defaults() -> None:
 
 @pytest.mark.parametrize(
     ("title", "place", "record"),
-    [("Snapshots", 1, RECORD), ("Steps", 1, STEP), ("Steps", 2, FOOTPRINT), ("Steps", 3, KEY)],
+    [
+        ("Snapshots", 1, RECORD),
+        ("Steps", 1, STEP),
+        ("Steps", 2, FOOTPRINT),
+        ("Steps", 3, LANDING),
+        ("Steps", 4, END),
+        ("Steps", 5, DIFFERENCES),
+    ],
 )
 def test_the_layout_of_a_record(title: str, place: int, record: np.dtype[np.void]) -> None:
     layout = tables(section(title))[place]
@@ -207,6 +224,7 @@ def test_versions() -> None:
 
 
 def test_lengths_in_running_text() -> None:
+    assert f"f is {', '.join(map(str, FAR))} for keys 1 to 4" in section("Steps")
     assert f"Kind {WALKING}, a walking step, has {STEP.itemsize} bytes" in section("Steps")
     assert f"same {STEPS_HEAD_BYTES} bytes" in section("Steps")
     assert f"{RECORD.itemsize} bytes each" in section("Snapshots")
@@ -260,7 +278,7 @@ def test_the_worked_example_of_steps() -> None:
         assert f"({numbers(footprints.positions_m[0])})" in told
     assert f"{np.degrees(steps.landing.headings_rad[0]):.1f}°" in told
     assert f"for {steps.lifts[0]:.2f} of the step" in told
-    for row in tables(text)[4]:
+    for row in tables(text)[6]:
         key = int(row["Key"])
         shown = {
             "root": numbers(steps.keys.roots_m[0, key]),

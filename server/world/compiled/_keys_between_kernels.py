@@ -5,6 +5,8 @@ A key is a row of 17 whole numbers here too, in the same order and the same quan
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -54,7 +56,7 @@ def _foretold(numbers: Ints, k: int, c: int, re_aimed: bool) -> int:
 
 @kernel
 def code_keys_between(
-    numbers: Ints, re_aimed: bool, record: NDArray[np.void], multiples: NDArray[np.int8]
+    numbers: Ints, re_aimed: bool, record: Any, multiples: NDArray[np.int8]
 ) -> None:
     """Write all but the ends of numbers (KEYS, NUMBERS) to a record, and change them.
 
@@ -94,7 +96,7 @@ def code_keys_between(
 
 @kernel
 def read_keys_between(
-    record: NDArray[np.void], multiples: NDArray[np.int8], re_aimed: bool, numbers: Ints
+    record: Any, multiples: NDArray[np.int8], re_aimed: bool, numbers: Ints
 ) -> None:
     """Fill the rows between the first and the last of numbers (KEYS, NUMBERS) from a record."""
     for group in range(GROUPS):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -139,9 +139,7 @@ def write_records(
 
 
 @inlined
-def _quantise_keys(
-    steps: Steps, i: int, layout: Layout, record: NDArray[np.void], numbers: Ints
-) -> None:
+def _quantise_keys(steps: Steps, i: int, layout: Layout, record: Any, numbers: Ints) -> None:
     """Write the keys of step i to numbers (KEYS, NUMBERS), from the footprints of its record."""
     landing_heading = record.landing.heading * layout.footprint_rad
     for k in range(KEYS):
@@ -167,7 +165,7 @@ def _quantise_keys(
 
 
 @inlined
-def _write_end(numbers: Ints, end: NDArray[np.void]) -> None:
+def _write_end(numbers: Ints, end: Any) -> None:
     for d in range(3):
         end.root[d] = numbers[d]
     end.yaw = numbers[YAW_N]
@@ -178,7 +176,7 @@ def _write_end(numbers: Ints, end: NDArray[np.void]) -> None:
 
 
 @inlined
-def _read_end(end: NDArray[np.void], numbers: Ints) -> None:
+def _read_end(end: Any, numbers: Ints) -> None:
     for d in range(3):
         numbers[d] = end.root[d]
         numbers[ANKLE_N + d] = 0
