@@ -2,6 +2,7 @@
 
     python -m benchmarks.records                                  all walks, half a minute
     python -m benchmarks.records --ticks 400 --json records.json
+    python -m benchmarks.records --picture docs/images/step-record.svg
 
 A record holds the ends of a step in fine quanta, and the keys between as small differences in
 coarse ones (docs/protocol.md). The benchmark takes the steps of actors in the served worlds, on
@@ -21,6 +22,7 @@ from typing import Final, NamedTuple
 from unittest import mock
 
 import numpy as np
+from benchmarks._record_picture import draw_step
 from rich.console import Console
 from rich.table import Table
 
@@ -82,6 +84,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             },
         }
         options.json.write_text(json.dumps(figures, indent=1) + "\n")
+    if options.picture is not None:
+        draw_step(options.picture, *walks["gallery.json"])
     return int(any(falls_short(parts) for parts in found.values()))
 
 
@@ -91,6 +95,7 @@ def parser() -> argparse.ArgumentParser:
     made.formatter_class = argparse.RawDescriptionHelpFormatter
     made.add_argument("--ticks", type=int, default=1200, help="ticks walked [default: 1200]")
     made.add_argument("--json", type=Path, metavar="F")
+    made.add_argument("--picture", type=Path, metavar="F", help="of a step on stairs, SVG or PNG")
     return made
 
 

@@ -23,8 +23,9 @@ def test_clients_draw_bodies_where_they_were_computed(walk: str) -> None:
 
 
 def test_the_figures_are_written_for_programs(tmp_path) -> None:
-    file = tmp_path / "figures.json"
-    benchmark.main(["--ticks", "60", "--json", str(file)])
+    file, picture = tmp_path / "figures.json", tmp_path / "step.svg"
+    benchmark.main(["--ticks", "60", "--json", str(file), "--picture", str(picture)])
+    assert "<svg" in picture.read_text()
     found = json.loads(file.read_text())
     assert found["step_bytes"] == 140
     assert set(found["off"]) == {"plaza.json", "gallery.json", "steered people"}
