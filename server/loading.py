@@ -66,6 +66,8 @@ def load_scene(settings: ServerSettings) -> LoadedScene:
         view_limit=settings.view_limit,
         steps_radius_m=settings.steps_radius_m,
         steps_limit=settings.steps_limit,
+        viewer_bytes=settings.viewer_bytes,
+        tick_rate=settings.tick_rate,
     )
     if settings.crowd is None:
         scene = _read_scene(settings.scene or DEFAULT_SCENE)

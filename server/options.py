@@ -52,6 +52,13 @@ _PEOPLE: Final = {
     "steps_limit": Setting(
         "most others whose steps are sent to one person, the nearest first", Whole(0, 250), 60
     ),
+    "viewer_bytes": Setting(
+        "snapshots and steps that one person is sent; in a crowd, others are told of less often, "
+        "and steps are sent of fewer",
+        Whole(4000, 10_000_000),
+        12_000,
+        "bytes/s",
+    ),
     "resume_seconds": Setting(
         "how long a lost connection's avatar stands and waits", Number(0.0, 3600.0), 30.0, "s"
     ),

@@ -39,6 +39,7 @@ class ServerSettings(BaseSettings):
     view_limit: int = _field("view_limit")
     steps_radius_m: float = _field("steps_radius_m")
     steps_limit: int = _field("steps_limit")
+    viewer_bytes: int = _field("viewer_bytes")
     resume_seconds: float = _field("resume_seconds")
 
     host: str = _field("host")

@@ -9,9 +9,10 @@ import numpy.typing as npt
 from esplanade.protocol.snapshot import RECORD
 from esplanade.protocol.steps import STEP
 from esplanade.server.world.avatars import Avatars
+from esplanade.server.world.byte_budget import byte_budget
 from esplanade.server.world.compiled._snapshot_kernels import choose, gather
 from esplanade.server.world.frame import Events, Frame, Line
-from esplanade.server.world.interest import Interest
+from esplanade.server.world.interest import PERIOD_TICKS, Interest
 from esplanade.server.world.routes import Point
 from esplanade.server.world.rules import Rules
 from esplanade.server.world.stage_times import StageTimes
@@ -80,6 +81,8 @@ class Audience:
     def __init__(self, rules: Rules, origin_m: tuple[float, float], times: StageTimes) -> None:
         self._avatars = Avatars(origin_m)
         self._interest = Interest(self._avatars, rules)
+        self._budget = byte_budget(rules, PERIOD_TICKS)
+        self._stepless: set[int] = set()
         self._times = times
 
     def take(self, frame: Frame) -> News:
@@ -113,6 +116,10 @@ class Audience:
     def wrote(self, snapshots: Snapshots, places: list[int]) -> None:
         """Of the snapshots, those at these places were sent; the next ones build on them."""
         self._interest.views.written[snapshots.places[places]] = snapshots.tick
+
+    def send_no_steps(self, avatar_id: int) -> None:
+        """Whoever looks through this avatar's eyes from the next frame on wants no steps."""
+        self._stepless.add(avatar_id)
 
     # --- questions ----------------------------------------------------------------------------
 
@@ -158,8 +165,9 @@ class Audience:
         avatars.update(frame)
         interest.notice(entered.id for entered in frame.entered)
         for _, avatar_id in frame.joined + frame.attached:
-            interest.attach(avatar_id)
+            interest.attach(avatar_id, steps=avatar_id not in self._stepless)
             left.pop(avatar_id, None)
+        self._stepless.clear()
         for avatar_id, seq in frame.acks.items():
             interest.acknowledge(avatar_id, seq)
         return left
@@ -178,7 +186,7 @@ class Audience:
         avatars, interest = self._avatars, self._interest
         viewers = interest.viewers()
         counts = np.empty((len(viewers), 2), dtype=np.int64)
-        choose(interest.views, viewers, avatars.changed, avatars.begun, tick, counts)
+        choose(interest.views, viewers, avatars.changes, self._budget, tick, counts)
         ends = np.ascontiguousarray(counts.cumsum(axis=0).T)
         records, steps = counts.sum(axis=0).tolist()
         record_block = np.empty((records, RECORD_BYTES), dtype=np.uint8)

@@ -1,13 +1,14 @@
 """The avatars of a zone as an audience knows them: from frames, and from nothing else."""
 
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from esplanade.protocol.entities import pack_entity
-from esplanade.protocol.snapshot import RECORD, headings_rad, heights_m, positions_m
+from esplanade.protocol.snapshot import RECORD, Records, headings_rad, heights_m, positions_m
 from esplanade.protocol.steps import STEP
+from esplanade.server.world.compiled._snapshot_kernels import Changes
 from esplanade.server.world.frame import Entered, Frame
 from esplanade.server.world.routes import Point
 from esplanade.server.world.state import ACTOR
@@ -25,7 +26,7 @@ class Avatars:
     """A table with a row for each avatar; it grows as they come.
 
     Arrays are by row: `ids` 0 for a free row; `records` and `steps` bytes as on the wire;
-    `changed` and `begun` the ticks of the latest record and of the latest step, 0 for none;
+    `changes` the ticks of what is newest of each;
     `places` int64 (R, 3), cm, x and y and the weighted height.
     """
 
@@ -35,8 +36,7 @@ class Avatars:
         self._known: dict[int, Entered] = {}
         self._points_at: dict[int, Point] = {}
         self.ids = np.zeros(FIRST_ROWS, dtype=np.int64)
-        self.changed = np.zeros(FIRST_ROWS, dtype=np.int32)
-        self.begun = np.zeros(FIRST_ROWS, dtype=np.int32)
+        self.changes = Changes(*(np.zeros(FIRST_ROWS, dtype=np.int32) for _ in Changes._fields))
         self.places = np.zeros((FIRST_ROWS, 3), dtype=np.int64)
         self.records = np.zeros((FIRST_ROWS, RECORD.itemsize), dtype=np.uint8)
         self.steps = np.zeros((FIRST_ROWS, STEP.itemsize), dtype=np.uint8)
@@ -66,7 +66,9 @@ class Avatars:
                 continue
             del self._known[avatar_id]
             self._points_at.pop(avatar_id, None)
-            self.ids[row] = self.changed[row] = self.begun[row] = 0
+            self.ids[row] = 0
+            for ticks in self.changes:
+                ticks[row] = 0
             self._free.append(row)
         if ids:
             self._list()
@@ -86,14 +88,18 @@ class Avatars:
     def update(self, frame: Frame) -> None:
         """Take in the records, the steps and the pointing of a frame."""
         rows = self._rows_of(frame.records["id"])
+        changes = self.changes
+        urgent = _urgent(self.records[rows].view(RECORD)[:, 0], frame.records)
+        changes.urgent[rows[urgent]] = frame.tick
+        changes.changed[rows] = frame.tick
         self.records[rows] = frame.records.view(np.uint8).reshape(-1, RECORD.itemsize)
-        self.changed[rows] = frame.tick
         self.places[rows, 0] = frame.records["x"]
         self.places[rows, 1] = frame.records["y"]
         self.places[rows, 2] = STOREY_WEIGHT * frame.records["z"].astype(np.int64)
         rows = self._rows_of(frame.steps["id"])
         self.steps[rows] = frame.steps.view(np.uint8).reshape(-1, STEP.itemsize)
-        self.begun[rows] = frame.tick
+        changes.begun[rows] = frame.tick
+        changes.over[rows] = frame.steps["tick"] + frame.steps["ticks"]
         for avatar_id, target in frame.events.pointing.items():
             if target is None:
                 self._points_at.pop(avatar_id, None)
@@ -120,9 +126,9 @@ class Avatars:
     def _grow(self) -> None:
         """Make room for twice as many."""
         before = len(self.ids)
-        for name in ("ids", "changed", "begun", "places", "records", "steps"):
-            table = getattr(self, name)
-            setattr(self, name, np.concatenate([table, np.zeros_like(table)]))
+        for name in ("ids", "places", "records", "steps"):
+            setattr(self, name, _doubled(getattr(self, name)))
+        self.changes = Changes(*map(_doubled, self.changes))
         self._free.extend(range(2 * before - 1, before - 1, -1))
 
     def _list(self) -> None:
@@ -137,3 +143,15 @@ class Avatars:
     def _rows_of(self, ids: npt.NDArray[np.integer]) -> Rows:
         places = np.searchsorted(self._ids_in_order, ids)
         return self.in_order[places]
+
+
+def _urgent(before: Records, now: Records) -> npt.NDArray[np.bool_]:
+    """Which records, RECORD (N,), tell more than that somebody who walks has walked on."""
+    storey, reason = before["layer"] != now["layer"], before["reason"] != now["reason"]
+    starts_or_halts = (before["speed"] == 0) != (now["speed"] == 0)
+    return storey | reason | starts_or_halts
+
+
+def _doubled(table: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """The table with as many rows of zeros more."""
+    return np.concatenate([table, np.zeros_like(table)])

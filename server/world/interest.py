@@ -40,15 +40,13 @@ class Interest:
     def __init__(self, avatars: Avatars, rules: Rules) -> None:
         self._avatars = avatars
         columns = rules.view_limit + 1
-        steps = rules.steps_limit + 1
+        self._most = rules.steps_limit + 1
         self._limits = Limits(
             enter=100.0 * rules.view_radius_m,
             leave=100.0 * rules.view_radius_m * LEAVE_RATIO,
             enter_rank=columns - rules.view_limit // 8,
             step_enter=100.0 * rules.steps_radius_m,
             step_leave=100.0 * rules.steps_radius_m * LEAVE_RATIO,
-            step_enter_rank=steps - rules.steps_limit // 8,
-            step_leave_rank=steps,
         )
         self._places: dict[int, int] = {}
         self._free = list(range(FIRST_VIEWERS - 1, -1, -1))
@@ -65,6 +63,11 @@ class Interest:
             record_sent=np.zeros(shape, dtype=np.int32),
             step_sent=np.zeros(shape, dtype=np.int32),
             under_way=np.zeros(shape, dtype=np.uint8),
+            credit=np.zeros(FIRST_VIEWERS, dtype=np.int32),
+            reach=np.zeros(FIRST_VIEWERS, dtype=np.int32),
+            most=np.zeros(FIRST_VIEWERS, dtype=np.int32),
+            calm=np.zeros(FIRST_VIEWERS, dtype=np.int32),
+            turn=np.zeros(FIRST_VIEWERS, dtype=np.int32),
         )
 
     @property
@@ -74,13 +77,15 @@ class Interest:
         used = np.arange(views.rows.shape[1]) < views.seen[:, None]
         return int(np.count_nonzero(used & (views.step_sent != NOT_NEAR)))
 
-    def attach(self, avatar_id: int) -> None:
-        """Let this avatar look, with nothing in view so far."""
+    def attach(self, avatar_id: int, *, steps: bool) -> None:
+        """Let this avatar look, with nothing in view so far; it is sent steps, or none at all."""
         self.detach(avatar_id)
         if not self._free:
             self._grow()
         place = self._places[avatar_id] = self._free.pop()
-        self.views.avatar[place] = self._avatars.row(avatar_id)
+        views = self.views
+        views.avatar[place] = self._avatars.row(avatar_id)
+        views.reach[place] = views.most[place] = self._most if steps else 0
         self._at_once.add(place)
 
     def detach(self, avatar_id: int) -> None:
@@ -91,6 +96,7 @@ class Interest:
         views = self.views
         views.avatar[place] = views.seen[place] = views.ack[place] = 0
         views.encoded[place] = views.written[place] = 0
+        views.credit[place] = views.calm[place] = views.turn[place] = 0
         self._at_once.discard(place)
         self._free.append(place)
 

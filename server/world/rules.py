@@ -17,3 +17,7 @@ class Rules:
     steps_radius_m: float
     """Steps are sent of walkers that are within this distance, and in view."""
     steps_limit: int
+    viewer_bytes: int
+    """Bytes a second of snapshots and steps that one viewer is sent."""
+    tick_rate: int
+    """Ticks a second."""

@@ -66,6 +66,8 @@ def rules(**changes: float) -> Rules:
         "view_limit": 50,
         "steps_radius_m": 10.0,
         "steps_limit": 20,
+        "viewer_bytes": 1_000_000,
+        "tick_rate": round(1.0 / TICK_S),
     }
     return Rules(**{**values, **changes})  # type: ignore[arg-type]
 

@@ -43,6 +43,16 @@ class Views(NamedTuple):
     """(V, C): the tick of the step of this avatar that was sent last, or `NOT_NEAR`."""
     under_way: NDArray[np.uint8]
     """(V, C): the record, the step of this avatar are in the snapshot encoded last."""
+    credit: Ticks
+    """(V,): bytes that the viewer may be sent now; see `esplanade.server.world.byte_budget`."""
+    reach: Ticks
+    """(V,): steps are sent of avatars up to this rank, as the budget allows."""
+    most: Ticks
+    """(V,): the highest rank that `reach` may become; 0 for a viewer who wants no steps."""
+    calm: Ticks
+    """(V,): ticks since something that was due had to wait for the budget."""
+    turn: Ticks
+    """(V,): the column at which records of far avatars go on, as they take turns."""
 
 
 class Limits(NamedTuple):
@@ -53,8 +63,6 @@ class Limits(NamedTuple):
     enter_rank: int
     step_enter: float
     step_leave: float
-    step_enter_rank: int
-    step_leave_rank: int
 
 
 @inlined
@@ -140,9 +148,9 @@ def look(
             if k == columns - 1 and not met_myself:
                 # Many avatars stand on one spot, and the viewer is not among its own nearest.
                 row, apart2 = me, 0
-            near = apart2 <= limits.enter * limits.enter and k < limits.enter_rank
+            in_view = apart2 <= limits.enter * limits.enter and k < limits.enter_rank
             before = was[row]
-            if not (before or near or row == me):
+            if not (before or in_view or row == me):
                 continue
             rows[kept] = row
             record_sent[kept], step_sent[kept] = NEVER, NOT_NEAR
@@ -153,7 +161,10 @@ def look(
             else:
                 entered[i, came] = row
                 came += 1
-            if is_near(apart2, kept + 1, step_sent[kept] != NOT_NEAR, limits) or row == me:
+            reach = views.reach[v]
+            was_near = step_sent[kept] != NOT_NEAR
+            near = is_near(apart2, kept + 1, was_near, reach, limits)
+            if near or (row == me and reach > 0):
                 step_sent[kept] = max(step_sent[kept], NEVER)
             else:
                 step_sent[kept] = NOT_NEAR
@@ -172,10 +183,14 @@ def look(
 
 
 @inlined
-def is_near(apart2: int, rank: int, was_near: bool, limits: Limits) -> bool:
-    """Whether the steps of an avatar at this squared distance, cm2, are sent."""
+def is_near(apart2: int, rank: int, was_near: bool, reach: int, limits: Limits) -> bool:
+    """Whether the steps of an avatar at this squared distance, cm2, are sent.
+
+    Ranks beyond `reach` would cost more than the viewer's budget; the last eighth is for those who
+    are near already.
+    """
     if was_near:
-        reach, last = limits.step_leave, limits.step_leave_rank
+        apart, last = limits.step_leave, reach
     else:
-        reach, last = limits.step_enter, limits.step_enter_rank
-    return apart2 <= reach * reach and rank <= last
+        apart, last = limits.step_enter, reach - reach // 8
+    return apart2 <= apart * apart and rank <= last

@@ -1,10 +1,13 @@
-"""Which records and steps each viewer is due, and their bytes one after the other."""
+"""Which records and steps each viewer is due, within its budget, and their bytes together."""
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.server.world.compiled._interest_kernels import (
+    NEVER,
     NOT_NEAR,
     RECORD_UNDER_WAY,
     STEP_UNDER_WAY,
@@ -16,45 +19,135 @@ Ints = NDArray[np.int64]
 Ticks = NDArray[np.int32]
 
 
-@inlined
-def record_due(changed: int, sent: int) -> bool:
-    """Whether the record of an avatar in view is to be in this tick's snapshot.
+class Changes(NamedTuple):
+    """The ticks of what is newest of everyone, int32 (R,) by the avatar's row; 0 for none."""
 
-    `changed` is the tick of the record, `sent` that of the one that the viewer has.
-    """
-    return changed > sent
+    changed: Ticks
+    """The latest record."""
+    urgent: Ticks
+    """The latest record that is to be told at once: a start, a halt, another storey or reason."""
+    begun: Ticks
+    """The latest step."""
+    over: Ticks
+    """The end of the latest step."""
+
+
+class Budget(NamedTuple):
+    """Bytes that a viewer may be sent, and the ticks between records of one avatar."""
+
+    refill: int
+    """Bytes that are added in each tick."""
+    most: int
+    """Bytes of credit at most."""
+    record: int
+    """Bytes of a record."""
+    step: int
+    """Bytes of a step."""
+    snapshot_head: int
+    """Bytes of a snapshot without records."""
+    steps_head: int
+    """Bytes of a message of steps without any."""
+    near: int
+    """Records of avatars up to this rank are sent in every tick."""
+    far_ticks: int
+    """Ticks between records of the others."""
+    stepping_ticks: int
+    """Ticks between records of an avatar whose steps say where it is."""
+    calm_ticks: int
+    """Ticks without shortage after which steps of one more avatar are tried."""
+    settling_ticks: int
+    """Ticks until the steps of fewer avatars are sent for certain."""
+
+
+@inlined
+def record_due(changes: Changes, budget: Budget, tick: int, views: Views, v: int, c: int) -> bool:
+    """Whether the record of the avatar in column `c` of a view is to be sent in this tick."""
+    row = views.rows[v, c]
+    sent = views.record_sent[v, c]
+    if changes.changed[row] <= sent:
+        return False
+    if sent == NEVER or changes.urgent[row] > sent:
+        return True
+    step_sent = views.step_sent[v, c]
+    if step_sent >= changes.begun[row] > NEVER and tick <= changes.over[row]:
+        return tick - sent >= budget.stepping_ticks
+    return c < budget.near or tick - sent >= budget.far_ticks
 
 
 @inlined
 def step_due(begun: int, sent: int) -> bool:
-    """Whether the latest step of an avatar in view is to be sent in this tick."""
+    """Whether the latest step of an avatar in view is to be sent."""
     return sent != NOT_NEAR and begun > sent
 
 
 @kernel
 def choose(
-    views: Views, viewers: Ints, changed: Ticks, begun: Ticks, tick: int, counts: Ints
+    views: Views, viewers: Ints, changes: Changes, budget: Budget, tick: int, counts: Ints
 ) -> None:
-    """Mark what each of `viewers`, int64 (N,), is to be sent; its own record always is.
+    """Mark what each of `viewers`, int64 (N,), is to be sent in this tick.
 
-    `changed` and `begun` (R,) are the ticks of everyone's latest record and step. `counts`, int64
-    (N, 2), takes the numbers of records and of steps.
+    Its own record and step always are; then, as far as its credit goes, steps of the nearest
+    first, records of the near, and records of the others in turn. All that waits stays due.
+    `counts`, int64 (N, 2), takes the numbers of records and of steps.
     """
     for i in range(len(viewers)):
         v = viewers[i]
-        records, steps = 0, 0
-        for c in range(views.seen[v]):
+        seen = views.seen[v]
+        credit = min(views.credit[v] + budget.refill, budget.most)
+        full = credit == budget.most
+        credit -= budget.snapshot_head
+        records, steps, short = 0, 0, False
+        for c in range(seen):
             row = views.rows[v, c]
-            marks = 0
-            if row == views.avatar[v] or record_due(changed[row], views.record_sent[v, c]):
-                marks |= RECORD_UNDER_WAY
+            own = row == views.avatar[v]
+            views.under_way[v, c] = RECORD_UNDER_WAY if own else 0
+            if own:
                 records += 1
-            if step_due(begun[row], views.step_sent[v, c]):
-                marks |= STEP_UNDER_WAY
-                steps += 1
-            views.under_way[v, c] = marks
+                credit -= budget.record
+            if step_due(changes.begun[row], views.step_sent[v, c]):
+                cost = budget.step if steps else budget.step + budget.steps_head
+                if own or credit >= cost:
+                    views.under_way[v, c] |= STEP_UNDER_WAY
+                    steps += 1
+                    credit -= cost
+                else:
+                    short = True
+        near = min(budget.near, seen)
+        turn = views.turn[v]
+        if turn < near or turn >= seen:
+            turn = near
+        next_turn = near
+        for k in range(seen):
+            c = k if k < near else near + (k - near + turn - near) % (seen - near)
+            if views.under_way[v, c] & RECORD_UNDER_WAY:
+                continue
+            if record_due(changes, budget, tick, views, v, c):
+                if credit < budget.record:
+                    short = True
+                    next_turn = max(c, near)
+                    break
+                views.under_way[v, c] |= RECORD_UNDER_WAY
+                records += 1
+                credit -= budget.record
+        views.turn[v] = next_turn
+        views.credit[v] = credit
         views.encoded[v] = tick
+        adapt(views, v, short, full, budget)
         counts[i, 0], counts[i, 1] = records, steps
+
+
+@inlined
+def adapt(views: Views, v: int, short: bool, full: bool, budget: Budget) -> None:
+    """Let steps reach less far when the budget is short, and further after a time of calm."""
+    calm = views.calm[v] + 1
+    if short and calm >= budget.settling_ticks:
+        least = min(1, views.most[v])
+        views.reach[v] = max(views.reach[v] - max(1, views.reach[v] // 8), least)
+        calm = 0
+    elif not short and full and calm >= budget.calm_ticks:
+        views.reach[v] = min(views.reach[v] + 1, views.most[v])
+        calm = 0
+    views.calm[v] = calm
 
 
 @inlined
