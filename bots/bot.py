@@ -223,6 +223,7 @@ async def connect(
     at: tuple[float, float, float] | None = None,
     resume: str | None = None,
     operator: str | None = None,
+    steps: bool = True,
 ) -> AsyncIterator[Bot]:
     """Join the world at `url` and leave it at the end of the block.
 
@@ -234,6 +235,7 @@ async def connect(
         recorded crowds, elsewhere the place of arrival nearest to it is taken
     resume : token of an earlier connection whose avatar is to be taken up again
     operator : the server's operator key; `welcome.operator` says whether it fits
+    steps : whether to be sent steps; of others who walk by steps, places come once a second only
 
     Raises
     ------
@@ -244,7 +246,7 @@ async def connect(
     Disconnected
         The connection ended before the avatar stood in the world.
     """
-    hello = Hello(name=name, version=VERSION, resume=resume, at=at, operator=operator)
+    hello = Hello(name=name, version=VERSION, resume=resume, at=at, operator=operator, steps=steps)
     bot = await Bot.join(url, hello)
     try:
         yield bot

@@ -81,6 +81,8 @@ class Hello(FromClient):
     the server takes the nearest free one; in others the place of arrival that is nearest."""
     operator: Token | None = None
     """The server's operator key; without the right key a client has no operator's rights."""
+    steps: bool = True
+    """Whether steps are wanted; who draws no feet gets all places in snapshots instead."""
 
 
 class Move(FromClient):

@@ -5,13 +5,13 @@ packed here without their pydantic models; the tests hold both encodings togethe
 """
 
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Final
 
 import msgpack
 
 from esplanade.protocol import ServerCode, encode
-from esplanade.protocol.messages import FromServer, Welcome
+from esplanade.protocol.messages import FromServer
 
 _FINAL_BINARY: Final = 0x82
 _SHORT = struct.Struct(">BB")
@@ -50,23 +50,3 @@ def enter(tick: int, entities: Sequence[bytes]) -> bytes:
     packer.pack("entities")
     packer.pack_array_header(len(entities))
     return frame(packer.bytes() + b"".join(entities))
-
-
-class Welcomes:
-    """Welcome messages; the scene, the same in all of them, is packed once."""
-
-    def __init__(self, scene: Mapping[str, object]) -> None:
-        self._scene: bytes = msgpack.packb(scene)
-
-    def frame(self, welcome: Welcome) -> bytes:
-        """The frame of a welcome, with the packed scene in place of the one that it holds."""
-        fields = welcome.model_dump(mode="json", exclude={"scene"})
-        packer = msgpack.Packer(autoreset=False)
-        packer.pack_array_header(2)
-        packer.pack(int(ServerCode.WELCOME))
-        packer.pack_map_header(len(fields) + 1)
-        for name, value in fields.items():
-            packer.pack(name)
-            packer.pack(value)
-        packer.pack("scene")
-        return frame(packer.bytes() + self._scene)

@@ -6,9 +6,8 @@ from typing import Final
 
 import structlog
 
-from esplanade.planning.grid.grid import ADULT
 from esplanade.protocol import ByeCode, CloseCode, ErrorCode, ProtocolError
-from esplanade.protocol.messages import Bye, Hello, Move, SetDoor, WalkTo, Welcome
+from esplanade.protocol.messages import Bye, Hello, Move, SetDoor, WalkTo
 from esplanade.server.metrics import Metrics
 from esplanade.server.net import frames
 from esplanade.server.net.fair_queue import Asker
@@ -19,6 +18,7 @@ from esplanade.server.net.operator_keys import OperatorKeys, TooManyKeysError
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.seats import Seat, Seats
 from esplanade.server.net.session import Session
+from esplanade.server.net.welcomes import Welcomes
 from esplanade.server.settings import ServerSettings
 from esplanade.server.world.audience import Audience
 from esplanade.server.world.frame import Frame
@@ -73,8 +73,7 @@ class Hub:
         self._routes = route_requests
         self._settings = settings
         self._metrics = metrics
-        scene = world.scene.model_dump(mode="json", exclude={"mesh"})
-        self._welcomes = frames.Welcomes({**scene, **derived})
+        self._welcomes = Welcomes(world, settings, server_time, derived)
         self._seats: Seats[Session] = Seats()
         self._names = Names(world.actor_names)
         self._leases = Leases(world.moves)
@@ -345,30 +344,10 @@ class Hub:
         self._comings += [Detach(seat.avatar_id), Attach(seat.avatar_id, session.ticket)]
 
     def _bind(self, session: Session, avatar_id: int, resumed: bool) -> None:
-        world = self._world
         self.sessions[avatar_id] = session
-        welcome = Welcome(
-            version=session.version,
-            id=avatar_id,
-            name=session.name,
-            resume=session.token,
-            resumed=resumed,
-            scene={},
-            tick=world.tick,
-            tick_rate=self._settings.tick_rate,
-            server_time=self.server_time(),
-            resume_seconds=self._settings.resume_seconds,
-            radius=world.rules.person_radius_m,
-            clearance=world.rules.person_clearance_m,
-            body_height=ADULT.height_m,
-            step_height=ADULT.step_on_m,
-            max_speed=world.rules.person_max_speed_mps,
-            walk_speed=min(world.rules.person_walk_speed_mps, world.rules.person_max_speed_mps),
-            origin=world.origin_m,
-            doors=world.doors.states(),
-            operator=session.is_operator,
-        )
-        session.outbox.welcome(self._welcomes.frame(welcome))
+        if not session.wants_steps:
+            self._audience.send_no_steps(avatar_id)
+        session.outbox.welcome(self._welcomes.frame(session, avatar_id, resumed))
         session.unconfirmed = resumed
         if session.fault_at_welcome is not None:
             session.tell(session.fault_at_welcome)

@@ -96,6 +96,7 @@ class Session:
         self.name = ""
         self.version = VERSION
         """The version that the client speaks, once it has said hello."""
+        self.wants_steps = True
         self.watching: int | None = None
         self.is_operator = False
         self.fault_at_welcome: ProtocolError | None = None
@@ -114,7 +115,7 @@ class Session:
         try:
             hello = await self._hello()
             self._connection.place.settle()
-            self.name = hello.name
+            self.name, self.wants_steps = hello.name, hello.steps
             self._hub.admit(self, hello)
             async for frame in self._connection:
                 # A client that was dismissed may go on talking until the connection ends.

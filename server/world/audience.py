@@ -12,7 +12,7 @@ from esplanade.server.world.avatars import Avatars
 from esplanade.server.world.byte_budget import byte_budget
 from esplanade.server.world.compiled._snapshot_kernels import choose, gather
 from esplanade.server.world.frame import Events, Frame, Line
-from esplanade.server.world.interest import PERIOD_TICKS, Interest
+from esplanade.server.world.interest import Interest
 from esplanade.server.world.routes import Point
 from esplanade.server.world.rules import Rules
 from esplanade.server.world.stage_times import StageTimes
@@ -81,7 +81,7 @@ class Audience:
     def __init__(self, rules: Rules, origin_m: tuple[float, float], times: StageTimes) -> None:
         self._avatars = Avatars(origin_m)
         self._interest = Interest(self._avatars, rules)
-        self._budget = byte_budget(rules, PERIOD_TICKS)
+        self._budget = byte_budget(rules)
         self._stepless: set[int] = set()
         self._times = times
 

@@ -149,7 +149,8 @@ def _urgent(before: Records, now: Records) -> npt.NDArray[np.bool_]:
     """Which records, RECORD (N,), tell more than that somebody who walks has walked on."""
     storey, reason = before["layer"] != now["layer"], before["reason"] != now["reason"]
     starts_or_halts = (before["speed"] == 0) != (now["speed"] == 0)
-    return storey | reason | starts_or_halts
+    urgent: npt.NDArray[np.bool_] = storey | reason | starts_or_halts
+    return urgent
 
 
 def _doubled(table: npt.NDArray[Any]) -> npt.NDArray[Any]:

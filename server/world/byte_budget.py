@@ -22,8 +22,12 @@ STEPPING_S: Final = 1.0
 """Time between two records of an avatar that walks by steps which the viewer has."""
 BURST_S: Final = 0.2
 """Credit that was not used lasts for this time."""
-CALM_S: Final = 4.0
-"""After this time without shortage, steps of one more avatar are tried."""
+CALM_S: Final = 2.0
+"""After this time without shortage, steps of more avatars are tried."""
+SETTLING_S: Final = 0.5
+"""After this time steps are sent of fewer for certain, and most of what waited is sent."""
+FIRST_REACH: Final = 16
+"""Steps are sent to a newcomer of this many avatars, itself among them, until more are tried."""
 
 _WEBSOCKET_HEAD: Final = 4
 """Bytes before a payload of 126 bytes to 64 KiB."""
@@ -31,8 +35,8 @@ _BLOCK_HEAD: Final = 1
 """A block of 256 bytes or more says its length in one byte more than an empty one."""
 
 
-def byte_budget(rules: Rules, period_ticks: int) -> Budget:
-    """The budget of each viewer; they look anew every `period_ticks`."""
+def byte_budget(rules: Rules) -> Budget:
+    """The budget of each viewer."""
     rate = rules.tick_rate
     refill = rules.viewer_bytes // rate
     head = _WEBSOCKET_HEAD + _BLOCK_HEAD
@@ -47,5 +51,5 @@ def byte_budget(rules: Rules, period_ticks: int) -> Budget:
         far_ticks=max(1, round(FAR_S * rate)),
         stepping_ticks=max(1, round(STEPPING_S * rate)),
         calm_ticks=max(1, round(CALM_S * rate)),
-        settling_ticks=period_ticks,
+        settling_ticks=max(1, round(SETTLING_S * rate)),
     )

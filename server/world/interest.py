@@ -10,6 +10,7 @@ import numpy as np
 
 from esplanade.server.world.avatars import Avatars
 from esplanade.server.world.buckets import sort_into_buckets
+from esplanade.server.world.byte_budget import FIRST_REACH
 from esplanade.server.world.compiled._interest_kernels import (
     NOT_NEAR,
     Limits,
@@ -85,7 +86,8 @@ class Interest:
         place = self._places[avatar_id] = self._free.pop()
         views = self.views
         views.avatar[place] = self._avatars.row(avatar_id)
-        views.reach[place] = views.most[place] = self._most if steps else 0
+        views.most[place] = self._most if steps else 0
+        views.reach[place] = min(FIRST_REACH, views.most[place])
         self._at_once.add(place)
 
     def detach(self, avatar_id: int) -> None:

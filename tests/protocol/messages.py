@@ -78,6 +78,7 @@ client_messages: st.SearchStrategy[FromClient] = st.one_of(
         resume=st.none() | tokens,
         at=st.none() | st.tuples(metres, metres, metres),
         operator=st.none() | tokens,
+        steps=st.booleans(),
     ),
     st.builds(Move, seq=u32, direction=st.floats(-1000, 1000), speed=st.floats(0, 100)),
     st.builds(WalkTo, seq=u32, x=metres, y=metres, z=metres),

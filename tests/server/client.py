@@ -71,7 +71,8 @@ class Client:
                 self.entities.update({entity.id: entity for entity in message.entities})
             case Leave():
                 for gone in message.ids:
-                    del self.entities[gone], self.positions[gone]
+                    del self.entities[gone]
+                    self.positions.pop(gone, None)
             case Snapshot():
                 assert self.welcome is not None
                 self.tick, self.ack = message.tick, message.ack

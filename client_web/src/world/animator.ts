@@ -106,7 +106,8 @@ export class Animator {
     const fresh = this.timeS === -Infinity;
     this.lagS = Math.max(0, this.lagS - HURRY * frameS);
     this.timeS = timeS - this.lagS;
-    this.cycle.advance(snapshots, frameS);
+    // Of somebody who walks by steps, snapshots tell seldom.
+    this.cycle.advance(this.walksBySteps ? this.place : snapshots, frameS);
     const next = this.chosen(snapshots);
     if (fresh) this.drawn = next;
     else this.choose(next);
@@ -119,8 +120,15 @@ export class Animator {
     }
     solve(this.posture, this.build, this.body);
     if (this.pointing.active) this.pointing.apply(this.body, this.posture, this.build, frameS);
-    this.look(snapshots.heading, frameS);
+    const { drawn } = this;
+    const heading = drawn && this.walksBySteps ? drawn.step.landing.heading : snapshots.heading;
+    this.look(heading, frameS);
     return this.placed(snapshots);
+  }
+
+  /** Whether a step is under way at the drawn time. */
+  private get walksBySteps(): boolean {
+    return this.drawn !== null && this.timeS < this.drawn.endS;
   }
 
   /** Turn the head to the target of pointing, else to where the feet will turn. */

@@ -29,29 +29,52 @@ interface Sample extends Pose {
 
 /** Enough for two seconds at 20 ticks a second. */
 const KEPT = 40;
-/** A walk goes on by itself for this long when snapshots stay away. */
+/** A walk goes on by itself for this long when nothing more is told of it. */
 const COAST_S = 0.25;
+/** Of an avatar far away that walks, records come this far apart. */
+const FAR_S = 0.2;
+/** Time is stretched by at most this part to draw an avatar later or earlier. */
+const STRETCH = 0.1;
 
 export class Interpolator {
   private readonly samples: Sample[] = [];
   private readonly here: Pose;
+  /** Time between the newest records of a walk. */
+  private apartS: number;
+  /** The avatar is drawn later by this, so that there is a record on either side. */
+  private laterS = 0;
 
-  constructor(timeS: number, pose: Pose) {
+  constructor(
+    timeS: number,
+    pose: Pose,
+    private readonly tickS: number,
+  ) {
     this.here = { ...pose };
     this.samples.push({ ...pose, timeS });
+    this.apartS = tickS;
   }
 
   /** A record of the tick at `timeS`; one that is not newer than the last is ignored. */
   add(timeS: number, pose: Pose): void {
-    if (timeS <= this.last.timeS) return;
+    const { last, tickS } = this;
+    if (timeS <= last.timeS) return;
+    if (last.speed > 0) this.apartS = Math.min(timeS - last.timeS, FAR_S);
+    else this.stand(timeS - Math.max(tickS, walkS(last, pose)));
     this.samples.push({ ...pose, timeS });
     if (this.samples.length > KEPT) this.samples.shift();
   }
 
-  /** Nothing had changed up to `timeS`: the next change begins there. */
-  hold(timeS: number): void {
-    if (timeS <= this.last.timeS) return;
-    this.add(timeS, { ...this.last, speed: 0 });
+  /** The avatar stood still up to `timeS`, as nothing else was told of it. */
+  private stand(timeS: number): void {
+    const { last } = this;
+    if (timeS > last.timeS) this.samples.push({ ...last, timeS });
+  }
+
+  /** Draw the avatar a little later, or earlier again, as its records come further apart. */
+  private comeBehind(frameS: number): void {
+    const off = this.apartS - this.tickS - this.laterS;
+    const most = STRETCH * frameS;
+    this.laterS += Math.max(-most, Math.min(most, off));
   }
 
   get last(): Sample {
@@ -60,9 +83,16 @@ export class Interpolator {
     return last;
   }
 
+  /** The pose to draw at `drawnS`, `frameS` after the call before; good until the next call. */
+  advance(drawnS: number, heardS: number, frameS: number): Readonly<Pose> {
+    this.comeBehind(frameS);
+    return this.at(drawnS - this.laterS, heardS);
+  }
+
   /**
-   * The pose at `timeS`, good until the next call. After the last sample it stays there if `heardS`,
-   * the time of the newest snapshot, says that nothing has changed since, else it coasts for a moment.
+   * The pose at `timeS`, good until the next call. After the last sample an avatar that stood stays
+   * there if `heardS`, the time of the newest snapshot, is later. One that walked coasts for a
+   * moment, and is back where it was last if the next record stays away.
    */
   at(timeS: number, heardS: number): Readonly<Pose> {
     const { samples, here } = this;
@@ -86,7 +116,8 @@ export class Interpolator {
   private beyond(timeS: number, heardS: number): Readonly<Pose> {
     const { last, here } = this;
     const before = this.samples.at(-2);
-    if (!before || heardS > last.timeS) return last;
+    const silentS = last.speed > 0 ? COAST_S : 0;
+    if (!before || heardS > last.timeS + silentS) return last;
     const coastS = Math.min(timeS - last.timeS, COAST_S);
     const stepS = last.timeS - before.timeS;
     copyPose(last, here);
@@ -94,4 +125,9 @@ export class Interpolator {
     here.y += ((last.y - before.y) / stepS) * coastS;
     return here;
   }
+}
+
+/** The time that it takes to walk from one pose to another. */
+function walkS(from: Readonly<Pose>, to: Readonly<Pose>): number {
+  return to.speed > 0 ? Math.hypot(to.x - from.x, to.y - from.y) / to.speed : 0;
 }

@@ -103,7 +103,7 @@ export class World {
       const { x, y, z, layer, heading } = info;
       const pose = { x, y, z, layer, heading, speed: 0, reason: 0 };
       const animator = new Animator(buildOf(info.leg_m, info.stature_m), pose);
-      const interpolator = new Interpolator(this.timeOf(tick), pose);
+      const interpolator = new Interpolator(this.timeOf(tick), pose, this.tickS);
       this.avatars_.set(info.id, {
         id: info.id,
         kind: info.kind,
@@ -126,13 +126,12 @@ export class World {
     }
   }
 
-  /** A snapshot holds those who changed since the one before; the others stood still. */
+  /** A snapshot holds those of whom there is news that is due; see `docs/protocol.md`. */
   snapshot(tick: number, ack: number, records: readonly EntityRecord[], serverNowS: number): void {
     const timeS = this.timeOf(tick);
     for (const record of records) {
       const { id, ...pose } = record;
       const interpolator = this.avatars_.get(id)?.interpolator;
-      interpolator?.hold(this.heardS);
       interpolator?.add(timeS, pose);
       if (id === this.ownId) this.prediction?.reconcile(tick, ack, pose);
     }
@@ -189,7 +188,7 @@ export class World {
       avatar.pose =
         own && this.prediction
           ? animator.advance(ownS, this.prediction.shown, frameS)
-          : animator.advance(timeS, interpolator.at(timeS, this.heardS), frameS);
+          : animator.advance(timeS, interpolator.advance(timeS, this.heardS, frameS), frameS);
     }
   }
 

@@ -54,7 +54,7 @@ class Budget(NamedTuple):
     stepping_ticks: int
     """Ticks between records of an avatar whose steps say where it is."""
     calm_ticks: int
-    """Ticks without shortage after which steps of one more avatar are tried."""
+    """Ticks without shortage after which steps of more avatars are tried."""
     settling_ticks: int
     """Ticks until the steps of fewer avatars are sent for certain."""
 
@@ -68,10 +68,12 @@ def record_due(changes: Changes, budget: Budget, tick: int, views: Views, v: int
         return False
     if sent == NEVER or changes.urgent[row] > sent:
         return True
-    step_sent = views.step_sent[v, c]
-    if step_sent >= changes.begun[row] > NEVER and tick <= changes.over[row]:
-        return tick - sent >= budget.stepping_ticks
-    return c < budget.near or tick - sent >= budget.far_ticks
+    begun = changes.begun[row]
+    walks_by_steps = views.step_sent[v, c] >= begun > NEVER and tick <= changes.over[row]
+    if c < budget.near and not walks_by_steps:
+        return True
+    period = budget.stepping_ticks if walks_by_steps else budget.far_ticks
+    return bool(tick - sent >= period)
 
 
 @inlined
@@ -145,7 +147,7 @@ def adapt(views: Views, v: int, short: bool, full: bool, budget: Budget) -> None
         views.reach[v] = max(views.reach[v] - max(1, views.reach[v] // 8), least)
         calm = 0
     elif not short and full and calm >= budget.calm_ticks:
-        views.reach[v] = min(views.reach[v] + 1, views.most[v])
+        views.reach[v] = min(views.reach[v] + max(1, views.reach[v] // 8), views.most[v])
         calm = 0
     views.calm[v] = calm
 

@@ -1,3 +1,4 @@
+import msgpack
 import pytest
 from websockets.frames import Frame, Opcode
 from websockets.streams import StreamReader
@@ -5,6 +6,7 @@ from websockets.streams import StreamReader
 from esplanade.protocol import VERSION, ByeCode, Kind, decode_server, entities
 from esplanade.protocol.messages import Bye, Enter, Entity, Leave, Welcome
 from esplanade.server.net import frames
+from esplanade.server.net.welcomes import with_scene
 from tests.server.worlds import ROOM
 
 
@@ -99,7 +101,7 @@ def test_a_welcome_carries_the_scene_that_was_packed_once() -> None:
         doors={"gate": True},
         operator=False,
     )
-    frame = frames.Welcomes(scene).frame(welcome.model_copy(update={"scene": {}}))
+    frame = with_scene(welcome.model_copy(update={"scene": {}}), msgpack.packb(scene))
     assert decode_server(payload_of(frame)) == welcome
 
 

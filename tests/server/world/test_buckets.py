@@ -80,4 +80,4 @@ def test_the_table_grows_and_rows_are_used_again() -> None:
     avatars.add([Entered(500, PERSON, "late", (b"", b""))])
     assert avatars.row(500) == row
     assert avatars.name(500) == "late"
-    assert (avatars.changed[row], avatars.begun[row]) == (0, 0)
+    assert all(ticks[row] == 0 for ticks in avatars.changes)

@@ -92,6 +92,8 @@ def test_snapshots_alone_rebuild_the_world_however_many_are_lost() -> None:
             Steer(who, tick, float(random.uniform(0.0, 6.3)), float(random.integers(2)))
             for who in random.choice(people, 4).tolist()
         ]
+        if tick >= 100:
+            steering = [Steer(who, tick, 0.0, 0.0) for who in people]
         update = trial.tick(*steering, writing=False)
         if tick < 110 and random.uniform() < 0.7:
             continue
