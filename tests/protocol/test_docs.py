@@ -1,5 +1,6 @@
 """`docs/protocol.md` says what the code does: tables, fields, limits, the worked example."""
 
+import json
 import re
 from pathlib import Path
 from types import UnionType
@@ -111,8 +112,8 @@ def test_every_field_is_documented_with_its_type(model: type[FromClient | FromSe
         field = model.model_fields[row["Field"]]
         assert row["Type"] == documented_type(field.annotation), row["Field"]
         if issubclass(model, FromClient):
-            default = "" if field.default is PydanticUndefined else field.default
-            assert row["Default"] == ("null" if default is None else str(default)), row["Field"]
+            default = "" if field.default is PydanticUndefined else json.dumps(field.default)
+            assert row["Default"] == default, row["Field"]
 
 
 @pytest.mark.parametrize(
