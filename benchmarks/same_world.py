@@ -27,6 +27,7 @@ from esplanade.server.metrics import Metrics
 from esplanade.server.net.connection import Connection
 from esplanade.server.net.delivery import Delivery
 from esplanade.server.net.hub import Hub
+from esplanade.server.net.refusals import Refusals
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.search_budget import SearchBudget, Share
 from esplanade.server.net.session import Session
@@ -93,7 +94,9 @@ class Visitors:
 
     def _come(self, k: int, token: str | None = None) -> Session:
         connection = cast(Connection, KeptConnection())
-        session = Session(connection, self._hub, self._settings, self._metrics)
+        session = Session(
+            connection, self._hub, self._settings, self._metrics, Refusals(self._metrics)
+        )
         hello = Hello(
             name=f"p{k}",
             version=VERSION,

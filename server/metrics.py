@@ -155,6 +155,9 @@ class Metrics:
         self.seats_yielded = self._counter(
             "seats_yielded", "Vacant seats given up for newcomers to a full world"
         )
+        self.lines_refused = self._counter(
+            "lines_refused", "Lines of chat that nobody heard, by the reason", ["why"]
+        )
         self.chat_lines = self._counter("chat_lines", "Lines of chat that people have said")
         self.planning_failures = self._counter(
             "planning_failures", "Ticks in which the actors' planning failed and they stood still"

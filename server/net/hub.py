@@ -162,8 +162,7 @@ class Hub:
     def say(self, session: Session, text: str) -> None:
         """Say a line in the next tick; that of somebody at the door waits until they are in."""
         if len(self._lines) >= MAX_LINES:
-            fault = ErrorCode.FLOODING, "too many people talk at once; nobody heard your line"
-            session.tell(ProtocolError(*fault, None))
+            session.refuse_line("all", "too many people talk at once; nobody heard your line")
             return
         self._metrics.chat_lines.inc()
         self._lines.append((session, text))

@@ -141,7 +141,10 @@ class Listener:
         self._sessions += 1
         try:
             async with connection:
-                await Session(connection, self._hub, self._settings, self._metrics).run()
+                session = Session(
+                    connection, self._hub, self._settings, self._metrics, self._refusals
+                )
+                await session.run()
         finally:
             self._sessions -= 1
             connection.server.all_connections.discard(connection)

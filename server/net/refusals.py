@@ -1,4 +1,4 @@
-"""Refusals at the door are counted by their reasons, and the log names the addresses.
+"""Everything that is refused is counted by its reason, and the log names the addresses.
 
 An attack refuses thousands of connections a second: one line stands for all refusals of one
 address and reason within some seconds, and lines of all addresses together are bounded too.
@@ -46,6 +46,23 @@ class Refusals:
         """Note a connection that is closed because of how it sends, by what it has too much of."""
         self._metrics.floods.labels(what).inc()
         self._tell("client closed, it floods", what, address)
+
+    def line(self, why: str, address: str) -> None:
+        """Note a line of chat that nobody hears, whose speaker stays connected."""
+        self._metrics.lines_refused.labels(why).inc()
+        self._tell("line of chat refused", why, address)
+
+    def slow(self, limit: str, address: str) -> None:
+        """Note a client that is dropped because it does not read, by the limit that it broke."""
+        self._metrics.dropped_slow.labels(limit).inc()
+        self._tell("client dropped, too slow", limit, address)
+
+    def fault(self, why: str, address: str) -> None:
+        """Note a connection that is closed because of a message or a frame that came on it.
+
+        Metrics count it by its error and its close code already.
+        """
+        self._tell("client closed", why, address)
 
     def _tell(self, event: str, why: str, address: str) -> None:
         now = self._clock()

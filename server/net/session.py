@@ -4,7 +4,6 @@ import asyncio
 from collections.abc import Callable
 from typing import Final, Protocol
 
-import structlog
 from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode as LibraryCode
 
@@ -35,12 +34,11 @@ from esplanade.server.net.connection import CLOSE_S, Connection
 from esplanade.server.net.leases import Lease
 from esplanade.server.net.limits import TokenBucket
 from esplanade.server.net.outbox import Outbox, SlowPolicy
+from esplanade.server.net.refusals import Refusals
 from esplanade.server.settings import ServerSettings
 
 CHAT_BURST: Final = 5
 _CODES_OF_OURS: Final = frozenset(code for code in CloseCode if code >= 4000)
-
-log = structlog.get_logger(__name__)
 
 
 class SessionRequests(Protocol):
@@ -81,6 +79,7 @@ class Session:
         hub: SessionRequests,
         settings: ServerSettings,
         metrics: Metrics,
+        refusals: Refusals,
     ) -> None:
         now = asyncio.get_running_loop().time()
         self.outbox = Outbox(connection, SlowPolicy.of(settings), metrics.traffic)
@@ -106,6 +105,7 @@ class Session:
         self._connection = connection
         self._hub = hub
         self._metrics = metrics
+        self._refusals = refusals
         self._hello_timeout_s = settings.hello_timeout_s
         self._lines = TokenBucket(settings.chat_rate, CHAT_BURST, now)
         self._dismissal: asyncio.Task[None] | None = None
@@ -123,6 +123,7 @@ class Session:
                     self._take(self._decode(frame))
         except ProtocolError as fault:
             self.tell(fault)
+            self._refusals.fault(fault.code.value, self.address)
             self._hub.depart(self, comes_back=False)
             await self._close(fault.close or CloseCode.NORMAL, fault.code.value)
         except ConnectionClosed as closed:
@@ -139,6 +140,11 @@ class Session:
         """Tell the client of a fault in something that it sent."""
         self._metrics.errors.labels(fault.code.value).inc()
         self.outbox.post(frames.message(Error(error=fault.code, text=fault.text)))
+
+    def refuse_line(self, why: str, text: str) -> None:
+        """Tell the client that nobody hears its line of chat, and note that."""
+        self._refusals.line(why, self.address)
+        self.tell(ProtocolError(ErrorCode.FLOODING, text, None))
 
     def dismiss(self, farewell: bytes, code: CloseCode, reason: str) -> asyncio.Task[None]:
         """End the connection in good order, with a last frame."""
@@ -198,7 +204,7 @@ class Session:
                 if self._lines.take(asyncio.get_running_loop().time()):
                     self._hub.say(self, message.text)
                 else:
-                    self.tell(ProtocolError(ErrorCode.FLOODING, "you talk too fast", None))
+                    self.refuse_line("rate", "you talk too fast")
             case Watch():
                 self._hub.watch(self, message.id)
             case SetDoor():
@@ -218,13 +224,14 @@ class Session:
     def _count_end(self, closed: ConnectionClosed) -> None:
         """Count an end that the library made itself: a broken or too large frame, a lost client."""
         if self._dismissal is None and closed.sent is not None and not closed.rcvd_then_sent:
-            self._metrics.closes.labels(LibraryCode(closed.sent.code).name.lower()).inc()
+            why = LibraryCode(closed.sent.code).name.lower()
+            self._metrics.closes.labels(why).inc()
+            self._refusals.fault(why, self.address)
 
     def _end(self) -> None:
         if self.outbox.dropped:
-            self._metrics.dropped_slow.labels(self.outbox.dropped).inc()
+            self._refusals.slow(self.outbox.dropped, self.address)
             self._metrics.closes.labels(CloseCode.TOO_SLOW.name.lower()).inc()
-            log.warning("client dropped, too slow", id=self.avatar_id, limit=self.outbox.dropped)
         # A client that closes with 1000 means to go; any other end may be a tunnel or a reload.
         self._hub.depart(self, comes_back=self._connection.close_code != CloseCode.NORMAL)
 

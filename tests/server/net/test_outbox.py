@@ -3,6 +3,7 @@
 from typing import cast
 
 import pytest
+import structlog
 from websockets.asyncio.server import ServerConnection
 from websockets.protocol import State
 
@@ -200,12 +201,17 @@ async def test_a_client_that_never_reads_is_dropped_and_nobody_else_waits(
     async with (
         serving(drop_seconds=0.3, drop_bytes=64 * 1024**2, message_rate=10_000.0) as server,
         joined(server.port, "Ann") as ann,
-        joined(server.port, "Deaf") as deaf,
+        joined(server.port, "Deaf", source="127.0.0.2") as deaf,
     ):
         deaf.connection.transport.pause_reading()
         # The answers to these are more than the kernel's buffers on both sides swallow.
         deaf.connection.transport.write(PING * 18_000)
-        await ann.wait_for(lambda: b'slow_total{limit="seconds"}' in server.metrics.exposition())
+        with structlog.testing.capture_logs() as lines:
+            await ann.wait_for(
+                lambda: b'slow_total{limit="seconds"}' in server.metrics.exposition()
+            )
+        (line,) = [line for line in lines if line["event"] == "client dropped, too slow"]
+        assert (line["why"], line["address"]) == ("seconds", "127.0.0.2")
         assert b'closes_total{reason="too_slow"} 1.0' in server.metrics.exposition()
         assert server.metrics.traffic.snapshots_skipped > 0
         begin = ann.tick
