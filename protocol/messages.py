@@ -5,8 +5,7 @@ over-long texts are refused. Positions are metres, z being the height of the fee
 scene's ground; directions are radians, counter-clockwise from +x; speeds are metres a second.
 """
 
-import unicodedata
-from typing import Annotated, Any, ClassVar, Final, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints
 
@@ -21,20 +20,8 @@ from esplanade.protocol.codes import (
     Reason,
     ServerCode,
 )
+from esplanade.protocol.lines import plain_line
 from esplanade.protocol.names import plain_name
-
-_DIRECTION_MARKS: Final = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
-
-
-def _one_visible_line(text: str) -> str:
-    """Text that others will read beside their own: it may not break lines or turn them around."""
-    for char in text:
-        if unicodedata.category(char) in {"Cc", "Zl", "Zp"} or char in _DIRECTION_MARKS:
-            raise ValueError(f"character U+{ord(char):04X} is not allowed, expected one plain line")
-    if not any(char.isprintable() and not char.isspace() for char in text):
-        raise ValueError("expected at least one visible character")
-    return text
-
 
 Metres = Annotated[float, Field(ge=-100_000.0, le=100_000.0, allow_inf_nan=False)]
 Place = tuple[float, float, float]
@@ -47,7 +34,7 @@ Name = Annotated[str, AfterValidator(plain_name)]
 Line = Annotated[
     str,
     StringConstraints(strip_whitespace=True, min_length=1, max_length=MAX_CHAT_CHARS),
-    AfterValidator(_one_visible_line),
+    AfterValidator(plain_line),
 ]
 
 
