@@ -18,9 +18,10 @@ from esplanade.server.link.local import LocalLink
 from esplanade.server.loading import LoadedScene, LoadingError, load_scene
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.delivery import Delivery
+from esplanade.server.net.descriptors import places_for_people
 from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.hub import Hub
-from esplanade.server.net.listener import Listener
+from esplanade.server.net.listener import Listener, connections_wanted
 from esplanade.server.net.listening import bound_sockets
 from esplanade.server.net.private import private_port
 from esplanade.server.net.readiness import Readiness
@@ -75,9 +76,11 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     TlsError
         The certificate and its key cannot be used.
     OSError
-        A port cannot be had.
+        A port cannot be had, or too few open files are allowed.
     """
     warn_of_crowding(settings)
+    # What the machine cannot give is said now, not after a minute of building the world.
+    places = places_for_people(connections_wanted(settings))
     tls = None
     if settings.tls_cert is not None and settings.tls_key is not None:
         tls = Tls(settings.tls_cert, settings.tls_key)
@@ -145,7 +148,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             world, ground_work, audience, link, hub, delivery, schedule, metrics, thread
         )
         await stack.enter_async_context(
-            Listener(hub, assets, settings, metrics).listening(sockets, tls)
+            Listener(hub, assets, settings, metrics, places).listening(sockets, tls)
         )
         ticking = asyncio.create_task(ticker.run())
         guiding = asyncio.create_task(route_requests.run(hub.route_found))

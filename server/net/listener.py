@@ -23,7 +23,6 @@ from esplanade.server.net.addresses import TrustedProxies
 from esplanade.server.net.answers import Answers, busy
 from esplanade.server.net.connection import Connection
 from esplanade.server.net.connections import Connections, Place
-from esplanade.server.net.descriptors import places_for_people
 from esplanade.server.net.door import Door
 from esplanade.server.net.hub import Hub
 from esplanade.server.net.metering import MAX_FRAME_BYTES, Meter
@@ -46,12 +45,23 @@ MAX_VISITS: Final = 256
 """New connections are cut off while this many fetch a page or have not asked for anything yet."""
 
 
+def connections_wanted(settings: ServerSettings) -> int:
+    """The number of connections that the port is to have room for."""
+    return settings.max_clients + MAX_UNGREETED + MAX_VISITS
+
+
 class Listener:
     """Accepts connections, answers requests for pages, and runs a session for each person."""
 
     def __init__(
-        self, hub: Hub, assets: Assets, settings: ServerSettings, metrics: Metrics
+        self,
+        hub: Hub,
+        assets: Assets,
+        settings: ServerSettings,
+        metrics: Metrics,
+        places: int,
     ) -> None:
+        """`places` connections may be open, no more than there are descriptors for them."""
         self._hub = hub
         self._assets = assets
         self._settings = settings
@@ -62,7 +72,7 @@ class Listener:
         self._answers = Answers(settings.address_bytes, settings.answer_bytes, self._refusals)
         self._root = RootPath(settings.root_path)
         self._connections = Connections(
-            places_for_people(settings.max_clients + MAX_UNGREETED + MAX_VISITS),
+            places,
             self._limits,
             TrustedProxies(settings.trusted_proxies),
             self._refusals,

@@ -137,7 +137,8 @@ async def test_the_limit_of_open_files_is_raised_as_far_as_is_needed(room_file: 
         assert 1512 < limits[0] < limits[1] == 4096
 
 
-def test_too_few_open_files_are_refused_at_start(room_file: Path) -> None:
+def test_too_few_open_files_are_refused_before_the_scene_is_read(room_file: Path) -> None:
+    room_file.write_text("this is no scene")
     places = ("--host", "127.0.0.1", "--port", "0", "--private-port", "0")
     done = subprocess.run(
         [sys.executable, "-m", "esplanade", "serve", "--scene", str(room_file), *places],
