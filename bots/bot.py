@@ -4,6 +4,7 @@ import asyncio
 import time
 from collections.abc import AsyncIterator, Mapping
 from contextlib import asynccontextmanager
+from pathlib import Path
 from types import MappingProxyType
 from typing import Self
 
@@ -55,9 +56,9 @@ class Bot(Person):
         self._reader = asyncio.create_task(self._read())
 
     @classmethod
-    async def join(cls, url: str, hello: Hello) -> Self:
+    async def join(cls, url: str, hello: Hello, trust: Path | None = None) -> Self:
         """Connect and wait until the own place is known; raises as `connect` does."""
-        bot = cls(await Connection.open(url, hello))
+        bot = cls(await Connection.open(url, hello, trust))
         try:
             await bot._until_placed()
         except BaseException:
@@ -224,6 +225,7 @@ async def connect(
     resume: str | None = None,
     operator: str | None = None,
     steps: bool = True,
+    trust: Path | None = None,
 ) -> AsyncIterator[Bot]:
     """Join the world at `url` and leave it at the end of the block.
 
@@ -236,6 +238,8 @@ async def connect(
     resume : token of an earlier connection whose avatar is to be taken up again
     operator : the server's operator key; `welcome.operator` says whether it fits
     steps : whether to be sent steps; of others who walk by steps, places come once a second only
+    trust : file of the server's certificate, PEM; no other is trusted then, and the server's name
+        is not checked. Without it, certificates are checked as the machine does
 
     Raises
     ------
@@ -247,7 +251,7 @@ async def connect(
         The connection ended before the avatar stood in the world.
     """
     hello = Hello(name=name, version=VERSION, resume=resume, at=at, operator=operator, steps=steps)
-    bot = await Bot.join(url, hello)
+    bot = await Bot.join(url, hello, trust)
     try:
         yield bot
     finally:

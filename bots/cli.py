@@ -23,6 +23,7 @@ from esplanade.bots.report import show
 from esplanade.bots.scenario_file import load_scenario
 from esplanade.bots.settings import BotsSettings
 from esplanade.bots.tally import Tally
+from esplanade.bots.trust import tls_context
 from esplanade.bots.verdict import exit_code, warnings
 from esplanade.bots.worker import Job
 from esplanade.commandline import fields
@@ -44,6 +45,11 @@ def run(options: Namespace) -> int:
             crowd = read_crowd(settings.replay)
         except RecordingError as error:
             raise UsageError(str(error)) from None
+    if settings.trust is not None:
+        try:
+            tls_context(settings.trust)
+        except ValueError as error:
+            raise UsageError(f"--{error}") from None
     if settings.scenario is not None:
         try:
             load_scenario(settings.scenario)
@@ -77,6 +83,7 @@ def _load_jobs(settings: BotsSettings) -> list[Job]:
             duration_s=settings.duration,
             stages=settings.plan,
             scenario=settings.scenario,
+            trust=settings.trust,
         )
         for first in range(step)
     ]
@@ -86,7 +93,7 @@ def _replay_jobs(settings: BotsSettings, crowd: Crowd) -> tuple[list[Job], int]:
     """The job, if anybody has a way, and how many have none."""
     tracks = sorted(crowd.tracks, key=lambda track: track.start_s)[: settings.limit]
     walking = tuple(track for track in tracks if len(track.times) > 1)
-    job = ReplayJob(settings.url, walking, settings.speedup, settings.linger)
+    job = ReplayJob(settings.url, walking, settings.speedup, settings.linger, settings.trust)
     return [job] if walking else [], len(tracks) - len(walking)
 
 

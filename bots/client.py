@@ -8,6 +8,7 @@ import asyncio
 import time
 from collections.abc import Awaitable, Callable, Coroutine
 from contextlib import suppress
+from pathlib import Path
 from typing import Any, Final
 
 from esplanade.bots.clock import ServerClock
@@ -163,6 +164,7 @@ async def visit(
     clock: ServerClock,
     tally: Tally,
     stay: Callable[[Client], Awaitable[None]],
+    trust: Path | None = None,
 ) -> None:
     """One client's whole visit: join, `stay` for as long as that takes, leave. Never raises.
 
@@ -170,7 +172,7 @@ async def visit(
     """
     began_s = time.monotonic()
     try:
-        connection = await Connection.open(url, hello)
+        connection = await Connection.open(url, hello, trust)
     except BotError as error:
         now_s = time.monotonic()
         tally.failed += 1

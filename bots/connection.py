@@ -1,6 +1,7 @@
 """One WebSocket to the server, from hello to goodbye: frames in, messages out."""
 
 import asyncio
+from pathlib import Path
 from typing import Final, Self
 
 from websockets.asyncio.client import ClientConnection, connect
@@ -8,6 +9,7 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidURI
 
 from esplanade.bots.address import websocket_url
 from esplanade.bots.errors import Disconnected, Refused, TimedOut, Unreachable
+from esplanade.bots.trust import HIDDEN_BYTES, tls_context
 from esplanade.protocol import ProtocolError, decode_server, encode
 from esplanade.protocol.messages import Error, FromClient, Hello, Welcome
 
@@ -18,7 +20,10 @@ MAX_FRAME_BYTES: Final = 16 * 1024 * 1024
 """The largest frame is welcome, which carries the scene."""
 
 QUEUED_FRAMES: Final = 64
-"""When a bot falls this far behind, it stops reading and TCP holds the server's frames back."""
+"""When a bot falls this far behind, it stops reading and TCP holds the server's frames back.
+
+Under TLS some more wait in between, see `HIDDEN_BYTES`.
+"""
 
 NO_CLOSE_CODE: Final = 1006
 
@@ -31,13 +36,15 @@ class Connection:
         self.welcome = welcome
 
     @classmethod
-    async def open(cls, url: str, hello: Hello) -> Self:
+    async def open(cls, url: str, hello: Hello, trust: Path | None = None) -> Self:
         """Connect, say hello and wait for welcome.
+
+        With `trust`, a server that speaks TLS must have exactly the certificate in that file.
 
         Raises
         ------
         ValueError
-            `url` is no address.
+            `url` is no address, or `trust` no certificate.
         TimedOut
             It takes too long.
         Unreachable
@@ -46,6 +53,7 @@ class Connection:
             The server does not let this client in.
         """
         address = websocket_url(url)
+        secure = address.startswith("wss:")
         try:
             socket = await connect(
                 address,
@@ -55,11 +63,14 @@ class Connection:
                 open_timeout=OPEN_TIMEOUT_S,
                 close_timeout=CLOSE_TIMEOUT_S,
                 proxy=None,
+                ssl=tls_context(trust) if secure else None,
             )
         except TimeoutError:
             raise TimedOut(f"{address}: no connection within {OPEN_TIMEOUT_S:g} s") from None
         except (OSError, InvalidHandshake, InvalidURI) as error:
             raise Unreachable(f"{address}: {str(error) or type(error).__name__}") from error
+        if secure:
+            socket.transport.set_read_buffer_limits(HIDDEN_BYTES)  # type: ignore[attr-defined]
         try:
             async with asyncio.timeout(OPEN_TIMEOUT_S):
                 await socket.send(encode(hello))

@@ -4,6 +4,7 @@ import asyncio
 import math
 from collections.abc import Callable, Coroutine, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from esplanade.bots.client import Client, sleep_until, until_first, visit
@@ -43,6 +44,8 @@ class LoadJob:
     stages: tuple[Stage, ...] = ()
     scenario: str | None = None
     """The bots do what this class in a file says, FILE:CLASS; without it they wander."""
+    trust: Path | None = None
+    """The only certificate that is trusted."""
 
     async def run(self, tally: Tally, stop: asyncio.Event) -> None:
         """Send the visitors in and take them out again, all at their times."""
@@ -86,7 +89,7 @@ class LoadJob:
             works = play(client, index)
             await until_first(*works, client.keep_pinging(), _until(end_s, stop))
 
-        await visit(self.url, hello, clock, tally, stay)
+        await visit(self.url, hello, clock, tally, stay, self.trust)
 
     def _wander(self, client: Client, index: int) -> "Works":
         scene = client.welcome.scene

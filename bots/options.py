@@ -38,6 +38,9 @@ exit code: 0 all went well, 1 some bots failed or were complained of, 2 wrong us
 --fail-if was crossed
 Ctrl-C sends everyone home and reports what was measured until then.
 
+A bot that falls behind stops reading, so that the server sees it as slow. By wss:// it has read
+some 100 kB more by then, which wait within TLS: the server sees it that much later.
+
 Every option can also be given as an environment variable: --join-rate is
 ESPLANADE_BOTS_JOIN_RATE. The command line wins.
 """
@@ -160,7 +163,12 @@ SETTINGS: Final = Settings(
                 "where the server is; the path /ws is added when absent",
                 Address(),
                 "ws://localhost:8080",
-            )
+            ),
+            "trust": Setting(
+                "trust exactly this certificate of a wss:// server, PEM, whatever name is in it; "
+                "without it, those that the machine trusts",
+                InputFile(),
+            ),
         },
         "load test (without --replay)": _LOAD,
         "replay of a recorded crowd": _REPLAY,

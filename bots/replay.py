@@ -2,6 +2,7 @@
 
 import asyncio
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Final
 
 from esplanade.bots.client import Client, until_first, visit
@@ -33,6 +34,8 @@ class ReplayJob:
     speedup: float
     linger_s: float
     """Time that a pedestrian stands at its last place before it leaves (real time)."""
+    trust: Path | None = None
+    """The only certificate that is trusted."""
 
     async def run(self, tally: Tally, stop: asyncio.Event) -> None:
         """Send everyone in at their time, until all have left or `stop` is set."""
@@ -61,7 +64,7 @@ class ReplayJob:
                 client.read(walk.on_snapshot), client.keep_pinging(), done.wait(), stop.wait()
             )
 
-        await visit(self.url, hello, clock, tally, stay)
+        await visit(self.url, hello, clock, tally, stay, self.trust)
 
 
 class _Walk:

@@ -33,6 +33,7 @@ class BotsSettings(BaseSettings):
     model_config = SettingsConfigDict(env_prefix=SETTINGS.prefix, frozen=True, extra="forbid")
 
     url: str = _field("url")
+    trust: Path | None = _field("trust")
 
     count: int = _field("count")
     duration: float = _field("duration")

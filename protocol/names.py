@@ -26,6 +26,7 @@ _REFUSED_CATEGORIES: Final = {
     "Zp": "a paragraph separator",
 }
 
+
 def plain_name(text: str) -> str:
     """Return a name in its one way of writing; a plain name comes back as it is.
 

@@ -42,9 +42,9 @@ def hidden(text: str, place: int) -> str | None:
     A joiner between two emoji counts as seen: it makes one picture of them.
     """
     char = text[place]
-    if char == JOINER and 0 < place < len(text) - 1:
-        if is_picture(text[place - 1]) and is_picture(text[place + 1]):
-            return None
+    within = char == JOINER and 0 < place < len(text) - 1
+    if within and is_picture(text[place - 1]) and is_picture(text[place + 1]):
+        return None
     if char in INVISIBLE:
         return "an invisible character"
     return "an invisible format character" if unicodedata.category(char) == "Cf" else None

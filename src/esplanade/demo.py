@@ -13,6 +13,7 @@ import threading
 from argparse import Namespace
 from collections.abc import Callable
 from http import HTTPStatus
+from pathlib import Path
 from typing import Final
 
 from rich.console import Console
@@ -73,7 +74,7 @@ class Visitors:
         while not is_ready(self._options.private_port):
             if self._ending.wait(POLL_S):
                 return
-        _announce(self._options.port)
+        _announce(page_address(self._options))
         if not self._options.visitors or self._ending.is_set():
             return
         self._process = subprocess.Popen(
@@ -100,8 +101,11 @@ class Visitors:
 
 
 def bots_arguments(options: Namespace) -> list[str]:
+    certificate = _certificate(options)
+    trusted = [] if certificate is None else [f"--trust={certificate}"]
     return [
-        f"--url=ws://localhost:{options.port}",
+        f"--url={page_address(options)}",
+        *trusted,
         f"--count={options.visitors}",
         f"--seed={options.seed}",
         "--duration=0",
@@ -126,10 +130,22 @@ def is_ready(private_port: int) -> bool:
     return False
 
 
-def _announce(port: int) -> None:
+def page_address(options: Namespace) -> str:
+    """The address of the page for people on this machine."""
+    scheme = "http" if _certificate(options) is None else "https"
+    return f"{scheme}://localhost:{options.port}"
+
+
+def _certificate(options: Namespace) -> Path | None:
+    """The certificate by which the server will be known, from the command line or a variable."""
+    certificate: Path | None = getattr(options, "tls_cert", None)
+    return certificate
+
+
+def _announce(address: str) -> None:
     Console().print(
         Panel.fit(
-            f"Esplanade is open:  [bold]http://localhost:{port}[/bold]\n\n"
+            f"Esplanade is open:  [bold]{address}[/bold]\n\n"
             "Open this address in a browser, as often as you like. Ctrl-C ends it.",
             padding=(1, 4),
             border_style="green",

@@ -21,6 +21,7 @@ def test_defaults() -> None:
     """Pinned: scripts rely on them."""
     assert BotsSettings().model_dump() == {
         "url": "ws://localhost:8080",
+        "trust": None,
         "count": 20,
         "duration": 60.0,
         "seed": 0,

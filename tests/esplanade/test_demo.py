@@ -19,6 +19,7 @@ from esplanade.commandline import exit_codes
 from esplanade.commandline.settings import given_settings
 from esplanade.server.options import SETTINGS
 from tests.patience import COMPILING_PATIENCE_S, PATIENCE_S
+from tests.server.certificates import make_pair
 
 
 def wait_for(condition: Callable[[], bool], limit_s: float, what: str) -> None:
@@ -54,29 +55,36 @@ def children(pid: int) -> list[int]:
     ]
 
 
-@pytest.fixture
-def running_demo() -> Iterator[tuple[subprocess.Popen[str], int, int]]:
+@pytest.fixture(params=["http", "https"])
+def running_demo(
+    request: pytest.FixtureRequest, tmp_path: Path
+) -> Iterator[tuple[subprocess.Popen[str], str, int]]:
     port, private_port = free_ports(2)
+    files: tuple[str, ...] = ()
+    if request.param == "https":
+        pair = make_pair(tmp_path, "here")
+        files = (f"--tls-cert={pair.cert}", f"--tls-key={pair.key}")
     process = subprocess.Popen(
         [
             *(sys.executable, "-m", "esplanade", "demo"),
             *(f"--port={port}", f"--private-port={private_port}"),
             *("--actors=2", "--visitors=3", "--seed=5"),
+            *files,
         ],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
     )
-    yield process, port, private_port
+    yield process, f"{request.param}://localhost:{port}", private_port
     process.kill()
     process.communicate()
 
 
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="asks Linux for child processes")
 def test_visitors_come_and_one_signal_ends_everything(
-    running_demo: tuple[subprocess.Popen[str], int, int],
+    running_demo: tuple[subprocess.Popen[str], str, int],
 ) -> None:
-    process, port, private_port = running_demo
+    process, address, private_port = running_demo
     wait_for(lambda: demo.is_ready(private_port), COMPILING_PATIENCE_S, "the world to be ready")
     wait_for(lambda: "esplanade_clients 3.0" in metrics(private_port), PATIENCE_S, "three visitors")
     (visitors,) = children(process.pid)
@@ -85,7 +93,7 @@ def test_visitors_come_and_one_signal_ends_everything(
     said, _ = process.communicate(timeout=PATIENCE_S)
 
     assert process.returncode == 0, said
-    assert f"http://localhost:{port}" in said
+    assert address in said
     assert "Traceback" not in said
     with pytest.raises(ProcessLookupError):
         os.kill(visitors, 0)

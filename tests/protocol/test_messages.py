@@ -61,7 +61,9 @@ def test_what_breaks_a_rule_is_refused(
     assert caught.value.errors()[0]["loc"][0] == where
 
 
-@pytest.mark.parametrize("text", ["a\nb", "a\x00b", "a\x1b[31m", "a\u202eb", "a\u2028b", "\u200b", "\u3164"])
+@pytest.mark.parametrize(
+    "text", ["a\nb", "a\x00b", "a\x1b[31m", "a\u202eb", "a\u2028b", "\u200b", "\u3164"]
+)
 def test_texts_for_others_are_one_visible_line(text: str) -> None:
     with pytest.raises(ValidationError, match=r"visible|not allowed"):
         ChatLine(text=text)
