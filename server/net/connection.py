@@ -4,6 +4,7 @@ import asyncio
 from typing import Final
 
 from websockets.asyncio.server import Server
+from websockets.datastructures import Headers
 from websockets.http11 import Request
 from websockets.protocol import State
 from websockets.server import ServerProtocol
@@ -36,6 +37,10 @@ _FAULTS: Final = {
     ),
 }
 """The error and close code for each limit of the meter, or of time."""
+
+
+_FORGOTTEN: Final = Request("", Headers())
+"""The library takes what comes as a request for as long as there is none."""
 
 
 class Connection(HeardConnection):
@@ -86,6 +91,10 @@ class Connection(HeardConnection):
         if self.request is None:
             raise ConnectionResetError
         return self.request
+
+    def forget_request(self) -> None:
+        """Let go of the headers of an opened WebSocket, which nobody asks for again."""
+        self.request, self.response = _FORGOTTEN, None
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         super().connection_made(transport)

@@ -129,14 +129,11 @@ class Listener:
     async def _handle(self, connection: Connection) -> None:
         """Run a connection from its first byte to its end."""
         try:
-            async with asyncio.timeout(REQUEST_TIMEOUT_S):
-                request = await connection.asked()
-                answer = self._answer(connection, request)
-                if answer is None:
-                    await connection.handshake(server_header=None)
+            answer = await self._greet(connection)
             if answer is not None:
                 await self._answers.send(connection, answer)
             elif connection.state is State.OPEN:
+                connection.forget_request()
                 await self._serve(connection)
         except (TimeoutError, ConnectionError):
             pass  # the client is gone, or too slow
@@ -145,6 +142,14 @@ class Listener:
         finally:
             connection.transport.abort()
             connection.server.handler_tasks.discard(asyncio.current_task())
+
+    async def _greet(self, connection: Connection) -> Response | None:
+        """Wait for the request: the answer to it, or None where a WebSocket has been opened."""
+        async with asyncio.timeout(REQUEST_TIMEOUT_S):
+            answer = self._answer(connection, await connection.asked())
+            if answer is None:
+                await connection.handshake(server_header=None)
+            return answer
 
     async def _serve(self, connection: Connection) -> None:
         connection.server.all_connections.add(connection)

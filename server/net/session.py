@@ -113,10 +113,7 @@ class Session:
     async def run(self) -> None:
         """Serve the connection from its hello to its end."""
         try:
-            hello = await self._hello()
-            self._connection.place.settle()
-            self.name, self.wants_steps = hello.name, hello.steps
-            self._hub.admit(self, hello)
+            await self._enter()
             async for frame in self._connection:
                 # A client that was dismissed may go on talking until the connection ends.
                 if self._dismissal is None:
@@ -152,6 +149,13 @@ class Session:
             self.outbox.post(farewell)
             self._dismissal = asyncio.create_task(self._close(code, reason))
         return self._dismissal
+
+    async def _enter(self) -> None:
+        """Wait for the hello and pass it on; nobody keeps it once the person is in."""
+        hello = await self._hello()
+        self._connection.place.settle()
+        self.name, self.wants_steps = hello.name, hello.steps
+        self._hub.admit(self, hello)
 
     async def _hello(self) -> Hello:
         try:
