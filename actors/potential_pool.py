@@ -64,6 +64,9 @@ class PotentialPool:
         wanted = [key for key in dict.fromkeys(goals) if key not in self._slots]
         for *_, body in wanted:
             self._grid.row_of(body)  # derived here, since the threads share the grid
+        # Copying the rows there are whenever one more is needed takes seconds on large ground.
+        fresh = min(len(wanted), max(0, _IDLE_KEPT + 1 - len(self._idle)))
+        self._reserve(len(self._keys) + fresh)
         with ThreadPoolExecutor(threads, thread_name_prefix="potentials") as pool:
             for key, values in zip(wanted, pool.map(self._potential, wanted), strict=True):
                 self._idle.append(self._keep(key, values))
@@ -140,6 +143,14 @@ class PotentialPool:
         x, y, z_m, body = key
         return Potential(self._grid, (x, y), z_m, body.radius_m, body=body).values
 
+    def _reserve(self, rows: int) -> None:
+        """Make room for so many rows; what stands in those there are is copied."""
+        before = len(self.arrays)
+        if rows > before:
+            grown = np.empty((rows, *self.arrays.shape[1:]), dtype=np.float32)
+            grown[:before] = self.arrays
+            self.arrays = grown
+
     def _fresh_slot(self) -> int:
         if len(self._idle) > _IDLE_KEPT:
             slot = self._idle.pop(0)
@@ -149,9 +160,7 @@ class PotentialPool:
             return slot
         slot = len(self._keys)
         if slot == len(self.arrays):
-            grown = np.empty((max(4, 2 * slot), *self.arrays.shape[1:]), dtype=np.float32)
-            grown[:slot] = self.arrays
-            self.arrays = grown
+            self._reserve(max(4, 2 * slot))
         self._keys.append(None)
         self._users.append(0)
         return slot

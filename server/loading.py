@@ -19,6 +19,7 @@ from esplanade.recordings import (
     read_walls,
     walls_beside,
 )
+from esplanade.server.patience import told_of
 from esplanade.server.settings import ServerSettings
 from esplanade.server.world.rules import Rules
 
@@ -49,6 +50,7 @@ class LoadedScene:
     """The triangles of a mesh: nine little-endian 32-bit floats each, metres, z up."""
 
 
+@told_of("reading the scene")
 def load_scene(settings: ServerSettings) -> LoadedScene:
     """Read what the settings name.
 

@@ -11,6 +11,7 @@ import structlog
 from esplanade.commandline.progress import progress
 from esplanade.planning.compiled import beside, cache
 from esplanade.planning.compiled.notice import heard
+from esplanade.server.patience import told_of
 
 AHEAD: Final = "esplanade.planning.agents.ahead"
 """The second process compiles this: about half of all, and nothing that the first half needs."""
@@ -30,7 +31,8 @@ def kernels_compiled(meanwhile: Callable[[], None]) -> Iterator[Callable[[], Non
     earlier start has left all kernels in the cache, it does nothing.
     """
     if beside.is_complete(SERVED):
-        yield lambda: None
+        with told_of("building the world"):
+            yield lambda: None
         return
     with (
         _shown() as one_more,

@@ -8,8 +8,6 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Literal, Self
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import (
     AfterValidator,
     BaseModel,
@@ -18,6 +16,8 @@ from pydantic import (
     StringConstraints,
     model_validator,
 )
+
+from esplanade.planning.scene.rings import crossing_edges, twice_area
 
 MAX_EXTENT_M = 650.0
 """Longest side of a scene. Positions on the wire are 16-bit centimetres."""
@@ -34,7 +34,6 @@ MAX_SPOTS = 2_000
 
 Metres = Annotated[float, Field(allow_inf_nan=False, ge=-1e6, le=1e6)]
 Point = tuple[Metres, Metres]
-_Floats = NDArray[np.float64]
 Bounds = tuple[Metres, Metres, Metres, Metres]
 
 
@@ -60,63 +59,10 @@ RequiredName = Annotated[
 ]
 
 
-def _twice_area(points: tuple[Point, ...]) -> float:
-    ring = zip(points, points[1:] + points[:1], strict=True)
-    return sum(x0 * y1 - x1 * y0 for (x0, y0), (x1, y1) in ring)
-
-
-def _crossing_edges(points: tuple[Point, ...]) -> tuple[int, int] | None:
-    """Indices of the first two edges of the ring that cross or touch and are not neighbours.
-
-    Only edges that overlap along x are compared, found in the order of their least x.
-    """
-    begins = np.array(points)
-    ends = np.roll(begins, -1, axis=0)
-    n = len(points)
-    low, high = np.minimum(begins, ends), np.maximum(begins, ends)
-    order = np.argsort(low[:, 0], kind="stable")
-    reach = np.searchsorted(low[order, 0], high[order, 0], side="right")
-    counts = reach - np.arange(n) - 1
-    place = np.repeat(np.arange(n), counts)
-    one = order[place]
-    other = order[np.arange(len(place)) - np.repeat(np.cumsum(counts) - counts, counts) + place + 1]
-    level = (low[one, 1] <= high[other, 1]) & (low[other, 1] <= high[one, 1])
-    first, second = np.minimum(one, other)[level], np.maximum(one, other)[level]
-    apart = (second - first > 1) & (second - first < n - 1)
-    first, second = first[apart], second[apart]
-    meeting = _segments_meet(begins[first], ends[first], begins[second], ends[second])
-    pairs = sorted(zip(first[meeting].tolist(), second[meeting].tolist(), strict=True))
-    return pairs[0] if pairs else None
-
-
-def _segments_meet(a: _Floats, b: _Floats, c: _Floats, d: _Floats) -> NDArray[np.bool_]:
-    """Whether segments from a to b meet those from c to d, all (N, 2); bool (N,)."""
-
-    def side(p: _Floats, q: _Floats, r: _Floats) -> _Floats:
-        to_q, to_r = q - p, r - p
-        turned: _Floats = to_q[..., 0] * to_r[..., 1] - to_q[..., 1] * to_r[..., 0]
-        return turned
-
-    def between(p: _Floats, q: _Floats, r: _Floats) -> NDArray[np.bool_]:
-        within = (np.minimum(p, q) <= r) & (r <= np.maximum(p, q))
-        inside: NDArray[np.bool_] = within[..., 0] & within[..., 1]
-        return inside
-
-    s1, s2, s3, s4 = side(a, b, c), side(a, b, d), side(c, d, a), side(c, d, b)
-    meet: NDArray[np.bool_] = (
-        ((s1 * s2 < 0) & (s3 * s4 < 0))
-        | ((s1 == 0) & between(a, b, c))
-        | ((s2 == 0) & between(a, b, d))
-        | ((s3 == 0) & between(c, d, a))
-        | ((s4 == 0) & between(c, d, b))
-    )
-    return meet
-
-
 def _simple_ring(points: tuple[Point, ...]) -> tuple[Point, ...]:
-    if abs(_twice_area(points)) < 1e-6:
+    if abs(twice_area(points)) < 1e-6:
         raise ValueError("the polygon has no area")
-    crossing = _crossing_edges(points)
+    crossing = crossing_edges(points)
     if crossing:
         i, j = crossing
         raise ValueError(f"the polygon crosses itself: edge {i} meets edge {j}")

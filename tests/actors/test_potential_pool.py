@@ -4,6 +4,7 @@ import numpy as np
 
 from esplanade.actors.potential_pool import PotentialPool
 from esplanade.planning import Body, Door, LayeredGrid, Scene
+from esplanade.planning.routes.potential import Potential
 from tests.planning.storeys import storeyed
 from tests.planning.worlds import UPPER_M
 
@@ -108,3 +109,18 @@ def test_a_renewed_potential_that_nobody_knows_any_more_is_void() -> None:
     guides.renew(derive())
     assert guides.outdated() is None
     assert len(guides.arrays) == 0
+
+
+def test_goals_that_are_prepared_get_their_rows_at_once() -> None:
+    """Room is made once for all of them, and no more than may be kept idle."""
+    guides, few = pool(), [(0.5 + 0.1 * k, 1.0, 0.0, BODY) for k in range(12)]
+    guides.prepare(few, threads=2)
+    assert len(guides.arrays) == 12
+    for x, y, z_m, body in few:
+        row = guides.take((x, y), z_m, body)
+        assert np.array_equal(
+            guides.arrays[row], Potential(GRID, (x, y), z_m, BODY.radius_m, body=body).values
+        )
+    many = pool()
+    many.prepare([(0.3 + 0.05 * k, 2.0, 0.0, BODY) for k in range(60)], threads=2)
+    assert len(many.arrays) == 33

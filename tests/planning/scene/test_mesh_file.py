@@ -1,6 +1,7 @@
 """Mesh files as people have them: what is read all the same, and what is refused by name."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ import trimesh
 
 from esplanade.planning import Body, LayeredGrid, PathStatus, find_path
 from esplanade.planning.routes.potential import Potential
-from esplanade.planning.scene.mesh_file import MeshError, read_triangles
+from esplanade.planning.scene.mesh_file import MeshError, open_mesh, read_triangles
 from tests.planning.ground.test_meshes import block, house, written
 
 BELOW, ABOVE = (6.0, 2.0, 0.0), (6.0, 2.0, 2.7)
@@ -151,3 +152,22 @@ def test_who_stands_inside_a_hollow_wall_is_let_out(tmp_path) -> None:
         assert find_path(grid, goal, inside, Body.child()).status is PathStatus.FOUND
     beside = (3.75, 2.0, 0.0)
     assert find_path(grid, beside, (7.0, 2.0, 0.0)).status is PathStatus.NO_WAY
+
+
+def test_an_object_shown_many_times_is_read_as_the_library_places_it(tmp_path: Path) -> None:
+    """Turned, stretched, sheared, mirrored and as it is, below nodes that move as well."""
+    rng = np.random.default_rng(4)
+    scene = trimesh.Scene()
+    scene.add_geometry(trimesh.creation.box((1.0, 2.0, 3.0)), geom_name="box", node_name="n0")
+    scene.add_geometry(house(), geom_name="house", node_name="house")
+    for k in range(1, 40):
+        matrix = np.eye(4)
+        if k % 4:
+            matrix[:3, :3] = rng.normal(size=(3, 3)) if k % 4 > 1 else np.diag([-1.0, 1.0, 1.0])
+        matrix[:3, 3] = rng.uniform(-20.0, 20.0, 3)
+        above = f"n{k - 1}" if k % 7 == 1 else None
+        scene.graph.update(f"n{k}", above, matrix=matrix, geometry="box")
+    path = tmp_path / "many.glb"
+    path.write_bytes(scene.export(file_type="glb"))
+    placed = [part.vertices[part.faces] for part in open_mesh(path).dump()]
+    assert np.array_equal(read_triangles(path, up="z"), np.concatenate(placed))
