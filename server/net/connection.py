@@ -1,6 +1,7 @@
 """One connection of the port for people: the library's, with a meter before its parser."""
 
 import asyncio
+from collections.abc import Callable
 from typing import Final
 
 from websockets.asyncio.server import Server
@@ -17,6 +18,7 @@ from esplanade.server.net.connections import Place
 from esplanade.server.net.leases import HeardConnection
 from esplanade.server.net.metering import Meter
 from esplanade.server.net.refusals import Refusals
+from esplanade.server.net.whole_frames import payload_of
 
 CLOSE_S: Final = 2.0
 """A client that has not answered the closing handshake by then is cut off."""
@@ -60,6 +62,8 @@ class Connection(HeardConnection):
         self.place = place
         self.answering = False
         """Whether an HTTP answer is on its way: what the client sends meanwhile is not parsed."""
+        self.take_at_once: Callable[[bytes], bool] | None = None
+        """Takes the payload of a frame that was read whole, or says that it is for the parser."""
         self._answered = False
         self._client_ended = False
         self._meter = meter
@@ -113,6 +117,7 @@ class Connection(HeardConnection):
         if self._deaf:
             self.transport.pause_reading()  # the library may have resumed it
             return
+        at_head = not (self._held or self._meter.within_frame)
         excess = self._meter.charge(data, self.loop.time())
         if excess is not None:
             self._refuse(excess)
@@ -121,7 +126,7 @@ class Connection(HeardConnection):
         self._held += data
         self._held_frames += max(self._meter.began, 1)
         if self._turn is None:
-            self._parse_held()
+            self._parse_held(at_head)
         else:
             self.transport.pause_reading()  # the library may have resumed it
 
@@ -132,19 +137,33 @@ class Connection(HeardConnection):
             self.transport.resume_reading()
             self._parse_held()
 
-    def _parse_held(self) -> None:
-        """Parse what is paid for, now or when it is the turn of the client's address."""
+    def _parse_held(self, at_head: bool = False) -> None:
+        """Parse what is paid for, now or when it is the turn of the client's address.
+
+        `at_head` says that it is one chunk, which begins where a frame begins.
+        """
         delay_s = self.place.delay(self._held_frames, self.loop.time())
         if delay_s:
             self.transport.pause_reading()
             self._turn = self.loop.call_later(delay_s, self._go_on)
             return
         data, self._held, self._held_frames = self._held, b"", 0
+        if at_head and self._taken_at_once(data):
+            return
         if not self.answering:
             super().data_received(data)
             self._watch_frame()
             if self._end is None and self.protocol.close_expected():
                 self._end_within(CLOSE_S)
+
+    def _taken_at_once(self, chunk: bytes) -> bool:
+        """Whether nothing that came before waits in the library, and the chunk was taken."""
+        if self.take_at_once is None or self.protocol.state is not State.OPEN:
+            return False
+        if self.protocol.expect_continuation_frame or len(self.recv_messages.frames):
+            return False
+        payload = payload_of(chunk)
+        return payload is not None and self.take_at_once(payload)
 
     def eof_received(self) -> bool | None:  # type: ignore[override]
         if self.answering:

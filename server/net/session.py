@@ -4,12 +4,14 @@ import asyncio
 from collections.abc import Callable
 from typing import Final, Protocol
 
+import msgpack
 from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode as LibraryCode
 
 from esplanade.protocol import (
     SERVED_VERSIONS,
     VERSION,
+    ClientCode,
     CloseCode,
     ErrorCode,
     ProtocolError,
@@ -38,6 +40,8 @@ from esplanade.server.net.refusals import Refusals
 from esplanade.server.settings import ServerSettings
 
 CHAT_BURST: Final = 5
+_MOVEMENT: Final = msgpack.Packer().pack_array_header(2) + msgpack.packb(int(ClientCode.MOVE))
+"""A movement begins with these bytes; it may begin otherwise too, but hardly any client does so."""
 _CODES_OF_OURS: Final = frozenset(code for code in CloseCode if code >= 4000)
 
 
@@ -114,6 +118,7 @@ class Session:
         """Serve the connection from its hello to its end."""
         try:
             await self._enter()
+            self._connection.take_at_once = self._take_movement
             async for frame in self._connection:
                 # A client that was dismissed may go on talking until the connection ends.
                 if self._dismissal is None:
@@ -186,9 +191,24 @@ class Session:
         self.version = message.version
         return message
 
-    def _decode(self, frame: bytes | str) -> ClientMessage:
+    def _take_movement(self, frame: bytes) -> bool:
+        """Take a movement as soon as it is read; whether it was one, and a good one."""
+        if self._dismissal is not None or not frame.startswith(_MOVEMENT):
+            return False
+        try:
+            message = decode_client(frame)
+        except ProtocolError:
+            return False
+        self._count(frame)
+        self._take(message)
+        return True
+
+    def _count(self, frame: bytes | str) -> None:
         self._metrics.traffic.messages_in += 1
         self._metrics.traffic.bytes_in += len(frame)
+
+    def _decode(self, frame: bytes | str) -> ClientMessage:
+        self._count(frame)
         if isinstance(frame, str):
             raise ProtocolError(
                 ErrorCode.MALFORMED, "a text frame; messages are binary", CloseCode.MALFORMED
