@@ -86,7 +86,7 @@ lock: $(VENV)/.installer  ## write uv.lock anew, with the newest releases that p
 client: $(CLIENT)  ## build the web client
 
 clean:  ## remove what was built, and the virtual environment
-	rm -rf $(VENV) server/client_assets client_web/node_modules benchmarks/recast/node_modules
+	rm -rf $(VENV) server/client_assets client_web/node_modules benchmarks/*/node_modules
 	rm -rf build dist
 	rm -rf .coverage .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

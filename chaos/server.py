@@ -59,6 +59,11 @@ class Server:
     def alive(self) -> bool:
         return self._process.poll() is None
 
+    @property
+    def pid(self) -> int:
+        """The number of the process."""
+        return self._process.pid
+
     def lines(self) -> list[dict[str, Any]]:
         """All that the server has logged."""
         return [_parsed(line) for line in self._log.read_text(errors="replace").splitlines()]
