@@ -198,7 +198,7 @@ def _wanderers(plan: Plan, server: Server, bots: int, people: int, seen: Seen) -
                 raise RuntimeError(f"the bots have not come in within {FILLED_S:g} s")
             time.sleep(0.2)
         yield
-        process.send_signal(signal.SIGINT)
+        process.send_signal(signal.SIGTERM)
         process.wait(BOTS_END_S)
         seen.bots = json.loads(report.read_text())
     finally:
