@@ -20,17 +20,16 @@ from websockets.exceptions import ConnectionClosed
 from websockets.protocol import State
 
 TICK_S: Final = 0.05
-_HEAD_BYTES: Final = 4
+_SHORT_BYTES: Final = 127
+"""A longer frame has a head of four bytes instead of two."""
 _GUID: Final = b"258EAFA5-E914-47DA-95CA-C5AB0DC85B11"
 
 
 def frame_of(size: int) -> bytes:
     """A frame of one binary message, of so many bytes with its head."""
-    if size < 128 + _HEAD_BYTES:
-        return struct.pack(">BB", 0x82, min(max(size - 2, 0), 125)) + bytes(
-            min(max(size - 2, 0), 125)
-        )
-    return struct.pack(">BBH", 0x82, 126, size - _HEAD_BYTES) + bytes(size - _HEAD_BYTES)
+    if size <= _SHORT_BYTES:
+        return struct.pack(">BB", 0x82, size - 2) + bytes(size - 2)
+    return struct.pack(">BBH", 0x82, 126, size - 4) + bytes(size - 4)
 
 
 class Bare(asyncio.Protocol):

@@ -14,7 +14,6 @@ from typing import Final
 
 from benchmarks._live_seen import Seen
 from benchmarks._live_servers import (
-    TICK_RATE,
     Peer,
     Usage,
     colyseus_missing,
@@ -44,6 +43,7 @@ class Plan:
     side_m: float
     join_rate: float
     walking: float
+    move_rate: float
     processes: int
     server_cores: set[int] | None
 
@@ -81,7 +81,7 @@ def idle(plan: Plan, people: int) -> Seen:
     seen = Seen("idle", people)
     first = people // 2
     with field_server(plan.folder, plan.server_cores, people, 0, plan.side_m) as (server, peer):
-        whole = _share_of(plan, peer, people, IDLE_JOIN_RATE, sends=False)
+        whole = _share_of(plan, peer, people, IDLE_JOIN_RATE, 0.0)
         halves = [
             Share(**{**vars(whole), "paths": whole.paths[:first]}),
             Share(**{**vars(whole), "paths": whole.paths[first:], "first": first}),
@@ -108,7 +108,7 @@ def side_by_side(plan: Plan, people: int, rounds: int) -> dict[str, list[Seen]]:
     found: dict[str, list[Seen]] = {}
     for _ in range(rounds):
         ours = crowd(plan, "esplanade", people, 0)
-        size = round(ours.bytes_per_s / TICK_RATE)
+        size = round(ours.bytes_a_client_tick)
         turn = [ours]
         for kind in ("websockets", "bare"):
             with plain_server(kind, plan.server_cores, people, size) as peer:
@@ -131,7 +131,7 @@ def _visit(plan: Plan, peer: Peer, seen: Seen, server: Server | None = None, bot
     """Fill a server with walkers, let it settle, and watch it for the seconds of the plan."""
     walkers = seen.people - bots
     empty = Usage.of(peer.process)
-    share = _share_of(plan, peer, walkers, plan.join_rate)
+    share = _share_of(plan, peer, walkers, plan.join_rate, plan.move_rate)
     with swarming(shares_of(share, plan.processes)) as swarm:
         if server is None or not bots:
             _settle(plan, peer, seen, swarm, server, empty)
@@ -171,11 +171,9 @@ def _growth_kb(before: Usage, process: int, clients: int) -> float:
     return (Usage.of(process).memory_kb - before.memory_kb) / clients
 
 
-def _share_of(plan: Plan, peer: Peer, people: int, join_rate: float, sends: bool = True) -> Share:
+def _share_of(plan: Plan, peer: Peer, people: int, join_rate: float, move_rate: float) -> Share:
     paths = list(peer.paths[:people])
-    return Share(
-        peer.dialect, peer.port, paths, 0, plan.side_m, join_rate, plan.walking, sends=sends
-    )
+    return Share(peer.dialect, peer.port, paths, 0, plan.side_m, join_rate, plan.walking, move_rate)
 
 
 @contextmanager

@@ -15,9 +15,8 @@ from benchmarks._live_dialects import DIALECTS
 from benchmarks._live_walker import Walker
 from chaos.processes import raise_file_limit
 
-MOVE_EVERY_S: Final = 0.1
 TURN_EVERY_S: Final = 2.0
-"""A walker wants to go elsewhere about this often; until then it repeats its wish."""
+"""A walker changes its mind about this often; until then it repeats its wish."""
 SPEED_MPS: Final = 1.3
 JOIN_S: Final = 60.0
 _SLICES: Final = 20
@@ -35,8 +34,8 @@ class Share:
     join_rate: float
     walking: float
     """The part of them that walks at any time; the others stand, and send as much."""
-    sends: bool = True
-    """Without it they are idle: they send nothing after hello but pongs."""
+    move_rate: float = 10.0
+    """Movements that each sends a second; with 0 they are idle and send nothing but pongs."""
 
 
 @dataclass
@@ -142,7 +141,7 @@ async def _walk(share: Share, parent: Connection) -> None:
         Walker(DIALECTS[share.dialect], path, share.first + k, share.side_m)
         for k, path in enumerate(share.paths)
     ]
-    moving = loop.create_task(_steer(walkers, share)) if share.sends else None
+    moving = loop.create_task(_steer(walkers, share)) if share.move_rate else None
     began_s = loop.time()
     async with asyncio.timeout(JOIN_S + len(walkers) / share.join_rate):
         for k, walker in enumerate(walkers):
@@ -178,18 +177,18 @@ def _sums(walkers: Sequence[Walker]) -> tuple[int, int, np.ndarray]:
 
 
 async def _steer(walkers: Sequence[Walker], share: Share) -> None:
-    """Let each that is in send ten movements a second, in slices spread over that time."""
+    """Let each that is in send its movements, in slices spread over the time between two."""
     loop = asyncio.get_running_loop()
     random = np.random.default_rng(share.first)
-    due_s, place = loop.time(), 0
+    due_s, place, every_s = loop.time(), 0, 1.0 / share.move_rate
     while True:
         for walker in walkers[place::_SLICES]:
             if not walker.inside:
                 continue
-            if walker.seq == 0 or random.random() < MOVE_EVERY_S / TURN_EVERY_S:
+            if walker.seq == 0 or random.random() < every_s / TURN_EVERY_S:
                 walker.direction = float(random.uniform(-np.pi, np.pi))
                 walker.speed = SPEED_MPS if random.random() < share.walking else 0.0
             walker.move()
         place = (place + 1) % _SLICES
-        due_s += MOVE_EVERY_S / _SLICES
+        due_s += every_s / _SLICES
         await asyncio.sleep(due_s - loop.time())

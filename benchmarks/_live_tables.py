@@ -125,10 +125,15 @@ def _of_clients(seen: Seen) -> Iterator[str]:
     if seen.client_ticks and seen.ticks is not None:
         told = sum(seen.ticks.stages_ms[name] for name in ("interest", "encode", "write"))
         a_tick = seen.client_ticks / seen.ticks.count
+        moved = seen.ticks.tick_ms - told - seen.ticks.stages_ms["actors"]
+        rest_us = seen.main_thread_us - 1e3 * (told + moved) / a_tick
         yield (
-            f"processor time of the server {seen.processor_us:.1f} µs a client-tick, its event "
-            f"loop's thread {seen.main_thread_us:.1f}; interest, encode and write "
-            f"{1e3 * told / a_tick:.1f} µs by the clock"
+            f"processor time of the server {seen.processor_us:.1f} µs a client-tick, of the event "
+            f"loop's thread {seen.main_thread_us:.1f}:"
+        )
+        yield (
+            f"  interest, encode and write {1e3 * told / a_tick:.1f}, people and what is between "
+            f"stages {1e3 * moved / a_tick:.1f}, reading and all else {rest_us:.1f}"
         )
     steps = seen.ticks.step_bytes_out / max(seen.ticks.bytes_out, 1) if seen.ticks else 0.0
     yield f"{seen.bytes_per_s / 1e3:.1f} kB/s a viewer, {100.0 * steps:.0f} % of it steps"

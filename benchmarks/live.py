@@ -14,12 +14,12 @@ Scenarios:
     many      the crowd without actors, with --many people (only when it is named)
 
 The server runs in a process of its own, the clients in others. A walker says ten times a second
-where it walks, and means something else about every two seconds. Stages are differences of what
-/metrics tells at begin and end, divided by the ticks between; percentiles come from the same place,
-and those of fewer than 1200 ticks are estimates. A client-tick is one client that gets the news of
-one tick. Processor time is that of the whole process of the server, reading and writing included;
-it suffers less from what else the machine does than times by the clock do, and ratios less than
-both. The load average stands beside every figure.
+(--moves) where it walks, and changes its mind about every two seconds. Stages are differences of
+what /metrics tells at begin and end, divided by the ticks between. Percentiles come from there too;
+those of fewer than 1200 ticks are estimates. A client-tick is one client that gets the news of one
+tick. Processor time is that of the whole process of the server, reading and writing included; what
+else the machine does disturbs it less than times by the clock, and ratios less than both. The load
+average stands beside every figure.
 
 `bare` is a server that discards what it is sent and writes as many bytes to everyone in each tick
 as ours does; `websockets` does so with the library of that name and reads every message. Colyseus
@@ -85,6 +85,7 @@ def parser() -> argparse.ArgumentParser:
     parser.add_argument("--side", type=float, default=100.0, metavar="M", help="of the field [100]")
     parser.add_argument("--join-rate", type=float, default=100.0, metavar="HZ", help="[100]")
     parser.add_argument("--walking", type=float, default=1.0, help="share that walks [1.0]")
+    parser.add_argument("--moves", type=float, default=10.0, metavar="HZ", help="of each [10]")
     parser.add_argument("--processes", type=int, default=1, help="of walkers [1]")
     parser.add_argument("--free", action="store_true", help="let server and load share all cores")
     parser.add_argument("--json", type=Path, metavar="F", help="also write the figures here")
@@ -107,6 +108,7 @@ def plan_of(options: argparse.Namespace, folder: Path, server_cores: set[int] | 
         side_m=options.side,
         join_rate=options.join_rate,
         walking=options.walking,
+        move_rate=options.moves,
         processes=options.processes,
         server_cores=server_cores,
     )
@@ -135,6 +137,7 @@ def measure(plan: Plan, options: argparse.Namespace, console: Console) -> dict[s
             if absent := colyseus_missing():
                 console.print(f"\nskipped: {absent}")
             rounds = side_by_side(plan, options.people, options.rounds)
+            show(console, rounds["esplanade"][-1])
             show_sides(console, rounds)
             figures[name] = {who: [seen.plain() for seen in many] for who, many in rounds.items()}
         else:
