@@ -29,8 +29,8 @@ from chaos.server import Server
 VIEW: Final = (40.0, 100)
 """How far a client sees, in metres, and how many at most: the server's defaults."""
 IDLE_JOIN_RATE: Final = 20.0
-FILLED_S: Final = 120.0
-BOTS_END_S: Final = 60.0
+FILLED_S: Final = 600.0
+BOTS_END_S: Final = 180.0
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,8 @@ from chaos.processes import raise_file_limit
 TURN_EVERY_S: Final = 2.0
 """A walker changes its mind about this often; until then it repeats its wish."""
 SPEED_MPS: Final = 1.3
-JOIN_S: Final = 60.0
+JOIN_S: Final = 600.0
+"""A server that is overloaded lets clients in late."""
 _SLICES: Final = 20
 
 
