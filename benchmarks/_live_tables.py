@@ -62,7 +62,7 @@ def _ratios(ours: list[Seen], theirs: list[Seen]) -> str:
     middle = statistics.median(found)
     if len(found) == 1 or ours is theirs:
         return f"{middle:.2f}"
-    return f"{middle:.2f} ({min(found):.2f} to {max(found):.2f})"
+    return f"{middle:.2f} ({min(found):.2f}-{max(found):.2f})"
 
 
 def _median(rounds: list[Seen], figure: str) -> float:
@@ -126,14 +126,13 @@ def _of_clients(seen: Seen) -> Iterator[str]:
         told = sum(seen.ticks.stages_ms[name] for name in ("interest", "encode", "write"))
         a_tick = seen.client_ticks / seen.ticks.count
         moved = seen.ticks.tick_ms - told - seen.ticks.stages_ms["actors"]
-        rest_us = seen.main_thread_us - 1e3 * (told + moved) / a_tick
         yield (
             f"processor time of the server {seen.processor_us:.1f} µs a client-tick, of the event "
-            f"loop's thread {seen.main_thread_us:.1f}:"
+            f"loop's thread {seen.main_thread_us:.1f}"
         )
         yield (
-            f"  interest, encode and write {1e3 * told / a_tick:.1f}, people and what is between "
-            f"stages {1e3 * moved / a_tick:.1f}, reading and all else {rest_us:.1f}"
+            f"by the clock interest, encode and write {1e3 * told / a_tick:.1f} µs, all else but "
+            f"planning {1e3 * moved / a_tick:.1f}"
         )
     steps = seen.ticks.step_bytes_out / max(seen.ticks.bytes_out, 1) if seen.ticks else 0.0
     yield f"{seen.bytes_per_s / 1e3:.1f} kB/s a viewer, {100.0 * steps:.0f} % of it steps"
