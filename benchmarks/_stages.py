@@ -3,8 +3,9 @@
 import gc
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import count, islice
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -94,8 +95,9 @@ def print_stages(
     gc.freeze()  # the server does the same
     times: list[dict[str, float]] = []
     bytes_before = 0
-    for tick, steering in enumerate(_steering(ids, settings.tick_s)):
-        zone.begin(steering)
+    wishes = islice(steering(ids, settings.tick_s), WARM_UP_TICKS + MEASURED_TICKS)
+    for tick, inputs in enumerate(wishes):
+        zone.begin(inputs)
         news = audience.take(zone.finish(zone.think()))
         with zone.times.stage("write"):
             delivery.deliver(news, 0.0)
@@ -108,10 +110,10 @@ def print_stages(
     _print(crowd, times, (traffic.bytes_out - bytes_before) / MEASURED_TICKS / crowd.viewers)
 
 
-def _steering(ids: list[int], tick_s: float) -> Any:
+def steering(ids: list[int], tick_s: float) -> Iterator[list[Steer]]:
     """The wishes of each tick; at first everyone has one, later those who change their mind."""
     random = np.random.default_rng(1)
-    for tick in range(WARM_UP_TICKS + MEASURED_TICKS):
+    for tick in count():
         turning = random.random(len(ids)) < (tick_s / STEER_EVERY_S if tick else 1.0)
         angles = random.uniform(0.0, 2.0 * math.pi, len(ids)).tolist()
         speeds = (SPEED_MPS * (random.random(len(ids)) < WALKING)).tolist()
