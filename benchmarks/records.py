@@ -59,6 +59,8 @@ _RULES: Final = Rules(
     view_limit=100,
     steps_radius_m=25.0,
     steps_limit=60,
+    viewer_bytes=12_000,
+    tick_rate=20,
 )
 
 

@@ -40,8 +40,18 @@ async def test_a_click_on_the_ground_walks_there(url: str, profile: BrowserConte
     await ann.join("Ann")
     before = own(await ann.look())
     assert before is not None
-    await ann.page.mouse.click(320, 400)
-    await ann.until(partial(_has_walked, before=before))
+    # An actor that passes just there would be chosen by the click instead, but not by all of them.
+    clicks = 0
+
+    def walked_or_clicked_in_vain(view: View) -> bool:
+        return _has_walked(view, before) or view["frames"] > since + 60
+
+    while not _has_walked(await ann.look(), before):
+        assert clicks < 10
+        await ann.page.mouse.click(200 + 40 * clicks, 400)
+        clicks += 1
+        since = (await ann.look())["frames"]
+        await ann.until(walked_or_clicked_in_vain)
     assert await ann.complaints() == []
 
 
