@@ -27,6 +27,12 @@ def plain_line(text: str) -> str:
     ValueError
         The text has nothing to see, would break the line or turn it around, or is too long.
     """
+    if (
+        text.isascii()
+        and text.isprintable()
+        and 0 < len(stripped := text.strip()) <= MAX_CHAT_CHARS
+    ):
+        return stripped
     for char in text:
         if unicodedata.category(char) in {"Cc", "Zl", "Zp"} or char in _DIRECTION_MARKS:
             raise ValueError(f"character U+{ord(char):04X} is not allowed, expected one plain line")

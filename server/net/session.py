@@ -40,8 +40,11 @@ from esplanade.server.net.refusals import Refusals
 from esplanade.server.settings import ServerSettings
 
 CHAT_BURST: Final = 5
-_MOVEMENT: Final = msgpack.Packer().pack_array_header(2) + msgpack.packb(int(ClientCode.MOVE))
+_PAIR: Final = msgpack.Packer().pack_array_header(2)
+_MOVEMENT: Final = _PAIR + msgpack.packb(int(ClientCode.MOVE))
 """A movement begins with these bytes; it may begin otherwise too, but hardly any client does so."""
+_LINE: Final = _PAIR + msgpack.packb(int(ClientCode.CHAT))
+"""Likewise a line of chat."""
 _CODES_OF_OURS: Final = frozenset(code for code in CloseCode if code >= 4000)
 
 
@@ -121,7 +124,12 @@ class Session:
             self._connection.take_at_once = self._take_movement
             async for frame in self._connection:
                 # A client that was dismissed may go on talking until the connection ends.
-                if self._dismissal is None:
+                if self._dismissal is not None:
+                    continue
+                if self._talks_too_fast(frame):
+                    self._count(frame)
+                    self.refuse_line("rate", "you talk too fast")
+                else:
                     self._take(self._decode(frame))
         except ProtocolError as fault:
             self.tell(fault)
@@ -202,6 +210,12 @@ class Session:
         self._count(frame)
         self._take(message)
         return True
+
+    def _talks_too_fast(self, frame: bytes | str) -> bool:
+        """Whether a frame is a line of chat that need not be looked at, as it comes too soon."""
+        if isinstance(frame, str) or not frame.startswith(_LINE):
+            return False
+        return self._lines.available(asyncio.get_running_loop().time()) < 1.0
 
     def _count(self, frame: bytes | str) -> None:
         self._metrics.traffic.messages_in += 1
