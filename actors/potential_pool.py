@@ -23,7 +23,7 @@ class RenewedPotential:
     goal: _Key
     """x, y, height and body."""
     changes: int
-    """How often the ground had changed when it was derived."""
+    """The number of changes of the ground when it was derived."""
     values: NDArray[np.float32]
 
 

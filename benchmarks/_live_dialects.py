@@ -1,4 +1,4 @@
-"""What a walker says to each of the compared servers, and how it knows what comes back."""
+"""A walker speaks the dialect of each compared server, and counts the snapshots that come."""
 
 import math
 import struct

@@ -27,7 +27,7 @@ from benchmarks._live_ticks import Ticks
 from chaos.server import Server
 
 VIEW: Final = (40.0, 100)
-"""How far a client sees, in metres, and how many at most: the server's defaults."""
+"""The radius of a view in metres, and the most avatars in it: the server's defaults."""
 IDLE_JOIN_RATE: Final = 20.0
 FILLED_S: Final = 600.0
 BOTS_END_S: Final = 180.0
@@ -35,7 +35,7 @@ BOTS_END_S: Final = 180.0
 
 @dataclass(frozen=True)
 class Plan:
-    """How every scenario is run."""
+    """The settings of every scenario."""
 
     folder: Path
     seconds: float

@@ -32,7 +32,7 @@ _SCHEDULED: Final = 2
 
 @dataclass(frozen=True)
 class Usage:
-    """What a process has taken so far."""
+    """The processor time and memory that a process has taken so far."""
 
     processor_s: float
     main_thread_s: float

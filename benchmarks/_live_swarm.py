@@ -41,7 +41,7 @@ class Share:
 
 @dataclass
 class Count:
-    """What came to the walkers between two moments."""
+    """The traffic of the walkers between two moments."""
 
     seconds: float = 0.0
     bytes_in: int = 0

@@ -58,7 +58,7 @@ def _lines(body: Pose) -> list[Floats]:
 
 
 def _along(line: Floats, step: Steps) -> Floats:
-    """How far points (M, 3) are along the way of a step, metres."""
+    """The distances of points (M, 3) along the way of a step, metres."""
     heading = step.landing[0, 3]
     ahead = np.array([np.cos(heading), np.sin(heading)])
     return np.asarray((line[:, :2] - step.standing[0, :2]) @ ahead)

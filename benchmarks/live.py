@@ -100,7 +100,7 @@ def cores(here: set[int], free: bool) -> tuple[set[int] | None, set[int]]:
 
 
 def plan_of(options: argparse.Namespace, folder: Path, server_cores: set[int] | None) -> Plan:
-    """How every scenario is run by these options."""
+    """The settings of every scenario by these options."""
     return Plan(
         folder=folder,
         seconds=options.seconds,

@@ -48,7 +48,7 @@ TICK_S: Final = 0.05
 SEED: Final = 5
 SHARES: Final = np.linspace(0.0, 1.0, 21)
 LIMITS: Final = {"ankles": 3.0, "hips": 2.0, "pelvis": 0.5, "hands": 15.0}
-"""What one observation in a hundred may be off: millimetres, and degrees of the pelvis."""
+"""The error that one observation in a hundred may reach: mm, and degrees of the pelvis."""
 PLACES: Final = ("hips", "knees", "ankles", "toes", "head", "hands")
 _RULES: Final = Rules(
     person_radius_m=0.25,
@@ -179,7 +179,7 @@ def _walked(kept: list[tuple[Steps, Ints]], seed: int = SEED) -> Walked:
 
 
 def deviations(walked: Walked) -> dict[str, Floats]:
-    """How far each part is off in each pose: millimetres, and degrees of the pelvis."""
+    """The error of each part in each pose: millimetres, and degrees of the pelvis."""
     exact, sizes = walked
     count = len(exact.ticks)
     known = from_records(to_records(exact, np.arange(count)))

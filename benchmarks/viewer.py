@@ -40,7 +40,7 @@ BUDGETS: Final = (6_000, 12_000, 24_000, 1_000_000)
 
 @dataclass
 class Told:
-    """What a viewer was sent in the measured time."""
+    """The news that a viewer was sent in the measured time."""
 
     bytes: int = 0
     in_view: list[int] = field(default_factory=list)

@@ -20,7 +20,7 @@ MAX_FRAME_BYTES: Final = 16 * 1024 * 1024
 """The largest frame is welcome, which carries the scene."""
 
 QUEUED_FRAMES: Final = 64
-"""When a bot falls this far behind, it stops reading and TCP holds the server's frames back.
+"""A bot that falls this far behind stops reading and TCP holds the server's frames back.
 
 Under TLS some more wait in between, see `HIDDEN_BYTES`.
 """

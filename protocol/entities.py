@@ -32,7 +32,7 @@ _MOVING = struct.Struct(f">{len(_X)}sd{len(_Y)}sd{len(_Z)}sd{len(_HEADING)}sd")
 
 @dataclass(frozen=True)
 class Entity:
-    """What never changes of an avatar; fields as in `esplanade.protocol.messages.Entity`."""
+    """The constant fields of an avatar, as in `esplanade.protocol.messages.Entity`."""
 
     id: int
     kind: Kind
@@ -43,7 +43,7 @@ class Entity:
 
 
 def pack_constants(entity: Entity) -> tuple[bytes, bytes]:
-    """What stands before and what stands after the place of an avatar."""
+    """The bytes before and after the place of an avatar."""
     packer = msgpack.Packer(autoreset=False)
     packer.pack_map_header(_FIELDS)
     for name, value in (("id", entity.id), ("kind", entity.kind.value), ("name", entity.name)):

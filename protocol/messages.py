@@ -143,12 +143,12 @@ class Welcome(FromServer):
     tick_rate: int
     server_time: float
     resume_seconds: float
-    """How long an avatar waits for a client whose connection was lost."""
+    """The time for which an avatar waits for a client whose connection was lost."""
     radius: float
     clearance: float
     """Distance that a person's centre keeps from walls."""
     body_height: float
-    """What hangs lower than this above the feet stops a person."""
+    """A barrier that hangs lower than this above the feet stops a person."""
     step_height: float
     """Greatest difference in height that a person steps up or down."""
     max_speed: float

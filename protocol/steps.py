@@ -53,7 +53,7 @@ END = np.dtype(
         ("arms", "i1", 4),
     ]
 )
-"""What a record says of the first key and of the last one, 19 bytes."""
+"""The first or the last key in a record, 19 bytes."""
 
 DIFFERENCES = np.dtype(
     [

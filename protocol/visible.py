@@ -37,7 +37,7 @@ Unicode's DerivedCoreProperties, and blanks of a width)."""
 
 
 def hidden(text: str, place: int) -> str | None:
-    """What the character at a place is if nobody can see it, None if it is seen.
+    """Name the kind of the character at a place if nobody can see it, None if it is seen.
 
     A joiner between two emoji counts as seen: it makes one picture of them.
     """

@@ -1,4 +1,4 @@
-"""What changes on a grid when a door moves, derived before it does."""
+"""The changes that a door makes to a grid are derived before the door moves."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from esplanade.planning.traversal.cache import KnownTraversability
 
 @dataclass(frozen=True, eq=False)
 class DoorChange:
-    """What `LayeredGrid.prepare_door` has derived for one door that is to move."""
+    """The arrays that `LayeredGrid.prepare_door` has derived for one door that is to move."""
 
     name: str
     is_open: bool

@@ -114,7 +114,7 @@ class TraversabilityCache:
     def _derived(
         self, body: Body, known: KnownTraversability | None, barriers: Barriers
     ) -> KnownTraversability:
-        """What is known if it still holds, else derived anew: around doors that have moved."""
+        """Return the kept arrays if they still hold, else derive them anew around moved doors."""
         floors = self._floors
         doors = barriers[: len(floors.doors)]
         climbs = doors["climb_m"].copy()

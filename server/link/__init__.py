@@ -1,1 +1,1 @@
-"""What joins a zone and those who serve its viewers: inputs go up, frames come down."""
+"""A link joins a zone and the servers of its viewers: inputs go up, frames come down."""

@@ -35,7 +35,7 @@ class GroundWork:
         world.doors.derived_outside = True
 
     def drain(self) -> list[GroundInput]:
-        """What was derived since the last call, for the next tick. Call it between two ticks."""
+        """Return the inputs derived since the last call. Call it between two ticks."""
         done: list[GroundInput] = []
         if self._work is not None and self._work.done():
             try:

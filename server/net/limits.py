@@ -38,3 +38,15 @@ class TokenBucket:
             return (1.0 - available) / self._rate
         self._tokens -= tokens
         return 0.0
+
+    def spend(self, now: float, tokens: float) -> None:
+        """Take tokens in any case; the debt that they leave is no greater than a burst."""
+        self._tokens = max(-self._burst, self.available(now) - tokens)
+
+    def debt_s(self, now: float) -> float:
+        """The seconds until the rate has paid a debt; 0 without one."""
+        return max(0.0, -self.available(now) / self._rate)
+
+    def is_full(self, now: float) -> bool:
+        """Whether the bucket is as good as a new one."""
+        return self.available(now) >= self._burst

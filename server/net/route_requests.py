@@ -13,7 +13,7 @@ import structlog
 from esplanade.protocol import ErrorCode, ProtocolError
 from esplanade.protocol.messages import WalkTo
 from esplanade.server.net.fair_queue import Asker, FairQueue
-from esplanade.server.net.search_budget import REQUEST_S, Account, SearchBudget, Share
+from esplanade.server.net.search_budget import REQUEST_S, SearchBudget, Share
 from esplanade.server.world.routes import Route, RouteSearch
 from esplanade.server.world.zone import Zone
 
@@ -55,7 +55,7 @@ class RouteRequests:
         self._latest: dict[int, WalkTo] = {}
         """The wish of each person that is to be answered, whatever stage it is at."""
         self._wanted = asyncio.Event()
-        self._time = Account(ALL_SEARCHES, 0.0)
+        self._time = ALL_SEARCHES.bucket(0.0)
         self.refused = 0
         """Requests that were refused because searches had cost too much."""
         self.search_s = 0.0
@@ -153,8 +153,8 @@ class RouteRequests:
         if over:
             self._answer(avatar_id, job.wish, route, found)
         now = loop.time()
-        self._time.spend(now - start, now)
-        if (rest_s := self._time.wait_s(now)) > 0.0:
+        self._time.spend(now, now - start)
+        if (rest_s := self._time.debt_s(now)) > 0.0:
             await asyncio.sleep(rest_s)
         return over or self._latest.get(avatar_id) is not job.wish
 
@@ -166,6 +166,6 @@ class RouteRequests:
 
 
 def _timed(work: Callable[[], bool]) -> tuple[bool, float]:
-    """What some work returns, and the processor seconds that it took in this thread."""
+    """Do some work; return its result and the processor seconds that it took in this thread."""
     start = thread_time()
     return work(), thread_time() - start

@@ -63,7 +63,7 @@ class News:
     entered: Mapping[int, list[bytes]]
     """Avatars that came into view, each packed for an enter message."""
     pointing: Mapping[int, tuple[Point | None, list[int]]]
-    """What an actor points at since this tick, and who sees that; by the actor's id."""
+    """The new target of each actor that points, and the viewers who see it; by the actor's id."""
     chat: list[Heard]
     """In the order in which people spoke."""
     snapshots: Snapshots
@@ -118,7 +118,7 @@ class Audience:
         self._interest.views.written[snapshots.places[places]] = snapshots.tick
 
     def send_no_steps(self, avatar_id: int) -> None:
-        """Whoever looks through this avatar's eyes from the next frame on wants no steps."""
+        """Send no steps to the viewer of this avatar, once the next frame attaches it."""
         self._stepless.add(avatar_id)
 
     # --- questions ----------------------------------------------------------------------------

@@ -55,7 +55,7 @@ class Avatars:
         return known is not None and known.kind == ACTOR
 
     def name(self, avatar_id: int) -> str:
-        """What an avatar that is there is called."""
+        """The name of an avatar that is there."""
         return self._known[avatar_id].name
 
     def remove(self, ids: list[int]) -> None:
@@ -146,7 +146,7 @@ class Avatars:
 
 
 def _urgent(before: Records, now: Records) -> npt.NDArray[np.bool_]:
-    """Which records, RECORD (N,), tell more than that somebody who walks has walked on."""
+    """Mark the records, RECORD (N,), that tell more than the progress of a walk."""
     storey, reason = before["layer"] != now["layer"], before["reason"] != now["reason"]
     starts_or_halts = (before["speed"] == 0) != (now["speed"] == 0)
     urgent: npt.NDArray[np.bool_] = storey | reason | starts_or_halts

@@ -96,7 +96,7 @@ class Watch:
 
 @dataclass(frozen=True, slots=True)
 class DoorDerived:
-    """What changes on the ground with a door is derived: the door moves, if it still may."""
+    """The changes that a door makes to the ground are derived: it moves, if it still may."""
 
     change: DoorChange
 

@@ -21,7 +21,7 @@ def descend(
     turn_cos: float,
     most: int,
 ) -> list[Place] | None:
-    """Where the way turns; None if the goal is not reached in so many steps."""
+    """The corners of the way; None if the goal is not reached in so many steps."""
     corners: list[Place] = []
     here, height = np.array(start[:2]), start[2]
     waypoint = np.array(toward)

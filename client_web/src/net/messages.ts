@@ -90,12 +90,12 @@ export interface Welcome {
   tick: number;
   tick_rate: number;
   server_time: number;
-  /** How long the avatar waits for a client whose connection was lost. */
+  /** The time for which the avatar waits for a client whose connection was lost. */
   resume_seconds: number;
   radius: number;
   /** Distance that a person's centre keeps from walls. */
   clearance: number;
-  /** What hangs lower than this above the feet stops a person. */
+  /** A barrier that hangs lower than this above the feet stops a person. */
   body_height: number;
   /** Greatest difference in height that a person steps up or down. */
   step_height: number;

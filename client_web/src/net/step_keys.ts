@@ -7,7 +7,7 @@
 export const STEP_KEYS = 6;
 export const WHOLE_NUMBERS = 17;
 
-/** Where each number is in the row of a key. */
+/** The place of each number in the row of a key. */
 export const Whole = {
   ROOT: 0,
   ANKLE: 3,

@@ -20,7 +20,7 @@ export interface Barrier {
 
 /** The measures of a body that decide what stops it, as the server's welcome has them. */
 export interface Reach {
-  /** What hangs lower than this above the feet stops the body. */
+  /** A barrier that hangs lower than this above the feet stops the body. */
   heightM: number;
   /** Greatest difference in height that the body steps up or down. */
   stepM: number;

@@ -41,7 +41,7 @@ const TURN_PER_S = 12;
 const SETTLED_S = 0.4;
 const MOST_PENDING = 64;
 
-/** How the server lets people walk, as its welcome says. */
+/** The limits of walking that the server states in its welcome. */
 export interface Gait {
   /** Distance that the body's centre keeps from walls. */
   clearanceM: number;

@@ -1,4 +1,4 @@
-"""What each viewer has in view: rows of a table, looked at anew in compiled loops."""
+"""The view of each viewer is a row of a table; kernels bring it up to date."""
 
 from typing import NamedTuple
 

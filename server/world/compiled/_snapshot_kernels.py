@@ -1,4 +1,4 @@
-"""Which records and steps each viewer is due, within its budget, and their bytes together."""
+"""Kernels choose the records and steps that each viewer is due, and gather their bytes."""
 
 from typing import NamedTuple
 

@@ -71,7 +71,7 @@ class Newcomer(asyncio.Protocol):
 async def newcomers(
     count: int, port: int, host: str, source: str, at_once: int = 200
 ) -> list[Newcomer]:
-    """So many people of one address, some at once, each in a connection of its own."""
+    """A number of people of one address, some at once, each in a connection of its own."""
     loop, came = asyncio.get_running_loop(), list[Newcomer]()
     for begin in range(0, count, at_once):
         made = await asyncio.gather(

@@ -45,7 +45,7 @@ class ScriptedWorld:
     def __init__(self) -> None:
         self.go = Event()
         self.pieces: list[int] = []
-        """Whose search each piece belonged to."""
+        """The avatar whose search each piece belonged to."""
 
     def route_search(self, avatar_id: int, goal: Point) -> ScriptedSearch:
         return ScriptedSearch(self, avatar_id, goal)

@@ -1,4 +1,4 @@
-"""What searches cost is charged to a person and to their address."""
+"""Searches are charged to a person and to their address."""
 
 import pytest
 
