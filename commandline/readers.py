@@ -5,12 +5,15 @@ with a message that says what is expected.
 """
 
 import os
+import re
 from argparse import ArgumentTypeError
 from math import isfinite
 from pathlib import Path
 from typing import Any, Final
 
 SEED_LIMIT: Final = 2**32 - 1
+_UNITS_S: Final = {"s": 1.0, "m": 60.0, "h": 3600.0, "d": 24 * 3600.0}
+_DIGITS: Final = re.compile(r"[0-9]{1,6}")
 
 
 class Number:
@@ -66,6 +69,18 @@ class Whole(Number):
 
     def _fits(self, value: float) -> bool:
         return value.is_integer()
+
+
+class Span:
+    """A span of time, such as 90s, 15m, 1h or 30d; the value is in seconds."""
+
+    metavar = "SPAN"
+
+    def __call__(self, text: str) -> float:
+        unit = _UNITS_S.get(text[-1:])
+        if unit is None or not _DIGITS.fullmatch(text[:-1]):
+            raise ArgumentTypeError(f"{text!r} is no span of time such as 90s, 15m, 1h or 30d")
+        return int(text[:-1]) * unit
 
 
 class Text:

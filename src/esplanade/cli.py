@@ -21,6 +21,12 @@ COMMANDS: Final = {
     "bots": Command(
         "esplanade.bots.options:parser", "send people made of code: load, or a recorded crowd"
     ),
+    "op": Command(
+        "esplanade.server.operating.options:parser", "see to operators, their tokens, the audit"
+    ),
+    "data": Command(
+        "esplanade.server.operating.data_options:parser", "back up, restore, upgrade, forget"
+    ),
     "evaluate": Command(
         "esplanade.evaluation.options:parser", "measure actors among recorded people"
     ),
@@ -77,6 +83,8 @@ def _help() -> str:
         "examples:",
         "  esplanade demo                           then open http://localhost:8080",
         "  esplanade serve --scene my.json --actors 10",
+        "  esplanade serve --data world             keeps operators and the audit",
+        "  esplanade op user add olga --role tuner --data world",
         "  esplanade bots --count 200 --duration 60",
         "  esplanade evaluate zara1.csv --policy esplanade straight",
         "  esplanade scene check my.json",

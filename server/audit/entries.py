@@ -1,0 +1,54 @@
+"""What a row of the audit says, before it is written and after."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Entry:
+    """What somebody is about to do, or what came of it.
+
+    `body`, `target`, `command` and `outcome` are kept for ever and are to name no person. What is
+    said of people stands in `person`, `note` and `detail`, what is said of the operator in
+    `account` and `address`: both can be forgotten later without breaking the chain.
+    """
+
+    command: str
+    """The name of the command, such as `set_parameters`."""
+    account: str | None = None
+    """Who does it; None for the machine itself."""
+    role: str = ""
+    """The role that the account has at this moment."""
+    address: str | None = None
+    """Where the account comes from."""
+    target: str = ""
+    """What it is about: the id of an actor, a scope, a door."""
+    tick: int | None = None
+    """The tick at which it was asked for, or took effect."""
+    outcome: str = ""
+    """What came of it, as one word; empty while it is only about to happen."""
+    refers_to: int | None = None
+    """The number of the row, of the same writer, whose outcome this is."""
+    body: Mapping[str, Any] = field(default_factory=dict)
+    """The command itself, with values before and after: JSON."""
+    person: str | None = None
+    """The name of the person, or of the account, that it is about."""
+    note: str | None = None
+    """Why, in the words of the operator."""
+    detail: Mapping[str, Any] | None = None
+    """What else is said of a person: JSON."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Row(Entry):
+    """An entry as it stands in the audit."""
+
+    id: int
+    """Its place among the rows of all writers."""
+    writer: str
+    seq: int
+    """Its number in its writer's chain, from 1 on."""
+    at_us: int
+    """When it was written, microseconds since 1970 in UTC; in one chain it never falls."""
+    hash: str

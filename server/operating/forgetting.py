@@ -1,0 +1,58 @@
+"""Forgets a person in every table that says something of people.
+
+Each part of the server that keeps such a table adds a function to `FORGETTERS`. All of them work
+within one write of the store, so that a person is forgotten everywhere or nowhere.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Final
+
+from sqlalchemy import Connection, delete, func, select
+
+from esplanade.server.accounts.identity import Identity
+from esplanade.server.audit.erasing import Erased, erase
+from esplanade.server.audit.log import AuditLog
+from esplanade.server.audit.verifying import FORGET
+from esplanade.server.store.store import Store
+from esplanade.server.store.tables import ACCOUNTS
+
+Forgetter = Callable[[Connection, str, str], int]
+"""Forgets in a zone a person of this name, within a write of the store; returns how many rows were
+removed or changed. It asks for no seat, connection or world: those end by themselves when they find
+their rows gone."""
+
+
+def _forget_account(connection: Connection, zone: str, person: str) -> int:
+    chosen = (ACCOUNTS.c.zone == zone, ACCOUNTS.c.name == person)
+    count = connection.execute(select(func.count()).where(*chosen)).scalar() or 0
+    connection.execute(delete(ACCOUNTS).where(*chosen))
+    return count
+
+
+FORGETTERS: Final[Mapping[str, Forgetter]] = {"accounts": _forget_account}
+"""What forgets, by the name of what it forgets in; the audit is not among them, and comes last."""
+
+
+async def forget(store: Store, audit: AuditLog, by: Identity, person: str) -> dict[str, int]:
+    """Forget a person everywhere; returns how many rows of what were removed or changed.
+
+    The row of the audit that says so names rows, and not the person.
+
+    Raises
+    ------
+    StoreError
+        The store cannot be written; nothing was forgotten.
+    """
+
+    def change(connection: Connection) -> dict[str, int]:
+        counts = {
+            name: forgetter(connection, store.zone, person)
+            for name, forgetter in FORGETTERS.items()
+        }
+        erased: list[Erased] = erase(connection, store.zone, person)
+        counts["audit"] = len(erased)
+        if any(counts.values()):
+            audit.add(connection, by.entry(FORGET, rows=erased, counts=counts))
+        return counts
+
+    return await store.write(change)

@@ -1,0 +1,140 @@
+"""The tables of the store; the first column of every key is the zone.
+
+Moments are whole microseconds since 1970, UTC, as a bare number: SQLite has no type for them.
+"""
+
+from typing import Final
+
+from sqlalchemy import (
+    BigInteger,
+    Column,
+    ForeignKeyConstraint,
+    Identity,
+    Index,
+    Integer,
+    MetaData,
+    String,
+    Table,
+    Text,
+    UniqueConstraint,
+)
+
+REVISION: Final = "0001"
+"""The newest migration: what the tables below are after it."""
+
+METADATA: Final = MetaData()
+
+ACCOUNTS: Final = Table(
+    "accounts",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("name", String(64), primary_key=True),
+    Column("role", String(32), nullable=False),
+    Column("password_hash", Text),
+    Column("created_us", BigInteger, nullable=False),
+    Column("seen_us", BigInteger),
+)
+"""Operators; without a hash, an account comes in by tokens only."""
+
+
+def _of_account(*, nullable: bool = False) -> tuple[Column[str], ForeignKeyConstraint]:
+    """The account that something belongs to, and with which it goes."""
+    return (
+        Column("account", String(64), nullable=nullable),
+        ForeignKeyConstraint(
+            ["zone", "account"], ["accounts.zone", "accounts.name"], ondelete="CASCADE"
+        ),
+    )
+
+
+SESSIONS: Final = Table(
+    "sessions",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("digest", String(64), primary_key=True),
+    *_of_account(),
+    Column("address", Text, nullable=False),
+    Column("created_us", BigInteger, nullable=False),
+    Column("used_us", BigInteger, nullable=False),
+    Index("sessions_by_account", "zone", "account"),
+)
+"""Operators who are logged in, by the SHA-256 digest of their token."""
+
+TOKENS: Final = Table(
+    "tokens",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("digest", String(64), primary_key=True),
+    *_of_account(),
+    Column("name", String(64), nullable=False),
+    Column("rights", Text, nullable=False),
+    Column("created_us", BigInteger, nullable=False),
+    Column("expires_us", BigInteger, nullable=False),
+    Column("used_us", BigInteger),
+    Column("revoked_us", BigInteger),
+    UniqueConstraint("zone", "account", "name", name="tokens_by_name"),
+)
+"""Tokens of scripts, by their SHA-256 digest; rights are words between blanks."""
+
+ONE_TIME: Final = Table(
+    "one_time",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("digest", String(64), primary_key=True),
+    Column("purpose", String(16), nullable=False),
+    *_of_account(nullable=True),
+    Column("expires_us", BigInteger, nullable=False),
+)
+"""Tokens that are used once: the link of the first start, passes to a seat."""
+
+AUDIT: Final = Table(
+    "audit",
+    METADATA,
+    # SQLite numbers rows by itself only where the column is INTEGER, which has 64 bits there.
+    Column(
+        "id", BigInteger().with_variant(Integer, "sqlite"), Identity(always=False), primary_key=True
+    ),
+    Column("zone", String(64), nullable=False),
+    Column("writer", String(64), nullable=False),
+    Column("seq", BigInteger, nullable=False),
+    Column("at_us", BigInteger, nullable=False),
+    Column("tick", BigInteger),
+    Column("command", String(64), nullable=False),
+    Column("role", String(32), nullable=False),
+    Column("target", Text, nullable=False),
+    Column("outcome", String(32), nullable=False),
+    Column("refers_to", BigInteger),
+    Column("body", Text, nullable=False),
+    Column("account", String(64)),
+    Column("address", Text),
+    Column("account_salt", String(32)),
+    Column("account_seal", String(64), nullable=False),
+    Column("person", Text),
+    Column("note", Text),
+    Column("detail", Text),
+    Column("person_salt", String(32)),
+    Column("person_seal", String(64), nullable=False),
+    Column("previous", String(64), nullable=False),
+    Column("hash", String(64), nullable=False),
+    UniqueConstraint("zone", "writer", "seq", name="audit_chain"),
+    Index("audit_by_time", "zone", "at_us"),
+    Index("audit_by_account", "zone", "account", "at_us"),
+    Index("audit_by_command", "zone", "command", "at_us"),
+    Index("audit_by_target", "zone", "target", "at_us"),
+    Index("audit_by_account_command", "zone", "account", "command", "at_us"),
+    Index("audit_by_account_target", "zone", "account", "target", "at_us"),
+    Index("audit_by_command_target", "zone", "command", "target", "at_us"),
+    Index("audit_by_person", "zone", "person", "at_us"),
+)
+"""The audit; `esplanade.server.audit.chain` says what is sealed, and what a hash is of."""
+
+AUDIT_HEADS: Final = Table(
+    "audit_heads",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("writer", String(64), primary_key=True),
+    Column("seq", BigInteger, nullable=False),
+    Column("at_us", BigInteger, nullable=False),
+    Column("hash", String(64), nullable=False),
+)
+"""The last row of each writer's chain, so that a cut at its end is seen."""
