@@ -77,7 +77,7 @@ class Lockout:
         for tries in both:
             tries.wrong.append(now_s)
             tries.latest_s = now_s
-            counted = len(tries.wrong) == WRONG and tries.wrong[0] > tries.locked_until_s
+            counted = len(tries.wrong) == WRONG and tries.wrong[0] >= tries.locked_until_s
             if counted and now_s - tries.wrong[0] < PERIOD_S:
                 lasting_s = min(FIRST_LOCK_S * 2**tries.locks, LONGEST_LOCK_S)
                 tries.unlocked_s, tries.locked_until_s = tries.locked_until_s, now_s + lasting_s

@@ -88,7 +88,11 @@ def _postgresql(location: Location) -> Engine:
         return create_engine(
             location.url,
             pool_pre_ping=True,
-            connect_args={"connect_timeout": 10, "options": _POSTGRESQL_OPTIONS},
+            connect_args={
+                "connect_timeout": 10,
+                "client_encoding": "utf8",
+                "options": _POSTGRESQL_OPTIONS,
+            },
         )
     except (ImportError, NoSuchModuleError):
         raise StoreError(

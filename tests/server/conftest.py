@@ -12,7 +12,10 @@ from esplanade.server.app import Running, running
 from esplanade.server.assets import Assets
 from esplanade.server.settings import ServerSettings
 from tests.server.client import PLACING_KEY
+from tests.server.stores import database_server, location, store
 from tests.server.worlds import ROOM
+
+__all__ = ["database_server", "location", "store"]
 
 NO_CLIENT = Assets.load(Path("no such folder"))
 

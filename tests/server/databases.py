@@ -1,0 +1,111 @@
+"""A real PostgreSQL for tests: made in a temporary folder, as a user who is not root."""
+
+import os
+import pwd
+import shutil
+import subprocess
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Final
+
+import pytest
+from sqlalchemy import create_engine, text
+
+from tests.patience import PATIENCE_S
+
+REQUIRE_VARIABLE: Final = "ESPLANADE_REQUIRE_POSTGRESQL"
+"""With 1, a test that finds no PostgreSQL fails instead of skipping."""
+
+
+@contextmanager
+def postgresql() -> Iterator[str]:
+    """Run a server of its own; yields the address of its first database.
+
+    It listens at a socket in its folder only, so that it meets no other and needs no password.
+    """
+    binaries = _binaries()
+    owner = _owner()
+    with tempfile.TemporaryDirectory(prefix="esplanade-pg-", dir="/tmp") as name:
+        folder = Path(name)
+        if owner is not None:
+            os.chown(folder, owner.pw_uid, owner.pw_gid)
+        data = folder / "data"
+        _call(
+            owner,
+            binaries / "initdb",
+            "-D",
+            data,
+            "-A",
+            "trust",
+            "-U",
+            "esplanade",
+            "-N",
+            "-E",
+            "UTF8",
+        )
+        options = f"-k {folder} -c listen_addresses='' -c fsync=off -c max_connections=40"
+        log = folder / "log"
+        _call(
+            owner, binaries / "pg_ctl", "start", "-D", data, "-l", log, "-w",
+            "-t", str(int(PATIENCE_S)), "-o", options,
+        )  # fmt: skip
+        try:
+            yield f"postgresql://esplanade@/postgres?host={folder}"
+        finally:
+            _call(owner, binaries / "pg_ctl", "stop", "-D", data, "-m", "immediate", "-w")
+
+
+def new_database(address: str) -> str:
+    """The address of a new, empty database of the same server."""
+    name = f"t{time.monotonic_ns()}"
+    url = address.replace("postgresql:", "postgresql+psycopg:")
+    engine = create_engine(url, isolation_level="AUTOCOMMIT")
+    with engine.connect() as connection:
+        connection.execute(text(f"CREATE DATABASE {name}"))
+    engine.dispose()
+    return address.replace("/postgres?", f"/{name}?")
+
+
+def _binaries() -> Path:
+    """The folder of `initdb` and `pg_ctl`: Debian does not put it on the path."""
+    places = [Path(found).resolve().parent for found in [shutil.which("initdb")] if found]
+    places += sorted(Path("/usr/lib/postgresql").glob("*/bin"), reverse=True)
+    for place in places:
+        if (place / "initdb").exists() and (place / "pg_ctl").exists():
+            return place
+    why = "PostgreSQL is not installed here: apt-get install postgresql"
+    if os.environ.get(REQUIRE_VARIABLE) == "1":
+        pytest.fail(f"{REQUIRE_VARIABLE}=1, but {why}")
+    pytest.skip(why)
+
+
+def _owner() -> pwd.struct_passwd | None:
+    """Who runs the server in root's place: it refuses to be root."""
+    if os.getuid() != 0:
+        return None
+    for name in ("postgres", "nobody"):
+        try:
+            return pwd.getpwnam(name)
+        except KeyError:
+            continue
+    pytest.skip("PostgreSQL refuses to run as root, and there is no user postgres or nobody")
+
+
+def _call(owner: pwd.struct_passwd | None, *words: object) -> None:
+    as_owner = {} if owner is None else {"user": owner.pw_uid, "group": owner.pw_gid}
+    environment = {**os.environ, "LC_ALL": "C", "HOME": "/tmp"}
+    done = subprocess.run(
+        [str(word) for word in words],
+        check=False,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,  # the server inherits it: a pipe would never end
+        stderr=subprocess.DEVNULL,
+        env=environment,
+        cwd="/tmp",
+        extra_groups=None if owner is None else [],
+        **as_owner,  # type: ignore[arg-type]
+    )
+    assert done.returncode == 0, f"{words[0]} ended with status {done.returncode}"
