@@ -13,6 +13,10 @@ from typing import Any, Final
 
 SEED_LIMIT: Final = 2**32 - 1
 _UNITS_S: Final = {"s": 1.0, "m": 60.0, "h": 3600.0, "d": 24 * 3600.0}
+_FLAGS: Final = {
+    **dict.fromkeys(("yes", "true", "on", "1"), True),
+    **dict.fromkeys(("no", "false", "off", "0"), False),
+}
 _DIGITS: Final = re.compile(r"[0-9]{1,6}")
 
 
@@ -90,6 +94,19 @@ class Text:
 
     def __call__(self, text: str) -> str:
         return text
+
+
+class Flag:
+    """On or off; the option alone means on."""
+
+    metavar = "yes|no"
+    alone = True
+
+    def __call__(self, text: str) -> bool:
+        value = _FLAGS.get(text.lower())
+        if value is None:
+            raise ArgumentTypeError(f"{text!r} is neither yes nor no")
+        return value
 
 
 class Choice:

@@ -18,6 +18,7 @@ class Setting(NamedTuple):
     """One setting: `read` is its reader, `option` its name on the command line if that differs.
 
     A reader with `several` returns a tuple; its option may be given again, and the tuples add up.
+    A reader with `alone` says what its option means when no word follows it.
     """
 
     text: str
@@ -29,7 +30,8 @@ class Setting(NamedTuple):
     @property
     def help(self) -> str:
         """The description with unit, range and default."""
-        default = "" if self.default in (None, "", ()) else f"default {self.default}"
+        is_told = self.default not in (None, "", ()) and self.default is not False
+        default = f"default {self.default}" if is_told else ""
         facts = (self.unit, getattr(self.read, "range", ""), default)
         told = ", ".join(fact for fact in facts if fact)
         return (f"{self.text} [{told}]" if told else self.text).replace("%", "%%")
@@ -91,11 +93,13 @@ def settings_parser(
     for title, group in settings.groups.items():
         shown = parser.add_argument_group(title)
         for name, setting in group.items():
+            alone = getattr(setting.read, "alone", None)
             options[name] = shown.add_argument(
                 "--" + (setting.option or name.replace("_", "-")),
                 dest=name,
                 metavar=setting.read.metavar,
                 type=setting.read,
+                **({} if alone is None else {"nargs": "?", "const": alone}),
                 action="extend" if getattr(setting.read, "several", False) else "store",
                 choices=getattr(setting.read, "choices", None),
                 help=setting.help if explained is None or name in explained else SUPPRESS,

@@ -14,6 +14,7 @@ from esplanade.planning import LayeredGrid
 from esplanade.planning.routes.storey_heights import reached_from, storeys_of
 from esplanade.server.assets import Assets
 from esplanade.server.crowding import warn_of_crowding
+from esplanade.server.keeping import Kept, keeping
 from esplanade.server.link.local import LocalLink
 from esplanade.server.loading import LoadedScene, LoadingError, load_scene
 from esplanade.server.metrics import Metrics
@@ -48,6 +49,7 @@ class Running:
     private_port: int
     world: Zone
     metrics: Metrics
+    kept: Kept
     ticking: "asyncio.Task[None]"
     """Runs as long as the world does; ends early only by a fault."""
 
@@ -75,6 +77,8 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         The scene or crowd cannot be run.
     TlsError
         The certificate and its key cannot be used.
+    StoreError
+        What is to be kept cannot be.
     OSError
         A port cannot be had, or too few open files are allowed.
     """
@@ -93,6 +97,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     readiness = Readiness(metrics)
     async with AsyncExitStack() as stack:
         thread = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="actors"))
+        kept = await stack.enter_async_context(keeping(settings, metrics))
         private = await stack.enter_async_context(private_port(settings, metrics, readiness))
         # This finds out now, not after a minute of compiling, whether the port can be had.
         sockets = await bound_sockets(settings.host, settings.port)
@@ -107,19 +112,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         schedule = Schedule(world.tick_s, loop.time())
         searching = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="routes"))
         route_requests = RouteRequests(world, searching, SearchBudget())
-        metrics.gauge(
-            "routes_waiting", "People who wait for a route", lambda: route_requests.waiting
-        )
-        metrics.total(
-            "routes_refused",
-            "Routes not sought because searches had cost too much",
-            lambda: route_requests.refused,
-        )
-        metrics.total(
-            "route_search_seconds",
-            "Processor time of searches for routes",
-            lambda: route_requests.search_s,
-        )
+        _watch_routes(route_requests, metrics)
         audience = Audience(world.rules, world.origin_m, world.times)
         hub = Hub(
             world,
@@ -155,7 +148,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         renewing = asyncio.create_task(tls.renew()) if tls else None
         readiness.open()
         try:
-            yield Running(sockets[0].getsockname()[1], private, world, metrics, ticking)
+            yield Running(sockets[0].getsockname()[1], private, world, metrics, kept, ticking)
         finally:
             readiness.close()
             if renewing:
@@ -234,3 +227,17 @@ def _watch(world: Zone, metrics: Metrics) -> None:
     metrics.total("steps", "Steps that began or were re-aimed", lambda: feet.begun)
     metrics.total("walkers_lost", "Walkers set back onto their feet", lambda: feet.lost)
     metrics.total("stepping_failures", "Ticks in which nobody could step", lambda: feet.failures)
+
+
+def _watch_routes(route_requests: RouteRequests, metrics: Metrics) -> None:
+    metrics.gauge("routes_waiting", "People who wait for a route", lambda: route_requests.waiting)
+    metrics.total(
+        "routes_refused",
+        "Routes not sought because searches had cost too much",
+        lambda: route_requests.refused,
+    )
+    metrics.total(
+        "route_search_seconds",
+        "Processor time of searches for routes",
+        lambda: route_requests.search_s,
+    )

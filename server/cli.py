@@ -10,6 +10,7 @@ from esplanade.server.main import serve
 from esplanade.server.net.tls import TlsError
 from esplanade.server.options import SETTINGS
 from esplanade.server.settings import ServerSettings
+from esplanade.server.store.store import StoreError
 
 
 def run(options: Namespace) -> int:
@@ -19,6 +20,8 @@ def run(options: Namespace) -> int:
         serve(settings)
     except (LoadingError, TlsError) as error:
         raise UsageError(str(error)) from None
+    except StoreError as error:
+        raise CommandError(str(error)) from None
     except OSError as error:
         ports = f"{settings.host}:{settings.port}, {settings.private_host}:{settings.private_port}"
         raise CommandError(f"cannot listen on {ports}: {error.strerror or error}") from None

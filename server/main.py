@@ -24,6 +24,8 @@ def serve(settings: ServerSettings) -> None:
         The scene or crowd cannot be run.
     TlsError
         The certificate and its key cannot be used.
+    StoreError
+        What is to be kept cannot be.
     OSError
         A port cannot be had.
     """

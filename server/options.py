@@ -5,7 +5,16 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 from esplanade.commandline.parser import Parser
-from esplanade.commandline.readers import SEED_LIMIT, Choice, InputFile, Number, Text, Whole
+from esplanade.commandline.readers import (
+    SEED_LIMIT,
+    Choice,
+    Flag,
+    Folder,
+    InputFile,
+    Number,
+    Text,
+    Whole,
+)
 from esplanade.commandline.settings import Setting, Settings, settings_parser
 
 _PORT: Final = Whole(0, 65535)
@@ -61,6 +70,24 @@ _PEOPLE: Final = {
     ),
     "resume_seconds": Setting(
         "how long a lost connection's avatar stands and waits", Number(0.0, 3600.0), 30.0, "s"
+    ),
+}
+_DATA: Final = {
+    "data": Setting(
+        "folder of what outlives the process, made if it is not there: operators and the audit; "
+        "without it, nothing does",
+        Folder(),
+    ),
+    "store": Setting(
+        "database for the same in place of a file, postgresql://user:password@host/database; "
+        "better set in the environment than here",
+        Text(),
+        "",
+    ),
+    "durable": Setting(
+        "what is kept outlives a loss of power too, and each change waits for the disk",
+        Flag(),
+        default=False,
     ),
 }
 _NETWORK: Final = {
@@ -214,6 +241,7 @@ SETTINGS: Final = Settings(
     {
         "world": _WORLD,
         "people": _PEOPLE,
+        "data": _DATA,
         "network": _NETWORK,
         "limits on clients": _LIMITS,
         "logs": _LOGS,
@@ -233,11 +261,12 @@ def parser(prog: str = "esplanade serve") -> Parser:
 examples:
   esplanade serve                                  the gallery, with ten actors
   esplanade serve --scene scenes/plaza.json --actors 30 --port 9000
+  esplanade serve --data world                     operators and the audit are kept there
   esplanade serve --crowd zara1.csv                then `esplanade bots --replay zara1.csv`
 
 Every option can also be given as an environment variable: --tick-rate is ESPLANADE_TICK_RATE.
 The command line wins.
 
-exit code: 0 ended in good order, 1 a port cannot be had, 2 wrong usage, or a scene that cannot
-be run, 130 Ctrl-C before the world was open""",
+exit code: 0 ended in good order, 1 a port or the store cannot be had, 2 wrong usage, or a
+scene that cannot be run, 130 Ctrl-C before the world was open""",
     )

@@ -42,6 +42,10 @@ class ServerSettings(BaseSettings):
     viewer_bytes: int = _field("viewer_bytes")
     resume_seconds: float = _field("resume_seconds")
 
+    data: Path | None = _field("data")
+    store: SecretStr = _field("store")
+    durable: bool = _field("durable")
+
     host: str = _field("host")
     port: int = _field("port")
     tls_cert: Path | None = _field("tls_cert")

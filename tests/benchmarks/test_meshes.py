@@ -77,7 +77,7 @@ def test_a_disagreement_is_drawn(tmp_path, monkeypatch) -> None:
 
 
 def test_skips_in_words_what_is_absent(tmp_path, monkeypatch, capsys) -> None:
-    monkeypatch.setenv("ESPLANADE_DATA", str(tmp_path))
+    monkeypatch.setenv("ESPLANADE_RECORDINGS", str(tmp_path))
     monkeypatch.setattr(meshes, "missing", lambda: None)
     assert meshes.main([]) == 0
     assert "skipped: there are no meshes" in capsys.readouterr().out

@@ -52,6 +52,9 @@ def test_bash_offers_commands_options_and_choices(script: Path) -> None:
     assert "--cell" in offered_by_bash(script, "esplanade", "scene", "check", "--c")
     assert "warning" in offered_by_bash(script, "esplanade", "serve", "--log-level", "w")
     assert "--visitors" in offered_by_bash(script, "esplanade", "demo", "--")
+    assert set(offered_by_bash(script, "esplanade", "op", "user", "")) >= {"add", "list"}
+    assert "--verify" in offered_by_bash(script, "esplanade", "op", "audit", "--")
+    assert "auditor" in offered_by_bash(script, "esplanade", "op", "user", "add", "--role", "a")
 
 
 @pytest.mark.parametrize("script", ["fish"], indirect=True)

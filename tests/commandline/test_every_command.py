@@ -13,6 +13,7 @@ from esplanade.cli import COMMANDS, parser_of
 from esplanade.commandline.parser import Parser
 
 HEAVY = {
+    *("alembic", "argon2", "psycopg", "sqlalchemy"),
     *("asyncio", "matplotlib", "msgpack", "numba", "numpy", "PIL", "pydantic", "pydantic_settings"),
     *("rich", "scipy", "shtab", "structlog", "trimesh", "uvloop", "websockets"),
 }
@@ -73,6 +74,24 @@ WRONG = [
     ("esplanade gait cycle", "gait cycle", "the following arguments are required: --out;"),
     ("esplanade demo", "demo --visitor 3", "no option --visitor; did you mean --visitors?"),
     ("esplanade demo", "demo --tick-rate 1", "--tick-rate: '1' is no whole number from 5 to 60;"),
+    ("esplanade op", "op", "the following arguments are required: COMMAND;"),
+    ("esplanade op user", "op user ad", "'ad' is no choice; did you mean add?"),
+    ("esplanade op user add", "op user add olga --data x", "are required: --role;"),
+    ("esplanade op user add", "op user add olga --role tunr", "'tunr' is no choice; did you mean"),
+    ("esplanade op user add", "op user add olga --role tuner", "say where the data are: --data"),
+    (
+        "esplanade op user add",
+        "op user add olga --role tuner --data x --token --password-stdin",
+        "--token and --password-stdin: give one of them, not both",
+    ),
+    ("esplanade op user add", "op user add a --role viewer --data pyproject.toml", "not a folder;"),
+    ("esplanade op token add", "op token add olga t --right door", "did you mean doors?"),
+    ("esplanade op audit", "op audit --since yesterday", "'yesterday' is no span of time"),
+    ("esplanade op audit", "op audit --csv --verify", "not allowed with argument --csv;"),
+    ("esplanade data", "data", "the following arguments are required: COMMAND;"),
+    ("esplanade data backup", "data backup x.tar --data x", "x.tar is no .zip file;"),
+    ("esplanade data restore", "data restore no.zip --data x", "FILE: no.zip: cannot be read"),
+    ("esplanade data forget", "data forget Eve", "say where the data are: --data DIR or"),
     ("esplanade completion", "completion csh", "'csh' is no choice; did you mean zsh?"),
 ]
 
@@ -118,6 +137,14 @@ def test_wrong_usage_is_one_line_and_loads_nothing_heavy(prog: str, words: str, 
     assert line.startswith(f"{prog}: ")
     assert fault in line
     assert line.endswith(f"see `{prog} --help`")
+    assert not loaded & HEAVY
+
+
+def test_a_variable_names_the_data_and_a_wrong_one_is_told() -> None:
+    code, _, said, loaded = call("data", "forget", "Eve", ESPLANADE_DATA="pyproject.toml")
+    assert code == 2
+    (line,) = said
+    assert "ESPLANADE_DATA: pyproject.toml is a file, not a folder" in line
     assert not loaded & HEAVY
 
 

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import Field, TypeAdapter, ValidationError
 
-from esplanade.commandline.readers import Folder, InputFile, Number, OutputFile, Whole
+from esplanade.commandline.readers import Folder, InputFile, Number, OutputFile, Span, Whole
 
 
 @pytest.mark.parametrize(
@@ -117,3 +117,17 @@ def test_a_folder_may_have_to_be_made(tmp_path: Path) -> None:
     assert not (tmp_path / "a").exists()
     with pytest.raises(ArgumentTypeError, match="file is a file, not a folder"):
         Folder()(str(file / "in"))
+
+
+@pytest.mark.parametrize(
+    ("text", "seconds"),
+    [("90s", 90.0), ("15m", 900.0), ("1h", 3600.0), ("30d", 30 * 86400.0), ("0s", 0.0)],
+)
+def test_spans_of_time_are_read(text: str, seconds: float) -> None:
+    assert Span()(text) == seconds
+
+
+@pytest.mark.parametrize("text", ["", "h", "1", "1.5h", "-1h", "1 h", "1w", "9999999d", "٣h"])
+def test_what_is_no_span_of_time_is_refused(text: str) -> None:
+    with pytest.raises(ArgumentTypeError, match="is no span of time such as 90s, 15m, 1h or 30d"):
+        Span()(text)

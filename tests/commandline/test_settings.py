@@ -10,7 +10,7 @@ from esplanade.bots import options as bots
 from esplanade.bots.settings import BotsSettings
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.fields import made
-from esplanade.commandline.readers import Choice, InputFile, Number, OutputFile, Whole
+from esplanade.commandline.readers import Choice, Flag, Folder, InputFile, Number, OutputFile, Whole
 from esplanade.commandline.settings import Setting, Settings, given_settings, settings_parser
 from esplanade.server import options as server
 from esplanade.server.settings import ServerSettings
@@ -34,6 +34,7 @@ TABLE = Settings(
             "high": Setting("the high end", Whole(0, 9), 9, "m"),
         },
         "words": {"colour": Setting("the colour", Choice("red", "blue"), "red")},
+        "doors": {"open": Setting("whether the doors are open", Flag(), default=False)},
         "files": {"json_file": Setting("where it goes", OutputFile(), option="json")},
     },
     fits,
@@ -73,6 +74,28 @@ def test_variables_count_less_than_options(monkeypatch: pytest.MonkeyPatch, vari
     assert read("--low", "5") == {"low": 5}
 
 
+@pytest.mark.parametrize(
+    ("words", "value"),
+    [
+        ("--open", {"open": True}),
+        ("--open=no", {"open": False}),
+        ("--open yes", {"open": True}),
+        ("", {}),
+    ],
+)
+def test_a_flag_means_yes_alone(words: str, value: dict[str, bool]) -> None:
+    assert read(*words.split()) == value
+
+
+def test_a_flag_is_read_from_a_variable(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("HALL_OPEN", "1")
+    assert read() == {"open": True}
+    monkeypatch.setenv("HALL_OPEN", "maybe")
+    assert "HALL_OPEN: 'maybe' is neither yes nor no" in refusal(capsys)
+
+
 def test_help_has_groups_units_ranges_and_defaults(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit, match="0"):
         read("--help")
@@ -80,6 +103,7 @@ def test_help_has_groups_units_ranges_and_defaults(capsys: pytest.CaptureFixture
     assert "heights: --low N the low end, 5 % off [m, 0 to 9, default 1]" in shown
     assert "--colour red|blue the colour [default red]" in shown
     assert "--json FILE where it goes" in shown
+    assert "--open [yes|no] whether the doors are open files:" in shown
 
 
 def test_faults_name_the_option_or_the_variable(
@@ -114,7 +138,8 @@ def test_table_and_class_have_the_same_settings_of_the_same_types(
         else:
             assert (int in kinds) == isinstance(reader, Whole), name
             assert (float in kinds) == (type(reader) is Number), name
-            assert (Path in kinds) == isinstance(reader, InputFile | OutputFile), name
+            assert (Path in kinds) == isinstance(reader, InputFile | OutputFile | Folder), name
+            assert (bool in kinds) == isinstance(reader, Flag), name
 
 
 @pytest.mark.parametrize(("table", "kind"), CLASSES)

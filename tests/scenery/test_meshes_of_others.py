@@ -12,13 +12,13 @@ from esplanade.planning.routes.storey_heights import reached_from, storeys_of
 from esplanade.planning.scene.scene_file import read_scene
 
 DATA = Path(__file__).resolve().parents[3] / "shared" / "data"
-HOUSE = Path(os.environ.get("ESPLANADE_DATA", DATA)) / "meshes" / "duplex.obj"
+HOUSE = Path(os.environ.get("ESPLANADE_RECORDINGS", DATA)) / "meshes" / "duplex.obj"
 
 
 @pytest.fixture(scope="module")
 def imported(tmp_path_factory: pytest.TempPathFactory) -> Path:
     if not HOUSE.is_file():
-        pytest.skip("the house meshes/duplex.obj is absent; set ESPLANADE_DATA to its folder")
+        pytest.skip("the house meshes/duplex.obj is absent; set ESPLANADE_RECORDINGS to its folder")
     target = tmp_path_factory.mktemp("worlds") / "duplex.json"
     assert main(["scene", "import", str(HOUSE), "--out", str(target)]) == 0
     return target
