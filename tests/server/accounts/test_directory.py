@@ -38,7 +38,7 @@ async def test_the_store_has_no_password(desk: Desk) -> None:
         (lambda d: d.add(MACHINE, "Olga", "viewer", None), "'Olga' is no name of 1 to 32 small"),
         (lambda d: d.add(MACHINE, "", "viewer", None), "'' is no name"),
         (lambda d: d.add(MACHINE, "ann\n", "viewer", None), "is no name"),
-        (lambda d: d.add(MACHINE, "а", "viewer", None), "is no name"),  # noqa: RUF001
+        (lambda d: d.add(MACHINE, "а", "viewer", None), "is no name"),
         (lambda d: d.add(MACHINE, "ann", "king", None), "'king' is no role; there are viewer, mod"),
         (lambda d: d.add(MACHINE, "ann", "viewer", "short"), "fewer than 12"),
         (lambda d: d.remove(MACHINE, "ann"), "there is no account 'ann'"),

@@ -1,5 +1,7 @@
 """Each command needs one right: the whole table of commands and roles, written out by hand."""
 
+from itertools import pairwise
+
 import pytest
 
 from esplanade.server.accounts.rights import COMMANDS, ROLES, Right, as_text, may, of_text
@@ -59,7 +61,7 @@ def test_no_rights_suffice_for_nothing() -> None:
 
 def test_each_role_up_to_admin_has_the_rights_of_the_one_before() -> None:
     in_order = [ROLES[role] for role in ("viewer", "moderator", "tuner", "director", "admin")]
-    assert all(less < more for less, more in zip(in_order, in_order[1:], strict=False))
+    assert all(less < more for less, more in pairwise(in_order))
     assert ROLES["admin"] == frozenset(Right)
     assert ROLES["auditor"] == {Right.WATCH, Right.AUDIT}
     assert [role for role in ROLES if Right.AUDIT in ROLES[role]] == ["admin", "auditor"]

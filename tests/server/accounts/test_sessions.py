@@ -49,7 +49,7 @@ async def test_the_store_has_no_token(desk: Desk) -> None:
 async def test_a_wrong_password_is_told_and_audited(
     desk: Desk, name: str, password: str, kept: str | None
 ) -> None:
-    with pytest.raises(WrongPasswordError, match="^name and password do not belong together$"):
+    with pytest.raises(WrongPasswordError, match=r"^name and password do not belong together$"):
         await desk.sessions.log_in(name, password, "192.0.2.7")
     assert (await desk.audited())[1:] == [("log_in", kept, None, "refused")]
     assert desk.lockout.wrong == 1

@@ -1,5 +1,6 @@
 """A row is there from its commit on: the process dies between it and the tick."""
 
+import asyncio
 import os
 import signal
 import subprocess
@@ -39,7 +40,8 @@ async def test_a_row_outlives_the_process_that_wrote_it(location: Location, tmp_
     store = "" if location.is_sqlite else location.url.render_as_string(hide_password=False)
     async with open_store(location, upgrading=True):
         pass
-    done = subprocess.run(
+    done = await asyncio.to_thread(
+        subprocess.run,
         [sys.executable, "-c", SERVER, str(tmp_path / "data"), store],
         check=False,
         capture_output=True,

@@ -93,7 +93,7 @@ async def test_pages_follow_on_each_other(store: SqlStore) -> None:
 
 @pytest.mark.parametrize("limit", [0, -1, MOST_ROWS + 1])
 async def test_a_page_has_a_size(store: SqlStore, limit: int) -> None:
-    with pytest.raises(ValueError, match="limit: .* is not from 1 to 1000"):
+    with pytest.raises(ValueError, match=r"limit: .* is not from 1 to 1000"):
         await AuditLog(store, "server").page(Filter(), limit=limit)
 
 

@@ -67,7 +67,7 @@ async def test_a_fault_of_the_database_is_told_in_words(store: SqlStore) -> None
 
 
 async def test_reads_change_nothing(store: SqlStore) -> None:
-    with pytest.raises(StoreError, match="readonly|read-only"):
+    with pytest.raises(StoreError, match=r"readonly|read-only"):
         await store.read(lambda connection: add(connection, "ann"))
 
 
@@ -196,20 +196,20 @@ async def test_a_file_is_for_its_user_only_and_has_a_journal(tmp_path: Path) -> 
 
 async def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    with pytest.raises(StoreError, match="file/data/esplanade.sqlite: Not a directory"):
+    with pytest.raises(StoreError, match=r"file/data/esplanade.sqlite: Not a directory"):
         SqlStore(Location.of(tmp_path / "file" / "data"))
 
 
 async def test_a_file_that_is_no_store_is_named(tmp_path: Path) -> None:
     (tmp_path / "esplanade.sqlite").write_text("no database, but text " * 100)
-    with pytest.raises(StoreError, match="esplanade.sqlite: file is not a database"):
+    with pytest.raises(StoreError, match=r"esplanade.sqlite: file is not a database"):
         async with open_store(Location.of(tmp_path)):
             pass
 
 
 async def test_a_database_that_cannot_be_reached_is_named_without_its_password() -> None:
     location = Location.of(None, "postgresql://ann:secret@127.0.0.1:1/world")
-    with pytest.raises(StoreError, match="127.0.0.1:1/world: .*refused") as raised:
+    with pytest.raises(StoreError, match=r"127.0.0.1:1/world: .*refused") as raised:
         async with open_store(location):
             pass
     assert "secret" not in str(raised.value)

@@ -50,7 +50,7 @@ async def test_a_database_is_upgraded_only_when_asked(location: Location) -> Non
         async with open_store(location) as store:
             assert await store.read(revision_of) == REVISION
         return
-    with pytest.raises(StoreError, match="has no tables yet.*run `esplanade data upgrade`"):
+    with pytest.raises(StoreError, match=r"has no tables yet.*run `esplanade data upgrade`"):
         async with open_store(location):
             pass
     async with open_store(location, upgrading=True):
@@ -73,6 +73,6 @@ async def test_a_store_of_a_newer_program_is_refused(location: Location) -> None
         newer = text("UPDATE alembic_version SET version_num = '9999'")
         await store.write(lambda connection: connection.execute(newer).rowcount)
     for upgrading in (True, False):
-        with pytest.raises(StoreError, match="revision 9999, which is newer than .*newer program"):
+        with pytest.raises(StoreError, match=r"revision 9999, which is newer than .*newer program"):
             async with open_store(location, upgrading=upgrading):
                 pass
