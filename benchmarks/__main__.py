@@ -17,6 +17,7 @@ NAMES = (
     "walking",
     "steps",
     "gallery",
+    "audit",
 )
 
 

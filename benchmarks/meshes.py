@@ -94,8 +94,9 @@ def parser() -> argparse.ArgumentParser:
 
 
 def standing_meshes() -> list[Path]:
-    """The meshes beside the recorded crowds; `ESPLANADE_RECORDINGS` names another folder of data."""
-    data = Path(os.environ.get("ESPLANADE_RECORDINGS", PROJECT.parent / "shared" / "data"))
+    """The meshes beside the recorded crowds; `ESPLANADE_RECORDINGS` names another folder."""
+    elsewhere = PROJECT.parent / "shared" / "data"
+    data = Path(os.environ.get("ESPLANADE_RECORDINGS", elsewhere))
     return sorted(path for path in data.glob("meshes/*") if path.suffix.lower() in SUFFIXES)
 
 

@@ -10,7 +10,7 @@ import hashlib
 import json
 import secrets
 from collections.abc import Mapping, Sequence
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from sqlalchemy import Connection, insert, select, update
 
@@ -32,20 +32,40 @@ _HASHED: Final = (
 )
 
 
+class Link(NamedTuple):
+    """The last row of a chain, to which the next one is linked."""
+
+    seq: int = 0
+    at_us: int = 0
+    hash: str = FIRST
+
+
 def append(connection: Connection, zone: str, writer: str, at_us: int, entry: Entry) -> int:
     """Add a row to a writer's chain, within a write of the store; returns its number there.
 
     Two processes may write one chain, since writes of a zone happen one after the other.
     """
-    head = connection.execute(
-        select(AUDIT_HEADS).where(AUDIT_HEADS.c.zone == zone, AUDIT_HEADS.c.writer == writer)
-    ).first()
+    of_writer = (AUDIT_HEADS.c.zone == zone, AUDIT_HEADS.c.writer == writer)
+    columns = (AUDIT_HEADS.c.seq, AUDIT_HEADS.c.at_us, AUDIT_HEADS.c.hash)
+    head = connection.execute(select(*columns).where(*of_writer)).first()
+    row = linked(Link() if head is None else Link(*head), zone, writer, at_us, entry)
+    connection.execute(insert(AUDIT).values(row))
+    place = {name: row[name] for name in Link._fields}
+    if head is None:
+        connection.execute(insert(AUDIT_HEADS).values(zone=zone, writer=writer, **place))
+    else:
+        connection.execute(update(AUDIT_HEADS).where(*of_writer).values(place))
+    return int(row["seq"])
+
+
+def linked(last: Link, zone: str, writer: str, at_us: int, entry: Entry) -> dict[str, Any]:
+    """The row that follows on the last one of a chain, by columns."""
     row: dict[str, Any] = {
         "zone": zone,
         "writer": writer,
-        "seq": 1 if head is None else head.seq + 1,
-        "at_us": at_us if head is None else max(at_us, head.at_us),
-        "previous": FIRST if head is None else head.hash,
+        "seq": last.seq + 1,
+        "at_us": max(at_us, last.at_us),
+        "previous": last.hash,
         "tick": entry.tick,
         "command": entry.command,
         "role": entry.role,
@@ -64,17 +84,7 @@ def append(connection: Connection, zone: str, writer: str, at_us: int, entry: En
         row[f"{about}_salt"] = salt
         row[f"{about}_seal"] = seal(salt, [row[column] for column in columns])
     row["hash"] = row_hash(row)
-    connection.execute(insert(AUDIT).values(row))
-    place = {name: row[name] for name in ("seq", "at_us", "hash")}
-    if head is None:
-        connection.execute(insert(AUDIT_HEADS).values(zone=zone, writer=writer, **place))
-    else:
-        connection.execute(
-            update(AUDIT_HEADS)
-            .where(AUDIT_HEADS.c.zone == zone, AUDIT_HEADS.c.writer == writer)
-            .values(place)
-        )
-    return int(row["seq"])
+    return row
 
 
 def row_hash(row: Mapping[str, Any]) -> str:
