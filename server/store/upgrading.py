@@ -71,11 +71,11 @@ def check_known(found: str | None, location: object) -> None:
 
 def run_migrations(connection: Connection, to: str) -> None:
     """Bring the tables to a revision, within a transaction; those that have it stay as they are."""
+    logging.getLogger("alembic").setLevel(logging.WARNING)  # it tells of its own import too
     # Where nothing is to be done, nobody waits for the import.
     from alembic import command  # noqa: PLC0415
     from alembic.config import Config  # noqa: PLC0415
 
-    logging.getLogger("alembic").setLevel(logging.WARNING)
     config = Config()
     config.set_main_option("script_location", _SCRIPTS)
     config.set_main_option("path_separator", "os")

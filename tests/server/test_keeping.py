@@ -6,6 +6,7 @@ import pytest
 import structlog
 
 from esplanade.commandline.errors import CommandError
+from esplanade.server import keeping as module
 from esplanade.server.accounts.identity import MACHINE
 from esplanade.server.accounts.sessions import WrongPasswordError
 from esplanade.server.app import running
@@ -39,7 +40,14 @@ async def test_what_is_kept_is_there_after_a_restart(serving: Serving, tmp_path:
         assert [chain.fault for chain in await verify(server.kept.store)] == [None]
 
 
-async def test_without_a_folder_nothing_is_kept_and_the_start_says_so(serving: Serving) -> None:
+@pytest.fixture
+def fresh_log(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A logger that has not been used yet: one that has keeps how lines were written then."""
+    monkeypatch.setattr(module, "log", structlog.get_logger(__name__))
+
+
+@pytest.mark.usefixtures("fresh_log")
+async def test_without_a_folder_nothing_is_kept_and_the_start_says_so() -> None:
     with structlog.testing.capture_logs() as lines:
         for _ in range(2):
             async with keeping(ServerSettings(), Metrics()) as kept:
@@ -49,6 +57,7 @@ async def test_without_a_folder_nothing_is_kept_and_the_start_says_so(serving: S
     assert told == ["nothing is kept when this ends; --data keeps operators and the audit"] * 2
 
 
+@pytest.mark.usefixtures("fresh_log")
 async def test_the_start_names_the_store(
     tmp_path: Path,
 ) -> None:

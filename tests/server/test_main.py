@@ -47,6 +47,7 @@ async def test_ctrl_c_ends_a_start_at_once(room_file: Path, tmp_path: Path) -> N
     # In an empty home there are no kernels yet: this start would compile for a long time.
     async with started(room_file, HOME=str(tmp_path)) as process:
         assert process.stderr is not None
+        assert b"nothing is kept" in await process.stderr.readline()
         assert b"compiling" in await process.stderr.readline()
         process.send_signal(signal.SIGINT)
         # All kernels would take longer than this.

@@ -158,6 +158,23 @@ async def test_a_closed_store_says_so_after_it_has_made_what_waited(location: Lo
         assert len(await again.read(names)) == 9
 
 
+async def test_a_database_that_comes_back_is_used_again(store: SqlStore) -> None:
+    if store.location.is_sqlite:
+        pytest.skip("a file has no connections to lose")
+    await store.write(lambda connection: add(connection, "ann"))
+    assert await store.read(names) == ["ann"]
+    ending = text(
+        "SELECT pg_terminate_backend(pid) FROM pg_stat_activity "
+        "WHERE datname = current_database() AND pid <> pg_backend_pid()"
+    )
+    await store.write(lambda connection: connection.execute(ending).rowcount)
+    assert await store.read(names) == ["ann"]
+    async with open_store(store.location) as other:
+        await other.write(lambda connection: connection.execute(ending).rowcount)
+    await store.write(lambda connection: add(connection, "bob"))
+    assert await store.read(names) == ["ann", "bob"]
+
+
 async def test_event_loops_of_other_threads_may_ask(store: SqlStore) -> None:
     def elsewhere() -> list[str]:
         async def ask() -> list[str]:
