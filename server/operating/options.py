@@ -111,7 +111,9 @@ def _audit(commands: "SubParsers[Parser]") -> Parser:
     )
     made.add_argument("--until", metavar="SPAN", type=Span(), help="not what is newer than this")
     made.add_argument("--account", metavar="NAME", help="what this account did")
-    made.add_argument("--name", metavar="COMMAND", help="this command, such as set_parameters")
+    made.add_argument(
+        "--command", dest="name", metavar="NAME", help="this command, such as set_parameters"
+    )
     made.add_argument("--actor", metavar="ID", help="what was done with this actor, scope or door")
     made.add_argument("--person", metavar="NAME", help="what was done with this person or account")
     made.add_argument(

@@ -190,7 +190,9 @@ def test_the_audit_is_shown_written_out_and_checked(shell: Shell, location: Loca
         ("token_add", "olga"),
         ("user_add", "olga"),
     ]
-    lines = shell.done("op", "audit", "--json", "--name", "user_add", "--limit", "1").splitlines()
+    lines = shell.done(
+        "op", "audit", "--json", "--command", "user_add", "--limit", "1"
+    ).splitlines()
     assert [json.loads(line)["person"] for line in lines] == ["olga"]
     assert "user_remove" in shell.done("op", "audit", "--person", "first")
     assert shell.done("op", "audit", "--until", "1h", "--json") == ""

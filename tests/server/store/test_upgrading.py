@@ -1,5 +1,7 @@
 """Migrations make the tables that the code means; older and newer stores are told of."""
 
+import asyncio
+
 import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.config import Config
@@ -57,6 +59,14 @@ async def test_a_database_is_upgraded_only_when_asked(location: Location) -> Non
         pass
     async with open_store(location) as store:
         assert await store.read(revision_of) == REVISION
+
+
+async def test_two_that_start_at_once_make_the_tables_once(location: Location) -> None:
+    async def start() -> str | None:
+        async with open_store(location, upgrading=True) as store:
+            return await store.read(revision_of)
+
+    assert await asyncio.gather(*(start() for _ in range(4))) == [REVISION] * 4
 
 
 async def test_an_upgrade_says_what_was_there(location: Location) -> None:
