@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Hashable, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
@@ -63,6 +64,10 @@ class Behaviour(ABC):
     def targets(self) -> Sequence[Target]:
         """Targets that must exist in the scene."""
         return ()
+
+    def copy(self) -> Behaviour:
+        """A copy that later updates leave as it is."""
+        return copy(self)
 
     @property
     def points_at(self) -> Goal | None:
@@ -248,6 +253,12 @@ class Guide(Behaviour):
     def points_at(self) -> Goal | None:
         """The sight at the stop, while it is explained to somebody."""
         return self._sight if self._explains else None
+
+    def copy(self) -> Behaviour:
+        """A copy that later updates leave as it is."""
+        other = copy(self)
+        vars(other).update(_tour=copy(self._tour), _followers=set(self._followers))
+        return other
 
     def targets(self) -> Sequence[Target]:
         """The stops of the tour."""

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Iterable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from esplanade.actors.derived_rows import DerivedRows
+from esplanade.actors.parameter_records import with_values
 from esplanade.actors.parameters import ActorParameters, body_of
 from esplanade.actors.people import ObservedPeople, People
-from esplanade.actors.potential_pool import PotentialPool
+from esplanade.actors.potential_pool import Goal, GoalKey, PotentialPool, goal_key
 from esplanade.actors.state import ActorState, Reason
 from esplanade.planning import (
     AgentTable,
     Batch,
+    Body,
     LayeredGrid,
     PlanModel,
     Prediction,
@@ -30,8 +34,6 @@ from esplanade.planning.scene.heights import SAME_FLOOR_M
 Point = tuple[float, float]
 
 _REASONS = tuple(Reason)
-_SLACK_M = 0.02
-"""A goal may lie closer to a wall than the radius by this."""
 
 
 class Navigator:
@@ -68,8 +70,14 @@ class Navigator:
         self._prediction = self._history.predict(grid, self.plan.slices, self.plan.slice_s)
         self.potentials = PotentialPool(grid)
         """Of the goals that actors are on their way to."""
+        self._rows = DerivedRows(grid, self._batch.field, self.potentials)
         self.table = AgentTable(self.plan.slices)
         """Every actor's state; read it freely between two ticks."""
+
+    @property
+    def person_radius_m(self) -> float:
+        """Radius of the people of this zone, metres."""
+        return self._batch.field.model.person_radius_m
 
     # --- actors --------------------------------------------------------------------------
 
@@ -92,68 +100,74 @@ class Navigator:
             The id is taken, or a position is not finite or outside the bounds. Nothing is changed
             then.
         """
-        if actor_id in self.table:
-            raise ValueError(f"there already is an actor {actor_id!r}")
         self.check_place(position, z_m)
         if goal is not None:
             self.check_place(goal, z_m if goal_z_m is None else goal_z_m)
-        parameters = parameters or ActorParameters()
-        cell = self._cell(position, z_m)
-        row = self.table.add(
-            actor_id,
-            (float(position[0]), float(position[1]), self._floor(cell)),
-            parameters.row(),
-            cell=cell,
-            layer=self._layer(cell),
-            heading=heading,
-        )
-        self._fit_body(row)
-        self._rank()
+        records = (parameters or ActorParameters()).row()[None]
+        self.add_actors([actor_id], [(*position, z_m)], records, headings=[heading])
         if goal is not None:
             self.set_goal(actor_id, goal, z_m=z_m if goal_z_m is None else goal_z_m)
 
+    def add_actors(
+        self,
+        ids: Sequence[Hashable],
+        places: Sequence[tuple[float, float, float]],
+        records: NDArray[np.void],
+        *,
+        headings: Sequence[float] | None = None,
+    ) -> None:
+        """Put N actors into the zone that stand at places x, y, z; records (N,) say how.
+
+        Raises
+        ------
+        ValueError
+            An id is taken or occurs twice, a place is not finite or outside the bounds, or too many
+            kinds of body walk here. Nothing is changed then.
+        """
+        for x, y, z_m in places:
+            self.check_place((x, y), z_m)
+        points = np.array(places, dtype=np.float64).reshape(-1, 3)
+        cells = np.array([self._cell((x, y), z) for x, y, z in places], dtype=np.int64)
+        points[:, 2] = [self._floor(cell) for cell in cells.tolist()]
+        layers = np.array([self._layer(cell) for cell in cells.tolist()], dtype=np.int64)
+        claims = self._rows.claim([body_of(record) for record in records])
+        turned = np.zeros(len(ids)) if headings is None else np.array(headings, dtype=np.float64)
+        first = len(self.table)
+        try:
+            self.table.add(ids, points, records, cells=cells, layers=layers, headings=turned)
+        except ValueError:
+            self._rows.release(records)
+            raise
+        agents = self.table.agents
+        agents.bodies[first:] = claims
+        agents.contacts[first:] = self._rows.contacts(records)
+        self._rank()
+
+    def remove_actors(self, ids: Sequence[Hashable]) -> None:
+        """Take actors out; KeyError when one is not there, and nothing is changed then."""
+        agents, rows = self.table.agents, [self.table.row(each) for each in dict.fromkeys(ids)]
+        self.table.remove(list(dict.fromkeys(ids)))
+        for row in rows:
+            self.potentials.release(int(agents.potential_rows[row]))
+        self._rows.release(agents.parameters[rows])
+        self._rank()
+
     def remove_actor(self, actor_id: Hashable) -> None:
         """Take an actor out; KeyError when there is none of that id."""
-        row = self.table.row(actor_id)
-        self.potentials.release(int(self.table.agents.potential_rows[row]))
-        self.table.remove(actor_id)
-        self._rank()
+        self.remove_actors([actor_id])
 
     def set_goal(self, actor_id: Hashable, goal: Point | None, *, z_m: float = 0.0) -> None:
         """Send an actor somewhere, or let it stand (None). A goal inside a wall is moved out."""
         row = self.table.row(actor_id)
-        target = None
+        target: Goal | None = None
         if goal is not None:
             self.check_place(goal, z_m)
             target = float(goal[0]), float(goal[1]), float(z_m)
-        self._head_for(row, target)
+        self._rows.head_for(self.table, row, target)
         trips = self.table.trips
         trips.wanted[row] = np.nan if target is None else target
         trips.arrived[row] = False
         trips.no_path_s[row] = 0.0
-
-    def _head_for(self, row: int, target: tuple[float, float, float] | None) -> None:
-        """Let an actor go by the potential of a goal, or by none."""
-        agents = self.table.agents
-        old, new = int(agents.potential_rows[row]), -1
-        if target is not None:
-            new = self._potential_row(row, target)
-        agents.potential_rows[row] = new
-        agents.known[row] = agents.known[row] and new == old
-        agents.left_m[row] = np.nan
-        agents.behind_s[row] = 0.0
-        agents.passages[row] = 0.0
-        self.potentials.release(old)
-
-    def _potential_row(self, row: int, target: tuple[float, float, float]) -> int:
-        """The potential of an actor's goal, -1 where none can be; its `goals` are moved out of
-        walls."""
-        body = body_of(self.table.agents.parameters[row])
-        free = self.grid.nearest_free(target[:2], target[2], body.radius_m - _SLACK_M, body)
-        if free is None:
-            return -1
-        self.table.agents.goals[row] = free
-        return self.potentials.take(free, target[2], body)
 
     def prepare_goals(
         self, goals: Iterable[tuple[Point, float]], parameters: ActorParameters
@@ -162,38 +176,82 @@ class Navigator:
 
         Goals where nobody can stand are left out.
         """
-        body = parameters.body
-        fits_m = body.radius_m - _SLACK_M
-        free = [(self.grid.nearest_free(goal, z_m, fits_m, body), z_m) for goal, z_m in goals]
-        keys = [(*goal, z_m, body) for goal, z_m in free if goal is not None]
-        self.potentials.prepare(keys, self.plan.threads)
+        keys = [goal_key(self.grid, (*goal, z_m), parameters.body) for goal, z_m in goals]
+        self.potentials.prepare([key for key in keys if key is not None], self.plan.threads)
 
     def set_parameters(self, actor_id: Hashable, parameters: ActorParameters) -> None:
-        """Change an actor's parameters from the next tick on."""
-        row = self.table.row(actor_id)
-        records = self.table.agents.parameters
-        before = body_of(records[row])
-        records[row] = parameters.row()
-        if before != parameters.body:
-            self._fit_body(row)
-            goal = self.table.wanted(row)
-            if goal is not None:
-                self._head_for(row, goal)
+        """Change an actor's parameters from the next tick on; as `set_many`."""
+        self.set_many([actor_id], parameters.model_dump())
 
-    def _fit_body(self, row: int) -> None:
-        """Find what the ground and the risk are for an actor's body."""
-        agents = self.table.agents
-        body = body_of(agents.parameters[row])
-        agents.bodies[row] = self.grid.row_of(body)
-        agents.contacts[row] = self._batch.field.contact_row(body.radius_m)
+    def set_many(
+        self,
+        ids: Sequence[Hashable],
+        values: Mapping[str, ArrayLike],
+        prepared: Mapping[GoalKey, NDArray[np.float32]] | None = None,
+    ) -> None:
+        """Change some parameters of N different actors from the next tick on: all, or none.
+
+        Parameters
+        ----------
+        values : by the parameter's name, one number for all or N
+        prepared : potentials of goals for bodies that are new here, derived before
+
+        Raises
+        ------
+        ParameterError
+            An actor cannot have its values. Nothing is changed then.
+        KeyError
+            One of the actors is not there. Nothing is changed then.
+        ValueError
+            Too many kinds of body would walk here, or an actor is named twice. Nothing is changed
+            then.
+        """
+        rows, after = self._changed(ids, values)
+        self._rows.change(self.table, rows, after, prepared)
+
+    def new_bodies(
+        self, ids: Sequence[Hashable], values: Mapping[str, ArrayLike]
+    ) -> list[tuple[Goal | None, Body]]:
+        """The bodies that `set_many` would make others, each with the goal of its actor.
+
+        Raises
+        ------
+        ParameterError, KeyError, ValueError
+            As of `set_many`.
+        """
+        rows, after = self._changed(ids, values)
+        new = self._rows.of_new_kind(self.table.agents.parameters[rows], after).tolist()
+        return [(self.table.wanted(int(rows[k])), body_of(after[k])) for k in new]
+
+    def _changed(
+        self, ids: Sequence[Hashable], values: Mapping[str, ArrayLike]
+    ) -> tuple[NDArray[np.int64], NDArray[np.void]]:
+        """Rows of some actors, and their records with other values."""
+        rows = np.array([self.table.row(actor_id) for actor_id in ids], dtype=np.int64)
+        if len(set(ids)) < len(ids):
+            raise ValueError("an actor is named twice")
+        return rows, with_values(self.table.agents.parameters[rows], ids, values)
+
+    def prepare_contacts(self, bodies: Iterable[Body]) -> None:
+        """Derive what risk is for some bodies before a tick has to; safe in any thread."""
+        self._batch.field.prepare_contacts(body.radius_m for body in bodies)
 
     def place_actor(
-        self, actor_id: Hashable, position: Point, velocity: tuple[float, float] = (0.0, 0.0)
+        self,
+        actor_id: Hashable,
+        position: Point,
+        velocity: tuple[float, float] = (0.0, 0.0),
+        *,
+        z_m: float | None = None,
     ) -> None:
-        """Put an actor where another simulation has it; the path it follows stays."""
+        """Put an actor where another simulation has it; the path it follows stays.
+
+        Without `z_m` it is on the floor nearest in height to where it is.
+        """
         row = self.table.row(actor_id)
         agents = self.table.agents
-        z_m = self._floor(int(agents.cells[row]))
+        if z_m is None:
+            z_m = self._floor(int(agents.cells[row]))
         self.check_place(position, z_m)
         if not (math.isfinite(velocity[0]) and math.isfinite(velocity[1])):
             raise ValueError(f"velocity of {actor_id!r} must be finite, got {velocity}")
@@ -203,6 +261,29 @@ class Navigator:
         agents.cells[row] = cell
         agents.heights[row] = self._floor(cell)
         agents.layers[row] = self._layer(cell)
+
+    def set_back(self, actor_id: Hashable) -> None:
+        """Let an actor forget the path that it follows: it is somewhere else now."""
+        row = self.table.row(actor_id)
+        agents = self.table.agents
+        agents.known[row], agents.left_m[row], agents.behind_s[row] = False, np.nan, 0.0
+        agents.passages[row] = 0.0
+        agents.planned[row, :, :2], agents.planned[row, :, 2] = (
+            agents.positions[row],
+            agents.heights[row],
+        )
+
+    def undo_point(self) -> Callable[[], None]:
+        """What puts all actors back to how they are now, if a tick or a change fails half-way."""
+        restore = self.table.undo_point()
+
+        def undo() -> None:
+            self._rows.give_back(self.table)
+            restore()
+            self._rows.take_all(self.table)
+            self._rank()
+
+        return undo
 
     def ground_changed(self, *, renewed_outside: bool = False) -> None:
         """The ground has changed: potentials are derived anew, one a tick, used ones first.
@@ -233,14 +314,9 @@ class Navigator:
                 f"saved agents plan {table.agents.planned.shape[1] - 1} slices ahead, "
                 f"this zone {self.plan.slices}"
             )
-        for slot in self.table.agents.potential_rows.tolist():
-            self.potentials.release(slot)
+        self._rows.give_back(self.table)
         self.table = table
-        for row in range(len(table)):
-            self._fit_body(row)
-            target = table.wanted(row)
-            if target is not None:
-                table.agents.potential_rows[row] = self._potential_row(row, target)
+        self._rows.take_all(table)
         self._rank()
 
     # --- ticks ---------------------------------------------------------------------------
@@ -268,6 +344,14 @@ class Navigator:
             agents = self.table.agents
             self._batch.tick(agents, self.potentials.arrays, self._prediction, self.tick_s)
             self._batch.settle(self.tick_s)
+            self._wait_for_potentials()
+
+    def _wait_for_potentials(self) -> None:
+        """Those whose way is still being found stand and wait; it is not that there is none."""
+        agents = self.table.agents
+        waiting = self.potentials.provisional(agents.potential_rows)
+        waiting &= agents.reasons == Reason.NO_PATH
+        agents.reasons[waiting] = Reason.WAITING
 
     def tick(self) -> dict[Hashable, ActorState]:
         """`advance`, then the states of all actors; id -> state."""
@@ -335,6 +419,7 @@ class Navigator:
         self.table.agents.ranks[order] = np.arange(len(keys))
 
 
+@lru_cache(maxsize=4096)
 def _priority(seed: int, who: Hashable) -> int:
     """A number that is the same in every run for the same seed and id (FNV-1a, 64 bits).
 

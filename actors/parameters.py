@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Self
+from typing import Annotated, Final, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,14 +10,32 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from esplanade.planning import PARAMETERS, Body
 
+Group = Literal["body", "speed", "comfort", "planning"]
+"""A heading under which parameters are shown together."""
+_LOG_ABOVE: Final = 50.0
+"""A slider is logarithmic where its greatest value is more than so many times its least."""
 
-def _field(unit: str, least: float, most: float, description: str) -> object:
+
+def _field(group: Group, unit: str, least: float, most: float, description: str) -> object:
+    """A field; `applies` in its schema tells when a change takes effect.
+
+    With "tick" that is in the next tick. With "prepared" the ground is derived anew for another
+    kind of body, outside of ticks, and the actor goes on as it was until then. How many edges in
+    a row a body bears makes it no other kind.
+    """
+    applies = "prepared" if group == "body" and unit == "m" else "tick"
+    logarithmic = least > 0.0 and most > _LOG_ABOVE * least
     return Field(
         ge=least,
         le=most,
         allow_inf_nan=False,
         description=description,
-        json_schema_extra={"unit": unit},
+        json_schema_extra={
+            "unit": unit,
+            "group": group,
+            "applies": applies,
+            "scale": "log" if logarithmic else "linear",
+        },
     )
 
 
@@ -27,29 +45,39 @@ class ActorParameters(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     radius_m: Annotated[
-        float, _field("m", 0.15, 0.5, "Radius of the disc that stands for the body.")
+        float, _field("body", "m", 0.15, 0.5, "Radius of the disc that stands for the body.")
     ] = 0.25
     speed_mps: Annotated[
-        float, _field("m/s", 0.1, 3.0, "Preferred walking speed; kept wherever nothing hinders.")
+        float,
+        _field("speed", "m/s", 0.1, 3.0, "Preferred walking speed; kept wherever nothing hinders."),
     ] = 1.3
     max_speed_mps: Annotated[
         float,
-        _field("m/s", 0.1, 4.0, "Greatest speed, used to get out of somebody's way."),
+        _field("speed", "m/s", 0.1, 4.0, "Greatest speed, used to get out of somebody's way."),
     ] = 1.7
     max_acceleration_mps2: Annotated[
         float,
-        _field("m/s²", 0.2, 20.0, "Greatest change of velocity; lower is calmer but later."),
+        _field(
+            "speed", "m/s²", 0.2, 20.0, "Greatest change of velocity; lower is calmer but later."
+        ),
     ] = 2.0
     goal_tolerance_m: Annotated[
-        float, _field("m", 0.05, 2.0, "An actor this close to its goal has arrived.")
+        float, _field("planning", "m", 0.05, 2.0, "An actor this close to its goal has arrived.")
     ] = 0.2
     person_room_m: Annotated[
         float,
-        _field("m", 0.0, 0.75, "Room kept to people's bodies at the last check before a step."),
+        _field(
+            "comfort",
+            "m",
+            0.0,
+            0.75,
+            "Room kept to people's bodies at the last check before a step.",
+        ),
     ] = 0.15
     contact_closing_s: Annotated[
         float,
         _field(
+            "comfort",
             "s",
             0.0,
             5.0,
@@ -61,6 +89,7 @@ class ActorParameters(BaseModel):
     risk_weight: Annotated[
         float,
         _field(
+            "comfort",
             "s/s",
             0.0,
             200.0,
@@ -70,6 +99,7 @@ class ActorParameters(BaseModel):
     foresight_s: Annotated[
         float,
         _field(
+            "planning",
             "s",
             0.2,
             60.0,
@@ -80,6 +110,7 @@ class ActorParameters(BaseModel):
     closing_weight: Annotated[
         float,
         _field(
+            "comfort",
             "s/m",
             0.0,
             5.0,
@@ -89,16 +120,23 @@ class ActorParameters(BaseModel):
     turn_weight: Annotated[
         float,
         _field(
-            "s²/m", 0.0, 2.0, "Cost of a change of velocity; higher walks straighter and steadier."
+            "comfort",
+            "s²/m",
+            0.0,
+            2.0,
+            "Cost of a change of velocity; higher walks straighter and steadier.",
         ),
     ] = 0.1
     wall_weight: Annotated[
         float,
-        _field("s/s", 0.0, 10.0, "Cost of brushing along walls within 0.15 m of the body."),
+        _field(
+            "comfort", "s/s", 0.0, 10.0, "Cost of brushing along walls within 0.15 m of the body."
+        ),
     ] = 0.3
     hurry_weight: Annotated[
         float,
         _field(
+            "comfort",
             "s/s",
             0.0,
             20.0,
@@ -109,6 +147,7 @@ class ActorParameters(BaseModel):
     catch_up: Annotated[
         float,
         _field(
+            "speed",
             "1",
             0.0,
             1.0,
@@ -119,6 +158,7 @@ class ActorParameters(BaseModel):
     hysteresis_s: Annotated[
         float,
         _field(
+            "planning",
             "s",
             0.0,
             5.0,
@@ -129,6 +169,7 @@ class ActorParameters(BaseModel):
     keep_right_weight: Annotated[
         float,
         _field(
+            "comfort",
             "m/m",
             0.0,
             1.0,
@@ -139,22 +180,33 @@ class ActorParameters(BaseModel):
     ] = 0.8
     max_expansions: Annotated[
         int,
-        _field("nodes", 10, 20000, "Budget of one search; a smaller one may end before the goal."),
+        _field(
+            "planning",
+            "nodes",
+            10,
+            20000,
+            "Budget of one search; a smaller one may end before the goal.",
+        ),
     ] = 70
     height_m: Annotated[
         float,
-        _field("m", 0.8, 2.5, "Height of the body; it passes where there is as much headroom."),
+        _field(
+            "body", "m", 0.8, 2.5, "Height of the body; it passes where there is as much headroom."
+        ),
     ] = 1.8
     step_on_m: Annotated[
-        float, _field("m", 0.05, 0.8, "Greatest step that the body takes up or down.")
+        float, _field("body", "m", 0.05, 0.8, "Greatest step that the body takes up or down.")
     ] = 0.6
     leg_length_m: Annotated[
         float,
-        _field("m", 0.3, 1.3, "Greatest step that is an edge; a higher one is an obstacle."),
+        _field(
+            "body", "m", 0.3, 1.3, "Greatest step that is an edge; a higher one is an obstacle."
+        ),
     ] = 0.9
     edge_cells: Annotated[
         int,
         _field(
+            "body",
             "cells",
             2,
             1000,

@@ -4,35 +4,32 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from esplanade.actors.behaviour import Behaviour, BehaviourName, Goal, Perception
+from esplanade.actors.behaviour import Behaviour, Goal, Perception
+from esplanade.actors.blockers import find_blocker
+from esplanade.actors.explanation import Explanation
 from esplanade.actors.navigator import Navigator
 from esplanade.actors.parameters import ActorParameters, body_of
-from esplanade.actors.potential_pool import RenewedPotential
+from esplanade.actors.placing import Newcomer, Placing
+from esplanade.actors.potential_pool import GoalKey, RenewedPotential
 from esplanade.actors.state import ActorState, Reason
-from esplanade.planning import AgentTable, Body, LayeredGrid, Polygon, Potential, RiskModel, Scene
-from esplanade.planning.scene.heights import SAME_FLOOR_M
+from esplanade.actors.warming import warm_up
+from esplanade.planning import (
+    PARAMETERS,
+    AgentTable,
+    Body,
+    LayeredGrid,
+    RiskModel,
+    Scene,
+)
 
 _EXPLAINED_WITHIN_M = 8.0
 _STUCK_AFTER_S = 3.0
-_PLACING_TRIES = 64
-
-
-@dataclass(frozen=True)
-class Explanation:
-    """Why an actor does what it does, for the overlay and the operator."""
-
-    behaviour: BehaviourName
-    reason: Reason
-    goal: Goal | None
-    path: NDArray[np.float64]
-    """float64 (K, 4): x, y, z, seconds from now."""
-    people: list[NDArray[np.float64]]
-    """One array for each person near: float64 (K, 4) x, y, z, radius of the two-sigma circle, m."""
 
 
 class Population:
@@ -63,7 +60,11 @@ class Population:
         self._seed = seed
         self._behaviours: dict[Hashable, Behaviour] = {}
         self._generators: dict[Hashable, np.random.Generator] = {}
-        self._entrances: dict[Body, Potential | None] = {}
+        self._asked: list[tuple[Hashable, Behaviour, Any]] = []
+        """Those asked in this tick, each with its behaviour and chance as they were before."""
+        self._held: set[Hashable] = set()
+        self._people: Mapping[Hashable, Goal] = {}
+        self._placing = Placing(grid, scene)
 
     @property
     def table(self) -> AgentTable:
@@ -92,23 +93,66 @@ class Population:
         KeyError
             The behaviour names a place that the scene does not have.
         """
-        parameters = parameters or ActorParameters()
-        self._check_targets(behaviour)
-        rng = np.random.default_rng([self._seed, *str(actor_id).encode()])
-        if position is None:
-            position = self._free_place(parameters, z_m, rng)
-        else:
+        if position is not None:
             self.navigator.check_place(position, z_m)
-            position = self._ground_near(parameters, position, z_m)
-        self.navigator.add_actor(actor_id, position, None, parameters, z_m=z_m)
-        self._behaviours[actor_id] = behaviour
-        self._generators[actor_id] = rng
+        place = None if position is None else (*position, z_m)
+        parameters = parameters or ActorParameters()
+        self.add_many([Newcomer(actor_id, behaviour, parameters, place, z_m)])
         return self.navigator.state(actor_id)
+
+    def add_many(self, newcomers: Sequence[Newcomer]) -> None:
+        """Put actors in, all or none; as `add`.
+
+        Raises
+        ------
+        ValueError, KeyError
+            As of `add`, of any of them. Nothing is changed then.
+        """
+        for each in newcomers:
+            self._check_targets(each.behaviour)
+        generators = [self.generator(each.id) for each in newcomers]
+        agents = self.table.agents
+        taken = np.column_stack([agents.positions, agents.heights])
+        places = self.places(newcomers, self._placing, generators, taken)
+        records = np.array([each.parameters.row() for each in newcomers], dtype=PARAMETERS)
+        self.navigator.add_actors([each.id for each in newcomers], places, records)
+        for each, generator in zip(newcomers, generators, strict=True):
+            self._behaviours[each.id] = each.behaviour
+            self._generators[each.id] = generator
+
+    def places(
+        self,
+        newcomers: Sequence[Newcomer],
+        placing: Placing,
+        generators: Sequence[np.random.Generator],
+        taken: NDArray[np.float64],
+    ) -> list[Goal]:
+        """Places where newcomers can stand, away from each other and from `taken` (N, 3)."""
+        places: list[Goal] = []
+        for each, generator in zip(newcomers, generators, strict=True):
+            body = each.parameters.body
+            if each.place is not None:
+                self.navigator.check_place(each.place[:2], each.place[2])
+                places.append(placing.near(body, each.place))
+            else:
+                places.append(placing.anywhere(body, each.z_m, taken, generator))
+            taken = np.concatenate([taken, [places[-1]]])
+        return places
+
+    def generator(self, actor_id: Hashable) -> np.random.Generator:
+        """The chance that an actor of this id has, from its beginning."""
+        return np.random.default_rng([self._seed, *str(actor_id).encode()])
 
     def remove(self, actor_id: Hashable) -> None:
         """Take an actor out; KeyError when there is none of that id."""
-        self.navigator.remove_actor(actor_id)
-        del self._behaviours[actor_id], self._generators[actor_id]
+        self.remove_many([actor_id])
+
+    def remove_many(self, ids: Sequence[Hashable]) -> None:
+        """Take actors out; KeyError when one is not there, and nothing is changed then."""
+        self.navigator.remove_actors(ids)
+        for actor_id in dict.fromkeys(ids):
+            del self._behaviours[actor_id], self._generators[actor_id]
+            self._held.discard(actor_id)
 
     def set_behaviour(self, actor_id: Hashable, behaviour: Behaviour) -> None:
         """Give an actor another behaviour; KeyError for an unknown actor or place."""
@@ -119,9 +163,86 @@ class Population:
         trips.arrived[row] = False
         trips.ask_at_s[row] = -np.inf
 
+    def check_targets(self, behaviour: Behaviour) -> None:
+        """KeyError for a place that the scene does not have, ValueError for a point outside."""
+        self._check_targets(behaviour)
+        for target in behaviour.targets():
+            if not isinstance(target, str):
+                self.navigator.check_place(target[:2], target[2])
+
     def set_parameters(self, actor_id: Hashable, parameters: ActorParameters) -> None:
         """Change an actor's parameters from the next tick on."""
         self.navigator.set_parameters(actor_id, parameters)
+
+    def set_many(
+        self,
+        ids: Sequence[Hashable],
+        values: Mapping[str, ArrayLike],
+        prepared: Mapping[GoalKey, NDArray[np.float32]] | None = None,
+    ) -> None:
+        """Change some parameters of some actors; see `Navigator.set_many`."""
+        self.navigator.set_many(ids, values, prepared)
+
+    def new_bodies(
+        self, ids: Sequence[Hashable], values: Mapping[str, ArrayLike]
+    ) -> list[tuple[Goal | None, Body]]:
+        """The bodies that `set_many` would make others, each with the goal of its actor.
+
+        Raises
+        ------
+        ParameterError, KeyError, ValueError
+            As of `set_many`.
+        """
+        return self.navigator.new_bodies(ids, values)
+
+    def hold(self, actor_id: Hashable, held: bool) -> None:
+        """Let an actor stand where it is, making way, until it is held no more."""
+        row = self.table.row(actor_id)
+        if held:
+            self._held.add(actor_id)
+            self.navigator.set_goal(actor_id, None)
+        else:
+            self._held.discard(actor_id)
+            self.table.trips.ask_at_s[row] = -np.inf
+
+    def held(self, actor_id: Hashable) -> bool:
+        """Whether an actor is held."""
+        return actor_id in self._held
+
+    def place(self, actor_id: Hashable, place: Goal) -> None:
+        """Put an actor elsewhere, on the nearest ground where it can stand.
+
+        Raises
+        ------
+        ValueError
+            The place is outside, or the body can stand nowhere. Nothing is changed then.
+        KeyError
+            There is no actor of that id.
+        """
+        row = self.table.row(actor_id)
+        self.navigator.check_place(place[:2], place[2])
+        x, y, z_m = self._placing.near(body_of(self.table.agents.parameters[row]), place)
+        self.navigator.place_actor(actor_id, (x, y), z_m=z_m)
+        self.navigator.set_back(actor_id)
+        self.table.trips.arrived[row] = False
+        self.table.trips.ask_at_s[row] = -np.inf
+
+    def derive_outside(self) -> None:
+        """From now on no tick waits for potentials: `outdated_potential` tells which are wanted."""
+        self.navigator.potentials.derived_outside = True
+
+    def undo_point(self) -> Callable[[], None]:
+        """What puts all actors back to how they are now, if a change fails half-way."""
+        restore = self.navigator.undo_point()
+        behaviours, generators = dict(self._behaviours), dict(self._generators)
+        held, trips = set(self._held), self.trips
+
+        def undo() -> None:
+            restore()
+            self._behaviours, self._generators = behaviours, generators
+            self._held, self.trips = held, trips
+
+        return undo
 
     def tick(self, people: Mapping[Hashable, Goal]) -> dict[Hashable, ActorState]:
         """`advance`, then the states of all actors: id -> state."""
@@ -132,21 +253,47 @@ class Population:
         """One tick: behaviours choose goals, then everyone plans and steps; see `table`.
 
         A behaviour is asked when its time has come, when its actor has arrived, and while no path
-        leads to the goal. Cost in Python: O(behaviours asked).
+        leads to the goal. Cost in Python: O(behaviours asked). If it fails, all actors are as they
+        were before, as if it had been a tick of `stand`.
         """
+        undo = self.undo_point()
+        self._asked.clear()
+        try:
+            self.navigator.observe(people)
+            self._people = people
+            self._plan()
+        except Exception:
+            undo()
+            for actor_id, behaviour, chance in self._asked:
+                self._behaviours[actor_id] = behaviour
+                self._generators[actor_id].bit_generator.state = chance
+            self.doors_wanted = {}
+            raise
+        finally:
+            self._tick += 1
+
+    def stand(self, people: Mapping[Hashable, Goal]) -> None:
+        """A tick in which planning has failed before: nobody moves, but people are seen."""
+        with suppress(ValueError):
+            self.navigator.observe(people)
+            self._people = people
+        self.doors_wanted = {}
+        self._tick += 1
+
+    def _plan(self) -> None:
         self.doors_wanted = {}
         trips, time_s = self.table.trips, self._tick * self.navigator.tick_s
         stuck = trips.no_path_s >= _STUCK_AFTER_S
         due = (time_s >= trips.ask_at_s) | stuck | (trips.arrived != trips.arrived_when_asked)
+        due[[self.table.row(actor_id) for actor_id in self._held]] = False
         rows = np.flatnonzero(due).tolist()
         if rows:
             ids = self.table.ids
             for row in rows:
-                self._ask(ids[row], row, bool(stuck[row]), people, time_s)
-        self.navigator.observe(people)
+                self._ask(ids[row], row, bool(stuck[row]), self._people, time_s)
+        reasons = self.table.agents.reasons.copy()
         self.navigator.advance()
-        self._keep_account()
-        self._tick += 1
+        self._keep_account(reasons)
 
     def _ask(
         self,
@@ -157,7 +304,8 @@ class Population:
         time_s: float,
     ) -> None:
         """Ask a behaviour where its actor is to go, and send it there."""
-        behaviour = self._behaviours[actor_id]
+        behaviour, generator = self._behaviours[actor_id], self._generators[actor_id]
+        self._asked.append((actor_id, behaviour.copy(), generator.bit_generator.state))
         agents, trips = self.table.agents, self.table.trips
         arrived = bool(trips.arrived[row])
         x, y = agents.positions[row].tolist()
@@ -172,7 +320,7 @@ class Population:
                 self.scene,
                 self.grid,
                 body_of(agents.parameters[row]),
-                self._generators[actor_id],
+                generator,
             )
         )
         self.doors_wanted.update(behaviour.moves_doors)
@@ -186,9 +334,14 @@ class Population:
         trips.ask_at_s[row] = behaviour.ask_at_s
         trips.points_at[row] = np.nan if behaviour.points_at is None else behaviour.points_at
 
-    def _keep_account(self) -> None:
-        """Count the trips that ended in this tick, and the time that goals are out of reach."""
+    def _keep_account(self, before: NDArray[np.int64]) -> None:
+        """Count the trips that ended in this tick, and for how long things are as they are.
+
+        `before` (A,) are the reasons of the tick before.
+        """
         reasons, trips = self.table.agents.reasons, self.table.trips
+        same_s = trips.reason_s + self.navigator.tick_s
+        trips.reason_s[:] = np.where(reasons == before, same_s, 0.0)
         no_path = reasons == Reason.NO_PATH
         trips.no_path_s[:] = np.where(no_path, trips.no_path_s + self.navigator.tick_s, 0.0)
         going = ~np.isnan(trips.wanted[:, 0])
@@ -227,7 +380,7 @@ class Population:
 
         With `renewed_outside`, by whoever calls `outdated_potential` and `renew_potential`.
         """
-        self._entrances.clear()
+        self._placing.ground_changed()
         self.navigator.ground_changed(renewed_outside=renewed_outside)
 
     def outdated_potential(self) -> Callable[[], RenewedPotential] | None:
@@ -244,37 +397,23 @@ class Population:
         near = self.navigator.predicted_near(state.position, state.z_m, _EXPLAINED_WITHIN_M)
         for circles in near:
             circles[:, 3] *= 2.0
-        return Explanation(behaviour.name, state.reason, state.goal, state.path, near)
+        row = self.table.row(actor_id)
+        return Explanation(
+            behaviour.name,
+            state.reason,
+            state.goal,
+            state.path,
+            near,
+            float(self.table.trips.reason_s[row]),
+            find_blocker(self.navigator, actor_id, self._people),
+        )
 
     def warm_up(self, ready_to_plan: Callable[[], None] = lambda: None) -> None:
         """Make ready all that a tick would have to wait for: kernels, and potentials of places.
 
-        Kernels are compiled by running a small zone of their own, which is not all level: on level
-        ground some are not called. Few actors and many are planned for by different ones.
         `ready_to_plan` waits until the kernels that plan have been compiled elsewhere.
         """
-        step = Polygon(points=((4.5, 4.5), (5.5, 4.5), (5.5, 5.5), (4.5, 5.5)), height_m=0.3)
-        walls = [((3.0, 0.0), (3.0, 2.0))]
-        scene = Scene.open_space((0.0, 0.0, 6.0, 6.0), walls=walls, polygons=[step])
-        navigator = Navigator(scene, self.navigator.tick_s)
-        navigator.grid.walk([(1.0, 1.0)], [0], [(0.1, 0.0)], 0.2)
-        navigator.grid.nearest_free((3.0, 1.0), 0.0, 0.25)
-        navigator.grid.with_heights(np.ones((1, 2, 2)), np.zeros(1, dtype=np.int64))
-        potential = Potential(navigator.grid, (5.0, 1.0), 0, 0.25)
-        potential.direction([(1.0, 1.0)], [0])
-        potential.distance([(1.0, 1.0)], [0])
-        navigator.observe({"p": (3.0, 5.05)})
-        navigator.tick()
-        ready_to_plan()
-        navigator.add_actor("a", (1.0, 1.0), (5.0, 1.0))
-        navigator.add_actor("b", (5.0, 1.0), (1.0, 1.0))
-        for k in range(40):
-            navigator.observe({"p": (3.0, 5.0 - 0.05 * k)})
-            navigator.tick()
-            if k == 30:
-                for n in range(10):
-                    navigator.add_actor(n, (0.5 + 0.5 * n, 3.5), (1.0, 1.0))
-        navigator.close()
+        warm_up(self.navigator.tick_s, ready_to_plan)
         goals = [(place.position, place.z_m) for place in self.scene.places]
         self.navigator.prepare_goals(goals, ActorParameters())
 
@@ -286,61 +425,6 @@ class Population:
         for target in behaviour.targets():
             if isinstance(target, str):
                 self.scene.place(target)
-
-    def _free_place(
-        self, parameters: ActorParameters, z_m: float, rng: np.random.Generator
-    ) -> tuple[float, float]:
-        """Somewhere free, on the floor at that height unless that is nowhere to be found."""
-        x0, y0, x1, y1 = self.scene.bounds
-        elsewhere = None
-        agents = self.table.agents
-        taken = agents.positions[np.abs(agents.heights - z_m) < SAME_FLOOR_M]
-        for _ in range(_PLACING_TRIES):
-            point = rng.uniform((x0, y0), (x1, y1))
-            place = float(point[0]), float(point[1])
-            crowded = len(taken) and np.hypot(*(taken - point).T).min() < 2.5 * parameters.radius_m
-            if not crowded and self._has_a_way(point, z_m, parameters):
-                if abs(self.grid.floor_at(place, z_m) - z_m) < SAME_FLOOR_M:
-                    return place
-                elsewhere = elsewhere or place
-        if elsewhere is not None:
-            return elsewhere
-        raise ValueError(f"no free place for another actor after {_PLACING_TRIES} tries")
-
-    def _ground_near(
-        self, parameters: ActorParameters, position: tuple[float, float], z_m: float
-    ) -> tuple[float, float]:
-        """The position itself if the body stands there, be it close to a wall."""
-        body = parameters.body
-        if self.grid.nearest_free(position, z_m, 0.0, body) == position:
-            return position
-        free = self.grid.nearest_free(position, z_m, body.radius_m, body)
-        if free is None:
-            raise ValueError("nobody of that body can stand anywhere in this scene")
-        return free
-
-    def _has_a_way(
-        self, point: NDArray[np.float64], z_m: float, parameters: ActorParameters
-    ) -> bool:
-        """Whether a body fits there and gets from there to where people come in."""
-        body = parameters.body
-        if not self.grid.is_free([point], [z_m], body.radius_m + 0.1, body)[0]:
-            return False
-        if body not in self._entrances:
-            self._entrances[body] = self._entrance(body)
-        potential = self._entrances[body]
-        return potential is None or bool(np.isfinite(potential.distance([point], [z_m])[0]))
-
-    def _entrance(self, body: Body) -> Potential | None:
-        """The potential of the place where people come in; None where there is no such place."""
-        entries = self.scene.spawns or self.scene.places
-        if not entries:
-            return None
-        entry = entries[0]
-        free = self.grid.nearest_free(entry.position, entry.z_m, body.radius_m, body)
-        if free is None:
-            return None
-        return Potential(self.grid, free, entry.z_m, body.radius_m, body=body)
 
 
 def _turned_to(position: Sequence[float], target: Sequence[float]) -> float:

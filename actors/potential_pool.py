@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
@@ -11,24 +11,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning import Body, LayeredGrid, Potential
+from esplanade.planning.grid.clearances import kind_of
 
-_Key = tuple[float, float, float, Body]
+Goal = tuple[float, float, float]
+"""x, y and height, metres."""
+GoalKey = tuple[float, float, float, Body]
+"""x, y, height and kind of body."""
 _IDLE_KEPT = 32
+_SLACK_M = 0.02
+"""A goal may lie closer to a wall than the radius by this."""
 
 
 @dataclass(frozen=True, eq=False)
 class RenewedPotential:
     """The potential of a goal, derived anew outside of ticks."""
 
-    goal: _Key
-    """x, y, height and body."""
+    goal: GoalKey
     changes: int
     """The number of changes of the ground when it was derived."""
     values: NDArray[np.float32]
 
 
 class PotentialPool:
-    """One row a goal in a single array that kernels index.
+    """One row a goal and kind of body in a single array that kernels index.
 
     Rows nobody uses are kept for the next who goes there and reused, oldest first, when more
     than 32 lie idle. Memory: 12 bytes a cell and goal.
@@ -36,11 +41,14 @@ class PotentialPool:
 
     def __init__(self, grid: LayeredGrid) -> None:
         self._grid = grid
+        self.derived_outside = False
+        """Whether nobody waits for a goal that is new: its row is provisional until `renew`."""
+        self._provisional: set[int] = set()
         self.arrays: NDArray[np.float32] = np.empty(
             (0, len(grid.layered.floors), 3), dtype=np.float32
         )
-        self._slots: dict[_Key, int] = {}
-        self._keys: list[_Key | None] = []
+        self._slots: dict[GoalKey, int] = {}
+        self._keys: list[GoalKey | None] = []
         self._users: list[int] = []
         self._idle: list[int] = []
         self._stale: list[int] = []
@@ -48,19 +56,44 @@ class PotentialPool:
         self._outdated: dict[int, None] = {}
         """Rows that wait to be renewed outside of ticks, the longest out of date first."""
 
-    def take(self, goal: tuple[float, float], z_m: float, body: Body) -> int:
-        """Row of a goal, for one more user."""
-        key = (goal[0], goal[1], z_m, body)
+    def take(
+        self, key: GoalKey, prepared: Mapping[GoalKey, NDArray[np.float32]] | None = None
+    ) -> int:
+        """Row of a goal, for one more user.
+
+        A goal that is new is derived here unless it is among those `prepared`. Where potentials are
+        derived outside, its row is provisional instead: that of another kind of body with the same
+        goal, or one by which no path leads anywhere.
+        """
         slot = self._slots.get(key)
         if slot is None:
-            slot = self._keep(key, self._potential(key))
+            if prepared is not None and key in prepared:
+                slot = self._keep(key, prepared[key])
+            elif self.derived_outside:
+                slot = self._keep_provisional(key)
+            else:
+                slot = self._keep(key, potential_of(self._grid, key))
         elif slot in self._idle:
             self._idle.remove(slot)
         self._users[slot] += 1
         return slot
 
-    def prepare(self, goals: Iterable[_Key], threads: int) -> None:
-        """Derive the potentials of goals (x, y, height, body) for later users, on threads."""
+    def has(self, key: GoalKey) -> bool:
+        """Whether the row of a goal is there, and not provisional."""
+        slot = self._slots.get(key)
+        return slot is not None and slot not in self._provisional
+
+    def provisional(self, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Which of some rows (A,) are provisional, bool (A,)."""
+        return np.isin(rows, list(self._provisional))
+
+    @property
+    def users(self) -> tuple[int, ...]:
+        """Number of users of each row."""
+        return tuple(self._users)
+
+    def prepare(self, goals: Iterable[GoalKey], threads: int) -> None:
+        """Derive the potentials of goals for later users, on threads."""
         wanted = [key for key in dict.fromkeys(goals) if key not in self._slots]
         for *_, body in wanted:
             self._grid.row_of(body)  # derived here, since the threads share the grid
@@ -68,15 +101,25 @@ class PotentialPool:
         fresh = min(len(wanted), max(0, _IDLE_KEPT + 1 - len(self._idle)))
         self._reserve(len(self._keys) + fresh)
         with ThreadPoolExecutor(threads, thread_name_prefix="potentials") as pool:
-            for key, values in zip(wanted, pool.map(self._potential, wanted), strict=True):
+            derive = partial(potential_of, self._grid)
+            for key, values in zip(wanted, pool.map(derive, wanted), strict=True):
                 self._idle.append(self._keep(key, values))
 
-    def _keep(self, key: _Key, values: NDArray[np.float32]) -> int:
+    def _keep(self, key: GoalKey, values: NDArray[np.float32] | np.float32) -> int:
         slot = self._fresh_slot()
         self.arrays[slot] = values
         self._outdated.pop(slot, None)
+        self._provisional.discard(slot)
         self._slots[key] = slot
         self._keys[slot] = key
+        return slot
+
+    def _keep_provisional(self, key: GoalKey) -> int:
+        alike = [slot for each, slot in self._slots.items() if each[:3] == key[:3]]
+        values = self.arrays[alike[0]].copy() if alike else np.float32(np.inf)
+        slot = self._keep(key, values)
+        self._outdated[slot] = None
+        self._provisional.add(slot)
         return slot
 
     def release(self, slot: int) -> None:
@@ -102,7 +145,7 @@ class PotentialPool:
             slot = self._stale.pop(0)
             key = self._keys[slot]
             if key is not None and self._users[slot]:
-                self.arrays[slot] = self._potential(key)
+                self.arrays[slot] = potential_of(self._grid, key)
                 return
 
     def outdate(self) -> None:
@@ -120,10 +163,23 @@ class PotentialPool:
     def outdated(self) -> Callable[[], RenewedPotential] | None:
         """Derives the potential that is out of date for longest, those in use first.
 
-        What is returned is heavy and runs in any thread; None if nothing is out of date.
+        Provisional ones come before all others. Rows in use by nobody, for bodies that the grid has
+        forgotten, are given up. What is returned is heavy and runs in any thread; None if nothing
+        is out of date.
         """
-        slot = min(self._outdated, key=lambda slot: not self._users[slot], default=None)
-        key = None if slot is None else self._keys[slot]
+        for slot in [slot for slot in self._outdated if not self._users[slot]]:
+            key = self._keys[slot]
+            if key is not None and not self._grid.knows(key[3]):
+                del self._slots[key], self._outdated[slot]
+                self._keys[slot] = None
+                self._provisional.discard(slot)
+        if not self._outdated:
+            return None
+        slot = min(
+            self._outdated,
+            key=lambda slot: (not self._users[slot], slot not in self._provisional),
+        )
+        key = self._keys[slot]
         return None if key is None else partial(self._renewed, key, self._changes)
 
     def renew(self, renewed: RenewedPotential) -> None:
@@ -132,16 +188,17 @@ class PotentialPool:
         if slot is None or slot not in self._outdated:
             return
         self.arrays[slot] = renewed.values
+        self._provisional.discard(slot)
         del self._outdated[slot]
         if renewed.changes != self._changes:
             self._outdated[slot] = None
 
-    def _renewed(self, key: _Key, changes: int) -> RenewedPotential:
-        return RenewedPotential(key, changes, self._potential(key))
-
-    def _potential(self, key: _Key) -> NDArray[np.float32]:
-        x, y, z_m, body = key
-        return Potential(self._grid, (x, y), z_m, body.radius_m, body=body).values
+    def _renewed(self, key: GoalKey, changes: int) -> RenewedPotential:
+        try:
+            values = potential_of(self._grid, key)
+        except ValueError:  # nobody can stand there any more
+            values = np.full(self.arrays.shape[1:], np.inf, dtype=np.float32)
+        return RenewedPotential(key, changes, values)
 
     def _reserve(self, rows: int) -> None:
         """Make room for so many rows; what stands in those there are is copied."""
@@ -157,6 +214,8 @@ class PotentialPool:
             key = self._keys[slot]
             if key is not None:
                 del self._slots[key]
+            self._outdated.pop(slot, None)
+            self._provisional.discard(slot)
             return slot
         slot = len(self._keys)
         if slot == len(self.arrays):
@@ -164,3 +223,16 @@ class PotentialPool:
         self._keys.append(None)
         self._users.append(0)
         return slot
+
+
+def potential_of(grid: LayeredGrid, key: GoalKey) -> NDArray[np.float32]:
+    """The potential of a goal for a kind of body; heavy."""
+    x, y, z_m, kind = key
+    return Potential(grid, (x, y), z_m, kind.radius_m, body=kind).values
+
+
+def goal_key(grid: LayeredGrid, goal: Goal, body: Body) -> GoalKey | None:
+    """The goal of a body, moved to where its kind of body fits; None where it fits nowhere."""
+    kind = kind_of(body)
+    free = grid.nearest_free(goal[:2], goal[2], kind.radius_m - _SLACK_M, kind)
+    return None if free is None else (*free, goal[2], kind)

@@ -51,6 +51,7 @@ class ServerCode(IntEnum):
     DOORS = 75
     STEPS = 76
     POINT = 77
+    RESHAPE = 78
 
 
 class Kind(StrEnum):

@@ -303,6 +303,16 @@ class Point(FromServer):
     target: Place | None
 
 
+class Reshape(FromServer):
+    """An avatar in view has another body from now on; where it is and walks goes on."""
+
+    code = ServerCode.RESHAPE
+    id: EntityId
+    radius: float
+    leg_m: float
+    stature_m: float
+
+
 ServerMessage = (
     Welcome
     | Enter
@@ -318,4 +328,5 @@ ServerMessage = (
     | Doors
     | StepBlock
     | Point
+    | Reshape
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from esplanade.planning.agents._passage_kernels import PASSAGE
 from esplanade.planning.agents.agents import PARAMETERS, WAITING, Agents
 
-VERSION: Final = 1
+VERSION: Final = 2
 """Version of the data that `AgentTable.save` gives; `load` takes no other."""
 FORMAT: Final = "esplanade.agents"
 
@@ -29,7 +29,7 @@ class Trips(NamedTuple):
     has been reached; `no_path_s` (A,) s for how long no path has led there; `points_at` (A, 3) m
     the place that the agent shows to people, nan for none. Its behaviour is asked again at
     `ask_at_s` (A,) s, and when `arrived` is no longer what it was when last asked,
-    `arrived_when_asked` (A,).
+    `arrived_when_asked` (A,). For `reason_s` (A,) s its reason has been what it is now.
     """
 
     wanted: NDArray[np.float64]
@@ -38,6 +38,7 @@ class Trips(NamedTuple):
     points_at: NDArray[np.float64]
     ask_at_s: NDArray[np.float64]
     arrived_when_asked: NDArray[np.bool_]
+    reason_s: NDArray[np.float64]
 
 
 _DERIVED: Final = ("bodies", "contacts", "potential_rows", "ranks")
@@ -47,7 +48,7 @@ _DERIVED: Final = ("bodies", "contacts", "potential_rows", "ranks")
 class AgentTable:
     """Every agent of a zone by its id, the one identity that an agent has.
 
-    `agents` and `trips` hold the columns; both are other objects after an agent has come or gone
+    `agents` and `trips` hold the columns; both are other objects after agents have come or gone
     and `version` has grown then. In between the arrays are written in place. A row number holds
     until an agent is removed. Adding and removing cost O(agents).
     """
@@ -82,51 +83,67 @@ class AgentTable:
 
     def add(
         self,
-        agent_id: Hashable,
-        place: tuple[float, float, float],
+        ids: Sequence[Hashable],
+        places: NDArray[np.float64],
         parameters: NDArray[np.void],
         *,
-        cell: int,
-        layer: int,
-        heading: float,
-    ) -> int:
-        """Add an agent that stands at a place without a goal; returns its row.
+        cells: NDArray[np.int64],
+        layers: NDArray[np.int64],
+        headings: NDArray[np.float64],
+    ) -> None:
+        """Add N agents that stand at places (N, 3) without a goal, in the next N rows.
 
         Raises
         ------
         ValueError
-            The id is taken.
+            An id is taken, or occurs twice. Nothing is changed then.
         """
-        if agent_id in self._rows:
-            raise ValueError(f"there already is an actor {agent_id!r}")
+        rows = dict(self._rows)
+        for agent_id in ids:
+            if agent_id in rows:
+                raise ValueError(f"there already is an actor {agent_id!r}")
+            rows[agent_id] = len(rows)
         known = {
-            "positions": place[:2],
-            "cells": cell,
-            "goals": place[:2],
+            "positions": places[:, :2],
+            "cells": cells,
+            "goals": places[:, :2],
             "potential_rows": -1,
             "parameters": parameters,
             "left_m": np.nan,
-            "headings": heading,
-            "heights": place[2],
-            "layers": layer,
+            "headings": headings,
+            "heights": places[:, 2],
+            "layers": layers,
             "reasons": WAITING,
-            "planned": place,
+            "planned": places[:, None],
         }
-        self.agents = Agents._make(_with_row(self.agents, known))
+        self.agents = Agents._make(_with_rows(self.agents, len(ids), known))
         blank = {"wanted": np.nan, "points_at": np.nan, "ask_at_s": -np.inf}
-        self.trips = Trips._make(_with_row(self.trips, blank))
-        self._rows[agent_id] = row = len(self._rows)
+        self.trips = Trips._make(_with_rows(self.trips, len(ids), blank))
+        self._rows = rows
         self.version += 1
-        return row
 
-    def remove(self, agent_id: Hashable) -> None:
-        """Remove an agent; KeyError when there is none of that id."""
-        row = self.row(agent_id)
-        self.agents = Agents._make(np.delete(column, row, axis=0) for column in self.agents)
-        self.trips = Trips._make(np.delete(column, row, axis=0) for column in self.trips)
-        del self._rows[agent_id]
-        self._rows = {each: k for k, each in enumerate(self._rows)}
+    def remove(self, ids: Sequence[Hashable]) -> None:
+        """Remove agents; KeyError when one of them is not there, and nothing is changed then."""
+        rows = [self.row(agent_id) for agent_id in ids]
+        self.agents = Agents._make(np.delete(column, rows, axis=0) for column in self.agents)
+        self.trips = Trips._make(np.delete(column, rows, axis=0) for column in self.trips)
+        gone = set(ids)
+        others = (each for each in self._rows if each not in gone)
+        self._rows = {each: k for k, each in enumerate(others)}
         self.version += 1
+
+    def undo_point(self) -> Callable[[], None]:
+        """What puts the table back to how it is now, its arrays in place; O(agents)."""
+        agents, trips, rows, version = self.agents, self.trips, self._rows, self.version
+        columns = (*agents, *trips)
+        copies = [column.copy() for column in columns]
+
+        def undo() -> None:
+            for column, kept in zip(columns, copies, strict=True):
+                column[...] = kept
+            self.agents, self.trips, self._rows, self.version = agents, trips, rows, version
+
+        return undo
 
     def wanted(self, row: int) -> tuple[float, float, float] | None:
         """The goal that an agent was given, x, y and height in metres; None without one."""
@@ -218,14 +235,16 @@ def _place_or_none(place: NDArray[np.float64]) -> tuple[float, float, float] | N
     return None if math.isnan(x) else (x, y, z)
 
 
-def _with_row(columns: Agents | Trips, values: Mapping[str, Any]) -> list[NDArray[Any]]:
-    """The columns with one more row, zero where no value is given."""
+def _with_rows(
+    columns: Agents | Trips, count: int, values: Mapping[str, Any]
+) -> list[NDArray[Any]]:
+    """The columns with so many more rows, zero where no value is given."""
     grown: list[NDArray[Any]] = []
     for name, column in columns._asdict().items():
-        row: NDArray[Any] = np.zeros((1, *column.shape[1:]), dtype=column.dtype)
+        rows: NDArray[Any] = np.zeros((count, *column.shape[1:]), dtype=column.dtype)
         if name in values:
-            row[0] = values[name]
-        grown.append(np.concatenate([column, row]))
+            rows[...] = values[name]
+        grown.append(np.concatenate([column, rows]))
     return grown
 
 
@@ -262,4 +281,5 @@ def _no_trips() -> Trips:
         points_at=np.zeros((0, 3)),
         ask_at_s=np.zeros(0),
         arrived_when_asked=np.zeros(0, dtype=np.bool_),
+        reason_s=np.zeros(0),
     )

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,17 +22,27 @@ Box = tuple[float, float, float, float]
 """x0, y0, x1, y1 in metres."""
 
 _BODY_STEP_M = 0.05
+_ALMOST = 1e-9
 _ROUNDING_M = 1e-4
 
 
 def kind_of(body: Body) -> Body:
-    """The kind of a body: radius and height are rounded up to 5 cm, and M is ignored."""
+    """The kind of a body: it is nowhere where the body is not, and shared by bodies much alike.
+
+    Radius and height are rounded up to 5 cm, the steps that it takes down to 5 cm; M is ignored.
+    """
     return replace(
         body,
-        radius_m=math.ceil(body.radius_m / _BODY_STEP_M - 1e-9) * _BODY_STEP_M,
-        height_m=math.ceil(body.height_m / _BODY_STEP_M - 1e-9) * _BODY_STEP_M,
+        radius_m=_rounded(body.radius_m, math.ceil, -_ALMOST),
+        height_m=_rounded(body.height_m, math.ceil, -_ALMOST),
+        step_on_m=_rounded(body.step_on_m, math.floor, _ALMOST),
+        leg_length_m=_rounded(body.leg_length_m, math.floor, _ALMOST),
         edge_cells=Body.edge_cells,
     )
+
+
+def _rounded(metres: float, to_whole: Callable[[float], int], slack: float) -> float:
+    return round(to_whole(metres / _BODY_STEP_M + slack) * _BODY_STEP_M, 9)
 
 
 def write_clearance(
@@ -50,6 +62,15 @@ def write_clearance(
     lower_to_barriers(arrays, index, body.height_m, body.step_on_m, CLEARANCE_CAP_M, box, out)
     room_m = arrays.layered.ceilings[cells] - arrays.layered.floors[cells]
     out[cells[~(room_m >= body.height_m - _ROUNDING_M)]] *= -1.0
+
+
+def with_row(rows: NDArray[Any], row: int, values: NDArray[Any]) -> NDArray[Any]:
+    """A copy of rows (K, N) in which one is (N,), be it one more."""
+    if row == len(rows):
+        return np.concatenate([rows, values[None]])
+    written = rows.copy()
+    written[row] = values
+    return written
 
 
 def centres_of(layered: LayeredArrays) -> NDArray[np.float64]:

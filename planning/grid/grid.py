@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from copy import copy
 from pathlib import Path
 from typing import Self
 
@@ -16,11 +17,14 @@ from esplanade.planning.grid import _walking_kernels as walking
 from esplanade.planning.grid._grid_kernels import GridArrays
 from esplanade.planning.grid._walking_kernels import GroundArrays
 from esplanade.planning.grid.barrier_buckets import index_barriers
+from esplanade.planning.grid.bodies_change import BodiesChange
+from esplanade.planning.grid.body_rows import BodyRows
 from esplanade.planning.grid.clearances import (
     CLEARANCE_CAP_M,
     cells_within,
     centres_of,
     kind_of,
+    with_row,
     write_clearance,
 )
 from esplanade.planning.grid.door_change import DoorChange
@@ -30,7 +34,7 @@ from esplanade.planning.ground.floors import Floors, floors_of_mesh, floors_of_s
 from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.ground.meshes import Progress, no_progress
 from esplanade.planning.ground.surfaces import Surfaces
-from esplanade.planning.scene.bodies import MOST_BODIES, Body
+from esplanade.planning.scene.bodies import Body
 from esplanade.planning.scene.doors import Doors
 from esplanade.planning.scene.mesh_file import Up
 from esplanade.planning.scene.scene import Scene
@@ -65,8 +69,9 @@ class LayeredGrid:
         self.index = index_barriers(floors.barriers, self.bounds)
         self.centres = centres_of(layered)
         self._held = self.arrays, make_handle(GroundArrays(self.arrays, self.index))
-        self._rows: dict[Body, int] = {}
-        self.row_of(ADULT)
+        self._rows = BodyRows()
+        self._forked = self.arrays
+        self.claim(ADULT)
 
     @classmethod
     def from_scene(cls, scene: Scene, cell_m: float = 0.25) -> Self:
@@ -106,32 +111,81 @@ class LayeredGrid:
     def row_of(self, body: Body) -> int:
         """Row of a kind of body in `arrays.clearance`, which is derived at the first call.
 
-        Bodies share a row, derived for the widest and tallest of them, if their radii and heights
-        round up to the same 5 cm, however long they may stay on edges.
+        Bodies share a row, derived for the widest, tallest and stiffest of them, if they are of one
+        kind (`kind_of`), however long they may stay on edges. The row is another kind's one day
+        unless somebody has claimed it.
 
         Raises
         ------
         ValueError
-            That would be more than `MOST_BODIES` kinds. No row can be given to another kind, since
-            bodies that still walk here may use it.
+            `MOST_BODIES` kinds are claimed already, and this is none of them.
         """
         body = kind_of(body)
         row = self._rows.get(body)
         if row is None:
-            if len(self._rows) == MOST_BODIES:
-                raise ValueError(
-                    f"the zone knows {MOST_BODIES} kinds of body already, and none like {body}"
-                )
+            row = self._rows.free_row(body)
             a = self.arrays
             everywhere = np.arange(len(a.layered.floors))
             field = np.empty(len(everywhere), dtype=np.float32)
             write_clearance(a, self.index, body, self.bounds, everywhere, field)
-            row = self._rows[body] = len(a.clearance)
             self.arrays = a._replace(
-                clearance=np.concatenate([a.clearance, field[None]]),
-                edges=np.concatenate([a.edges, self._edges(body, everywhere)[None]]),
+                clearance=with_row(a.clearance, row, field),
+                edges=with_row(a.edges, row, self._edges(body, everywhere)),
             )
+            self._rows.add(body, row)
         return row
+
+    def claim(self, body: Body) -> int:
+        """`row_of`, which stays this kind's until `release` has been called as often.
+
+        Raises
+        ------
+        ValueError
+            `MOST_BODIES` kinds are claimed already, and this is none of them.
+        """
+        row = self.row_of(body)
+        self._rows.claim(kind_of(body))
+        return row
+
+    def release(self, body: Body) -> None:
+        """Give back the row of a kind of body that was claimed."""
+        self._rows.claim(kind_of(body), -1)
+
+    def knows(self, body: Body) -> bool:
+        """Whether the row of this kind of body is derived."""
+        return kind_of(body) in self._rows
+
+    def fork(self) -> Self:
+        """A grid that is like this one, and gets to know kinds of body of its own.
+
+        What is derived on it leaves this one as it is, so that it may be used in another thread as
+        long as no door moves. `bodies_change` is what it has got to know meanwhile.
+        """
+        fork = copy(self)
+        fork._rows = self._rows.fork()
+        fork._forked = self.arrays
+        fork.traversability = self.traversability.fork()
+        return fork
+
+    def bodies_change(self, fork: LayeredGrid) -> BodiesChange:
+        """What a fork of this grid has got to know, to be applied if this is still as it was."""
+        known = {}
+        if not self.arrays.flat:
+            new = [kind for kind in fork._rows if kind not in self._rows]
+            known = {kind: fork.traversability.known(kind) for kind in new}
+        return BodiesChange(fork._forked, fork.arrays, fork._rows.all(), known)
+
+    def apply_bodies(self, change: BodiesChange) -> bool:
+        """Get to know the kinds of body that a fork knows; O(1).
+
+        Where the grid is another than the one that was forked, it is left as it is; kinds of body
+        are then derived when they are asked for, to the same end. Returns whether that is so.
+        """
+        if change.base is not self.arrays or not self._rows.take_over(change.rows):
+            return False
+        self.traversability.keep(change.known)
+        self.arrays = change.arrays
+        return True
 
     def _edges(self, body: Body, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Whether a body is on an edge in each of some cells, bool (K,)."""
@@ -191,7 +245,7 @@ class LayeredGrid:
         KeyError
             There is no door of that name.
         """
-        base, bodies = self.arrays, dict(self._rows)
+        base, bodies = self.arrays, self._rows.all()
         barriers = self.barriers.copy()
         x0, y0, x1, y1 = self.doors.set_open(name, is_open, barriers)
         index = self.index._replace(barriers=barriers)

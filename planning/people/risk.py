@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -85,7 +86,7 @@ def sigma_points() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return offsets, weights / weights.sum()
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=32)
 def radial_tables(
     model: RiskModel, contacts_m: tuple[float, ...], spread: Spread = GAUSSIAN
 ) -> RadialTables:
@@ -170,13 +171,27 @@ class RiskField:
 
         The first agent of a radius costs the making of its table.
         """
-        rounded = math.ceil(radius_m / _RADIUS_STEP_M - 1e-9) * _RADIUS_STEP_M
-        contact_m = self.model.contact_m(rounded)
+        contact_m = self._contact_m(radius_m)
         if contact_m not in self._contacts_m:
             self._contacts_m.append(contact_m)
             self.tables = radial_tables(self.model, tuple(self._contacts_m), self._spread)
             self.arrays = self._room_for(self.arrays.people.shape[1], self.arrays.slack_m)
         return self._contacts_m.index(contact_m)
+
+    def prepare_contacts(self, radii_m: Iterable[float]) -> None:
+        """Make the tables that `contact_row` needs for these radii, one after the other.
+
+        Nothing of the field is changed, so that it may be called in any thread.
+        """
+        contacts_m = list(self._contacts_m)
+        for contact_m in map(self._contact_m, radii_m):
+            if contact_m not in contacts_m:
+                contacts_m.append(contact_m)
+                radial_tables(self.model, tuple(contacts_m), self._spread)
+
+    def _contact_m(self, radius_m: float) -> float:
+        rounded = math.ceil(radius_m / _RADIUS_STEP_M - 1e-9) * _RADIUS_STEP_M
+        return self.model.contact_m(rounded)
 
     def _room_for(self, people: int, slack_m: float) -> RiskArrays:
         widest = float(self.tables.reaches.max()) + slack_m

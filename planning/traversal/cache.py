@@ -91,6 +91,16 @@ class TraversabilityCache:
             known.regions = number_regions(known.traversability)
         return known.regions
 
+    def fork(self) -> TraversabilityCache:
+        """A cache that knows the same, and keeps to itself what is derived from now on."""
+        fork = TraversabilityCache(self._floors)
+        fork._known = self._known.copy()
+        return fork
+
+    def known(self, body: Body) -> KnownTraversability:
+        """What is kept for a body; it is derived if need be."""
+        return self._up_to_date(body)
+
     def prepare(self, body: Body, barriers: Barriers) -> KnownTraversability:
         """Derive the traversability for a body if the barriers of the zone were these.
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from esplanade.actors import Explanation
 from esplanade.protocol import Reason
-from esplanade.protocol.messages import Census, Chat, Circle, Doors, Plan, Point
+from esplanade.protocol.messages import Census, Chat, Circle, Doors, Plan, Point, Reshape
 from esplanade.server.net import frames
 from esplanade.server.net.packing import Packing
 from esplanade.server.net.session import Session
@@ -47,7 +47,7 @@ class Delivery:
             session.outbox.post(frame)
 
     def _changes(self, news: News) -> dict[int, list[bytes]]:
-        """The frames that no viewer must miss, by its id: changes of view, pointing, chat."""
+        """The frames that no viewer must miss, by its id: views, bodies, pointing, chat."""
         first: dict[int, list[bytes]] = {}
         for viewer, ids in news.left.items():
             first[viewer] = [frames.leave(news.tick, ids)]
@@ -55,6 +55,17 @@ class Delivery:
             first.setdefault(viewer, []).append(frames.enter(news.tick, entities))
         for actor, (target, viewers) in news.pointing.items():
             frame = frames.message(Point(id=actor, target=target))
+            for viewer in viewers:
+                first.setdefault(viewer, []).append(frame)
+        for body, viewers in news.reshaped:
+            frame = frames.message(
+                Reshape(
+                    id=body.id,
+                    radius=body.radius_m,
+                    leg_m=body.leg_m,
+                    stature_m=body.stature_m,
+                )
+            )
             for viewer in viewers:
                 first.setdefault(viewer, []).append(frame)
         for heard in news.chat:

@@ -1,5 +1,6 @@
-"""Derives what doors change, in a thread of its own, so that no tick waits for it."""
+"""Derives what doors and commands change, in a thread of its own, so that no tick waits for it."""
 
+from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
 from functools import partial
@@ -9,7 +10,7 @@ from typing import Final
 import structlog
 
 from esplanade.actors.potential_pool import RenewedPotential
-from esplanade.server.world.inputs import DoorDerived, GroundInput, PotentialDerived
+from esplanade.server.world.inputs import DerivedInput, DoorDerived, PotentialDerived
 from esplanade.server.world.zone import Zone
 
 DOOR_PAUSE_S: Final = 0.5
@@ -19,7 +20,7 @@ log = structlog.get_logger(__name__)
 
 
 class GroundWork:
-    """Derives one thing at a time: doors that are to move and potentials out of date take turns.
+    """Derives one thing at a time: for doors, for commands on actors, and potentials take turns.
 
     From now on doors of the world move by the inputs that `drain` returns, and no other way. After
     each piece of work it rests as long as that took, so that actors have the other half of a core.
@@ -28,15 +29,18 @@ class GroundWork:
     def __init__(self, world: Zone, thread: Executor) -> None:
         self._world = world
         self._thread = thread
-        self._work: Future[tuple[GroundInput, float]] | None = None
+        self._work: Future[tuple[DerivedInput, float]] | None = None
         self._rests_until_s = 0.0
-        self._door_was_last = False
+        self._kinds: deque[Callable[[], Callable[[], DerivedInput] | None]] = deque(
+            [self._door, world.actor_work, self._potential]
+        )
+        """Kinds of work, the one whose turn it is first."""
         self._begun_at_s: dict[str, float] = {}
-        world.doors.derived_outside = True
+        world.derive_outside()
 
-    def drain(self) -> list[GroundInput]:
+    def drain(self) -> list[DerivedInput]:
         """Return the inputs derived since the last call. Call it between two ticks."""
-        done: list[GroundInput] = []
+        done: list[DerivedInput] = []
         if self._work is not None and self._work.done():
             try:
                 derived, seconds = self._work.result()
@@ -50,14 +54,24 @@ class GroundWork:
         return done
 
     def _begin(self) -> None:
-        door, derive = self._next_door(), self._world.outdated_potential()
-        if door is not None and (derive is None or not self._door_was_last):
-            name, is_open = door
-            self._begun_at_s[name] = self._now_s()
-            self._work = self._thread.submit(_timed, partial(_door, self._world, name, is_open))
-        elif derive is not None:
-            self._work = self._thread.submit(_timed, partial(_potential, derive))
-        self._door_was_last = not self._door_was_last
+        for _ in range(len(self._kinds)):
+            next_work = self._kinds.popleft()
+            self._kinds.append(next_work)
+            derive = next_work()
+            if derive is not None:
+                self._work = self._thread.submit(_timed, derive)
+                return
+
+    def _door(self) -> Callable[[], DerivedInput] | None:
+        door = self._next_door()
+        if door is None:
+            return None
+        self._begun_at_s[door[0]] = self._now_s()
+        return partial(_door, self._world, *door)
+
+    def _potential(self) -> Callable[[], DerivedInput] | None:
+        derive = self._world.outdated_potential()
+        return None if derive is None else partial(_potential, derive)
 
     def _next_door(self) -> tuple[str, bool] | None:
         latest_s = self._now_s() - DOOR_PAUSE_S
@@ -70,14 +84,14 @@ class GroundWork:
         return self._world.tick * self._world.tick_s
 
 
-def _door(world: Zone, name: str, is_open: bool) -> GroundInput:
+def _door(world: Zone, name: str, is_open: bool) -> DerivedInput:
     return DoorDerived(world.doors.prepare(name, is_open))
 
 
-def _potential(derive: Callable[[], RenewedPotential]) -> GroundInput:
+def _potential(derive: Callable[[], RenewedPotential]) -> DerivedInput:
     return PotentialDerived(derive())
 
 
-def _timed(derive: Callable[[], GroundInput]) -> tuple[GroundInput, float]:
+def _timed(derive: Callable[[], DerivedInput]) -> tuple[DerivedInput, float]:
     start = perf_counter()
     return derive(), perf_counter() - start

@@ -1,11 +1,12 @@
 """The actors' avatars: moved as their population decides."""
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 
 import numpy as np
 
 from esplanade.actors import Explanation, ObservedPeople, Population
 from esplanade.actors.locomotion.footsteps.course import planned_places
+from esplanade.planning import Body
 from esplanade.server.world.routes import Point
 from esplanade.server.world.state import ACTOR, Slots, State
 
@@ -24,7 +25,7 @@ class ActorAvatars:
         self._state = state
         self._tick_s = tick_s
         self._population = population
-        self._names = names
+        self._names = dict(names)
         self._avatars: dict[Hashable, int] = {}
         self._actor_ids: dict[int, Hashable] = {}
         self._slots: Slots = np.zeros(0, dtype=np.int64)
@@ -69,10 +70,48 @@ class ActorAvatars:
         state.speeds[slots] = np.hypot(agents.velocities[:, 0], agents.velocities[:, 1])
         state.reasons[slots] = agents.reasons
         state.radii[slots] = agents.parameters["radius_m"]
+        state.scales[slots] = agents.parameters["height_m"] / Body.height_m
         places = np.column_stack([agents.positions, agents.heights])
         slice_s = self._population.navigator.plan.slice_s
         state.ahead[slots] = planned_places(agents.planned, slice_s, self._tick_s, places)
         return self._point()
+
+    def name(self, actor_id: Hashable, name: str) -> None:
+        """What others see an actor called that comes into the world next."""
+        self._names[actor_id] = name
+
+    def avatar(self, actor_id: Hashable) -> int | None:
+        """The avatar of an actor, by its id; None if it is not in the world yet."""
+        return self._avatars.get(actor_id)
+
+    def remove(self, ids: Iterable[Hashable]) -> list[int]:
+        """Take actors who have left the population out of the world; returns their avatars."""
+        left = []
+        for actor_id in ids:
+            self._names.pop(actor_id, None)
+            avatar_id = self._avatars.pop(actor_id, None)
+            if avatar_id is None:  # it came and went between two plans
+                continue
+            del self._actor_ids[avatar_id]
+            self.pointing.pop(avatar_id, None)
+            self._state.remove(avatar_id)
+            left.append(avatar_id)
+        return left
+
+    def put(self, actor_id: Hashable) -> None:
+        """Move an avatar at once to where its actor was put; it does not walk there."""
+        avatar_id = self._avatars.get(actor_id)
+        if avatar_id is None:
+            return
+        slot, agents = self._state.slot(avatar_id), self._population.table.agents
+        row = self._population.table.row(actor_id)
+        self._state.positions[slot] = self._state.before[slot] = agents.positions[row]
+        self._state.heights[slot] = agents.heights[row]
+        self._state.layers[slot] = agents.layers[row]
+
+    def stand(self, people: ObservedPeople) -> None:
+        """A tick in which nothing is planned."""
+        self._population.stand(people)
 
     def explain(self, avatar_id: int) -> Explanation:
         """Why this actor does what it does. Not while `plan` runs."""

@@ -11,7 +11,7 @@ from esplanade.protocol.steps import STEP
 from esplanade.server.world.avatars import Avatars
 from esplanade.server.world.byte_budget import byte_budget
 from esplanade.server.world.compiled._snapshot_kernels import choose, gather
-from esplanade.server.world.frame import Events, Frame, Line
+from esplanade.server.world.frame import Events, Frame, Line, Reshaped
 from esplanade.server.world.interest import Interest
 from esplanade.server.world.routes import Point
 from esplanade.server.world.rules import Rules
@@ -64,6 +64,8 @@ class News:
     """Avatars that came into view, each packed for an enter message."""
     pointing: Mapping[int, tuple[Point | None, list[int]]]
     """The new target of each actor that points, and the viewers who see it; by the actor's id."""
+    reshaped: list[tuple[Reshaped, list[int]]]
+    """Avatars that have another body since this tick, and who sees each."""
     chat: list[Heard]
     """In the order in which people spoke."""
     snapshots: Snapshots
@@ -92,7 +94,9 @@ class Audience:
             left = self._come_and_go(frame)
             entered = self._look(frame, left)
             pointed = frame.events.pointing
-            seen = self._interest.seen_by([*pointed, *(line.id for line in frame.events.chat)])
+            spoken = [line.id for line in frame.events.chat]
+            seen = self._interest.seen_by([*pointed, *spoken, *(r.id for r in frame.reshaped)])
+            reshaped = [(each, seen[each.id]) for each in frame.reshaped]
             pointing = {actor: (target, seen[actor]) for actor, target in pointed.items()}
             for k, line in enumerate(frame.events.chat):
                 if line.id in self._avatars:
@@ -106,6 +110,7 @@ class Audience:
             left=left,
             entered=entered,
             pointing=pointing,
+            reshaped=reshaped,
             chat=chat,
             snapshots=snapshots,
             events=frame.events,
@@ -162,6 +167,7 @@ class Audience:
             interest.detach(avatar_id)
             left.pop(avatar_id, None)
         avatars.add(frame.entered)
+        avatars.reshape(frame.reshaped)
         avatars.update(frame)
         interest.notice(entered.id for entered in frame.entered)
         for _, avatar_id in frame.joined + frame.attached:

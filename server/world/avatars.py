@@ -1,5 +1,6 @@
 """The avatars of a zone as an audience knows them: from frames, and from nothing else."""
 
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
@@ -9,7 +10,7 @@ from esplanade.protocol.entities import pack_entity
 from esplanade.protocol.snapshot import RECORD, Records, headings_rad, heights_m, positions_m
 from esplanade.protocol.steps import STEP
 from esplanade.server.world.compiled._snapshot_kernels import Changes
-from esplanade.server.world.frame import Entered, Frame
+from esplanade.server.world.frame import Entered, Frame, Reshaped
 from esplanade.server.world.routes import Point
 from esplanade.server.world.state import ACTOR
 
@@ -84,6 +85,12 @@ class Avatars:
             self._known[each.id] = each
         if entered:
             self._list()
+
+    def reshape(self, reshaped: list[Reshaped]) -> None:
+        """Let avatars have other bodies."""
+        for each in reshaped:
+            known = self._known[each.id]
+            self._known[each.id] = replace(known, constants=each.constants)
 
     def update(self, frame: Frame) -> None:
         """Take in the records, the steps and the pointing of a frame."""

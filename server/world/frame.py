@@ -9,8 +9,9 @@ from esplanade.actors import Explanation
 from esplanade.protocol.entities import Entity, pack_constants
 from esplanade.protocol.snapshot import RECORD, Records, pack_records
 from esplanade.protocol.steps import StepRecords
+from esplanade.server.world.outcomes import Outcome
 from esplanade.server.world.routes import Point
-from esplanade.server.world.state import KINDS, Slots, State
+from esplanade.server.world.state import KINDS, Floats, Slots, State
 
 Tickets = list[tuple[int, int]]
 """(ticket, avatar's id) of clients who look through an avatar's eyes since this tick."""
@@ -18,13 +19,25 @@ Tickets = list[tuple[int, int]]
 
 @dataclass(frozen=True)
 class Entered:
-    """An avatar that came into the world. What never changes of it is packed once."""
+    """An avatar that came into the world. What hardly ever changes of it is packed once."""
 
     id: int
     kind: int
     name: str
     constants: tuple[bytes, bytes]
     """As `esplanade.protocol.entities.pack_constants` has packed them."""
+
+
+@dataclass(frozen=True)
+class Reshaped:
+    """An avatar that has another body from now on."""
+
+    id: int
+    radius_m: float
+    leg_m: float
+    stature_m: float
+    constants: tuple[bytes, bytes]
+    """As in `Entered`."""
 
 
 @dataclass(frozen=True)
@@ -53,8 +66,9 @@ class Events:
 class Frame:
     """One tick of a zone, for any number of viewers. Frames are complete only one after the other.
 
-    Those who left are out of the world before those come in who entered; whoever was detached
-    looks no more, and then those look who joined or were attached, knowing nothing yet.
+    Those who left are out of the world before those come in who entered, and then some have other
+    bodies; whoever was detached looks no more, and then those look who joined or were attached,
+    knowing nothing yet.
     """
 
     tick: int
@@ -72,6 +86,11 @@ class Frame:
     steps: StepRecords
     """STEP (M,): the steps that began in this tick."""
     events: Events
+    reshaped: list[Reshaped] = field(default_factory=list)
+    outcomes: list[Outcome] = field(default_factory=list)
+    """What became of operators' commands in this tick."""
+    actors_stood: bool = False
+    """Whether there are actors for whom nothing was planned."""
 
 
 class Recorder:
@@ -82,6 +101,7 @@ class Recorder:
         self._origin_m = origin_m
         self._records = np.zeros(state.capacity, dtype=RECORD)
         self._ids = np.zeros(state.capacity, dtype=np.int64)
+        self._bodies = np.zeros((state.capacity, 3))
 
     def entered(self) -> list[Entered]:
         """The avatars that came into the world since the last call."""
@@ -89,7 +109,28 @@ class Recorder:
         live = state.live()
         new = live[self._ids[live] != state.ids[live]]
         self._ids[new] = state.ids[new]
+        self._bodies[new] = self._bodies_of(new)
         return [self._describe(slot) for slot in new[np.argsort(state.ids[new])].tolist()]
+
+    def reshaped(self) -> list[Reshaped]:
+        """The avatars that have another body than at the last call of this or of `entered`."""
+        live = self._state.live()
+        bodies = self._bodies_of(live)
+        changed = (bodies != self._bodies[live]).any(axis=1)
+        self._bodies[live] = bodies
+        return [
+            Reshaped(
+                int(self._state.ids[slot]), radius, leg, stature, self._describe(slot).constants
+            )
+            for slot, (radius, leg, stature) in zip(
+                live[changed].tolist(), bodies[changed].tolist(), strict=True
+            )
+        ]
+
+    def _bodies_of(self, slots: Slots) -> Floats:
+        """Radius, leg and stature, float64 (N, 3), metres."""
+        state = self._state
+        return np.stack([state.radii[slots], state.legs_m[slots], state.statures_m[slots]], axis=1)
 
     def changed(self) -> Records:
         """The records that are new or others than at the last call, RECORD (N,)."""

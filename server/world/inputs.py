@@ -1,8 +1,15 @@
 """Inputs are everything that may happen to a world from outside; a list per tick replays it."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
-from esplanade.actors.potential_pool import RenewedPotential
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from esplanade.actors import ActorParameters, ActorSpec, BehaviourSpec
+from esplanade.actors.behaviour import Target
+from esplanade.actors.potential_pool import GoalKey, RenewedPotential
+from esplanade.planning.grid.bodies_change import BodiesChange
 from esplanade.planning.grid.door_change import DoorChange
 from esplanade.server.world.routes import Point, Route
 
@@ -108,8 +115,115 @@ class PotentialDerived:
     potential: RenewedPotential
 
 
+@dataclass(frozen=True, slots=True)
+class SetParameters:
+    """Some parameters of some actors, all different, from this tick on: all, or none.
+
+    `values` has one number by a parameter's name, or one for each of the actors.
+    """
+
+    command: int
+    actors: tuple[str, ...]
+    values: Mapping[str, ArrayLike]
+
+
+@dataclass(frozen=True, slots=True)
+class AddActors:
+    """Actors come into the world, with the parameters of each; all, or none."""
+
+    command: int
+    specs: tuple[ActorSpec, ...]
+    parameters: tuple[ActorParameters, ...]
+
+    @property
+    def actors(self) -> tuple[str, ...]:
+        """Their ids."""
+        return tuple(spec.id for spec in self.specs)
+
+
+@dataclass(frozen=True, slots=True)
+class RemoveActors:
+    """Actors go out of the world; all, or none."""
+
+    command: int
+    actors: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ChangeBehaviour:
+    """Actors do something else from now on, each for itself; all, or none."""
+
+    command: int
+    actors: tuple[str, ...]
+    behaviour: BehaviourSpec
+
+
+@dataclass(frozen=True, slots=True)
+class SendActors:
+    """Actors go to a place or a point and stay there until they are told something else."""
+
+    command: int
+    actors: tuple[str, ...]
+    target: Target
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceActor:
+    """An actor is elsewhere from now on: at a point, or on the nearest ground where it fits."""
+
+    command: int
+    actor: str
+    place: Point
+
+    @property
+    def actors(self) -> tuple[str, ...]:
+        """Its id."""
+        return (self.actor,)
+
+
+@dataclass(frozen=True, slots=True)
+class HoldActors:
+    """Actors stand where they are, making way, or go on with what they did."""
+
+    command: int
+    actors: tuple[str, ...]
+    held: bool
+
+
+@dataclass(frozen=True, slots=True)
+class ActorsDerived:
+    """What a command on actors has to wait for is derived: it is carried out, if it still can be.
+
+    A replay in another process may leave out all but the command and the places: what is not given
+    is derived in the tick, to the same end.
+    """
+
+    command: int
+    bodies: BodiesChange | None = None
+    potentials: Mapping[GoalKey, NDArray[np.float32]] = field(default_factory=dict)
+    places: tuple[Point, ...] = ()
+    """Where new actors come in."""
+    fault: str | None = None
+    """Why it could not be derived."""
+
+
+@dataclass(frozen=True, slots=True)
+class ActorsStood:
+    """In this tick planning failed when it was recorded: the actors stand."""
+
+
 Movement = Steer | Follow
 OfPerson = Attach | Detach | Leave | Stand | Steer | Follow | Say | Watch
 """Inputs of one avatar, by its `id`."""
-GroundInput = DoorDerived | PotentialDerived
-Input = Join | MoveDoor | OfPerson | GroundInput
+ActorCommand = (
+    SetParameters
+    | AddActors
+    | RemoveActors
+    | ChangeBehaviour
+    | SendActors
+    | PlaceActor
+    | HoldActors
+)
+"""Commands on actors. Each has a number, and a frame has the outcome of each by that number."""
+DerivedInput = DoorDerived | PotentialDerived | ActorsDerived
+Input = Join | MoveDoor | OfPerson | DerivedInput | ActorCommand | ActorsStood

@@ -26,7 +26,8 @@ class State:
     Arrays are indexed by slot and have a fixed capacity. A slot is used again once its avatar
     is gone; an id never is. `before` holds the positions of the tick before; `heights` are those of
     the feet above the scene's ground, metres; `ahead` is where each is going, as in
-    `esplanade.actors.locomotion.Course`.
+    `esplanade.actors.locomotion.Course`; legs and statures are those drawn for an avatar, `scales`
+    times as long.
     """
 
     def __init__(self, capacity: int) -> None:
@@ -43,6 +44,7 @@ class State:
         self.speeds = np.zeros(capacity)
         self.reasons = np.zeros(capacity, dtype=np.uint8)
         self.radii = np.zeros(capacity)
+        self.scales = np.ones(capacity)
         self.legs_m = np.zeros(capacity)
         self.statures_m = np.zeros(capacity)
         self.names = [""] * capacity
@@ -87,6 +89,7 @@ class State:
         self.headings[slot] = self.speeds[slot] = 0.0
         self.reasons[slot] = 0
         self.radii[slot] = radius_m
+        self.scales[slot] = 1.0
         self.names[slot] = name
         self._slots[self._next_id] = slot
         self._next_id += 1

@@ -1,9 +1,11 @@
 """Everyone's feet: they follow the bodies in the world with real steps."""
 
+from dataclasses import replace
+
 import numpy as np
 import structlog
 
-from esplanade.actors.locomotion.body.traits import traits_of
+from esplanade.actors.locomotion.body.traits import WalkerTraits, traits_of
 from esplanade.actors.locomotion.footsteps.course import AHEAD, Course
 from esplanade.actors.locomotion.footsteps.ground import Ground
 from esplanade.actors.locomotion.footsteps.walkers import Walkers
@@ -27,6 +29,7 @@ class Feet:
         self._tick = 0
         self._failed = -1
         self._ids = np.zeros(state.capacity, dtype=np.int64)
+        self._scales = np.ones(state.capacity)
         _warm_up(ground, tick_s)
         self._walkers = Walkers(state.capacity, ground, tick_s, self._publish)
         self.begun = 0
@@ -42,20 +45,24 @@ class Feet:
     def update(self, tick: int) -> None:
         """Begin and re-aim steps after where everyone is and is going; newcomers stand.
 
+        Whoever has grown or shrunk stands anew, too.
         It reads the state and writes the latest steps, and newcomers' legs and statures. Any thread
         may call it while nobody changes the state; most of the time it holds no interpreter lock.
         """
         self._tick = tick
         state = self._state
         live = state.live()
-        new = live[self._ids[live] != state.ids[live]]
-        traits = [traits_of(self._seed, avatar) for avatar in state.ids[new].tolist()]
+        new = live[
+            (self._ids[live] != state.ids[live]) | (self._scales[live] != state.scales[live])
+        ]
+        of_new = zip(state.ids[new].tolist(), state.scales[new].tolist(), strict=True)
+        traits = [scaled(traits_of(self._seed, avatar), scale) for avatar, scale in of_new]
         state.legs_m[new] = [each.leg_m for each in traits]
         state.statures_m[new] = [each.stature_m for each in traits]
         try:
             if len(new):
                 self._walkers.join(tick, new, traits, self._course(new))
-                self._ids[new] = state.ids[new]
+                self._ids[new], self._scales[new] = state.ids[new], state.scales[new]
             self._walkers.update(tick, live, self._course(live))
         except Exception:
             # In the next tick everyone stands anew; meanwhile the world goes on.
@@ -73,6 +80,13 @@ class Feet:
         self._latest.begin(slots, records, self._tick)
         self.begun += len(slots)
         return from_records(records)
+
+
+def scaled(traits: WalkerTraits, scale: float) -> WalkerTraits:
+    """The traits of a body that is so many times as tall."""
+    if scale == 1.0:
+        return traits
+    return replace(traits, leg_m=traits.leg_m * scale, stature_m=traits.stature_m * scale)
 
 
 def _warm_up(ground: Ground, tick_s: float) -> None:

@@ -4,17 +4,29 @@ from collections.abc import Callable, Hashable, Iterable, Mapping
 from typing import Final
 
 import numpy as np
+import structlog
 
-from esplanade.actors import Explanation, ObservedPeople, Population
+from esplanade.actors import (
+    ActorParameters,
+    ActorSpec,
+    Explanation,
+    ObservedPeople,
+    Population,
+)
 from esplanade.actors.locomotion.footsteps.ground import Ground
 from esplanade.actors.people import NOBODY
 from esplanade.actors.potential_pool import RenewedPotential
 from esplanade.planning import LayeredGrid, Scene
+from esplanade.server.world.actor_commands import ActorCommands
 from esplanade.server.world.actors import ActorAvatars
+from esplanade.server.world.command_checks import check
 from esplanade.server.world.contacts import Contacts
 from esplanade.server.world.doors import Doors
 from esplanade.server.world.frame import Events, Frame, Line, Recorder, Tickets
 from esplanade.server.world.inputs import (
+    ActorCommand,
+    ActorsDerived,
+    ActorsStood,
     Attach,
     Detach,
     DoorDerived,
@@ -31,6 +43,7 @@ from esplanade.server.world.inputs import (
     Watch,
 )
 from esplanade.server.world.latest_steps import LatestSteps
+from esplanade.server.world.outcomes import Fault, fault_of
 from esplanade.server.world.people import People
 from esplanade.server.world.routes import Point, RouteSearch, SharedWaves
 from esplanade.server.world.rules import Rules
@@ -41,6 +54,10 @@ from esplanade.server.world.walking import Feet
 
 PLANS_PER_SECOND: Final = 5
 """So often are the plans of a watched actor in a frame."""
+ROOM_FOR_ACTORS: Final = 256
+"""So many actors may come in beside those who are there from the beginning."""
+
+log = structlog.get_logger(__name__)
 
 
 class Zone:
@@ -64,7 +81,9 @@ class Zone:
         max_people: int,
         seed: int,
         clock: Callable[[], float],
+        roster: Iterable[ActorSpec] = (),
     ) -> None:
+        """`names` holds what others see each actor called, by its id; `roster` says more."""
         self.scene = scene
         self.rules = rules
         self.tick_s = tick_s
@@ -72,7 +91,10 @@ class Zone:
         self.people_seen = 0
         self.actor_names = tuple(names.values())
         self.origin_m = (scene.bounds[0], scene.bounds[1])
-        self.state = State(max_people + len(names))
+        self.most_actors = len(names) + ROOM_FOR_ACTORS
+        self.state = State(max_people + self.most_actors)
+        self.failures = 0
+        """Number of inputs and of movements of actors that failed by a fault of ours."""
         self.contacts = Contacts()
         self.times = StageTimes(clock)
         self._grid = grid
@@ -82,6 +104,7 @@ class Zone:
         self._people = People(self.state, grid, rules, tick_s)
         self._population = population
         self._actors = ActorAvatars(self.state, population, names, tick_s)
+        self._commands = ActorCommands(population, self._actors, scene, self.most_actors, roster)
         self._recorder = Recorder(self.state, self.origin_m)
         self._plan_period = max(1, round(1.0 / tick_s) // PLANS_PER_SECOND)
         self._watched: dict[int, int] = {}
@@ -101,20 +124,16 @@ class Zone:
         self.times.begin()
         self._begin_frame()
         self.state.before[:] = self.state.positions
-        moved_doors: dict[str, bool] = {}
+        self._moved_doors = {}
         with self.times.stage("drain"):
             for item in inputs:
-                if isinstance(item, Join):
-                    self._joined.append((item.ticket, self._join(item)))
-                elif isinstance(item, MoveDoor):
-                    self.doors.want(item.name, item.is_open)
-                elif isinstance(item, DoorDerived):
-                    moved_doors |= self.doors.take(item.change)
-                elif isinstance(item, PotentialDerived):
-                    self._population.renew_potential(item.potential)
-                elif item.id in self.state:
-                    self._apply(item, self.state.slot(item.id))
-            self._moved_doors = moved_doors | self.doors.update()
+                try:
+                    self._take(item)
+                except Exception:
+                    # The world goes on without it.
+                    log.exception("an input failed", tick=self.tick, input=type(item).__name__)
+                    self.failures += 1
+            self._moved_doors |= self.doors.update()
             if self._moved_doors:
                 self._population.ground_changed(renewed_outside=self.doors.derived_outside)
         with self.times.stage("people"):
@@ -122,14 +141,21 @@ class Zone:
             self._observed = self._observe()
 
     def think(self) -> bool:
-        """Find the next step of every actor; whether there are any."""
+        """Find the next step of every actor; whether there are any.
+
+        If it raises, every actor is as it was, and `finish(False)` lets them stand. To have the
+        same world in a replay, `ActorsStood` is then an input of this tick.
+        """
         with self.times.stage("actors"):
+            if self._stands:
+                self._actors.stand(self._observed)
+                return False
             return self._actors.plan(self._observed)
 
     def finish(self, actors_moved: bool) -> Frame:
         """Move the actors, if they have moved, and say what is new in this tick."""
         with self.times.stage("contacts"):
-            pointing = self._actors.place(actors_moved)
+            pointing = self._place(actors_moved)
             if actors_moved:
                 for name, is_open in self._actors.doors_wanted.items():
                     self.doors.want(name, is_open)
@@ -144,6 +170,7 @@ class Zone:
                 actors=actors,
                 left=self._left,
                 entered=self._recorder.entered(),
+                reshaped=self._recorder.reshaped(),
                 joined=self._joined,
                 attached=self._attached,
                 detached=self._detached,
@@ -151,7 +178,26 @@ class Zone:
                 records=self._recorder.changed(),
                 steps=self.steps.begun_in(self.tick, self.state.live()),
                 events=Events(self._moved_doors, pointing, self._chat, self._plans()),
+                outcomes=self._commands.outcomes,
+                actors_stood=not actors_moved and len(self._population) > 0,
             )
+
+    def _place(self, actors_moved: bool) -> dict[int, Point | None]:
+        try:
+            return self._actors.place(actors_moved)
+        except Exception:
+            # Those whose avatars cannot be moved stand; the people's world goes on.
+            log.exception("the actors' avatars cannot be moved", tick=self.tick)
+            self.failures += 1
+            return self._actors.place(moved=False)
+
+    def derive_outside(self) -> None:
+        """From now on no tick waits for what is heavy: it comes as inputs, of whoever asks for it.
+
+        They are what `doors.due`, `outdated_potential` and `actor_work` want.
+        """
+        self.doors.derived_outside = self._commands.derived_outside = True
+        self._population.derive_outside()
 
     # --- questions ----------------------------------------------------------------------------
 
@@ -174,6 +220,42 @@ class Zone:
         Ask between two ticks; potentials are out of date where `doors.derived_outside`.
         """
         return self._population.outdated_potential()
+
+    def actor_work(self) -> Callable[[], ActorsDerived] | None:
+        """Derives what the next command on actors waits for, if any; heavy, safe in any thread.
+
+        Ask between two ticks, and let no door move until the result was an input.
+        """
+        return self._commands.work()
+
+    @property
+    def commands_waiting(self) -> int:
+        """Number of commands on actors that wait for what is derived for them."""
+        return self._commands.waiting
+
+    def check(self, command: ActorCommand) -> Fault | None:
+        """Why a command would be refused if it were an input of the next tick, None if it were not.
+
+        Ask between two ticks.
+        """
+        try:
+            check(command, self._population, self.most_actors)
+        except Exception as error:  # noqa: BLE001 - whatever it is, it is told
+            return fault_of(error)
+        return None
+
+    @property
+    def actors(self) -> Mapping[Hashable, ActorSpec]:
+        """What was said of each actor, by its id, with the behaviour it was given last."""
+        return self._commands.specs
+
+    def parameters(self, actor_id: str) -> ActorParameters:
+        """The parameters that an actor goes by."""
+        return self._population.navigator.parameters(actor_id)
+
+    def avatar_of(self, actor_id: str) -> int | None:
+        """The id of an actor's avatar; None if there is no such actor, or not yet."""
+        return self._actors.avatar(actor_id)
 
     def moves(self, avatar_id: int) -> bool:
         """Whether that person means to move, by a direction or along a route."""
@@ -202,6 +284,34 @@ class Zone:
         self._left: list[int] = []
         self._acks: dict[int, int] = {}
         self._chat: list[Line] = []
+        self._stands = False
+        self._commands.begin()
+
+    def _take(self, item: Input) -> None:
+        match item:
+            case Join():
+                self._joined.append((item.ticket, self._join(item)))
+            case MoveDoor():
+                self.doors.want(item.name, item.is_open)
+            case DoorDerived():
+                self._moved_doors |= self.doors.take(item.change)
+            case PotentialDerived():
+                self._population.renew_potential(item.potential)
+            case ActorsDerived():
+                self._go(self._commands.take_derived(item, self.tick))
+            case ActorsStood():
+                self._stands = True
+            case Attach() | Detach() | Leave() | Stand() | Steer() | Follow() | Say() | Watch():
+                if item.id in self.state:
+                    self._apply(item, self.state.slot(item.id))
+            case _:
+                self._go(self._commands.take(item, self.tick))
+
+    def _go(self, avatars: list[int]) -> None:
+        """Actors' avatars have left the world: nobody watches them any more."""
+        self._left += avatars
+        gone = set(avatars)
+        self._watched = {who: one for who, one in self._watched.items() if one not in gone}
 
     def _join(self, join: Join) -> int:
         place = self._spawning.place(join.at, join.anywhere)

@@ -18,18 +18,18 @@ def pool() -> PotentialPool:
 
 def test_actors_with_the_same_goal_share_a_row() -> None:
     guides = pool()
-    one = guides.take((1.0, 1.0), 0.0, BODY)
-    assert guides.take((1.0, 1.0), 0.0, BODY) == one
-    assert guides.take((1.0, 1.0), 0.0, Body(radius_m=0.3)) != one
-    assert guides.take((2.0, 1.0), 0.0, BODY) != one
+    one = guides.take((1.0, 1.0, 0.0, BODY))
+    assert guides.take((1.0, 1.0, 0.0, BODY)) == one
+    assert guides.take((1.0, 1.0, 0.0, Body(radius_m=0.3))) != one
+    assert guides.take((2.0, 1.0, 0.0, BODY)) != one
 
 
 def test_floors_and_bodies_have_rows_of_their_own() -> None:
     grid = LayeredGrid.from_scene(storeyed())
     guides = PotentialPool(grid)
-    below = guides.take((12.0, 6.0), 0.0, BODY)
-    above = guides.take((12.0, 6.0), UPPER_M, BODY)
-    child = guides.take((12.0, 6.0), 0.0, Body.child())
+    below = guides.take((12.0, 6.0, 0.0, BODY))
+    above = guides.take((12.0, 6.0, UPPER_M, BODY))
+    child = guides.take((12.0, 6.0, 0.0, Body.child()))
     assert len({below, above, child}) == 3
     cells = grid.on_ground([(12.0, 6.0)] * 2, [0.0, UPPER_M])[1]
     # The length left from each cell's first waypoint; from the other floor it is over the stairs.
@@ -40,22 +40,22 @@ def test_floors_and_bodies_have_rows_of_their_own() -> None:
 
 def test_a_goal_comes_back_to_the_row_it_had() -> None:
     guides = pool()
-    slot = guides.take((1.0, 1.0), 0.0, BODY)
+    slot = guides.take((1.0, 1.0, 0.0, BODY))
     before = guides.arrays[slot].copy()
     guides.release(slot)
-    assert guides.take((1.0, 1.0), 0.0, BODY) == slot
+    assert guides.take((1.0, 1.0, 0.0, BODY)) == slot
     assert np.array_equal(guides.arrays[slot], before)
 
 
 def test_rows_in_use_stay_while_idle_ones_are_used_again() -> None:
     guides = pool()
-    kept = guides.take((3.0, 3.0), 0.0, BODY)
+    kept = guides.take((3.0, 3.0, 0.0, BODY))
     before = guides.arrays[kept].copy()
     for k in range(200):
-        guides.release(guides.take((0.5 + 0.01 * k, 1.0), 0.0, BODY))
+        guides.release(guides.take((0.5 + 0.01 * k, 1.0, 0.0, BODY)))
     assert len(guides.arrays) <= 64
     assert np.array_equal(guides.arrays[kept], before)
-    fresh = guides.take((0.5, 1.0), 0.0, BODY)
+    fresh = guides.take((0.5, 1.0, 0.0, BODY))
     assert fresh != kept
     cell = GRID.on_ground([(0.6, 1.1)], [0.0])[1][0]
     assert guides.arrays[fresh, cell, 0] < 0.5
@@ -64,7 +64,7 @@ def test_rows_in_use_stay_while_idle_ones_are_used_again() -> None:
 def test_nobodys_row_may_be_given_back() -> None:
     guides = pool()
     guides.release(-1)
-    assert guides.take((1.0, 1.0), 0.0, BODY) == 0
+    assert guides.take((1.0, 1.0, 0.0, BODY)) == 0
 
 
 def test_rows_are_used_as_they_are_until_somebody_renews_them() -> None:
@@ -74,14 +74,14 @@ def test_rows_are_used_as_they_are_until_somebody_renews_them() -> None:
         )
     )
     guides = PotentialPool(grid)
-    idle = guides.take((2.0, 1.0), 0.0, BODY)
+    idle = guides.take((2.0, 1.0, 0.0, BODY))
     guides.release(idle)
-    used = guides.take((1.0, 1.0), 0.0, BODY)
+    used = guides.take((1.0, 1.0, 0.0, BODY))
     before = guides.arrays[used].copy()
     grid.set_door("d", False)
     guides.outdate()
     guides.renew_one()
-    assert guides.take((2.0, 1.0), 0.0, BODY) == idle, "nobody waits for a goal that is known"
+    assert guides.take((2.0, 1.0, 0.0, BODY)) == idle, "nobody waits for a goal that is known"
     assert np.array_equal(guides.arrays[used], before)
     assert guides.outdated_rows == 2
     guides.release(idle)
@@ -102,7 +102,7 @@ def test_rows_are_used_as_they_are_until_somebody_renews_them() -> None:
 
 def test_a_renewed_potential_that_nobody_knows_any_more_is_void() -> None:
     guides, others = pool(), pool()
-    others.take((1.0, 1.0), 0.0, BODY)
+    others.take((1.0, 1.0, 0.0, BODY))
     others.outdate()
     derive = others.outdated()
     assert derive is not None
@@ -117,7 +117,7 @@ def test_goals_that_are_prepared_get_their_rows_at_once() -> None:
     guides.prepare(few, threads=2)
     assert len(guides.arrays) == 12
     for x, y, z_m, body in few:
-        row = guides.take((x, y), z_m, body)
+        row = guides.take((x, y, z_m, body))
         assert np.array_equal(
             guides.arrays[row], Potential(GRID, (x, y), z_m, BODY.radius_m, body=body).values
         )

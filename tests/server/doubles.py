@@ -38,8 +38,15 @@ class ScriptedPopulation:
         self.positions[actor_id] = position
         self.velocities[actor_id] = velocity
         if actor_id not in self.table:
-            row = ActorParameters().row()
-            self.table.add(actor_id, (*position, 0.0), row, cell=-1, layer=0, heading=0.0)
+            nothing = np.zeros(1, dtype=np.int64)
+            self.table.add(
+                [actor_id],
+                np.array([(*position, 0.0)]),
+                ActorParameters().row()[None],
+                cells=nothing - 1,
+                layers=nothing,
+                headings=np.zeros(1),
+            )
 
     def __len__(self) -> int:
         return len(self.positions)
@@ -68,6 +75,9 @@ class ScriptedPopulation:
     def ground_changed(self, *, renewed_outside: bool = False) -> None:
         self.found_anew += 1
         self.renewed_outside = renewed_outside
+
+    def derive_outside(self) -> None:
+        pass
 
     def outdated_potential(self) -> None:
         return None

@@ -56,8 +56,15 @@ def crowd_of(positions, goals, velocities=None, ranks=None, **changes) -> Agents
     actors = len(positions)
     row = np.array(tuple(BODY[name] for name in PARAMETERS.names or ()), dtype=PARAMETERS)
     table = AgentTable(PLAN.slices)
-    for actor, place in enumerate(positions):
-        table.add(actor, (*place, 0.0), row, cell=-1, layer=0, heading=0.0)
+    nothing = np.zeros(actors, dtype=np.int64)
+    table.add(
+        range(actors),
+        np.column_stack([positions, np.zeros(actors)]),
+        np.repeat(row[None], actors),
+        cells=nothing - 1,
+        layers=nothing,
+        headings=np.zeros(actors),
+    )
     for name, value in changes.items():
         table.agents.parameters[name] = value
     return table.agents._replace(

@@ -148,7 +148,7 @@ def populated() -> tuple[Zone, Population]:
         seed=3,
         clock=lambda: 0.0,
     )
-    world.doors.derived_outside = True
+    world.derive_outside()
     return world, population
 
 

@@ -1,0 +1,138 @@
+"""The rows that actors use of what a zone derives: clearances, tables of risk, potentials."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.actors.parameter_records import measures
+from esplanade.actors.parameters import body_of
+from esplanade.actors.potential_pool import Goal, GoalKey, PotentialPool, goal_key
+from esplanade.planning import AgentTable, Body, LayeredGrid
+from esplanade.planning.grid.clearances import kind_of
+from esplanade.planning.people.risk import RiskField
+
+
+class DerivedRows:
+    """Takes rows for actors and gives them back, so that each is counted once for each user."""
+
+    def __init__(self, grid: LayeredGrid, field: RiskField, potentials: PotentialPool) -> None:
+        self._grid = grid
+        self._field = field
+        self._potentials = potentials
+
+    def claim(self, bodies: Sequence[Body]) -> list[int]:
+        """Rows of the grid for some bodies.
+
+        Raises
+        ------
+        ValueError
+            Too many kinds of body would walk here; none is claimed then.
+        """
+        rows: list[int] = []
+        try:
+            for body in bodies:
+                rows.append(self._grid.claim(body))  # noqa: PERF401 - some are claimed if it fails
+        except ValueError:
+            for body in bodies[: len(rows)]:
+                self._grid.release(body)
+            raise
+        return rows
+
+    def release(self, records: NDArray[np.void]) -> None:
+        """Give back the rows of the grid that actors with these parameters (N,) had."""
+        for record in records:
+            self._grid.release(body_of(record))
+
+    def contacts(self, records: NDArray[np.void]) -> list[int]:
+        """Rows of the tables of risk for actors with these parameters (N,)."""
+        return [self._field.contact_row(float(record["radius_m"])) for record in records]
+
+    def give_back(self, table: AgentTable) -> None:
+        """Give back all rows of all actors."""
+        for slot in table.agents.potential_rows.tolist():
+            self._potentials.release(slot)
+        self.release(table.agents.parameters)
+
+    def take_all(self, table: AgentTable) -> None:
+        """Take all rows of all actors, who have none."""
+        agents = table.agents
+        agents.bodies[:] = self.claim([body_of(record) for record in agents.parameters])
+        agents.contacts[:] = self.contacts(agents.parameters)
+        for row in range(len(table)):
+            target = table.wanted(row)
+            agents.potential_rows[row] = (
+                -1 if target is None else self._potential(table, row, target)
+            )
+
+    def head_for(self, table: AgentTable, row: int, target: Goal | None) -> None:
+        """Let an actor go by the potential of a goal, or by none."""
+        self._go_by(table, row, -1 if target is None else self._potential(table, row, target))
+
+    def change(
+        self,
+        table: AgentTable,
+        rows: NDArray[np.int64],
+        records: NDArray[np.void],
+        prepared: Mapping[GoalKey, NDArray[np.float32]] | None = None,
+    ) -> None:
+        """Write other parameters (N,) of the actors in these rows (N,), and what follows from them.
+
+        Raises
+        ------
+        ValueError
+            Too many kinds of body would walk here; nothing is changed then.
+        """
+        agents = table.agents
+        before = agents.parameters[rows]
+        new = self.of_new_kind(before, records)
+        bodies = [body_of(record) for record in records[new]]
+        claims, contacts = self.claim(bodies), self.contacts(records[new])
+        keys: list[GoalKey | None] = []
+        slots: list[int] = []
+        try:
+            for row, body in zip(rows[new].tolist(), bodies, strict=True):
+                target = table.wanted(row)
+                keys.append(None if target is None else goal_key(self._grid, target, body))
+                slots.append(-1 if keys[-1] is None else self._potentials.take(keys[-1], prepared))
+        except Exception:
+            for slot in slots:
+                self._potentials.release(slot)
+            self.release(records[new])
+            raise
+        agents.parameters[rows] = records
+        self.release(before[new])
+        agents.bodies[rows[new]], agents.contacts[rows[new]] = claims, contacts
+        for row, key, slot in zip(rows[new].tolist(), keys, slots, strict=True):
+            if key is not None:
+                agents.goals[row] = key[:2]
+            self._go_by(table, row, slot)
+
+    def of_new_kind(self, before: NDArray[np.void], after: NDArray[np.void]) -> NDArray[np.int64]:
+        """Which of N actors are of another kind of body with their other parameters."""
+        other = np.flatnonzero((measures(before) != measures(after)).any(axis=1))
+        kinds = ((kind_of(body_of(before[k])), kind_of(body_of(after[k]))) for k in other)
+        new = [k for k, (old, now) in zip(other.tolist(), kinds, strict=True) if old != now]
+        return np.array(new, dtype=np.int64)
+
+    def _potential(self, table: AgentTable, row: int, target: Goal) -> int:
+        """The potential of an actor's goal, -1 where none can be; its `goals` are moved out of
+        walls."""
+        key = goal_key(self._grid, target, body_of(table.agents.parameters[row]))
+        if key is None:
+            return -1
+        table.agents.goals[row] = key[:2]
+        return self._potentials.take(key)
+
+    def _go_by(self, table: AgentTable, row: int, slot: int) -> None:
+        """Let an actor go by a potential that was taken for it, and begin anew."""
+        agents = table.agents
+        old = int(agents.potential_rows[row])
+        agents.potential_rows[row] = slot
+        agents.known[row] = agents.known[row] and slot == old
+        agents.left_m[row] = np.nan
+        agents.behind_s[row] = 0.0
+        agents.passages[row] = 0.0
+        self._potentials.release(old)

@@ -1,0 +1,29 @@
+"""Why an actor does what it does."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.actors.behaviour import BehaviourName, Goal
+from esplanade.actors.blockers import Blocker
+from esplanade.actors.state import Reason
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """Why an actor does what it does, for the overlay and the operator."""
+
+    behaviour: BehaviourName
+    reason: Reason
+    goal: Goal | None
+    path: NDArray[np.float64]
+    """float64 (K, 4): x, y, z, seconds from now."""
+    people: list[NDArray[np.float64]]
+    """One array for each person near: float64 (K, 4) x, y, z, radius of the two-sigma circle, m."""
+    since_s: float = 0.0
+    """For how long the reason has been that, seconds."""
+    blocker: Blocker | None = None
+    """What holds the actor, as far as that can be told."""
