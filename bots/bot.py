@@ -26,6 +26,7 @@ from esplanade.protocol.messages import (
     Ping,
     Point,
     Pong,
+    Reshape,
     ServerMessage,
     SetDoor,
     Snapshot,
@@ -197,6 +198,8 @@ class Bot(Person):
                 self._view.leave(message)
             case Point():
                 self._view.point(message)
+            case Reshape():
+                self._view.reshape(message)
             case Doors():
                 self._view.doors.update(message.doors)
             case Pong():

@@ -14,6 +14,7 @@ from esplanade.protocol.messages import (
     Plan,
     Point,
     Pong,
+    Reshape,
 )
 from esplanade.protocol.snapshot import (
     Floats,
@@ -90,4 +91,5 @@ Event = (
     | Census
     | Doors
     | Point
+    | Reshape
 )

@@ -5,7 +5,7 @@ from typing import Final
 
 from esplanade.bots.events import SnapshotEvent
 from esplanade.protocol import Kind, Reason
-from esplanade.protocol.messages import Enter, Entity, Leave, Place, Point, Welcome
+from esplanade.protocol.messages import Enter, Entity, Leave, Place, Point, Reshape, Welcome
 from esplanade.protocol.snapshot import HEADING_RAD, POSITION_M, SPEED_MPS
 
 _REASONS: Final[dict[int, Reason]] = {int(reason): reason for reason in Reason}
@@ -72,6 +72,12 @@ class View:
     def point(self, message: Point) -> None:
         if message.id in self.others:
             self.others[message.id].points_at = message.target
+
+    def reshape(self, message: Reshape) -> None:
+        known = self.own if message.id == self._own_id else self.others.get(message.id)
+        if known is not None:
+            known.radius = message.radius
+            known.leg_m, known.stature_m = message.leg_m, message.stature_m
 
     def snapshot(self, event: SnapshotEvent) -> None:
         self.tick = event.tick

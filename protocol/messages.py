@@ -257,6 +257,20 @@ class Circle(BaseModel):
     radius: float
 
 
+class Blocker(BaseModel):
+    """What holds an actor that does not walk on."""
+
+    model_config = ConfigDict(frozen=True, extra="ignore")
+    kind: Literal["person", "actor", "door", "wall", "route"] | str
+    """A route is one that the server still looks for."""
+    id: EntityId | None = None
+    """Of the person or the actor."""
+    door: str | None = None
+    """The name of the door."""
+    away: float | None = None
+    """Metres between the bodies, or to the door or wall."""
+
+
 class Plan(FromServer):
     """Why the watched actor does what it does, about five times a second."""
 
@@ -270,6 +284,10 @@ class Plan(FromServer):
     """Points (x, y, z, seconds from now)."""
     people: list[list[Circle]]
     """For every person near the actor: the predicted circles, soonest first."""
+    since_s: float
+    """For how long the reason has been that."""
+    blocker: Blocker | None
+    """What holds the actor, where it does not walk on and that can be told."""
 
 
 class Census(FromServer):

@@ -31,7 +31,7 @@ from esplanade.server.net.schedule import Schedule
 from esplanade.server.net.search_budget import SearchBudget
 from esplanade.server.net.ticker import Ticker
 from esplanade.server.net.tls import Tls
-from esplanade.server.populating import populate
+from esplanade.server.populating import default_roster, names_of, populate_from
 from esplanade.server.rehearsal import rehearse, rehearse_walking
 from esplanade.server.settings import ServerSettings
 from esplanade.server.warming import kernels_compiled
@@ -107,7 +107,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             thread, build_world, loaded, settings
         )
         stack.callback(population.close)
-        _watch(world, metrics)
+        _watch(world, population, metrics)
 
         schedule = Schedule(world.tick_s, loop.time())
         searching = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="routes"))
@@ -129,11 +129,6 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             "doors_waiting",
             "Doors that are wanted open or closed, and are not",
             world.doors.waiting,
-        )
-        metrics.gauge(
-            "potentials_outdated",
-            "Potentials of goals that wait to be derived anew since a door has moved",
-            lambda: population.navigator.potentials.outdated_rows,
         )
         deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
         ground_work = GroundWork(world, deriving)
@@ -179,10 +174,11 @@ def _build_warm(
     tick_s, seed = settings.tick_s, settings.seed
     try:
         grid = LayeredGrid.from_scene(loaded.scene)
-        population, names = populate(
+        roster = loaded.roster or default_roster(loaded.scene, settings.actors, seed)
+        population = populate_from(
+            roster,
             grid,
             loaded.scene,
-            settings.actors,
             tick_s,
             seed,
             person_radius_m=settings.person_radius_m,
@@ -191,12 +187,13 @@ def _build_warm(
             loaded.scene,
             grid,
             population,
-            names,
+            names_of(roster),
             loaded.rules,
             tick_s=tick_s,
             max_people=settings.max_clients,
             seed=seed,
             clock=time.perf_counter,
+            roster=roster.actors,
         )
     except ValueError as error:
         raise LoadingError(f"scene {loaded.scene.name!r}: {error}") from error
@@ -215,7 +212,7 @@ async def _stop(ticker: Ticker, ticking: "asyncio.Task[None]", hub: Hub) -> None
         await hub.close()
 
 
-def _watch(world: Zone, metrics: Metrics) -> None:
+def _watch(world: Zone, population: Population, metrics: Metrics) -> None:
     metrics.gauge("people", "People in the world", lambda: world.count()[0])
     metrics.gauge("actors", "Actors in the world", lambda: world.count()[1])
     metrics.total("people_seen", "People who came in", lambda: world.people_seen)
@@ -227,6 +224,21 @@ def _watch(world: Zone, metrics: Metrics) -> None:
     metrics.total("steps", "Steps that began or were re-aimed", lambda: feet.begun)
     metrics.total("walkers_lost", "Walkers set back onto their feet", lambda: feet.lost)
     metrics.total("stepping_failures", "Ticks in which nobody could step", lambda: feet.failures)
+    metrics.gauge(
+        "commands_waiting",
+        "Commands on actors that wait for what is derived for them",
+        lambda: world.commands_waiting,
+    )
+    metrics.total(
+        "inputs_failed",
+        "Inputs and movements of actors that failed by a fault of the server",
+        lambda: world.failures,
+    )
+    metrics.gauge(
+        "potentials_outdated",
+        "Potentials of goals that wait to be derived anew since a door has moved",
+        lambda: population.navigator.potentials.outdated_rows,
+    )
 
 
 def _watch_routes(route_requests: RouteRequests, metrics: Metrics) -> None:

@@ -20,6 +20,7 @@ from esplanade.recordings import (
     walls_beside,
 )
 from esplanade.server.patience import told_of
+from esplanade.server.roster import Roster, RosterError, read_roster
 from esplanade.server.settings import ServerSettings
 from esplanade.server.world.rules import Rules
 
@@ -46,6 +47,8 @@ class LoadedScene:
 
     scene: Scene
     rules: Rules
+    roster: Roster | None = None
+    """The actors that walk in it from the beginning; None for those that it usually has."""
     triangles: bytes | None = None
     """The triangles of a mesh: nine little-endian 32-bit floats each, metres, z up."""
 
@@ -71,9 +74,11 @@ def load_scene(settings: ServerSettings) -> LoadedScene:
         viewer_bytes=settings.viewer_bytes,
         tick_rate=settings.tick_rate,
     )
+    roster = None if settings.roster is None else _read_roster(settings.roster)
     if settings.crowd is None:
         scene = _read_scene(settings.scene or DEFAULT_SCENE)
-        return LoadedScene(scene, rules, None if scene.mesh is None else _triangles(scene.mesh))
+        triangles = None if scene.mesh is None else _triangles(scene.mesh)
+        return LoadedScene(scene, rules, roster, triangles)
     try:
         crowd = read_crowd(settings.crowd)
         path = settings.walls or walls_beside(settings.crowd)
@@ -92,7 +97,15 @@ def load_scene(settings: ServerSettings) -> LoadedScene:
             person_clearance_m=0.0,
             person_max_speed_mps=max(rules.person_max_speed_mps, needed_mps),
         ),
+        roster,
     )
+
+
+def _read_roster(path: Path) -> Roster:
+    try:
+        return read_roster(path)
+    except RosterError as error:
+        raise LoadingError(str(error)) from None
 
 
 def _read_scene(path: Path) -> Scene:

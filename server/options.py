@@ -31,6 +31,9 @@ _WORLD: Final = {
         "walls around the crowd; without it, NAME.walls.json beside the crowd's file", InputFile()
     ),
     "actors": Setting("computer-run actors that walk about", Whole(0, 500), 10),
+    "roster": Setting(
+        "which actors walk about instead, what each does and how, a JSON file", InputFile()
+    ),
     "seed": Setting("seed of everything random in the world", Whole(0, SEED_LIMIT), 0),
     "tick_rate": Setting("ticks of the world", Whole(5, 60), 20, "per second"),
 }
@@ -218,6 +221,8 @@ def check(given: Mapping[str, Any]) -> None:
     """
     if given.get("scene") and given.get("crowd"):
         raise ValueError("scene and crowd: give one of them, not both")
+    if given.get("roster") and given.get("actors") is not None:
+        raise ValueError("roster and actors: give one of them, not both")
     if given.get("walls") and not given.get("crowd"):
         raise ValueError("walls: they belong to a crowd, but none is given")
     if bool(given.get("tls_cert")) != bool(given.get("tls_key")):

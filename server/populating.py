@@ -1,12 +1,15 @@
-"""Populates a scene: with wanderers, and where there are places with a patrol and a guide."""
+"""Populates a scene by a roster, or with wanderers, a patrol and a guide where there are places."""
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Mapping
 from typing import Final
 
 import numpy as np
 
-from esplanade.actors import ActorParameters, Behaviour, Guide, Patrol, Population, Wander
+from esplanade.actors import ActorSpec, BehaviourSpec, Newcomer, Population
+from esplanade.actors.actor_spec import actor_id
+from esplanade.actors.behaviour_spec import GuideSpec, PatrolSpec, WanderSpec
 from esplanade.planning import LayeredGrid, Scene
+from esplanade.server.roster import Roster
 
 NAMES: Final = (
     "Alder", "Aspen", "Bay", "Birch", "Cedar", "Clover", "Cove", "Dale", "Drift", "Dune", "Elm",
@@ -29,7 +32,7 @@ def populate(
     seed: int,
     *,
     person_radius_m: float = 0.25,
-) -> tuple[Population, dict[Hashable, str]]:
+) -> tuple[Population, Mapping[Hashable, str]]:
     """Make a population of `count` actors among people of that radius, and name each.
 
     Raises
@@ -37,24 +40,69 @@ def populate(
     ValueError
         The scene has no room for them.
     """
-    random = np.random.default_rng([seed, count])
+    roster = default_roster(scene, count, seed)
+    population = populate_from(roster, grid, scene, tick_s, seed, person_radius_m=person_radius_m)
+    return population, names_of(roster)
+
+
+def populate_from(
+    roster: Roster,
+    grid: LayeredGrid,
+    scene: Scene,
+    tick_s: float,
+    seed: int,
+    *,
+    person_radius_m: float = 0.25,
+) -> Population:
+    """Make a population of the actors of a roster, among people of that radius.
+
+    Raises
+    ------
+    ValueError
+        The scene has no room for them, or lacks a place that one of them is to go to.
+    """
     population = Population(grid, scene, tick_s=tick_s, seed=seed, person_radius_m=person_radius_m)
-    names: dict[Hashable, str] = {}
+    for spec, parameters in zip(roster.actors, roster.parameters(), strict=True):
+        behaviour = spec.behaviour.make()
+        try:
+            population.check_targets(behaviour)
+            population.add_many([Newcomer(spec.id, behaviour, parameters, spec.place)])
+        except KeyError as error:
+            raise ValueError(f"{spec.id}: {error.args[0]}") from None
+        except ValueError as error:
+            raise ValueError(f"{spec.id}: {error}") from None
+    return population
+
+
+def names_of(roster: Roster) -> Mapping[Hashable, str]:
+    """What others see each actor called, by its id."""
+    return {spec.id: spec.name for spec in roster.actors}
+
+
+def default_roster(scene: Scene, count: int, seed: int) -> Roster:
+    """The roster of `count` actors of a scene without one of its own."""
+    random = np.random.default_rng([seed, count])
     order = random.permutation(len(NAMES)).tolist()
+    actors = []
     for number in range(count):
-        actor_id = f"actor-{number + 1}"
         name, again = NAMES[order[number % len(NAMES)]], number // len(NAMES)
-        parameters = ActorParameters(speed_mps=round(float(random.uniform(*SPEEDS_MPS)), 2))
-        population.add(actor_id, _behaviour(number, scene, random), parameters)
-        names[actor_id] = f"{name} {again + 1}" if again else name
-    return population, names
+        speed_mps = round(float(random.uniform(*SPEEDS_MPS)), 2)
+        actors.append(
+            ActorSpec(
+                id=actor_id(f"actor-{number + 1}"),
+                name=f"{name} {again + 1}" if again else name,
+                behaviour=_behaviour(number, scene, random),
+                overrides={"speed_mps": speed_mps},
+            )
+        )
+    return Roster(actors=tuple(actors))
 
 
-def _behaviour(number: int, scene: Scene, random: np.random.Generator) -> Behaviour:
+def _behaviour(number: int, scene: Scene, random: np.random.Generator) -> BehaviourSpec:
     """The second actor patrols, the third guides, all others wander."""
     places = [place.name for place in scene.places]
     if number == 1 and len(places) >= PATROL_STOPS:
-        return Patrol(random.permutation(places).tolist()[:PATROL_STOPS])
+        return PatrolSpec(stops=random.permutation(places).tolist()[:PATROL_STOPS])
     if number == 2 and len(places) >= GUIDE_STOPS:
-        return Guide(places)
-    return Wander()
+        return GuideSpec(tour=places)
+    return WanderSpec()

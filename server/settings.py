@@ -29,6 +29,7 @@ class ServerSettings(BaseSettings):
     crowd: Path | None = _field("crowd")
     walls: Path | None = _field("walls")
     actors: int = _field("actors")
+    roster: Path | None = _field("roster")
     seed: int = _field("seed")
     tick_rate: int = _field("tick_rate")
 

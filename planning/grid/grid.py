@@ -28,10 +28,10 @@ from esplanade.planning.grid.clearances import (
     write_clearance,
 )
 from esplanade.planning.grid.door_change import DoorChange
+from esplanade.planning.grid.lookup import PlaceLookup
 from esplanade.planning.ground._geometry_kernels import Placement
 from esplanade.planning.ground.barriers import Barriers
 from esplanade.planning.ground.floors import Floors, floors_of_mesh, floors_of_scene
-from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.ground.meshes import Progress, no_progress
 from esplanade.planning.ground.surfaces import Surfaces
 from esplanade.planning.scene.bodies import Body
@@ -45,7 +45,7 @@ ADULT = Body.adult()
 _EDGES = (Stability.UNSTABLE, Stability.UP_STAIR, Stability.DOWN_STAIR)
 
 
-class LayeredGrid:
+class LayeredGrid(PlaceLookup):
     """The cells of one zone, layer by layer, and the barriers that stop bodies there.
 
     Places are given by x, y and a height, in metres: the standing surface nearest in height is
@@ -162,9 +162,11 @@ class LayeredGrid:
         long as no door moves. `bodies_change` is what it has got to know meanwhile.
         """
         fork = copy(self)
-        fork._rows = self._rows.fork()
-        fork._forked = self.arrays
-        fork.traversability = self.traversability.fork()
+        vars(fork).update(
+            _rows=self._rows.fork(),
+            _forked=self.arrays,
+            traversability=self.traversability.fork(),
+        )
         return fork
 
     def bodies_change(self, fork: LayeredGrid) -> BodiesChange:
@@ -200,11 +202,6 @@ class LayeredGrid:
         if self._held[0] is not arrays:
             self._held = arrays, make_handle(GroundArrays(arrays, self.index))
         return self._held[1]
-
-    @property
-    def layered(self) -> LayeredArrays:
-        """Floors, ceilings and links of the cells."""
-        return self.floors.layered
 
     @property
     def surfaces(self) -> Surfaces:
@@ -289,64 +286,9 @@ class LayeredGrid:
         """Number of layers."""
         return len(self.layered.pages)
 
-    def as_points(
-        self, positions: ArrayLike, heights: ArrayLike
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Positions as float64 (N, 2) and heights as float64 (N,), checked.
-
-        Raises
-        ------
-        ValueError
-            Wrong shapes, or numbers that are not finite.
-        """
-        points = np.ascontiguousarray(positions, dtype=np.float64).reshape(-1, 2)
-        levels = np.ascontiguousarray(heights, dtype=np.float64).reshape(-1)
-        if len(points) != len(levels):
-            raise ValueError(f"{len(points)} positions but {len(levels)} heights")
-        if not (np.isfinite(points).all() and np.isfinite(levels).all()):
-            raise ValueError("positions and heights must be finite")
-        return points, levels
-
-    def on_ground(
-        self, positions: ArrayLike, heights: ArrayLike
-    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-        """Positions float64 (N, 2) and the cells int64 (N,) that are stood in there.
-
-        The cell is that of the surface nearest in height, if need be up to two cells aside; it is
-        -1 where nobody can stand.
-        """
-        points, levels = self.as_points(positions, heights)
-        cells = np.empty(len(points), dtype=np.int64)
-        kernels.surfaces_at(self.arrays, points, levels, cells)
-        return points, cells
-
     def cell_at(self, position: tuple[float, float], height: float) -> int:
         """The cell of one place, -1 where nobody can stand; `on_ground` does this for many."""
         return walking.cell_at(self.ground, position[0], position[1], height)
-
-    def with_heights(
-        self, paths: NDArray[np.float64], cells: NDArray[np.int64]
-    ) -> NDArray[np.float64]:
-        """A paths (A, K, 2) that begin in cells (A,) with their heights, float64 (A, K, 3)."""
-        out = np.zeros((*paths.shape[:2], 3))
-        out[:, :, :2] = paths
-        if not self.arrays.flat:
-            kernels.heights_along(self.arrays, cells, out)
-        return out
-
-    def floor_at(self, position: tuple[float, float], height: float) -> float:
-        """Height of the standing surface nearest in height; `height` itself if there is none."""
-        cell = int(self.on_ground([position], [height])[1][0])
-        return float(self.layered.floors[cell]) if cell >= 0 else height
-
-    def layers_at(self, positions: ArrayLike, heights: ArrayLike) -> NDArray[np.int64]:
-        """`layer_at` for (N, 2), (N,): int64 (N,)."""
-        _, cells = self.on_ground(positions, heights)
-        return np.where(cells >= 0, self.layered.places[cells]["layer"], 0).astype(np.int64)
-
-    def layer_at(self, position: tuple[float, float], height: float) -> int:
-        """Layer of the standing surface nearest in height; 0 if there is none."""
-        return int(self.layers_at([position], [height])[0])
 
     def clearance(
         self, positions: ArrayLike, heights: ArrayLike, body: Body = ADULT

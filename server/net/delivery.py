@@ -6,7 +6,7 @@ import numpy as np
 
 from esplanade.actors import Explanation
 from esplanade.protocol import Reason
-from esplanade.protocol.messages import Census, Chat, Circle, Doors, Plan, Point, Reshape
+from esplanade.protocol.messages import Blocker, Census, Chat, Circle, Doors, Plan, Point, Reshape
 from esplanade.server.net import frames
 from esplanade.server.net.packing import Packing
 from esplanade.server.net.session import Session
@@ -127,4 +127,16 @@ def plan(tick: int, actor: int, explanation: Explanation) -> Plan:
             ]
             for circles in explanation.people
         ],
+        since_s=round(explanation.since_s, 3),
+        blocker=blocker(explanation),
     )
+
+
+def blocker(explanation: Explanation) -> Blocker | None:
+    """What holds an actor, as it goes over the wire; the ids are those of avatars."""
+    held = explanation.blocker
+    if held is None:
+        return None
+    avatar = held.id if isinstance(held.id, int) else None
+    door = held.id if isinstance(held.id, str) else None
+    return Blocker(kind=held.kind, id=avatar, door=door, away=held.away_m)

@@ -1,6 +1,7 @@
 """The actors' avatars: moved as their population decides."""
 
 from collections.abc import Hashable, Iterable, Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -114,8 +115,16 @@ class ActorAvatars:
         self._population.stand(people)
 
     def explain(self, avatar_id: int) -> Explanation:
-        """Why this actor does what it does. Not while `plan` runs."""
-        return self._population.explain(self._actor_ids[avatar_id])
+        """Why this actor does what it does; who holds it is told by the avatar's id.
+
+        Not while `plan` runs.
+        """
+        explanation = self._population.explain(self._actor_ids[avatar_id])
+        held = explanation.blocker
+        if held is None or held.kind != "actor":
+            return explanation
+        by = replace(held, id=self._avatars.get(held.id))
+        return replace(explanation, blocker=by)
 
     def _stop(self) -> None:
         state = self._state

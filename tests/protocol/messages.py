@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from esplanade.protocol import ByeCode, ErrorCode, Kind, Reason
 from esplanade.protocol.codes import MAX_CHAT_CHARS, MAX_DOOR_CHARS, MAX_NAME_CHARS, MAX_TOKEN_CHARS
 from esplanade.protocol.messages import (
+    Blocker,
     Bye,
     Census,
     Chat,
@@ -27,6 +28,7 @@ from esplanade.protocol.messages import (
     Plan,
     Point,
     Pong,
+    Reshape,
     SetDoor,
     Snapshot,
     StepBlock,
@@ -107,6 +109,13 @@ entities = st.builds(
     stature_m=floats,
     points_at=st.none() | places,
 )
+blockers = st.builds(
+    Blocker,
+    kind=st.sampled_from(["person", "actor", "door", "wall", "route"]),
+    id=st.none() | u32,
+    door=st.none() | texts,
+    away=st.none() | floats,
+)
 circles = st.builds(Circle, x=floats, y=floats, z=floats, radius=floats)
 
 server_messages: st.SearchStrategy[FromServer] = st.one_of(
@@ -149,9 +158,12 @@ server_messages: st.SearchStrategy[FromServer] = st.one_of(
         goal=st.none() | places,
         path=st.lists(st.tuples(floats, floats, floats, floats), max_size=4),
         people=st.lists(st.lists(circles, max_size=3), max_size=3),
+        since_s=floats,
+        blocker=st.none() | blockers,
     ),
     st.builds(Census, people=u32, actors=u32),
     st.builds(Doors, doors=doors),
     st.builds(StepBlock, tick=u32, block=st.binary(max_size=500)),
     st.builds(Point, id=u32, target=st.none() | places),
+    st.builds(Reshape, id=u32, radius=floats, leg_m=floats, stature_m=floats),
 )

@@ -161,6 +161,9 @@ export class Session {
       case "point":
         world?.point(message.id, message.target);
         break;
+      case "reshape":
+        world?.reshape(message.id, message.radius, message.leg_m, message.stature_m);
+        break;
       case "plan":
         if (world && message.id === this.chosenId && this.planSwitch.open) world.plan = message;
         break;

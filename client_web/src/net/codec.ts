@@ -31,6 +31,7 @@ const SERVER_TYPES = new Map<unknown, ServerMessage["type"]>([
   [ServerCode.CENSUS, "census"],
   [ServerCode.DOORS, "doors"],
   [ServerCode.POINT, "point"],
+  [ServerCode.RESHAPE, "reshape"],
 ]);
 
 const RECORD_BYTES = 14;

@@ -30,6 +30,7 @@ export const ServerCode = {
   DOORS: 75,
   STEPS: 76,
   POINT: 77,
+  RESHAPE: 78,
 } as const;
 
 export const Reason = {

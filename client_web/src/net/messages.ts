@@ -151,6 +151,13 @@ export interface PlanCircle {
   radius: number;
 }
 
+export interface PlanBlocker {
+  kind: string;
+  id: number | null;
+  door: string | null;
+  away: number | null;
+}
+
 export interface Plan {
   type: "plan";
   tick: number;
@@ -161,6 +168,10 @@ export interface Plan {
   /** Points (x, y, z, seconds from now). */
   path: [x: number, y: number, z: number, seconds: number][];
   people: PlanCircle[][];
+  /** For how long the reason has been that. */
+  since_s: number;
+  /** What holds the actor. */
+  blocker: PlanBlocker | null;
 }
 
 export interface ChatMessage {
@@ -186,4 +197,6 @@ export type ServerMessage =
   /** Records of steps, see `unpackSteps`. */
   | { type: "steps"; tick: number; block: Uint8Array }
   /** An actor in view points at something from now on, or at nothing any more. */
-  | { type: "point"; id: number; target: Place | null };
+  | { type: "point"; id: number; target: Place | null }
+  /** An avatar in view has another body from now on. */
+  | { type: "reshape"; id: number; radius: number; leg_m: number; stature_m: number };

@@ -157,6 +157,16 @@ export class World {
     animator.pointing.target = target && { x, y, z };
   }
 
+  /** An avatar has another body from now on; the steps of its new legs come next. */
+  reshape(id: number, radius: number, legM: number, statureM: number): void {
+    const avatar = this.avatars_.get(id);
+    if (!avatar) return;
+    const { target } = avatar.animator.pointing;
+    const animator = new Animator(buildOf(legM, statureM), avatar.pose);
+    animator.pointing.target = target;
+    this.avatars_.set(id, { ...avatar, radius, animator });
+  }
+
   /** Whether each door stands open, by name. */
   get doors(): Readonly<Doors> {
     return this.obstacles.doors;
