@@ -38,6 +38,7 @@ from esplanade.protocol.messages import (
     Ping,
     Plan,
     Point,
+    Reshape,
     Pong,
     ServerMessage,
     SetDoor,
@@ -55,7 +56,7 @@ SERVER_MESSAGES: Final[dict[int, type[FromServer]]] = {
     int(model.code): model
     for model in (
         *(Welcome, Enter, Leave, Chat, Notice, Error, Bye),
-        *(Pong, Plan, Census, Doors, Point),
+        *(Pong, Plan, Census, Doors, Point, Reshape),
     )
 }
 

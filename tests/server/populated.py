@@ -72,14 +72,17 @@ class Populated:
         """Of every tick so far."""
 
     def frame(self, *inputs: Input) -> Frame:
-        """One tick of the zone."""
+        """One tick of the zone, which its audience is told of."""
         self.inputs.append([*inputs, *(self.work.drain() if self.work else [])])
         self.zone.begin(self.inputs[-1])
-        return self.zone.finish(self.zone.think())
+        frame = self.zone.finish(self.zone.think())
+        self.latest = self.audience.take(frame)
+        return frame
 
     def news(self, *inputs: Input) -> News:
-        """One tick of the zone and of its audience."""
-        return self.audience.take(self.frame(*inputs))
+        """What the audience makes of one tick."""
+        self.frame(*inputs)
+        return self.latest
 
     def frames(self, ticks: int) -> list[Frame]:
         """So many ticks without inputs of their own."""
@@ -88,7 +91,6 @@ class Populated:
     def join(self, *places: tuple[float, float]) -> list[int]:
         """Ids of new people at these places, who look from now on."""
         frame = self.frame(*(Join(k, f"p{k}", (*place, 0.0)) for k, place in enumerate(places)))
-        self.audience.take(frame)
         return [avatar_id for _, avatar_id in frame.joined]
 
     def fault(self, command: Input) -> Fault:

@@ -73,7 +73,7 @@ def test_a_roster_that_is_not_there_is_named(tmp_path: Path) -> None:
 def test_a_place_that_the_scene_does_not_have_is_named() -> None:
     lost = {**ANN, "behaviour": {"kind": "go_to", "target": "moon"}}
     roster = Roster.model_validate({"actors": [lost]})
-    with pytest.raises(ValueError, match="main/ann: the scene has no place named 'moon'"):
+    with pytest.raises(ValueError, match="main/ann: no place named 'moon'"):
         populate_from(roster, LayeredGrid.from_scene(HALL), HALL, 0.05, 1)
 
 
