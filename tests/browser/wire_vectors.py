@@ -25,6 +25,7 @@ from esplanade.protocol import (
 )
 from esplanade.protocol.codes import MAX_CHAT_CHARS, MAX_NAME_CHARS
 from esplanade.protocol.messages import (
+    Blocker,
     Bye,
     Census,
     Chat,
@@ -44,6 +45,7 @@ from esplanade.protocol.messages import (
     Plan,
     Point,
     Pong,
+    Reshape,
     SetDoor,
     WalkTo,
     Watch,
@@ -124,11 +126,14 @@ FROM_SERVER: Final[tuple[FromServer, ...]] = (
         goal=(4.5, 5.5, 0.0),
         path=[(1.5, -2.5, 3.5, 0.0), (2.5, -1.5, 3.25, 1.25)],
         people=[[Circle(x=2.0, y=3.0, z=3.5, radius=0.75)]],
+        since_s=1.5,
+        blocker=Blocker(kind="person", id=7, away=0.25),
     ),
     Census(people=3, actors=10),
     Doors(doors={"Gate": False}),
     Point(id=8, target=(4.5, -2.0, 1.25)),
     Point(id=8, target=None),
+    Reshape(id=8, radius=0.3, leg_m=0.75, stature_m=1.5),
 )
 
 

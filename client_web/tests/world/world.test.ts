@@ -60,6 +60,17 @@ describe("World", () => {
     expect(world.own?.pose.x).toBeCloseTo(2.1);
   });
 
+  it("draws another body of the same avatar, which still points where it did", () => {
+    world.point(8, [4, 2, 1]);
+    world.reshape(8, 0.4, 0.6, 1.2);
+    world.reshape(99, 0.4, 0.6, 1.2);
+    const avatar = world.avatars.get(8);
+    expect(avatar?.radius).toBe(0.4);
+    expect(avatar?.animator.build.legM).toBe(0.6);
+    expect(avatar?.animator.pointing.target).toEqual({ x: 4, y: 2, z: 1 });
+    expect(world.avatars.size).toBe(2);
+  });
+
   it("forgets who has left, and their plan", () => {
     world.plan = {
       type: "plan",
@@ -70,6 +81,8 @@ describe("World", () => {
       goal: null,
       path: [],
       people: [],
+      since_s: 0,
+      blocker: null,
     };
     world.leave([8]);
     expect(world.avatars.has(8)).toBe(false);

@@ -1,0 +1,168 @@
+"""What operators' commands on actors cost a tick: `python -m benchmarks.operators`.
+
+It prints what a command takes inside its tick, and the ticks of two worlds that run side by side,
+of which in one an actor gets another body every second.
+"""
+
+import argparse
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from itertools import count
+from typing import Any, Final
+
+import numpy as np
+
+from esplanade.actors import ActorParameters
+from esplanade.actors.behaviour_spec import WanderSpec
+from esplanade.planning import LayeredGrid
+from esplanade.server.loading import LoadedScene, load_scene
+from esplanade.server.net.ground_work import GroundWork
+from esplanade.server.populating import default_roster, names_of, populate_from
+from esplanade.server.settings import ServerSettings
+from esplanade.server.world.inputs import ActorCommand, AddActors, Input, SetParameters
+from esplanade.server.world.zone import Zone
+
+TICK_S: Final = 0.05
+RADII_M: Final = (0.3, 0.35, 0.4, 0.45, 0.5, 0.25)
+NUMBERS = count(1)
+
+
+class World:
+    """A gallery with so many actors, whose ticks are timed."""
+
+    def __init__(self, loaded: LoadedScene, actors: int, thread: ThreadPoolExecutor) -> None:
+        grid = LayeredGrid.from_scene(loaded.scene)
+        roster = default_roster(loaded.scene, actors, 1)
+        self.population = populate_from(roster, grid, loaded.scene, TICK_S, 1)
+        self.zone = Zone(
+            loaded.scene,
+            grid,
+            self.population,
+            names_of(roster),
+            loaded.rules,
+            tick_s=TICK_S,
+            max_people=10,
+            seed=1,
+            clock=time.perf_counter,
+            roster=roster.actors,
+        )
+        self.population.warm_up()
+        self.work = GroundWork(self.zone, thread)
+        self.ids = tuple(spec.id for spec in roster.actors)
+        self.outcomes: dict[int, int] = {}
+        """Ticks in which commands were carried out."""
+
+    def tick(self, *inputs: Input) -> float:
+        """Run one tick; returns its milliseconds."""
+        given = [*inputs, *self.work.drain()]
+        start = time.perf_counter()
+        self.zone.begin(given)
+        frame = self.zone.finish(self.zone.think())
+        took = time.perf_counter() - start
+        for outcome in frame.outcomes:
+            if outcome.fault is not None:
+                raise SystemExit(outcome.fault.text)
+            self.outcomes[outcome.command] = outcome.tick
+        return 1e3 * took
+
+    def begin(self, command: ActorCommand) -> float:
+        """Run one tick with a command; returns the milliseconds that taking it in takes."""
+        start = time.perf_counter()
+        self.zone.begin([command])
+        took = time.perf_counter() - start
+        self.zone.finish(self.zone.think())
+        return 1e3 * took
+
+
+def main() -> int:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.operators", description=__doc__)
+    parser.add_argument("--actors", type=int, default=10, help="actors side by side")
+    parser.add_argument("--ticks", type=int, default=600, help="ticks side by side")
+    options = parser.parse_args()
+    loaded = load_scene(ServerSettings())
+    with ThreadPoolExecutor(1) as thread:
+        tempers(loaded, thread)
+        side_by_side(loaded, options.actors, options.ticks)
+    return 0
+
+
+def tempers(loaded: LoadedScene, thread: ThreadPoolExecutor) -> None:
+    """Print what a change of temper takes inside its tick."""
+    world = World(loaded, 500, thread)
+    for _ in range(10):
+        world.tick()
+    for number in (1, 10, 500):
+        ids = world.ids[:number]
+        times = {"empty": [], "one field": [], "six fields": []}  # type: dict[str, list[float]]
+        for k in range(60):
+            one: dict[str, Any] = {"risk_weight": 9.0 + 0.01 * k}
+            names = ("foresight_s", "turn_weight", "wall_weight", "hurry_weight", "catch_up")
+            six = one | dict.fromkeys(names, 0.3 + 0.001 * k)
+            times["empty"].append(world.begin(SetParameters(next(NUMBERS), (), {})))
+            times["one field"].append(world.begin(SetParameters(next(NUMBERS), ids, one)))
+            times["six fields"].append(world.begin(SetParameters(next(NUMBERS), ids, six)))
+        for name, found in times.items():
+            p50, p99 = np.percentile(found, [50, 99])
+            print(f"{name:10} of {number:3} actors: p50 {p50:6.3f} ms, p99 {p99:6.3f} ms")
+    world.population.close()
+
+
+def side_by_side(loaded: LoadedScene, actors: int, ticks: int) -> None:
+    """Print the ticks of a world whose actors get other bodies beside one where they do not."""
+    with ThreadPoolExecutor(1) as one, ThreadPoolExecutor(1) as other:
+        calm, changed = World(loaded, actors, one), World(loaded, actors, other)
+        for _ in range(40):
+            calm.tick()
+            changed.tick()
+        times: dict[str, list[float]] = {"without": [], "with": []}
+        waits: dict[int, float] = {}
+        for tick in range(ticks):
+            inputs: list[Input] = []
+            if tick % 20 == 0:
+                command, turn = next(NUMBERS), tick // 20
+                values = {"radius_m": RADII_M[turn % len(RADII_M)]}
+                inputs.append(SetParameters(command, changed.ids[turn % actors :][:1], values))
+                waits[command] = float(changed.zone.tick + 1)
+            start = time.perf_counter()
+            times["without"].append(calm.tick())
+            times["with"].append(changed.tick(*inputs))
+            # Both threads get the time that ticks leave them, as in a server.
+            time.sleep(max(0.0, TICK_S - (time.perf_counter() - start)))
+        for name, found in times.items():
+            p50, p99 = np.percentile(found, [50, 99])
+            most = max(found)
+            print(f"bodies {name:7}: p50 {p50:6.3f} ms, p99 {p99:6.3f} ms, most {most:6.3f} ms")
+        done = [
+            TICK_S * (changed.outcomes[c] - t) for c, t in waits.items() if c in changed.outcomes
+        ]
+        print(f"a body is ready after p50 {np.median(done):.2f} s, at most {max(done):.2f} s")
+        fifty(loaded, other)
+        for world in (calm, changed):
+            world.population.close()
+
+
+def fifty(loaded: LoadedScene, thread: ThreadPoolExecutor) -> None:
+    """Print how long fifty bodies take that change at once, and fifty actors that come in."""
+    world = World(loaded, 50, thread)
+    for _ in range(40):
+        world.tick()
+    specs = default_roster(loaded.scene, 100, 2).actors[50:]
+    wave = tuple(spec.model_copy(update={"behaviour": WanderSpec()}) for spec in specs)
+    commands = {
+        "fifty bodies": SetParameters(next(NUMBERS), world.ids, {"radius_m": 0.4}),
+        "fifty actors": AddActors(next(NUMBERS), wave, (ActorParameters(radius_m=0.35),) * 50),
+    }  # type: dict[str, ActorCommand]
+    for name, command in commands.items():
+        begun, most = world.zone.tick + 1, world.tick(command)
+        while command.command not in world.outcomes:
+            most = max(most, world.tick())
+            time.sleep(0.03)
+        ready_s = TICK_S * (world.outcomes[command.command] - begun)
+        print(f"{name} are ready after {ready_s:.2f} s, the longest tick {most:.2f} ms")
+    world.population.close()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
