@@ -223,11 +223,16 @@ class Navigator:
         new = self._rows.of_new_kind(self.table.agents.parameters[rows], after).tolist()
         return [(self.table.wanted(int(rows[k])), body_of(after[k])) for k in new]
 
+    def check_values(self, ids: Sequence[Hashable], values: Mapping[str, ArrayLike]) -> None:
+        """Raise what `set_many` would, except that too many kinds of body would walk here."""
+        self._changed(ids, values)
+
     def _changed(
         self, ids: Sequence[Hashable], values: Mapping[str, ArrayLike]
     ) -> tuple[NDArray[np.int64], NDArray[np.void]]:
         """Rows of some actors, and their records with other values."""
-        rows = np.array([self.table.row(actor_id) for actor_id in ids], dtype=np.int64)
+        row_of = self.table.row
+        rows = np.fromiter((row_of(actor_id) for actor_id in ids), np.int64, len(ids))
         if len(set(ids)) < len(ids):
             raise ValueError("an actor is named twice")
         return rows, with_values(self.table.agents.parameters[rows], ids, values)

@@ -7,6 +7,7 @@ import structlog
 
 from esplanade.actors import ActorSpec, BehaviourSpec, Newcomer, Population
 from esplanade.actors.behaviour_spec import GoToSpec
+from esplanade.actors.parameter_records import MEASURES
 from esplanade.planning import Scene
 from esplanade.server.world.actors import ActorAvatars
 from esplanade.server.world.command_checks import check
@@ -74,17 +75,18 @@ class ActorCommands:
     def take(self, command: ActorCommand, tick: int) -> list[int]:
         """Carry out a command, or let it wait; returns the avatars that have left the world."""
         try:
-            check(command, self._population, self._most_actors)
+            check(command, self._population, self._most_actors, values=False)
             waits = self.derived_outside and (
                 self._is_heavy(command) or self._stands_behind(command)
             )
             if waits:
+                check(command, self._population, self._most_actors)
                 self._supersede(command, tick)
                 self._wait(command)
         except Exception as error:  # noqa: BLE001 - whatever it is, it is told
             self._tell(command.command, tick, error)
             return []
-        return [] if waits else self._carry_out(command, ActorsDerived(command.command), tick)
+        return [] if waits else self._carry_out(command, None, tick)
 
     def take_derived(self, derived: ActorsDerived, tick: int) -> list[int]:
         """Carry out the command for which that was derived, if it still waits.
@@ -111,7 +113,10 @@ class ActorCommands:
 
     def _is_heavy(self, command: ActorCommand) -> bool:
         if isinstance(command, SetParameters):
-            return bool(self._population.new_bodies(command.actors, command.values))
+            makes_bodies = not command.values.keys().isdisjoint(MEASURES)
+            return makes_bodies and bool(
+                self._population.new_bodies(command.actors, command.values)
+            )
         return isinstance(command, AddActors)
 
     def _stands_behind(self, command: ActorCommand) -> bool:
@@ -143,15 +148,21 @@ class ActorCommands:
 
     # --- carrying out -------------------------------------------------------------------------
 
-    def _carry_out(self, command: ActorCommand, derived: ActorsDerived, tick: int) -> list[int]:
-        """Carry a command out, or undo it and say why; returns the avatars that have left."""
+    def _carry_out(
+        self, command: ActorCommand, derived: ActorsDerived | None, tick: int
+    ) -> list[int]:
+        """Carry a command out, or undo it and say why; returns the avatars that have left.
+
+        One that has waited, for which something is `derived`, is checked again.
+        """
         undo = None
         try:
-            check(command, self._population, self._most_actors)
+            if derived is not None:
+                check(command, self._population, self._most_actors)
             undo = self._population.undo_point()
-            if derived.bodies is not None:
+            if derived is not None and derived.bodies is not None:
                 self._population.grid.apply_bodies(derived.bodies)
-            left = self._apply(command, derived)
+            left = self._apply(command, derived or ActorsDerived(command.command))
         except Exception as error:  # noqa: BLE001 - whatever it is, the world goes on
             if undo is not None:
                 undo()

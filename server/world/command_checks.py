@@ -12,10 +12,13 @@ from esplanade.server.world.inputs import (
 from esplanade.server.world.outcomes import CommandError, FaultCode
 
 
-def check(command: ActorCommand, population: Population, most_actors: int) -> None:
+def check(
+    command: ActorCommand, population: Population, most_actors: int, *, values: bool = True
+) -> None:
     """Find what is wrong with a command, as far as that can be told before it is tried.
 
     It changes nothing, and may be asked between two ticks of whether a command would be taken.
+    Without `values`, those of parameters are left to whoever sets them.
 
     Raises
     ------
@@ -32,8 +35,8 @@ def check(command: ActorCommand, population: Population, most_actors: int) -> No
         if actor not in table:
             raise CommandError(FaultCode.UNKNOWN_ACTOR, f"there is no actor {actor}", actor=actor)
     match command:
-        case SetParameters():
-            population.new_bodies(actors, command.values)
+        case SetParameters() if values:
+            population.navigator.check_values(actors, command.values)
         case ChangeBehaviour():
             _check_behaviour(population, command.behaviour.make())
         case SendActors():

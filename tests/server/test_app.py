@@ -73,7 +73,7 @@ async def test_a_scene_without_room_is_refused_by_name(tmp_path: Path) -> None:
     path = tmp_path / "stone.json"
     path.write_text(scene.model_dump_json())
     settings = ServerSettings(scene=path, port=0, private_port=0)
-    with pytest.raises(LoadingError, match="'stone': no free place"):
+    with pytest.raises(LoadingError, match="'stone': main/actor-1: no free place"):
         async with running(settings, NO_CLIENT):
             pass
 
