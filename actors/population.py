@@ -30,6 +30,8 @@ from esplanade.planning import (
 
 _EXPLAINED_WITHIN_M = 8.0
 _STUCK_AFTER_S = 3.0
+_SPARE_POTENTIALS = 64
+"""Room for so many goals more is made beforehand; it takes memory only once they are there."""
 
 
 class Population:
@@ -416,6 +418,7 @@ class Population:
         warm_up(self.navigator.tick_s, ready_to_plan)
         goals = [(place.position, place.z_m) for place in self.scene.places]
         self.navigator.prepare_goals(goals, ActorParameters())
+        self.navigator.potentials.reserve(_SPARE_POTENTIALS)
 
     def close(self) -> None:
         """End the planning threads."""

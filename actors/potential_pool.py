@@ -200,6 +200,10 @@ class PotentialPool:
             values = np.full(self.arrays.shape[1:], np.inf, dtype=np.float32)
         return RenewedPotential(key, changes, values)
 
+    def reserve(self, rows: int) -> None:
+        """Make room for so many rows more than are known, before a tick has to."""
+        self._reserve(len(self._keys) + rows)
+
     def _reserve(self, rows: int) -> None:
         """Make room for so many rows; what stands in those there are is copied."""
         before = len(self.arrays)

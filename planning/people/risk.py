@@ -31,6 +31,8 @@ EVERYWHERE: Box = (-math.inf, -math.inf, math.inf, math.inf)
 _SIGMA_POINTS = 9
 _RADIUS_M = 0.25
 _RADIUS_STEP_M = 0.05
+_WIDEST_M = 0.5
+"""Tables have room for agents up to this radius, so that those of others stay as they are."""
 _SIGMA_SPAN = 2.5
 
 
@@ -97,32 +99,44 @@ def radial_tables(
     range of its own. For the closing term the points' directions n are projected on the direction
     from the mean. It takes a while, so that zones alike share it.
     """
-    sigmas = np.arange(0.0, _SIGMA_MAX_M + _SIGMA_STEP_M / 2, _SIGMA_STEP_M)
     widest = max(spread.scales) * math.hypot(_SIGMA_MAX_M, model.sway_m)
-    reach = max(contacts_m) + model.influence_m + _SIGMA_SPAN * widest
-    squared = np.arange(0.0, reach**2 + 3 * _SQUARED_STEP_M2, _SQUARED_STEP_M2)
-    tables = [_radial_table(model, spread, each, sigmas, squared) for each in contacts_m]
-    reaches = np.max([reaching for _, reaching in tables], axis=0)
+    beyond_m = model.influence_m + _SIGMA_SPAN * widest
+    columns = len(_squared(max(contacts_m) + beyond_m))
+    room = len(_squared(max(*contacts_m, model.contact_m(_WIDEST_M)) + beyond_m))
+    tables = [_radial_table(model, spread, each, room)[:, :columns] for each in contacts_m]
+    matters = np.max([table > _LEAST for table in tables], axis=(0, 3))
+    reaches = columns - 2 - np.argmax(matters[:, -2::-1], axis=1)
     return RadialTables(
-        np.stack([values for values, _ in tables]).astype(np.float32),
+        np.stack([_per_metre(table) for table in tables]).astype(np.float32),
         np.sqrt((reaches + 1) * _SQUARED_STEP_M2),
         _SIGMA_STEP_M,
         _SQUARED_STEP_M2,
     )
 
 
+def _squared(reach_m: float) -> NDArray[np.float64]:
+    """Squared distances of the columns of a table that reaches so far, m²."""
+    return np.arange(0.0, reach_m**2 + 3 * _SQUARED_STEP_M2, _SQUARED_STEP_M2)
+
+
+def _per_metre(table: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A table whose second term is divided by the distance."""
+    divided = table.copy()
+    divided[:, 1:, 1] /= np.sqrt(_SQUARED_STEP_M2 * np.arange(1, table.shape[1]))
+    divided[:, 0, 1] = divided[:, 1, 1]
+    return divided
+
+
+@lru_cache(maxsize=32)
 def _radial_table(
-    model: RiskModel,
-    spread: Spread,
-    contact_m: float,
-    sigmas: NDArray[np.float64],
-    squared: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """The two terms, float64 (S, C, 2), and the last column that matters in each row, (S,)."""
+    model: RiskModel, spread: Spread, contact_m: float, columns: int
+) -> NDArray[np.float64]:
+    """The two terms of one contact distance, float64 (S, C, 2)."""
+    sigmas = np.arange(0.0, _SIGMA_MAX_M + _SIGMA_STEP_M / 2, _SIGMA_STEP_M)
     offsets, weights = sigma_points()
-    distances = np.sqrt(squared)
+    distances = np.sqrt(_SQUARED_STEP_M2 * np.arange(columns))
     here = np.stack([distances, np.zeros_like(distances)], axis=1)
-    near = np.zeros((len(sigmas), len(squared)))
+    near = np.zeros((len(sigmas), columns))
     toward = np.zeros_like(near)
     for row, sigma in enumerate(sigmas):
         for scale, share in spread.parts:
@@ -132,12 +146,7 @@ def _radial_table(
             along = relative[..., 0] / np.maximum(length, 1e-9)
             near[row] += share * model.near(length, contact_m) @ weights
             toward[row] += share * (model.toward(length, contact_m) * along) @ weights
-    toward = np.maximum(toward, 0.0)
-    matters = (near > _LEAST) | (toward > _LEAST)
-    reaching = len(squared) - 2 - np.argmax(matters[:, -2::-1], axis=1)
-    toward[:, 1:] /= distances[1:]
-    toward[:, 0] = toward[:, 1]
-    return np.stack([near, toward], axis=2), reaching
+    return np.stack([near, np.maximum(toward, 0.0)], axis=2)
 
 
 class RiskField:

@@ -6,6 +6,7 @@ import pytest
 from pydantic import ValidationError
 
 from esplanade.actors import ActorParameters
+from esplanade.actors.parameter_records import MEASURES
 from esplanade.planning import PARAMETERS
 
 FIELDS = ActorParameters.model_fields
@@ -19,6 +20,21 @@ def test_every_field_has_a_unit_a_range_and_a_description(name) -> None:
     assert schema["minimum"] < schema["maximum"]
     assert schema["minimum"] <= schema["default"] <= schema["maximum"]
     assert len(schema["description"]) > 20
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_every_field_says_where_it_belongs_and_when_a_change_applies(name) -> None:
+    schema = SCHEMA[name]
+    assert schema["group"] in {"body", "speed", "comfort", "planning"}
+    assert (schema["applies"] == "prepared") == (name in MEASURES)
+    wide = schema["minimum"] > 0.0 and schema["maximum"] / schema["minimum"] > 50.0
+    assert schema["scale"] == ("log" if wide else "linear")
+
+
+def test_all_groups_and_scales_are_used() -> None:
+    assert {SCHEMA[name]["group"] for name in FIELDS} == {"body", "speed", "comfort", "planning"}
+    assert SCHEMA["max_expansions"]["scale"] == "log"
+    assert SCHEMA["speed_mps"]["scale"] == "linear"
 
 
 @pytest.mark.parametrize("name", FIELDS)

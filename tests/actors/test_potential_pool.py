@@ -100,6 +100,53 @@ def test_rows_are_used_as_they_are_until_somebody_renews_them() -> None:
     assert np.array_equal(guides.arrays[used], before)
 
 
+def test_nobody_waits_for_a_goal_that_is_derived_outside() -> None:
+    guides = pool()
+    guides.derived_outside = True
+    first = guides.take((1.0, 1.0, 0.0, BODY))
+    assert np.isinf(guides.arrays[first]).all(), "no path leads there yet"
+    assert guides.provisional(np.array([first, -1])).tolist() == [True, False]
+    assert not guides.has((1.0, 1.0, 0.0, BODY))
+    derive = guides.outdated()
+    assert derive is not None
+    guides.renew(derive())
+    assert guides.has((1.0, 1.0, 0.0, BODY))
+    alike = guides.take((1.0, 1.0, 0.0, Body(radius_m=0.3)))
+    assert np.array_equal(guides.arrays[alike], guides.arrays[first]), "it goes by another body's"
+    assert guides.provisional(np.array([alike, first])).tolist() == [True, False]
+    derive = guides.outdated()
+    assert derive is not None
+    guides.renew(derive())
+    wide = Potential(GRID, (1.0, 1.0), 0.0, 0.3, body=Body(radius_m=0.3))
+    assert np.array_equal(guides.arrays[alike], wide.values)
+    assert guides.outdated() is None
+
+
+def test_what_comes_first_is_what_somebody_waits_for() -> None:
+    guides = pool()
+    guides.take((1.0, 1.0, 0.0, BODY))
+    guides.derived_outside = True
+    guides.outdate()
+    guides.take((2.0, 1.0, 0.0, BODY))
+    derive = guides.outdated()
+    assert derive is not None
+    assert derive().goal[:2] == (2.0, 1.0)
+
+
+def test_goals_of_bodies_that_the_grid_has_forgotten_are_given_up() -> None:
+    grid = LayeredGrid.from_scene(Scene.open_space((0.0, 0.0, 4.0, 4.0)))
+    guides, child = PotentialPool(grid), Body.child()
+    slot = guides.take((1.0, 1.0, 0.0, child))
+    guides.release(slot)
+    guides.outdate()
+    assert guides.outdated() is not None
+    for k in range(64):
+        grid.row_of(Body(height_m=0.5 + 0.05 * k, radius_m=0.1))
+    assert not grid.knows(child)
+    assert guides.outdated() is None
+    assert not guides.has((1.0, 1.0, 0.0, child))
+
+
 def test_a_renewed_potential_that_nobody_knows_any_more_is_void() -> None:
     guides, others = pool(), pool()
     others.take((1.0, 1.0, 0.0, BODY))
