@@ -180,7 +180,9 @@ class PotentialPool:
             key=lambda slot: (not self._users[slot], slot not in self._provisional),
         )
         key = self._keys[slot]
-        return None if key is None else partial(self._renewed, key, self._changes)
+        return (
+            None if key is None else partial(self._renewed, self._grid.fork(), key, self._changes)
+        )
 
     def renew(self, renewed: RenewedPotential) -> None:
         """Take a potential that was derived anew; it is derived again if the ground has changed."""
@@ -193,9 +195,9 @@ class PotentialPool:
         if renewed.changes != self._changes:
             self._outdated[slot] = None
 
-    def _renewed(self, key: GoalKey, changes: int) -> RenewedPotential:
+    def _renewed(self, grid: LayeredGrid, key: GoalKey, changes: int) -> RenewedPotential:
         try:
-            values = potential_of(self._grid, key)
+            values = potential_of(grid, key)
         except ValueError:  # nobody can stand there any more
             values = np.full(self.arrays.shape[1:], np.inf, dtype=np.float32)
         return RenewedPotential(key, changes, values)

@@ -5,6 +5,7 @@ import pytest
 from websockets.asyncio.server import ServerConnection
 
 from esplanade.actors import Explanation, Reason
+from esplanade.actors.blockers import Blocker
 from esplanade.protocol import Reason as WireReason
 from esplanade.protocol import decode_server, encode
 from esplanade.protocol.messages import (
@@ -12,6 +13,7 @@ from esplanade.protocol.messages import (
     Error,
     Plan,
     Point,
+    Reshape,
     ServerMessage,
     Snapshot,
     StepBlock,
@@ -39,11 +41,17 @@ def test_an_explanation_becomes_a_plan_to_the_millimetre() -> None:
         (1.0, 2.0, 0),
         np.array([[0.12345, 1.0, 0.0, 0.0], [0.5, 1.0, 0.0, 0.4]]),
         [np.array([[3.00049, 4.0, 0.0, 0.7]])],
+        2.50049,
+        Blocker("door", "gate", 1.25),
     )
     made = plan(9, 4, explanation)
     assert made.reason is WireReason.GIVING_WAY
     assert made.path[0] == (0.123, 1.0, 0.0, 0.0)
     assert made.people[0][0].x == 3.0
+    assert made.since_s == 2.5
+    assert made.blocker is not None
+    held = made.blocker
+    assert (held.kind, held.id, held.door, held.away) == ("door", None, "gate", 1.25)
     assert decode_server(encode(made)) == made
 
 
@@ -159,6 +167,21 @@ def test_after_a_gap_a_slow_client_has_the_latest_step_of_everyone(
     assert lifts_of(listener.heard()) == [3]
     delivery.deliver(trial.tick(writing=False), now=0.25)
     assert lifts_of(listener.heard()) == []
+
+
+def test_another_body_is_told_once_to_those_who_see_it(
+    trial: Trial, listener: Listener, delivery: Delivery
+) -> None:
+    (slot,) = trial.world.state.of_kind(ACTOR).tolist()
+    stature_m = trial.world.state.statures_m[slot]
+    trial.population.table.agents.parameters["radius_m"] = 0.4
+    trial.population.table.agents.parameters["height_m"] = 0.9
+    delivery.deliver(trial.tick(writing=False), now=0.05)
+    (told,) = [message for message in listener.heard() if isinstance(message, Reshape)]
+    assert (told.id, told.radius) == (int(trial.world.state.ids[slot]), 0.4)
+    assert told.stature_m == pytest.approx(0.5 * stature_m)
+    delivery.deliver(trial.tick(writing=False), now=0.1)
+    assert not any(isinstance(message, Reshape) for message in listener.heard())
 
 
 def test_pointing_is_told_to_those_who_see_it(
