@@ -40,7 +40,8 @@ def test_a_row_without_users_is_another_kinds_when_all_are_taken(grid: LayeredGr
     assert not grid.knows(nth(5))
     assert grid.row_of(low) == row
     fresh = LayeredGrid.from_scene(SCENE)
-    assert np.array_equal(grid.arrays.clearance[row], fresh.arrays.clearance[fresh.row_of(low)])
+    other = fresh.row_of(low)
+    assert np.array_equal(grid.arrays.clearance[row], fresh.arrays.clearance[other])
 
 
 def test_what_a_fork_gets_to_know_is_taken_over_at_once(grid: LayeredGrid) -> None:
@@ -62,9 +63,8 @@ def test_what_was_derived_before_a_door_moved_is_derived_again(grid: LayeredGrid
     row = grid.row_of(Body.child())
     other = LayeredGrid.from_scene(SCENE)
     other.set_door("d", is_open=False)
-    assert np.array_equal(
-        grid.arrays.clearance[row], other.arrays.clearance[other.row_of(Body.child())]
-    )
+    anew = other.row_of(Body.child())
+    assert np.array_equal(grid.arrays.clearance[row], other.arrays.clearance[anew])
 
 
 def test_a_fork_never_takes_the_row_of_a_body_that_has_come_meanwhile(grid: LayeredGrid) -> None:
