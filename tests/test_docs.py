@@ -19,6 +19,7 @@ from esplanade.cli import COMMANDS
 from esplanade.planning import Scene
 from esplanade.protocol.messages import Chat, Enter
 from esplanade.server.app import running
+from esplanade.server.roster import Roster
 from esplanade.server.settings import ServerSettings
 from tests.patience import PATIENCE_S
 
@@ -116,8 +117,11 @@ def test_python_blocks_import_what_exists(document: Path) -> None:
 
 
 def test_readme_shows_how_to_make_a_scene() -> None:
-    (example,) = blocks((ROOT / "README.md").read_text(), "json")
-    assert '"bounds"' in example
+    scene, roster = blocks((ROOT / "README.md").read_text(), "json")
+    assert '"bounds"' in scene
+    places = {place.name for place in Scene.model_validate_json(scene).places}
+    for spec in Roster.model_validate_json(roster).actors:
+        assert set(spec.behaviour.make().targets()) <= places
 
 
 def test_the_planner_goes_into_a_program_of_its_own(capsys: pytest.CaptureFixture[str]) -> None:
