@@ -5,7 +5,7 @@ import time
 from collections.abc import AsyncIterator, Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import structlog
 
@@ -13,6 +13,8 @@ from esplanade.actors import Population
 from esplanade.planning import LayeredGrid
 from esplanade.planning.routes.storey_heights import reached_from, storeys_of
 from esplanade.server.assets import Assets
+from esplanade.server.console.console import Console
+from esplanade.server.console.gate import Gate
 from esplanade.server.crowding import warn_of_crowding
 from esplanade.server.keeping import Kept, keeping
 from esplanade.server.link.local import LocalLink
@@ -88,7 +90,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     tls = None
     if settings.tls_cert is not None and settings.tls_key is not None:
         tls = Tls(settings.tls_cert, settings.tls_key)
-    loaded = load_scene(settings)
+    loaded = _with_roster(load_scene(settings), settings)
     assets, mesh = assets or Assets.load(), None
     if loaded.triangles is not None:
         assets, mesh = assets.with_data("mesh", loaded.triangles)
@@ -98,7 +100,8 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     async with AsyncExitStack() as stack:
         thread = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="actors"))
         kept = await stack.enter_async_context(keeping(settings, metrics))
-        private = await stack.enter_async_context(private_port(settings, metrics, readiness))
+        gate = Gate(kept.tokens, kept.audit, loop)
+        private = await stack.enter_async_context(private_port(settings, metrics, readiness, gate))
         # This finds out now, not after a minute of compiling, whether the port can be had.
         sockets = await bound_sockets(settings.host, settings.port)
         for each in sockets:
@@ -132,8 +135,9 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         )
         deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
         ground_work = GroundWork(world, deriving)
+        gate.console = console = _console(world, kept, loaded, metrics)
         ticker = Ticker(
-            world, ground_work, audience, link, hub, delivery, schedule, metrics, thread
+            world, ground_work, audience, link, hub, delivery, schedule, metrics, thread, console
         )
         await stack.enter_async_context(
             Listener(hub, assets, settings, metrics, places).listening(sockets, tls)
@@ -146,6 +150,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             yield Running(sockets[0].getsockname()[1], private, world, metrics, kept, ticking)
         finally:
             readiness.close()
+            gate.console = None
             if renewing:
                 renewing.cancel()
             guiding.cancel()
@@ -239,6 +244,26 @@ def _watch(world: Zone, population: Population, metrics: Metrics) -> None:
         "Potentials of goals that wait to be derived anew since a door has moved",
         lambda: population.navigator.potentials.outdated_rows,
     )
+
+
+def _with_roster(loaded: LoadedScene, settings: ServerSettings) -> LoadedScene:
+    """A scene with the actors of its own roster, or with those that it usually has."""
+    if loaded.roster is not None:
+        return loaded
+    roster = default_roster(loaded.scene, settings.actors, settings.seed)
+    return replace(loaded, roster=roster)
+
+
+def _console(world: Zone, kept: Kept, loaded: LoadedScene, metrics: Metrics) -> Console:
+    """What operators' commands go through."""
+    overrides = None if loaded.roster is None else loaded.roster.overrides
+    console = Console(world, kept.store, kept.audit, overrides)
+    metrics.gauge(
+        "commands_in_turn",
+        "Operators' lists of commands that are carried out or wait for their turn",
+        lambda: console.waiting,
+    )
+    return console
 
 
 def _watch_routes(route_requests: RouteRequests, metrics: Metrics) -> None:

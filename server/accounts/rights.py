@@ -71,6 +71,7 @@ COMMANDS: Final[Mapping[str, Right]] = {
     "set_group": Right.BEHAVIOURS,
     "set_behaviour": Right.BEHAVIOURS,
     "send_actor": Right.BEHAVIOURS,
+    "hold_actor": Right.BEHAVIOURS,
     "add_actors": Right.ACTORS,
     "remove_actors": Right.ACTORS,
     "move_door": Right.DOORS,

@@ -1,4 +1,4 @@
-"""The private port tells operators whether the server is alive and ready, and its metrics.
+"""The private port tells whether the server is alive and ready, its metrics, and serves operators.
 
 It has a thread and an event loop of its own, so that it tells the truth of a world that is busy or
 stuck, and is not kept waiting by people's connections.
@@ -15,6 +15,8 @@ from typing import Final
 from fastapi import FastAPI, Request, Response
 from fastapi.responses import PlainTextResponse
 
+from esplanade.server.console.api import PREFIX, add_api
+from esplanade.server.console.gate import Gate
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.asgi import MAX_BODY_BYTES, serving
 from esplanade.server.net.readiness import Readiness
@@ -28,7 +30,7 @@ SAMPLE_LIMIT_S: Final = 1.0
 
 @asynccontextmanager
 async def private_port(
-    settings: ServerSettings, metrics: Metrics, readiness: Readiness
+    settings: ServerSettings, metrics: Metrics, readiness: Readiness, gate: Gate
 ) -> AsyncIterator[int]:
     """Listen for operators, and yield the number of the port.
 
@@ -40,7 +42,7 @@ async def private_port(
         The address cannot be had.
     """
     loop = asyncio.get_running_loop()
-    app = operators_api(Figures(metrics, loop), readiness)
+    app = operators_api(Figures(metrics, loop), readiness, gate)
     opened: Future[tuple[int, Callable[[], object]]] = Future()
     serve = partial(_serve, app, settings.private_host, settings.private_port, opened)
     with ThreadPoolExecutor(1, thread_name_prefix="private") as thread:
@@ -99,10 +101,14 @@ class Figures:
             asked.set_result(None)
 
 
-def operators_api(figures: Figures, readiness: Readiness) -> FastAPI:
-    """The application behind the private port; it answers /healthz, /readyz and /metrics."""
+def operators_api(figures: Figures, readiness: Readiness, gate: Gate) -> FastAPI:
+    """The application behind the private port: /healthz, /readyz, /metrics, and operators' API."""
     app = FastAPI(
-        openapi_url=None,
+        title="Esplanade",
+        version="1",
+        openapi_url="/openapi.json",
+        docs_url=None,
+        redoc_url=None,
         redirect_slashes=False,
         max_body_size=MAX_BODY_BYTES,
         exception_handlers={HTTPStatus.NOT_FOUND: _nothing_here},
@@ -124,6 +130,7 @@ def operators_api(figures: Figures, readiness: Readiness) -> FastAPI:
     app.add_route("/healthz", alive)
     app.add_route("/readyz", is_ready)
     app.add_route("/metrics", exposition)
+    add_api(app, gate)
     return app
 
 
@@ -131,4 +138,5 @@ _UNCACHED: Final = {"Cache-Control": "no-cache"}
 
 
 async def _nothing_here(_: Request, __: Exception) -> Response:
-    return PlainTextResponse("/healthz, /readyz, /metrics\n", HTTPStatus.NOT_FOUND, _UNCACHED)
+    paths = f"/healthz, /readyz, /metrics, /openapi.json, {PREFIX}/…\n"
+    return PlainTextResponse(paths, HTTPStatus.NOT_FOUND, _UNCACHED)

@@ -6,6 +6,7 @@ from time import perf_counter
 
 import structlog
 
+from esplanade.server.console.console import Console
 from esplanade.server.link.local import LocalLink
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.delivery import Delivery
@@ -32,6 +33,7 @@ class Ticker:
         schedule: Schedule,
         metrics: Metrics,
         thread: Executor,
+        console: Console,
     ) -> None:
         self._world = world
         self._ground_work = ground_work
@@ -42,6 +44,7 @@ class Ticker:
         self._schedule = schedule
         self._metrics = metrics
         self._thread = thread
+        self._console = console
         self._stopping = asyncio.Event()
         metrics.gauge(
             "walkers_shown",
@@ -74,12 +77,13 @@ class Ticker:
         loop = asyncio.get_running_loop()
         start = perf_counter()
         self._schedule.begin(loop.time())
-        self._link.send(self._hub.drain(loop.time()))
+        self._link.send([*self._hub.drain(loop.time()), *self._console.drain()])
         self._world.begin([*self._link.inputs(), *self._ground_work.drain()])
         actors_moved = await loop.run_in_executor(self._thread, self._think)
         self._link.publish(self._world.finish(actors_moved))
         for frame in self._link.frames():
             self._hub.welcome(frame)
+            self._console.take(frame)
             news = self._audience.take(frame)
             with self._world.times.stage("write"):
                 self._delivery.deliver(news, loop.time())

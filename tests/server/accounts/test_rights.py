@@ -15,6 +15,7 @@ save_preset       -      -         yes   yes      yes   -
 set_group         -      -         yes   yes      yes   -
 set_behaviour     -      -         yes   yes      yes   -
 send_actor        -      -         yes   yes      yes   -
+hold_actor        -      -         yes   yes      yes   -
 revert            -      -         yes   yes      yes   -
 schedule          -      -         yes   yes      yes   -
 mark              -      -         yes   yes      yes   -

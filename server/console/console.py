@@ -1,0 +1,362 @@
+"""The one path of operators' commands: rights, checks, the audit, a tick, the answer."""
+
+import asyncio
+import itertools
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Final, TypeVar
+
+import structlog
+
+from esplanade.actors import Overrides
+from esplanade.actors.parameter_records import MEASURES
+from esplanade.protocol.commands import (
+    Answer,
+    ClearParameters,
+    Command,
+    CommandFault,
+    Facts,
+    Price,
+    Revert,
+    SetParameters,
+)
+from esplanade.server.accounts.identity import Identity
+from esplanade.server.accounts.rights import COMMANDS, may
+from esplanade.server.audit.entries import Entry
+from esplanade.server.audit.log import AuditLog
+from esplanade.server.console.changes import Change, Changes
+from esplanade.server.console.inputs import inputs_for
+from esplanade.server.console.refusals import RefusedError, of_world
+from esplanade.server.console.standing import (
+    BEHAVIOUR,
+    HELD,
+    OPEN,
+    PRESENT,
+    Standing,
+    each,
+    parameters_of,
+)
+from esplanade.server.console.wishes import wished
+from esplanade.server.store.sql_store import SqlStore
+from esplanade.server.store.store import StoreError
+from esplanade.server.world.frame import Frame
+from esplanade.server.world.inputs import ActorCommand, AddActors, Input, MoveDoor
+from esplanade.server.world.inputs import SetParameters as SetInWorld
+from esplanade.server.world.outcomes import Outcome
+from esplanade.server.world.zone import Zone
+
+Result = TypeVar("Result")
+MOST_WAITING: Final = 32
+"""Commands, or lists of them, that may wait for their turn; more are refused."""
+MOST_QUESTIONS: Final = 64
+"""Questions that may wait for the end of a tick; more are refused."""
+PATIENCE_S: Final = 30.0
+"""What the world has not carried out after this time is answered as not known."""
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True)
+class _Planned:
+    command: Command
+    before: Facts
+    after: Facts
+    reverts: int | None = None
+
+
+class Console:
+    """Carries out commands on a zone, one list after the other, on the zone's event loop.
+
+    Each list is checked as a whole; then its rows in the audit are committed, and only after that
+    it enters a tick. A ticker calls `drain` between two ticks, and `take` with each frame.
+    """
+
+    def __init__(
+        self, zone: Zone, store: SqlStore, audit: AuditLog, overrides: Overrides | None = None
+    ) -> None:
+        self.zone = zone
+        self.standing = Standing(zone, overrides or Overrides())
+        self.changes = Changes()
+        self._store = store
+        self._audit = audit
+        self._turn = asyncio.Lock()
+        self._waiting = 0
+        self._numbers = itertools.count(1)
+        self._inputs: list[Input] = []
+        self._questions: deque[tuple[Callable[[], Any], asyncio.Future[Any]]] = deque()
+        self._outcomes: dict[int, asyncio.Future[Outcome]] = {}
+        self._tick: asyncio.Future[int] | None = None
+
+    @property
+    def waiting(self) -> int:
+        """Number of lists of commands that wait for their turn, or are being carried out."""
+        return self._waiting
+
+    # --- the path -------------------------------------------------------------------------------
+
+    async def carry_out(self, by: Identity, commands: Sequence[Command]) -> list[Answer]:
+        """Carry out commands, all in one tick; with `dry_run` in all of them, only check them.
+
+        Raises
+        ------
+        RefusedError
+            Nothing was changed; a path begins with the command's place in the list.
+        StoreError
+            Nothing was changed, since the audit cannot be written.
+        """
+        for index, command in enumerate(commands):
+            _check_right(by, command.op, index)
+        if len({command.dry_run for command in commands}) > 1:
+            text = "a list is carried out as a whole, or checked as a whole"
+            raise RefusedError.of("mixed", text, 0, "dry_run")
+        if self._waiting >= MOST_WAITING:
+            raise RefusedError.of("busy", f"{MOST_WAITING} lists of commands wait already")
+        self._waiting += 1
+        try:
+            async with self._turn:
+                return await self._carry_out(by, commands)
+        finally:
+            self._waiting -= 1
+
+    async def _carry_out(self, by: Identity, commands: Sequence[Command]) -> list[Answer]:
+        planned = self._plan(by, commands)
+        facts = _together([one.after for one in planned])
+        inputs, doors = inputs_for(facts, self.standing, lambda: next(self._numbers))
+        price = await self.ask(lambda: self._checked(inputs, len(commands)))
+        if commands[0].dry_run:
+            return [self._answer(one, price=price) for one in planned]
+        numbers = await self._record(by, planned)
+        tick, faults = await self._in_a_tick(inputs, doors)
+        await self._record_outcomes(by, planned, numbers, tick, faults)
+        if faults:
+            raise RefusedError(faults).within(0) if len(commands) == 1 else RefusedError(faults)
+        self.standing.take(facts)
+        for number, one in zip(numbers, planned, strict=True):
+            self.changes.add(
+                Change(number, by.account, one.command, one.before, one.after, one.reverts)
+            )
+        return [
+            self._answer(one, number=number, tick=tick, price=price)
+            for number, one in zip(numbers, planned, strict=True)
+        ]
+
+    def _plan(self, by: Identity, commands: Sequence[Command]) -> list[_Planned]:
+        planned: list[_Planned] = []
+        faults: list[CommandFault] = []
+        for index, command in enumerate(commands):
+            pending = _together([one.after for one in planned])
+            try:
+                planned.append(self._plan_one(by, command, pending))
+            except RefusedError as error:
+                faults += error.within(index).faults
+        if faults:
+            raise RefusedError(faults)
+        return planned
+
+    def _plan_one(self, by: Identity, command: Command, pending: Facts) -> _Planned:
+        if isinstance(command, Revert):
+            change = self.changes.found(command.change, by.account)
+            for op in _needed_for(change):
+                _check_right(by, op)
+            self.changes.check_untouched(change, self.standing)
+            return _Planned(command, change.after, change.before, change.number)
+        facts = wished(command, self.standing, pending)
+        if isinstance(command, SetParameters | ClearParameters):
+            self.changes.check_revision(command.if_revision, facts, self.standing)
+        before = self.standing.now(facts)
+        for subject, fields in pending.items():
+            for field in fields.keys() & before.get(subject, {}).keys():
+                before[subject][field] = fields[field]
+        return _Planned(command, before, facts)
+
+    def _checked(self, inputs: list[ActorCommand], count: int) -> Price:
+        """What inputs cost, if the world would take them; asked between two ticks."""
+        faults: list[CommandFault] = []
+        for one in inputs:
+            fault = self.zone.check(one)
+            if fault is not None:
+                faults += of_world(fault)
+        if faults:
+            refused = RefusedError(faults)
+            raise refused.within(0) if count == 1 else refused
+        return "prepared" if any(map(_is_prepared, inputs)) else "tick"
+
+    async def _in_a_tick(
+        self, inputs: list[ActorCommand], doors: list[MoveDoor]
+    ) -> tuple[int | None, list[CommandFault]]:
+        """Put inputs into the next tick; the last tick in which one took effect, and faults."""
+        loop = asyncio.get_running_loop()
+        for one in inputs:
+            self._outcomes[one.command] = loop.create_future()
+        self._tick = begun = loop.create_future()
+        self._inputs += [*inputs, *doors]
+        try:
+            async with asyncio.timeout(PATIENCE_S):
+                tick = await begun
+                outcomes = [await self._outcomes[one.command] for one in inputs]
+        except TimeoutError:
+            text = f"the world has not answered within {PATIENCE_S:g} s; it may still do it"
+            return None, [CommandFault(code="not_known", text=text)]
+        finally:
+            for one in inputs:
+                self._outcomes.pop(one.command, None)
+        refused = [outcome.fault for outcome in outcomes if outcome.fault is not None]
+        faults = [fault for one in refused for fault in of_world(one)]
+        return max((outcome.tick for outcome in outcomes), default=tick), faults
+
+    # --- the audit ------------------------------------------------------------------------------
+
+    async def _record(self, by: Identity, planned: list[_Planned]) -> list[int]:
+        entries = [
+            Entry(
+                command=one.command.op,
+                account=by.account,
+                role=by.role,
+                address=by.address,
+                target=_target(one.after),
+                tick=self.zone.tick,
+                body={
+                    "via": by.via,
+                    "command": one.command.model_dump(
+                        mode="json", exclude={"dry_run", "note"}, exclude_none=True
+                    ),
+                    "before": one.before,
+                    "after": one.after,
+                    **({} if one.reverts is None else {"reverts": one.reverts}),
+                },
+                note=one.command.note,
+            )
+            for one in planned
+        ]
+        return await self._store.write(
+            lambda connection: [self._audit.add(connection, entry) for entry in entries]
+        )
+
+    async def _record_outcomes(
+        self,
+        by: Identity,
+        planned: list[_Planned],
+        numbers: list[int],
+        tick: int | None,
+        faults: list[CommandFault],
+    ) -> None:
+        entries = [
+            Entry(
+                command=one.command.op,
+                account=by.account,
+                role=by.role,
+                target=_target(one.after),
+                tick=tick,
+                outcome="refused" if faults else "done",
+                refers_to=number,
+                body={"faults": [fault.model_dump(mode="json") for fault in faults]},
+            )
+            for number, one in zip(numbers, planned, strict=True)
+        ]
+        try:
+            await self._store.write(
+                lambda connection: [self._audit.add(connection, entry) for entry in entries]
+            )
+        except StoreError:
+            # It is done, and its row stands: only what came of it is missing there.
+            log.exception("the outcome of a command is not in the audit", commands=numbers)
+
+    def _answer(
+        self, planned: _Planned, price: Price, number: int | None = None, tick: int | None = None
+    ) -> Answer:
+        shadowed: dict[str, int] = {}
+        for scope, values in parameters_of(planned.after).items():
+            for name in values:
+                count = sum(1 for _ in self.standing.overrides.shadowed(scope, name))
+                if count:
+                    shadowed[name] = count
+        return Answer(
+            op=planned.command.op,
+            command=number,
+            tick=tick,
+            revision=self.changes.revision,
+            before=planned.before,
+            after=planned.after,
+            price=price,
+            shadowed=shadowed,
+        )
+
+    # --- between ticks --------------------------------------------------------------------------
+
+    async def ask(self, question: Callable[[], Result]) -> Result:
+        """The answer to a question about the zone that can only be asked between two ticks.
+
+        Raises
+        ------
+        RefusedError
+            Too many questions wait, or the world does not tick.
+        """
+        if len(self._questions) >= MOST_QUESTIONS:
+            raise RefusedError.of("busy", f"{MOST_QUESTIONS} questions wait already")
+        future: asyncio.Future[Result] = asyncio.get_running_loop().create_future()
+        self._questions.append((question, future))
+        try:
+            async with asyncio.timeout(PATIENCE_S):
+                return await future
+        except TimeoutError:
+            raise RefusedError.of("busy", "the world does not answer") from None
+
+    def drain(self) -> list[Input]:
+        """Answer the questions, and return the inputs for the tick that is about to begin."""
+        for _ in range(len(self._questions)):
+            question, future = self._questions.popleft()
+            if future.done():
+                continue
+            try:
+                future.set_result(question())
+            except Exception as error:  # noqa: BLE001 - it is raised where it was asked
+                future.set_exception(error)
+        inputs, self._inputs = self._inputs, []
+        return inputs
+
+    def take(self, frame: Frame) -> None:
+        """Learn from a frame what became of commands."""
+        if self._tick is not None and not self._tick.done() and not self._inputs:
+            self._tick.set_result(frame.tick)
+        for outcome in frame.outcomes:
+            future = self._outcomes.get(outcome.command)
+            if future is not None and not future.done():
+                future.set_result(outcome)
+
+
+def _check_right(by: Identity, op: str, *path: int) -> None:
+    if may(by.rights, op):
+        return
+    needed = COMMANDS[op].value
+    raise RefusedError.of(
+        "forbidden", f"{op} needs the right {needed}, which you do not have", *path, right=needed
+    )
+
+
+def _needed_for(change: Change) -> set[str]:
+    """The commands whose rights are needed to take a change back."""
+    ops = {BEHAVIOUR: "set_behaviour", HELD: "hold_actor", OPEN: "move_door", PRESENT: "add_actors"}
+    return {ops.get(field, "set_parameters") for _, field, _ in each(change.after)}
+
+
+def _is_prepared(command: ActorCommand) -> bool:
+    if isinstance(command, SetInWorld):
+        return not command.values.keys().isdisjoint(MEASURES)
+    return isinstance(command, AddActors)
+
+
+def _target(facts: Facts) -> str:
+    """What a row of the audit is about: the one subject, or the first of several."""
+    subjects = list(facts)
+    first = subjects[0].removeprefix("actor:").removeprefix("door:") if subjects else ""
+    return first[:200]
+
+
+def _together(all_facts: Sequence[Facts]) -> Facts:
+    """Facts one after the other: later ones prevail."""
+    found: Facts = {}
+    for facts in all_facts:
+        for subject, fields in facts.items():
+            found[subject] = {**found.get(subject, {}), **fields}
+    return found

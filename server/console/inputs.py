@@ -1,0 +1,103 @@
+"""Makes inputs of a tick of facts that are to be true from then on."""
+
+import json
+from collections.abc import Callable
+from typing import Any
+
+from esplanade.actors import ActorSpec, Scope
+from esplanade.actors.behaviour_spec import BEHAVIOUR_SPEC
+from esplanade.protocol.commands import Facts
+from esplanade.server.console.standing import (
+    BEHAVIOUR,
+    HELD,
+    OPEN,
+    PRESENT,
+    Standing,
+    each,
+    parameters_of,
+    value_of,
+    with_facts,
+)
+from esplanade.server.world.inputs import (
+    ActorCommand,
+    AddActors,
+    ChangeBehaviour,
+    HoldActors,
+    MoveDoor,
+    RemoveActors,
+    SetParameters,
+)
+
+
+def inputs_for(
+    facts: Facts, standing: Standing, number: Callable[[], int]
+) -> tuple[list[ActorCommand], list[MoveDoor]]:
+    """The inputs that make facts true, each command with a new number.
+
+    Parameters of all actors become one command, so that all of them change or none.
+    """
+    commands: list[ActorCommand] = []
+    overrides = with_facts(standing.overrides, facts)
+    leaving = _leaving(facts)
+    if leaving:
+        commands.append(RemoveActors(number(), tuple(leaving)))
+    arriving = [
+        ActorSpec.model_validate(value)
+        for _, field, value in each(facts)
+        if field == PRESENT and value is not None
+    ]
+    if arriving:
+        for spec in arriving:
+            overrides = overrides.with_values(Scope("own", spec.id), spec.overrides)
+        made = tuple(overrides.parameters(spec.id, spec.tags) for spec in arriving)
+        commands.append(AddActors(number(), tuple(arriving), made))
+    commands += _parameters(facts, standing, leaving, number)
+    for value, actors in _alike(facts, BEHAVIOUR):
+        behaviour = BEHAVIOUR_SPEC.validate_python(value)
+        commands.append(ChangeBehaviour(number(), tuple(actors), behaviour))
+    for value, actors in _alike(facts, HELD):
+        commands.append(HoldActors(number(), tuple(actors), value))
+    doors = [
+        MoveDoor(subject.partition(":")[2], value)
+        for subject, field, value in each(facts)
+        if field == OPEN
+    ]
+    return commands, doors
+
+
+def _parameters(
+    facts: Facts, standing: Standing, leaving: list[str], number: Callable[[], int]
+) -> list[ActorCommand]:
+    """The command for all parameters that become others, if any do."""
+    scopes = parameters_of(facts)
+    names = sorted({name for values in scopes.values() for name in values})
+    later = with_facts(standing.overrides, facts)
+    rows = {}
+    for spec in standing.reached(scopes):
+        after = [value_of(later, spec, name) for name in names]
+        before = [value_of(standing.overrides, spec, name) for name in names]
+        if after != before and spec.id not in leaving:
+            rows[spec.id] = after
+    if not rows:
+        return []
+    columns = [list(column) for column in zip(*rows.values(), strict=True)]
+    changed = dict(zip(names, columns, strict=True))
+    return [SetParameters(number(), tuple(rows), changed)]
+
+
+def _leaving(facts: Facts) -> list[str]:
+    return [
+        subject.partition(":")[2]
+        for subject, field, value in each(facts)
+        if field == PRESENT and value is None
+    ]
+
+
+def _alike(facts: Facts, wanted: str) -> list[tuple[Any, list[str]]]:
+    """The actors that get the same value of a field, by that value."""
+    found: dict[str, tuple[Any, list[str]]] = {}
+    for subject, field, value in each(facts):
+        if field == wanted:
+            key = json.dumps(value, sort_keys=True)
+            found.setdefault(key, (value, []))[1].append(subject.partition(":")[2])
+    return list(found.values())

@@ -1,0 +1,136 @@
+"""How things stand: what an operator can change, as facts about subjects that can be compared."""
+
+from collections.abc import Iterable, Iterator
+from typing import Any, Final
+
+from esplanade.actors import ActorSpec, Overrides, Scope
+from esplanade.actors.overrides import DEFAULTS, WORLD
+from esplanade.protocol.commands import Facts
+from esplanade.server.world.zone import Zone
+
+BEHAVIOUR: Final = "behaviour"
+HELD: Final = "held"
+PRESENT: Final = "present"
+OPEN: Final = "open"
+"""Fields of subjects that are no parameters."""
+
+
+class Standing:
+    """The facts of a zone. A value of None stands for what is not set, or not there."""
+
+    def __init__(self, zone: Zone, overrides: Overrides) -> None:
+        self.zone = zone
+        self.overrides = overrides
+        self.held: set[str] = set()
+        self._doors: dict[str, bool] = {}
+        """How each door was wanted last, of those that were wanted."""
+
+    def fact(self, subject: str, field: str) -> Any:
+        """What is true now of a field of a subject."""
+        kind, _, name = subject.partition(":")
+        match kind, field:
+            case "door", _:
+                return self._doors.get(name, self.zone.doors.states().get(name))
+            case "actor", "behaviour":
+                spec = self.zone.actors.get(name)
+                return None if spec is None else spec.behaviour.model_dump(mode="json")
+            case "actor", "held":
+                return name in self.held
+            case "actor", "present":
+                return self._present(name)
+        return self.overrides.of(scope_of(subject)).get(field)
+
+    def now(self, facts: Facts) -> Facts:
+        """What is true now of the same fields of the same subjects."""
+        return {
+            subject: {field: self.fact(subject, field) for field in fields}
+            for subject, fields in facts.items()
+        }
+
+    def take(self, facts: Facts) -> None:
+        """These facts are true from now on: the world has carried them out."""
+        for subject, field, value in each(facts):
+            kind, _, name = subject.partition(":")
+            match kind, field:
+                case "door", _:
+                    self._doors[name] = value
+                case "actor", "behaviour":
+                    pass  # the world knows it
+                case "actor", "held":
+                    (self.held.add if value else self.held.discard)(name)
+                case "actor", "present":
+                    self.held.discard(name)
+                    own = {} if value is None else value["overrides"]
+                    cleared = self.overrides.without(Scope("own", name))
+                    self.overrides = cleared.with_values(Scope("own", name), own)
+        self.overrides = with_facts(self.overrides, facts)
+
+    def reached(self, scopes: Iterable[Scope]) -> list[ActorSpec]:
+        """The actors whose parameters may be others when values in these scopes are."""
+        scopes = set(scopes)
+        return [
+            spec
+            for spec in self.zone.actors.values()
+            if WORLD in scopes
+            or Scope("own", spec.id) in scopes
+            or any(Scope("group", tag) in scopes for tag in spec.tags)
+        ]
+
+    def _present(self, name: str) -> Any:
+        spec = self.zone.actors.get(name)
+        if spec is None:
+            return None
+        own = dict(self.overrides.of(Scope("own", name)))
+        return spec.model_copy(update={"overrides": own}).model_dump(mode="json")
+
+
+def each(facts: Facts) -> Iterator[tuple[str, str, Any]]:
+    """Every fact: the subject, the field and its value."""
+    for subject, fields in facts.items():
+        for field, value in fields.items():
+            yield subject, field, value
+
+
+def scope_of(subject: str) -> Scope:
+    """The scope that a subject of parameters is."""
+    kind, _, name = subject.partition(":")
+    match kind:
+        case "world":
+            return WORLD
+        case "group":
+            return Scope("group", name)
+    return Scope("own", name)
+
+
+def parameters_of(facts: Facts) -> dict[Scope, dict[str, float | int | None]]:
+    """The facts about parameters alone, by scope."""
+    found: dict[Scope, dict[str, float | int | None]] = {}
+    for subject, field, value in each(facts):
+        if field in DEFAULTS:
+            found.setdefault(scope_of(subject), {})[field] = value
+    return found
+
+
+def with_facts(overrides: Overrides, facts: Facts) -> Overrides:
+    """The overrides after these facts."""
+    for scope, values in parameters_of(facts).items():
+        given = {name: value for name, value in values.items() if value is not None}
+        cleared = [name for name, value in values.items() if value is None]
+        if cleared:
+            overrides = overrides.without(scope, *cleared)
+        if given:
+            overrides = overrides.with_values(scope, given)
+    return overrides
+
+
+def value_of(overrides: Overrides, spec: ActorSpec, name: str) -> float | int:
+    """One effective parameter of an actor."""
+    for scope in (
+        Scope("own", spec.id),
+        *(Scope("group", tag) for tag in reversed(spec.tags)),
+        WORLD,
+    ):
+        values = overrides.of(scope)
+        if name in values:
+            return values[name]
+    return DEFAULTS[name]

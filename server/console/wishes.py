@@ -1,0 +1,189 @@
+"""What each command wants to be true: facts about subjects, checked as far as data alone allow."""
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Final
+
+from pydantic import TypeAdapter, ValidationError
+
+from esplanade.actors import ActorParameters, ActorSpec
+from esplanade.actors.behaviour_spec import BEHAVIOUR_SPEC, BehaviourSpec
+from esplanade.actors.overrides import DEFAULTS
+from esplanade.protocol.commands import (
+    ZONE,
+    AddActors,
+    ClearParameters,
+    Command,
+    CommandFault,
+    Facts,
+    HoldActor,
+    MoveDoor,
+    NewActor,
+    RemoveActors,
+    Revert,
+    SendActor,
+    SetBehaviour,
+    SetParameters,
+)
+from esplanade.server.console.refusals import RefusedError
+from esplanade.server.console.standing import (
+    BEHAVIOUR,
+    HELD,
+    OPEN,
+    PRESENT,
+    Standing,
+    scope_of,
+    with_facts,
+)
+
+_FIELDS: Final[Mapping[str, TypeAdapter[Any]]] = {
+    name: TypeAdapter(Annotated[field.annotation, *field.metadata])  # type: ignore[arg-type]
+    for name, field in ActorParameters.model_fields.items()
+}
+
+
+def wished(  # noqa: PLR0911 (one for each command)
+    command: Command, standing: Standing, pending: Facts
+) -> Facts:
+    """What a command wants; `pending` is what commands before it in its list want.
+
+    Raises
+    ------
+    RefusedError
+        It cannot be had.
+    """
+    match command:
+        case SetParameters():
+            return {command.scope: checked_values(command.values, "values")}
+        case ClearParameters():
+            return {command.scope: _cleared(command, standing)}
+        case SetBehaviour():
+            spec = _behaviour(command.behaviour, "behaviour")
+            return _of_actors(command.actors, BEHAVIOUR, spec, standing, "actors")
+        case SendActor():
+            going = {"kind": "go_to", "target": command.target}
+            spec = _behaviour(going, "target")
+            return _of_actors((command.actor,), BEHAVIOUR, spec, standing, "actor")
+        case HoldActor():
+            return _of_actors((command.actor,), HELD, command.held, standing, "actor")
+        case RemoveActors():
+            return _of_actors(command.actors, PRESENT, None, standing, "actors")
+        case AddActors():
+            return _newcomers(command, standing, pending)
+        case MoveDoor():
+            if command.door not in standing.zone.doors.states():
+                text = f"the scene has no door {command.door!r}"
+                raise RefusedError.of("unknown_door", text, "door", door=command.door)
+            return {f"door:{command.door}": {OPEN: command.open}}
+        case Revert():
+            raise AssertionError("a change is taken back by its facts")
+
+
+def checked_values(values: Mapping[str, float], *path: str) -> dict[str, Any]:
+    """Values of parameters, whole where they must be.
+
+    Raises
+    ------
+    RefusedError
+        A name is unknown, or a value out of its range; all of them are told.
+    """
+    found: dict[str, Any] = {}
+    faults = []
+    for name, value in values.items():
+        if name not in _FIELDS:
+            text = f"{name!r} is no parameter of actors"
+            faults.append(CommandFault(code="values", text=text, path=[*path, name]))
+            continue
+        try:
+            found[name] = _FIELDS[name].validate_python(value)
+        except ValidationError as error:
+            text = f"{name}: {error.errors()[0]['msg']}"
+            faults.append(CommandFault(code="values", text=text, path=[*path, name]))
+    if faults:
+        raise RefusedError(faults)
+    return found
+
+
+def _cleared(command: ClearParameters, standing: Standing) -> dict[str, Any]:
+    unknown = [name for name in command.names if name not in DEFAULTS]
+    if unknown:
+        index, text = command.names.index(unknown[0]), f"{unknown[0]!r} is no parameter of actors"
+        raise RefusedError.of("values", text, "names", index)
+    return dict.fromkeys(command.names or standing.overrides.of(scope_of(command.scope)))
+
+
+def _of_actors(
+    actors: tuple[str, ...], field: str, value: Any, standing: Standing, place: str
+) -> Facts:
+    faults = [
+        CommandFault(
+            code="unknown_actor",
+            text=f"there is no actor {actor}",
+            path=[place, index] if place == "actors" else [place],
+            arguments={"actor": actor},
+        )
+        for index, actor in enumerate(actors)
+        if actor not in standing.zone.actors
+    ]
+    if faults:
+        raise RefusedError(faults)
+    return {f"actor:{actor}": {field: value} for actor in actors}
+
+
+def _behaviour(given: Mapping[str, Any], *path: str | int) -> Any:
+    try:
+        spec: BehaviourSpec = BEHAVIOUR_SPEC.validate_python(given)
+    except ValidationError as error:
+        raise _of_errors(error, "behaviour", *path) from None
+    return spec.model_dump(mode="json")
+
+
+def _newcomers(command: AddActors, standing: Standing, pending: Facts) -> Facts:
+    wanted: Facts = {}
+    overrides = with_facts(standing.overrides, pending)
+    for index, new in enumerate(command.actors):
+        own = _own_values(new, index)
+        given = new.id or _free_id(standing, pending, wanted)
+        subject = f"actor:{given}"
+        try:
+            spec = ActorSpec(
+                id=given,
+                name=new.name or given.partition("/")[2],
+                behaviour=new.behaviour,
+                tags=new.tags,
+                overrides=own,
+                place=new.place,
+            )
+            overrides.with_values(scope_of(subject), own).parameters(spec.id, spec.tags)
+        except ValidationError as error:
+            raise _of_errors(error, "values", "actors", index) from None
+        if subject in wanted or standing.fact(subject, PRESENT) is not None:
+            text = f"there already is an actor {given}"
+            raise RefusedError.of("taken", text, "actors", index, "id", actor=given)
+        wanted[subject] = {PRESENT: spec.model_dump(mode="json")}
+    return wanted
+
+
+def _own_values(new: NewActor, index: int) -> dict[str, Any]:
+    try:
+        return checked_values(new.overrides, "overrides")
+    except RefusedError as error:
+        raise error.within("actors", index) from None
+
+
+def _free_id(standing: Standing, pending: Facts, wanted: Facts) -> str:
+    number = len(standing.zone.actors) + 1
+    while True:
+        found = f"{ZONE}/actor-{number}"
+        subject = f"actor:{found}"
+        if found not in standing.zone.actors and subject not in {**pending, **wanted}:
+            return found
+        number += 1
+
+
+def _of_errors(error: ValidationError, code: str, *path: str | int) -> RefusedError:
+    return RefusedError(
+        [
+            CommandFault(code=code, text=each["msg"], path=[*path, *each["loc"]])
+            for each in error.errors()
+        ]
+    )
