@@ -150,11 +150,10 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             yield Running(sockets[0].getsockname()[1], private, world, metrics, kept, ticking)
         finally:
             readiness.close()
-            gate.console = None
             if renewing:
                 renewing.cancel()
             guiding.cancel()
-            await _stop(ticker, ticking, hub)
+            await _stop(ticker, ticking, hub, gate)
 
 
 def build_world(
@@ -209,7 +208,8 @@ def _build_warm(
     return population, world, [round(height, 2) for height in storeys]
 
 
-async def _stop(ticker: Ticker, ticking: "asyncio.Task[None]", hub: Hub) -> None:
+async def _stop(ticker: Ticker, ticking: "asyncio.Task[None]", hub: Hub, gate: Gate) -> None:
+    gate.console = None
     ticker.stop()
     try:
         await ticking

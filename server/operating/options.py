@@ -2,6 +2,7 @@
 
 from argparse import Namespace
 from argparse import _SubParsersAction as SubParsers  # argparse names the type nowhere else
+from collections.abc import Callable
 from typing import Final
 
 from esplanade.commandline.errors import UsageError
@@ -10,7 +11,10 @@ from esplanade.commandline.readers import Span, Text, Whole
 from esplanade.server.accounts.rights import ROLES, Right
 from esplanade.server.operating.place import add_place
 
-DESCRIPTION: Final = "See to operators: their accounts, the tokens of their scripts, and the audit."
+DESCRIPTION: Final = (
+    "See to operators: their accounts, the tokens of their scripts, and the audit. Tune the actors "
+    "of a world that runs."
+)
 EPILOG: Final = """\
 examples:
   esplanade op user add olga --role tuner --data world
@@ -19,8 +23,13 @@ examples:
   esplanade op token add olga nightly --right watch --right parameters --expires 30d --data world
   esplanade op audit --since 1h --csv --data world > hour.csv
   esplanade op audit --verify --data world
+  export ESPLANADE_URL=http://localhost:8081 ESPLANADE_TOKEN=$TOKEN
+  esplanade op get actor-1
+  esplanade op set risk_weight=12 foresight_s=4 --group hurried --note "queue at the door"
+  esplanade op undo
 
-These commands work on the folder or database of a server, whether it runs or not: who can write
+get, set, clear, undo, redo and diff ask a server that runs, by a token in ESPLANADE_TOKEN.
+The other commands work on the folder or database of a server, whether it runs or not: who can write
 there may do everything. A server that runs sees a change at once. ESPLANADE_DATA or ESPLANADE_STORE
 stands for --data or --store.
 
@@ -30,11 +39,15 @@ _PASSWORD: Final = "take the password from the first line of the standard input"
 _DAY_S: Final = 24 * 3600.0
 
 
-def parser() -> Parser:
-    """The commands; the help of the whole shows how each is called."""
+AddParts = Callable[["SubParsers[Parser]"], list[Parser]]
+
+
+def parser(add_more: AddParts | None = None) -> Parser:
+    """The commands; the help of the whole shows how each is called. `add_more` adds others."""
     made = Parser("esplanade op", description=DESCRIPTION)
     commands = made.add_subparsers(dest="command", metavar="COMMAND", required=True)
     parts = [*_user(commands), *_token(commands), _audit(commands)]
+    parts += [] if add_more is None else add_more(commands)
     usages = "".join(part.format_usage().replace("usage: ", "  ") for part in parts)
     made.epilog = f"usage of each:\n{usages}\n{EPILOG}"
     return made

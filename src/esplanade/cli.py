@@ -22,7 +22,7 @@ COMMANDS: Final = {
         "esplanade.bots.options:parser", "send people made of code: load, or a recorded crowd"
     ),
     "op": Command(
-        "esplanade.server.operating.options:parser", "see to operators, their tokens, the audit"
+        "esplanade.options:op", "see to operators and the audit, tune actors while a world runs"
     ),
     "data": Command(
         "esplanade.server.operating.data_options:parser", "back up, restore, upgrade, forget"

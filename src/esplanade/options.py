@@ -1,11 +1,13 @@
-"""The options of the commands that belong to no part: `demo` and `completion`."""
+"""The options of the commands that belong to no part alone: `demo`, `op` and `completion`."""
 
 from typing import Final
 
 from esplanade.commandline.parser import Parser
 from esplanade.commandline.readers import SEED_LIMIT, Whole
 from esplanade.commandline.settings import Setting, settings_parser
+from esplanade.operators.options import add_parts
 from esplanade.server import options as server
+from esplanade.server.operating import options as operating
 
 COMPLETION_EPILOG: Final = """\
 to have it from now on:
@@ -45,6 +47,11 @@ def demo() -> Parser:
     )
     made.set_defaults(**{name: setting.default for name, setting in _DEMO.items()})
     return made
+
+
+def op() -> Parser:
+    """What is done with the store of a server, and what a server that runs is asked for."""
+    return operating.parser(add_parts)
 
 
 def completion() -> Parser:
