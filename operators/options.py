@@ -15,9 +15,7 @@ URL: Final = "http://localhost:8081"
 def add_parts(commands: "SubParsers[Parser]") -> list[Parser]:
     """Add the commands, and return their parsers."""
     get = _part(commands, "get", "Show an actor's parameters and where each comes from.")
-    get.add_argument(
-        "actor", metavar="ACTOR", nargs="?", help="such as actor-1 [default: all]"
-    )
+    get.add_argument("actor", metavar="ACTOR", nargs="?", help="such as actor-1 [default: all]")
     get.add_argument("--json", action="store_true", help="print all that is known, as JSON")
     made = _part(commands, "set", "Set parameters of all actors, of a group, or of one.")
     made.add_argument(
