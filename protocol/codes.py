@@ -89,6 +89,7 @@ class ErrorCode(StrEnum):
     NAME_RESERVED = "name_reserved"
     KEY_UNREAD = "key_unread"
     LEASE_ENDED = "lease_ended"
+    MUTED = "muted"
 
 
 class CloseCode(IntEnum):
@@ -108,6 +109,7 @@ class CloseCode(IntEnum):
     REPLACED = 4009
     SILENT = 4010
     NAME_RESERVED = 4011
+    KICKED = 4012
 
 
 class ByeCode(StrEnum):
@@ -116,3 +118,4 @@ class ByeCode(StrEnum):
     SHUTDOWN = "shutdown"
     REPLACED = "replaced"
     SILENT = "silent"
+    KICKED = "kicked"

@@ -157,6 +157,34 @@ class Revert(_Command):
     )
 
 
+class Announce(_Command):
+    """Say something to all people."""
+
+    op: Literal["announce"]
+    text: Annotated[str, Field(min_length=1, max_length=500)]
+
+
+class Mute(_Command):
+    """Let nobody hear a person's chat for a time."""
+
+    op: Literal["mute"]
+    person: Annotated[int, Field(ge=1, description="The id of the person's avatar.")]
+    seconds: Annotated[float, Field(ge=0.0, le=86_400.0, allow_inf_nan=False)] = 600.0
+    text: Annotated[str, Field(min_length=1, max_length=200)] = (
+        "An operator has muted you for a while: nobody hears what you write."
+    )
+
+
+class Kick(_Command):
+    """Send a person out, and say why."""
+
+    op: Literal["kick"]
+    person: Annotated[int, Field(ge=1, description="The id of the person's avatar.")]
+    text: Annotated[str, Field(min_length=1, max_length=200)] = (
+        "An operator has asked you to leave."
+    )
+
+
 Command = Annotated[
     SetParameters
     | ClearParameters
@@ -166,6 +194,9 @@ Command = Annotated[
     | AddActors
     | RemoveActors
     | MoveDoor
+    | Announce
+    | Mute
+    | Kick
     | Revert,
     Field(discriminator="op"),
 ]

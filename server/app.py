@@ -135,7 +135,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         )
         deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
         ground_work = GroundWork(world, deriving)
-        gate.console = console = _console(world, kept, loaded, metrics)
+        gate.console = console = _console(world, hub, kept, loaded, metrics)
         ticker = Ticker(
             world, ground_work, audience, link, hub, delivery, schedule, metrics, thread, console
         )
@@ -254,10 +254,10 @@ def _with_roster(loaded: LoadedScene, settings: ServerSettings) -> LoadedScene:
     return replace(loaded, roster=roster)
 
 
-def _console(world: Zone, kept: Kept, loaded: LoadedScene, metrics: Metrics) -> Console:
+def _console(world: Zone, hub: Hub, kept: Kept, loaded: LoadedScene, metrics: Metrics) -> Console:
     """What operators' commands go through."""
     overrides = None if loaded.roster is None else loaded.roster.overrides
-    console = Console(world, kept.store, kept.audit, overrides)
+    console = Console(world, hub.moderation, kept.store, kept.audit, overrides)
     metrics.gauge(
         "commands_in_turn",
         "Operators' lists of commands that are carried out or wait for their turn",

@@ -106,6 +106,12 @@ async def actor(request: Request, actor_id: str) -> dict[str, Any]:
         return JSONResponse(_told(error), HTTPStatus.NOT_FOUND)  # type: ignore[return-value]
 
 
+@router.get("/people")
+async def people(request: Request) -> dict[str, Any]:
+    """Everyone who is connected, at this moment."""
+    return await _asked(request, questions.people)
+
+
 @router.get("/parameters")
 async def parameters(request: Request) -> dict[str, Any]:
     """All values that are set, by scope, and the usual ones."""

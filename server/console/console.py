@@ -17,6 +17,8 @@ from esplanade.protocol.commands import (
     Command,
     CommandFault,
     Facts,
+    Kick,
+    Mute,
     Price,
     Revert,
     SetParameters,
@@ -27,6 +29,12 @@ from esplanade.server.audit.entries import Entry
 from esplanade.server.audit.log import AuditLog
 from esplanade.server.console.changes import Change, Changes
 from esplanade.server.console.inputs import inputs_for
+from esplanade.server.console.moderation import (
+    MODERATING,
+    Moderation,
+    moderate,
+    wanted_of_people,
+)
 from esplanade.server.console.refusals import RefusedError, of_world
 from esplanade.server.console.standing import (
     BEHAVIOUR,
@@ -63,6 +71,7 @@ class _Planned:
     before: Facts
     after: Facts
     reverts: int | None = None
+    person: str | None = None
 
 
 class Console:
@@ -73,11 +82,17 @@ class Console:
     """
 
     def __init__(
-        self, zone: Zone, store: SqlStore, audit: AuditLog, overrides: Overrides | None = None
+        self,
+        zone: Zone,
+        moderation: Moderation,
+        store: SqlStore,
+        audit: AuditLog,
+        overrides: Overrides | None = None,
     ) -> None:
         self.zone = zone
         self.standing = Standing(zone, overrides or Overrides())
         self.changes = Changes()
+        self.moderation = moderation
         self._store = store
         self._audit = audit
         self._turn = asyncio.Lock()
@@ -127,12 +142,16 @@ class Console:
         if commands[0].dry_run:
             return [self._answer(one, price=price) for one in planned]
         numbers = await self._record(by, planned)
+        for one in planned:
+            moderate(one.command, self.moderation)
         tick, faults = await self._in_a_tick(inputs, doors)
         await self._record_outcomes(by, planned, numbers, tick, faults)
         if faults:
             raise RefusedError(faults).within(0) if len(commands) == 1 else RefusedError(faults)
         self.standing.take(facts)
         for number, one in zip(numbers, planned, strict=True):
+            if isinstance(one.command, MODERATING):
+                continue
             self.changes.add(
                 Change(number, by.account, one.command, one.before, one.after, one.reverts)
             )
@@ -161,6 +180,12 @@ class Console:
                 _check_right(by, op)
             self.changes.check_untouched(change, self.standing)
             return _Planned(command, change.after, change.before, change.number)
+        if isinstance(command, MODERATING):
+            facts = wanted_of_people(command, self.moderation)
+            name = None
+            if isinstance(command, Kick | Mute):
+                name = self.moderation.name_of(command.person)
+            return _Planned(command, {}, facts, person=name)
         facts = wished(command, self.standing, pending)
         if isinstance(command, SetParameters | ClearParameters):
             self.changes.check_revision(command.if_revision, facts, self.standing)
@@ -225,6 +250,7 @@ class Console:
                     "after": one.after,
                     **({} if one.reverts is None else {"reverts": one.reverts}),
                 },
+                person=one.person,
                 note=one.command.note,
             )
             for one in planned

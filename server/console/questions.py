@@ -8,6 +8,7 @@ from esplanade.actors.state import Reason
 from esplanade.protocol.commands import COMMAND, ZONE
 from esplanade.server.console.console import Console
 from esplanade.server.console.refusals import RefusedError
+from esplanade.server.world.state import PERSON
 
 
 def schema() -> dict[str, Any]:
@@ -76,6 +77,19 @@ def actor(console: Console, name: str) -> dict[str, Any]:
             None if held is None else {"kind": held.kind, "id": held.id, "away_m": held.away_m}
         )
     return found
+
+
+def people(console: Console) -> dict[str, Any]:
+    """Everyone who is connected, at this moment."""
+    state, found = console.zone.state, []
+    for avatar in state.ids[state.of_kind(PERSON)].tolist():
+        name = console.moderation.name_of(avatar)
+        if name is not None:
+            x, y = state.positions[state.slot(avatar)].tolist()
+            muted_s = round(console.moderation.muted_s(avatar), 1)
+            place = [round(x, 3), round(y, 3), round(float(state.heights[state.slot(avatar)]), 3)]
+            found.append({"id": avatar, "name": name, "position": place, "muted_s": muted_s})
+    return {"tick": console.zone.tick, "people": found}
 
 
 def parameters(console: Console) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from esplanade.server.net import frames
 from esplanade.server.net.fair_queue import Asker
 from esplanade.server.net.ground_work import DOOR_PAUSE_S
 from esplanade.server.net.leases import ANSWER_S, PING_S, Leases
+from esplanade.server.net.moderation import PeopleModeration
 from esplanade.server.net.names import Names, ReservedNameError
 from esplanade.server.net.operator_keys import OperatorKeys, TooManyKeysError
 from esplanade.server.net.route_requests import RouteRequests
@@ -78,6 +79,9 @@ class Hub:
         self._names = Names(world.actor_names)
         self._leases = Leases(world.moves)
         self._operator_keys = OperatorKeys(settings.operator_key.get_secret_value(), metrics)
+        self.moderation = PeopleModeration(
+            self.sessions, self._kick, lambda: asyncio.get_running_loop().time()
+        )
         self._next_ticket = 1
         self._joining: dict[int, tuple[Session, Hello]] = {}
         self._comings: list[Attach | Detach | Leave | Stand] = []
@@ -164,6 +168,12 @@ class Hub:
         if len(self._lines) >= MAX_LINES:
             session.refuse_line("all", "too many people talk at once; nobody heard your line")
             return
+        if session.avatar_id is not None:
+            muted_s = self.moderation.muted_s(session.avatar_id)
+            if muted_s > 0.0:
+                text = f"an operator has muted you for {muted_s:.0f} s more; nobody heard your line"
+                session.tell(ProtocolError(ErrorCode.MUTED, text, None))
+                return
         self._metrics.chat_lines.inc()
         self._lines.append((session, text))
 
@@ -328,6 +338,13 @@ class Hub:
             farewell = frames.message(Bye(reason=ByeCode.SILENT, text=text))
             self.depart(session, comes_back=True)
             session.dismiss(farewell, CloseCode.SILENT, ByeCode.SILENT.value)
+
+    def _kick(self, session: Session) -> None:
+        """Give up the seat of a session: whoever had it comes back as somebody new."""
+        seat = None if session.avatar_id is None else self._seats.of(session.avatar_id)
+        if seat is not None and seat.occupant is session:
+            self._unbind(seat)
+            self._remove(seat)
 
     def _resume(self, seat: Seat[Session], session: Session, token: str) -> None:
         before = self._seats.occupy(seat, session, session.address)

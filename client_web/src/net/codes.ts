@@ -58,6 +58,7 @@ export const CloseCode = {
   REPLACED: 4009,
   SILENT: 4010,
   NAME_RESERVED: 4011,
+  KICKED: 4012,
 } as const;
 
 export type Kind = "person" | "actor";
