@@ -12,10 +12,10 @@ from esplanade.server.console.standing import (
     HELD,
     OPEN,
     PRESENT,
+    Effective,
     Standing,
     each,
     parameters_of,
-    value_of,
     with_facts,
 )
 from esplanade.server.world.inputs import (
@@ -71,12 +71,11 @@ def _parameters(
     """The command for all parameters that become others, if any do."""
     scopes = parameters_of(facts)
     names = sorted({name for values in scopes.values() for name in values})
-    later = with_facts(standing.overrides, facts)
+    now, later = Effective(standing.overrides), Effective(with_facts(standing.overrides, facts))
     rows = {}
     for spec in standing.reached(scopes):
-        after = [value_of(later, spec, name) for name in names]
-        before = [value_of(standing.overrides, spec, name) for name in names]
-        if after != before and spec.id not in leaving:
+        after = later.values(spec, names)
+        if after != now.values(spec, names) and spec.id not in leaving:
             rows[spec.id] = after
     if not rows:
         return []

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any, Final
 
 from esplanade.actors import ActorSpec, Overrides, Scope
-from esplanade.actors.overrides import DEFAULTS, WORLD
+from esplanade.actors.overrides import DEFAULTS, WORLD, Values
 from esplanade.protocol.commands import Facts
 from esplanade.server.world.zone import Zone
 
@@ -67,14 +67,14 @@ class Standing:
 
     def reached(self, scopes: Iterable[Scope]) -> list[ActorSpec]:
         """The actors whose parameters may be others when values in these scopes are."""
-        scopes = set(scopes)
-        return [
-            spec
-            for spec in self.zone.actors.values()
-            if WORLD in scopes
-            or Scope("own", spec.id) in scopes
-            or any(Scope("group", tag) in scopes for tag in spec.tags)
-        ]
+        names: dict[str, set[str]] = {"world": set(), "group": set(), "own": set()}
+        for scope in scopes:
+            names[scope.level].add(scope.name)
+        specs = list(self.zone.actors.values())
+        if names["world"]:
+            return specs
+        groups, own = names["group"], names["own"]
+        return [spec for spec in specs if spec.id in own or not groups.isdisjoint(spec.tags)]
 
     def _present(self, name: str) -> Any:
         spec = self.zone.actors.get(name)
@@ -123,14 +123,24 @@ def with_facts(overrides: Overrides, facts: Facts) -> Overrides:
     return overrides
 
 
-def value_of(overrides: Overrides, spec: ActorSpec, name: str) -> float | int:
-    """One effective parameter of an actor."""
-    for scope in (
-        Scope("own", spec.id),
-        *(Scope("group", tag) for tag in reversed(spec.tags)),
-        WORLD,
-    ):
-        values = overrides.of(scope)
-        if name in values:
-            return values[name]
-    return DEFAULTS[name]
+class Effective:
+    """The effective parameters of many actors, found without a scope made for each."""
+
+    def __init__(self, overrides: Overrides) -> None:
+        self._by_level: dict[str, dict[str, Values]] = {"world": {}, "group": {}, "own": {}}
+        for scope, values in overrides.values.items():
+            self._by_level[scope.level][scope.name] = values
+
+    def values(self, spec: ActorSpec, names: Iterable[str]) -> list[float | int]:
+        """Some parameters of an actor, in the order of their names."""
+        groups = self._by_level["group"]
+        layers = [
+            self._by_level["own"].get(spec.id, _NONE),
+            *(groups[tag] for tag in reversed(spec.tags) if tag in groups),
+            self._by_level["world"].get("", _NONE),
+            DEFAULTS,
+        ]
+        return [next(layer[name] for layer in layers if name in layer) for name in names]
+
+
+_NONE: Final[Values] = {}
