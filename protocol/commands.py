@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Final, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, TypeAdapter
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, TypeAdapter
 
 ZONE: Final = "main"
 """The zone of an actor whose id names none."""
@@ -40,18 +40,30 @@ ScopeText = Annotated[
         description="Where values hold: `world`, `group:TAG` or `actor:ID`.",
     ),
 ]
-Actors = Annotated[tuple[ActorRef, ...], Field(min_length=1, max_length=500)]
+
+
+def _all_different(actors: tuple[str, ...]) -> tuple[str, ...]:
+    if len(set(actors)) < len(actors):
+        raise ValueError("an actor is named twice")
+    return actors
+
+
+Actors = Annotated[
+    tuple[ActorRef, ...], Field(min_length=1, max_length=500), AfterValidator(_all_different)
+]
+NO_NUL: Final = r"^[^\x00]*$"
+"""Databases keep no text with a null character in it."""
 ParameterName = Annotated[str, Field(min_length=1, max_length=64)]
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Metres = Annotated[float, Field(allow_inf_nan=False, ge=-100_000.0, le=100_000.0)]
-Place = Annotated[str, Field(min_length=1, max_length=64)]
+Place = Annotated[str, Field(min_length=1, max_length=64, pattern=NO_NUL)]
 
 
 class _Command(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     dry_run: bool = Field(False, description="Check it, and tell its price; change nothing.")
-    note: Annotated[str, Field(max_length=500)] | None = Field(
+    note: Annotated[str, Field(max_length=500, pattern=NO_NUL)] | None = Field(
         None, description="Why: it is kept in the audit."
     )
 
@@ -112,7 +124,7 @@ class NewActor(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     id: ActorRef | None = Field(None, description="None for the next that is free.")
-    name: Annotated[str, Field(min_length=1, max_length=32)] | None = None
+    name: Annotated[str, Field(min_length=1, max_length=32, pattern=NO_NUL)] | None = None
     behaviour: dict[str, Any] = Field(default_factory=lambda: {"kind": "wander"})
     tags: Annotated[tuple[str, ...], Field(max_length=8)] = ()
     overrides: Annotated[dict[ParameterName, Number], Field(max_length=64)] = {}
@@ -161,7 +173,7 @@ class Announce(_Command):
     """Say something to all people."""
 
     op: Literal["announce"]
-    text: Annotated[str, Field(min_length=1, max_length=500)]
+    text: Annotated[str, Field(min_length=1, max_length=500, pattern=NO_NUL)]
 
 
 class Mute(_Command):
@@ -170,7 +182,7 @@ class Mute(_Command):
     op: Literal["mute"]
     person: Annotated[int, Field(ge=1, description="The id of the person's avatar.")]
     seconds: Annotated[float, Field(ge=0.0, le=86_400.0, allow_inf_nan=False)] = 600.0
-    text: Annotated[str, Field(min_length=1, max_length=200)] = (
+    text: Annotated[str, Field(min_length=1, max_length=200, pattern=NO_NUL)] = (
         "An operator has muted you for a while: nobody hears what you write."
     )
 
@@ -180,7 +192,7 @@ class Kick(_Command):
 
     op: Literal["kick"]
     person: Annotated[int, Field(ge=1, description="The id of the person's avatar.")]
-    text: Annotated[str, Field(min_length=1, max_length=200)] = (
+    text: Annotated[str, Field(min_length=1, max_length=200, pattern=NO_NUL)] = (
         "An operator has asked you to leave."
     )
 

@@ -9,8 +9,9 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from fastapi.routing import APIRoute
 from pydantic import BaseModel, Discriminator, Tag
+from starlette.exceptions import HTTPException
 
-from esplanade.protocol.commands import Answer, Command, CommandFault, Commands, full_id
+from esplanade.protocol.commands import NO_NUL, Answer, Command, CommandFault, Commands, full_id
 from esplanade.server.accounts.identity import Identity
 from esplanade.server.accounts.rights import Right
 from esplanade.server.audit.log import MOST_ROWS, Filter
@@ -30,6 +31,10 @@ def _one_or_list(body: object) -> str:
 OneOrList = Annotated[
     Annotated[Command, Tag("one")] | Annotated[Commands, Tag("list")], Discriminator(_one_or_list)
 ]
+
+
+Moment = Annotated[int | None, Query(ge=0, lt=2**62, description="Microseconds since 1970.")]
+Word = Annotated[str | None, Query(max_length=200, pattern=NO_NUL)]
 
 
 class Refusal(BaseModel):
@@ -74,6 +79,7 @@ def add_api(app: FastAPI, gate: Gate) -> None:
     app.add_exception_handler(RefusedError, _refused)
     app.add_exception_handler(RequestValidationError, _invalid)
     app.add_exception_handler(StoreError, _no_store)
+    app.add_exception_handler(HTTPException, _unread)
 
 
 @router.get("/schema")
@@ -133,11 +139,11 @@ async def commands(request: Request, body: OneOrList) -> Answer | list[Answer]:
 @router.get("/audit")
 async def audit(
     request: Request,
-    since_us: int | None = None,
-    until_us: int | None = None,
-    account: str | None = None,
-    command: str | None = None,
-    target: str | None = None,
+    since_us: Moment = None,
+    until_us: Moment = None,
+    account: Word = None,
+    command: Word = None,
+    target: Word = None,
     after: Annotated[
         str | None, Query(pattern=r"^\d{1,18}-\d{1,18}$", description="`next` of the page before.")
     ] = None,
@@ -231,6 +237,12 @@ def _path(loc: Sequence[str | int]) -> list[str | int]:
     if kind == "list":
         return [*rest[:1], *rest[2:]]
     return rest[1:] if kind == "one" else [kind, *rest]
+
+
+async def _unread(_: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)  # noqa: S101
+    refusal = RefusedError.of("invalid", str(error.detail))
+    return JSONResponse(_told(refusal), error.status_code, error.headers)
 
 
 async def _no_store(_: Request, error: Exception) -> Response:
