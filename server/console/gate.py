@@ -31,7 +31,8 @@ class Gate:
         """None until the world is built, and again when it ends."""
         self._tokens = tokens
         self._zone = zone
-        self._under_way = 0
+        self.under_way = 0
+        """Requests that wait for the zone."""
 
     async def identity(self, request: Request) -> Identity:
         """Who asks, by the token in `Authorization`.
@@ -70,15 +71,15 @@ class Gate:
         console = self.console
         if console is None:
             raise RefusedError.of("busy", "the world is not ready")
-        if self._under_way >= MOST_UNDER_WAY:
+        if self.under_way >= MOST_UNDER_WAY:
             raise RefusedError.of("busy", f"{MOST_UNDER_WAY} requests wait already")
-        self._under_way += 1
+        self.under_way += 1
         running = asyncio.wrap_future(asyncio.run_coroutine_threadsafe(work(console), self._zone))
         running.add_done_callback(self._ended)
         return await asyncio.shield(running)
 
     def _ended(self, running: "asyncio.Future[Any]") -> None:
-        self._under_way -= 1
+        self.under_way -= 1
         if not running.cancelled():
             running.exception()  # whoever asked may be gone
 

@@ -41,6 +41,11 @@ async def private_port(
     OSError
         The address cannot be had.
     """
+    metrics.gauge(
+        "requests_under_way",
+        "Requests of operators that wait for the world",
+        lambda: gate.under_way,
+    )
     loop = asyncio.get_running_loop()
     app = operators_api(Figures(metrics, loop), readiness, gate)
     opened: Future[tuple[int, Callable[[], object]]] = Future()

@@ -8,6 +8,7 @@ import pytest
 
 from esplanade.server.audit.log import Filter
 from esplanade.server.audit.verifying import verify
+from esplanade.server.store.store import StoreBusyError
 from tests.server.conftest import Serving
 from tests.server.console.operators import Operator, operator
 from tests.server.http import get
@@ -291,3 +292,36 @@ async def test_an_admin_pages_through_the_audit(serving: Serving) -> None:
             after = f"&after={page['next']}"
         assert len(seen) == 6
         assert seen == sorted(seen, reverse=True)
+
+
+async def test_what_cannot_be_written_into_the_audit_is_not_carried_out(
+    serving: Serving, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with serving(actors=1) as server:
+        olga = await operator(server, "olga", "tuner")
+        assert (await olga.get("/world"))[0] == 200
+
+        async def full(_: Any) -> None:
+            raise StoreBusyError("the disk is full")
+
+        with monkeypatch.context() as patch:
+            patch.setattr(server.kept.store, "write", full)
+            status, body = await olga.send(RISK)
+        assert (status, _codes(body)) == (503, [("busy", [])])
+        assert server.world.parameters("main/actor-1").risk_weight == 9.5
+        assert (await olga.send(RISK))[0] == 200
+
+
+async def test_a_refusal_in_the_tick_itself_is_told_and_written_down(
+    serving: Serving, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with serving(actors=1) as server:
+        anna = await operator(server, "anna", "admin")
+        monkeypatch.setattr(server.world, "check", lambda command: None)
+        low = {**RISK, "values": {"max_speed_mps": 0.2}}
+        status, body = await anna.send(low)
+        assert (status, _codes(body)) == (422, [("values", ["values", "speed_mps"])])
+        _, page = await anna.get("/audit?command=set_parameters")
+        assert [row["outcome"] for row in page["rows"]] == ["refused", ""]
+        _, found = await anna.get("/parameters")
+        assert "world" not in found["scopes"]
