@@ -4,7 +4,6 @@ import asyncio
 import itertools
 from collections import deque
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any, Final, TypeVar
 
 import structlog
@@ -25,7 +24,6 @@ from esplanade.protocol.commands import (
 )
 from esplanade.server.accounts.identity import Identity
 from esplanade.server.accounts.rights import COMMANDS, may
-from esplanade.server.audit.entries import Entry
 from esplanade.server.audit.log import AuditLog
 from esplanade.server.console.changes import Change, Changes
 from esplanade.server.console.inputs import inputs_for
@@ -35,6 +33,7 @@ from esplanade.server.console.moderation import (
     moderate,
     wanted_of_people,
 )
+from esplanade.server.console.records import Planned, Records
 from esplanade.server.console.refusals import RefusedError, of_world
 from esplanade.server.console.standing import (
     BEHAVIOUR,
@@ -47,7 +46,6 @@ from esplanade.server.console.standing import (
 )
 from esplanade.server.console.wishes import wished
 from esplanade.server.store.sql_store import SqlStore
-from esplanade.server.store.store import StoreError
 from esplanade.server.world.frame import Frame
 from esplanade.server.world.inputs import ActorCommand, AddActors, Input, MoveDoor
 from esplanade.server.world.inputs import SetParameters as SetInWorld
@@ -63,15 +61,6 @@ PATIENCE_S: Final = 30.0
 """What the world has not carried out after this time is answered as not known."""
 
 log = structlog.get_logger(__name__)
-
-
-@dataclass(frozen=True)
-class _Planned:
-    command: Command
-    before: Facts
-    after: Facts
-    reverts: int | None = None
-    person: str | None = None
 
 
 class Console:
@@ -93,8 +82,7 @@ class Console:
         self.standing = Standing(zone, overrides or Overrides())
         self.changes = Changes()
         self.moderation = moderation
-        self._store = store
-        self._audit = audit
+        self._records = Records(store, audit)
         self._turn = asyncio.Lock()
         self._waiting = 0
         self._numbers = itertools.count(1)
@@ -141,11 +129,11 @@ class Console:
         price = await self.ask(lambda: self._checked(inputs, len(commands)))
         if commands[0].dry_run:
             return [self._answer(one, price=price) for one in planned]
-        numbers = await self._record(by, planned)
+        numbers = await self._records.wishes(by, planned, self.zone.tick)
         for one in planned:
             moderate(one.command, self.moderation)
         tick, faults = await self._in_a_tick(inputs, doors)
-        await self._record_outcomes(by, planned, numbers, tick, faults)
+        await self._records.outcomes(by, planned, numbers, tick, faults)
         if faults:
             raise RefusedError(faults).within(0) if len(commands) == 1 else RefusedError(faults)
         self.standing.take(facts)
@@ -160,8 +148,8 @@ class Console:
             for number, one in zip(numbers, planned, strict=True)
         ]
 
-    def _plan(self, by: Identity, commands: Sequence[Command]) -> list[_Planned]:
-        planned: list[_Planned] = []
+    def _plan(self, by: Identity, commands: Sequence[Command]) -> list[Planned]:
+        planned: list[Planned] = []
         faults: list[CommandFault] = []
         for index, command in enumerate(commands):
             pending = _together([one.after for one in planned])
@@ -173,19 +161,19 @@ class Console:
             raise RefusedError(faults)
         return planned
 
-    def _plan_one(self, by: Identity, command: Command, pending: Facts) -> _Planned:
+    def _plan_one(self, by: Identity, command: Command, pending: Facts) -> Planned:
         if isinstance(command, Revert):
             change = self.changes.found(command.change, by.account)
             for op in _needed_for(change):
                 _check_right(by, op)
             self.changes.check_untouched(change, self.standing)
-            return _Planned(command, change.after, change.before, change.number)
+            return Planned(command, change.after, change.before, change.number)
         if isinstance(command, MODERATING):
             facts = wanted_of_people(command, self.moderation)
             name = None
             if isinstance(command, Kick | Mute):
                 name = self.moderation.name_of(command.person)
-            return _Planned(command, {}, facts, person=name)
+            return Planned(command, {}, facts, person=name)
         facts = wished(command, self.standing, pending)
         if isinstance(command, SetParameters | ClearParameters):
             self.changes.check_revision(command.if_revision, facts, self.standing)
@@ -193,7 +181,7 @@ class Console:
         for subject, fields in pending.items():
             for field in fields.keys() & before.get(subject, {}).keys():
                 before[subject][field] = fields[field]
-        return _Planned(command, before, facts)
+        return Planned(command, before, facts)
 
     def _checked(self, inputs: list[ActorCommand], count: int) -> Price:
         """What inputs cost, if the world would take them; asked between two ticks."""
@@ -230,66 +218,8 @@ class Console:
         faults = [fault for one in refused for fault in of_world(one)]
         return max((outcome.tick for outcome in outcomes), default=tick), faults
 
-    # --- the audit ------------------------------------------------------------------------------
-
-    async def _record(self, by: Identity, planned: list[_Planned]) -> list[int]:
-        entries = [
-            Entry(
-                command=one.command.op,
-                account=by.account,
-                role=by.role,
-                address=by.address,
-                target=_target(one.after),
-                tick=self.zone.tick,
-                body={
-                    "via": by.via,
-                    "command": one.command.model_dump(
-                        mode="json", exclude={"dry_run", "note"}, exclude_none=True
-                    ),
-                    "before": one.before,
-                    "after": one.after,
-                    **({} if one.reverts is None else {"reverts": one.reverts}),
-                },
-                person=one.person,
-                note=one.command.note,
-            )
-            for one in planned
-        ]
-        return await self._store.write(
-            lambda connection: [self._audit.add(connection, entry) for entry in entries]
-        )
-
-    async def _record_outcomes(
-        self,
-        by: Identity,
-        planned: list[_Planned],
-        numbers: list[int],
-        tick: int | None,
-        faults: list[CommandFault],
-    ) -> None:
-        entries = [
-            Entry(
-                command=one.command.op,
-                account=by.account,
-                role=by.role,
-                target=_target(one.after),
-                tick=tick,
-                outcome="refused" if faults else "done",
-                refers_to=number,
-                body={"faults": [fault.model_dump(mode="json") for fault in faults]},
-            )
-            for number, one in zip(numbers, planned, strict=True)
-        ]
-        try:
-            await self._store.write(
-                lambda connection: [self._audit.add(connection, entry) for entry in entries]
-            )
-        except StoreError:
-            # It is done, and its row stands: only what came of it is missing there.
-            log.exception("the outcome of a command is not in the audit", commands=numbers)
-
     def _answer(
-        self, planned: _Planned, price: Price, number: int | None = None, tick: int | None = None
+        self, planned: Planned, price: Price, number: int | None = None, tick: int | None = None
     ) -> Answer:
         shadowed: dict[str, int] = {}
         for scope, values in parameters_of(planned.after).items():
@@ -370,13 +300,6 @@ def _is_prepared(command: ActorCommand) -> bool:
     if isinstance(command, SetInWorld):
         return not command.values.keys().isdisjoint(MEASURES)
     return isinstance(command, AddActors)
-
-
-def _target(facts: Facts) -> str:
-    """What a row of the audit is about: the one subject, or the first of several."""
-    subjects = list(facts)
-    first = subjects[0].removeprefix("actor:").removeprefix("door:") if subjects else ""
-    return first[:200]
 
 
 def _together(all_facts: Sequence[Facts]) -> Facts:

@@ -1,0 +1,104 @@
+"""Rows of the audit for commands: what is wanted before a tick, and what came of it after."""
+
+from dataclasses import dataclass
+
+import structlog
+
+from esplanade.protocol.commands import Command, CommandFault, Facts
+from esplanade.server.accounts.identity import Identity
+from esplanade.server.audit.entries import Entry
+from esplanade.server.audit.log import AuditLog
+from esplanade.server.store.sql_store import SqlStore
+from esplanade.server.store.store import StoreError
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A command, with the facts that it changes."""
+
+    command: Command
+    before: Facts
+    after: Facts
+    reverts: int | None = None
+    person: str | None = None
+
+
+class Records:
+    """Writes rows about commands; those of one list are committed together."""
+
+    def __init__(self, store: SqlStore, audit: AuditLog) -> None:
+        self._store = store
+        self._audit = audit
+
+    async def wishes(self, by: Identity, planned: list[Planned], tick: int) -> list[int]:
+        """Write down what is wanted, at that tick; the numbers of the rows, once committed.
+
+        Raises
+        ------
+        StoreError
+            It could not be written: nothing may be carried out.
+        """
+        entries = [
+            Entry(
+                command=one.command.op,
+                account=by.account,
+                role=by.role,
+                address=by.address,
+                target=_target(one.after),
+                tick=tick,
+                body={
+                    "via": by.via,
+                    "command": one.command.model_dump(
+                        mode="json", exclude={"dry_run", "note"}, exclude_none=True
+                    ),
+                    "before": one.before,
+                    "after": one.after,
+                    **({} if one.reverts is None else {"reverts": one.reverts}),
+                },
+                person=one.person,
+                note=one.command.note,
+            )
+            for one in planned
+        ]
+        return await self._store.write(
+            lambda connection: [self._audit.add(connection, entry) for entry in entries]
+        )
+
+    async def outcomes(
+        self,
+        by: Identity,
+        planned: list[Planned],
+        numbers: list[int],
+        tick: int | None,
+        faults: list[CommandFault],
+    ) -> None:
+        """Write down what came of commands in that tick; if that fails, it is logged only."""
+        entries = [
+            Entry(
+                command=one.command.op,
+                account=by.account,
+                role=by.role,
+                target=_target(one.after),
+                tick=tick,
+                outcome="refused" if faults else "done",
+                refers_to=number,
+                body={"faults": [fault.model_dump(mode="json") for fault in faults]},
+            )
+            for number, one in zip(numbers, planned, strict=True)
+        ]
+        try:
+            await self._store.write(
+                lambda connection: [self._audit.add(connection, entry) for entry in entries]
+            )
+        except StoreError:
+            # It is done, and its row stands: only what came of it is missing there.
+            log.exception("the outcome of a command is not in the audit", commands=numbers)
+
+
+def _target(facts: Facts) -> str:
+    """What a row of the audit is about: the one subject, or the first of several."""
+    subjects = list(facts)
+    first = subjects[0].removeprefix("actor:").removeprefix("door:") if subjects else ""
+    return first[:200]
