@@ -51,13 +51,16 @@ class Records:
                 body={
                     "via": by.via,
                     "command": one.command.model_dump(
-                        mode="json", exclude={"dry_run", "note"}, exclude_none=True
+                        mode="json",
+                        exclude={"dry_run", "note", *_said_to_person(one)},
+                        exclude_none=True,
                     ),
                     "before": one.before,
                     "after": one.after,
                     **({} if one.reverts is None else {"reverts": one.reverts}),
                 },
                 person=one.person,
+                detail=one.command.model_dump(include=_said_to_person(one)) or None,
                 note=one.command.note,
             )
             for one in planned
@@ -95,6 +98,11 @@ class Records:
         except StoreError:
             # It is done, and its row stands: only what came of it is missing there.
             log.exception("the outcome of a command is not in the audit", commands=numbers)
+
+
+def _said_to_person(one: Planned) -> set[str]:
+    """Fields that may speak of a person, and so must be kept where they can be forgotten."""
+    return set() if one.person is None else {"text"}
 
 
 def _target(facts: Facts) -> str:
