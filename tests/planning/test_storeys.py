@@ -382,11 +382,14 @@ def test_bodies_that_hardly_differ_share_what_is_known_of_the_ground() -> None:
 
 def test_a_zone_tells_only_so_many_kinds_of_body_apart() -> None:
     grid = grid_of(4.0)
-    kinds = [replace(ADULT, step_on_m=0.005 * k) for k in range(MOST_BODIES - 1)]
+    kinds = [
+        replace(ADULT, radius_m=0.2 + 0.05 * (k % 4), height_m=1.2 + 0.05 * (k // 4))
+        for k in range(MOST_BODIES - 1)
+    ]
     rows = [grid.row_of(body) for body in kinds]
     assert len(set(rows)) == len(kinds)
     with pytest.raises(ValueError, match=rf"knows {MOST_BODIES} kinds of body already"):
-        grid.row_of(replace(ADULT, step_on_m=0.59))
+        grid.row_of(replace(ADULT, step_on_m=0.55))
     assert [grid.row_of(body) for body in kinds] == rows
     assert find_path(grid, (1.0, 1.0, 0.0), (3.0, 3.0, 0.0), Body(step_on_m=0.59)).length_m > 2.8
 

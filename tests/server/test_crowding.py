@@ -1,8 +1,16 @@
 import pytest
+import structlog
 from structlog.testing import capture_logs
 
+from esplanade.server import crowding
 from esplanade.server.crowding import warn_of_crowding
 from esplanade.server.settings import ServerSettings
+
+
+@pytest.fixture(autouse=True)
+def _fresh_logger(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Loggers are kept from their first use on, with the settings of that time."""
+    monkeypatch.setattr(crowding, "log", structlog.get_logger())
 
 
 @pytest.mark.parametrize(("people", "rate"), [(1000, 20), (1700, 20), (800, 40)])
