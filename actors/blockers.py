@@ -1,4 +1,4 @@
-"""What holds an actor that does not walk on: somebody, a door or a wall."""
+"""Finds the person, actor, door or wall that holds an actor which does not walk on."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _HELD: Final = (Reason.GIVING_WAY, Reason.WAITING, Reason.REPLANNING, Reason.NO_
 
 @dataclass(frozen=True)
 class Blocker:
-    """What holds an actor."""
+    """The person, actor, door, wall or missing route that holds an actor."""
 
     kind: Literal["person", "actor", "door", "wall", "route"]
     """A route is one that is still being found."""
@@ -37,7 +37,7 @@ class Blocker:
 def find_blocker(
     navigator: Navigator, actor_id: Hashable, people: Mapping[Hashable, Place]
 ) -> Blocker | None:
-    """What holds an actor, judged by who is nearest to it on its way; None if it is not held.
+    """Find the blocker of an actor, the nearest on its way; None if the actor is not held.
 
     It looks at everyone once, and is meant for the few actors that somebody looks at.
     """

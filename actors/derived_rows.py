@@ -111,7 +111,7 @@ class DerivedRows:
             self._go_by(table, row, slot)
 
     def of_new_kind(self, before: NDArray[np.void], after: NDArray[np.void]) -> NDArray[np.int64]:
-        """Which of N actors are of another kind of body with their other parameters."""
+        """Tell for each of N actors whether other parameters make it another kind of body."""
         other = np.flatnonzero((measures(before) != measures(after)).any(axis=1))
         kinds = ((kind_of(body_of(before[k])), kind_of(body_of(after[k]))) for k in other)
         new = [k for k, (old, now) in zip(other.tolist(), kinds, strict=True) if old != now]

@@ -26,4 +26,4 @@ class Explanation:
     since_s: float = 0.0
     """For how long the reason has been that, seconds."""
     blocker: Blocker | None = None
-    """What holds the actor, as far as that can be told."""
+    """The blocker of the actor, as far as that can be told."""

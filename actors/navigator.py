@@ -279,7 +279,7 @@ class Navigator:
         )
 
     def undo_point(self) -> Callable[[], None]:
-        """What puts all actors back to how they are now, if a tick or a change fails half-way."""
+        """Return a call that puts all actors back, if a tick or a change fails half-way."""
         restore = self.table.undo_point()
 
         def undo() -> None:

@@ -16,7 +16,7 @@ DEFAULTS: Final[Values] = ActorParameters().model_dump()
 
 @dataclass(frozen=True)
 class Scope:
-    """Where a value holds: in the world, in a group of actors, or of one actor."""
+    """The range in which a value holds: the world, a group of actors, or one actor."""
 
     level: Literal["world", "group", "own"]
     name: str = ""

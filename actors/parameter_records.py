@@ -95,7 +95,7 @@ def with_values(
 
 
 def measures(records: NDArray[np.void]) -> NDArray[np.float64]:
-    """What makes the kinds of body of some actors, float64 (N, 4), metres."""
+    """Return the measures that make the kinds of body of some actors, float64 (N, 4), metres."""
     return np.stack([records[name] for name in MEASURES], axis=1)
 
 
@@ -125,4 +125,4 @@ def _faults(records: NDArray[np.void], ids: Sequence[Hashable]) -> list[Paramete
 
 
 _TOLD: Final = 8
-"""So many faults of one sort are told at most."""
+"""No more faults of one sort are told."""

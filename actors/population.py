@@ -234,7 +234,7 @@ class Population:
         self.navigator.potentials.derived_outside = True
 
     def undo_point(self) -> Callable[[], None]:
-        """What puts all actors back to how they are now, if a change fails half-way."""
+        """Return a call that puts all actors back, if a change fails half-way."""
         restore = self.navigator.undo_point()
         behaviours, generators = dict(self._behaviours), dict(self._generators)
         held, trips = set(self._held), self.trips

@@ -84,7 +84,7 @@ class PotentialPool:
         return slot is not None and slot not in self._provisional
 
     def provisional(self, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Which of some rows (A,) are provisional, bool (A,)."""
+        """Tell for each of some rows (A,) whether it is provisional, bool (A,)."""
         return np.isin(rows, list(self._provisional))
 
     @property

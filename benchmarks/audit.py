@@ -1,4 +1,4 @@
-"""How long a page of a long audit takes, and how long a row.
+"""Measures the time of a page of a long audit, and of a row.
 
 python -m benchmarks.audit --rows 1000000
 python -m benchmarks.audit --store postgresql://esplanade@localhost/empty

@@ -1,4 +1,4 @@
-"""What operators' commands on actors cost a tick: `python -m benchmarks.operators`.
+"""Measures what commands on actors cost a tick: `python -m benchmarks.operators`.
 
 It prints what a command takes inside its tick, and the ticks of two worlds that run side by side,
 of which in one an actor gets another body every second.

@@ -10,7 +10,7 @@ from esplanade.protocol.commands import Answer, Command
 
 
 class Operator:
-    """What an operator may do, as far as the token's rights go.
+    """A client with the rights of an operator's token.
 
     Each method raises `RefusedError` where the server refuses, and `UnreachableError` where there
     is none.

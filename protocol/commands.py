@@ -217,8 +217,8 @@ COMMAND: TypeAdapter[Command] = TypeAdapter(Command)
 Commands = Annotated[list[Command], Field(min_length=1, max_length=MOST_COMMANDS)]
 
 Facts = dict[str, dict[str, Any]]
-"""What is true of a subject: `{"world": {"risk_weight": 12}, "door:lobby": {"open": true}}`. None
-stands for what is not set, or not there."""
+"""Fields of subjects: `{"world": {"risk_weight": 12}, "door:lobby": {"open": true}}`. None stands
+for what is not set, or not there."""
 
 
 Price = Literal["tick", "prepared"]
@@ -235,7 +235,7 @@ class CommandFault(BaseModel):
 
 
 class Answer(BaseModel):
-    """What became of a command."""
+    """The answer to a command: the change that it made, and its tick."""
 
     op: str
     command: int | None = Field(

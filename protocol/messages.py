@@ -258,7 +258,7 @@ class Circle(BaseModel):
 
 
 class Blocker(BaseModel):
-    """What holds an actor that does not walk on."""
+    """The person, actor, door or wall that holds an actor which does not walk on."""
 
     model_config = ConfigDict(frozen=True, extra="ignore")
     kind: Literal["person", "actor", "door", "wall", "route"] | str
@@ -287,7 +287,7 @@ class Plan(FromServer):
     since_s: float
     """For how long the reason has been that."""
     blocker: Blocker | None
-    """What holds the actor, where it does not walk on and that can be told."""
+    """The blocker of an actor that does not walk on, where it can be told."""
 
 
 class Census(FromServer):

@@ -255,7 +255,7 @@ def _with_roster(loaded: LoadedScene, settings: ServerSettings) -> LoadedScene:
 
 
 def _console(world: Zone, hub: Hub, kept: Kept, loaded: LoadedScene, metrics: Metrics) -> Console:
-    """What operators' commands go through."""
+    """Make the console, which all commands of operators go through."""
     overrides = None if loaded.roster is None else loaded.roster.overrides
     console = Console(world, hub.moderation, kept.store, kept.audit, overrides)
     metrics.gauge(

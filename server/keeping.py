@@ -1,4 +1,4 @@
-"""What a running server keeps: its store, the audit, and what is about accounts."""
+"""Opens the store of a running server, with the audit and the accounts that stand on it."""
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager

@@ -75,7 +75,7 @@ def populate_from(
 
 
 def names_of(roster: Roster) -> Mapping[Hashable, str]:
-    """What others see each actor called, by its id."""
+    """Return the name of each actor that others see, by its id."""
     return {spec.id: spec.name for spec in roster.actors}
 
 

@@ -133,7 +133,7 @@ class AgentTable:
         self.version += 1
 
     def undo_point(self) -> Callable[[], None]:
-        """What puts the table back to how it is now, its arrays in place; O(agents)."""
+        """Return a call that puts the table back, its arrays in place; O(agents)."""
         agents, trips, rows, version = self.agents, self.trips, self._rows, self.version
         columns = (*agents, *trips)
         copies = [column.copy() for column in columns]

@@ -1,4 +1,4 @@
-"""What changes on a grid when it gets to know other kinds of body, derived before it does."""
+"""The changes of a grid that gets to know other kinds of body, derived beforehand."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from esplanade.planning.traversal.cache import KnownTraversability
 
 @dataclass(frozen=True, eq=False)
 class BodiesChange:
-    """What a fork of a grid (`LayeredGrid.fork`) has derived for kinds of body new to it."""
+    """Arrays that a fork of a grid (`LayeredGrid.fork`) has derived for kinds of body new to it."""
 
     base: GridArrays
     """The arrays that it was derived from: it holds for these only."""

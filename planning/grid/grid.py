@@ -170,7 +170,7 @@ class LayeredGrid(PlaceLookup):
         return fork
 
     def bodies_change(self, fork: LayeredGrid) -> BodiesChange:
-        """What a fork of this grid has got to know, to be applied if this is still as it was."""
+        """Return what a fork has learnt of new bodies, to be applied if this is unchanged."""
         known = {}
         if not self.arrays.flat:
             new = [kind for kind in fork._rows if kind not in self._rows]

@@ -98,7 +98,7 @@ class TraversabilityCache:
         return fork
 
     def known(self, body: Body) -> KnownTraversability:
-        """What is kept for a body; it is derived if need be."""
+        """Return what is kept for a body; it is derived if need be."""
         return self._up_to_date(body)
 
     def prepare(self, body: Body, barriers: Barriers) -> KnownTraversability:

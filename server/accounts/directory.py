@@ -18,7 +18,7 @@ from esplanade.server.store.store import Result, Store
 from esplanade.server.store.tables import ACCOUNTS, SESSIONS, TOKENS
 
 MOST: Final = 1000
-"""So many accounts there may be."""
+"""A zone has no more accounts."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Who does something: an account as it came in, with the rights that it has by that way."""
+"""Identities: an account as it came in, with the rights that it has by that way."""
 
 import hashlib
 import re
@@ -21,14 +21,14 @@ class AccountError(Exception):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Identity:
-    """Who does something; the rights are those at the moment when it was made out."""
+    """An account that does something, with its rights at the moment it was looked up."""
 
     account: str | None
     """The name of the account; None for whoever is on the machine itself."""
     role: str
     rights: Rights
     via: str
-    """How it came in: `machine`, `session`, `pass`, or `token` with the token's name."""
+    """Its way in: `machine`, `session`, `pass`, or `token` with the name of the token."""
     address: str | None = None
 
     def entry(self, command: str, *, person: str | None = None, **more: object) -> Entry:
@@ -88,5 +88,5 @@ def new_secret(prefix: str = "") -> str:
 
 
 def digest_of(secret: str) -> str:
-    """What is kept of a secret: its SHA-256 digest in hexadecimal."""
+    """Return the SHA-256 digest of a secret in hexadecimal, which is kept in its place."""
     return hashlib.sha256(secret.encode("utf-8", "surrogatepass")).hexdigest()

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 WRONG: Final = 5
-"""So many wrong passwords within a period lock."""
+"""This number of wrong passwords within a period locks an address or a name."""
 PERIOD_S: Final = 60.0
 FIRST_LOCK_S: Final = 60.0
 LONGEST_LOCK_S: Final = 3600.0
@@ -35,7 +35,7 @@ class _Tries:
     locked_until_s: float = -math.inf
     """Wrong passwords from before this have had their lock, and do not count again."""
     unlocked_s: float = -math.inf
-    """What `locked_until_s` was before the latest lock."""
+    """The value of `locked_until_s` before the latest lock."""
     latest_s: float = -math.inf
 
 

@@ -25,7 +25,7 @@ LINK_US: Final = 600 * 10**6
 PASS_US: Final = 60 * 10**6
 """A pass to a seat is good for 60 seconds."""
 MOST: Final = 1000
-"""So many tokens may wait for their use."""
+"""No more tokens may wait for their use."""
 _LINK: Final = "link"
 _PASS: Final = "pass"  # noqa: S105 (it is the name of the purpose)
 

@@ -16,7 +16,7 @@ Result = TypeVar("Result")
 SHORTEST: Final = 12
 LONGEST: Final = 256
 WAITING: Final = 16
-"""So many passwords may wait to be compared; each takes 64 MiB and some 50 ms while it is."""
+"""No more passwords may wait to be compared; each takes 64 MiB and some 50 ms."""
 
 
 class PasswordsBusyError(AccountError):

@@ -1,4 +1,4 @@
-"""What operators may do: each role is a set of rights, and each command needs one right."""
+"""Rights of operators: each role is a set of rights, and each command needs one right."""
 
 from collections.abc import Mapping
 from enum import StrEnum

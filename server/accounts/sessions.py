@@ -83,7 +83,7 @@ class Sessions:
         return await self._begin(name, account.role, kept, better, address)
 
     async def identity(self, token: str, address: str | None = None) -> Identity | None:
-        """Who the token of a session stands for, at this moment; None once it has ended.
+        """Return the identity that the token of a session stands for; None once it has ended.
 
         Role and rights are those that the account has now.
 

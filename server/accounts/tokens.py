@@ -32,12 +32,12 @@ MOST: Final = 100
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """What is known of a token; the token itself is not."""
+    """The facts that are kept of a token; the token itself is not."""
 
     account: str
     name: str
     rights: Rights
-    """What it may do, as far as its account may."""
+    """The rights of the token, as far as its account has them."""
     created_us: int
     expires_us: int
     used_us: int | None
@@ -181,7 +181,7 @@ class Tokens:
         return await self._store.read(find)
 
     async def identity(self, token: str, address: str | None = None) -> Identity | None:
-        """Who a token stands for at this moment; None for one that opens nothing.
+        """Return the identity that a token stands for; None for one that opens nothing.
 
         Its rights are those that were granted to it, as far as its account still has them.
 

@@ -1,4 +1,4 @@
-"""What a row of the audit says, before it is written and after."""
+"""Entries and rows of the audit: the same before it is written, and after."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -7,7 +7,7 @@ from typing import Any
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Entry:
-    """What somebody is about to do, or what came of it.
+    """An act that somebody is about to do, or its outcome.
 
     `body`, `target`, `command` and `outcome` are kept for ever and are to name no person. What is
     said of people stands in `person`, `note` and `detail`, what is said of the operator in
@@ -17,17 +17,17 @@ class Entry:
     command: str
     """The name of the command, such as `set_parameters`."""
     account: str | None = None
-    """Who does it; None for the machine itself."""
+    """The account that does it; None for the machine itself."""
     role: str = ""
     """The role that the account has at this moment."""
     address: str | None = None
-    """Where the account comes from."""
+    """The address that the account comes from."""
     target: str = ""
-    """What it is about: the id of an actor, a scope, a door."""
+    """The object of the act: the id of an actor, a scope, a door."""
     tick: int | None = None
     """The tick at which it was asked for, or took effect."""
     outcome: str = ""
-    """What came of it, as one word; empty while it is only about to happen."""
+    """The outcome as one word; empty while it is only about to happen."""
     refers_to: int | None = None
     """The number of the row, of the same writer, whose outcome this is."""
     body: Mapping[str, Any] = field(default_factory=dict)
@@ -37,7 +37,7 @@ class Entry:
     note: str | None = None
     """Why, in the words of the operator."""
     detail: Mapping[str, Any] | None = None
-    """What else is said of a person: JSON."""
+    """Further facts about a person: JSON."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

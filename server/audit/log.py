@@ -14,10 +14,10 @@ from esplanade.server.store.store import Store
 from esplanade.server.store.tables import AUDIT
 
 MOST_ROWS: Final = 1000
-"""So many rows make a page at most."""
+"""A page has no more rows."""
 
 Cursor = tuple[int, int]
-"""Where a page ends: time and id of its last row."""
+"""The end of a page: time and id of its last row."""
 
 
 def now_us() -> int:
@@ -27,7 +27,7 @@ def now_us() -> int:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Filter:
-    """Which rows are wanted; what is not given does not matter."""
+    """A choice of rows; fields that are not given do not matter."""
 
     since_us: int | None = None
     until_us: int | None = None

@@ -31,7 +31,7 @@ class Fault:
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """What was found in one writer's chain."""
+    """The findings in one writer's chain."""
 
     writer: str
     rows: int
@@ -45,7 +45,7 @@ class Chain:
 
 
 class Gap(NamedTuple):
-    """What is missing in a row, and must be named by a later row that says so."""
+    """Parts that are missing in a row, each of which a later row must name."""
 
     seq: int
     about: str

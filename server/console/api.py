@@ -230,7 +230,7 @@ async def _invalid(_: Request, error: Exception) -> Response:
 
 
 def _path(loc: Sequence[str | int]) -> list[str | int]:
-    """Where a fault is, without the words that pydantic adds for the kinds it has tried."""
+    """Return the place of a fault, without the words that pydantic adds for kinds it has tried."""
     if loc[:1] != ("body",) or len(loc) < 2:
         return list(loc)
     _, kind, *rest = loc

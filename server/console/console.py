@@ -58,7 +58,7 @@ MOST_WAITING: Final = 32
 MOST_QUESTIONS: Final = 64
 """Questions that may wait for the end of a tick; more are refused."""
 PATIENCE_S: Final = 30.0
-"""What the world has not carried out after this time is answered as not known."""
+"""A command that the world has not carried out after this time is answered as not known."""
 
 log = structlog.get_logger(__name__)
 
@@ -184,7 +184,7 @@ class Console:
         return Planned(command, before, facts)
 
     def _checked(self, inputs: list[ActorCommand], count: int) -> Price:
-        """What inputs cost, if the world would take them; asked between two ticks."""
+        """Return the price of inputs that the world would take; call it between two ticks."""
         faults: list[CommandFault] = []
         for one in inputs:
             fault = self.zone.check(one)

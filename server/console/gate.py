@@ -35,7 +35,7 @@ class Gate:
         """Requests that wait for the zone."""
 
     async def identity(self, request: Request) -> Identity:
-        """Who asks, by the token in `Authorization`.
+        """Return the identity of the caller, by the token in `Authorization`.
 
         Raises
         ------
@@ -59,7 +59,7 @@ class Gate:
         return identity
 
     async def call(self, work: Callable[[Console], Coroutine[Any, Any, Result]]) -> Result:
-        """What the work returns, done on the zone's loop.
+        """Do some work on the zone's loop, and return its result.
 
         It goes on there when the request is broken off: a command is done wholly or not at all.
 
@@ -96,7 +96,7 @@ STATUS: Final = {
     "not_known": HTTPStatus.GATEWAY_TIMEOUT,
     "failed": HTTPStatus.INTERNAL_SERVER_ERROR,
 }
-"""How the code of a refusal's first fault is told in HTTP; all others are 422."""
+"""The HTTP status for the code of a refusal's first fault; all others are 422."""
 
 
 def status_of(refusal: RefusedError) -> int:

@@ -1,4 +1,4 @@
-"""What operators can do about people: the console asks it of whatever serves them."""
+"""Moderation as the console needs it: whatever serves people carries it out."""
 
 from typing import Protocol
 
@@ -12,7 +12,7 @@ class Moderation(Protocol):
     """Those who serve people carry out what moderators want of them."""
 
     def name_of(self, person: int) -> str | None:
-        """What a person in the world is called, by the avatar's id; None if there is none."""
+        """Return the name of a person in the world, by the avatar's id; None if there is none."""
 
     def muted_s(self, person: int) -> float:
         """For how many seconds nobody hears a person yet."""
@@ -28,7 +28,7 @@ class Moderation(Protocol):
 
 
 def wanted_of_people(command: Command, moderation: Moderation) -> Facts:
-    """What a command wants of people, if it is one of `MODERATING`.
+    """Return the facts that a command of `MODERATING` wants of people.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What operators ask about a zone, as plain data."""
+"""Answers to questions of operators about a zone, as plain data."""
 
 from typing import Any
 

@@ -106,7 +106,7 @@ def _said_to_person(one: Planned) -> set[str]:
 
 
 def _target(facts: Facts) -> str:
-    """What a row of the audit is about: the one subject, or the first of several."""
+    """Return the subject of a row of the audit: the one, or the first of several."""
     subjects = list(facts)
     first = subjects[0].removeprefix("actor:").removeprefix("door:") if subjects else ""
     return first[:200]

@@ -1,4 +1,4 @@
-"""How things stand: what an operator can change, as facts about subjects that can be compared."""
+"""The facts that operators can change, as fields of subjects that can be compared."""
 
 from collections.abc import Iterable, Iterator
 from typing import Any, Final
@@ -23,10 +23,10 @@ class Standing:
         self.overrides = overrides
         self.held: set[str] = set()
         self._doors: dict[str, bool] = {}
-        """How each door was wanted last, of those that were wanted."""
+        """The latest wish for each door that was wanted open or closed."""
 
     def fact(self, subject: str, field: str) -> Any:
-        """What is true now of a field of a subject."""
+        """Return the present value of a field of a subject."""
         kind, _, name = subject.partition(":")
         match kind, field:
             case "door", _:
@@ -41,7 +41,7 @@ class Standing:
         return self.overrides.of(scope_of(subject)).get(field)
 
     def now(self, facts: Facts) -> Facts:
-        """What is true now of the same fields of the same subjects."""
+        """Return the present values of the same fields of the same subjects."""
         return {
             subject: {field: self.fact(subject, field) for field in fields}
             for subject, fields in facts.items()

@@ -1,4 +1,4 @@
-"""What each command wants to be true: facts about subjects, checked as far as data alone allow."""
+"""Turns commands into the facts that they want, checked as far as data alone allow."""
 
 from collections.abc import Mapping
 from typing import Annotated, Any, Final
@@ -43,7 +43,7 @@ _FIELDS: Final[Mapping[str, TypeAdapter[Any]]] = {
 def wished(  # noqa: PLR0911 (one for each command)
     command: Command, standing: Standing, pending: Facts
 ) -> Facts:
-    """What a command wants; `pending` is what commands before it in its list want.
+    """Return the facts that a command wants; `pending` are those of commands before it.
 
     Raises
     ------

@@ -133,7 +133,7 @@ def plan(tick: int, actor: int, explanation: Explanation) -> Plan:
 
 
 def blocker(explanation: Explanation) -> Blocker | None:
-    """What holds an actor, as it goes over the wire; the ids are those of avatars."""
+    """Return a blocker as it goes over the wire; the ids are those of avatars."""
     held = explanation.blocker
     if held is None:
         return None

@@ -1,4 +1,4 @@
-"""What operators do about people: announcements, mutes, and the way out."""
+"""Moderates people for operators: announcements, mutes, and the way out."""
 
 from collections.abc import Callable, Mapping
 from typing import Final
@@ -32,7 +32,7 @@ class PeopleModeration:
         self._muted_until_s: dict[int, float] = {}
 
     def name_of(self, person: int) -> str | None:
-        """What a connected person is called."""
+        """Return the name of a connected person."""
         session = self._sessions.get(person)
         return None if session is None else session.name
 

@@ -97,7 +97,7 @@ def forget(options: Namespace) -> int:
 
 
 def _with_any_tables(location: Location, work: Callable[[SqlStore], Awaitable[Result]]) -> Result:
-    """What the work returns, given a store whose tables may be old or missing.
+    """Return the result of work on a store whose tables may be old or missing.
 
     Raises
     ------

@@ -30,7 +30,7 @@ def _forget_account(connection: Connection, zone: str, person: str) -> int:
 
 
 FORGETTERS: Final[Mapping[str, Forgetter]] = {"accounts": _forget_account}
-"""What forgets, by the name of what it forgets in; the audit is not among them, and comes last."""
+"""Forgetters by the name of what each forgets in; the audit comes last and is not among them."""
 
 
 async def forget(store: Store, audit: AuditLog, by: Identity, person: str) -> dict[str, int]:

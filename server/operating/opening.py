@@ -26,7 +26,7 @@ def in_store(
     making: bool = False,
     upgrading: bool = False,
 ) -> Result:
-    """What the work returns, given the store that the options name.
+    """Return the result of work on the store that the options name.
 
     With `making`, a folder that has no store yet gets one. With `upgrading`, tables of an older
     program are brought to those of this one; without it, they are refused.
@@ -59,7 +59,7 @@ def in_store(
 
 
 def located(options: Namespace) -> Location:
-    """Where the store is.
+    """Return the place of the store.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Where a store is: a folder with an SQLite file, a PostgreSQL database, or memory."""
+"""Places of stores: a folder with an SQLite file, a PostgreSQL database, or memory."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +16,7 @@ _POSTGRESQL: Final = frozenset({"postgres", "postgresql", "postgresql+psycopg"})
 
 @dataclass(frozen=True)
 class Location:
-    """Where the tables are; neither `str` nor `repr` shows a password."""
+    """The place of the tables; neither `str` nor `repr` shows a password."""
 
     url: URL
 

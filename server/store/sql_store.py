@@ -18,7 +18,7 @@ from esplanade.server.store.writing import WritingThread, in_words
 
 READERS: Final = 2
 READS_WAITING: Final = 256
-"""So many reads may wait or be under way."""
+"""No more reads may wait or be under way."""
 
 
 class SqlStore:
@@ -63,7 +63,7 @@ class SqlStore:
         return self._writes.commits
 
     async def read(self, query: Callable[[Connection], Result]) -> Result:
-        """What the query finds; see `Store.read`."""
+        """Return the result of a query; see `Store.read`."""
         if self._reading is None:
             return await self.write(query)
         with self._counting:
@@ -80,7 +80,7 @@ class SqlStore:
         return await asyncio.wrap_future(reading)
 
     async def write(self, change: Callable[[Connection], Result]) -> Result:
-        """What the change returns, once it is committed; see `Store.write`."""
+        """Return the result of a change once it is committed; see `Store.write`."""
         written: Result = await asyncio.wrap_future(self._writes.put(change))
         return written
 

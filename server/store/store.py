@@ -1,4 +1,4 @@
-"""What the rest of the server asks of a store."""
+"""The interface of stores for the rest of the server."""
 
 from collections.abc import Callable
 from typing import Final, Protocol, TypeVar
@@ -48,7 +48,7 @@ class Store(Protocol):
         ...
 
     async def read(self, query: Callable[[Connection], Result]) -> Result:
-        """What the query finds.
+        """Return the result of a query.
 
         Raises
         ------
@@ -60,7 +60,7 @@ class Store(Protocol):
         ...
 
     async def write(self, change: Callable[[Connection], Result]) -> Result:
-        """What the change returns, once it is committed.
+        """Return the result of a change once it is committed.
 
         Raises
         ------

@@ -13,9 +13,9 @@ from esplanade.server.store.location import Location
 from esplanade.server.store.store import StoreBusyError, StoreError
 
 WAITING: Final = 256
-"""So many changes may wait for the thread."""
+"""No more changes may wait for the thread."""
 TOGETHER: Final = 64
-"""So many changes share a commit at most."""
+"""No more changes share a commit."""
 
 
 class _Change(NamedTuple):

@@ -54,7 +54,7 @@ class ActorCommands:
         self.derived_outside = False
         """Whether commands wait for `ActorsDerived`, where they have anything to wait for."""
         self.specs: dict[Hashable, ActorSpec] = {spec.id: spec for spec in roster}
-        """What was said of each actor; its behaviour is the latest that it was given."""
+        """The specification of each actor; its behaviour is the latest that it was given."""
         self._waiting: dict[int, ActorCommand] = {}
         self._outcomes: list[Outcome] = []
 
@@ -69,7 +69,7 @@ class ActorCommands:
 
     @property
     def outcomes(self) -> list[Outcome]:
-        """What became of commands in this tick."""
+        """The outcomes of commands in this tick."""
         return self._outcomes
 
     def take(self, command: ActorCommand, tick: int) -> list[int]:

@@ -78,7 +78,7 @@ class ActorAvatars:
         return self._point()
 
     def name(self, actor_id: Hashable, name: str) -> None:
-        """What others see an actor called that comes into the world next."""
+        """Set the name that others see of an actor which comes into the world next."""
         self._names[actor_id] = name
 
     def avatar(self, actor_id: Hashable) -> int | None:

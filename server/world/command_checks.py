@@ -1,4 +1,4 @@
-"""What must be true of a command on actors, before anything is changed by it."""
+"""Checks commands on actors before anything is changed by them."""
 
 from esplanade.actors import Behaviour, GoTo, Population
 from esplanade.server.world.inputs import (

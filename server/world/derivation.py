@@ -1,4 +1,4 @@
-"""What a command on actors needs derived before a tick can carry it out."""
+"""Derives what a command on actors needs before a tick can carry it out."""
 
 from collections.abc import Callable
 

@@ -88,7 +88,7 @@ class Frame:
     events: Events
     reshaped: list[Reshaped] = field(default_factory=list)
     outcomes: list[Outcome] = field(default_factory=list)
-    """What became of operators' commands in this tick."""
+    """The outcomes of operators' commands in this tick."""
     actors_stood: bool = False
     """Whether there are actors for whom nothing was planned."""
 

@@ -192,7 +192,7 @@ class HoldActors:
 
 @dataclass(frozen=True, slots=True)
 class ActorsDerived:
-    """What a command on actors has to wait for is derived: it is carried out, if it still can be.
+    """All that a command on actors waited for is derived: it is carried out, if it still can be.
 
     A replay in another process may leave out all but the command and the places: what is not given
     is derived in the tick, to the same end.
@@ -202,7 +202,7 @@ class ActorsDerived:
     bodies: BodiesChange | None = None
     potentials: Mapping[GoalKey, NDArray[np.float32]] = field(default_factory=dict)
     places: tuple[Point, ...] = ()
-    """Where new actors come in."""
+    """The places of new actors."""
     fault: str | None = None
     """Why it could not be derived."""
 

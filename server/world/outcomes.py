@@ -1,4 +1,4 @@
-"""What became of the commands of operators, as codes with arguments."""
+"""Outcomes of operators' commands, as codes with arguments."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
@@ -33,7 +33,7 @@ class Fault:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a command: it was carried out in this tick, or nothing of it was."""
+    """The outcome of a command: it was carried out in this tick, or nothing of it was."""
 
     command: int
     tick: int

@@ -55,7 +55,7 @@ from esplanade.server.world.walking import Feet
 PLANS_PER_SECOND: Final = 5
 """So often are the plans of a watched actor in a frame."""
 ROOM_FOR_ACTORS: Final = 256
-"""So many actors may come in beside those who are there from the beginning."""
+"""No more actors may come in beside those who are there from the beginning."""
 
 log = structlog.get_logger(__name__)
 
@@ -246,7 +246,7 @@ class Zone:
 
     @property
     def actors(self) -> Mapping[Hashable, ActorSpec]:
-        """What was said of each actor, by its id, with the behaviour it was given last."""
+        """The specification of each actor by its id, with the behaviour it was given last."""
         return self._commands.specs
 
     def parameters(self, actor_id: str) -> ActorParameters:

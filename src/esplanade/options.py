@@ -50,7 +50,7 @@ def demo() -> Parser:
 
 
 def op() -> Parser:
-    """What is done with the store of a server, and what a server that runs is asked for."""
+    """Add the commands on the store of a server, and those on a server that runs."""
     return operating.parser(add_parts)
 
 

@@ -1,4 +1,4 @@
-"""What holds an actor is named: somebody, a door, or a way that is still being found."""
+"""Tests that the person, door or missing route that holds an actor is named."""
 
 import pytest
 

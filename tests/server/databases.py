@@ -83,7 +83,7 @@ def _binaries() -> Path:
 
 
 def _owner() -> pwd.struct_passwd | None:
-    """Who runs the server in root's place: it refuses to be root."""
+    """Return the user who runs the server in root's place: it refuses to be root."""
     if os.getuid() != 0:
         return None
     for name in ("postgres", "nobody"):

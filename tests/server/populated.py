@@ -80,12 +80,12 @@ class Populated:
         return frame
 
     def news(self, *inputs: Input) -> News:
-        """What the audience makes of one tick."""
+        """Return the news that the audience makes of one tick."""
         self.frame(*inputs)
         return self.latest
 
     def frames(self, ticks: int) -> list[Frame]:
-        """So many ticks without inputs of their own."""
+        """Run this number of ticks without inputs of their own."""
         return [self.frame() for _ in range(ticks)]
 
     def join(self, *places: tuple[float, float]) -> list[int]:
@@ -94,7 +94,7 @@ class Populated:
         return [avatar_id for _, avatar_id in frame.joined]
 
     def fault(self, command: Input) -> Fault:
-        """What is wrong with a command that is refused at once."""
+        """Return the fault of a command that is refused at once."""
         (outcome,) = self.frame(command).outcomes
         assert outcome.fault is not None
         return outcome.fault

@@ -1,4 +1,4 @@
-"""What a server keeps, while it runs and after; and what it says of it at the start."""
+"""Tests what a server keeps while it runs and after, and how it says so at the start."""
 
 from pathlib import Path
 

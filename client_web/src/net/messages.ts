@@ -170,7 +170,7 @@ export interface Plan {
   people: PlanCircle[][];
   /** For how long the reason has been that. */
   since_s: number;
-  /** What holds the actor. */
+  /** The person, actor or door that holds the actor. */
   blocker: PlanBlocker | null;
 }
 

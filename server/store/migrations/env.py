@@ -1,4 +1,4 @@
-"""How alembic runs the migrations: on the connection, and in the transaction, that it is given."""
+"""Lets alembic run the migrations on the connection, and in the transaction, that it is given."""
 
 from alembic import context
 

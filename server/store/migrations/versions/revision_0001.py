@@ -12,11 +12,11 @@ KEPT: Final = (
     "id, zone, writer, seq, at_us, tick, command, role, target, outcome, refers_to, body, "
     "account_seal, person_seal, previous, hash"
 )
-"""What never changes in a row of the audit."""
+"""Columns that never change in a row of the audit."""
 FORGOTTEN: Final = (
     "account", "address", "account_salt", "person", "note", "detail", "person_salt",
 )  # fmt: skip
-"""What may become null, and nothing else."""
+"""Columns that may become null, and take no other value."""
 
 
 def upgrade() -> None:
