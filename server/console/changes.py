@@ -6,7 +6,7 @@ from typing import Final, Literal
 
 from esplanade.protocol.commands import Command, Facts
 from esplanade.server.console.refusals import RefusedError
-from esplanade.server.console.standing import Standing, each
+from esplanade.server.console.state import OperatedState, each
 
 REMEMBERED: Final = 10_000
 """Of more changes the oldest are forgotten here; the audit keeps them all."""
@@ -47,7 +47,7 @@ class Changes:
         if len(self._changes) > REMEMBERED:
             self._changes.popitem(last=False)
 
-    def check_revision(self, known: int | None, facts: Facts, standing: Standing) -> None:
+    def check_revision(self, known: int | None, facts: Facts, state: OperatedState) -> None:
         """See that nobody has changed these parameters since a revision.
 
         Raises
@@ -62,7 +62,7 @@ class Changes:
                 "subject": subject,
                 "field": field,
                 "yours": value,
-                "now": standing.fact(subject, field),
+                "now": state.fact(subject, field),
                 "change": self._touched[field],
             }
             for subject, field, value in each(facts)
@@ -108,7 +108,7 @@ class Changes:
             text = "you have taken nothing back that could be made anew"
         raise RefusedError.of("unknown_change", text, "change")
 
-    def check_untouched(self, change: Change, standing: Standing) -> None:
+    def check_untouched(self, change: Change, state: OperatedState) -> None:
         """See that all is still as a change has made it.
 
         Raises
@@ -116,7 +116,7 @@ class Changes:
         RefusedError
             Somebody has changed some of it since; the differences are told.
         """
-        now = standing.now(change.after)
+        now = state.now(change.after)
         differences = [
             {
                 "subject": subject,

@@ -27,6 +27,7 @@ from esplanade.server.accounts.rights import COMMANDS, may
 from esplanade.server.audit.log import AuditLog
 from esplanade.server.console.changes import Change, Changes
 from esplanade.server.console.inputs import inputs_for
+from esplanade.server.console.intents import intended
 from esplanade.server.console.moderation import (
     MODERATING,
     Moderation,
@@ -35,16 +36,15 @@ from esplanade.server.console.moderation import (
 )
 from esplanade.server.console.records import Planned, Records
 from esplanade.server.console.refusals import RefusedError, of_world
-from esplanade.server.console.standing import (
+from esplanade.server.console.state import (
     BEHAVIOUR,
     HELD,
     OPEN,
     PRESENT,
-    Standing,
+    OperatedState,
     each,
     parameters_of,
 )
-from esplanade.server.console.wishes import wished
 from esplanade.server.store.sql_store import SqlStore
 from esplanade.server.world.frame import Frame
 from esplanade.server.world.inputs import ActorCommand, AddActors, Input, MoveDoor
@@ -79,7 +79,7 @@ class Console:
         overrides: Overrides | None = None,
     ) -> None:
         self.zone = zone
-        self.standing = Standing(zone, overrides or Overrides())
+        self.state = OperatedState(zone, overrides or Overrides())
         self.changes = Changes()
         self.moderation = moderation
         self._records = Records(store, audit)
@@ -125,18 +125,18 @@ class Console:
     async def _carry_out(self, by: Identity, commands: Sequence[Command]) -> list[Answer]:
         planned = self._plan(by, commands)
         facts = _together([one.after for one in planned])
-        inputs, doors = inputs_for(facts, self.standing, lambda: next(self._numbers))
+        inputs, doors = inputs_for(facts, self.state, lambda: next(self._numbers))
         price = await self.ask(lambda: self._checked(inputs, len(commands)))
         if commands[0].dry_run:
             return [self._answer(one, price=price) for one in planned]
-        numbers = await self._records.wishes(by, planned, self.zone.tick)
+        numbers = await self._records.intents(by, planned, self.zone.tick)
         for one in planned:
             moderate(one.command, self.moderation)
         tick, faults = await self._in_a_tick(inputs, doors)
         await self._records.outcomes(by, planned, numbers, tick, faults)
         if faults:
             raise RefusedError(faults).within(0) if len(commands) == 1 else RefusedError(faults)
-        self.standing.take(facts)
+        self.state.take(facts)
         for number, one in zip(numbers, planned, strict=True):
             if isinstance(one.command, MODERATING):
                 continue
@@ -166,7 +166,7 @@ class Console:
             change = self.changes.found(command.change, by.account)
             for op in _needed_for(change):
                 _check_right(by, op)
-            self.changes.check_untouched(change, self.standing)
+            self.changes.check_untouched(change, self.state)
             return Planned(command, change.after, change.before, change.number)
         if isinstance(command, MODERATING):
             facts = wanted_of_people(command, self.moderation)
@@ -174,10 +174,10 @@ class Console:
             if isinstance(command, Kick | Mute):
                 name = self.moderation.name_of(command.person)
             return Planned(command, {}, facts, person=name)
-        facts = wished(command, self.standing, pending)
+        facts = intended(command, self.state, pending)
         if isinstance(command, SetParameters | ClearParameters):
-            self.changes.check_revision(command.if_revision, facts, self.standing)
-        before = self.standing.now(facts)
+            self.changes.check_revision(command.if_revision, facts, self.state)
+        before = self.state.now(facts)
         for subject, fields in pending.items():
             for field in fields.keys() & before.get(subject, {}).keys():
                 before[subject][field] = fields[field]
@@ -224,7 +224,7 @@ class Console:
         shadowed: dict[str, int] = {}
         for scope, values in parameters_of(planned.after).items():
             for name in values:
-                count = sum(1 for _ in self.standing.overrides.shadowed(scope, name))
+                count = sum(1 for _ in self.state.overrides.shadowed(scope, name))
                 if count:
                     shadowed[name] = count
         return Answer(

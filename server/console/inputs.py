@@ -7,13 +7,13 @@ from typing import Any
 from esplanade.actors import ActorSpec, Scope
 from esplanade.actors.behaviour_spec import BEHAVIOUR_SPEC
 from esplanade.protocol.commands import Facts
-from esplanade.server.console.standing import (
+from esplanade.server.console.state import (
     BEHAVIOUR,
     HELD,
     OPEN,
     PRESENT,
     Effective,
-    Standing,
+    OperatedState,
     each,
     parameters_of,
     with_facts,
@@ -30,14 +30,14 @@ from esplanade.server.world.inputs import (
 
 
 def inputs_for(
-    facts: Facts, standing: Standing, number: Callable[[], int]
+    facts: Facts, state: OperatedState, number: Callable[[], int]
 ) -> tuple[list[ActorCommand], list[MoveDoor]]:
     """The inputs that make facts true, each command with a new number.
 
     Parameters of all actors become one command, so that all of them change or none.
     """
     commands: list[ActorCommand] = []
-    overrides = with_facts(standing.overrides, facts)
+    overrides = with_facts(state.overrides, facts)
     leaving = _leaving(facts)
     if leaving:
         commands.append(RemoveActors(number(), tuple(leaving)))
@@ -51,7 +51,7 @@ def inputs_for(
             overrides = overrides.with_values(Scope("own", spec.id), spec.overrides)
         made = tuple(overrides.parameters(spec.id, spec.tags) for spec in arriving)
         commands.append(AddActors(number(), tuple(arriving), made))
-    commands += _parameters(facts, standing, leaving, number)
+    commands += _parameters(facts, state, leaving, number)
     for value, actors in _alike(facts, BEHAVIOUR):
         behaviour = BEHAVIOUR_SPEC.validate_python(value)
         commands.append(ChangeBehaviour(number(), tuple(actors), behaviour))
@@ -66,14 +66,14 @@ def inputs_for(
 
 
 def _parameters(
-    facts: Facts, standing: Standing, leaving: list[str], number: Callable[[], int]
+    facts: Facts, state: OperatedState, leaving: list[str], number: Callable[[], int]
 ) -> list[ActorCommand]:
     """The command for all parameters that become others, if any do."""
     scopes = parameters_of(facts)
     names = sorted({name for values in scopes.values() for name in values})
-    now, later = Effective(standing.overrides), Effective(with_facts(standing.overrides, facts))
+    now, later = Effective(state.overrides), Effective(with_facts(state.overrides, facts))
     rows = {}
-    for spec in standing.reached(scopes):
+    for spec in state.reached(scopes):
         after = later.values(spec, names)
         if after != now.values(spec, names) and spec.id not in leaving:
             rows[spec.id] = after

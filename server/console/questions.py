@@ -62,7 +62,7 @@ def actor(console: Console, name: str) -> dict[str, Any]:
     spec = console.zone.actors.get(name)
     if spec is None:
         raise RefusedError.of("unknown_actor", f"there is no actor {name}", actor=name)
-    sources = console.standing.overrides.effective(spec.id, spec.tags)
+    sources = console.state.overrides.effective(spec.id, spec.tags)
     found = _actor(console, spec)
     found["tick"] = console.zone.tick
     found["revision"] = console.changes.revision
@@ -94,7 +94,7 @@ def people(console: Console) -> dict[str, Any]:
 
 def parameters(console: Console) -> dict[str, Any]:
     """All values that are set, by scope, and the usual ones."""
-    values = console.standing.overrides.values
+    values = console.state.overrides.values
     return {
         "revision": console.changes.revision,
         "defaults": ActorParameters().model_dump(),
@@ -113,7 +113,7 @@ def _actor(console: Console, spec: ActorSpec) -> dict[str, Any]:
         "name": spec.name,
         "tags": list(spec.tags),
         "behaviour": spec.behaviour.kind,
-        "held": spec.id in console.standing.held,
+        "held": spec.id in console.state.held,
         "avatar": avatar,
     }
     if avatar is not None and avatar in zone.state:

@@ -32,7 +32,7 @@ class Records:
         self._store = store
         self._audit = audit
 
-    async def wishes(self, by: Identity, planned: list[Planned], tick: int) -> list[int]:
+    async def intents(self, by: Identity, planned: list[Planned], tick: int) -> list[int]:
         """Write down what is wanted, at that tick; the numbers of the rows, once committed.
 
         Raises

@@ -15,7 +15,7 @@ OPEN: Final = "open"
 """Fields of subjects that are no parameters."""
 
 
-class Standing:
+class OperatedState:
     """The facts of a zone. A value of None stands for what is not set, or not there."""
 
     def __init__(self, zone: Zone, overrides: Overrides) -> None:

@@ -24,12 +24,12 @@ from esplanade.protocol.commands import (
     SetParameters,
 )
 from esplanade.server.console.refusals import RefusedError
-from esplanade.server.console.standing import (
+from esplanade.server.console.state import (
     BEHAVIOUR,
     HELD,
     OPEN,
     PRESENT,
-    Standing,
+    OperatedState,
     scope_of,
     with_facts,
 )
@@ -40,8 +40,8 @@ _FIELDS: Final[Mapping[str, TypeAdapter[Any]]] = {
 }
 
 
-def wished(  # noqa: PLR0911 (one for each command)
-    command: Command, standing: Standing, pending: Facts
+def intended(  # noqa: PLR0911 (one for each command)
+    command: Command, state: OperatedState, pending: Facts
 ) -> Facts:
     """Return the facts that a command wants; `pending` are those of commands before it.
 
@@ -54,22 +54,22 @@ def wished(  # noqa: PLR0911 (one for each command)
         case SetParameters():
             return {command.scope: checked_values(command.values, "values")}
         case ClearParameters():
-            return {command.scope: _cleared(command, standing)}
+            return {command.scope: _cleared(command, state)}
         case SetBehaviour():
             spec = _behaviour(command.behaviour, "behaviour")
-            return _of_actors(command.actors, BEHAVIOUR, spec, standing, "actors")
+            return _of_actors(command.actors, BEHAVIOUR, spec, state, "actors")
         case SendActor():
             going = {"kind": "go_to", "target": command.target}
             spec = _behaviour(going, "target")
-            return _of_actors((command.actor,), BEHAVIOUR, spec, standing, "actor")
+            return _of_actors((command.actor,), BEHAVIOUR, spec, state, "actor")
         case HoldActor():
-            return _of_actors((command.actor,), HELD, command.held, standing, "actor")
+            return _of_actors((command.actor,), HELD, command.held, state, "actor")
         case RemoveActors():
-            return _of_actors(command.actors, PRESENT, None, standing, "actors")
+            return _of_actors(command.actors, PRESENT, None, state, "actors")
         case AddActors():
-            return _newcomers(command, standing, pending)
+            return _newcomers(command, state, pending)
         case MoveDoor():
-            if command.door not in standing.zone.doors.states():
+            if command.door not in state.zone.doors.states():
                 text = f"the scene has no door {command.door!r}"
                 raise RefusedError.of("unknown_door", text, "door", door=command.door)
             return {f"door:{command.door}": {OPEN: command.open}}
@@ -102,16 +102,16 @@ def checked_values(values: Mapping[str, float], *path: str) -> dict[str, Any]:
     return found
 
 
-def _cleared(command: ClearParameters, standing: Standing) -> dict[str, Any]:
+def _cleared(command: ClearParameters, state: OperatedState) -> dict[str, Any]:
     unknown = [name for name in command.names if name not in DEFAULTS]
     if unknown:
         index, text = command.names.index(unknown[0]), f"{unknown[0]!r} is no parameter of actors"
         raise RefusedError.of("values", text, "names", index)
-    return dict.fromkeys(command.names or standing.overrides.of(scope_of(command.scope)))
+    return dict.fromkeys(command.names or state.overrides.of(scope_of(command.scope)))
 
 
 def _of_actors(
-    actors: tuple[str, ...], field: str, value: Any, standing: Standing, place: str
+    actors: tuple[str, ...], field: str, value: Any, state: OperatedState, place: str
 ) -> Facts:
     faults = [
         CommandFault(
@@ -121,7 +121,7 @@ def _of_actors(
             arguments={"actor": actor},
         )
         for index, actor in enumerate(actors)
-        if actor not in standing.zone.actors
+        if actor not in state.zone.actors
     ]
     if faults:
         raise RefusedError(faults)
@@ -136,12 +136,12 @@ def _behaviour(given: Mapping[str, Any], *path: str | int) -> Any:
     return spec.model_dump(mode="json")
 
 
-def _newcomers(command: AddActors, standing: Standing, pending: Facts) -> Facts:
+def _newcomers(command: AddActors, state: OperatedState, pending: Facts) -> Facts:
     wanted: Facts = {}
-    overrides = with_facts(standing.overrides, pending)
+    overrides = with_facts(state.overrides, pending)
     for index, new in enumerate(command.actors):
         own = _own_values(new, index)
-        given = new.id or _free_id(standing, pending, wanted)
+        given = new.id or _free_id(state, pending, wanted)
         subject = f"actor:{given}"
         try:
             spec = ActorSpec(
@@ -155,7 +155,7 @@ def _newcomers(command: AddActors, standing: Standing, pending: Facts) -> Facts:
             overrides.with_values(scope_of(subject), own).parameters(spec.id, spec.tags)
         except ValidationError as error:
             raise _of_errors(error, "values", "actors", index) from None
-        if subject in wanted or standing.fact(subject, PRESENT) is not None:
+        if subject in wanted or state.fact(subject, PRESENT) is not None:
             text = f"there already is an actor {given}"
             raise RefusedError.of("taken", text, "actors", index, "id", actor=given)
         wanted[subject] = {PRESENT: spec.model_dump(mode="json")}
@@ -169,12 +169,12 @@ def _own_values(new: NewActor, index: int) -> dict[str, Any]:
         raise error.within("actors", index) from None
 
 
-def _free_id(standing: Standing, pending: Facts, wanted: Facts) -> str:
-    number = len(standing.zone.actors) + 1
+def _free_id(state: OperatedState, pending: Facts, wanted: Facts) -> str:
+    number = len(state.zone.actors) + 1
     while True:
         found = f"{ZONE}/actor-{number}"
         subject = f"actor:{found}"
-        if found not in standing.zone.actors and subject not in {**pending, **wanted}:
+        if found not in state.zone.actors and subject not in {**pending, **wanted}:
             return found
         number += 1
 

@@ -1,0 +1,68 @@
+"""Commands of operators, the same for every way in: HTTP, the command line, Python, the audit."""
+
+from typing import Annotated, Final
+
+from pydantic import Field, TypeAdapter
+
+from esplanade.protocol.commands.actors import (
+    AddActors,
+    HoldActor,
+    NewActor,
+    RemoveActors,
+    SendActor,
+    SetBehaviour,
+)
+from esplanade.protocol.commands.answers import Answer, CommandFault, Facts, Price
+from esplanade.protocol.commands.fields import NO_NUL, ZONE, full_id
+from esplanade.protocol.commands.parameters import ClearParameters, Revert, SetParameters
+from esplanade.protocol.commands.people import Announce, Kick, Mute
+from esplanade.protocol.commands.world import MoveDoor
+
+__all__ = [
+    "COMMAND",
+    "MOST_COMMANDS",
+    "NO_NUL",
+    "ZONE",
+    "AddActors",
+    "Announce",
+    "Answer",
+    "ClearParameters",
+    "Command",
+    "CommandFault",
+    "Commands",
+    "Facts",
+    "HoldActor",
+    "Kick",
+    "MoveDoor",
+    "Mute",
+    "NewActor",
+    "Price",
+    "RemoveActors",
+    "Revert",
+    "SendActor",
+    "SetBehaviour",
+    "SetParameters",
+    "full_id",
+]
+
+MOST_COMMANDS: Final = 64
+"""A list has no more commands than this."""
+
+Command = Annotated[
+    SetParameters
+    | ClearParameters
+    | SetBehaviour
+    | SendActor
+    | HoldActor
+    | AddActors
+    | RemoveActors
+    | MoveDoor
+    | Announce
+    | Mute
+    | Kick
+    | Revert,
+    Field(discriminator="op"),
+]
+COMMAND: TypeAdapter[Command] = TypeAdapter(Command)
+"""Reads and checks one."""
+Commands = Annotated[list[Command], Field(min_length=1, max_length=MOST_COMMANDS)]
