@@ -54,6 +54,7 @@ class Running:
     world: Zone
     metrics: Metrics
     kept: Kept
+    gate: Gate
     ticking: "asyncio.Task[None]"
     """Runs as long as the world does; ends early only by a fault."""
 
@@ -153,7 +154,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         guiding = asyncio.create_task(route_requests.run(hub.route_found))
         readiness.open()
         try:
-            yield Running(sockets[0].getsockname()[1], private, world, metrics, kept, ticking)
+            yield Running(sockets[0].getsockname()[1], private, world, metrics, kept, gate, ticking)
         finally:
             readiness.close()
             guiding.cancel()

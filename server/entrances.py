@@ -5,6 +5,7 @@ from collections.abc import Callable
 from urllib.parse import urlsplit
 
 from esplanade.server.accounts.kept import Kept
+from esplanade.server.console.brakes import Brakes
 from esplanade.server.console.callers import Callers
 from esplanade.server.console.gate import Gate
 from esplanade.server.console.origins import Origins
@@ -39,7 +40,13 @@ def make_gate(
     callers = Callers(
         kept.tokens, kept.sessions, Origins(names, encrypted=encrypted), proxies.client_key
     )
-    return Gate(callers, kept, zone, secure_cookies=encrypted or settings.behind_proxy)
+    return Gate(
+        callers,
+        kept,
+        zone,
+        brakes=Brakes(settings.operator_commands),
+        secure_cookies=encrypted or settings.behind_proxy,
+    )
 
 
 def private_url(settings: ServerSettings, port: int) -> str:

@@ -223,6 +223,12 @@ _LIMITS: Final = {
         "a client that stays slow for this time is dropped", Number(0.0, 600.0, above=True), 5.0,
         "s",
     ),
+    "operator_commands": Setting(
+        "commands that one operator's account may send; a twelfth of this within a second",
+        Whole(1, 1_000_000),
+        60,
+        "per minute",
+    ),
     "operator_key": Setting(
         "who says this key may open and close doors and come in anywhere; better set in the "
         "environment than here; "

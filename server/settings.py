@@ -75,6 +75,7 @@ class ServerSettings(BaseSettings):
     slow_bytes: int = _field("slow_bytes")
     drop_bytes: int = _field("drop_bytes")
     drop_seconds: float = _field("drop_seconds")
+    operator_commands: int = _field("operator_commands")
     operator_key: SecretStr = _field("operator_key")
 
     log_format: Literal["console", "json"] = _field("log_format")

@@ -100,6 +100,7 @@ async def commands(request: Request, body: OneOrList) -> Answer | list[Answer]:
     """Carry out a command, or a list of them in one tick: all of it, or nothing."""
     identity = caller(request)
     given: Sequence[Command] = body if isinstance(body, list) else [body]
+    gate_of(request).brakes.take(identity, given)
     try:
         answers = await gate_of(request).call(lambda console: console.carry_out(identity, given))
     except RefusedError as error:

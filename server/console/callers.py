@@ -60,7 +60,7 @@ class Callers:
         credential = self.credential(request)
         if credential.is_session or request.scope.get("method") not in SAFE:
             self.origins.check(request.headers, by_browser=credential.is_session)
-        identity = await self._found(credential, used=True)
+        identity = await self.found(credential, used=True)
         if request.scope.get("method") not in SAFE:
             check_header(request)
         return identity
@@ -78,7 +78,19 @@ class Callers:
         credential = self.credential(socket)
         of_browser = credential.is_session
         self.origins.check(socket.headers, by_browser=of_browser, origin_needed=of_browser)
-        return Standing(self, credential, await self._found(credential, used=True))
+        return await self.standing(credential)
+
+    async def standing(self, credential: Credential) -> "Standing":
+        """Return the standing of whoever has shown a secret.
+
+        Raises
+        ------
+        RefusedError
+            It opens nothing.
+        StoreError
+            It cannot be looked up.
+        """
+        return Standing(self, credential, await self.found(credential, used=True))
 
     def check_stranger(self, request: HTTPConnection) -> str:
         """Check a request that changes something and says nothing of who sends it; the address.
@@ -120,7 +132,16 @@ class Callers:
         peer = request.client.host if request.client else "127.0.0.1"
         return self._address_of(peer, request.headers.getlist("x-forwarded-for"))
 
-    async def _found(self, credential: Credential, *, used: bool) -> Identity:
+    async def found(self, credential: Credential, *, used: bool) -> Identity:
+        """Return the identity that a secret stands for at this moment.
+
+        Raises
+        ------
+        RefusedError
+            It opens nothing, or no longer.
+        StoreError
+            It cannot be looked up.
+        """
         secret, address = credential.secret, credential.address
         if credential.is_session:
             identity = await self._sessions.identity(secret, address, used=used)
@@ -154,7 +175,7 @@ class Standing:
         StoreError
             It cannot be looked up.
         """
-        self.identity = await self._callers._found(self._credential, used=used)  # noqa: SLF001
+        self.identity = await self._callers.found(self._credential, used=used)
         return self.identity
 
 

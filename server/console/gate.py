@@ -6,6 +6,7 @@ from http import HTTPStatus
 from typing import Any, Final, TypeVar
 
 from esplanade.server.accounts.kept import Kept
+from esplanade.server.console.brakes import Brakes
 from esplanade.server.console.callers import Callers
 from esplanade.server.console.console import Console
 from esplanade.server.console.refusals import RefusedError
@@ -29,11 +30,13 @@ class Gate:
         zone: asyncio.AbstractEventLoop,
         *,
         secure_cookies: bool = False,
+        brakes: Brakes,
         people_url: Callable[[str], str] = _no_link,
     ) -> None:
         self.callers = callers
         self.kept = kept
         self.audit = kept.audit
+        self.brakes = brakes
         self.secure_cookies = secure_cookies
         """Whether browsers may send cookies of this port over encrypted connections only."""
         self.people_url = people_url

@@ -86,10 +86,11 @@ class Origins:
         try:
             page = urlsplit(origin)
             here = urlsplit(f"{page.scheme}://{host}")
-            ports = [each.port or _PORTS[each.scheme] for each in (page, here)]
-        except (ValueError, KeyError):
+            usual = _PORTS.get(page.scheme)
+            ports = [each.port or usual for each in (page, here)]
+        except ValueError:
             return False
-        if page.path or page.query or page.fragment or page.username is not None:
+        if usual is None or page.path or page.query or page.fragment or page.username is not None:
             return False
         safe = page.scheme == "https" or not self._encrypted
         return safe and page.hostname == here.hostname and ports[0] == ports[1]

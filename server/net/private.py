@@ -57,6 +57,11 @@ async def private_port(
         lambda: gate.under_way,
     )
     metrics.total(
+        "commands_braked",
+        "Operators' commands, or lists of them, that came too soon",
+        lambda: gate.brakes.refused,
+    )
+    metrics.total(
         "origins_refused",
         "Requests of operators that were refused for their page or the name of the port",
         lambda: gate.callers.origins.refused,
