@@ -24,6 +24,8 @@ from esplanade.server.loading import LoadedScene, LoadingError, load_scene
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.delivery import Delivery
 from esplanade.server.net.descriptors import places_for_people
+from esplanade.server.net.door_commands import DoorCommands
+from esplanade.server.net.entrance import Entrance
 from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.hub import Hub
 from esplanade.server.net.listener import Listener, connections_wanted
@@ -133,6 +135,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             metrics,
             lambda: schedule.world_time(world.tick, loop.time()),
             {"storeys": storeys} if mesh is None else {"storeys": storeys, "mesh": mesh},
+            Entrance(settings, kept, metrics),
         )
         delivery = Delivery(audience, hub.sessions, settings.tick_rate, hub.stop_watching)
         link = LocalLink()
@@ -263,6 +266,12 @@ def _console(world: Zone, hub: Hub, kept: Kept, loaded: LoadedScene, metrics: Me
     """Make the console, which all commands of operators go through."""
     overrides = None if loaded.roster is None else loaded.roster.overrides
     console = Console(world, hub.moderation, kept.store, kept.audit, overrides)
+    hub.by_commands = doors = DoorCommands(console, kept.directory.again)
+    metrics.gauge(
+        "door_commands_waiting",
+        "Doors that operators who walk about want moved, and that wait",
+        lambda: doors.waiting,
+    )
     metrics.gauge(
         "commands_in_turn",
         "Operators' lists of commands that are carried out or wait for their turn",

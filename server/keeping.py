@@ -6,7 +6,9 @@ from typing import Final
 
 import structlog
 
+from esplanade.server.accounts.bots import Bots
 from esplanade.server.accounts.directory import Directory
+from esplanade.server.accounts.invitations import Invitations
 from esplanade.server.accounts.kept import Kept
 from esplanade.server.accounts.lockout import Lockout
 from esplanade.server.accounts.one_time import OneTime
@@ -54,6 +56,8 @@ async def keeping(settings: ServerSettings, metrics: Metrics) -> AsyncIterator[K
                 Sessions(store, audit, passwords, lockout),
                 Tokens(store, audit),
                 OneTime(store, audit, passwords),
+                Invitations(store, audit),
+                Bots(store, audit),
             )
         finally:
             passwords.close()

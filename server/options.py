@@ -163,6 +163,24 @@ _NETWORK: Final = {
 }
 _LIMITS: Final = {
     "max_clients": Setting("most people in the world", Whole(1, 4000), 1000),
+    "closed": Setting(
+        "nobody comes in but by an operator's invitation or pass, a bot's token, the world's "
+        "password, or an identity that a proxy in front has checked",
+        Flag(),
+        default=False,
+    ),
+    "world_password": Setting(
+        "password of a closed world, or its argon2id hash; better set in the environment than "
+        "here; empty: there is none",
+        Text(),
+        "",
+    ),
+    "identity_header": Setting(
+        "header in which a proxy of --trusted-proxies names whoever it has let in, such as "
+        "X-Forwarded-User; it lets them into a closed world",
+        Text(),
+        "",
+    ),
     "hello_timeout_s": Setting(
         "a connection must say hello within this time", Number(0.0, 60.0, above=True), 5.0, "s"
     ),
@@ -261,7 +279,7 @@ def check(given: Mapping[str, Any]) -> None:
         raise ValueError("walls: they belong to a crowd, but none is given")
     if bool(given.get("tls_cert")) != bool(given.get("tls_key")):
         raise ValueError("tls_cert and tls_key: give both of them, or none")
-    _check_private(given)
+    _check_ways_in(given)
     if not _ROOT_PATH.fullmatch(given.get("root_path", "")):
         raise ValueError(
             f"root_path: {given['root_path']!r} is no path such as /world, of letters, digits "
@@ -284,7 +302,7 @@ def is_loopback(host: str) -> bool:
         return host == "localhost"
 
 
-def _check_private(given: Mapping[str, Any]) -> None:
+def _check_ways_in(given: Mapping[str, Any]) -> None:
     if bool(given.get("private_tls_cert")) != bool(given.get("private_tls_key")):
         raise ValueError("private_tls_cert and private_tls_key: give both of them, or none")
     encrypted = given.get("private_tls_cert") or given.get("tls_cert")
@@ -295,6 +313,13 @@ def _check_private(given: Mapping[str, Any]) -> None:
             "without encryption; give --private-tls-cert and --private-tls-key, or --behind-proxy "
             "if something in front encrypts"
         )
+    if not given.get("closed") and (given.get("world_password") or given.get("identity_header")):
+        raise ValueError("world_password, identity_header: they belong to a world that is --closed")
+    header = given.get("identity_header", "")
+    if header and not given.get("trusted_proxies"):
+        raise ValueError("identity_header: say by --trusted-proxies whose word is taken")
+    if header and not re.fullmatch(r"[A-Za-z0-9-]+", header):
+        raise ValueError(f"identity_header: {header!r} is no name of a header")
     url = given.get("public_url", "")
     if url and not re.fullmatch(r"https?://[^\s#?/]+(/[^\s#?]*)?", url):
         raise ValueError(f"public_url: {url!r} is no address such as https://world.example.org/")

@@ -63,6 +63,9 @@ class ServerSettings(BaseSettings):
     allowed_origins: str = _field("allowed_origins")
 
     max_clients: int = _field("max_clients")
+    closed: bool = _field("closed")
+    world_password: SecretStr = _field("world_password")
+    identity_header: str = _field("identity_header")
     hello_timeout_s: float = _field("hello_timeout_s")
     address_sockets: int = _field("address_sockets")
     address_connects: int = _field("address_connects")

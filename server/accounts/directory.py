@@ -1,7 +1,7 @@
 """The accounts: added, changed, removed and listed, each change with its row in the audit."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from sqlalchemy import Connection, delete, func, insert, select, update
@@ -158,6 +158,22 @@ class Directory:
             self._audit.add(connection, by.entry("user_password", person=name))
 
         await self._store.write(change)
+
+    async def again(self, before: Identity) -> Identity | None:
+        """Return an identity with the role and rights that its account has now; None if there is
+        no such account any more.
+
+        Raises
+        ------
+        StoreError
+            The store cannot be read.
+        """
+        zone, name = self._store.zone, before.account
+        query = select(ACCOUNTS.c.role).where(ACCOUNTS.c.zone == zone, ACCOUNTS.c.name == name)
+        role = await self._store.read(lambda connection: connection.execute(query).scalar())
+        if role is None:
+            return None
+        return replace(before, role=role, rights=ROLES.get(role, frozenset()))
 
     async def list(self) -> list[Account]:
         """All accounts, by name.

@@ -2,7 +2,9 @@
 
 from dataclasses import dataclass
 
+from esplanade.server.accounts.bots import Bots
 from esplanade.server.accounts.directory import Directory
+from esplanade.server.accounts.invitations import Invitations
 from esplanade.server.accounts.lockout import Lockout
 from esplanade.server.accounts.one_time import OneTime
 from esplanade.server.accounts.passwords import Passwords
@@ -24,3 +26,5 @@ class Kept:
     sessions: Sessions
     tokens: Tokens
     one_time: OneTime
+    invitations: Invitations
+    bots: Bots

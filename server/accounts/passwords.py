@@ -47,7 +47,16 @@ class Passwords:
         PasswordsBusyError
             Too many wait.
         """
-        checked_password(password)
+        return await self.hash_any(checked_password(password))
+
+    async def hash_any(self, password: str) -> str:
+        """The hash of a password of any length, for one that is no account's.
+
+        Raises
+        ------
+        PasswordsBusyError
+            Too many wait.
+        """
         return await asyncio.wrap_future(self._submit(lambda: self._hash(password)))
 
     async def fits(self, password: str, kept: str | None) -> bool:

@@ -53,6 +53,12 @@ PATHS: Final[dict[tuple[str, str], Row]] = {
     ("DELETE", "/accounts/{name}"): Row(Right.ACCOUNTS),
     ("POST", "/accounts/{name}/tokens"): Row(Right.ACCOUNTS, body={"name": "new"}),
     ("DELETE", "/accounts/{name}/tokens/{token}"): Row(Right.ACCOUNTS),
+    ("GET", "/invitations"): Row(Right.MODERATE),
+    ("POST", "/invitations"): Row(Right.MODERATE, body={"uses": 1}),
+    ("DELETE", "/invitations/{invitation}"): Row(Right.MODERATE),
+    ("GET", "/bots"): Row(Right.ACCOUNTS),
+    ("POST", "/bots"): Row(Right.ACCOUNTS, body={"name": "new"}),
+    ("DELETE", "/bots/{name}"): Row(Right.ACCOUNTS),
 }
 OPEN: Final = {
     "/healthz", "/readyz", "/metrics", "/openapi.json", "/console", "/console/{rest:path}",
