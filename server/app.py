@@ -18,6 +18,7 @@ from esplanade.server.console.gate import Gate
 from esplanade.server.crowding import warn_of_crowding
 from esplanade.server.keeping import Kept, keeping
 from esplanade.server.link.local import LocalLink
+from esplanade.server.live.live import Live
 from esplanade.server.loading import LoadedScene, LoadingError, load_scene
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.delivery import Delivery
@@ -52,6 +53,7 @@ class Running:
     world: Zone
     metrics: Metrics
     kept: Kept
+    live: Live
     ticking: "asyncio.Task[None]"
     """Runs as long as the world does; ends early only by a fault."""
 
@@ -87,9 +89,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     warn_of_crowding(settings)
     # What the machine cannot give is said now, not after a minute of building the world.
     places = places_for_people(connections_wanted(settings))
-    tls = None
-    if settings.tls_cert is not None and settings.tls_key is not None:
-        tls = Tls(settings.tls_cert, settings.tls_key)
+    tls = _tls(settings)
     loaded = _with_roster(load_scene(settings), settings)
     assets, mesh = assets or Assets.load(), None
     if loaded.triangles is not None:
@@ -128,17 +128,14 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         )
         delivery = Delivery(audience, hub.sessions, settings.tick_rate, hub.stop_watching)
         link = LocalLink()
-        metrics.gauge(
-            "doors_waiting",
-            "Doors that are wanted open or closed, and are not",
-            world.doors.waiting,
-        )
         deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
         ground_work = GroundWork(world, deriving)
-        gate.console = console = _console(world, hub, kept, loaded, metrics)
+        console = gate.console = _console(world, hub, kept, loaded, metrics)
         ticker = Ticker(
             world, ground_work, audience, link, hub, delivery, schedule, metrics, thread, console
         )
+        gate.live = live = Live(world, storeys, console.bulletin, hide_names=settings.hide_names)
+        ticker.tap = live.tap
         await stack.enter_async_context(
             Listener(hub, assets, settings, metrics, places).listening(sockets, tls)
         )
@@ -147,7 +144,8 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         renewing = asyncio.create_task(tls.renew()) if tls else None
         readiness.open()
         try:
-            yield Running(sockets[0].getsockname()[1], private, world, metrics, kept, ticking)
+            port = sockets[0].getsockname()[1]
+            yield Running(port, private, world, metrics, kept, live, ticking)
         finally:
             readiness.close()
             if renewing:
@@ -209,7 +207,7 @@ def _build_warm(
 
 
 async def _stop(ticker: Ticker, ticking: "asyncio.Task[None]", hub: Hub, gate: Gate) -> None:
-    gate.console = None
+    gate.console = gate.live = None
     ticker.stop()
     try:
         await ticking
@@ -225,6 +223,9 @@ def _watch(world: Zone, population: Population, metrics: Metrics) -> None:
     contacts = world.contacts
     metrics.total("contacts_actor_person", "Actor-person contacts", lambda: contacts.actor_person)
     metrics.total("contacts_actor_actor", "Actor-actor contacts", lambda: contacts.actor_actor)
+    metrics.gauge(
+        "doors_waiting", "Doors that are wanted open or closed, and are not", world.doors.waiting
+    )
     feet = world.feet
     metrics.total("steps", "Steps that began or were re-aimed", lambda: feet.begun)
     metrics.total("walkers_lost", "Walkers set back onto their feet", lambda: feet.lost)
@@ -244,6 +245,13 @@ def _watch(world: Zone, population: Population, metrics: Metrics) -> None:
         "Potentials of goals that wait to be derived anew since a door has moved",
         lambda: population.navigator.potentials.outdated_rows,
     )
+
+
+def _tls(settings: ServerSettings) -> Tls | None:
+    """The certificate of people's port, if it has one."""
+    if settings.tls_cert is None or settings.tls_key is None:
+        return None
+    return Tls(settings.tls_cert, settings.tls_key)
 
 
 def _with_roster(loaded: LoadedScene, settings: ServerSettings) -> LoadedScene:

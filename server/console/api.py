@@ -1,14 +1,13 @@
 """The HTTP interface for operators: what is asked with GET, and commands."""
 
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Callable, Sequence
 from http import HTTPStatus
 from typing import Annotated, Any, Final
 
 from fastapi import APIRouter, FastAPI, Query, Request, Response
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
-from fastapi.routing import APIRoute
-from pydantic import BaseModel, Discriminator, Tag
+from pydantic import Discriminator, Tag
 from starlette.exceptions import HTTPException
 
 from esplanade.protocol.commands import NO_NUL, Answer, Command, CommandFault, Commands, full_id
@@ -18,7 +17,16 @@ from esplanade.server.audit.log import MOST_ROWS, Filter
 from esplanade.server.console import questions
 from esplanade.server.console.console import Console
 from esplanade.server.console.gate import Gate, status_of
+from esplanade.server.console.guarding import (
+    REFUSALS,
+    Guarded,
+    check_right,
+    gate_of,
+    may_watch,
+)
+from esplanade.server.console.live_api import router as live_router
 from esplanade.server.console.refusals import RefusedError
+from esplanade.server.live.names import stand_in
 from esplanade.server.store.store import StoreError
 
 PREFIX: Final = "/api/v1"
@@ -37,44 +45,13 @@ Moment = Annotated[int | None, Query(ge=0, lt=2**62, description="Microseconds s
 Word = Annotated[str | None, Query(max_length=200, pattern=NO_NUL)]
 
 
-class Refusal(BaseModel):
-    """Nothing was changed, and why."""
-
-    faults: list[CommandFault]
-
-
-_REFUSALS: Final[dict[int | str, dict[str, Any]]] = {
-    status: {"model": Refusal, "description": text}
-    for status, text in {
-        401: "There is no token, or it opens nothing.",
-        403: "The token does not have the right, or the header X-Esplanade is missing.",
-        404: "There is no such thing.",
-        409: "Somebody has changed the same since; both values are told.",
-        422: "Something in it cannot be; the path of each fault says where.",
-        503: "Too much waits, or the world is not ready.",
-    }.items()
-}
-
-
-class _Guarded(APIRoute):
-    """A path whose body is not looked at before it is known who sends it."""
-
-    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
-        handle = super().get_route_handler()
-
-        async def guarded(request: Request) -> Response:
-            request.state.identity = await _gate(request).identity(request)
-            return await handle(request)
-
-        return guarded
-
-
-router = APIRouter(prefix=PREFIX, route_class=_Guarded, responses=_REFUSALS)
+router = APIRouter(prefix=PREFIX, route_class=Guarded, responses=REFUSALS)
 
 
 def add_api(app: FastAPI, gate: Gate) -> None:
     """Let an application answer operators."""
     app.state.gate = gate
+    app.include_router(live_router)  # its paths below an actor's go before the actor's own
     app.include_router(router)
     app.add_exception_handler(RefusedError, _refused)
     app.add_exception_handler(RequestValidationError, _invalid)
@@ -85,7 +62,7 @@ def add_api(app: FastAPI, gate: Gate) -> None:
 @router.get("/schema")
 async def schema(request: Request) -> dict[str, Any]:
     """The schemas of parameters, behaviours and commands, for forms."""
-    _may_watch(request)
+    may_watch(request)
     return questions.schema()
 
 
@@ -115,7 +92,11 @@ async def actor(request: Request, actor_id: str) -> dict[str, Any]:
 @router.get("/people")
 async def people(request: Request) -> dict[str, Any]:
     """Everyone who is connected, at this moment."""
-    return await _asked(request, questions.people)
+    found = await _asked(request, questions.people)
+    live = gate_of(request).live
+    if live is not None and not live.sees_names(request.state.identity):
+        found["people"] = [{**one, "name": stand_in(one["id"])} for one in found["people"]]
+    return found
 
 
 @router.get("/parameters")
@@ -130,7 +111,7 @@ async def commands(request: Request, body: OneOrList) -> Answer | list[Answer]:
     identity: Identity = request.state.identity
     given: Sequence[Command] = body if isinstance(body, list) else [body]
     try:
-        answers = await _gate(request).call(lambda console: console.carry_out(identity, given))
+        answers = await gate_of(request).call(lambda console: console.carry_out(identity, given))
     except RefusedError as error:
         raise error if isinstance(body, list) else _of_the_one(error) from None
     return answers if isinstance(body, list) else answers[0]
@@ -150,7 +131,7 @@ async def audit(
     limit: Annotated[int, Query(ge=1, le=MOST_ROWS)] = 100,
 ) -> dict[str, Any]:
     """A page of the audit, the newest row first."""
-    _may(request, Right.AUDIT)
+    check_right(request, Right.AUDIT)
     wanted = Filter(
         since_us=since_us, until_us=until_us, account=account, command=command, target=target
     )
@@ -158,7 +139,7 @@ async def audit(
     if after is not None:
         at_us, _, row = after.partition("-")
         cursor = int(at_us), int(row)
-    page = await _gate(request).audit.page(wanted, after=cursor, limit=limit)
+    page = await gate_of(request).audit.page(wanted, after=cursor, limit=limit)
     rows = [{name: getattr(row, name) for name in _SHOWN} for row in page.rows]
     return {"rows": rows, "next": None if page.next is None else f"{page.next[0]}-{page.next[1]}"}
 
@@ -169,30 +150,14 @@ _SHOWN: Final = (
 )
 
 
-def _gate(request: Request) -> Gate:
-    gate: Gate = request.app.state.gate
-    return gate
-
-
-def _may(request: Request, right: Right) -> None:
-    identity: Identity = request.state.identity
-    if right not in identity.rights:
-        text = f"this needs the right {right.value}, which you do not have"
-        raise RefusedError.of("forbidden", text, right=right.value)
-
-
-def _may_watch(request: Request) -> None:
-    _may(request, Right.WATCH)
-
-
 async def _asked(request: Request, question: Callable[[Console], dict[str, Any]]) -> dict[str, Any]:
     """The answer to a question about the zone, asked between two ticks."""
-    _may_watch(request)
+    may_watch(request)
 
     async def ask(console: Console) -> dict[str, Any]:
         return await console.ask(lambda: question(console))
 
-    return await _gate(request).call(ask)
+    return await gate_of(request).call(ask)
 
 
 def _id(text: str) -> str:

@@ -4,14 +4,16 @@ import asyncio
 from collections.abc import Callable, Coroutine
 from http import HTTPStatus
 from typing import Any, Final, TypeVar
+from urllib.parse import urlsplit
 
-from fastapi import Request
+from starlette.requests import HTTPConnection
 
 from esplanade.server.accounts.identity import Identity
 from esplanade.server.accounts.tokens import Tokens
 from esplanade.server.audit.log import AuditLog
 from esplanade.server.console.console import Console
 from esplanade.server.console.refusals import RefusedError
+from esplanade.server.live.live import Live
 
 Result = TypeVar("Result")
 HEADER: Final = "X-Esplanade"
@@ -29,13 +31,17 @@ class Gate:
         self.audit = audit
         self.console: Console | None = None
         """None until the world is built, and again when it ends."""
+        self.live: Live | None = None
+        """As `console`."""
         self._tokens = tokens
         self._zone = zone
         self.under_way = 0
         """Requests that wait for the zone."""
 
-    async def identity(self, request: Request) -> Identity:
+    async def identity(self, request: HTTPConnection) -> Identity:
         """Return the identity of the caller, by the token in `Authorization`.
+
+        An upgrade to a WebSocket counts as safe: see `check_origin`.
 
         Raises
         ------
@@ -53,10 +59,22 @@ class Gate:
         identity = await self._tokens.identity(given[len(_SCHEME) :].strip(), address)
         if identity is None:
             raise RefusedError.of("unauthorized", "this token opens nothing, or no longer does")
-        if request.method not in SAFE and not request.headers.get(HEADER):
+        if request.scope.get("method", "GET") not in SAFE and not request.headers.get(HEADER):
             text = f"a request that changes something needs the header {HEADER}: 1"
             raise RefusedError.of("header_missing", text)
         return identity
+
+    def check_origin(self, upgrade: HTTPConnection) -> None:
+        """See that no page of others opens a socket in the name of an operator.
+
+        Raises
+        ------
+        RefusedError
+            The page that opens it is of another origin than this port.
+        """
+        origin = upgrade.headers.get("origin")
+        if origin is not None and urlsplit(origin).netloc != upgrade.headers.get("host"):
+            raise RefusedError.of("forbidden", f"pages of {origin} open no socket here")
 
     async def call(self, work: Callable[[Console], Coroutine[Any, Any, Result]]) -> Result:
         """Do some work on the zone's loop, and return its result.

@@ -17,6 +17,8 @@ from fastapi.responses import PlainTextResponse
 
 from esplanade.server.console.api import PREFIX, add_api
 from esplanade.server.console.gate import Gate
+from esplanade.server.live.live import beating
+from esplanade.server.live.metrics import watch_live
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.asgi import MAX_BODY_BYTES, serving
 from esplanade.server.net.readiness import Readiness
@@ -48,8 +50,9 @@ async def private_port(
     )
     loop = asyncio.get_running_loop()
     app = operators_api(Figures(metrics, loop), readiness, gate)
+    watch_live(metrics, lambda: gate.live)
     opened: Future[tuple[int, Callable[[], object]]] = Future()
-    serve = partial(_serve, app, settings.private_host, settings.private_port, opened)
+    serve = partial(_serve, app, gate, settings.private_host, settings.private_port, opened)
     with ThreadPoolExecutor(1, thread_name_prefix="private") as thread:
         running = loop.run_in_executor(thread, lambda: asyncio.run(serve()))
         port, stop = await asyncio.wrap_future(opened)
@@ -61,7 +64,11 @@ async def private_port(
 
 
 async def _serve(
-    app: FastAPI, host: str, port: int, opened: "Future[tuple[int, Callable[[], object]]]"
+    app: FastAPI,
+    gate: Gate,
+    host: str,
+    port: int,
+    opened: "Future[tuple[int, Callable[[], object]]]",
 ) -> None:
     """Serve until stopped; `opened` is given the number of the port and what stops it."""
     stopping = asyncio.Event()
@@ -69,7 +76,9 @@ async def _serve(
         async with serving(app, host, port) as number:
             stop = partial(asyncio.get_running_loop().call_soon_threadsafe, stopping.set)
             opened.set_result((number, stop))
+            pulse = asyncio.create_task(beating(lambda: gate.live))
             await stopping.wait()
+            pulse.cancel()
     except OSError as error:
         if opened.done():
             raise

@@ -85,6 +85,10 @@ class ActorAvatars:
         """The avatar of an actor, by its id; None if it is not in the world yet."""
         return self._avatars.get(actor_id)
 
+    def actor(self, avatar_id: int) -> Hashable | None:
+        """The id of the actor whose avatar that is; None if it is nobody's."""
+        return self._actor_ids.get(avatar_id)
+
     def remove(self, ids: Iterable[Hashable]) -> list[int]:
         """Take actors who have left the population out of the world; returns their avatars."""
         left = []

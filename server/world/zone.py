@@ -206,6 +206,11 @@ class Zone:
         """Trips that the actors have completed."""
         return self._actors.trips
 
+    @property
+    def grid(self) -> LayeredGrid:
+        """The ground of the zone; its shape never changes, its doors do, between two ticks."""
+        return self._grid
+
     def count(self) -> tuple[int, int]:
         """People and actors in the world."""
         return len(self.state.of_kind(PERSON)), len(self.state.of_kind(ACTOR))
@@ -256,6 +261,11 @@ class Zone:
     def avatar_of(self, actor_id: str) -> int | None:
         """The id of an actor's avatar; None if there is no such actor, or not yet."""
         return self._actors.avatar(actor_id)
+
+    def actor_of(self, avatar_id: int) -> str | None:
+        """The id of the actor whose avatar that is; None if it is nobody's."""
+        actor_id = self._actors.actor(avatar_id)
+        return None if actor_id is None else str(actor_id)
 
     def moves(self, avatar_id: int) -> bool:
         """Whether that person means to move, by a direction or along a route."""
