@@ -134,7 +134,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         ticker = Ticker(
             world, ground_work, audience, link, hub, delivery, schedule, metrics, thread, console
         )
-        gate.live = live = Live(world, storeys, console.bulletin, hide_names=settings.hide_names)
+        gate.live = live = _live(world, storeys, console, metrics, settings)
         ticker.tap = live.tap
         await stack.enter_async_context(
             Listener(hub, assets, settings, metrics, places).listening(sockets, tls)
@@ -272,6 +272,17 @@ def _console(world: Zone, hub: Hub, kept: Kept, loaded: LoadedScene, metrics: Me
         lambda: console.waiting,
     )
     return console
+
+
+def _live(
+    world: Zone,
+    storeys: list[float],
+    console: Console,
+    metrics: Metrics,
+    settings: ServerSettings,
+) -> Live:
+    """Make what operators see of the world."""
+    return Live(world, storeys, console.bulletin, metrics.traffic, hide_names=settings.hide_names)
 
 
 def _watch_routes(route_requests: RouteRequests, metrics: Metrics) -> None:

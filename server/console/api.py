@@ -25,6 +25,7 @@ from esplanade.server.console.guarding import (
     may_watch,
 )
 from esplanade.server.console.live_api import router as live_router
+from esplanade.server.console.live_socket import router as socket_router
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.live.names import stand_in
 from esplanade.server.store.store import StoreError
@@ -52,6 +53,7 @@ def add_api(app: FastAPI, gate: Gate) -> None:
     """Let an application answer operators."""
     app.state.gate = gate
     app.include_router(live_router)  # its paths below an actor's go before the actor's own
+    app.include_router(socket_router)
     app.include_router(router)
     app.add_exception_handler(RefusedError, _refused)
     app.add_exception_handler(RequestValidationError, _invalid)

@@ -1,136 +1,165 @@
-"""The live interface for operators: the socket, and questions about what was just seen."""
+"""Questions of operators about what was just seen: the map, series, events, heat, and why."""
 
 import asyncio
-from contextlib import suppress
-from typing import Any, Final
+import json
+import time
+from http import HTTPStatus
+from typing import Annotated, Any, Final, Literal
 
-from fastapi import APIRouter, Request, WebSocket
-from starlette.websockets import WebSocketDisconnect
+from fastapi import APIRouter, Query, Request, Response
 
-from esplanade.server.accounts.rights import Right
-from esplanade.server.console.gate import Gate
+from esplanade.protocol.commands import NO_NUL, full_id
 from esplanade.server.console.guarding import REFUSALS, Guarded, gate_of, may_watch
 from esplanade.server.console.refusals import RefusedError
-from esplanade.server.live.live import MOST_SUBSCRIBERS, Live
-from esplanade.server.live.subscriber import Subscriber
-from esplanade.server.live.subscriptions import WishError, read_wish
-from esplanade.server.store.store import StoreError
+from esplanade.server.live.live import Live
 
-IDENTITY_ENDED: Final = 4001
-TOO_SLOW: Final = 4008
-FULL: Final = 4009
-LOOKED_UP_EVERY_S: Final = 30.0
-"""Whoever has lost the right to watch sees nothing any more after this time."""
+MOST_STEPS: Final = 8640
+"""Steps of one answer about series."""
+MOST_NAMES: Final = 40
+_AT_A_TIME: Final = 8
+"""Parts of a heat map that are summed up before others have a turn."""
 
 router = APIRouter(prefix="/api/v1", route_class=Guarded, responses=REFUSALS)
+
+Moment = Annotated[int | None, Query(ge=0, lt=2**62, description="Microseconds since 1970.")]
+Words = Annotated[str, Query(max_length=2000, pattern=NO_NUL, description="Separated by commas.")]
+Word = Annotated[str | None, Query(max_length=200, pattern=NO_NUL)]
 
 
 @router.get("/map")
 async def ground(request: Request) -> dict[str, Any]:
     """The plan of the scene, storey by storey, with the doors as they are."""
-    may_watch(request)
-    live, gate = live_of(request), gate_of(request)
+    live = _live(request)
 
     async def doors(console: Any) -> dict[str, bool]:
         states: dict[str, bool] = console.zone.doors.states()
         return states
 
-    states = await gate.call(doors)
+    states = await gate_of(request).call(doors)
     plan = live.plan()
     return {**plan, "doors": [{**door, "open": states[door["name"]]} for door in plan["doors"]]}
 
 
-@router.websocket("/live")
-async def live_socket(socket: WebSocket) -> None:
-    """Tell a console what it subscribes to, for as long as it may watch and reads."""
-    gate: Gate = socket.app.state.gate
-    live = gate.live
-    try:
-        gate.check_origin(socket)
-        identity = await gate.identity(socket)
-    except (RefusedError, StoreError):
-        await socket.close(IDENTITY_ENDED)  # before it is accepted: 403
-        return
-    if (
-        live is None
-        or Right.WATCH not in identity.rights
-        or len(live.subscribers) >= MOST_SUBSCRIBERS
-    ):
-        await socket.close(FULL)
-        return
-    await socket.accept()
-    subscriber = Subscriber(names=live.sees_names(identity))
-    live.hello(subscriber)
-    tasks = {
-        asyncio.create_task(_read(socket, live, subscriber)),
-        asyncio.create_task(_write(socket, live, subscriber)),
-        asyncio.create_task(_look_up(socket, gate, live, subscriber)),
-        asyncio.create_task(_wait_for_slowness(subscriber)),
-    }
-    try:
-        done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-        code = next((task.result() for task in done if task.exception() is None), None)
-    finally:
-        live.goodbye(subscriber)
-        for task in tasks:
-            task.cancel()
-        await asyncio.gather(*tasks, return_exceptions=True)
-    if code is not None:
-        with suppress(RuntimeError, OSError, WebSocketDisconnect):
-            await socket.close(code)
+@router.get("/series/names")
+async def series_names(request: Request) -> dict[str, Any]:
+    """All figures that are kept over time."""
+    return {"series": _live(request).series.names()}
 
 
-async def _read(socket: WebSocket, live: Live, subscriber: Subscriber) -> int | None:
-    """Take in what the client wants, until it is gone."""
-    while True:
-        message = await socket.receive()
-        if message["type"] == "websocket.disconnect":
-            return None
-        try:
-            subscriber.take(read_wish(message.get("text") or ""), live.beats)
-        except WishError as error:
-            subscriber.tell(error.told)
+@router.get("/series")
+async def series(
+    request: Request,
+    names: Words = "",
+    actor: Word = None,
+    from_us: Moment = None,
+    to_us: Moment = None,
+    step_s: Literal["1", "10", "60"] = "1",
+) -> Response:
+    """Values of figures over time, or of one actor, with a mark for each change of operators."""
+    live, step = _live(request), int(step_s)
+    last = time.time_ns() // 1000 if to_us is None else to_us
+    first = max(last - MOST_STEPS * step * 1_000_000, 0 if from_us is None else from_us)
+    values: dict[str, Any] = {}
+    if actor is not None:
+        avatar = live.map.avatar_of(str(full_id(actor)))
+        if avatar is None:
+            raise _unknown_actor(str(full_id(actor)))
+        step = 1
+        times, values = live.history.told(avatar, first, last)
+    else:
+        times = []
+        for name in _named(live, names):
+            times, found = live.series.told([name], first, last, step)
+            values |= found
+            await asyncio.sleep(0)  # the thread that ticks has a turn
+    marks = [mark for mark in live.marks if first <= mark["at_us"] <= last]
+    parts = []
+    for name, column in values.items():
+        parts.append(f"{json.dumps(name)}:{json.dumps(column)}")
+        await asyncio.sleep(0)
+    head = json.dumps({"step_s": step, "at_us": times, "marks": marks})
+    return _json(head[:-1] + ',"values":{' + ",".join(parts) + "}}")
 
 
-async def _write(socket: WebSocket, live: Live, subscriber: Subscriber) -> int | None:
-    """Write what waits, message by message; a client that does not read holds up only this."""
-    while True:
-        for each in await subscriber.next(live.map):
-            if isinstance(each, str):
-                await socket.send_text(each)
-            else:
-                await socket.send_bytes(each)
+@router.get("/events")
+async def events(
+    request: Request,
+    kind: Words = "",
+    who: Word = None,
+    from_us: Moment = None,
+    limit: Annotated[int, Query(ge=1, le=1000)] = 100,
+) -> dict[str, Any]:
+    """The latest events, the newest first."""
+    live = _live(request)
+    names = live.sees_names(request.state.identity)
+    kinds = [each for each in kind.split(",") if each]
+    found = live.events.found(kinds, who, from_us or 0, limit)
+    return {"events": [event.told(names=names) for event in found]}
 
 
-async def _look_up(socket: WebSocket, gate: Gate, live: Live, subscriber: Subscriber) -> int | None:
-    """Look its identity up again and again, until it may not watch any more."""
-    while True:
-        await asyncio.sleep(LOOKED_UP_EVERY_S)
-        try:
-            identity = await gate.identity(socket)
-        except RefusedError:
-            return IDENTITY_ENDED
-        except StoreError:
-            continue  # it is looked up again soon
-        if Right.WATCH not in identity.rights:
-            return IDENTITY_ENDED
-        subscriber.names = live.sees_names(identity)
+@router.get("/heat")
+async def heat(
+    request: Request,
+    kind: Literal["density", "speed", "waiting", "contacts"] = "density",
+    window_s: Literal["60", "600", "3600"] = "60",
+) -> Response:
+    """A heat map in cells of half a metre for each storey, over the last time."""
+    told = None
+    for count, told in enumerate(_live(request).heat.told(kind, int(window_s))):
+        if told is None and count % _AT_A_TIME == 0:
+            await asyncio.sleep(0)
+    return _json(json.dumps(told))
 
 
-async def _wait_for_slowness(subscriber: Subscriber) -> int | None:
-    await subscriber.too_slow.wait()
-    return TOO_SLOW
+@router.get("/actors/{actor_id:path}/why")
+async def why(request: Request, actor_id: str, from_us: Moment = None) -> Response:
+    """The reasons of an actor over the last ten minutes, and who or what held it."""
+    live, actor = _live(request), str(full_id(actor_id))
+    avatar = live.map.avatar_of(actor)
+    if avatar is None:
+        return _json(_unknown_actor(actor), HTTPStatus.NOT_FOUND)
+    names = live.sees_names(request.state.identity)
+    from_tick = 0
+    if from_us is not None:
+        ago_s = max(0.0, time.time() - from_us / 1e6)
+        from_tick = live.map.tick - round(ago_s / live.zone.tick_s)
+    spans = live.reasons.told(avatar, from_tick, names=names)
+    told = {"actor": actor, "tick": live.map.tick, "tick_s": live.zone.tick_s, "spans": spans}
+    return _json(json.dumps(told))
 
 
-def live_of(request: Request) -> Live:
-    """The live views of the world.
+def _live(request: Request) -> Live:
+    """The live views of the world, for whoever may watch.
 
     Raises
     ------
     RefusedError
-        There is no world yet.
+        The right is missing, or there is no world yet.
     """
+    may_watch(request)
     live = gate_of(request).live
     if live is None:
         raise RefusedError.of("busy", "the world is not ready")
     return live
+
+
+def _named(live: Live, names: str) -> list[str]:
+    wanted = [each for each in names.split(",") if each] or list(live.series.figures)
+    unknown = [each for each in wanted if each not in live.series.figures]
+    if unknown:
+        text = f"there is no figure {unknown[0]!r}"
+        raise RefusedError.of("unknown_figure", text, "query", "names", figure=unknown[0])
+    if len(wanted) > MOST_NAMES:
+        raise RefusedError.of("too_long", f"give {MOST_NAMES} names at most", "query", "names")
+    return wanted
+
+
+def _unknown_actor(actor: str) -> RefusedError:
+    return RefusedError.of("unknown_actor", f"there is no actor {actor}", actor=actor)
+
+
+def _json(body: str | RefusedError, status: int = HTTPStatus.OK) -> Response:
+    if isinstance(body, RefusedError):
+        faults = [fault.model_dump(mode="json") for fault in body.faults]
+        body = json.dumps({"faults": faults})
+    return Response(body, status, media_type="application/json")

@@ -34,6 +34,15 @@ class Bulletin:
         """Show a change: it is told on `changes`, and is a mark in all series."""
         self._add(Notice(_now_us(), change=dict(change)))
 
+    def heard(self, kind: str, what: Mapping[str, Any]) -> None:
+        """Take in what a console tells its listeners: a change, a mark, or what is others now."""
+        if kind == "change":
+            self.change(what)
+        elif kind == "mark":
+            self.event("mark", str(what.get("text") or ""), account=what.get("account"))
+        elif kind == "about":
+            self.about(str(what["about"]))
+
     def about(self, what: str) -> None:
         """Tell that presets, schedules, groups or accounts are others now."""
         self._add(Notice(_now_us(), about=what))

@@ -1,46 +1,74 @@
 """Live views of a zone: takes its ticks in, beat by beat, and tells subscribers what is new."""
 
 import asyncio
-import json
-from collections.abc import Mapping, Sequence
+from collections import deque
+from collections.abc import Callable, Sequence
 from typing import Any, Final
 
 import structlog
 
 from esplanade.server.accounts.identity import Identity
-from esplanade.server.live.bulletin import Bulletin, Notice
+from esplanade.server.live.bulletin import Bulletin
+from esplanade.server.live.encounters import NewContacts
+from esplanade.server.live.events import Events
 from esplanade.server.live.ground_plan import ground_plan
+from esplanade.server.live.happenings import Happenings
+from esplanade.server.live.heat import Heat
+from esplanade.server.live.history import History
 from esplanade.server.live.map_feed import MapFeed
+from esplanade.server.live.measures import FIGURES, Measures
 from esplanade.server.live.names import sees_names
+from esplanade.server.live.reasons import Reasons
+from esplanade.server.live.series import Series
 from esplanade.server.live.subscriber import Subscriber
 from esplanade.server.live.subscriptions import BEATS_A_SECOND
 from esplanade.server.live.tap import Tap, Tick
+from esplanade.server.live.telling import Telling
+from esplanade.server.metrics import Traffic
 from esplanade.server.world.zone import Zone
 
 MOST_SUBSCRIBERS: Final = 32
-"""Consoles with an open socket; more are refused."""
+"""Consoles with an open socket or stream; more are refused."""
+MOST_MARKS: Final = 10_000
 
 log = structlog.get_logger(__name__)
 
 
 class Live:
-    """All live views of one zone. Only `tap` and `bulletin` belong to other threads."""
+    """All live views of one zone. Only `tap` and `bulletin` belong to other threads too."""
 
     def __init__(
-        self, zone: Zone, storeys_m: Sequence[float], bulletin: Bulletin, *, hide_names: bool
+        self,
+        zone: Zone,
+        storeys_m: Sequence[float],
+        bulletin: Bulletin,
+        traffic: Traffic,
+        *,
+        hide_names: bool,
     ) -> None:
         self.zone = zone
         self.storeys_m = list(storeys_m)
         self.hide_names = hide_names
-        self.tap = Tap(zone)
         self.bulletin = bulletin
+        self.tap = Tap(zone)
         self.map = MapFeed(zone.origin_m, zone.tick_s)
+        self.reasons = Reasons(self.map, self.tap, zone.tick_s)
+        self.events = Events()
+        self.series = Series(FIGURES)
+        self.history = History(self.map)
+        self.heat = Heat(self.map, zone.scene.bounds, storeys_m)
+        self.marks: deque[dict[str, Any]] = deque(maxlen=MOST_MARKS)
+        """Lines in all series: every change of an operator, and what was marked."""
         self.subscribers: set[Subscriber] = set()
         self.map_frames_dropped = 0
-        """Of subscribers that are gone, and of those that are there."""
+        """Of subscribers that are gone."""
         self.too_slow = 0
         """Subscribers that were closed since they did not read."""
-        self.beats = 0
+        self._happenings = Happenings(self.map, self.reasons, self.events)
+        self._measures = Measures(self.map, self.series, traffic, zone.tick_s)
+        self._contacts = NewContacts()
+        self._telling = Telling(self)
+        self._beats = 0
         self._plan: dict[str, Any] | None = None
 
     def sees_names(self, by: Identity) -> bool:
@@ -74,34 +102,35 @@ class Live:
 
     def beat(self) -> None:
         """Take in what has happened since the last beat, and tell it."""
-        self.beats += 1
-        for tick in self.tap.fetch():
+        self._beats += 1
+        ticks = self.tap.fetch()
+        for tick in ticks:
             self._take(tick)
         for notice in self.bulletin.fetch():
-            self._tell_of(notice)
-        for subscriber in self.subscribers:
-            if subscriber.due("map", self.beats):
-                subscriber.offer_map()
+            self._happenings.notice(notice)
+            self._telling.notice(notice)
+        if ticks:
+            self._happenings.stops(ticks[-1].at_us)
+            self.reasons.ask()
+        self._telling.beat(self._beats, ticks)
 
     def _take(self, tick: Tick) -> None:
+        self._happenings.before(tick)
         self.map.take(tick)
-
-    def _tell_of(self, notice: Notice) -> None:
-        if notice.change is not None:
-            self._publish("changes", {"change": notice.change})
-        if notice.about is not None:
-            self._publish("changes", {"about": notice.about})
-
-    def _publish(self, channel: str, message: Mapping[str, Any]) -> None:
-        """Send one message to all who subscribe to a channel."""
-        text = None
-        for subscriber in self.subscribers:
-            if channel in subscriber.wishes:
-                text = text or json.dumps({"channel": channel, **message})
-                subscriber.post(text)
+        contacts = self._contacts.take(tick.touching)
+        self.reasons.take(tick)
+        self._happenings.after(tick, contacts)
+        self._telling.contacts(contacts)
+        second = tick.at_us // 1_000_000
+        for actor, _ in contacts:
+            self.heat.contact(second, actor)
+        if self._measures.take(tick, contacts, self.zone.trips):
+            self.heat.add(second)
+            self.history.add(second)
+            self._telling.second(self.map.tick)
 
 
-async def beating(live_of: Any) -> None:
+async def beating(live_of: Callable[[], Live | None]) -> None:
     """Beat for as long as a server runs; `live_of` gives the live views once there are any."""
     while True:
         await asyncio.sleep(1.0 / BEATS_A_SECOND)

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from esplanade.actors import ActorSpec
-from esplanade.protocol.snapshot import RECORD, Records
+from esplanade.protocol.snapshot import POSITION_M, RECORD, Records
 from esplanade.server.live.names import stand_in
 from esplanade.server.live.tap import Avatar, Tick
 
@@ -31,9 +31,13 @@ class MapFeed:
         self.tick = 0
         self.avatars: dict[int, Avatar] = {}
         """Everybody in the world, by id."""
+        self._avatar_of: dict[str, int] = {}
         self.specs: Mapping[Hashable, ActorSpec] = {}
         self.records: Records = np.zeros(0, dtype=RECORD)
         """RECORD (N,), in ascending order of ids; another array after somebody came or went."""
+        self.turned: list[tuple[int, int]] = []
+        """(id, reason) of everybody whose reason is another since the tick before."""
+        self._made: tuple[npt.NDArray[np.bool_], npt.NDArray[np.float64]] | None = None
         self._changed: npt.NDArray[np.int64] = np.zeros(0, dtype=np.int64)
         self._origin_m = origin_m
         self._key_ticks = max(1, round(KEY_S / tick_s))
@@ -52,15 +56,21 @@ class MapFeed:
     def take(self, tick: Tick) -> None:
         """Take in the next tick."""
         frame, self._cache = tick.frame, {}
+        if frame.left or frame.reshaped or tick.entered or tick.everyone is not None:
+            self._made = None
         self.tick = frame.tick
         if tick.specs is not None:
             self._take_specs(tick.specs)
         if tick.everyone is not None:
             self.avatars = {each.id: each for each in tick.everyone.avatars}
+            self._avatar_of = {
+                each.actor: each.id for each in tick.everyone.avatars if each.actor is not None
+            }
             self.records = tick.everyone.records.copy()
             self._changed = np.full(len(self.records), self.tick)
             self._news.clear()
             self._known_since = self.tick
+            self.turned = list(zip(self.ids.tolist(), self.records["reason"].tolist(), strict=True))
             return
         if frame.left or tick.entered:
             self._come_and_go(frame.left, tick.entered)
@@ -70,6 +80,8 @@ class MapFeed:
                 self.avatars[shape.id] = replace(known, radius_m=round(shape.radius_m, 3))
                 self._tell(shape.id, there=True)
         rows = self.rows_of(frame.records["id"])
+        turned = frame.records[self.records["reason"][rows] != frame.records["reason"]]
+        self.turned = list(zip(turned["id"].tolist(), turned["reason"].tolist(), strict=True))
         self.records[rows] = frame.records
         self._changed[rows] = self.tick
 
@@ -77,6 +89,43 @@ class MapFeed:
         """Rows of avatars that are in the world, int64 (K,)."""
         rows: npt.NDArray[np.int64] = np.searchsorted(self.ids, ids)
         return rows
+
+    def place(self, avatar_id: int) -> tuple[float, float, float] | None:
+        """The place of an avatar, metres; None if it is not in the world."""
+        row = int(np.searchsorted(self.ids, avatar_id))
+        if row == len(self.records) or self.ids[row] != avatar_id:
+            return None
+        x, y, z = (int(self.records[row][name]) * POSITION_M for name in "xyz")
+        return round(self._origin_m[0] + x, 2), round(self._origin_m[1] + y, 2), round(z, 2)
+
+    def rows_by_kind(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+        """Rows of all actors, and of all people, ascending, int64."""
+        actors = self._columns()[0]
+        return np.flatnonzero(actors), np.flatnonzero(~actors)
+
+    @property
+    def radii_m(self) -> npt.NDArray[np.float64]:
+        """Radii of everybody by row, float64 (N,), metres."""
+        return self._columns()[1]
+
+    def _columns(self) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.float64]]:
+        """By row, whether it is an actor, and its radius; made anew after somebody came or went."""
+        if self._made is None:
+            everybody = [self.avatars[who] for who in self.ids.tolist()]
+            self._made = (
+                np.array([each.actor is not None for each in everybody], dtype=np.bool_),
+                np.array([each.radius_m for each in everybody], dtype=np.float64),
+            )
+        return self._made
+
+    def is_person(self, avatar_id: int) -> bool:
+        """Whether that is a person in the world."""
+        avatar = self.avatars.get(avatar_id)
+        return avatar is not None and avatar.actor is None
+
+    def avatar_of(self, actor: str) -> int | None:
+        """The id of an actor's avatar; None if it is not in the world."""
+        return self._avatar_of.get(actor)
 
     def since(self, tick: int, *, names: bool) -> tuple[str | None, bytes | None]:
         """Return the news for somebody who knows the map of a tick: a text, and then a block.
@@ -155,10 +204,14 @@ class MapFeed:
         order = np.argsort(records["id"], kind="stable")
         self.records, self._changed = records[order], changed[order]
         for gone in left:
-            self.avatars.pop(gone, None)
+            avatar = self.avatars.pop(gone, None)
+            if avatar is not None and avatar.actor is not None:
+                self._avatar_of.pop(avatar.actor, None)
             self._tell(gone, there=False)
         for each in entered:
             self.avatars[each.id] = each
+            if each.actor is not None:
+                self._avatar_of[each.actor] = each.id
             self._tell(each.id, there=True)
 
     def _take_specs(self, specs: Mapping[Hashable, ActorSpec]) -> None:

@@ -26,8 +26,10 @@ class Subscriber:
         self.names = names
         """Whether it is told the names of people."""
         self.wishes: dict[str, Wish] = {}
-        self.since: dict[str, int] = {}
-        """The beat of each subscription."""
+        self.missing: set[str] = set()
+        """Channels of actors that it was told are not there."""
+        self._last: dict[str, int] = {}
+        """The beat in which each subscription had its turn last."""
         self.too_slow = asyncio.Event()
         self.map_frames_dropped = 0
         self._messages: deque[str] = deque()
@@ -41,7 +43,7 @@ class Subscriber:
         """Messages that wait to be written."""
         return len(self._messages)
 
-    def take(self, wish: Wish | Unsubscribe, beat: int) -> None:
+    def take(self, wish: Wish | Unsubscribe) -> None:
         """Take in what its client wants.
 
         Raises
@@ -57,15 +59,19 @@ class Subscriber:
             text = f"{MOST_SUBSCRIPTIONS} subscriptions are possible"
             raise WishError(channel, "too_many", text)
         self.wishes[channel] = wish
-        self.since[channel] = beat
+        self._last.pop(channel, None)
+        self.missing.discard(channel)
         if isinstance(wish, MapWish):
             self._map_tick = 0
             self.offer_map()
 
-    def due(self, channel: str, beat: int) -> bool:
-        """Whether it is the turn of a subscription at this beat."""
+    def ready(self, channel: str, beat: int) -> bool:
+        """Whether it is the turn of a subscription at this beat; asking takes the turn."""
         wish = self.wishes.get(channel)
-        return wish is not None and (beat - self.since[channel]) % wish.period() == 0
+        if wish is None or beat - self._last.get(channel, -MOST_WAITING) < wish.period():
+            return False
+        self._last[channel] = beat
+        return True
 
     def post(self, text: str) -> None:
         """Send a message that must not be lost; with too many it counts as too slow."""

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from esplanade.actors import Explanation, ObservedPeople, Population
+from esplanade.actors.blockers import Blocker
 from esplanade.actors.locomotion.footsteps.course import planned_places
 from esplanade.planning import Body
 from esplanade.server.world.routes import Point
@@ -124,11 +125,16 @@ class ActorAvatars:
         Not while `plan` runs.
         """
         explanation = self._population.explain(self._actor_ids[avatar_id])
-        held = explanation.blocker
+        return replace(explanation, blocker=self._by_avatar(explanation.blocker))
+
+    def blocker(self, avatar_id: int) -> Blocker | None:
+        """The blocker of this actor, an actor by the id of its avatar; not while `plan` runs."""
+        return self._by_avatar(self._population.blocker(self._actor_ids[avatar_id]))
+
+    def _by_avatar(self, held: Blocker | None) -> Blocker | None:
         if held is None or held.kind != "actor":
-            return explanation
-        by = replace(held, id=self._avatars.get(held.id))
-        return replace(explanation, blocker=by)
+            return held
+        return replace(held, id=self._avatars.get(held.id))
 
     def _stop(self) -> None:
         state = self._state

@@ -30,6 +30,11 @@ class LiveConsole:
     async def subscribe(self, channel: str, **arguments: Any) -> None:
         await self.send(subscribe=channel, **arguments)
 
+    async def settled(self) -> None:
+        """Wait until the server has taken in all that was sent: it refuses what comes last."""
+        await self.send(subscribe="nothing")
+        await self.next("nothing")
+
     async def until(self, done: Callable[[], Any]) -> Any:
         """Read messages until something holds; returns what that was."""
         async with asyncio.timeout(PATIENCE_S):

@@ -9,7 +9,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from esplanade.server.accounts.identity import MACHINE
 from esplanade.server.app import Running
-from esplanade.server.console import live_api
+from esplanade.server.console import live_socket
 from tests.patience import PATIENCE_S
 from tests.server.client import joined
 from tests.server.conftest import Serving
@@ -147,7 +147,7 @@ async def test_who_has_no_token_or_comes_from_another_page_gets_no_socket(
 async def test_a_socket_ends_when_its_token_does(
     serving: Serving, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(live_api, "LOOKED_UP_EVERY_S", 0.1)
+    monkeypatch.setattr(live_socket, "LOOKED_UP_EVERY_S", 0.1)
     async with serving() as server:
         vera = await operator(server, "vera", "viewer")
         async with live_console(server.private_port, vera.token) as console:
@@ -155,7 +155,7 @@ async def test_a_socket_ends_when_its_token_does(
             await server.kept.tokens.revoke(MACHINE, "vera", "script")
             with pytest.raises(ConnectionClosed):
                 await console.until(lambda: False)
-            assert console.socket.close_code == live_api.IDENTITY_ENDED
+            assert console.socket.close_code == live_socket.IDENTITY_ENDED
 
 
 async def test_a_console_that_does_not_read_is_closed_and_delays_nobody(serving: Serving) -> None:
@@ -182,4 +182,4 @@ async def test_a_console_that_does_not_read_is_closed_and_delays_nobody(serving:
             deaf.socket.transport.resume_reading()
             with pytest.raises(ConnectionClosed):
                 await deaf.until(lambda: False)
-            assert deaf.socket.close_code == live_api.TOO_SLOW
+            assert deaf.socket.close_code == live_socket.TOO_SLOW
