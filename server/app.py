@@ -12,11 +12,13 @@ import structlog
 from esplanade.actors import Population
 from esplanade.planning import LayeredGrid
 from esplanade.planning.routes.storey_heights import reached_from, storeys_of
+from esplanade.server.accounts.kept import Kept
 from esplanade.server.assets import Assets
 from esplanade.server.console.console import Console
 from esplanade.server.console.gate import Gate
 from esplanade.server.crowding import warn_of_crowding
-from esplanade.server.keeping import Kept, keeping
+from esplanade.server.entrances import make_gate, people_url, private_certificate
+from esplanade.server.keeping import keeping
 from esplanade.server.link.local import LocalLink
 from esplanade.server.live.live import Live
 from esplanade.server.loading import LoadedScene, LoadingError, load_scene
@@ -33,7 +35,7 @@ from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.schedule import Schedule
 from esplanade.server.net.search_budget import SearchBudget
 from esplanade.server.net.ticker import Ticker
-from esplanade.server.net.tls import Tls
+from esplanade.server.net.tls import Tls, renewed
 from esplanade.server.populating import default_roster, names_of, populate_from
 from esplanade.server.rehearsal import rehearse, rehearse_walking
 from esplanade.server.settings import ServerSettings
@@ -53,9 +55,16 @@ class Running:
     world: Zone
     metrics: Metrics
     kept: Kept
-    live: Live
+    gate: Gate
     ticking: "asyncio.Task[None]"
     """Runs as long as the world does; ends early only by a fault."""
+
+    @property
+    def live(self) -> Live:
+        """What operators see of the world, which is there for as long as that runs."""
+        if self.gate.live is None:
+            raise RuntimeError("the world has ended")
+        return self.gate.live
 
     def summary(self) -> dict[str, int | float]:
         """The run in figures."""
@@ -100,12 +109,17 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     async with AsyncExitStack() as stack:
         thread = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="actors"))
         kept = await stack.enter_async_context(keeping(settings, metrics))
-        gate = Gate(kept.tokens, kept.audit, loop)
-        private = await stack.enter_async_context(private_port(settings, metrics, readiness, gate))
+        private_tls = private_certificate(settings, tls)
+        stack.enter_context(renewed(tls, private_tls))
+        gate = make_gate(settings, kept, loop, encrypted=private_tls is not None)
+        private = await stack.enter_async_context(
+            private_port(settings, metrics, readiness, gate, assets, private_tls)
+        )
         # This finds out now, not after a minute of compiling, whether the port can be had.
         sockets = await bound_sockets(settings.host, settings.port)
         for each in sockets:
             stack.callback(each.close)
+        gate.people_url = people_url(settings, sockets[0].getsockname()[1])
         population, world, storeys = await loop.run_in_executor(
             thread, build_world, loaded, settings
         )
@@ -141,15 +155,11 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         )
         ticking = asyncio.create_task(ticker.run())
         guiding = asyncio.create_task(route_requests.run(hub.route_found))
-        renewing = asyncio.create_task(tls.renew()) if tls else None
         readiness.open()
         try:
-            port = sockets[0].getsockname()[1]
-            yield Running(port, private, world, metrics, kept, live, ticking)
+            yield Running(sockets[0].getsockname()[1], private, world, metrics, kept, gate, ticking)
         finally:
             readiness.close()
-            if renewing:
-                renewing.cancel()
             guiding.cancel()
             await _stop(ticker, ticking, hub, gate)
 

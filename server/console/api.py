@@ -1,36 +1,35 @@
 """The HTTP interface for operators: what is asked with GET, and commands."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from http import HTTPStatus
 from typing import Annotated, Any, Final
 
-from fastapi import APIRouter, FastAPI, Query, Request, Response
-from fastapi.exceptions import RequestValidationError
+from fastapi import APIRouter, FastAPI, Query, Request
 from fastapi.responses import JSONResponse
 from pydantic import Discriminator, Tag
-from starlette.exceptions import HTTPException
 
-from esplanade.protocol.commands import NO_NUL, Answer, Command, CommandFault, Commands, full_id
-from esplanade.server.accounts.identity import Identity
+from esplanade.protocol.commands import NO_NUL, Answer, Command, Commands, full_id
 from esplanade.server.accounts.rights import Right
 from esplanade.server.audit.log import MOST_ROWS, Filter
 from esplanade.server.console import questions
-from esplanade.server.console.console import Console
-from esplanade.server.console.gate import Gate, status_of
-from esplanade.server.console.guarding import (
+from esplanade.server.console.accounts_api import router as accounts
+from esplanade.server.console.auth_api import router as auth
+from esplanade.server.console.gate import Gate
+from esplanade.server.console.live_api import router as live
+from esplanade.server.console.live_socket import router as sockets
+from esplanade.server.console.refusals import RefusedError
+from esplanade.server.console.routing import (
+    PREFIX,
     REFUSALS,
     Guarded,
-    check_right,
+    add_refusals,
+    asked,
+    caller,
     gate_of,
-    may_watch,
+    may,
+    told,
 )
-from esplanade.server.console.live_api import router as live_router
-from esplanade.server.console.live_socket import router as socket_router
-from esplanade.server.console.refusals import RefusedError
 from esplanade.server.live.names import stand_in
-from esplanade.server.store.store import StoreError
-
-PREFIX: Final = "/api/v1"
 
 
 def _one_or_list(body: object) -> str:
@@ -52,51 +51,48 @@ router = APIRouter(prefix=PREFIX, route_class=Guarded, responses=REFUSALS)
 def add_api(app: FastAPI, gate: Gate) -> None:
     """Let an application answer operators."""
     app.state.gate = gate
-    app.include_router(live_router)  # its paths below an actor's go before the actor's own
-    app.include_router(socket_router)
-    app.include_router(router)
-    app.add_exception_handler(RefusedError, _refused)
-    app.add_exception_handler(RequestValidationError, _invalid)
-    app.add_exception_handler(StoreError, _no_store)
-    app.add_exception_handler(HTTPException, _unread)
+    # Paths of the live views below an actor's go before the actor's own.
+    for each in (live, sockets, router, auth, accounts):
+        app.include_router(each)
+    add_refusals(app)
 
 
 @router.get("/schema")
 async def schema(request: Request) -> dict[str, Any]:
     """The schemas of parameters, behaviours and commands, for forms."""
-    may_watch(request)
+    may(request, Right.WATCH)
     return questions.schema()
 
 
 @router.get("/world")
 async def world(request: Request) -> dict[str, Any]:
     """The zone at this moment."""
-    return await _asked(request, questions.world)
+    return await asked(request, questions.world)
 
 
 @router.get("/actors")
 async def actors(request: Request) -> dict[str, Any]:
     """All actors at this moment."""
-    return await _asked(request, questions.actors)
+    return await asked(request, questions.actors)
 
 
 @router.get("/actors/{actor_id:path}")
 async def actor(request: Request, actor_id: str) -> dict[str, Any]:
     """One actor: what it does, what holds it, its parameters and where each comes from."""
     try:
-        return await _asked(request, lambda console: questions.actor(console, _id(actor_id)))
+        return await asked(request, lambda console: questions.actor(console, _id(actor_id)))
     except RefusedError as error:
         if error.faults[0].code != "unknown_actor":
             raise
-        return JSONResponse(_told(error), HTTPStatus.NOT_FOUND)  # type: ignore[return-value]
+        return JSONResponse(told(error), HTTPStatus.NOT_FOUND)  # type: ignore[return-value]
 
 
 @router.get("/people")
 async def people(request: Request) -> dict[str, Any]:
     """Everyone who is connected, at this moment."""
-    found = await _asked(request, questions.people)
-    live = gate_of(request).live
-    if live is not None and not live.sees_names(request.state.identity):
+    found = await asked(request, questions.people)
+    views = gate_of(request).live
+    if views is not None and not views.sees_names(caller(request)):
         found["people"] = [{**one, "name": stand_in(one["id"])} for one in found["people"]]
     return found
 
@@ -104,14 +100,15 @@ async def people(request: Request) -> dict[str, Any]:
 @router.get("/parameters")
 async def parameters(request: Request) -> dict[str, Any]:
     """All values that are set, by scope, and the usual ones."""
-    return await _asked(request, questions.parameters)
+    return await asked(request, questions.parameters)
 
 
 @router.post("/commands")
 async def commands(request: Request, body: OneOrList) -> Answer | list[Answer]:
     """Carry out a command, or a list of them in one tick: all of it, or nothing."""
-    identity: Identity = request.state.identity
+    identity = caller(request)
     given: Sequence[Command] = body if isinstance(body, list) else [body]
+    gate_of(request).brakes.take(identity, given)
     try:
         answers = await gate_of(request).call(lambda console: console.carry_out(identity, given))
     except RefusedError as error:
@@ -133,7 +130,7 @@ async def audit(
     limit: Annotated[int, Query(ge=1, le=MOST_ROWS)] = 100,
 ) -> dict[str, Any]:
     """A page of the audit, the newest row first."""
-    check_right(request, Right.AUDIT)
+    may(request, Right.AUDIT)
     wanted = Filter(
         since_us=since_us, until_us=until_us, account=account, command=command, target=target
     )
@@ -152,16 +149,6 @@ _SHOWN: Final = (
 )
 
 
-async def _asked(request: Request, question: Callable[[Console], dict[str, Any]]) -> dict[str, Any]:
-    """The answer to a question about the zone, asked between two ticks."""
-    may_watch(request)
-
-    async def ask(console: Console) -> dict[str, Any]:
-        return await console.ask(lambda: question(console))
-
-    return await gate_of(request).call(ask)
-
-
 def _id(text: str) -> str:
     return str(full_id(text))
 
@@ -174,44 +161,3 @@ def _of_the_one(error: RefusedError) -> RefusedError:
             for fault in error.faults
         ]
     )
-
-
-def _told(refusal: RefusedError) -> dict[str, Any]:
-    return {"faults": [fault.model_dump(mode="json") for fault in refusal.faults]}
-
-
-async def _refused(_: Request, error: Exception) -> Response:
-    assert isinstance(error, RefusedError)  # noqa: S101 (it is registered for this class)
-    status = status_of(error)
-    headers = {"WWW-Authenticate": "Bearer"} if status == HTTPStatus.UNAUTHORIZED else None
-    return JSONResponse(_told(error), status, headers)
-
-
-async def _invalid(_: Request, error: Exception) -> Response:
-    assert isinstance(error, RequestValidationError)  # noqa: S101
-    faults = [
-        CommandFault(code="invalid", text=fault["msg"], path=_path(fault["loc"]))
-        for fault in error.errors()
-    ]
-    return JSONResponse(_told(RefusedError(faults)), HTTPStatus.UNPROCESSABLE_ENTITY)
-
-
-def _path(loc: Sequence[str | int]) -> list[str | int]:
-    """Return the place of a fault, without the words that pydantic adds for kinds it has tried."""
-    if loc[:1] != ("body",) or len(loc) < 2:
-        return list(loc)
-    _, kind, *rest = loc
-    if kind == "list":
-        return [*rest[:1], *rest[2:]]
-    return rest[1:] if kind == "one" else [kind, *rest]
-
-
-async def _unread(_: Request, error: Exception) -> Response:
-    assert isinstance(error, HTTPException)  # noqa: S101
-    refusal = RefusedError.of("invalid", str(error.detail))
-    return JSONResponse(_told(refusal), error.status_code, error.headers)
-
-
-async def _no_store(_: Request, error: Exception) -> Response:
-    refusal = RefusedError.of("busy", f"the store cannot be used: {error}")
-    return JSONResponse(_told(refusal), HTTPStatus.SERVICE_UNAVAILABLE)

@@ -9,8 +9,9 @@ from typing import Annotated, Any, Final, Literal
 from fastapi import APIRouter, Query, Request, Response
 
 from esplanade.protocol.commands import NO_NUL, full_id
-from esplanade.server.console.guarding import REFUSALS, Guarded, gate_of, may_watch
+from esplanade.server.accounts.rights import Right
 from esplanade.server.console.refusals import RefusedError
+from esplanade.server.console.routing import PREFIX, REFUSALS, Guarded, caller, gate_of, may, told
 from esplanade.server.live.live import Live
 
 MOST_STEPS: Final = 8640
@@ -19,7 +20,7 @@ MOST_NAMES: Final = 40
 _AT_A_TIME: Final = 8
 """Parts of a heat map that are summed up before others have a turn."""
 
-router = APIRouter(prefix="/api/v1", route_class=Guarded, responses=REFUSALS)
+router = APIRouter(prefix=PREFIX, route_class=Guarded, responses=REFUSALS)
 
 Moment = Annotated[int | None, Query(ge=0, lt=2**62, description="Microseconds since 1970.")]
 Words = Annotated[str, Query(max_length=2000, pattern=NO_NUL, description="Separated by commas.")]
@@ -91,7 +92,7 @@ async def events(
 ) -> dict[str, Any]:
     """The latest events, the newest first."""
     live = _live(request)
-    names = live.sees_names(request.state.identity)
+    names = live.sees_names(caller(request))
     kinds = [each for each in kind.split(",") if each]
     found = live.events.found(kinds, who, from_us or 0, limit)
     return {"events": [event.told(names=names) for event in found]}
@@ -104,11 +105,11 @@ async def heat(
     window_s: Literal["60", "600", "3600"] = "60",
 ) -> Response:
     """A heat map in cells of half a metre for each storey, over the last time."""
-    told = None
-    for count, told in enumerate(_live(request).heat.told(kind, int(window_s))):
-        if told is None and count % _AT_A_TIME == 0:
+    found = None
+    for count, found in enumerate(_live(request).heat.told(kind, int(window_s))):
+        if found is None and count % _AT_A_TIME == 0:
             await asyncio.sleep(0)
-    return _json(json.dumps(told))
+    return _json(json.dumps(found))
 
 
 @router.get("/actors/{actor_id:path}/why")
@@ -118,14 +119,14 @@ async def why(request: Request, actor_id: str, from_us: Moment = None) -> Respon
     avatar = live.map.avatar_of(actor)
     if avatar is None:
         return _json(_unknown_actor(actor), HTTPStatus.NOT_FOUND)
-    names = live.sees_names(request.state.identity)
+    names = live.sees_names(caller(request))
     from_tick = 0
     if from_us is not None:
         ago_s = max(0.0, time.time() - from_us / 1e6)
         from_tick = live.map.tick - round(ago_s / live.zone.tick_s)
     spans = live.reasons.told(avatar, from_tick, names=names)
-    told = {"actor": actor, "tick": live.map.tick, "tick_s": live.zone.tick_s, "spans": spans}
-    return _json(json.dumps(told))
+    found = {"actor": actor, "tick": live.map.tick, "tick_s": live.zone.tick_s, "spans": spans}
+    return _json(json.dumps(found))
 
 
 def _live(request: Request) -> Live:
@@ -136,7 +137,7 @@ def _live(request: Request) -> Live:
     RefusedError
         The right is missing, or there is no world yet.
     """
-    may_watch(request)
+    may(request, Right.WATCH)
     live = gate_of(request).live
     if live is None:
         raise RefusedError.of("busy", "the world is not ready")
@@ -160,6 +161,5 @@ def _unknown_actor(actor: str) -> RefusedError:
 
 def _json(body: str | RefusedError, status: int = HTTPStatus.OK) -> Response:
     if isinstance(body, RefusedError):
-        faults = [fault.model_dump(mode="json") for fault in body.faults]
-        body = json.dumps({"faults": faults})
+        body = json.dumps(told(body))
     return Response(body, status, media_type="application/json")

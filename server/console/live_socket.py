@@ -1,19 +1,20 @@
 """The live socket of operators, and the stream of events for those without one."""
 
 import asyncio
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine
 from contextlib import suppress
 from typing import Any, Final
 
 from fastapi import APIRouter, Request, WebSocket
 from fastapi.responses import StreamingResponse
-from starlette.requests import HTTPConnection
 from starlette.websockets import WebSocketDisconnect
 
+from esplanade.server.accounts.identity import Identity
 from esplanade.server.accounts.rights import Right
+from esplanade.server.console import callers
 from esplanade.server.console.gate import Gate
-from esplanade.server.console.guarding import REFUSALS, Guarded, gate_of, may_watch
 from esplanade.server.console.refusals import RefusedError
+from esplanade.server.console.routing import PREFIX, REFUSALS, Guarded, caller, gate_of, may
 from esplanade.server.live.live import MOST_SUBSCRIBERS, Live
 from esplanade.server.live.subscriber import Subscriber
 from esplanade.server.live.subscriptions import WishError, read_wish
@@ -21,14 +22,12 @@ from esplanade.server.store.store import StoreError
 
 IDENTITY_ENDED: Final = 4001
 TOO_SLOW: Final = 4008
-LOOKED_UP_EVERY_S: Final = 30.0
-"""Whoever has lost the right to watch sees nothing any more after this time."""
 STREAMED: Final = ("series", "events", "changes", "contacts")
 """Channels that a stream may have; a map is none."""
 _ALIVE_S: Final = 15.0
 """A stream says after this time that it is alive."""
 
-router = APIRouter(prefix="/api/v1", route_class=Guarded, responses=REFUSALS)
+router = APIRouter(prefix=PREFIX, route_class=Guarded, responses=REFUSALS)
 
 
 @router.websocket("/live")
@@ -37,21 +36,20 @@ async def live_socket(socket: WebSocket) -> None:
     gate: Gate = socket.app.state.gate
     live = gate.live
     try:
-        gate.check_origin(socket)
-        identity = await gate.identity(socket)
+        standing = await gate.callers.at_socket(socket)
     except (RefusedError, StoreError):
         await socket.close()  # before it is accepted this answers 403
         return
-    if live is None or Right.WATCH not in identity.rights or _full(live):
+    if live is None or Right.WATCH not in standing.identity.rights or _full(live):
         await socket.close()
         return
     await socket.accept()
-    subscriber = Subscriber(names=live.sees_names(identity))
+    subscriber = Subscriber(names=live.sees_names(standing.identity))
     live.hello(subscriber)
     tasks = {
         asyncio.create_task(_read(socket, subscriber)),
         asyncio.create_task(_write(socket, live, subscriber)),
-        asyncio.create_task(_look_up(socket, gate, live, subscriber)),
+        asyncio.create_task(_look_up(standing.renew, live, subscriber)),
         asyncio.create_task(_wait_for_slowness(subscriber)),
     }
     try:
@@ -70,18 +68,19 @@ async def live_socket(socket: WebSocket) -> None:
 @router.get("/live.sse")
 async def live_stream(request: Request, channels: str = "series,events") -> StreamingResponse:
     """Tell what is new as server-sent events, for `curl` and the like."""
-    may_watch(request)
+    may(request, Right.WATCH)
     gate, live = gate_of(request), gate_of(request).live
     if live is None or _full(live):
         raise RefusedError.of("busy", "the world is not ready, or too many consoles look")
-    subscriber = Subscriber(names=live.sees_names(request.state.identity))
+    subscriber = Subscriber(names=live.sees_names(caller(request)))
     for channel in channels.split(","):
         if channel not in STREAMED:
             text = f"a stream has {', '.join(STREAMED)}, not {channel!r}"
             raise RefusedError.of("unknown_channel", text, "query", "channels")
         subscriber.take(read_wish(f'{{"subscribe": "{channel}"}}'))
     headers = {"Cache-Control": "no-cache"}
-    stream = _stream(request, gate, live, subscriber)
+    standing = callers.Standing(gate.callers, gate.callers.credential(request), caller(request))
+    stream = _stream(_look_up(standing.renew, live, subscriber), live, subscriber)
     return StreamingResponse(stream, media_type="text/event-stream", headers=headers)
 
 
@@ -112,13 +111,13 @@ async def _write(socket: WebSocket, live: Live, subscriber: Subscriber) -> int |
 
 
 async def _look_up(
-    connection: HTTPConnection, gate: Gate, live: Live, subscriber: Subscriber
+    renew: Callable[[], Awaitable[Identity]], live: Live, subscriber: Subscriber
 ) -> int | None:
     """Look an identity up again and again, until it may not watch any more."""
     while True:
-        await asyncio.sleep(LOOKED_UP_EVERY_S)
+        await asyncio.sleep(callers.RENEWED_S)
         try:
-            identity = await gate.identity(connection)
+            identity = await renew()
         except RefusedError:
             return IDENTITY_ENDED
         except StoreError:
@@ -134,11 +133,11 @@ async def _wait_for_slowness(subscriber: Subscriber) -> int | None:
 
 
 async def _stream(
-    request: Request, gate: Gate, live: Live, subscriber: Subscriber
+    look: Coroutine[Any, Any, int | None], live: Live, subscriber: Subscriber
 ) -> AsyncIterator[bytes]:
     """Messages as server-sent events, until the client may not watch or does not read."""
     live.hello(subscriber)
-    looking = asyncio.create_task(_look_up(request, gate, live, subscriber))
+    looking = asyncio.create_task(look)
     waiting: asyncio.Task[Any] | None = None
     try:
         while not looking.done() and not subscriber.too_slow.is_set():

@@ -8,8 +8,9 @@ from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from esplanade.server.accounts.identity import MACHINE
+from esplanade.server.accounts.rights import Right
 from esplanade.server.app import Running
-from esplanade.server.console import live_socket
+from esplanade.server.console import callers, live_socket
 from tests.patience import PATIENCE_S
 from tests.server.client import joined
 from tests.server.conftest import Serving
@@ -52,6 +53,8 @@ async def test_only_those_who_moved_are_sent_and_everybody_now_and_then(serving:
             live_console(server.private_port, vera.token) as console,
         ):
             await console.subscribe("map", hz=5)
+            await console.until(lambda: eve.id in console.records)
+            console.frames.clear()
             await console.until(lambda: sum(key for key, _, _ in console.frames) >= 2)
             between = [records for key, _, records in console.frames if not key]
             assert all(eve.id not in records["id"] for records in between)
@@ -130,8 +133,13 @@ async def test_who_has_no_token_or_comes_from_another_page_gets_no_socket(
     async with serving() as server:
         vera = await operator(server, "vera", "viewer")
         address = f"ws://127.0.0.1:{server.private_port}/api/v1/live"
+        await server.kept.directory.add(MACHINE, "blind", "admin", None)
+        one = frozenset({Right.AUDIT})
+        blind = await server.kept.tokens.add(MACHINE, "blind", "one", rights=one)
         for headers in (
             {},
+            {"Authorization": f"Bearer {blind}"},
+            {"Cookie": f"esplanade_session={'x' * 43}", "Origin": address.replace("ws", "http")},
             {"Authorization": "Bearer esplanade_wrong"},
             {"Authorization": f"Bearer {vera.token}", "Origin": "https://elsewhere.example"},
         ):
@@ -147,7 +155,7 @@ async def test_who_has_no_token_or_comes_from_another_page_gets_no_socket(
 async def test_a_socket_ends_when_its_token_does(
     serving: Serving, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(live_socket, "LOOKED_UP_EVERY_S", 0.1)
+    monkeypatch.setattr(callers, "RENEWED_S", 0.1)
     async with serving() as server:
         vera = await operator(server, "vera", "viewer")
         async with live_console(server.private_port, vera.token) as console:
