@@ -16,6 +16,8 @@ from esplanade.server.console.accounts_api import router as accounts
 from esplanade.server.console.admission_api import router as admission
 from esplanade.server.console.auth_api import router as auth
 from esplanade.server.console.gate import Gate
+from esplanade.server.console.live_api import router as live
+from esplanade.server.console.live_socket import router as sockets
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.console.routing import (
     PREFIX,
@@ -28,6 +30,7 @@ from esplanade.server.console.routing import (
     may,
     told,
 )
+from esplanade.server.live.names import stand_in
 
 
 def _one_or_list(body: object) -> str:
@@ -49,7 +52,8 @@ router = APIRouter(prefix=PREFIX, route_class=Guarded, responses=REFUSALS)
 def add_api(app: FastAPI, gate: Gate) -> None:
     """Let an application answer operators."""
     app.state.gate = gate
-    for each in (router, auth, accounts, admission):
+    # Paths of the live views below an actor's go before the actor's own.
+    for each in (live, sockets, router, auth, accounts, admission):
         app.include_router(each)
     add_refusals(app)
 
@@ -87,7 +91,11 @@ async def actor(request: Request, actor_id: str) -> dict[str, Any]:
 @router.get("/people")
 async def people(request: Request) -> dict[str, Any]:
     """Everyone who is connected, at this moment."""
-    return await asked(request, questions.people)
+    found = await asked(request, questions.people)
+    views = gate_of(request).live
+    if views is not None and not views.sees_names(caller(request)):
+        found["people"] = [{**one, "name": stand_in(one["id"])} for one in found["people"]]
+    return found
 
 
 @router.get("/parameters")
