@@ -38,6 +38,7 @@ from esplanade.server.rehearsal import rehearse, rehearse_walking
 from esplanade.server.settings import ServerSettings
 from esplanade.server.warming import kernels_compiled
 from esplanade.server.world.audience import Audience
+from esplanade.server.world.pace import Pace
 from esplanade.server.world.zone import Zone
 
 log = structlog.get_logger(__name__)
@@ -125,6 +126,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             metrics,
             lambda: schedule.world_time(world.tick, loop.time()),
             {"storeys": storeys} if mesh is None else {"storeys": storeys, "mesh": mesh},
+            schedule.pace,
         )
         delivery = Delivery(audience, hub.sessions, settings.tick_rate, hub.stop_watching)
         link = LocalLink()
@@ -135,7 +137,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         )
         deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
         ground_work = GroundWork(world, deriving)
-        gate.console = console = _console(world, hub, kept, loaded, metrics)
+        gate.console = console = _console(world, hub, kept, loaded, metrics, schedule.pace)
         ticker = Ticker(
             world, ground_work, audience, link, hub, delivery, schedule, metrics, thread, console
         )
@@ -254,10 +256,12 @@ def _with_roster(loaded: LoadedScene, settings: ServerSettings) -> LoadedScene:
     return replace(loaded, roster=roster)
 
 
-def _console(world: Zone, hub: Hub, kept: Kept, loaded: LoadedScene, metrics: Metrics) -> Console:
+def _console(
+    world: Zone, hub: Hub, kept: Kept, loaded: LoadedScene, metrics: Metrics, pace: Pace
+) -> Console:
     """Make the console, which all commands of operators go through."""
     overrides = None if loaded.roster is None else loaded.roster.overrides
-    console = Console(world, hub.moderation, kept.store, kept.audit, overrides)
+    console = Console(world, hub.moderation, kept.store, kept.audit, overrides, pace)
     metrics.gauge(
         "commands_in_turn",
         "Operators' lists of commands that are carried out or wait for their turn",

@@ -16,7 +16,7 @@ from esplanade.protocol.commands.answers import Answer, CommandFault, Facts, Pri
 from esplanade.protocol.commands.fields import NO_NUL, ZONE, full_id
 from esplanade.protocol.commands.parameters import ClearParameters, Revert, SetParameters
 from esplanade.protocol.commands.people import Announce, Kick, Mute
-from esplanade.protocol.commands.world import MoveDoor
+from esplanade.protocol.commands.world import MoveDoor, Pace
 
 __all__ = [
     "COMMAND",
@@ -36,6 +36,7 @@ __all__ = [
     "MoveDoor",
     "Mute",
     "NewActor",
+    "Pace",
     "Price",
     "RemoveActors",
     "Revert",
@@ -57,6 +58,7 @@ Command = Annotated[
     | AddActors
     | RemoveActors
     | MoveDoor
+    | Pace
     | Announce
     | Mute
     | Kick

@@ -3,7 +3,7 @@
 import asyncio
 import itertools
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final, TypeVar
 
 import structlog
@@ -34,13 +34,18 @@ from esplanade.server.console.moderation import (
     moderate,
     wanted_of_people,
 )
+from esplanade.server.console.pacing import change_pace
 from esplanade.server.console.records import Planned, Records
 from esplanade.server.console.refusals import RefusedError, of_world
 from esplanade.server.console.state import (
     BEHAVIOUR,
+    FACTOR,
     HELD,
     OPEN,
+    PACE,
+    PAUSED,
     PRESENT,
+    STEPPED,
     OperatedState,
     each,
     parameters_of,
@@ -50,6 +55,7 @@ from esplanade.server.world.frame import Frame
 from esplanade.server.world.inputs import ActorCommand, AddActors, Input, MoveDoor
 from esplanade.server.world.inputs import SetParameters as SetInWorld
 from esplanade.server.world.outcomes import Outcome
+from esplanade.server.world.pace import Pace
 from esplanade.server.world.zone import Zone
 
 Result = TypeVar("Result")
@@ -77,9 +83,11 @@ class Console:
         store: SqlStore,
         audit: AuditLog,
         overrides: Overrides | None = None,
+        pace: Pace | None = None,
     ) -> None:
         self.zone = zone
-        self.state = OperatedState(zone, overrides or Overrides())
+        self.pace = pace or Pace()
+        self.state = OperatedState(zone, overrides or Overrides(), self.pace)
         self.changes = Changes()
         self.moderation = moderation
         self._records = Records(store, audit)
@@ -132,13 +140,13 @@ class Console:
         numbers = await self._records.intents(by, planned, self.zone.tick)
         for one in planned:
             moderate(one.command, self.moderation)
-        tick, faults = await self._in_a_tick(inputs, doors)
+        tick, faults = await self._in_a_tick(inputs, doors, facts.get(PACE, {}))
         await self._records.outcomes(by, planned, numbers, tick, faults)
         if faults:
             raise RefusedError(faults).within(0) if len(commands) == 1 else RefusedError(faults)
         self.state.take(facts)
         for number, one in zip(numbers, planned, strict=True):
-            if isinstance(one.command, MODERATING):
+            if isinstance(one.command, MODERATING) or STEPPED in one.after.get(PACE, {}):
                 continue
             self.changes.add(
                 Change(number, by.account, one.command, one.before, one.after, one.reverts)
@@ -196,14 +204,22 @@ class Console:
         return "prepared" if any(map(_is_prepared, inputs)) else "tick"
 
     async def _in_a_tick(
-        self, inputs: list[ActorCommand], doors: list[MoveDoor]
+        self,
+        inputs: list[ActorCommand],
+        doors: list[MoveDoor],
+        pace: Mapping[str, Any],
     ) -> tuple[int | None, list[CommandFault]]:
         """Put inputs into the next tick; the last tick in which one took effect, and faults."""
         loop = asyncio.get_running_loop()
+        if pace and not (inputs or doors):
+            change_pace(self.pace, pace, loop.time())
+            return self.zone.tick, []
         for one in inputs:
             self._outcomes[one.command] = loop.create_future()
         self._tick = begun = loop.create_future()
         self._inputs += [*inputs, *doors]
+        # They enter the next tick, be it the last before a pause or the first that is stepped.
+        change_pace(self.pace, pace, loop.time())
         try:
             async with asyncio.timeout(PATIENCE_S):
                 tick = await begun
@@ -258,8 +274,19 @@ class Console:
         except TimeoutError:
             raise RefusedError.of("busy", "the world does not answer") from None
 
+    @property
+    def waits_for_tick(self) -> bool:
+        """Whether a list of commands needs a tick, though it may have no inputs for it."""
+        return self._tick is not None and not self._tick.done()
+
     def drain(self) -> list[Input]:
         """Answer the questions, and return the inputs for the tick that is about to begin."""
+        self.answer()
+        inputs, self._inputs = self._inputs, []
+        return inputs
+
+    def answer(self) -> None:
+        """Answer the questions that can be asked between two ticks only."""
         for _ in range(len(self._questions)):
             question, future = self._questions.popleft()
             if future.done():
@@ -268,8 +295,6 @@ class Console:
                 future.set_result(question())
             except Exception as error:  # noqa: BLE001 - it is raised where it was asked
                 future.set_exception(error)
-        inputs, self._inputs = self._inputs, []
-        return inputs
 
     def take(self, frame: Frame) -> None:
         """Learn from a frame what became of commands."""
@@ -293,6 +318,7 @@ def _check_right(by: Identity, op: str, *path: int) -> None:
 def _needed_for(change: Change) -> set[str]:
     """The commands whose rights are needed to take a change back."""
     ops = {BEHAVIOUR: "set_behaviour", HELD: "hold_actor", OPEN: "move_door", PRESENT: "add_actors"}
+    ops |= {FACTOR: "pace", PAUSED: "pace"}
     return {ops.get(field, "set_parameters") for _, field, _ in each(change.after)}
 
 

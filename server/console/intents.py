@@ -18,6 +18,7 @@ from esplanade.protocol.commands import (
     HoldActor,
     MoveDoor,
     NewActor,
+    Pace,
     RemoveActors,
     SendActor,
     SetBehaviour,
@@ -26,9 +27,13 @@ from esplanade.protocol.commands import (
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.console.state import (
     BEHAVIOUR,
+    FACTOR,
     HELD,
     OPEN,
+    PACE,
+    PAUSED,
     PRESENT,
+    STEPPED,
     OperatedState,
     scope_of,
     with_facts,
@@ -73,8 +78,21 @@ def intended(  # noqa: PLR0911 (one for each command)
                 text = f"the scene has no door {command.door!r}"
                 raise RefusedError.of("unknown_door", text, "door", door=command.door)
             return {f"door:{command.door}": {OPEN: command.open}}
+        case Pace():
+            return _pace(command, state, pending)
         case _:
             raise AssertionError(f"{command.op} wants nothing of the zone itself")
+
+
+def _pace(command: Pace, state: OperatedState, pending: Facts) -> Facts:
+    if command.factor is not None:
+        return {PACE: {FACTOR: command.factor}}
+    if command.pause is not None:
+        return {PACE: {PAUSED: command.pause}}
+    if not pending.get(PACE, {}).get(PAUSED, state.fact(PACE, PAUSED)):
+        text = "only a world that is paused goes on tick by tick"
+        raise RefusedError.of("not_paused", text, "step")
+    return {PACE: {STEPPED: command.step}}
 
 
 def checked_values(values: Mapping[str, float], *path: str) -> dict[str, Any]:

@@ -6,20 +6,27 @@ from typing import Any, Final
 from esplanade.actors import ActorSpec, Overrides, Scope
 from esplanade.actors.overrides import DEFAULTS, WORLD, Values
 from esplanade.protocol.commands import Facts
+from esplanade.server.world.pace import Pace
 from esplanade.server.world.zone import Zone
 
 BEHAVIOUR: Final = "behaviour"
 HELD: Final = "held"
 PRESENT: Final = "present"
 OPEN: Final = "open"
+FACTOR: Final = "factor"
+PAUSED: Final = "paused"
+STEPPED: Final = "stepped"
 """Fields of subjects that are no parameters."""
+PACE: Final = "pace"
+"""The subject that the time of the world is."""
 
 
 class OperatedState:
     """The facts of a zone. A value of None stands for what is not set, or not there."""
 
-    def __init__(self, zone: Zone, overrides: Overrides) -> None:
+    def __init__(self, zone: Zone, overrides: Overrides, pace: Pace | None = None) -> None:
         self.zone = zone
+        self.pace = pace or Pace()
         self.overrides = overrides
         self.held: set[str] = set()
         self._doors: dict[str, bool] = {}
@@ -28,6 +35,8 @@ class OperatedState:
     def fact(self, subject: str, field: str) -> Any:
         """Return the present value of a field of a subject."""
         kind, _, name = subject.partition(":")
+        if kind == PACE:
+            return getattr(self.pace.state, field, None)
         match kind, field:
             case "door", _:
                 return self._doors.get(name, self.zone.doors.states().get(name))

@@ -212,6 +212,14 @@ class ActorsStood:
     """In this tick planning failed when it was recorded: the actors stand."""
 
 
+@dataclass(frozen=True, slots=True)
+class Still:
+    """In this tick nobody moves and nothing is planned, since the world is paused.
+
+    All other inputs of the tick are taken in, so that people can come, talk and go meanwhile.
+    """
+
+
 Movement = Steer | Follow
 OfPerson = Attach | Detach | Leave | Stand | Steer | Follow | Say | Watch
 """Inputs of one avatar, by its `id`."""
@@ -226,4 +234,4 @@ ActorCommand = (
 )
 """Commands on actors. Each has a number, and a frame has the outcome of each by that number."""
 DerivedInput = DoorDerived | PotentialDerived | ActorsDerived
-Input = Join | MoveDoor | OfPerson | DerivedInput | ActorCommand | ActorsStood
+Input = Join | MoveDoor | OfPerson | DerivedInput | ActorCommand | ActorsStood | Still

@@ -42,10 +42,11 @@ class Feet:
         """Number of times that a body was too far from its feet and stood anew."""
         return self._walkers.lost
 
-    def update(self, tick: int) -> None:
+    def update(self, tick: int, *, still: bool = False) -> None:
         """Begin and re-aim steps after where everyone is and is going; newcomers stand.
 
-        Whoever has grown or shrunk stands anew, too.
+        Whoever has grown or shrunk stands anew, too. In a `still` tick newcomers stand, and no step
+        begins.
         It reads the state and writes the latest steps, and newcomers' legs and statures. Any thread
         may call it while nobody changes the state; most of the time it holds no interpreter lock.
         """
@@ -63,7 +64,8 @@ class Feet:
             if len(new):
                 self._walkers.join(tick, new, traits, self._course(new))
                 self._ids[new], self._scales[new] = state.ids[new], state.scales[new]
-            self._walkers.update(tick, live, self._course(live))
+            if not still:
+                self._walkers.update(tick, live, self._course(live))
         except Exception:
             # In the next tick everyone stands anew; meanwhile the world goes on.
             if self._failed != tick - 1:
