@@ -202,7 +202,7 @@ export class World {
     this.drawnS = timeS;
     // What is drawn comes to rest a moment after the world does.
     const frameS = rate === 0 ? Math.min(passedS, timeS - before) : passedS * rate;
-    this.prediction?.advance(passedS * rate);
+    this.prediction?.advance(passedS * rate, passedS);
     for (const avatar of this.avatars_.values()) {
       const { animator, interpolator, own } = avatar;
       avatar.pose =
