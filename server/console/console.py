@@ -52,7 +52,7 @@ from esplanade.server.console.state import (
 )
 from esplanade.server.store.sql_store import SqlStore
 from esplanade.server.world.frame import Frame
-from esplanade.server.world.inputs import ActorCommand, AddActors, Input, MoveDoor
+from esplanade.server.world.inputs import ActorCommand, AddActors, Input, MoveDoor, parts_of
 from esplanade.server.world.inputs import SetParameters as SetInWorld
 from esplanade.server.world.outcomes import Outcome
 from esplanade.server.world.pace import Pace
@@ -323,9 +323,11 @@ def _needed_for(change: Change) -> set[str]:
 
 
 def _is_prepared(command: ActorCommand) -> bool:
-    if isinstance(command, SetInWorld):
-        return not command.values.keys().isdisjoint(MEASURES)
-    return isinstance(command, AddActors)
+    return any(
+        isinstance(one, AddActors)
+        or (isinstance(one, SetInWorld) and not one.values.keys().isdisjoint(MEASURES))
+        for one in parts_of(command)
+    )
 
 
 def _together(all_facts: Sequence[Facts]) -> Facts:

@@ -223,7 +223,7 @@ class Still:
 Movement = Steer | Follow
 OfPerson = Attach | Detach | Leave | Stand | Steer | Follow | Say | Watch
 """Inputs of one avatar, by its `id`."""
-ActorCommand = (
+OneActorCommand = (
     SetParameters
     | AddActors
     | RemoveActors
@@ -232,6 +232,34 @@ ActorCommand = (
     | PlaceActor
     | HoldActors
 )
+"""Commands on actors that do one thing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """Commands on actors and doors, one after the other in one tick: all of them, or none.
+
+    The numbers of its commands count for nothing; the outcome is that of the batch.
+    """
+
+    command: int
+    commands: tuple[OneActorCommand, ...]
+    doors: tuple[MoveDoor, ...] = ()
+
+    @property
+    def actors(self) -> tuple[str, ...]:
+        """Ids of all actors that it is about."""
+        return tuple(dict.fromkeys(actor for one in self.commands for actor in one.actors))
+
+
+ActorCommand = OneActorCommand | Batch
 """Commands on actors. Each has a number, and a frame has the outcome of each by that number."""
+
+
+def parts_of(command: ActorCommand) -> tuple[OneActorCommand, ...]:
+    """The commands that a batch consists of, or the command itself."""
+    return command.commands if isinstance(command, Batch) else (command,)
+
+
 DerivedInput = DoorDerived | PotentialDerived | ActorsDerived
 Input = Join | MoveDoor | OfPerson | DerivedInput | ActorCommand | ActorsStood | Still

@@ -42,14 +42,20 @@ class Feet:
         """Number of times that a body was too far from its feet and stood anew."""
         return self._walkers.lost
 
-    def update(self, tick: int, *, still: bool = False) -> None:
+    def update(self, tick: int) -> None:
         """Begin and re-aim steps after where everyone is and is going; newcomers stand.
 
-        Whoever has grown or shrunk stands anew, too. In a `still` tick newcomers stand, and no step
-        begins.
+        Whoever has grown or shrunk stands anew, too.
         It reads the state and writes the latest steps, and newcomers' legs and statures. Any thread
         may call it while nobody changes the state; most of the time it holds no interpreter lock.
         """
+        self._update(tick, still=False)
+
+    def stand_newcomers(self, tick: int) -> None:
+        """The same in a tick in which nobody moves: newcomers stand, and no step begins."""
+        self._update(tick, still=True)
+
+    def _update(self, tick: int, *, still: bool) -> None:
         self._tick = tick
         state = self._state
         live = state.live()

@@ -105,7 +105,9 @@ class Zone:
         self._people = People(self.state, grid, rules, tick_s)
         self._population = population
         self._actors = ActorAvatars(self.state, population, names, tick_s)
-        self._commands = ActorCommands(population, self._actors, scene, self.most_actors, roster)
+        self._commands = ActorCommands(
+            population, self._actors, scene, self.most_actors, roster, self.doors.want
+        )
         self._recorder = Recorder(self.state, self.origin_m)
         self._plan_period = max(1, round(1.0 / tick_s) // PLANS_PER_SECOND)
         self._watched: dict[int, int] = {}
@@ -167,7 +169,10 @@ class Zone:
             if not self._still:
                 self.contacts.update(self.state)
         with self.times.stage("steps"):
-            self.feet.update(self.tick, still=self._still)
+            if self._still:
+                self.feet.stand_newcomers(self.tick)
+            else:
+                self.feet.update(self.tick)
         with self.times.stage("encode"):
             people, actors = self.count()
             return Frame(
