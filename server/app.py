@@ -12,9 +12,12 @@ import structlog
 from esplanade.actors import Population
 from esplanade.planning import LayeredGrid
 from esplanade.planning.routes.storey_heights import reached_from, storeys_of
+from esplanade.protocol.preset_files import PresetFileError
 from esplanade.server.assets import Assets
 from esplanade.server.console.console import Console
 from esplanade.server.console.gate import Gate
+from esplanade.server.console.preset_folder import read_presets
+from esplanade.server.console.presets import Presets
 from esplanade.server.crowding import warn_of_crowding
 from esplanade.server.keeping import Kept, keeping
 from esplanade.server.link.local import LocalLink
@@ -91,7 +94,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     tls = None
     if settings.tls_cert is not None and settings.tls_key is not None:
         tls = Tls(settings.tls_cert, settings.tls_key)
-    loaded = _with_roster(load_scene(settings), settings)
+    loaded, presets = _with_roster(load_scene(settings), settings), _presets(settings)
     assets, mesh = assets or Assets.load(), None
     if loaded.triangles is not None:
         assets, mesh = assets.with_data("mesh", loaded.triangles)
@@ -137,7 +140,9 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         )
         deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
         ground_work = GroundWork(world, deriving)
-        gate.console = console = _console(world, hub, kept, loaded, metrics, schedule.pace)
+        gate.console = console = await stack.enter_async_context(
+            _console(world, hub, kept, loaded, metrics, presets, schedule.pace)
+        )
         ticker = Ticker(
             world, ground_work, audience, link, hub, delivery, schedule, metrics, thread, console
         )
@@ -256,18 +261,53 @@ def _with_roster(loaded: LoadedScene, settings: ServerSettings) -> LoadedScene:
     return replace(loaded, roster=roster)
 
 
-def _console(
-    world: Zone, hub: Hub, kept: Kept, loaded: LoadedScene, metrics: Metrics, pace: Pace
-) -> Console:
+def _presets(settings: ServerSettings) -> Presets:
+    """The presets that come along with the server."""
+    try:
+        return Presets(read_presets(settings.presets))
+    except PresetFileError as error:
+        raise LoadingError(str(error)) from None
+
+
+@asynccontextmanager
+async def _console(
+    world: Zone,
+    hub: Hub,
+    kept: Kept,
+    loaded: LoadedScene,
+    metrics: Metrics,
+    presets: Presets,
+    pace: Pace,
+) -> AsyncIterator[Console]:
     """Make the console, which all commands of operators go through."""
     overrides = None if loaded.roster is None else loaded.roster.overrides
-    console = Console(world, hub.moderation, kept.store, kept.audit, overrides, pace)
+    console = Console(world, hub.moderation, kept.store, kept.audit, overrides, presets, pace)
+    console.figures.add(
+        "tick_p99_ms",
+        "ms",
+        "Percentile 99 of the last minute's ticks",
+        lambda: 1e3 * metrics.ticks.percentile(99, round(60.0 / world.tick_s)),
+    )
+    metrics.gauge(
+        "changes_lasting",
+        "Changes of operators that go on: dragged values and ramps",
+        lambda: console.lasting.under_way,
+    )
+    metrics.gauge(
+        "schedules_due",
+        "Schedules and guards that wait to be carried out",
+        lambda: console.scheduler.waiting,
+    )
     metrics.gauge(
         "commands_in_turn",
         "Operators' lists of commands that are carried out or wait for their turn",
         lambda: console.waiting,
     )
-    return console
+    await console.load()
+    try:
+        yield console
+    finally:
+        await console.close()
 
 
 def _watch_routes(route_requests: RouteRequests, metrics: Metrics) -> None:
