@@ -283,7 +283,7 @@ class Plan(FromServer):
     tick: int
     id: EntityId
     reason: Annotated[Reason | int, Field(union_mode="left_to_right")]
-    behaviour: Literal["go_to", "wander", "patrol", "guide", "idle"] | str
+    behaviour: Literal["go_to", "wander", "patrol", "guide", "follow", "idle"] | str
     goal: Place | None
     path: list[tuple[float, float, float, float]]
     """Points (x, y, z, seconds from now)."""

@@ -98,7 +98,11 @@ class CommandEffects:
         found: Sequence[Point | None] = places or [spec.place for spec in command.specs]
         arrivals = zip(command.specs, command.parameters, found, strict=True)
         self._population.add_many(
-            [Newcomer(spec.id, spec.behaviour.make(), own, place) for spec, own, place in arrivals]
+            [
+                # A place that was derived is that of one actor alone.
+                Newcomer(spec.id, spec.behaviour.make(), own, at, near=spec.near and not places)
+                for spec, own, at in arrivals
+            ]
         )
         self.specs.update({spec.id: spec for spec in command.specs})
 

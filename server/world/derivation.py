@@ -40,7 +40,9 @@ class Derivation:
                     self._changes += population.new_bodies(one.actors, one.values)
                 case AddActors():
                     self._newcomers += [
-                        Newcomer(spec.id, spec.behaviour.make(), parameters, spec.place)
+                        Newcomer(
+                            spec.id, spec.behaviour.make(), parameters, spec.place, near=spec.near
+                        )
                         for spec, parameters in zip(one.specs, one.parameters, strict=True)
                     ]
 
