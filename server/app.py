@@ -12,10 +12,13 @@ import structlog
 from esplanade.actors import Population
 from esplanade.planning import LayeredGrid
 from esplanade.planning.routes.storey_heights import reached_from, storeys_of
+from esplanade.protocol.preset_files import PresetFileError
 from esplanade.server.accounts.kept import Kept
 from esplanade.server.assets import Assets
 from esplanade.server.console.console import Console
 from esplanade.server.console.gate import Gate
+from esplanade.server.console.preset_folder import read_presets
+from esplanade.server.console.presets import Presets
 from esplanade.server.crowding import warn_of_crowding
 from esplanade.server.entrances import make_gate, people_url, private_certificate
 from esplanade.server.keeping import keeping
@@ -43,6 +46,7 @@ from esplanade.server.rehearsal import rehearse, rehearse_walking
 from esplanade.server.settings import ServerSettings
 from esplanade.server.warming import kernels_compiled
 from esplanade.server.world.audience import Audience
+from esplanade.server.world.pace import Pace
 from esplanade.server.world.zone import Zone
 
 log = structlog.get_logger(__name__)
@@ -101,7 +105,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     # What the machine cannot give is said now, not after a minute of building the world.
     places = places_for_people(connections_wanted(settings))
     tls = _tls(settings)
-    loaded = _with_roster(load_scene(settings), settings)
+    loaded, presets = _with_roster(load_scene(settings), settings), _presets(settings)
     assets, mesh = assets or Assets.load(), None
     if loaded.triangles is not None:
         assets, mesh = assets.with_data("mesh", loaded.triangles)
@@ -142,12 +146,16 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             lambda: schedule.world_time(world.tick, loop.time()),
             {"storeys": storeys} if mesh is None else {"storeys": storeys, "mesh": mesh},
             Entrance(settings, kept, metrics),
+            schedule.pace,
         )
         delivery = Delivery(audience, hub.sessions, settings.tick_rate, hub.stop_watching)
         link = LocalLink()
         deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
         ground_work = GroundWork(world, deriving)
-        console = gate.console = _console(world, hub, kept, loaded, metrics)
+        console = await stack.enter_async_context(
+            _console(world, hub, kept, loaded, metrics, presets, schedule.pace)
+        )
+        gate.console = console
         ticker = Ticker(
             world, ground_work, audience, link, hub, delivery, schedule, metrics, thread, console
         )
@@ -275,22 +283,59 @@ def _with_roster(loaded: LoadedScene, settings: ServerSettings) -> LoadedScene:
     return replace(loaded, roster=roster)
 
 
-def _console(world: Zone, hub: Hub, kept: Kept, loaded: LoadedScene, metrics: Metrics) -> Console:
+def _presets(settings: ServerSettings) -> Presets:
+    """The presets that come along with the server."""
+    try:
+        return Presets(read_presets(settings.presets))
+    except PresetFileError as error:
+        raise LoadingError(str(error)) from None
+
+
+@asynccontextmanager
+async def _console(
+    world: Zone,
+    hub: Hub,
+    kept: Kept,
+    loaded: LoadedScene,
+    metrics: Metrics,
+    presets: Presets,
+    pace: Pace,
+) -> AsyncIterator[Console]:
     """Make the console, which all commands of operators go through."""
     overrides = None if loaded.roster is None else loaded.roster.overrides
-    console = Console(world, hub.moderation, kept.store, kept.audit, overrides)
+    console = Console(world, hub.moderation, kept.store, kept.audit, overrides, presets, pace)
     hub.by_commands = doors = DoorCommands(console, kept.directory.again)
     metrics.gauge(
         "door_commands_waiting",
         "Doors that operators who walk about want moved, and that wait",
         lambda: doors.waiting,
     )
+    console.figures.add(
+        "tick_p99_ms",
+        "ms",
+        "Percentile 99 of the last minute's ticks",
+        lambda: 1e3 * metrics.ticks.percentile(99, round(60.0 / world.tick_s)),
+    )
+    metrics.gauge(
+        "changes_lasting",
+        "Changes of operators that go on: dragged values and ramps",
+        lambda: console.lasting.under_way,
+    )
+    metrics.gauge(
+        "schedules_due",
+        "Schedules and guards that wait to be carried out",
+        lambda: console.scheduler.waiting,
+    )
     metrics.gauge(
         "commands_in_turn",
         "Operators' lists of commands that are carried out or wait for their turn",
         lambda: console.waiting,
     )
-    return console
+    await console.load()
+    try:
+        yield console
+    finally:
+        await console.close()
 
 
 def _live(

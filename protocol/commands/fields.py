@@ -32,20 +32,20 @@ ScopeText = Annotated[
     str,
     BeforeValidator(_full_scope),
     Field(
-        pattern=f"^(world|group:{TAG}|actor:{ACTOR})$",
-        description="Where values hold: `world`, `group:TAG` or `actor:ID`.",
+        pattern=f"^(world|group:{TAG}(:{TAG})?|actor:{ACTOR})$",
+        description="Where values hold: `world`, `group:TAG`, `group:PURPOSE:NAME` or `actor:ID`.",
     ),
 ]
 
 
-def _all_different(actors: tuple[str, ...]) -> tuple[str, ...]:
+def all_different(actors: tuple[str, ...]) -> tuple[str, ...]:
     if len(set(actors)) < len(actors):
         raise ValueError("an actor is named twice")
     return actors
 
 
 Actors = Annotated[
-    tuple[ActorRef, ...], Field(min_length=1, max_length=500), AfterValidator(_all_different)
+    tuple[ActorRef, ...], Field(min_length=1, max_length=500), AfterValidator(all_different)
 ]
 NO_NUL: Final = r"^[^\x00]*$"
 """Databases keep no text with a null character in it."""

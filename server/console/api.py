@@ -16,6 +16,7 @@ from esplanade.server.console.accounts_api import router as accounts
 from esplanade.server.console.admission_api import router as admission
 from esplanade.server.console.auth_api import router as auth
 from esplanade.server.console.gate import Gate
+from esplanade.server.console.kept_api import router as kept
 from esplanade.server.console.live_api import router as live
 from esplanade.server.console.live_socket import router as sockets
 from esplanade.server.console.refusals import RefusedError
@@ -53,7 +54,7 @@ def add_api(app: FastAPI, gate: Gate) -> None:
     """Let an application answer operators."""
     app.state.gate = gate
     # Paths of the live views below an actor's go before the actor's own.
-    for each in (live, sockets, router, auth, accounts, admission):
+    for each in (live, sockets, router, kept, auth, accounts, admission):
         app.include_router(each)
     add_refusals(app)
 

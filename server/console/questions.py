@@ -7,6 +7,7 @@ from esplanade.actors.behaviour_spec import BEHAVIOUR_SPEC
 from esplanade.actors.state import Reason
 from esplanade.protocol.commands import COMMAND, ZONE
 from esplanade.server.console.console import Console
+from esplanade.server.console.pacing import told
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.world.state import PERSON
 
@@ -37,6 +38,7 @@ def world(console: Console) -> dict[str, Any]:
         "doors": zone.doors.states(),
         "places": {place.name: [*place.position, place.z_m] for place in zone.scene.places},
         "revision": console.changes.revision,
+        "pace": told(console.pace),
     }
 
 
@@ -62,7 +64,8 @@ def actor(console: Console, name: str) -> dict[str, Any]:
     spec = console.zone.actors.get(name)
     if spec is None:
         raise RefusedError.of("unknown_actor", f"there is no actor {name}", actor=name)
-    sources = console.state.overrides.effective(spec.id, spec.tags)
+    groups = console.state.groups.names(spec)
+    sources = console.state.overrides.effective(spec.id, groups)
     found = _actor(console, spec)
     found["tick"] = console.zone.tick
     found["revision"] = console.changes.revision
@@ -112,6 +115,7 @@ def _actor(console: Console, spec: ActorSpec) -> dict[str, Any]:
         "id": spec.id,
         "name": spec.name,
         "tags": list(spec.tags),
+        "groups": dict(console.state.groups.of(spec.id)),
         "behaviour": spec.behaviour.kind,
         "held": spec.id in console.state.held,
         "avatar": avatar,
