@@ -12,14 +12,18 @@ import structlog
 from esplanade.actors import Population
 from esplanade.planning import LayeredGrid
 from esplanade.planning.routes.storey_heights import reached_from, storeys_of
+from esplanade.protocol.preset_files import PresetFileError
 from esplanade.server.accounts.kept import Kept
 from esplanade.server.assets import Assets
 from esplanade.server.console.console import Console
 from esplanade.server.console.gate import Gate
+from esplanade.server.console.preset_folder import read_presets
+from esplanade.server.console.presets import Presets
 from esplanade.server.crowding import warn_of_crowding
 from esplanade.server.entrances import make_gate, people_url, private_certificate
 from esplanade.server.keeping import keeping
 from esplanade.server.link.local import LocalLink
+from esplanade.server.live.bulletin import Bulletin
 from esplanade.server.live.live import Live
 from esplanade.server.loading import LoadedScene, LoadingError, load_scene
 from esplanade.server.metrics import Metrics
@@ -99,7 +103,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     # What the machine cannot give is said now, not after a minute of building the world.
     places = places_for_people(connections_wanted(settings))
     tls = _tls(settings)
-    loaded = _with_roster(load_scene(settings), settings)
+    loaded, presets = _with_roster(load_scene(settings), settings), _presets(settings)
     assets, mesh = assets or Assets.load(), None
     if loaded.triangles is not None:
         assets, mesh = assets.with_data("mesh", loaded.triangles)
@@ -144,7 +148,9 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         link = LocalLink()
         deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
         ground_work = GroundWork(world, deriving)
-        console = gate.console = _console(world, hub, kept, loaded, metrics)
+        console = gate.console = await stack.enter_async_context(
+            _console(world, hub, kept, loaded, metrics, presets)
+        )
         ticker = Ticker(
             world, ground_work, audience, link, hub, delivery, schedule, metrics, thread, console
         )
@@ -272,16 +278,47 @@ def _with_roster(loaded: LoadedScene, settings: ServerSettings) -> LoadedScene:
     return replace(loaded, roster=roster)
 
 
-def _console(world: Zone, hub: Hub, kept: Kept, loaded: LoadedScene, metrics: Metrics) -> Console:
+def _presets(settings: ServerSettings) -> Presets:
+    """The presets that come along with the server."""
+    try:
+        return Presets(read_presets(settings.presets))
+    except PresetFileError as error:
+        raise LoadingError(str(error)) from None
+
+
+@asynccontextmanager
+async def _console(
+    world: Zone, hub: Hub, kept: Kept, loaded: LoadedScene, metrics: Metrics, presets: Presets
+) -> AsyncIterator[Console]:
     """Make the console, which all commands of operators go through."""
     overrides = None if loaded.roster is None else loaded.roster.overrides
-    console = Console(world, hub.moderation, kept.store, kept.audit, overrides)
+    console = Console(world, hub.moderation, kept.store, kept.audit, overrides, presets)
+    console.figures.add(
+        "tick_p99_ms",
+        "ms",
+        "Percentile 99 of the last minute's ticks",
+        lambda: 1e3 * metrics.ticks.percentile(99, round(60.0 / world.tick_s)),
+    )
+    metrics.gauge(
+        "changes_lasting",
+        "Changes of operators that go on: dragged values and ramps",
+        lambda: console.lasting.under_way,
+    )
+    metrics.gauge(
+        "schedules_due",
+        "Schedules and guards that wait to be carried out",
+        lambda: console.scheduler.waiting,
+    )
     metrics.gauge(
         "commands_in_turn",
         "Operators' lists of commands that are carried out or wait for their turn",
         lambda: console.waiting,
     )
-    return console
+    await console.load()
+    try:
+        yield console
+    finally:
+        await console.close()
 
 
 def _live(
@@ -291,8 +328,17 @@ def _live(
     metrics: Metrics,
     settings: ServerSettings,
 ) -> Live:
-    """Make what operators see of the world."""
-    return Live(world, storeys, console.bulletin, metrics.traffic, hide_names=settings.hide_names)
+    """Make what operators see of the world, and let it hear of their changes."""
+    live = Live(
+        world,
+        storeys,
+        Bulletin(),
+        metrics.traffic,
+        hide_names=settings.hide_names,
+        groups=lambda spec: console.state.groups.names(spec),  # noqa: PLW0108 - they are replaced
+    )
+    console.listen(live.bulletin.heard)
+    return live
 
 
 def _watch_routes(route_requests: RouteRequests, metrics: Metrics) -> None:

@@ -35,6 +35,10 @@ _WORLD: Final = {
     "roster": Setting(
         "which actors walk about instead, what each does and how, a JSON file", InputFile()
     ),
+    "presets": Setting(
+        "folder of presets for operators beside those that come along, one TOML or JSON file each",
+        Folder(),
+    ),
     "seed": Setting("seed of everything random in the world", Whole(0, SEED_LIMIT), 0),
     "tick_rate": Setting("ticks of the world", Whole(5, 60), 20, "per second"),
 }

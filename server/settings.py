@@ -30,6 +30,7 @@ class ServerSettings(BaseSettings):
     walls: Path | None = _field("walls")
     actors: int = _field("actors")
     roster: Path | None = _field("roster")
+    presets: Path | None = _field("presets")
     seed: int = _field("seed")
     tick_rate: int = _field("tick_rate")
 

@@ -13,9 +13,13 @@ from esplanade.protocol.commands.actors import (
     SetBehaviour,
 )
 from esplanade.protocol.commands.answers import Answer, CommandFault, Facts, Price
+from esplanade.protocol.commands.conditions import FigureCondition, GuardCondition
 from esplanade.protocol.commands.fields import NO_NUL, ZONE, full_id
+from esplanade.protocol.commands.groups import SetGroup
 from esplanade.protocol.commands.parameters import ClearParameters, Revert, SetParameters
 from esplanade.protocol.commands.people import Announce, Kick, Mute
+from esplanade.protocol.commands.presets import ApplyPreset, DeletePreset, SavePreset
+from esplanade.protocol.commands.schedules import CancelSchedule, Mark, ScheduleCommands
 from esplanade.protocol.commands.world import MoveDoor
 
 __all__ = [
@@ -26,21 +30,30 @@ __all__ = [
     "AddActors",
     "Announce",
     "Answer",
+    "ApplyPreset",
+    "CancelSchedule",
     "ClearParameters",
     "Command",
     "CommandFault",
     "Commands",
+    "DeletePreset",
     "Facts",
+    "FigureCondition",
+    "GuardCondition",
     "HoldActor",
     "Kick",
+    "Mark",
     "MoveDoor",
     "Mute",
     "NewActor",
     "Price",
     "RemoveActors",
     "Revert",
+    "SavePreset",
+    "ScheduleCommands",
     "SendActor",
     "SetBehaviour",
+    "SetGroup",
     "SetParameters",
     "full_id",
 ]
@@ -60,7 +73,14 @@ Command = Annotated[
     | Announce
     | Mute
     | Kick
-    | Revert,
+    | Revert
+    | ApplyPreset
+    | SavePreset
+    | DeletePreset
+    | SetGroup
+    | ScheduleCommands
+    | CancelSchedule
+    | Mark,
     Field(discriminator="op"),
 ]
 COMMAND: TypeAdapter[Command] = TypeAdapter(Command)

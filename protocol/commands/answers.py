@@ -38,6 +38,9 @@ class Answer(BaseModel):
     price: Price = Field(
         "tick", description="Whether it is done in a tick, or something has to be prepared before."
     )
+    prepare_s: float | None = Field(
+        None, description="About how many seconds the preparation takes, where there is one."
+    )
     shadowed: dict[str, int] = Field(
         {}, description="How many narrower scopes have a value of their own, by parameter."
     )

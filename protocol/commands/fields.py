@@ -32,8 +32,8 @@ ScopeText = Annotated[
     str,
     BeforeValidator(_full_scope),
     Field(
-        pattern=f"^(world|group:{TAG}|actor:{ACTOR})$",
-        description="Where values hold: `world`, `group:TAG` or `actor:ID`.",
+        pattern=f"^(world|group:{TAG}(:{TAG})?|actor:{ACTOR})$",
+        description="Where values hold: `world`, `group:TAG`, `group:PURPOSE:NAME` or `actor:ID`.",
     ),
 ]
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
+from esplanade.protocol.commands.conditions import GuardCondition
 from esplanade.protocol.commands.fields import BaseCommand, Number, ParameterName, ScopeText
 
 
@@ -20,6 +21,22 @@ class SetParameters(BaseCommand):
         ge=0,
         description="Refuse it if one of these parameters was set or cleared after that revision.",
     )
+    over_s: Annotated[float, Field(gt=0.0, le=3600.0, allow_inf_nan=False)] | None = Field(
+        None, description="Go there evenly over this time, from the values that hold now."
+    )
+    guard: GuardCondition | None = None
+    stream: bool = Field(
+        False,
+        description="One of many values of a slider that is dragged: those that come within two "
+        "seconds of each other are one change, with the values before the first and after the "
+        "last.",
+    )
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> Self:
+        if self.stream and (self.over_s is not None or self.guard is not None):
+            raise ValueError("a stream has no over_s and no guard")
+        return self
 
 
 class ClearParameters(BaseCommand):
@@ -40,8 +57,9 @@ class Revert(BaseCommand):
     """
 
     op: Literal["revert"]
-    change: Annotated[int, Field(ge=1)] | Literal["latest", "undone"] = Field(
+    change: Annotated[int, Field(ge=1)] | Literal["latest", "undone", "latest_of_all"] = Field(
         "latest",
         description="The change's number; `latest` is your own latest that is not taken back, "
-        "`undone` the one that you took back last, which it makes anew.",
+        "`undone` the one that you took back last, which it makes anew, `latest_of_all` the latest "
+        "that anybody has made.",
     )

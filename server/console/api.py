@@ -15,6 +15,7 @@ from esplanade.server.console import questions
 from esplanade.server.console.accounts_api import router as accounts
 from esplanade.server.console.auth_api import router as auth
 from esplanade.server.console.gate import Gate
+from esplanade.server.console.kept_api import kept_router
 from esplanade.server.console.live_api import router as live
 from esplanade.server.console.live_socket import router as sockets
 from esplanade.server.console.refusals import RefusedError
@@ -51,8 +52,9 @@ router = APIRouter(prefix=PREFIX, route_class=Guarded, responses=REFUSALS)
 def add_api(app: FastAPI, gate: Gate) -> None:
     """Let an application answer operators."""
     app.state.gate = gate
+    kept = kept_router(asked, prefix=PREFIX, route_class=Guarded, responses=REFUSALS)
     # Paths of the live views below an actor's go before the actor's own.
-    for each in (live, sockets, router, auth, accounts):
+    for each in (live, sockets, router, kept, auth, accounts):
         app.include_router(each)
     add_refusals(app)
 

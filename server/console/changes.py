@@ -1,10 +1,11 @@
 """The changes that were made lately: what each replaced, so that it can be taken back."""
 
 from collections import OrderedDict
-from dataclasses import dataclass
-from typing import Final, Literal
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass
+from typing import Any, Final, Literal
 
-from esplanade.protocol.commands import Command, Facts
+from esplanade.protocol.commands import Facts
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.console.state import OperatedState, each
 
@@ -18,12 +19,15 @@ class Change:
 
     number: int
     account: str | None
-    command: Command
+    op: str
     before: Facts
     after: Facts
     reverts: int | None = None
     """The change that this one takes back."""
     reverted_by: int | None = None
+    at_us: int = 0
+    tick: int | None = None
+    note: str | None = None
 
 
 class Changes:
@@ -46,6 +50,38 @@ class Changes:
             reverted.reverted_by = change.number
         if len(self._changes) > REMEMBERED:
             self._changes.popitem(last=False)
+
+    def moved(self, change: Change, before: Facts, after: Facts) -> None:
+        """A change that goes on has gone further; `before` are facts that it touches newly."""
+        for subject, field, value in each(after):
+            if field not in change.after.get(subject, {}):
+                change.before.setdefault(subject, {})[field] = before[subject][field]
+            change.after.setdefault(subject, {})[field] = value
+            self._touched[field] = change.number
+
+    def get(self, number: int) -> Change | None:
+        """The change with that number, if it is remembered."""
+        return self._changes.get(number)
+
+    def newest_first(self) -> Iterator[Change]:
+        """All changes that are remembered."""
+        return reversed(self._changes.values())
+
+    def save(self) -> dict[str, Any]:
+        """All of it as plain data."""
+        changes = [asdict(change) for change in self._changes.values()]
+        return {"revision": self.revision, "changes": changes}
+
+    def load(self, data: Mapping[str, Any]) -> None:
+        """Take in what was saved, in place of what is there."""
+        self._changes.clear()
+        self._touched.clear()
+        for found in data["changes"]:
+            change = Change(**found)
+            self._changes[change.number] = change
+            for _, field, _ in each(change.after):
+                self._touched[field] = change.number
+        self.revision = data["revision"]
 
     def check_revision(self, known: int | None, facts: Facts, state: OperatedState) -> None:
         """See that nobody has changed these parameters since a revision.
@@ -78,7 +114,9 @@ class Changes:
                 differences=late,
             )
 
-    def found(self, wanted: int | Literal["latest", "undone"], account: str | None) -> Change:
+    def found(
+        self, wanted: int | Literal["latest", "undone", "latest_of_all"], account: str | None
+    ) -> Change:
         """The change that is to be taken back.
 
         Raises
@@ -95,21 +133,33 @@ class Changes:
                 text = f"change {wanted} is taken back already, by change {change.reverted_by}"
                 raise RefusedError.of("conflict", text, "change", by=change.reverted_by)
             return change
-        for change in reversed(self._changes.values()):
-            own = change.account == account and change.reverted_by is None
-            if own and wanted == "latest" and not self._takes_back(change):
+        for change in self.newest_first():
+            if not change.after:  # such as a mark
+                continue
+            mine = wanted == "latest_of_all" or change.account == account
+            own = mine and change.reverted_by is None
+            if own and wanted != "undone" and not self._takes_back(change):
                 return change
             if own and wanted == "undone" and self._takes_back(change):
                 return change
             if own and change.reverts is None:  # a new change ends what could be made anew
                 break
-        text = "you have made no change that could be taken back"
+        whose = "there is" if wanted == "latest_of_all" else "you have made"
+        text = f"{whose} no change that could be taken back"
         if wanted == "undone":
             text = "you have taken nothing back that could be made anew"
         raise RefusedError.of("unknown_change", text, "change")
 
-    def check_untouched(self, change: Change, state: OperatedState) -> None:
-        """See that all is still as a change has made it.
+    def can_revert(self, change: Change, state: OperatedState) -> bool:
+        """Whether a change could be taken back now, by whoever has the rights."""
+        if change.reverted_by is not None or not change.after:
+            return False
+        return all(
+            state.fact(subject, field) == value for subject, field, value in each(change.after)
+        )
+
+    def check_untouched(self, change: Change, state: OperatedState, pending: Facts) -> None:
+        """See that all is still as a change has made it, after the facts of commands before.
 
         Raises
         ------
@@ -117,6 +167,9 @@ class Changes:
             Somebody has changed some of it since; the differences are told.
         """
         now = state.now(change.after)
+        for subject, fields in pending.items():
+            for field in fields.keys() & now.get(subject, {}).keys():
+                now[subject][field] = fields[field]
         differences = [
             {
                 "subject": subject,

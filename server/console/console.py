@@ -1,41 +1,55 @@
 """The one path of operators' commands: rights, checks, the audit, a tick, the answer."""
 
 import asyncio
+import copy
 import itertools
 from collections import deque
 from collections.abc import Callable, Sequence
+from time import perf_counter
 from typing import Any, Final, TypeVar
 
 import structlog
 
 from esplanade.actors import Overrides
-from esplanade.actors.parameter_records import MEASURES
 from esplanade.protocol.commands import (
     Answer,
+    ApplyPreset,
     ClearParameters,
     Command,
     CommandFault,
     Facts,
     Kick,
+    Mark,
     Mute,
     Price,
     Revert,
     SetParameters,
 )
 from esplanade.server.accounts.identity import Identity
-from esplanade.server.accounts.rights import COMMANDS, may
-from esplanade.server.audit.log import AuditLog
+from esplanade.server.accounts.rights import COMMANDS, as_text, may
+from esplanade.server.audit.log import AuditLog, now_us
 from esplanade.server.console.changes import Change, Changes
+from esplanade.server.console.figures import ContactRate, zone_figures
+from esplanade.server.console.groups import GROUP
+from esplanade.server.console.guards import Guard
+from esplanade.server.console.history import plain_change
 from esplanade.server.console.inputs import inputs_for
 from esplanade.server.console.intents import intended
+from esplanade.server.console.kept_intents import KEPT, check_guard, kept_facts, ops_within
+from esplanade.server.console.kept_rows import rows_of
+from esplanade.server.console.lasting import LastingChanges
 from esplanade.server.console.moderation import (
     MODERATING,
     Moderation,
     moderate,
     wanted_of_people,
 )
+from esplanade.server.console.preparation import Preparation
+from esplanade.server.console.presets import PRESET, Presets
 from esplanade.server.console.records import Planned, Records
 from esplanade.server.console.refusals import RefusedError, of_world
+from esplanade.server.console.scheduler import Scheduler, guard_of, guard_row
+from esplanade.server.console.schedules import SCHEDULE
 from esplanade.server.console.state import (
     BEHAVIOUR,
     HELD,
@@ -45,11 +59,10 @@ from esplanade.server.console.state import (
     each,
     parameters_of,
 )
-from esplanade.server.live.bulletin import Bulletin
 from esplanade.server.store.sql_store import SqlStore
+from esplanade.server.store.store import StoreError
 from esplanade.server.world.frame import Frame
-from esplanade.server.world.inputs import ActorCommand, AddActors, Input, MoveDoor
-from esplanade.server.world.inputs import SetParameters as SetInWorld
+from esplanade.server.world.inputs import ActorCommand, Input, MoveDoor
 from esplanade.server.world.outcomes import Outcome
 from esplanade.server.world.zone import Zone
 
@@ -78,14 +91,24 @@ class Console:
         store: SqlStore,
         audit: AuditLog,
         overrides: Overrides | None = None,
+        presets: Presets | None = None,
+        clock_us: Callable[[], int] = now_us,
     ) -> None:
         self.zone = zone
-        self.state = OperatedState(zone, overrides or Overrides())
+        self.state = OperatedState(zone, overrides or Overrides(), presets)
         self.changes = Changes()
         self.moderation = moderation
-        self.bulletin = Bulletin()
+        contacts = ContactRate(zone)
+        self.figures = zone_figures(zone, contacts)
+        self.scheduler = Scheduler(self, self.figures, contacts, store, audit, clock_us)
+        self._clock_us = clock_us
+        self._preparation = Preparation(zone)
+        self._listeners: list[Callable[[str, dict[str, Any]], None]] = []
+        self._ticks: list[tuple[int, asyncio.Future[int]]] = []
         self._records = Records(store, audit)
-        self._turn = asyncio.Lock()
+        self.lasting = LastingChanges(self, self._records)
+        self.turn = asyncio.Lock()
+        """Held by whoever changes the world: one after the other."""
         self._waiting = 0
         self._numbers = itertools.count(1)
         self._inputs: list[Input] = []
@@ -119,36 +142,144 @@ class Console:
             raise RefusedError.of("busy", f"{MOST_WAITING} lists of commands wait already")
         self._waiting += 1
         try:
-            async with self._turn:
+            async with self.turn:
                 return await self._carry_out(by, commands)
         finally:
             self._waiting -= 1
 
     async def _carry_out(self, by: Identity, commands: Sequence[Command]) -> list[Answer]:
+        dragged = await self.lasting.dragged(by, commands)
+        if dragged is not None:
+            return [self._answer(dragged.planned, **dragged.found)]
         planned = self._plan(by, commands)
         facts = _together([one.after for one in planned])
         inputs, doors = inputs_for(facts, self.state, lambda: next(self._numbers))
-        price = await self.ask(lambda: self._checked(inputs, len(commands)))
+        price, bodies = await self.ask(lambda: self._checked(inputs, len(commands)))
+        prepare_s = self._preparation.seconds(bodies) if price == "prepared" else None
         if commands[0].dry_run:
-            return [self._answer(one, price=price) for one in planned]
+            return [self._answer(one, price=price, prepare_s=prepare_s) for one in planned]
+        if any(map(_is_ramp, commands)):  # their values come later, a bit in each tick
+            facts = _together([one.after for one in planned if not _is_ramp(one.command)])
+            inputs, doors = inputs_for(facts, self.state, lambda: next(self._numbers))
         numbers = await self._records.intents(by, planned, self.zone.tick)
         for one in planned:
             moderate(one.command, self.moderation)
+        began = perf_counter()
         tick, faults = await self._in_a_tick(inputs, doors)
-        await self._records.outcomes(by, planned, numbers, tick, faults)
         if faults:
+            await self._records.outcomes(by, planned, numbers, tick, faults)
             raise RefusedError(faults).within(0) if len(commands) == 1 else RefusedError(faults)
-        self.state.take(facts)
-        for number, one in zip(numbers, planned, strict=True):
-            if isinstance(one.command, MODERATING):
-                continue
-            self.changes.add(
-                Change(number, by.account, one.command, one.before, one.after, one.reverts)
-            )
+        self._preparation.took(bodies, perf_counter() - began)
+        await self._settle(by, planned, numbers, tick, facts)
         return [
-            self._answer(one, number=number, tick=tick, price=price)
+            self._answer(one, number=number, tick=tick, price=price, prepare_s=prepare_s)
             for number, one in zip(numbers, planned, strict=True)
         ]
+
+    async def _settle(
+        self,
+        by: Identity,
+        planned: list[Planned],
+        numbers: list[int],
+        tick: int | None,
+        facts: Facts,
+    ) -> None:
+        """Remember what the world has carried out, and write down that it has."""
+        both = list(zip(planned, numbers, strict=True))
+        kept = {s: f for s, f in facts.items() if s.startswith(("preset:", "schedule:"))}
+        self.state.take(kept)
+        guards = self._guards(by, both)
+        rows = [*rows_of(kept, self.state), *map(guard_row, guards)]
+        done = [(one, number) for one, number in both if not _lasts(one.command)]
+        ended, of_ended = [one for one, _ in done], [number for _, number in done]
+        try:
+            await self._records.outcomes(by, ended, of_ended, tick, [], rows=rows)
+        except StoreError:
+            before = _together([one.before for one in reversed(planned)])
+            self.state.take({subject: before[subject] for subject in kept})
+            raise
+        self.state.take({s: f for s, f in facts.items() if s not in kept})
+        for one, number in both:
+            if isinstance(one.command, MODERATING):
+                continue
+            is_ramp = _is_ramp(one.command)
+            change = Change(
+                number,
+                by.account,
+                one.command.op,
+                copy.deepcopy(one.before),
+                copy.deepcopy(one.before if is_ramp else one.after),
+                one.reverts,
+                at_us=self._clock_us(),
+                tick=tick,
+                note=one.command.text if isinstance(one.command, Mark) else one.command.note,
+            )
+            self.changes.add(change)
+            if is_ramp:
+                self.lasting.begin_ramp(by, one, change, tick or self.zone.tick)
+            elif _lasts(one.command):
+                self.lasting.begin_stream(by, one, change, tick or self.zone.tick)
+            self.tell_change(change)
+        for guard in guards:
+            self.scheduler.guards.add(guard)
+
+    def _guards(self, by: Identity, both: list[tuple[Planned, int]]) -> list[Guard]:
+        """The guards of commands; they watch once their changes are remembered."""
+        rights, now = as_text(by.rights), self._clock_us()
+        return [
+            guard_of(command.guard, [number], by.account, rights, now)
+            for command, number in ((one.command, number) for one, number in both)
+            if isinstance(command, SetParameters | ApplyPreset) and command.guard is not None
+        ]
+
+    async def go_on(self, change: Change, facts: Facts) -> tuple[int, Price]:
+        """Let a change that was made go further; call it when it is your turn.
+
+        Raises
+        ------
+        RefusedError
+            The world does not take it.
+        """
+        inputs, doors = inputs_for(facts, self.state, lambda: next(self._numbers))
+        price, _ = await self.ask(lambda: self._checked(inputs, 2))
+        before = self.state.now(facts)
+        tick, faults = await self._in_a_tick(inputs, doors)
+        if faults or tick is None:
+            raise RefusedError(faults)
+        self.state.take(facts)
+        self.changes.moved(change, before, facts)
+        self.tell_change(change)
+        return tick, price
+
+    # --- what others are told -------------------------------------------------------------------
+
+    def listen(self, listener: Callable[[str, dict[str, Any]], None]) -> None:
+        """Let somebody know of each change from now on, on the zone's loop.
+
+        The listener is called with `change` and the change as plain data, with `mark` and what was
+        marked, or with `about` and what is to be asked for anew: presets, schedules or groups.
+        """
+        self._listeners.append(listener)
+
+    def tell(self, kind: str, what: dict[str, Any]) -> None:
+        """Tell the listeners something; a fault of one is logged."""
+        for listener in self._listeners:
+            try:
+                listener(kind, what)
+            except Exception:
+                log.exception("a listener of the console failed", kind=kind)
+
+    def tell_change(self, change: Change) -> None:
+        """Tell the listeners what a change is now."""
+        if change.op == "mark":
+            told = {"number": change.number, "at_us": change.at_us, "tick": change.tick}
+            self.tell("mark", {**told, "account": change.account, "text": change.note})
+        self.tell("change", plain_change(change, self))
+        abouts = {_about(subject, field) for subject, field, _ in each(change.after)}
+        for about in sorted(abouts - {""}):
+            self.tell("about", {"about": about})
+
+    # --- checks ---------------------------------------------------------------------------------
 
     def _plan(self, by: Identity, commands: Sequence[Command]) -> list[Planned]:
         planned: list[Planned] = []
@@ -165,18 +296,20 @@ class Console:
 
     def _plan_one(self, by: Identity, command: Command, pending: Facts) -> Planned:
         if isinstance(command, Revert):
-            change = self.changes.found(command.change, by.account)
-            for op in _needed_for(change):
-                _check_right(by, op)
-            self.changes.check_untouched(change, self.state)
-            return Planned(command, change.after, change.before, change.number)
+            return self._plan_revert(by, command, pending)
         if isinstance(command, MODERATING):
             facts = wanted_of_people(command, self.moderation)
             name = None
             if isinstance(command, Kick | Mute):
                 name = self.moderation.name_of(command.person)
             return Planned(command, {}, facts, person=name)
-        facts = intended(command, self.state, pending)
+        if isinstance(command, Mark):
+            return Planned(command, {}, {})
+        self._check_conditions(command)
+        if isinstance(command, KEPT):
+            facts = kept_facts(command, by, self.state, pending, self._clock_us())
+        else:
+            facts = intended(command, self.state, pending)
         if isinstance(command, SetParameters | ClearParameters):
             self.changes.check_revision(command.if_revision, facts, self.state)
         before = self.state.now(facts)
@@ -185,8 +318,27 @@ class Console:
                 before[subject][field] = fields[field]
         return Planned(command, before, facts)
 
-    def _checked(self, inputs: list[ActorCommand], count: int) -> Price:
-        """Return the price of inputs that the world would take; call it between two ticks."""
+    def _plan_revert(self, by: Identity, command: Revert, pending: Facts) -> Planned:
+        change = self.changes.found(command.change, by.account)
+        for op in _needed_for(change):
+            _check_right(by, op)
+        if not change.after:
+            text = f"change {change.number} has changed nothing that could be taken back"
+            raise RefusedError.of("unknown_change", text, "change", change=change.number)
+        self.changes.check_untouched(change, self.state, pending)
+        return Planned(command, change.after, change.before, change.number)
+
+    def _check_conditions(self, command: Command) -> None:
+        """Check the guard of a command, and what goes on after its first tick."""
+        check_guard(command, self.figures)
+        if isinstance(command, SetParameters | ApplyPreset) and command.guard is not None:
+            self.scheduler.guards.check_room()
+        if isinstance(command, SetParameters):
+            self.lasting.check_room(command)
+
+    def _checked(self, inputs: list[ActorCommand], count: int) -> tuple[Price, int]:
+        """Return the price of inputs that the world would take, and the number of bodies that they
+        need; call it between two ticks."""
         faults: list[CommandFault] = []
         for one in inputs:
             fault = self.zone.check(one)
@@ -195,7 +347,7 @@ class Console:
         if faults:
             refused = RefusedError(faults)
             raise refused.within(0) if count == 1 else refused
-        return "prepared" if any(map(_is_prepared, inputs)) else "tick"
+        return self._preparation.price(inputs), self._preparation.bodies(inputs)
 
     async def _in_a_tick(
         self, inputs: list[ActorCommand], doors: list[MoveDoor]
@@ -221,7 +373,12 @@ class Console:
         return max((outcome.tick for outcome in outcomes), default=tick), faults
 
     def _answer(
-        self, planned: Planned, price: Price, number: int | None = None, tick: int | None = None
+        self,
+        planned: Planned,
+        price: Price,
+        number: int | None = None,
+        tick: int | None = None,
+        prepare_s: float | None = None,
     ) -> Answer:
         shadowed: dict[str, int] = {}
         for scope, values in parameters_of(planned.after).items():
@@ -237,6 +394,7 @@ class Console:
             before=planned.before,
             after=planned.after,
             price=price,
+            prepare_s=prepare_s,
             shadowed=shadowed,
         )
 
@@ -281,6 +439,36 @@ class Console:
             future = self._outcomes.get(outcome.command)
             if future is not None and not future.done():
                 future.set_result(outcome)
+        if self._ticks:
+            over = [future for due, future in self._ticks if due <= frame.tick]
+            self._ticks = [one for one in self._ticks if one[0] > frame.tick]
+            for ended in over:
+                if not ended.done():
+                    ended.set_result(frame.tick)
+        self.scheduler.ticked(frame.tick)
+
+    async def after_tick(self, due: int) -> int:
+        """Wait until that tick is over; returns the one that is over then."""
+        if self.zone.tick >= due:
+            return self.zone.tick
+        future: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+        self._ticks.append((due, future))
+        return await future
+
+    async def load(self) -> None:
+        """Take in the presets, schedules and guards that the store has kept.
+
+        Raises
+        ------
+        StoreError
+            They cannot be read.
+        """
+        await self.scheduler.load()
+
+    async def close(self) -> None:
+        """End all that the console does by itself."""
+        await self.scheduler.close()
+        await self.lasting.close()
 
 
 def _check_right(by: Identity, op: str, *path: int) -> None:
@@ -294,14 +482,39 @@ def _check_right(by: Identity, op: str, *path: int) -> None:
 
 def _needed_for(change: Change) -> set[str]:
     """The commands whose rights are needed to take a change back."""
-    ops = {BEHAVIOUR: "set_behaviour", HELD: "hold_actor", OPEN: "move_door", PRESENT: "add_actors"}
-    return {ops.get(field, "set_parameters") for _, field, _ in each(change.after)}
+    ops = {
+        BEHAVIOUR: "set_behaviour",
+        HELD: "hold_actor",
+        OPEN: "move_door",
+        PRESENT: "add_actors",
+        PRESET: "save_preset",
+        SCHEDULE: "schedule",
+    }
+    needed = set()
+    for _, field, value in each(change.before):
+        if field.startswith(GROUP):
+            needed.add("set_group")
+        else:
+            needed.add(ops.get(field, "set_parameters"))
+        if field == SCHEDULE and value is not None:
+            needed |= ops_within(value["commands"])
+    return needed
 
 
-def _is_prepared(command: ActorCommand) -> bool:
-    if isinstance(command, SetInWorld):
-        return not command.values.keys().isdisjoint(MEASURES)
-    return isinstance(command, AddActors)
+def _is_ramp(command: Command) -> bool:
+    return isinstance(command, SetParameters) and command.over_s is not None
+
+
+def _lasts(command: Command) -> bool:
+    """Whether a change goes on after its first tick."""
+    return isinstance(command, SetParameters) and (command.stream or command.over_s is not None)
+
+
+def _about(subject: str, field: str) -> str:
+    """What is to be asked for anew when a fact is another."""
+    if field.startswith(GROUP):
+        return "groups"
+    return {"preset": "presets", "schedule": "schedules"}.get(subject.partition(":")[0], "")
 
 
 def _together(all_facts: Sequence[Facts]) -> Facts:

@@ -96,6 +96,8 @@ STATUS: Final = {
     "taken": HTTPStatus.CONFLICT,
     "superseded": HTTPStatus.CONFLICT,
     "unknown_change": HTTPStatus.NOT_FOUND,
+    "unknown_preset": HTTPStatus.NOT_FOUND,
+    "unknown_schedule": HTTPStatus.NOT_FOUND,
     "busy": HTTPStatus.SERVICE_UNAVAILABLE,
     "not_known": HTTPStatus.GATEWAY_TIMEOUT,
     "failed": HTTPStatus.INTERNAL_SERVER_ERROR,

@@ -7,6 +7,7 @@ from typing import Any
 from esplanade.actors import ActorSpec, Scope
 from esplanade.actors.behaviour_spec import BEHAVIOUR_SPEC
 from esplanade.protocol.commands import Facts
+from esplanade.server.console.groups import moved
 from esplanade.server.console.state import (
     BEHAVIOUR,
     HELD,
@@ -49,7 +50,8 @@ def inputs_for(
     if arriving:
         for spec in arriving:
             overrides = overrides.with_values(Scope("own", spec.id), spec.overrides)
-        made = tuple(overrides.parameters(spec.id, spec.tags) for spec in arriving)
+        groups = state.groups.taking(facts)
+        made = tuple(overrides.parameters(spec.id, groups.names(spec)) for spec in arriving)
         commands.append(AddActors(number(), tuple(arriving), made))
     commands += _parameters(facts, state, leaving, number)
     for value, actors in _alike(facts, BEHAVIOUR):
@@ -70,12 +72,18 @@ def _parameters(
 ) -> list[ActorCommand]:
     """The command for all parameters that become others, if any do."""
     scopes = parameters_of(facts)
-    names = sorted({name for values in scopes.values() for name in values})
-    now, later = Effective(state.overrides), Effective(with_facts(state.overrides, facts))
+    changed_names = {name for values in scopes.values() for name in values}
+    overrides = with_facts(state.overrides, facts)
+    if moved(facts):
+        changed_names |= {name for values in overrides.values.values() for name in values}
+    names = sorted(changed_names)
+    now, later = Effective(state.overrides), Effective(overrides)
+    groups = state.groups.taking(facts)
     rows = {}
-    for spec in state.reached(scopes):
-        after = later.values(spec, names)
-        if after != now.values(spec, names) and spec.id not in leaving:
+    for spec in state.reached(scopes, facts):
+        after = later.values(spec.id, groups.names(spec), names)
+        before = now.values(spec.id, state.groups.names(spec), names)
+        if after != before and spec.id not in leaving:
             rows[spec.id] = after
     if not rows:
         return []

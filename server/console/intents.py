@@ -23,6 +23,7 @@ from esplanade.protocol.commands import (
     SetBehaviour,
     SetParameters,
 )
+from esplanade.server.console.groups import GROUP
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.console.state import (
     BEHAVIOUR,
@@ -65,7 +66,12 @@ def intended(  # noqa: PLR0911 (one for each command)
         case HoldActor():
             return _of_actors((command.actor,), HELD, command.held, state, "actor")
         case RemoveActors():
-            return _of_actors(command.actors, PRESENT, None, state, "actors")
+            gone = _of_actors(command.actors, PRESENT, None, state, "actors")
+            for actor in command.actors:
+                gone[f"actor:{actor}"] |= {
+                    f"{GROUP}{each}": None for each in state.groups.of(actor)
+                }
+            return gone
         case AddActors():
             return _newcomers(command, state, pending)
         case MoveDoor():

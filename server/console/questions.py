@@ -62,7 +62,8 @@ def actor(console: Console, name: str) -> dict[str, Any]:
     spec = console.zone.actors.get(name)
     if spec is None:
         raise RefusedError.of("unknown_actor", f"there is no actor {name}", actor=name)
-    sources = console.state.overrides.effective(spec.id, spec.tags)
+    groups = console.state.groups.names(spec)
+    sources = console.state.overrides.effective(spec.id, groups)
     found = _actor(console, spec)
     found["tick"] = console.zone.tick
     found["revision"] = console.changes.revision
@@ -112,6 +113,7 @@ def _actor(console: Console, spec: ActorSpec) -> dict[str, Any]:
         "id": spec.id,
         "name": spec.name,
         "tags": list(spec.tags),
+        "groups": dict(console.state.groups.of(spec.id)),
         "behaviour": spec.behaviour.kind,
         "held": spec.id in console.state.held,
         "avatar": avatar,

@@ -1,13 +1,17 @@
 """Rows of the audit for commands: what is wanted before a tick, and what came of it after."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import structlog
+from sqlalchemy import Connection
 
 from esplanade.protocol.commands import Command, CommandFault, Facts
 from esplanade.server.accounts.identity import Identity
 from esplanade.server.audit.entries import Entry
 from esplanade.server.audit.log import AuditLog
+from esplanade.server.console.kept_rows import KeptRow, write_rows
 from esplanade.server.store.sql_store import SqlStore
 from esplanade.server.store.store import StoreError
 
@@ -76,8 +80,19 @@ class Records:
         numbers: list[int],
         tick: int | None,
         faults: list[CommandFault],
+        *,
+        rows: Sequence[KeptRow] = (),
+        more: Mapping[str, Any] | None = None,
     ) -> None:
-        """Write down what came of commands in that tick; if that fails, it is logged only."""
+        """Write down what came of commands in that tick, and the rows that are others by them.
+
+        If that fails it is logged only, unless there are such rows. `more` is said of each outcome.
+
+        Raises
+        ------
+        StoreError
+            The rows cannot be written.
+        """
         entries = [
             Entry(
                 command=one.command.op,
@@ -87,15 +102,24 @@ class Records:
                 tick=tick,
                 outcome="refused" if faults else "done",
                 refers_to=number,
-                body={"faults": [fault.model_dump(mode="json") for fault in faults]},
+                body={
+                    "faults": [fault.model_dump(mode="json") for fault in faults],
+                    **(more or {}),
+                },
             )
             for number, one in zip(numbers, planned, strict=True)
         ]
+
+        def change(connection: Connection) -> None:
+            for entry in entries:
+                self._audit.add(connection, entry)
+            write_rows(connection, self._store.zone, list(rows))
+
         try:
-            await self._store.write(
-                lambda connection: [self._audit.add(connection, entry) for entry in entries]
-            )
+            await self._store.write(change)
         except StoreError:
+            if rows:
+                raise
             # It is done, and its row stands: only what came of it is missing there.
             log.exception("the outcome of a command is not in the audit", commands=numbers)
 

@@ -6,6 +6,9 @@ from typing import Any, Final
 from esplanade.actors import ActorSpec, Overrides, Scope
 from esplanade.actors.overrides import DEFAULTS, WORLD, Values
 from esplanade.protocol.commands import Facts
+from esplanade.server.console.groups import GROUP, Groups, moved
+from esplanade.server.console.presets import Presets
+from esplanade.server.console.schedules import Schedules
 from esplanade.server.world.zone import Zone
 
 BEHAVIOUR: Final = "behaviour"
@@ -18,14 +21,17 @@ OPEN: Final = "open"
 class OperatedState:
     """The facts of a zone. A value of None stands for what is not set, or not there."""
 
-    def __init__(self, zone: Zone, overrides: Overrides) -> None:
+    def __init__(self, zone: Zone, overrides: Overrides, presets: Presets | None = None) -> None:
         self.zone = zone
         self.overrides = overrides
+        self.groups = Groups()
+        self.presets = presets or Presets()
+        self.schedules = Schedules()
         self.held: set[str] = set()
         self._doors: dict[str, bool] = {}
         """The latest wish for each door that was wanted open or closed."""
 
-    def fact(self, subject: str, field: str) -> Any:
+    def fact(self, subject: str, field: str) -> Any:  # noqa: PLR0911 (one for each kind)
         """Return the present value of a field of a subject."""
         kind, _, name = subject.partition(":")
         match kind, field:
@@ -38,6 +44,12 @@ class OperatedState:
                 return name in self.held
             case "actor", "present":
                 return self._present(name)
+            case "actor", _ if field.startswith(GROUP):
+                return self.groups.of(name).get(field.removeprefix(GROUP))
+            case "preset", _:
+                return self.presets.fact(name)
+            case "schedule", _:
+                return self.schedules.fact(name)
         return self.overrides.of(scope_of(subject)).get(field)
 
     def now(self, facts: Facts) -> Facts:
@@ -63,18 +75,27 @@ class OperatedState:
                     own = {} if value is None else value["overrides"]
                     cleared = self.overrides.without(Scope("own", name))
                     self.overrides = cleared.with_values(Scope("own", name), own)
+                case "preset", _:
+                    self.presets.take(name, value)
+                case "schedule", _:
+                    self.schedules.take(name, value)
+        self.groups = self.groups.taking(facts)
         self.overrides = with_facts(self.overrides, facts)
 
-    def reached(self, scopes: Iterable[Scope]) -> list[ActorSpec]:
-        """The actors whose parameters may be others when values in these scopes are."""
+    def reached(self, scopes: Iterable[Scope], facts: Facts) -> list[ActorSpec]:
+        """The actors whose parameters may be others when values in these scopes are, or groups."""
         names: dict[str, set[str]] = {"world": set(), "group": set(), "own": set()}
         for scope in scopes:
             names[scope.level].add(scope.name)
         specs = list(self.zone.actors.values())
         if names["world"]:
             return specs
-        groups, own = names["group"], names["own"]
-        return [spec for spec in specs if spec.id in own or not groups.isdisjoint(spec.tags)]
+        groups, own = names["group"], names["own"] | moved(facts)
+        return [
+            spec
+            for spec in specs
+            if spec.id in own or not groups.isdisjoint(self.groups.names(spec))
+        ]
 
     def _present(self, name: str) -> Any:
         spec = self.zone.actors.get(name)
@@ -131,12 +152,14 @@ class Effective:
         for scope, values in overrides.values.items():
             self._by_level[scope.level][scope.name] = values
 
-    def values(self, spec: ActorSpec, names: Iterable[str]) -> list[float | int]:
-        """Some parameters of an actor, in the order of their names."""
+    def values(
+        self, actor: str, of_groups: tuple[str, ...], names: Iterable[str]
+    ) -> list[float | int]:
+        """Some parameters of an actor of some groups, in the order of their names."""
         groups = self._by_level["group"]
         layers = [
-            self._by_level["own"].get(spec.id, _NONE),
-            *(groups[tag] for tag in reversed(spec.tags) if tag in groups),
+            self._by_level["own"].get(actor, _NONE),
+            *(groups[name] for name in reversed(of_groups) if name in groups),
             self._by_level["world"].get("", _NONE),
             DEFAULTS,
         ]

@@ -98,7 +98,7 @@ class Happenings:
             change = notice.change
             told = ("number", "account", "op", "subjects", "note")
             self._events.add(
-                "command",
+                "pace" if change.get("op") == "pace" else "command",
                 notice.at_us,
                 self._feed.tick,
                 f"{change.get('account') or 'an operator'}: {change.get('op')}",

@@ -2,11 +2,12 @@
 
 import asyncio
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final
 
 import structlog
 
+from esplanade.actors import ActorSpec
 from esplanade.server.accounts.identity import Identity
 from esplanade.server.live.bulletin import Bulletin
 from esplanade.server.live.encounters import NewContacts
@@ -45,13 +46,15 @@ class Live:
         traffic: Traffic,
         *,
         hide_names: bool,
+        groups: Callable[[ActorSpec], Iterable[str]] = lambda spec: spec.tags,
     ) -> None:
+        """`groups` tells the groups of an actor, in any thread."""
         self.zone = zone
         self.storeys_m = list(storeys_m)
         self.hide_names = hide_names
         self.bulletin = bulletin
         self.tap = Tap(zone)
-        self.map = MapFeed(zone.origin_m, zone.tick_s)
+        self.map = MapFeed(zone.origin_m, zone.tick_s, groups)
         self.reasons = Reasons(self.map, self.tap, zone.tick_s)
         self.events = Events()
         self.series = Series(FIGURES)
@@ -109,6 +112,8 @@ class Live:
         for notice in self.bulletin.fetch():
             self._happenings.notice(notice)
             self._telling.notice(notice)
+            if notice.change is not None:
+                self.map.tell_again(regrouped(notice.change))
         if ticks:
             self._happenings.stops(ticks[-1].at_us)
             self.reasons.ask()
@@ -128,6 +133,15 @@ class Live:
             self.heat.add(second)
             self.history.add(second)
             self._telling.second(self.map.tick)
+
+
+def regrouped(change: Mapping[str, Any]) -> list[str]:
+    """The actors whose groups are others after a change."""
+    return [
+        subject.partition(":")[2]
+        for subject, fields in (change.get("after") or {}).items()
+        if subject.startswith("actor:") and any(name.startswith("group:") for name in fields)
+    ]
 
 
 async def beating(live_of: Callable[[], Live | None]) -> None:

@@ -19,7 +19,7 @@ from sqlalchemy import (
     UniqueConstraint,
 )
 
-REVISION: Final = "0001"
+REVISION: Final = "0002"
 """The newest migration: what the tables below are after it."""
 
 METADATA: Final = MetaData()
@@ -138,3 +138,13 @@ AUDIT_HEADS: Final = Table(
     Column("hash", String(64), nullable=False),
 )
 """The last row of each writer's chain, so that a cut at its end is seen."""
+
+OPERATED: Final = Table(
+    "operated",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("part", String(32), primary_key=True),
+    Column("name", String(64), primary_key=True),
+    Column("body", Text, nullable=False),
+)
+"""Presets, schedules and guards of operators, each as JSON."""

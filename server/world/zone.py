@@ -39,6 +39,7 @@ from esplanade.server.world.inputs import (
     OfPerson,
     PotentialDerived,
     Say,
+    SetParameters,
     Stand,
     Steer,
     Watch,
@@ -249,6 +250,13 @@ class Zone:
         except Exception as error:  # noqa: BLE001 - whatever it is, it is told
             return fault_of(error)
         return None
+
+    def new_bodies(self, command: SetParameters) -> int:
+        """Number of bodies, each with a goal, that a command would make; ask between two ticks.
+
+        The command must be one that `check` has no fault in.
+        """
+        return len(set(self._population.new_bodies(command.actors, command.values)))
 
     @property
     def actors(self) -> Mapping[Hashable, ActorSpec]:

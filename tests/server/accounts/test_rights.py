@@ -12,12 +12,14 @@ set_parameters    -      -         yes   yes      yes   -
 clear_parameters  -      -         yes   yes      yes   -
 apply_preset      -      -         yes   yes      yes   -
 save_preset       -      -         yes   yes      yes   -
+delete_preset     -      -         yes   yes      yes   -
 set_group         -      -         yes   yes      yes   -
 set_behaviour     -      -         yes   yes      yes   -
 send_actor        -      -         yes   yes      yes   -
 hold_actor        -      -         yes   yes      yes   -
 revert            -      -         yes   yes      yes   -
 schedule          -      -         yes   yes      yes   -
+cancel_schedule   -      -         yes   yes      yes   -
 mark              -      -         yes   yes      yes   -
 experiment_start  -      -         yes   yes      yes   -
 experiment_stop   -      -         yes   yes      yes   -

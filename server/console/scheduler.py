@@ -1,0 +1,292 @@
+"""Carries out schedules when they are due, and takes changes back where guards say so."""
+
+import asyncio
+from collections import deque
+from collections.abc import Callable, Coroutine, Sequence
+from time import monotonic
+from typing import TYPE_CHECKING, Any, Final
+
+import structlog
+
+from esplanade.protocol.commands import COMMAND, Command, CommandFault, GuardCondition, Revert
+from esplanade.server.audit.entries import Entry
+from esplanade.server.audit.log import AuditLog
+from esplanade.server.console.authority import Authority
+from esplanade.server.console.figures import ContactRate, Figures
+from esplanade.server.console.guards import Guard, Guards
+from esplanade.server.console.kept_rows import (
+    GUARDS,
+    PRESETS,
+    SCHEDULES,
+    KeptRow,
+    read_rows,
+    write_rows,
+)
+from esplanade.server.console.refusals import RefusedError
+from esplanade.server.console.schedules import LATE_S, Schedule
+from esplanade.server.store.sql_store import SqlStore
+from esplanade.server.store.store import StoreError
+
+if TYPE_CHECKING:
+    from esplanade.server.console.console import Console
+
+LOOK_S: Final = 0.5
+"""Figures are looked at so often."""
+TRIES: Final = 5
+"""A schedule that finds too much waiting is tried so often, with a second between."""
+
+log = structlog.get_logger(__name__)
+
+
+class Scheduler:
+    """Looks after each tick what is due, and does it in a task of its own, one after the other."""
+
+    def __init__(
+        self,
+        console: "Console",
+        figures: Figures,
+        contacts: ContactRate,
+        store: SqlStore,
+        audit: AuditLog,
+        clock_us: Callable[[], int],
+    ) -> None:
+        self.guards = Guards()
+        self._console = console
+        self._figures = figures
+        self._contacts = contacts
+        self._store = store
+        self._audit = audit
+        self._authority = Authority(store)
+        self._clock_us = clock_us
+        self._work: deque[Coroutine[Any, Any, None]] = deque()
+        self._task: asyncio.Task[None] | None = None
+        self._look_at_s = 0.0
+
+    @property
+    def waiting(self) -> int:
+        """Number of schedules and guards that wait to be carried out."""
+        return len(self._work)
+
+    @property
+    def busy(self) -> bool:
+        """Whether something is being carried out, or waits for it."""
+        return self._task is not None and not self._task.done()
+
+    # --- after each tick --------------------------------------------------------------------------
+
+    def ticked(self, tick: int) -> None:
+        """A tick has ended: see what is due. Called on the zone's loop."""
+        now_us = self._clock_us()
+        due = self._console.state.schedules.due(now_us, tick)
+        now_s = monotonic()
+        if now_s >= self._look_at_s:
+            self._look_at_s = now_s + LOOK_S
+            self._contacts.sample()
+            due += self._look(now_s, now_us)
+        for schedule in due:
+            if schedule.due_us is not None and now_us - schedule.due_us > 1e6 * LATE_S:
+                self._miss(schedule, "it was due while the world did not run")
+                continue
+            schedule.state = "firing"
+            self._do(self._fire(schedule, tick))
+        for schedule in self._console.state.schedules.back(now_us):
+            schedule.back_us = None
+            self._do(self._take_back(schedule))
+
+    def _look(self, now_s: float, now_us: int) -> list[Schedule]:
+        """The schedules whose figures are beyond their limits; guards are looked after at once."""
+        schedules = self._console.state.schedules
+        names = schedules.figures() | self.guards.figures()
+        values = {name: self._figures.value(name) for name in names}
+        for guard in self.guards.watching():
+            changes = [self._console.changes.get(number) for number in guard.changes]
+            stand = any(change is not None and change.reverted_by is None for change in changes)
+            if now_us >= guard.until_us or not stand:
+                self.guards.end(guard, "ended")
+                self._do(self._keep(*guard_row(guard)))
+        for guard in self.guards.held(values, now_s):
+            self.guards.end(guard, "taken_back")
+            self._do(self._guarded(guard, values[guard.condition["name"]]))
+        return schedules.held(values, now_s)
+
+    async def load(self) -> None:
+        """Take in what was kept. What was missed meanwhile is told as missed.
+
+        Raises
+        ------
+        StoreError
+            It cannot be read.
+        """
+        now_us, state = self._clock_us(), self._console.state
+        for part, name, body in await read_rows(self._store):
+            assert body is not None  # noqa: S101
+            if part == PRESETS:
+                state.presets.load(name, body)
+            elif part == SCHEDULES:
+                schedule = state.schedules.load(body)
+                why = _missed(schedule, now_us, self._console.zone.tick)
+                if why is not None:
+                    self._miss(schedule, why)
+            elif part == GUARDS:
+                self.guards.add(Guard(**body))
+
+    async def close(self) -> None:
+        """End what is being done."""
+        if self._task is not None:
+            self._task.cancel()
+            await asyncio.gather(self._task, return_exceptions=True)
+        while self._work:
+            self._work.popleft().close()
+
+    # --- one after the other ----------------------------------------------------------------------
+
+    def _do(self, work: Coroutine[Any, Any, None]) -> None:
+        self._work.append(work)
+        if self._task is None or self._task.done():
+            self._task = asyncio.get_running_loop().create_task(self._work_off())
+
+    async def _work_off(self) -> None:
+        while self._work:
+            try:
+                await self._work.popleft()
+            except StoreError:
+                log.exception("what became of a schedule or guard is not kept")
+
+    async def _fire(self, schedule: Schedule, tick: int) -> None:
+        await self._keep_schedule(schedule)
+        commands = [_with_note(each, schedule) for each in schedule.commands]
+        changes, faults = await self._carried_out(schedule, commands)
+        schedule.changes, schedule.faults = changes, faults
+        now_us = self._clock_us()
+        schedule.fired = {"at_us": now_us, "tick": tick}
+        if faults:
+            schedule.state = "refused"
+        elif schedule.again_after_s is not None:
+            schedule.state = "fired"
+            schedule.back_us = now_us + round(1e6 * schedule.again_after_s)
+        else:
+            schedule.state = "done"
+        await self._keep_schedule(schedule)
+        if changes and schedule.guard is not None:
+            given = GuardCondition.model_validate(schedule.guard)
+            guard = guard_of(given, changes, schedule.by, schedule.rights, now_us)
+            self.guards.add(guard)
+            await self._keep(*guard_row(guard))
+
+    async def _take_back(self, schedule: Schedule) -> None:
+        commands = [
+            Revert(op="revert", change=number, note=f"schedule {schedule.id}: its time is over")
+            for number in reversed(schedule.changes)
+            if self._is_a_change(number)
+        ]
+        _, faults = await self._carried_out(schedule, commands) if commands else ([], [])
+        schedule.state, schedule.faults = ("refused", faults) if faults else ("undone", [])
+        await self._keep_schedule(schedule)
+
+    async def _guarded(self, guard: Guard, value: float | None) -> None:
+        condition = guard.condition
+        side = "above" if condition.get("above") is not None else "below"
+        why = f"guard {guard.id}: {condition['name']} is {value:g}, {side} {condition[side]:g}"
+        commands = [
+            Revert(op="revert", change=number, note=why)
+            for number in reversed(guard.changes)
+            if self._is_a_change(number)
+        ]
+        _, faults = await self._carried_out(guard, commands) if commands else ([], [])
+        if faults:
+            guard.state, guard.faults = "refused", faults
+        await self._keep(*guard_row(guard))
+        self._console.tell("about", {"about": "schedules"})
+
+    async def _carried_out(
+        self, item: Schedule | Guard, commands: Sequence[Command]
+    ) -> tuple[list[int], list[dict[str, Any]]]:
+        """Carry commands out with the rights of the account now; the changes, and faults."""
+        kind = "guard" if isinstance(item, Guard) else "schedule"
+        by = await self._authority.identity(item.by, item.rights, f"{kind} {item.id}")
+        if by is None:
+            fault = CommandFault(code="forbidden", text=f"there is no account {item.by} any more")
+            return [], [fault.model_dump(mode="json")]
+        for left in reversed(range(TRIES)):
+            try:
+                answers = await self._console.carry_out(by, commands)
+            except RefusedError as error:
+                if left and error.faults[0].code == "busy":
+                    await asyncio.sleep(1.0)
+                    continue
+                return [], [fault.model_dump(mode="json") for fault in error.faults]
+            return [answer.command for answer in answers if answer.command is not None], []
+        raise AssertionError("the last try returns")
+
+    def _is_a_change(self, number: int) -> bool:
+        change = self._console.changes.get(number)
+        return change is not None and bool(change.after) and change.reverted_by is None
+
+    def _miss(self, schedule: Schedule, why: str) -> None:
+        schedule.state = "missed"
+        schedule.faults = [CommandFault(code="missed", text=why).model_dump(mode="json")]
+        log.warning("a schedule was missed", schedule=schedule.id, why=why)
+        self._do(self._tell_missed(schedule, why))
+
+    async def _tell_missed(self, schedule: Schedule, why: str) -> None:
+        entry = Entry(
+            command="schedule_missed",
+            account=schedule.by,
+            target=f"schedule:{schedule.id}",
+            outcome="missed",
+            body={"why": why, "commands": schedule.commands},
+        )
+        row = KeptRow(SCHEDULES, schedule.id, schedule.plain())
+
+        def change(connection: Any) -> None:
+            self._audit.add(connection, entry)
+            write_rows(connection, self._store.zone, [row])
+
+        await self._store.write(change)
+        self._console.tell("about", {"about": "schedules"})
+
+    async def _keep_schedule(self, schedule: Schedule) -> None:
+        await self._keep(SCHEDULES, schedule.id, schedule.plain())
+        self._console.tell("about", {"about": "schedules"})
+
+    async def _keep(self, part: str, name: str, body: Any) -> None:
+        row = KeptRow(part, name, body)
+        await self._store.write(lambda connection: write_rows(connection, self._store.zone, [row]))
+
+
+def guard_of(
+    given: GuardCondition, changes: list[int], by: str | None, rights: str, now_us: int
+) -> Guard:
+    """A guard over changes that were made now."""
+    return Guard(
+        id=f"g{changes[0]}",
+        changes=list(changes),
+        condition=given.condition.model_dump(mode="json"),
+        until_us=now_us + round(1e6 * given.within_s),
+        by=by,
+        rights=rights,
+    )
+
+
+def guard_row(guard: Guard) -> KeptRow:
+    """What is kept of a guard."""
+    return KeptRow(GUARDS, guard.id, guard.plain())
+
+
+def _with_note(given: dict[str, Any], schedule: Schedule) -> Command:
+    note = f"schedule {schedule.id}" + (f": {schedule.note}" if schedule.note else "")
+    return COMMAND.validate_python({**given, "note": given.get("note") or note[:500]})
+
+
+def _missed(schedule: Schedule, now_us: int, tick: int) -> str | None:
+    """Why a schedule that was kept was missed; None if it was not."""
+    match schedule.state:
+        case "firing":
+            return "the server ended while it was carried out; the audit says how far it came"
+        case "fired" if schedule.back_us is None or now_us >= schedule.back_us:
+            return "its changes were to be taken back while the server did not run; they stay"
+        case "waiting" if schedule.due_us is not None and now_us >= schedule.due_us:
+            return "it was due while the server did not run"
+        case "waiting" if schedule.due_tick is not None and tick >= schedule.due_tick:
+            return "its tick was over when the server came back"
+    return None
