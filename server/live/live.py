@@ -17,7 +17,7 @@ from esplanade.server.live.happenings import Happenings
 from esplanade.server.live.heat import Heat
 from esplanade.server.live.history import History
 from esplanade.server.live.map_feed import MapFeed
-from esplanade.server.live.measures import FIGURES, Measures
+from esplanade.server.live.measures import FIGURES, NEAR_EVERY, Measures
 from esplanade.server.live.names import sees_names
 from esplanade.server.live.reasons import Reasons
 from esplanade.server.live.series import Series
@@ -129,7 +129,11 @@ class Live:
         second = tick.at_us // 1_000_000
         for actor, _ in contacts:
             self.heat.contact(second, actor)
-        if self._measures.take(tick, contacts, self.zone.trips):
+        over = self._measures.take(tick, contacts, self.zone.trips)
+        if tick.frame.tick % NEAR_EVERY == 0 and len(self._measures.near.near):
+            seconds = NEAR_EVERY * self.zone.tick_s
+            self.heat.near(second, self._measures.near.actors, seconds)
+        if over:
             self.heat.add(second)
             self.history.add(second)
             self._telling.second(self.map.tick)

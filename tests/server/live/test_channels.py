@@ -185,7 +185,7 @@ async def test_heat_maps_are_told_for_each_storey(serving: Serving) -> None:
         storey = body["storeys"][0]
         assert len(body["storeys"]) == len(plan["storeys"])
         assert _values(storey).shape == (storey["width"] * storey["height"],)
-        for kind in ("speed", "waiting", "contacts"):
+        for kind in ("speed", "waiting", "contacts", "risk"):
             assert (await vera.get(f"/heat?kind={kind}&window_s=3600"))[0] == 200
         assert (await vera.get("/heat?kind=other"))[0] == 422
         assert (await vera.get("/heat?window_s=61"))[0] == 422
