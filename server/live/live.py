@@ -150,8 +150,12 @@ def regrouped(change: Mapping[str, Any]) -> list[str]:
 
 async def beating(live_of: Callable[[], Live | None]) -> None:
     """Beat for as long as a server runs; `live_of` gives the live views once there are any."""
+    loop = asyncio.get_running_loop()
+    due = loop.time()
     while True:
-        await asyncio.sleep(1.0 / BEATS_A_SECOND)
+        # Beats that cannot be had in time are left out.
+        due = max(due + 1.0 / BEATS_A_SECOND, loop.time())
+        await asyncio.sleep(due - loop.time())
         live = live_of()
         if live is None:
             continue
