@@ -23,6 +23,7 @@ from esplanade.server.crowding import warn_of_crowding
 from esplanade.server.entrances import make_gate, people_url, private_certificate
 from esplanade.server.keeping import keeping
 from esplanade.server.link.local import LocalLink
+from esplanade.server.live.bulletin import Bulletin
 from esplanade.server.live.live import Live
 from esplanade.server.loading import LoadedScene, LoadingError, load_scene
 from esplanade.server.metrics import Metrics
@@ -345,8 +346,17 @@ def _live(
     metrics: Metrics,
     settings: ServerSettings,
 ) -> Live:
-    """Make what operators see of the world."""
-    return Live(world, storeys, console.bulletin, metrics.traffic, hide_names=settings.hide_names)
+    """Make what operators see of the world, and let it hear of their changes."""
+    live = Live(
+        world,
+        storeys,
+        Bulletin(),
+        metrics.traffic,
+        hide_names=settings.hide_names,
+        groups=lambda spec: console.state.groups.names(spec),  # noqa: PLW0108 - they are replaced
+    )
+    console.listen(live.bulletin.heard)
+    return live
 
 
 def _watch_routes(route_requests: RouteRequests, metrics: Metrics) -> None:

@@ -31,11 +31,12 @@ from esplanade.server.audit.log import AuditLog, now_us
 from esplanade.server.console.changes import Change, Changes
 from esplanade.server.console.figures import ContactRate, zone_figures
 from esplanade.server.console.groups import GROUP
+from esplanade.server.console.guards import Guard
 from esplanade.server.console.history import plain_change
 from esplanade.server.console.inputs import inputs_for
 from esplanade.server.console.intents import intended
 from esplanade.server.console.kept_intents import KEPT, check_guard, kept_facts, ops_within
-from esplanade.server.console.kept_rows import KeptRow, rows_of
+from esplanade.server.console.kept_rows import rows_of
 from esplanade.server.console.lasting import LastingChanges
 from esplanade.server.console.moderation import (
     MODERATING,
@@ -48,7 +49,7 @@ from esplanade.server.console.preparation import Preparation
 from esplanade.server.console.presets import PRESET, Presets
 from esplanade.server.console.records import Planned, Records
 from esplanade.server.console.refusals import RefusedError, of_world
-from esplanade.server.console.scheduler import Scheduler, guard_of
+from esplanade.server.console.scheduler import Scheduler, guard_of, guard_row
 from esplanade.server.console.schedules import SCHEDULE
 from esplanade.server.console.state import (
     BEHAVIOUR,
@@ -63,7 +64,6 @@ from esplanade.server.console.state import (
     each,
     parameters_of,
 )
-from esplanade.server.live.bulletin import Bulletin
 from esplanade.server.store.sql_store import SqlStore
 from esplanade.server.store.store import StoreError
 from esplanade.server.world.frame import Frame
@@ -107,13 +107,12 @@ class Console:
         self.state = OperatedState(zone, overrides or Overrides(), presets, self.pace)
         self.changes = Changes()
         self.moderation = moderation
-        self.bulletin = Bulletin()
         contacts = ContactRate(zone)
         self.figures = zone_figures(zone, contacts)
         self.scheduler = Scheduler(self, self.figures, contacts, store, audit, clock_us)
         self._clock_us = clock_us
         self._preparation = Preparation(zone)
-        self._listeners: list[Callable[[str, dict[str, Any]], None]] = [self.bulletin.heard]
+        self._listeners: list[Callable[[str, dict[str, Any]], None]] = []
         self._ticks: list[tuple[int, asyncio.Future[int]]] = []
         self._records = Records(store, audit)
         self.lasting = LastingChanges(self, self._records)
@@ -195,18 +194,20 @@ class Console:
         facts: Facts,
     ) -> None:
         """Remember what the world has carried out, and write down that it has."""
-        self.state.take(facts)
         both = list(zip(planned, numbers, strict=True))
-        rows = [*rows_of(facts, self.state), *self._guards(by, both)]
+        kept = {s: f for s, f in facts.items() if s.startswith(("preset:", "schedule:"))}
+        self.state.take(kept)
+        guards = self._guards(by, both)
+        rows = [*rows_of(kept, self.state), *map(guard_row, guards)]
         done = [(one, number) for one, number in both if not _lasts(one.command)]
         ended, of_ended = [one for one, _ in done], [number for _, number in done]
         try:
             await self._records.outcomes(by, ended, of_ended, tick, [], rows=rows)
         except StoreError:
-            kept = {s: f for s, f in facts.items() if s.startswith(("preset:", "schedule:"))}
             before = _together([one.before for one in reversed(planned)])
             self.state.take({subject: before[subject] for subject in kept})
             raise
+        self.state.take({s: f for s, f in facts.items() if s not in kept})
         for one, number in both:
             if isinstance(one.command, MODERATING) or STEPPED in one.after.get(PACE, {}):
                 continue
@@ -228,12 +229,14 @@ class Console:
             elif _lasts(one.command):
                 self.lasting.begin_stream(by, one, change, tick or self.zone.tick)
             self.tell_change(change)
+        for guard in guards:
+            self.scheduler.guards.add(guard)
 
-    def _guards(self, by: Identity, both: list[tuple[Planned, int]]) -> list[KeptRow]:
-        """Let the guards of commands watch; the rows that are kept of them."""
+    def _guards(self, by: Identity, both: list[tuple[Planned, int]]) -> list[Guard]:
+        """The guards of commands; they watch once their changes are remembered."""
         rights, now = as_text(by.rights), self._clock_us()
         return [
-            self.scheduler.watch(guard_of(command.guard, [number], by.account, rights, now))
+            guard_of(command.guard, [number], by.account, rights, now)
             for command, number in ((one.command, number) for one, number in both)
             if isinstance(command, SetParameters | ApplyPreset) and command.guard is not None
         ]

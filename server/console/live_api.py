@@ -14,7 +14,7 @@ from esplanade.server.console.refusals import RefusedError
 from esplanade.server.console.routing import PREFIX, REFUSALS, Guarded, caller, gate_of, may, told
 from esplanade.server.live.live import Live
 
-MOST_STEPS: Final = 8640
+MOST_STEPS: Final = 10_200
 """Steps of one answer about series."""
 MOST_NAMES: Final = 40
 _AT_A_TIME: Final = 8
@@ -101,7 +101,7 @@ async def events(
 @router.get("/heat")
 async def heat(
     request: Request,
-    kind: Literal["density", "speed", "waiting", "contacts"] = "density",
+    kind: Literal["density", "speed", "waiting", "contacts", "risk"] = "density",
     window_s: Literal["60", "600", "3600"] = "60",
 ) -> Response:
     """A heat map in cells of half a metre for each storey, over the last time."""

@@ -67,6 +67,11 @@ class Scheduler:
         """Number of schedules and guards that wait to be carried out."""
         return len(self._work)
 
+    @property
+    def busy(self) -> bool:
+        """Whether something is being carried out, or waits for it."""
+        return self._task is not None and not self._task.done()
+
     # --- after each tick --------------------------------------------------------------------------
 
     def ticked(self, tick: int) -> None:
@@ -98,16 +103,11 @@ class Scheduler:
             stand = any(change is not None and change.reverted_by is None for change in changes)
             if now_us >= guard.until_us or not stand:
                 self.guards.end(guard, "ended")
-                self._do(self._keep(GUARDS, guard.id, guard.plain()))
+                self._do(self._keep(*guard_row(guard)))
         for guard in self.guards.held(values, now_s):
             self.guards.end(guard, "taken_back")
             self._do(self._guarded(guard, values[guard.condition["name"]]))
         return schedules.held(values, now_s)
-
-    def watch(self, guard: Guard) -> KeptRow:
-        """Let a guard watch from now on; returns what is to be kept of it."""
-        self.guards.add(guard)
-        return KeptRow(GUARDS, guard.id, guard.plain())
 
     async def load(self) -> None:
         """Take in what was kept. What was missed meanwhile is told as missed.
@@ -169,8 +169,9 @@ class Scheduler:
         await self._keep_schedule(schedule)
         if changes and schedule.guard is not None:
             given = GuardCondition.model_validate(schedule.guard)
-            row = self.watch(guard_of(given, changes, schedule.by, schedule.rights, now_us))
-            await self._keep(*row)
+            guard = guard_of(given, changes, schedule.by, schedule.rights, now_us)
+            self.guards.add(guard)
+            await self._keep(*guard_row(guard))
 
     async def _take_back(self, schedule: Schedule) -> None:
         commands = [
@@ -194,7 +195,7 @@ class Scheduler:
         _, faults = await self._carried_out(guard, commands) if commands else ([], [])
         if faults:
             guard.state, guard.faults = "refused", faults
-        await self._keep(GUARDS, guard.id, guard.plain())
+        await self._keep(*guard_row(guard))
         self._console.tell("about", {"about": "schedules"})
 
     async def _carried_out(
@@ -265,6 +266,11 @@ def guard_of(
         by=by,
         rights=rights,
     )
+
+
+def guard_row(guard: Guard) -> KeptRow:
+    """What is kept of a guard."""
+    return KeptRow(GUARDS, guard.id, guard.plain())
 
 
 def _with_note(given: dict[str, Any], schedule: Schedule) -> Command:

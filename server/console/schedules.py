@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from datetime import UTC, datetime, timedelta
 from typing import Any, Final, Literal
 
@@ -93,14 +93,20 @@ class Schedules:
         return found.definition() if found is not None and found.state in OPEN else None
 
     def take(self, name: str, value: Mapping[str, Any] | None) -> None:
-        """This is to be done from now on; None cancels what was."""
+        """This is to be done from now on; None cancels what was.
+
+        A schedule that was cancelled after it had fired is only taken back again at its time.
+        """
+        found = self._schedules.get(name)
         if value is None:
-            found = self._schedules.get(name)
             if found is not None and found.state in OPEN:
                 found.state = "cancelled"
                 self._forget()
             return
-        self._put(Schedule(**value))
+        made = Schedule(**value)
+        if found is not None and found.fired is not None:
+            made = replace(found, state="fired")
+        self._put(made)
 
     def due(self, now_us: int, tick: int) -> list[Schedule]:
         """The schedules whose tick or moment has come, without those that go by a figure."""

@@ -36,14 +36,21 @@ class NearMisses:
 
     def __init__(self, feed: MapFeed) -> None:
         self._feed = feed
-        self._near: Pairs = np.empty(0, dtype=np.int64)
+        self.near: Pairs = np.empty(0, dtype=np.int64)
+        """The pairs that were near at the last count: an actor's id times 2 ** 32, plus a
+        person's."""
+
+    @property
+    def actors(self) -> npt.NDArray[np.int64]:
+        """The ids of the actors in those pairs, one for each pair."""
+        return self.near >> _ID_BITS
 
     def count(self, touching: Pairs) -> int:
         """The number of new near misses, by the places of the latest tick."""
         near = self._pairs()
         near = near[~np.isin(near, touching)]
-        new = int(np.count_nonzero(~np.isin(near, self._near)))
-        self._near = near
+        new = int(np.count_nonzero(~np.isin(near, self.near)))
+        self.near = near
         return new
 
     def _pairs(self) -> Pairs:

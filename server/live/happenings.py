@@ -23,7 +23,11 @@ class Happenings:
         self._feed = feed
         self._reasons = reasons
         self._events = events
-        self._late = 0
+        self._stood = 0
+        """Ticks without a plan since the last second in which any were told."""
+        self._late: int | None = None
+        """Late ticks at that time."""
+        self._told_us = 0
 
     def before(self, tick: Tick) -> None:
         """Take in those who leave in a tick, before the map forgets them; and what they said."""
@@ -55,12 +59,20 @@ class Happenings:
             self._add(tick, "door", words, arguments={"door": name, "open": is_open})
         for actor, other in contacts:
             self._contact(tick, actor, other)
-        if frame.actors_stood:
-            self._add(tick, "plan_failure", "nothing was planned: the actors stand")
-        if tick.late > self._late and self._late:
-            arguments = {"ticks": tick.late - self._late}
-            self._add(tick, "late_tick", "a tick began late", arguments=arguments)
-        self._late = max(self._late, tick.late)
+        self._stood += frame.actors_stood
+        if tick.at_us - self._told_us >= 1_000_000:
+            self._trouble(tick)
+
+    def _trouble(self, tick: Tick) -> None:
+        """Note ticks that failed or were late since the last second, each as one event."""
+        late = 0 if self._late is None else tick.late - self._late
+        for kind, count, words in (
+            ("plan_failure", self._stood, "nothing was planned, and the actors stood"),
+            ("late_tick", late, "ticks began late"),
+        ):
+            if count:
+                self._add(tick, kind, f"{words}: {count}", arguments={"ticks": count})
+        self._stood, self._late, self._told_us = 0, tick.late, tick.at_us
 
     def stops(self, at_us: int) -> None:
         """Note who has been held for long; call it at each beat."""
@@ -98,7 +110,7 @@ class Happenings:
             change = notice.change
             told = ("number", "account", "op", "subjects", "note")
             self._events.add(
-                "command",
+                "pace" if change.get("op") == "pace" else "command",
                 notice.at_us,
                 self._feed.tick,
                 f"{change.get('account') or 'an operator'}: {change.get('op')}",

@@ -16,7 +16,7 @@ CELL_M: Final = 0.5
 CHUNK_S: Final = 10
 """Seconds that are kept together; windows are whole numbers of them."""
 WINDOWS_S: Final = (60, 600, 3600)
-KINDS: Final = ("density", "speed", "waiting", "contacts")
+KINDS: Final = ("density", "speed", "waiting", "contacts", "risk")
 BELOW_M: Final = 1.0
 """Whoever stands lower than a storey by no more than this counts as on it."""
 
@@ -29,7 +29,8 @@ class _Chunk(NamedTuple):
     chunk: int
     cells: Ints
     sums: npt.NDArray[np.float32]
-    """(4, C): samples of somebody, their speeds m/s, samples of waiting, contacts."""
+    """(5, C): samples of somebody, their speeds m/s, samples of waiting, contacts, and seconds in
+    which a person was near to an actor."""
 
 
 class Heat:
@@ -57,20 +58,26 @@ class Heat:
         speeds = records["speed"].astype(np.float32) * SPEED_MPS
         held = np.isin(records["reason"], STANDING).astype(np.float32)
         ones, none = np.ones_like(speeds), np.zeros_like(speeds)
-        self._parts.append((self._cells(records), np.stack([ones, speeds, held, none])))
+        self._parts.append((self._cells(records), np.stack([ones, speeds, held, none, none])))
 
     def contact(self, second: int, avatar_id: int) -> None:
         """Take in a contact, where one of those who touch is."""
+        self._add_at(second, np.array([avatar_id]), 3, 1.0)
+
+    def near(self, second: int, avatar_ids: Ints, seconds: float) -> None:
+        """Take in actors to whom a person is near, one for each pair, for so long."""
+        self._add_at(second, avatar_ids, 4, seconds)
+
+    def _add_at(self, second: int, avatar_ids: Ints, row: int, value: float) -> None:
         self._turn(second // CHUNK_S)
-        row = int(np.searchsorted(self._feed.ids, avatar_id))
-        cells = self._cells(self._feed.records[row : row + 1])
-        sums = np.zeros((4, len(cells)), dtype=np.float32)
-        sums[3] = 1.0
+        cells = self._cells(self._feed.records[self._feed.rows_of(avatar_ids)])
+        sums = np.zeros((5, len(cells)), dtype=np.float32)
+        sums[row] = value
         self._parts.append((cells, sums))
 
     def told(self, kind: str, window_s: int) -> Iterator[dict[str, Any] | None]:
         """Sum a window up: None again and again, so that others have a turn, then the answer."""
-        total = np.zeros((4, len(self._storeys_m) * self.width * self.height), dtype=np.float32)
+        total = np.zeros((5, len(self._storeys_m) * self.width * self.height), dtype=np.float32)
         first = self._chunk - window_s // CHUNK_S + 1
         chunks = [each for each in self._chunks if each.chunk >= first]
         if self._parts:
@@ -79,7 +86,7 @@ class Heat:
             total[:, each.cells] += each.sums
             yield None
         seconds = float(min(window_s, max(1, len(chunks) * CHUNK_S)))
-        samples, speeds, held, contacts = total
+        samples, speeds, held, contacts, near_s = total
         match kind:
             case "density":
                 values = samples / (seconds * CELL_M**2)
@@ -88,8 +95,10 @@ class Heat:
                     values = speeds / samples
             case "waiting":
                 values = held
-            case _:
+            case "contacts":
                 values = contacts
+            case _:
+                values = near_s
         each_storey = values.reshape(len(self._storeys_m), self.height, self.width)
         yield {
             "kind": kind,

@@ -2,11 +2,12 @@
 
 import asyncio
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final
 
 import structlog
 
+from esplanade.actors import ActorSpec
 from esplanade.server.accounts.identity import Identity
 from esplanade.server.live.bulletin import Bulletin
 from esplanade.server.live.encounters import NewContacts
@@ -16,7 +17,7 @@ from esplanade.server.live.happenings import Happenings
 from esplanade.server.live.heat import Heat
 from esplanade.server.live.history import History
 from esplanade.server.live.map_feed import MapFeed
-from esplanade.server.live.measures import FIGURES, Measures
+from esplanade.server.live.measures import FIGURES, NEAR_EVERY, Measures
 from esplanade.server.live.names import sees_names
 from esplanade.server.live.reasons import Reasons
 from esplanade.server.live.series import Series
@@ -45,13 +46,15 @@ class Live:
         traffic: Traffic,
         *,
         hide_names: bool,
+        groups: Callable[[ActorSpec], Iterable[str]] = lambda spec: spec.tags,
     ) -> None:
+        """`groups` tells the groups of an actor, in any thread."""
         self.zone = zone
         self.storeys_m = list(storeys_m)
         self.hide_names = hide_names
         self.bulletin = bulletin
         self.tap = Tap(zone)
-        self.map = MapFeed(zone.origin_m, zone.tick_s)
+        self.map = MapFeed(zone.origin_m, zone.tick_s, groups)
         self.reasons = Reasons(self.map, self.tap, zone.tick_s)
         self.events = Events()
         self.series = Series(FIGURES)
@@ -109,6 +112,8 @@ class Live:
         for notice in self.bulletin.fetch():
             self._happenings.notice(notice)
             self._telling.notice(notice)
+            if notice.change is not None:
+                self.map.tell_again(regrouped(notice.change))
         if ticks:
             self._happenings.stops(ticks[-1].at_us)
             self.reasons.ask()
@@ -124,16 +129,33 @@ class Live:
         second = tick.at_us // 1_000_000
         for actor, _ in contacts:
             self.heat.contact(second, actor)
-        if self._measures.take(tick, contacts, self.zone.trips):
+        over = self._measures.take(tick, contacts, self.zone.trips)
+        if tick.frame.tick % NEAR_EVERY == 0 and len(self._measures.near.near):
+            seconds = NEAR_EVERY * self.zone.tick_s
+            self.heat.near(second, self._measures.near.actors, seconds)
+        if over:
             self.heat.add(second)
             self.history.add(second)
             self._telling.second(self.map.tick)
 
 
+def regrouped(change: Mapping[str, Any]) -> list[str]:
+    """The actors whose groups are others after a change."""
+    return [
+        subject.partition(":")[2]
+        for subject, fields in (change.get("after") or {}).items()
+        if subject.startswith("actor:") and any(name.startswith("group:") for name in fields)
+    ]
+
+
 async def beating(live_of: Callable[[], Live | None]) -> None:
     """Beat for as long as a server runs; `live_of` gives the live views once there are any."""
+    loop = asyncio.get_running_loop()
+    due = loop.time()
     while True:
-        await asyncio.sleep(1.0 / BEATS_A_SECOND)
+        # Beats that cannot be had in time are left out.
+        due = max(due + 1.0 / BEATS_A_SECOND, loop.time())
+        await asyncio.sleep(due - loop.time())
         live = live_of()
         if live is None:
             continue

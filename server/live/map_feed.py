@@ -3,7 +3,7 @@
 import json
 import struct
 from collections import deque
-from collections.abc import Hashable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any, Final
 
@@ -27,7 +27,14 @@ KEY_S: Final = 5.0
 class MapFeed:
     """Where everybody is, with the tick in which each was last another."""
 
-    def __init__(self, origin_m: tuple[float, float], tick_s: float) -> None:
+    def __init__(
+        self,
+        origin_m: tuple[float, float],
+        tick_s: float,
+        groups: Callable[[ActorSpec], Iterable[str]] = lambda spec: spec.tags,
+    ) -> None:
+        """`groups` tells the groups of an actor, in any thread."""
+        self._groups = groups
         self.tick = 0
         self.avatars: dict[int, Avatar] = {}
         """Everybody in the world, by id."""
@@ -89,6 +96,13 @@ class MapFeed:
         """Rows of avatars that are in the world, int64 (K,)."""
         rows: npt.NDArray[np.int64] = np.searchsorted(self.ids, ids)
         return rows
+
+    def tell_again(self, actors: Iterable[str]) -> None:
+        """Tell of some actors again with the next tick: their groups are others now."""
+        for actor in actors:
+            avatar_id = self._avatar_of.get(actor)
+            if avatar_id is not None:
+                self._tell(avatar_id, there=True, tick=self.tick + 1)
 
     def place(self, avatar_id: int) -> tuple[float, float, float] | None:
         """The place of an avatar, metres; None if it is not in the world."""
@@ -160,7 +174,7 @@ class MapFeed:
             found["actor"] = avatar.actor
             spec = self.specs.get(avatar.actor)
             if spec is not None:
-                found["groups"], found["behaviour"] = list(spec.tags), spec.behaviour.kind
+                found["groups"], found["behaviour"] = list(self._groups(spec)), spec.behaviour.kind
         return found
 
     def _cached(self, key: tuple[Any, ...], make: Any) -> Any:
@@ -231,7 +245,7 @@ class MapFeed:
                 if each.actor in others:
                     self._tell(each.id, there=True)
 
-    def _tell(self, avatar_id: int, *, there: bool) -> None:
+    def _tell(self, avatar_id: int, *, there: bool, tick: int | None = None) -> None:
         if len(self._news) >= REMEMBERED:
             self._known_since = max(self._known_since, self._news.popleft()[0] + 1)
-        self._news.append((self.tick, avatar_id, there))
+        self._news.append((self.tick if tick is None else tick, avatar_id, there))

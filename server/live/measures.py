@@ -18,7 +18,7 @@ from esplanade.server.world.stage_times import STAGES
 STANDING: Final = (Reason.GIVING_WAY, Reason.WAITING, Reason.REPLANNING, Reason.NO_PATH)
 _REASONS: Final = tuple(reason for reason in Reason if reason is not Reason.NONE)
 _STAGES: Final = (*STAGES, "write")
-_NEAR_EVERY: Final = 6
+NEAR_EVERY: Final = 6
 """Ticks between two looks for near misses: whoever passes is near for longer than that."""
 
 FIGURES: Final = (
@@ -54,7 +54,7 @@ class Measures:
         self._traffic = traffic
         self._tick_s = tick_s
         self._ratios = TimeRatios()
-        self._near = NearMisses(feed)
+        self.near = NearMisses(feed)
         self._second = 0
         self._totals_before = (traffic.bytes_out, traffic.snapshots_skipped)
         self._late: int | None = None
@@ -80,8 +80,8 @@ class Measures:
         with_people = sum(self._feed.is_person(other) for _, other in contacts)
         self._contacts += with_people
         self._contacts_actors += len(contacts) - with_people
-        if tick.frame.tick % _NEAR_EVERY == 0:
-            self._misses += self._near.count(tick.touching)
+        if tick.frame.tick % NEAR_EVERY == 0:
+            self._misses += self.near.count(tick.touching)
         reasons = np.bincount(self._feed.records["reason"][actors], minlength=len(Reason))
         self._reasons += reasons[: len(Reason)]
         progress = tick.found.get(PROBE)

@@ -18,6 +18,9 @@ from esplanade.server.live.subscriptions import (
 MOST_WAITING: Final = 256
 """Messages that may wait for a console that reads slowly; with one more it is closed."""
 
+EARLY: Final = 0.8
+"""After this part of its period a subscription may have its turn."""
+
 
 class Subscriber:
     """What one console wants and has not been sent yet. It belongs to the private port's thread."""
@@ -66,9 +69,14 @@ class Subscriber:
             self.offer_map()
 
     def ready(self, channel: str, beat: int) -> bool:
-        """Whether it is the turn of a subscription at this beat; asking takes the turn."""
+        """Whether it is the turn of a subscription at this beat; asking takes the turn.
+
+        What comes from ticks may come a beat early, and is not left out for that.
+        """
         wish = self.wishes.get(channel)
-        if wish is None or beat - self._last.get(channel, -MOST_WAITING) < wish.period():
+        if wish is None:
+            return False
+        if beat - self._last.get(channel, -MOST_WAITING) < round(EARLY * wish.period()):
             return False
         self._last[channel] = beat
         return True

@@ -26,12 +26,15 @@ examples:
   export ESPLANADE_URL=http://localhost:8081 ESPLANADE_TOKEN=$TOKEN
   esplanade op get actor-1
   esplanade op set risk_weight=12 foresight_s=4 --group hurried --note "queue at the door"
+  esplanade op preset apply timid --guard 'contacts_per_minute>3/10s'
+  esplanade op schedule add --at 18:00 --preset rush-hour --again 2h
+  esplanade op diff default preset:timid actor:actor-1
   esplanade op undo
 
-get, set, clear, undo, redo and diff ask a server that runs, by a token in ESPLANADE_TOKEN.
-The other commands work on the folder or database of a server, whether it runs or not: who can write
-there may do everything. A server that runs sees a change at once. ESPLANADE_DATA or ESPLANADE_STORE
-stands for --data or --store.
+user, token and audit work on the folder or database of a server, whether it runs or not: who can
+write there may do everything. A server that runs sees a change at once. ESPLANADE_DATA or
+ESPLANADE_STORE stands for --data or --store.
+All other commands ask a server that runs, by a token in ESPLANADE_TOKEN.
 
 exit code: 0 done, 1 it cannot be done, or the audit is not as it was written, 2 wrong usage
 """

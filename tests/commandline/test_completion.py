@@ -53,6 +53,9 @@ def test_bash_offers_commands_options_and_choices(script: Path) -> None:
     assert "warning" in offered_by_bash(script, "esplanade", "serve", "--log-level", "w")
     assert "--visitors" in offered_by_bash(script, "esplanade", "demo", "--")
     assert set(offered_by_bash(script, "esplanade", "op", "user", "")) >= {"add", "list"}
+    assert set(offered_by_bash(script, "esplanade", "op", "preset", "")) >= {"apply", "import"}
+    assert "--guard" in offered_by_bash(script, "esplanade", "op", "preset", "apply", "--g")
+    assert "close" in offered_by_bash(script, "esplanade", "op", "door", "lobby", "c")
     assert "--verify" in offered_by_bash(script, "esplanade", "op", "audit", "--")
     assert "auditor" in offered_by_bash(script, "esplanade", "op", "user", "add", "--role", "a")
 

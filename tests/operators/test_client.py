@@ -58,3 +58,41 @@ async def test_a_wrong_token_and_a_wrong_address_are_told_apart(serving: Serving
     with pytest.raises(UnreachableError, match="no address"):
         async with operators.connect("file:///etc/passwd", "wrong"):
             pass
+
+
+async def test_a_script_works_with_presets_groups_schedules_and_actors(serving: Serving) -> None:
+    async with serving(actors=2) as server:
+        token = (await operator(server, "dora", "director")).token
+        url = f"http://127.0.0.1:{server.private_port}"
+        async with operators.connect(url, token) as op:
+            await op.group("kind:slow", "actor-1")
+            await op.apply_preset("museum-guide", group="kind:slow")
+            assert (await op.actor("actor-1"))["parameters"]["risk_weight"]["group"] == "kind:slow"
+            await op.save_preset("mine", from_scope="group:kind:slow", note="as it is now")
+            assert (await op.preset("mine"))["by"] == "dora"
+            assert "mine" in [each["name"] for each in await op.presets()]
+            await op.delete_preset("mine")
+            assert [each["group"] for each in await op.groups()] == ["kind:slow"]
+            added = await op.add({"id": "extra", "behaviour": {"kind": "idle"}})
+            assert added.price == "prepared"
+            await op.behave("wander", "extra")
+            await op.hold("extra")
+            await op.send_actor("extra", (1.0, 1.0, 0.0))
+            await op.remove("extra")
+            await op.announce("hello")
+            await op.mark("now")
+            later = {"op": "clear_parameters", "scope": "world"}
+            await op.schedule(later, when={"after_s": 3600.0})
+            (made,) = (await op.schedules())["schedules"]
+            await op.cancel(made["id"])
+            await op.set(risk_weight=4)
+            await op.clear("risk_weight")
+            changes = await op.changes(3)
+            assert [each["op"] for each in changes] == [
+                *("clear_parameters", "set_parameters", "cancel_schedule"),
+            ]
+            undone = await op.undo(anybody=True)
+            assert undone.after == {"world": {"risk_weight": 4.0}}
+            diff = await op.diff("default", f"world@{changes[0]['number']}", "world")
+            assert diff["columns"][2] == "world"
+            assert await op.people() == []

@@ -7,7 +7,9 @@ import numpy as np
 
 from esplanade.actors.state import Reason
 from esplanade.server.live.bulletin import Bulletin
+from esplanade.server.live.encounters import NearMisses
 from esplanade.server.live.live import Live
+from esplanade.server.live.trips import Progress, TimeRatios
 from esplanade.server.metrics import Traffic
 from tests.server.populated import HALL, Populated, spec
 
@@ -112,3 +114,36 @@ def test_the_map_agrees_with_the_state_after_many_comings_and_goings() -> None:
         seen[who] for who in sorted(seen)
     ]
     assert Reason.MOVING in {record[2] for record in seen.values()}
+
+
+def test_who_stands_near_an_actor_without_touching_is_a_near_miss_once() -> None:
+    watched = Watched(spec(1, place=(3.0, 3.0, 0.0)))
+    watched.ticks(1)
+    watched.world.join((3.0, 3.8))
+    watched.live.tap._all = True
+    near = NearMisses(watched.live.map)
+    watched.ticks(2)
+    touching = watched.world.zone.contacts.touching
+    assert [near.count(touching), near.count(touching)] == [1, 0]
+    watched.ticks(12)
+    *_, answer = watched.live.heat.told("risk", 60)
+    assert answer is not None
+    assert np.frombuffer(base64.b64decode(answer["storeys"][0]["values"]), "<f4").sum() > 0.0
+
+
+def test_the_time_of_a_trip_is_held_against_its_way_alone() -> None:
+    ratios, ids = TimeRatios(), ("main/a1",)
+    nowhere, there = np.full((1, 3), np.nan), np.array([[9.0, 1.0, 0.0]])
+    speed = np.array([1.0])
+
+    def at(time_s: float, wanted: Any, left_m: float, *, arrived: bool = False) -> list[float]:
+        return ratios.take(
+            Progress(time_s, ids, wanted, np.array([arrived]), np.array([left_m]), speed)
+        )
+
+    assert at(0.0, nowhere, np.nan) == []
+    assert at(1.0, there, np.nan) == []
+    assert at(1.25, there, 8.0) == []
+    assert at(6.0, there, 3.0) == []
+    assert at(13.0, there, 0.0, arrived=True) == [12.0 / 8.0]
+    assert at(14.0, there, 0.0, arrived=True) == []

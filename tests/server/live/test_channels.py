@@ -78,6 +78,33 @@ async def test_changes_and_marks_are_lines_in_all_series(serving: Serving) -> No
         assert {each["account"] for each in body["marks"]} == {"olga"}
 
 
+async def test_a_command_is_told_as_change_event_mark_and_group(serving: Serving) -> None:
+    async with serving(actors=1) as server:
+        olga = await operator(server, "olga", "director")
+        async with live_console(server.private_port, olga.token) as console:
+            for channel in ("changes", "events", "map"):
+                await console.subscribe(channel)
+            await console.settled()
+            grouped = {"op": "set_group", "group": "kind:hurried", "actors": ["actor-1"]}
+            status, answer = await olga.send({**grouped, "note": "queue"})
+            assert status == 200, answer
+            told = await console.until(
+                lambda: next((each["change"] for each in console.told if "change" in each), None)
+            )
+            assert (told["op"], told["account"], told["note"]) == ("set_group", "olga", "queue")
+            assert told["number"] == answer["command"]
+            assert (await console.event("command"))["arguments"]["op"] == "set_group"
+            await console.until(
+                lambda: any(
+                    "kind:hurried" in e.get("groups", []) for e in console.entities.values()
+                )
+            )
+            status, _ = await olga.send({"op": "mark", "text": "here"})
+            assert (await console.event("mark"))["text"] == "here"
+        body = await _until(olga, "/series", lambda found: len(found["marks"]) == 2)
+        assert [each["text"] for each in body["marks"]] == ["set_group", "here"]
+
+
 async def test_events_tell_who_came_spoke_and_left(serving: Serving) -> None:
     async with serving(hide_names=True) as server:
         vera = await operator(server, "vera", "viewer")
@@ -158,7 +185,7 @@ async def test_heat_maps_are_told_for_each_storey(serving: Serving) -> None:
         storey = body["storeys"][0]
         assert len(body["storeys"]) == len(plan["storeys"])
         assert _values(storey).shape == (storey["width"] * storey["height"],)
-        for kind in ("speed", "waiting", "contacts"):
+        for kind in ("speed", "waiting", "contacts", "risk"):
             assert (await vera.get(f"/heat?kind={kind}&window_s=3600"))[0] == 200
         assert (await vera.get("/heat?kind=other"))[0] == 422
         assert (await vera.get("/heat?window_s=61"))[0] == 422

@@ -1,0 +1,54 @@
+"""What a script does with actors, doors and people."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from esplanade.operators.conversation import Conversation
+from esplanade.protocol.commands import Answer
+
+
+class Directing(Conversation):
+    """Commands on actors, doors and people."""
+
+    async def send_actor(self, actor: str, target: str | Sequence[float]) -> Answer:
+        """Send an actor to a place of the scene, or to x, y and height."""
+        to: Any = target if isinstance(target, str) else list(target)
+        return await self.send({"op": "send_actor", "actor": actor, "target": to})
+
+    async def hold(self, actor: str, *, held: bool = True) -> Answer:
+        """Let an actor stand where it is, or go on."""
+        return await self.send({"op": "hold_actor", "actor": actor, "held": held})
+
+    async def behave(self, behaviour: str | Mapping[str, Any], *actors: str) -> Answer:
+        """Let actors do something else: a kind of behaviour, or all that can be said of one."""
+        given = {"kind": behaviour} if isinstance(behaviour, str) else dict(behaviour)
+        return await self.send({"op": "set_behaviour", "actors": actors, "behaviour": given})
+
+    async def add(self, *actors: Mapping[str, Any]) -> Answer:
+        """Let actors come in; of each, `id`, `name`, `behaviour`, `tags`, `overrides`, `place`."""
+        return await self.send({"op": "add_actors", "actors": [dict(each) for each in actors]})
+
+    async def remove(self, *actors: str) -> Answer:
+        """Take actors out of the world."""
+        return await self.send({"op": "remove_actors", "actors": actors})
+
+    async def door(self, name: str, *, is_open: bool) -> Answer:
+        """Open or close a door."""
+        return await self.send({"op": "move_door", "door": name, "open": is_open})
+
+    async def announce(self, text: str) -> Answer:
+        """Say something to all people."""
+        return await self.send({"op": "announce", "text": text})
+
+    async def mark(self, text: str) -> Answer:
+        """Mark this moment."""
+        return await self.send({"op": "mark", "text": text})
+
+    async def mute(self, person: int, seconds: float = 600.0) -> Answer:
+        """Let nobody hear a person for a time; 0 ends it."""
+        return await self.send({"op": "mute", "person": person, "seconds": seconds})
+
+    async def kick(self, person: int, text: str | None = None) -> Answer:
+        """Send a person out."""
+        more = {} if text is None else {"text": text}
+        return await self.send({"op": "kick", "person": person, **more})

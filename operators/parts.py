@@ -1,0 +1,97 @@
+"""Building blocks of the parts of `esplanade op` that ask a server that runs."""
+
+import os
+from argparse import ArgumentTypeError, Namespace
+from argparse import _SubParsersAction as SubParsers  # argparse names the type nowhere else
+from typing import Any, Final
+
+from esplanade.commandline.errors import UsageError
+from esplanade.commandline.parser import Parser
+from esplanade.commandline.readers import Text
+
+URL: Final = "http://localhost:8081"
+
+
+def add_part(
+    commands: "SubParsers[Parser]", run: str, name: str, text: str, *examples: str, more: str = ""
+) -> Parser:
+    """Add a command that asks a server; `run` is "module:function" of this package."""
+    lines = [more] if more else []
+    if examples:
+        lines += ["examples:", *(f"  esplanade op {example}" for example in examples)]
+    first = text.split(". ", maxsplit=1)[0]
+    made = commands.add_parser(
+        name,
+        run=f"esplanade.operators.{run}",
+        help=first[0].lower() + first[1:].rstrip("."),
+        description=text,
+        epilog="\n".join(lines),
+    )
+    _add_server(made)
+    return made
+
+
+def add_family(commands: "SubParsers[Parser]", name: str, text: str) -> "SubParsers[Parser]":
+    """Add a word that other commands follow."""
+    group = commands.add_parser(name, help=text[0].lower() + text[1:].rstrip("."), description=text)
+    found: SubParsers[Parser] = group.add_subparsers(dest="part", metavar="COMMAND", required=True)
+    return found
+
+
+def add_scope(parser: Parser) -> None:
+    """Let a command name a scope."""
+    scope = parser.add_mutually_exclusive_group()
+    scope.add_argument(
+        "--group", metavar="NAME", type=Text(), help="of the actors with this tag, or PURPOSE:NAME"
+    )
+    scope.add_argument("--actor", metavar="ID", type=Text(), help="of this actor alone")
+
+
+def add_note(parser: Parser) -> None:
+    """Let a command have a note, and be tried only."""
+    parser.add_argument("--note", metavar="TEXT", help="why; it is kept in the audit")
+    parser.add_argument(
+        "--dry-run", action="store_true", help="check it and tell its price, change nothing"
+    )
+
+
+def add_json(parser: Parser, text: str = "print all that is known, as JSON") -> None:
+    """Let a command print JSON."""
+    parser.add_argument("--json", action="store_true", help=text)
+
+
+def assignment(text: str) -> tuple[str, float]:
+    """A parameter's name and its value.
+
+    Raises
+    ------
+    ArgumentTypeError
+        It is not of the form NAME=NUMBER.
+    """
+    name, sign, number = text.partition("=")
+    try:
+        if name and sign:
+            return name, float(number)
+    except ValueError:
+        pass
+    raise ArgumentTypeError(f"{text!r} is not of the form NAME=NUMBER")
+
+
+def _add_server(parser: Parser) -> None:
+    group: Any = parser.add_argument_group("the server")
+    group.add_argument(
+        "--url",
+        metavar="URL",
+        type=Text(),
+        help=f"its private port [or ESPLANADE_URL; default: {URL}]",
+    )
+
+    def check(found: Namespace) -> None:
+        found.url = found.url or os.environ.get("ESPLANADE_URL") or URL
+        found.token = os.environ.get("ESPLANADE_TOKEN", "")
+        if not found.token:
+            raise UsageError(
+                "give your token in ESPLANADE_TOKEN; `esplanade op token add` makes one"
+            )
+
+    parser.check = check
