@@ -92,6 +92,7 @@ class ErrorCode(StrEnum):
     LEASE_ENDED = "lease_ended"
     MUTED = "muted"
     ADMISSION_NEEDED = "admission_needed"
+    PASSWORD_NEEDED = "password_needed"  # noqa: S105
     ADMISSION_REFUSED = "admission_refused"
 
 

@@ -59,6 +59,8 @@ export const CloseCode = {
   SILENT: 4010,
   NAME_RESERVED: 4011,
   KICKED: 4012,
+  ADMISSION_NEEDED: 4020,
+  ADMISSION_REFUSED: 4021,
 } as const;
 
 export type Kind = "person" | "actor";
