@@ -119,7 +119,7 @@ class Entrance:
                 await self._check_password(admission.secret, address)
                 return Admitted()
         code = ErrorCode.PASSWORD_NEEDED if self._password else ErrorCode.ADMISSION_NEEDED
-        raise ProtocolError(code, self._what_is_needed(), CloseCode.ADMISSION_NEEDED)
+        raise ProtocolError(code, self._what_is_needed(), CloseCode[code.name])
 
     async def _bot(self, token: str) -> Admitted:
         bot = await self._kept.bots.of(token)

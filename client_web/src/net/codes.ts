@@ -60,7 +60,8 @@ export const CloseCode = {
   NAME_RESERVED: 4011,
   KICKED: 4012,
   ADMISSION_NEEDED: 4020,
-  ADMISSION_REFUSED: 4021,
+  PASSWORD_NEEDED: 4021,
+  ADMISSION_REFUSED: 4022,
 } as const;
 
 export type Kind = "person" | "actor";
