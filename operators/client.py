@@ -6,6 +6,7 @@ from contextlib import asynccontextmanager
 from typing import Any
 
 from esplanade.operators import http
+from esplanade.operators.accounts import Accounts
 from esplanade.protocol.commands import Answer, Command
 
 
@@ -19,6 +20,8 @@ class Operator:
     def __init__(self, url: str, token: str) -> None:
         self._url = url
         self._token = token
+        self.accounts = Accounts(self._ask)
+        """Accounts, tokens, invitations and bots."""
 
     async def world(self) -> dict[str, Any]:
         """The zone at this moment: tick, people, actors, doors, places, revision."""
@@ -71,8 +74,8 @@ class Operator:
         answers = await self._ask("/commands", [_plain(command) for command in commands])
         return [Answer.model_validate(answer) for answer in answers]
 
-    async def _ask(self, path: str, body: Any = None) -> Any:
-        return await asyncio.to_thread(http.ask, self._url, self._token, path, body)
+    async def _ask(self, path: str, body: Any = None, method: str | None = None) -> Any:
+        return await asyncio.to_thread(http.ask, self._url, self._token, path, body, method)
 
 
 @asynccontextmanager

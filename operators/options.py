@@ -8,6 +8,7 @@ from typing import Final
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.parser import Parser
 from esplanade.commandline.readers import Text, Whole
+from esplanade.operators.account_options import add_account_parts
 
 URL: Final = "http://localhost:8081"
 
@@ -39,7 +40,7 @@ def add_parts(commands: "SubParsers[Parser]") -> list[Parser]:
     _add_note(redo)
     diff = _part(commands, "diff", "Show all values that are set, and the usual ones beside them.")
     diff.add_argument("--json", action="store_true", help="print them as JSON")
-    parts = [get, made, clear, undo, redo, diff]
+    parts = [get, made, clear, undo, redo, diff, *add_account_parts(commands)]
     for part in parts:
         _add_server(part)
     return parts
