@@ -4,6 +4,7 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Any
 
+from esplanade.operators.accounts import Accounts
 from esplanade.operators.directing import Directing
 from esplanade.operators.tuning import Tuning
 
@@ -14,6 +15,11 @@ class Operator(Tuning, Directing):
     Each method raises `RefusedError` where the server refuses, and `UnreachableError` where there
     is none.
     """
+
+    def __init__(self, url: str, token: str) -> None:
+        super().__init__(url, token)
+        self.accounts = Accounts(self._ask)
+        """Accounts, tokens, invitations and bots."""
 
     async def world(self) -> dict[str, Any]:
         """The zone at this moment: tick, people, actors, doors, places, revision."""

@@ -24,8 +24,8 @@ class Conversation:
         answers = await self._ask("/commands", [_plain(command) for command in commands])
         return [Answer.model_validate(answer) for answer in answers]
 
-    async def _ask(self, path: str, body: Any = None) -> Any:
-        return await asyncio.to_thread(http.ask, self._url, self._token, path, body)
+    async def _ask(self, path: str, body: Any = None, method: str | None = None) -> Any:
+        return await asyncio.to_thread(http.ask, self._url, self._token, path, body, method)
 
 
 def _plain(command: Command | Mapping[str, Any]) -> dict[str, Any]:

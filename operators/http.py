@@ -16,8 +16,10 @@ MOST_BYTES: Final = 32 * 1024 * 1024
 """Longer answers are not read."""
 
 
-def ask(url: str, token: str, path: str, body: Any = None) -> Any:
-    """The answer of a server to GET, or to POST if there is a body.
+def ask(url: str, token: str, path: str, body: Any = None, method: str | None = None) -> Any:
+    """The answer of a server to GET, or to POST if there is a body, or to another method.
+
+    It is None where the server has nothing to say.
 
     Raises
     ------
@@ -31,13 +33,18 @@ def ask(url: str, token: str, path: str, body: Any = None) -> Any:
         raise UnreachableError(f"{url!r} is no address such as http://localhost:8081")
     headers = {"Authorization": f"Bearer {token}", "Accept": "application/json"}
     data = None
+    if method is not None:
+        headers["X-Esplanade"] = "1"
     if body is not None:
         data = json.dumps(body, allow_nan=False).encode()
         headers |= {"Content-Type": "application/json", "X-Esplanade": "1"}
-    request = Request(f"{base}{PREFIX}{path}", data, headers)  # noqa: S310 (the scheme is checked)
+    request = Request(  # noqa: S310 (the scheme is checked)
+        f"{base}{PREFIX}{path}", data, headers, method=method
+    )
     try:
         with urlopen(request, timeout=PATIENCE_S) as answer:  # noqa: S310
-            return json.loads(answer.read(MOST_BYTES))
+            text = answer.read(MOST_BYTES)
+            return json.loads(text) if text else None
     except HTTPError as error:
         raise _refusal(error) from None
     except (URLError, OSError, HTTPException) as error:

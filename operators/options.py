@@ -4,6 +4,7 @@ from argparse import _SubParsersAction as SubParsers  # argparse names the type 
 
 from esplanade.commandline.parser import Parser
 from esplanade.commandline.readers import Span, Whole
+from esplanade.operators.account_options import add_account_parts
 from esplanade.operators.actor_options import add_actor_parts
 from esplanade.operators.parts import add_json, add_note, add_part, add_scope, assignment
 from esplanade.operators.preset_options import add_preset_parts
@@ -19,6 +20,7 @@ def add_parts(commands: "SubParsers[Parser]") -> list[Parser]:
         *add_preset_parts(commands),
         *add_schedule_parts(commands),
         *add_actor_parts(commands),
+        *add_account_parts(commands),
     ]
 
 

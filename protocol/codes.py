@@ -92,6 +92,7 @@ class ErrorCode(StrEnum):
     LEASE_ENDED = "lease_ended"
     MUTED = "muted"
     ADMISSION_NEEDED = "admission_needed"
+    PASSWORD_NEEDED = "password_needed"  # noqa: S105
     ADMISSION_REFUSED = "admission_refused"
 
 
@@ -114,7 +115,8 @@ class CloseCode(IntEnum):
     NAME_RESERVED = 4011
     KICKED = 4012
     ADMISSION_NEEDED = 4020
-    ADMISSION_REFUSED = 4021
+    PASSWORD_NEEDED = 4021
+    ADMISSION_REFUSED = 4022
 
 
 class ByeCode(StrEnum):

@@ -100,13 +100,13 @@ class Entrance:
         match admission:
             case Admission(way="bot"):
                 return await self._bot(admission.secret)
-            case _ if has_seat:
-                return Admitted()
             case Admission(way="pass"):
                 operator = await self._kept.one_time.take_pass(admission.secret, address)
-                if operator is None:
+                if operator is None and not has_seat:  # who comes back has used it up before
                     _refuse("this pass is not good, or no longer: it is for once, within a minute")
                 return Admitted(operator=operator)
+            case _ if has_seat:
+                return Admitted()
         if not self._closed or identity is not None:
             return Admitted()
         match admission:
@@ -118,9 +118,8 @@ class Entrance:
             case Admission(way="password") if self._password:
                 await self._check_password(admission.secret, address)
                 return Admitted()
-        raise ProtocolError(
-            ErrorCode.ADMISSION_NEEDED, self._what_is_needed(), CloseCode.ADMISSION_NEEDED
-        )
+        code = ErrorCode.PASSWORD_NEEDED if self._password else ErrorCode.ADMISSION_NEEDED
+        raise ProtocolError(code, self._what_is_needed(), CloseCode[code.name])
 
     async def _bot(self, token: str) -> Admitted:
         bot = await self._kept.bots.of(token)

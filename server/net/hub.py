@@ -401,6 +401,7 @@ class Hub:
             farewell = frames.message(Bye(reason=ByeCode.REPLACED, text=text))
             before.dismiss(farewell, CloseCode.REPLACED, ByeCode.REPLACED.value)
         session.avatar_id, session.name = seat.avatar_id, seat.name
+        self._seats.walks_in(seat.avatar_id, session.operator)
         session.operator = session.operator or seat.operator
         session.token = self._seats.renew(seat, token)
         session.ticket = self._next_ticket

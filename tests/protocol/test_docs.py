@@ -183,6 +183,7 @@ def test_limits() -> None:
         "Name": f"{table.MAX_NAME_CHARS} characters",
         "Line of chat": f"{table.MAX_CHAT_CHARS} characters",
         "Resume token, operator key": f"{table.MAX_TOKEN_CHARS} characters",
+        "Secret of an admission": f"{table.MAX_SECRET_CHARS} characters",
         "Name of a door": f"{table.MAX_DOOR_CHARS} characters",
         "A block of a snapshot or of steps": f"{MAX_BLOCK_BYTES} bytes",
         "Extent of a zone": f"{MAX_EXTENT_M:g} m",

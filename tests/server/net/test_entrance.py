@@ -24,7 +24,7 @@ from tests.server.http import get
 from tests.server.worlds import ROOM
 
 NEEDED = ("admission_needed", 4020)
-REFUSED = ("admission_refused", 4021)
+REFUSED = ("admission_refused", 4022)
 WORLD = "the password of the world"
 
 
@@ -133,6 +133,7 @@ async def test_one_use_lets_one_of_many_in(serving: Serving) -> None:
 
 async def test_the_password_of_the_world_lets_in_and_guesses_are_braked(serving: Serving) -> None:
     async with serving(closed=True, world_password=WORLD) as server:
+        assert await refusal(server) == ("password_needed", 4021)
         await comes_in(server, "password", WORLD)
         tries = [refusal(server, "password", f"guess {n}") for n in range(2 * WRONG)]
         assert set(await asyncio.gather(*tries)) == {REFUSED}
@@ -173,7 +174,9 @@ async def test_a_pass_gives_a_seat_the_rights_of_an_operator_once(serving: Servi
         welcome = await comes_in(server, "pass", secret)
         assert welcome.operator
         assert await refusal(server, "pass", secret) == REFUSED
-        assert (await comes_in(server, resume=welcome.resume)).operator
+        back = await comes_in(server, "pass", secret, resume=welcome.resume)
+        assert (back.operator, back.resumed) == (True, True)
+        assert (await comes_in(server, resume=back.resume)).operator
         viewer = Identity(account="dora", role="viewer", rights=ROLES["viewer"], via="session")
         secret = await server.kept.one_time.seat_pass(viewer)
         await server.kept.directory.add(MACHINE, "anna", "admin", None)

@@ -89,7 +89,7 @@ def shell(
         address = location.url.set(drivername="postgresql").render_as_string(hide_password=False)
         made = Shell(["--store", address], capsys, monkeypatch)
         assert "run `esplanade data upgrade`" in made.refused("op", "user", "list")
-        assert f"the tables were of revision none, now {REVISION}" in made.done("data", "upgrade")
+        assert f"revision none, now {REVISION}" in made.done("data", "upgrade")
         made.done("op", "user", "add", "first", "--role", "viewer", "--token")
     made.done("op", "user", "remove", "first")
     return made
@@ -307,8 +307,12 @@ def test_a_person_is_forgotten_and_the_audit_still_holds(
     asyncio.run(kick())
     if location.is_sqlite:
         assert any(b"Harrington" in file.read_bytes() for file in folder.iterdir())
-    assert "0 in accounts, 1 in audit" in shell.done("data", "forget", "Eve Harrington")
-    assert "1 in accounts, 2 in audit" in shell.done("data", "forget", "olga")
+    told = shell.done("data", "forget", "Eve Harrington")
+    assert "0 in accounts" in told
+    assert "1 in audit" in told
+    told = shell.done("data", "forget", "olga")
+    assert "1 in accounts" in told
+    assert "2 in audit" in told
     shell.done("op", "audit", "--verify")
     for name in ("Harrington", "olga", "rude"):
         assert name not in shell.done("op", "audit", "--json")
