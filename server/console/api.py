@@ -47,12 +47,15 @@ class Refusal(BaseModel):
 _REFUSALS: Final[dict[int | str, dict[str, Any]]] = {
     status: {"model": Refusal, "description": text}
     for status, text in {
+        400: "The body cannot be read.",
         401: "There is no token, or it opens nothing.",
         403: "The token does not have the right, or the header X-Esplanade is missing.",
         404: "There is no such thing.",
         409: "Somebody has changed the same since; both values are told.",
+        413: "The body is too long.",
         422: "Something in it cannot be; the path of each fault says where.",
         503: "Too much waits, or the world is not ready.",
+        504: "The world has not answered; it may still do it.",
     }.items()
 }
 
