@@ -37,7 +37,8 @@ from esplanade.server.console.inputs import inputs_for
 from esplanade.server.console.intents import intended
 from esplanade.server.console.kept_intents import KEPT, check_guard, kept_facts, ops_within
 from esplanade.server.console.kept_rows import rows_of
-from esplanade.server.console.lasting import LastingChanges
+from esplanade.server.console.lasting import LastingChanges, is_ramp, lasts
+from esplanade.server.console.listeners import Listener, Listeners
 from esplanade.server.console.moderation import (
     MODERATING,
     Moderation,
@@ -103,7 +104,7 @@ class Console:
         self.scheduler = Scheduler(self, self.figures, contacts, store, audit, clock_us)
         self._clock_us = clock_us
         self._preparation = Preparation(zone)
-        self._listeners: list[Callable[[str, dict[str, Any]], None]] = []
+        self._listeners = Listeners()
         self._ticks: list[tuple[int, asyncio.Future[int]]] = []
         self._records = Records(store, audit)
         self.lasting = LastingChanges(self, self._records)
@@ -158,8 +159,8 @@ class Console:
         prepare_s = self._preparation.seconds(bodies) if price == "prepared" else None
         if commands[0].dry_run:
             return [self._answer(one, price=price, prepare_s=prepare_s) for one in planned]
-        if any(map(_is_ramp, commands)):  # their values come later, a bit in each tick
-            facts = _together([one.after for one in planned if not _is_ramp(one.command)])
+        if any(map(is_ramp, commands)):  # their values come later, a bit in each tick
+            facts = _together([one.after for one in planned if not is_ramp(one.command)])
             inputs, doors = inputs_for(facts, self.state, lambda: next(self._numbers))
         numbers = await self._records.intents(by, planned, self.zone.tick)
         for one in planned:
@@ -190,7 +191,7 @@ class Console:
         self.state.take(kept)
         guards = self._guards(by, both)
         rows = [*rows_of(kept, self.state), *map(guard_row, guards)]
-        done = [(one, number) for one, number in both if not _lasts(one.command)]
+        done = [(one, number) for one, number in both if not lasts(one.command)]
         ended, of_ended = [one for one, _ in done], [number for _, number in done]
         try:
             await self._records.outcomes(by, ended, of_ended, tick, [], rows=rows)
@@ -202,22 +203,22 @@ class Console:
         for one, number in both:
             if isinstance(one.command, MODERATING):
                 continue
-            is_ramp = _is_ramp(one.command)
+            ramps = is_ramp(one.command)
             change = Change(
                 number,
                 by.account,
                 one.command.op,
                 copy.deepcopy(one.before),
-                copy.deepcopy(one.before if is_ramp else one.after),
+                copy.deepcopy(one.before if ramps else one.after),
                 one.reverts,
                 at_us=self._clock_us(),
                 tick=tick,
                 note=one.command.text if isinstance(one.command, Mark) else one.command.note,
             )
             self.changes.add(change)
-            if is_ramp:
+            if ramps:
                 self.lasting.begin_ramp(by, one, change, tick or self.zone.tick)
-            elif _lasts(one.command):
+            elif lasts(one.command):
                 self.lasting.begin_stream(by, one, change, tick or self.zone.tick)
             self.tell_change(change)
         for guard in guards:
@@ -253,31 +254,17 @@ class Console:
 
     # --- what others are told -------------------------------------------------------------------
 
-    def listen(self, listener: Callable[[str, dict[str, Any]], None]) -> None:
-        """Let somebody know of each change from now on, on the zone's loop.
-
-        The listener is called with `change` and the change as plain data, with `mark` and what was
-        marked, or with `about` and what is to be asked for anew: presets, schedules or groups.
-        """
-        self._listeners.append(listener)
+    def listen(self, listener: Listener) -> None:
+        """Let somebody know of each change from now on, on the zone's loop; see `Listeners`."""
+        self._listeners.add(listener)
 
     def tell(self, kind: str, what: dict[str, Any]) -> None:
-        """Tell the listeners something; a fault of one is logged."""
-        for listener in self._listeners:
-            try:
-                listener(kind, what)
-            except Exception:
-                log.exception("a listener of the console failed", kind=kind)
+        """Tell the listeners something."""
+        self._listeners.tell(kind, what)
 
     def tell_change(self, change: Change) -> None:
         """Tell the listeners what a change is now."""
-        if change.op == "mark":
-            told = {"number": change.number, "at_us": change.at_us, "tick": change.tick}
-            self.tell("mark", {**told, "account": change.account, "text": change.note})
-        self.tell("change", plain_change(change, self))
-        abouts = {_about(subject, field) for subject, field, _ in each(change.after)}
-        for about in sorted(abouts - {""}):
-            self.tell("about", {"about": about})
+        self._listeners.tell_change(change, plain_change(change, self))
 
     # --- checks ---------------------------------------------------------------------------------
 
@@ -499,22 +486,6 @@ def _needed_for(change: Change) -> set[str]:
         if field == SCHEDULE and value is not None:
             needed |= ops_within(value["commands"])
     return needed
-
-
-def _is_ramp(command: Command) -> bool:
-    return isinstance(command, SetParameters) and command.over_s is not None
-
-
-def _lasts(command: Command) -> bool:
-    """Whether a change goes on after its first tick."""
-    return isinstance(command, SetParameters) and (command.stream or command.over_s is not None)
-
-
-def _about(subject: str, field: str) -> str:
-    """What is to be asked for anew when a fact is another."""
-    if field.startswith(GROUP):
-        return "groups"
-    return {"preset": "presets", "schedule": "schedules"}.get(subject.partition(":")[0], "")
 
 
 def _together(all_facts: Sequence[Facts]) -> Facts:
