@@ -3,7 +3,7 @@
 import asyncio
 import itertools
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final, TypeVar
 
 import structlog
@@ -26,6 +26,7 @@ from esplanade.server.accounts.identity import Identity
 from esplanade.server.accounts.rights import COMMANDS, may
 from esplanade.server.audit.log import AuditLog
 from esplanade.server.console.changes import Change, Changes
+from esplanade.server.console.facts import together
 from esplanade.server.console.inputs import inputs_for
 from esplanade.server.console.intents import intended
 from esplanade.server.console.moderation import (
@@ -82,6 +83,10 @@ class Console:
         self.state = OperatedState(zone, overrides or Overrides())
         self.changes = Changes()
         self.moderation = moderation
+        self.begun = 0
+        """The row of the audit, of the server's chain, with which the world of now began."""
+        self.settled = 0
+        """The last command whose outcome is in the audit; all before it is in the state too."""
         self._records = Records(store, audit)
         self._turn = asyncio.Lock()
         self._waiting = 0
@@ -95,6 +100,25 @@ class Console:
     def waiting(self) -> int:
         """Number of lists of commands that wait for their turn, or are being carried out."""
         return self._waiting
+
+    def new_number(self) -> int:
+        """A number for an input, by which its outcome is known."""
+        return next(self._numbers)
+
+    def save(self) -> dict[str, Any]:
+        """What is set, and which commands are in it; call it between two ticks."""
+        return {"begun": self.begun, "settled": self.settled, "state": self.state.save()}
+
+    def load(self, saved: Mapping[str, Any]) -> None:
+        """Go on from what was saved.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            Something is missing, or cannot be.
+        """
+        self.begun, self.settled = int(saved["begun"]), int(saved["settled"])
+        self.state.load(saved["state"])
 
     # --- the path -------------------------------------------------------------------------------
 
@@ -124,8 +148,8 @@ class Console:
 
     async def _carry_out(self, by: Identity, commands: Sequence[Command]) -> list[Answer]:
         planned = self._plan(by, commands)
-        facts = _together([one.after for one in planned])
-        inputs, doors = inputs_for(facts, self.state, lambda: next(self._numbers))
+        facts = together([one.after for one in planned])
+        inputs, doors = inputs_for(facts, self.state, self.new_number)
         price = await self.ask(lambda: self._checked(inputs, len(commands)))
         if commands[0].dry_run:
             return [self._answer(one, price=price) for one in planned]
@@ -134,6 +158,7 @@ class Console:
             moderate(one.command, self.moderation)
         tick, faults = await self._in_a_tick(inputs, doors)
         await self._records.outcomes(by, planned, numbers, tick, faults)
+        self.settled = numbers[-1]
         if faults:
             raise RefusedError(faults).within(0) if len(commands) == 1 else RefusedError(faults)
         self.state.take(facts)
@@ -152,7 +177,7 @@ class Console:
         planned: list[Planned] = []
         faults: list[CommandFault] = []
         for index, command in enumerate(commands):
-            pending = _together([one.after for one in planned])
+            pending = together([one.after for one in planned])
             try:
                 planned.append(self._plan_one(by, command, pending))
             except RefusedError as error:
@@ -300,12 +325,3 @@ def _is_prepared(command: ActorCommand) -> bool:
     if isinstance(command, SetInWorld):
         return not command.values.keys().isdisjoint(MEASURES)
     return isinstance(command, AddActors)
-
-
-def _together(all_facts: Sequence[Facts]) -> Facts:
-    """Facts one after the other: later ones prevail."""
-    found: Facts = {}
-    for facts in all_facts:
-        for subject, fields in facts.items():
-            found[subject] = {**found.get(subject, {}), **fields}
-    return found
