@@ -36,6 +36,8 @@ class Kept:
     sessions: Sessions
     tokens: Tokens
     one_time: OneTime
+    started: int
+    """The row of the audit that says that this server has started."""
 
 
 @asynccontextmanager
@@ -52,10 +54,11 @@ async def keeping(settings: ServerSettings, metrics: Metrics) -> AsyncIterator[K
         audit, passwords, lockout = AuditLog(store, WRITER), Passwords(), Lockout()
         _watch(store, lockout, metrics)
         if location.in_memory:
-            log.info("nothing is kept when this ends; --data keeps operators and the audit")
+            log.info("nothing is kept when this ends; --data keeps the world and its operators")
         else:
             log.info("kept", store=str(location))
-        await audit.record(Entry(command="server_start"))
+        body = {"fresh": True} if settings.fresh else {}
+        started = await audit.record(Entry(command="server_start", body=body))
         try:
             yield Kept(
                 store,
@@ -64,6 +67,7 @@ async def keeping(settings: ServerSettings, metrics: Metrics) -> AsyncIterator[K
                 Sessions(store, audit, passwords, lockout),
                 Tokens(store, audit),
                 OneTime(store, audit, passwords),
+                started,
             )
         finally:
             passwords.close()

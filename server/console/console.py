@@ -4,7 +4,7 @@ import asyncio
 import copy
 import itertools
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from time import perf_counter
 from typing import Any, Final, TypeVar
 
@@ -29,6 +29,7 @@ from esplanade.server.accounts.identity import Identity
 from esplanade.server.accounts.rights import COMMANDS, as_text, may
 from esplanade.server.audit.log import AuditLog, now_us
 from esplanade.server.console.changes import Change, Changes
+from esplanade.server.console.facts import together
 from esplanade.server.console.figures import ContactRate, zone_figures
 from esplanade.server.console.groups import GROUP
 from esplanade.server.console.guards import Guard
@@ -106,6 +107,10 @@ class Console:
         self._preparation = Preparation(zone)
         self._listeners = Listeners()
         self._ticks: list[tuple[int, asyncio.Future[int]]] = []
+        self.begun = 0
+        """The row of the audit, of the server's chain, with which the world of now began."""
+        self.settled = 0
+        """The last command whose outcome is in the audit; all before it is in the state too."""
         self._records = Records(store, audit)
         self.lasting = LastingChanges(self, self._records)
         self.turn = asyncio.Lock()
@@ -121,6 +126,25 @@ class Console:
     def waiting(self) -> int:
         """Number of lists of commands that wait for their turn, or are being carried out."""
         return self._waiting
+
+    def new_number(self) -> int:
+        """A number for an input, by which its outcome is known."""
+        return next(self._numbers)
+
+    def save(self) -> dict[str, Any]:
+        """What is set, and which commands are in it; call it between two ticks."""
+        return {"begun": self.begun, "settled": self.settled, "state": self.state.save()}
+
+    def load(self, saved: Mapping[str, Any]) -> None:
+        """Go on from what was saved.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            Something is missing, or cannot be.
+        """
+        self.begun, self.settled = int(saved["begun"]), int(saved["settled"])
+        self.state.load(saved["state"])
 
     # --- the path -------------------------------------------------------------------------------
 
@@ -153,15 +177,15 @@ class Console:
         if dragged is not None:
             return [self._answer(dragged.planned, **dragged.found)]
         planned = self._plan(by, commands)
-        facts = _together([one.after for one in planned])
-        inputs, doors = inputs_for(facts, self.state, lambda: next(self._numbers))
+        facts = together([one.after for one in planned])
+        inputs, doors = inputs_for(facts, self.state, self.new_number)
         price, bodies = await self.ask(lambda: self._checked(inputs, len(commands)))
         prepare_s = self._preparation.seconds(bodies) if price == "prepared" else None
         if commands[0].dry_run:
             return [self._answer(one, price=price, prepare_s=prepare_s) for one in planned]
         if any(map(is_ramp, commands)):  # their values come later, a bit in each tick
-            facts = _together([one.after for one in planned if not is_ramp(one.command)])
-            inputs, doors = inputs_for(facts, self.state, lambda: next(self._numbers))
+            facts = together([one.after for one in planned if not is_ramp(one.command)])
+            inputs, doors = inputs_for(facts, self.state, self.new_number)
         numbers = await self._records.intents(by, planned, self.zone.tick)
         for one in planned:
             moderate(one.command, self.moderation)
@@ -169,6 +193,7 @@ class Console:
         tick, faults = await self._in_a_tick(inputs, doors)
         if faults:
             await self._records.outcomes(by, planned, numbers, tick, faults)
+            self.settled = numbers[-1]
             raise RefusedError(faults).within(0) if len(commands) == 1 else RefusedError(faults)
         self._preparation.took(bodies, perf_counter() - began)
         await self._settle(by, planned, numbers, tick, facts)
@@ -196,10 +221,11 @@ class Console:
         try:
             await self._records.outcomes(by, ended, of_ended, tick, [], rows=rows)
         except StoreError:
-            before = _together([one.before for one in reversed(planned)])
+            before = together([one.before for one in reversed(planned)])
             self.state.take({subject: before[subject] for subject in kept})
             raise
         self.state.take({s: f for s, f in facts.items() if s not in kept})
+        self.settled = numbers[-1]
         for one, number in both:
             if isinstance(one.command, MODERATING):
                 continue
@@ -241,7 +267,7 @@ class Console:
         RefusedError
             The world does not take it.
         """
-        inputs, doors = inputs_for(facts, self.state, lambda: next(self._numbers))
+        inputs, doors = inputs_for(facts, self.state, self.new_number)
         price, _ = await self.ask(lambda: self._checked(inputs, 2))
         before = self.state.now(facts)
         tick, faults = await self._in_a_tick(inputs, doors)
@@ -272,7 +298,7 @@ class Console:
         planned: list[Planned] = []
         faults: list[CommandFault] = []
         for index, command in enumerate(commands):
-            pending = _together([one.after for one in planned])
+            pending = together([one.after for one in planned])
             try:
                 planned.append(self._plan_one(by, command, pending))
             except RefusedError as error:
@@ -442,7 +468,7 @@ class Console:
         self._ticks.append((due, future))
         return await future
 
-    async def load(self) -> None:
+    async def load_kept(self) -> None:
         """Take in the presets, schedules and guards that the store has kept.
 
         Raises
@@ -486,12 +512,3 @@ def _needed_for(change: Change) -> set[str]:
         if field == SCHEDULE and value is not None:
             needed |= ops_within(value["commands"])
     return needed
-
-
-def _together(all_facts: Sequence[Facts]) -> Facts:
-    """Facts one after the other: later ones prevail."""
-    found: Facts = {}
-    for facts in all_facts:
-        for subject, fields in facts.items():
-            found[subject] = {**found.get(subject, {}), **fields}
-    return found

@@ -3,6 +3,7 @@
 import asyncio
 from concurrent.futures import Executor
 from time import perf_counter
+from typing import Self
 
 import structlog
 
@@ -12,8 +13,10 @@ from esplanade.server.metrics import Metrics
 from esplanade.server.net.delivery import Delivery
 from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.hub import Hub
+from esplanade.server.net.lasting import Lasting
 from esplanade.server.net.schedule import Schedule
 from esplanade.server.world.audience import Audience
+from esplanade.server.world.inputs import Input
 from esplanade.server.world.zone import Zone
 
 log = structlog.get_logger(__name__)
@@ -46,6 +49,7 @@ class Ticker:
         self._thread = thread
         self._console = console
         self._stopping = asyncio.Event()
+        self._lasting: Lasting | None = None
         metrics.gauge(
             "walkers_shown",
             "Walkers whose steps are sent, counted for each viewer",
@@ -57,9 +61,19 @@ class Ticker:
             "ticks_given_up", "Ticks' worth of time lost", lambda: schedule.given_up_ticks
         )
 
+    def keeping(self, lasting: Lasting) -> Self:
+        """The same, seeing between ticks to what outlasts the process."""
+        self._lasting = lasting
+        return self
+
     def stop(self) -> None:
         """Let the tick that runs be the last."""
         self._stopping.set()
+
+    async def keep(self, *, in_order: bool) -> None:
+        """Keep what is to outlast the process, after the last tick."""
+        if self._lasting is not None:
+            await self._lasting.stop(in_order=in_order)
 
     async def run(self) -> None:
         while not await self._stopped_by(self._schedule.next_deadline):
@@ -77,7 +91,8 @@ class Ticker:
         loop = asyncio.get_running_loop()
         start = perf_counter()
         self._schedule.begin(loop.time())
-        self._link.send([*self._hub.drain(loop.time()), *self._console.drain()])
+        kept: list[Input] = [] if self._lasting is None else self._lasting.drain()
+        self._link.send([*kept, *self._hub.drain(loop.time()), *self._console.drain()])
         self._world.begin([*self._link.inputs(), *self._ground_work.drain()])
         actors_moved = await loop.run_in_executor(self._thread, self._think)
         self._link.publish(self._world.finish(actors_moved))
@@ -88,6 +103,8 @@ class Ticker:
             with self._world.times.stage("write"):
                 self._delivery.deliver(news, loop.time())
         self._metrics.tick_took(perf_counter() - start, self._world.times.seconds)
+        if self._lasting is not None:
+            self._lasting.between_ticks(loop.time())
 
     def _think(self) -> bool:
         try:

@@ -208,6 +208,14 @@ class ActorsDerived:
 
 
 @dataclass(frozen=True, slots=True)
+class IdsReserved:
+    """New avatars may get these ids too: from `first` up to and without `end`."""
+
+    first: int
+    end: int
+
+
+@dataclass(frozen=True, slots=True)
 class ActorsStood:
     """In this tick planning failed when it was recorded: the actors stand."""
 
@@ -226,4 +234,4 @@ ActorCommand = (
 )
 """Commands on actors. Each has a number, and a frame has the outcome of each by that number."""
 DerivedInput = DoorDerived | PotentialDerived | ActorsDerived
-Input = Join | MoveDoor | OfPerson | DerivedInput | ActorCommand | ActorsStood
+Input = Join | MoveDoor | OfPerson | DerivedInput | ActorCommand | ActorsStood | IdsReserved
