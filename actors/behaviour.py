@@ -7,10 +7,20 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from esplanade.actors.memory import (
+    FLAG,
+    MOMENT,
+    MOMENTS,
+    NUMBER,
+    PEOPLE,
+    PERHAPS_MOMENT,
+    PLACE,
+    Memory,
+)
 from esplanade.actors.sights import sight_at
 from esplanade.planning import Body, LayeredGrid, Scene
 from esplanade.planning.scene.heights import SAME_FLOOR_M
@@ -49,10 +59,15 @@ class Perception:
         return target
 
 
+_ASKED = "ask_at_s"
+
+
 class Behaviour(ABC):
     """Decides where an actor wants to be, when it is asked."""
 
     name: ClassVar[BehaviourName]
+    memory: ClassVar[Memory] = {}
+    """The attributes that `save` and `load` are about, beside `ask_at_s`."""
     ask_at_s: float = -math.inf
     """Time of the world, in seconds, when `update` wants to be called again; by default at once.
 
@@ -70,6 +85,26 @@ class Behaviour(ABC):
     def copy(self) -> Behaviour:
         """A copy that later updates leave as it is."""
         return copy(self)
+
+    def save(self) -> dict[str, Any]:
+        """Everything that later updates depend on, as plain data and sets."""
+        return {name: getattr(self, name) for name in (_ASKED, *self.memory)}
+
+    def load(self, saved: Mapping[str, Any]) -> None:
+        """Go on as the behaviour of the same kind would have that was saved.
+
+        Raises
+        ------
+        ValueError, KeyError
+            Something is missing, or is not what it should be.
+        """
+        for name, kind in {_ASKED: MOMENT, **self.memory}.items():
+            setattr(self, name, kind.validate_python(saved[name]))
+
+    def places(self) -> list[Goal]:
+        """The places that it has in mind."""
+        remembered = (getattr(self, name) for name, kind in self.memory.items() if kind is PLACE)
+        return [place for place in remembered if place is not None]
 
     @property
     def points_at(self) -> Goal | None:
@@ -115,6 +150,7 @@ class Wander(Behaviour):
     """Walk from place to place at random, resting at each; anywhere free if there are no places."""
 
     name = "wander"
+    memory: ClassVar[Memory] = {"_goal": PLACE, "_rest_until": PERHAPS_MOMENT}
 
     def __init__(self, pause_s: tuple[float, float] = (1.0, 4.0)) -> None:
         self._pause_s = pause_s
@@ -166,6 +202,7 @@ class Patrol(Behaviour):
     """Walk a list of places round and round, resting at each."""
 
     name = "patrol"
+    memory: ClassVar[Memory] = {"_next": NUMBER, "_rest_until": PERHAPS_MOMENT}
 
     def __init__(self, stops: Sequence[Target], pause_s: float = 2.0) -> None:
         if not stops:
@@ -174,6 +211,12 @@ class Patrol(Behaviour):
         self._pause_s = pause_s
         self._next = 0
         self._rest_until: float | None = None
+
+    def load(self, saved: Mapping[str, Any]) -> None:
+        """As of any behaviour; the next stop is one of the stops."""
+        super().load(saved)
+        if self._next >= len(self._stops):
+            raise ValueError(f"the next stop is {self._next}, of {len(self._stops)}")
 
     @property
     def resting(self) -> bool:
@@ -215,6 +258,14 @@ class Guide(Behaviour):
     """
 
     name = "guide"
+    memory: ClassVar[Memory] = {
+        "_near_since": MOMENTS,
+        "_followers": PEOPLE,
+        "_waiting_since": PERHAPS_MOMENT,
+        "_stop": PLACE,
+        "_sight": PLACE,
+        "_explains": FLAG,
+    }
 
     def __init__(
         self,
@@ -261,6 +312,15 @@ class Guide(Behaviour):
         other = copy(self)
         vars(other).update(_tour=copy(self._tour), _followers=set(self._followers))
         return other
+
+    def save(self) -> dict[str, Any]:
+        """As of any behaviour, with its way along the tour."""
+        return {**super().save(), "tour": self._tour.save()}
+
+    def load(self, saved: Mapping[str, Any]) -> None:
+        """As of any behaviour, with its way along the tour."""
+        super().load(saved)
+        self._tour.load(saved["tour"])
 
     def targets(self) -> Sequence[Target]:
         """The stops of the tour."""

@@ -15,6 +15,7 @@ from esplanade.actors.parameter_records import with_values
 from esplanade.actors.parameters import ActorParameters, body_of
 from esplanade.actors.people import ObservedPeople, People
 from esplanade.actors.potential_pool import Goal, GoalKey, PotentialPool, goal_key
+from esplanade.actors.saved_agents import check_saved
 from esplanade.actors.state import ActorState, Reason
 from esplanade.planning import (
     AgentTable,
@@ -324,6 +325,7 @@ class Navigator:
                 f"saved agents plan {table.agents.planned.shape[1] - 1} slices ahead, "
                 f"this zone {self.plan.slices}"
             )
+        check_saved(table, self.grid)
         self._rows.give_back(self.table)
         self.table = table
         self._rows.take_all(table)

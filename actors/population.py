@@ -17,6 +17,7 @@ from esplanade.actors.navigator import Navigator
 from esplanade.actors.parameters import ActorParameters, body_of
 from esplanade.actors.placing import Newcomer, Placing
 from esplanade.actors.potential_pool import GoalKey, RenewedPotential
+from esplanade.actors.saved_minds import SavedMinds, load_mind
 from esplanade.actors.state import ActorState, Reason
 from esplanade.actors.warming import warm_up
 from esplanade.planning import (
@@ -67,6 +68,7 @@ class Population:
         self._held: set[Hashable] = set()
         self._people: Mapping[Hashable, Goal] = {}
         self._placing = Placing(grid, scene)
+        self._minds = SavedMinds()
 
     @property
     def table(self) -> AgentTable:
@@ -121,6 +123,7 @@ class Population:
         for each, generator in zip(newcomers, generators, strict=True):
             self._behaviours[each.id] = each.behaviour
             self._generators[each.id] = generator
+        self._minds.change(each.id for each in newcomers)
 
     def places(
         self,
@@ -159,12 +162,14 @@ class Population:
         for actor_id in dict.fromkeys(ids):
             del self._behaviours[actor_id], self._generators[actor_id]
             self._held.discard(actor_id)
+        self._minds.change(ids)
 
     def set_behaviour(self, actor_id: Hashable, behaviour: Behaviour) -> None:
         """Give an actor another behaviour; KeyError for an unknown actor or place."""
         row = self.table.row(actor_id)
         self._check_targets(behaviour)
         self._behaviours[actor_id] = behaviour
+        self._minds.change([actor_id])
         trips = self.table.trips
         trips.arrived[row] = False
         trips.ask_at_s[row] = -np.inf
@@ -247,8 +252,58 @@ class Population:
             restore()
             self._behaviours, self._generators = behaviours, generators
             self._held, self.trips = held, trips
+            self._minds.change_all()
 
         return undo
+
+    def save(self) -> dict[str, Any]:
+        """Everything that later ticks of these actors depend on, as plain data and arrays.
+
+        What was seen of people is not in it: people who were away begin to be seen anew. Cost:
+        copies of the table, and a little for each actor whose behaviour was asked meanwhile.
+
+        Raises
+        ------
+        TypeError
+            An actor's id is neither text nor a whole number.
+        """
+        header, columns = self.table.save()
+        return {
+            "time_s": self._tick * self.navigator.tick_s,
+            "trips": self.trips,
+            "held": list(self._held),
+            "table": header,
+            "columns": columns,
+            "minds": self._minds.save(self._behaviours, self._generators),
+        }
+
+    def load(self, saved: Mapping[str, Any], behaviours: Mapping[Hashable, Behaviour]) -> None:
+        """Take the actors of a saved population in the place of those here.
+
+        `behaviours` are of the kinds that they had, one for each.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            Something is missing, or cannot be. Nothing is to be done with this population then.
+        """
+        self.navigator.load(saved["table"], saved["columns"])
+        ids, minds, held = self.table.ids, saved["minds"], set(saved["held"])
+        if not held <= set(ids):
+            raise ValueError("an actor is held that is not there")
+        if not math.isfinite(saved["time_s"]) or saved["time_s"] < 0.0:
+            raise ValueError(f"time_s: {saved['time_s']}")
+        self._behaviours = {actor_id: behaviours[actor_id] for actor_id in ids}
+        self._generators = {actor_id: self.generator(actor_id) for actor_id in ids}
+        for actor_id, packed in zip(ids, minds, strict=True):
+            behaviour = self._behaviours[actor_id]
+            load_mind(packed, behaviour, self._generators[actor_id])
+            self.check_targets(behaviour)
+            for x, y, z_m in behaviour.places():
+                self.navigator.check_place((x, y), z_m)
+        self._held, self.trips = held, int(saved["trips"])
+        self._tick = round(saved["time_s"] / self.navigator.tick_s)
+        self._minds.change_all()
 
     def tick(self, people: Mapping[Hashable, Goal]) -> dict[Hashable, ActorState]:
         """`advance`, then the states of all actors: id -> state."""
@@ -312,6 +367,7 @@ class Population:
         """Ask a behaviour where its actor is to go, and send it there."""
         behaviour, generator = self._behaviours[actor_id], self._generators[actor_id]
         self._asked.append((actor_id, behaviour.copy(), generator.bit_generator.state))
+        self._minds.change([actor_id])
         agents, trips = self.table.agents, self.table.trips
         arrived = bool(trips.arrived[row])
         x, y = agents.positions[row].tolist()

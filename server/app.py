@@ -3,9 +3,10 @@
 import asyncio
 import time
 from collections.abc import AsyncIterator, Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 
 import structlog
 
@@ -15,10 +16,14 @@ from esplanade.planning.routes.storey_heights import reached_from, storeys_of
 from esplanade.protocol.preset_files import PresetFileError
 from esplanade.server.accounts.kept import Kept
 from esplanade.server.assets import Assets
+from esplanade.server.checkpoint.parts import with_faults_told
+from esplanade.server.checkpoint.seat_keeper import SeatKeeper
+from esplanade.server.checkpoint.writer import CheckpointWriter
 from esplanade.server.console.console import Console
 from esplanade.server.console.gate import Gate
 from esplanade.server.console.preset_folder import read_presets
 from esplanade.server.console.presets import Presets
+from esplanade.server.console.redoing import redo, remember
 from esplanade.server.crowding import warn_of_crowding
 from esplanade.server.entrances import make_gate, people_url, private_certificate
 from esplanade.server.keeping import keeping
@@ -33,6 +38,7 @@ from esplanade.server.net.door_commands import DoorCommands
 from esplanade.server.net.entrance import Entrance
 from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.hub import Hub
+from esplanade.server.net.lasting import Lasting, watch
 from esplanade.server.net.listener import Listener, connections_wanted
 from esplanade.server.net.listening import bound_sockets
 from esplanade.server.net.private import private_port
@@ -42,13 +48,16 @@ from esplanade.server.net.schedule import Schedule
 from esplanade.server.net.search_budget import SearchBudget
 from esplanade.server.net.ticker import Ticker
 from esplanade.server.net.tls import Tls, renewed
+from esplanade.server.past import Past, read_past, tell_the_lost
 from esplanade.server.populating import default_roster, names_of, populate_from
 from esplanade.server.rehearsal import rehearse, rehearse_walking
+from esplanade.server.roster import Roster
 from esplanade.server.settings import ServerSettings
 from esplanade.server.warming import kernels_compiled
 from esplanade.server.world.audience import Audience
 from esplanade.server.world.pace import Pace
-from esplanade.server.world.zone import Zone
+from esplanade.server.world.saved_zone import saved_specs, set_doors
+from esplanade.server.world.zone import ROOM_FOR_ACTORS, Zone
 
 log = structlog.get_logger(__name__)
 
@@ -107,9 +116,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     places = places_for_people(connections_wanted(settings))
     tls = _tls(settings)
     loaded, presets = _with_roster(load_scene(settings), settings), _presets(settings)
-    assets, mesh = assets or Assets.load(), None
-    if loaded.triangles is not None:
-        assets, mesh = assets.with_data("mesh", loaded.triangles)
+    assets, mesh = _with_mesh(assets or Assets.load(), loaded)
     metrics = Metrics()
     loop = asyncio.get_running_loop()
     readiness = Readiness(metrics)
@@ -127,8 +134,9 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         for each in sockets:
             stack.callback(each.close)
         gate.people_url = people_url(settings, sockets[0].getsockname()[1])
+        past = await read_past(kept, settings, loaded)
         population, world, storeys = await loop.run_in_executor(
-            thread, build_world, loaded, settings
+            thread, build_world, loaded, settings, past
         )
         stack.callback(population.close)
         _watch(world, population, metrics)
@@ -138,6 +146,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         route_requests = RouteRequests(world, searching, SearchBudget())
         _watch_routes(route_requests, metrics)
         audience = Audience(world.rules, world.origin_m, world.times)
+        lasting = _lasting(world, past, kept, metrics)
         hub = Hub(
             world,
             audience,
@@ -145,21 +154,28 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             settings,
             metrics,
             lambda: schedule.world_time(world.tick, loop.time()),
-            {"storeys": storeys} if mesh is None else {"storeys": storeys, "mesh": mesh},
+            {"storeys": storeys, **mesh},
             Entrance(settings, kept, metrics),
             schedule.pace,
+            lasting.seats,
         )
         delivery = Delivery(audience, hub.sessions, settings.tick_rate, hub.stop_watching)
         link = LocalLink()
+        console = await _went_on(
+            await stack.enter_async_context(
+                _console(world, hub, kept, loaded, metrics, presets, schedule.pace)
+            ),
+            past,
+            kept,
+            hub,
+            thread,
+        )
         deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
         ground_work = GroundWork(world, deriving)
-        console = await stack.enter_async_context(
-            _console(world, hub, kept, loaded, metrics, presets, schedule.pace)
-        )
         gate.console = console
         ticker = Ticker(
             world, ground_work, audience, link, hub, delivery, schedule, metrics, thread, console
-        )
+        ).keeping(lasting)
         gate.live = live = _live(world, storeys, console, metrics, settings)
         ticker.tap = live.tap
         await stack.enter_async_context(
@@ -177,7 +193,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
 
 
 def build_world(
-    loaded: LoadedScene, settings: ServerSettings
+    loaded: LoadedScene, settings: ServerSettings, past: Past | None = None
 ) -> tuple[Population, Zone, list[float]]:
     """The world of a loaded scene, ready to tick: its actors, itself, the heights of its storeys.
 
@@ -189,16 +205,26 @@ def build_world(
         The scene has no room for the actors.
     """
     with kernels_compiled(lambda: rehearse_walking(loaded.rules, settings.tick_s)) as ready_to_plan:
-        return _build_warm(loaded, settings, ready_to_plan)
+        return _build_warm(loaded, settings, ready_to_plan, past)
 
 
 def _build_warm(
-    loaded: LoadedScene, settings: ServerSettings, ready_to_plan: Callable[[], None]
+    loaded: LoadedScene,
+    settings: ServerSettings,
+    ready_to_plan: Callable[[], None],
+    past: Past | None,
 ) -> tuple[Population, Zone, list[float]]:
     tick_s, seed = settings.tick_s, settings.seed
     try:
         grid = LayeredGrid.from_scene(loaded.scene)
         roster = loaded.roster or default_roster(loaded.scene, settings.actors, seed)
+        names = names_of(roster)
+        saved = None if past is None else past.zone
+        if saved is not None:
+            with_faults_told("zone", partial(set_doors, grid), saved)
+            if len(saved["specs"]) > len(names) + ROOM_FOR_ACTORS:
+                names = {spec.id: spec.name for spec in saved_specs(saved)}
+            roster = Roster()  # the saved actors come in when kernels are ready
         population = populate_from(
             roster,
             grid,
@@ -211,7 +237,7 @@ def _build_warm(
             loaded.scene,
             grid,
             population,
-            names_of(roster),
+            names,
             loaded.rules,
             tick_s=tick_s,
             max_people=settings.max_clients,
@@ -222,18 +248,35 @@ def _build_warm(
     except ValueError as error:
         raise LoadingError(f"scene {loaded.scene.name!r}: {error}") from error
     population.warm_up(ready_to_plan)
+    if past is not None:
+        _bring_back(world, past)
     rehearse(loaded.rules, tick_s)
     starts = [(*spawn.position, spawn.z_m) for spawn in loaded.scene.spawns]
     storeys = storeys_of(grid, reached_from(grid, starts))
     return population, world, [round(height, 2) for height in storeys]
 
 
+def _bring_back(world: Zone, past: Past) -> None:
+    """Let a world without anybody go on from its past."""
+    if past.ids is not None:
+        world.state.begin_ids(*past.ids)
+    if past.zone is not None:
+        with_faults_told("zone", lambda saved: world.load(saved, past.people), past.zone)
+    else:
+        for person in past.people:
+            world.put(person)
+    world.skip_to(past.tick)
+
+
 async def _stop(ticker: Ticker, ticking: "asyncio.Task[None]", hub: Hub, gate: Gate) -> None:
     gate.console = gate.live = None
     ticker.stop()
+    in_order = False
     try:
         await ticking
+        in_order = True
     finally:
+        await ticker.keep(in_order=in_order)
         await hub.close()
 
 
@@ -332,7 +375,7 @@ async def _console(
         "Operators' lists of commands that are carried out or wait for their turn",
         lambda: console.waiting,
     )
-    await console.load()
+    await console.load_kept()
     try:
         yield console
     finally:
@@ -357,6 +400,50 @@ def _live(
     )
     console.listen(live.bulletin.heard)
     return live
+
+
+def _with_mesh(assets: Assets, loaded: LoadedScene) -> tuple[Assets, dict[str, str]]:
+    """The assets with the triangles of a mesh, and what a welcome says of where they are."""
+    if loaded.triangles is None:
+        return assets, {}
+    assets, mesh = assets.with_data("mesh", loaded.triangles)
+    return assets, {"mesh": mesh}
+
+
+def _lasting(world: Zone, past: Past, kept: Kept, metrics: Metrics) -> Lasting:
+    """Make what lets the world outlast its process, if the store does."""
+    if kept.store.location.in_memory:
+        return Lasting(world, kept.store)
+    keeper = SeatKeeper(kept.store)
+    writer = CheckpointWriter(past.parts, kept.store, past.scene)
+    watch(keeper, writer, metrics)
+    return Lasting(world, kept.store, keeper, writer)
+
+
+async def _went_on(console: Console, past: Past, kept: Kept, hub: Hub, thread: Executor) -> Console:
+    """The console, with everything where the audit says that it was when the server ended.
+
+    Here all parts of checkpoints are registered.
+
+    Raises
+    ------
+    StoreError
+        A part cannot be read, or the store cannot be used.
+    """
+    parts, loop = past.parts, asyncio.get_running_loop()
+    console.begun = kept.started
+    hub.restore(past.left)
+    parts.part("zone", console.zone.save)
+    parts.part("seats", hub.save_seats)
+    parts.part("mutes", hub.moderation.save, hub.moderation.load)
+    parts.part("console", console.save, console.load)
+    parts.part("pace", console.pace.save, lambda saved: console.pace.load(saved, loop.time()))
+    if parts.restored is not None:
+        await loop.run_in_executor(thread, redo, console, past.tail)
+        remember(console, past.tail)
+        await tell_the_lost(past, kept)
+        log.info("goes on", tick=console.zone.tick, people=len(past.left.waiting))
+    return console
 
 
 def _watch_routes(route_requests: RouteRequests, metrics: Metrics) -> None:

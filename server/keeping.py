@@ -42,10 +42,11 @@ async def keeping(settings: ServerSettings, metrics: Metrics) -> AsyncIterator[K
         audit, passwords, lockout = AuditLog(store, WRITER), Passwords(), Lockout()
         _watch(store, lockout, metrics)
         if location.in_memory:
-            log.info("nothing is kept when this ends; --data keeps operators and the audit")
+            log.info("nothing is kept when this ends; --data keeps the world and its operators")
         else:
             log.info("kept", store=str(location))
-        await audit.record(Entry(command="server_start"))
+        body = {"fresh": True} if settings.fresh else {}
+        started = await audit.record(Entry(command="server_start", body=body))
         try:
             yield Kept(
                 store,
@@ -58,6 +59,7 @@ async def keeping(settings: ServerSettings, metrics: Metrics) -> AsyncIterator[K
                 OneTime(store, audit, passwords),
                 Invitations(store, audit),
                 Bots(store, audit),
+                started,
             )
         finally:
             passwords.close()

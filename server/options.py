@@ -82,7 +82,8 @@ _PEOPLE: Final = {
 }
 _DATA: Final = {
     "data": Setting(
-        "folder of what outlives the process, made if it is not there: operators and the audit; "
+        "folder of what outlives the process, made if it is not there: the world as it is, its "
+        "operators and the audit; "
         "without it, nothing does",
         Folder(),
     ),
@@ -91,6 +92,11 @@ _DATA: Final = {
         "better set in the environment than here",
         Text(),
         "",
+    ),
+    "fresh": Setting(
+        "begin the world anew instead of going on from where it ended; accounts and the audit stay",
+        Flag(),
+        default=False,
     ),
     "durable": Setting(
         "what is kept outlives a loss of power too, and each change waits for the disk",
@@ -359,7 +365,7 @@ def parser(prog: str = "esplanade serve") -> Parser:
 examples:
   esplanade serve                                  the gallery, with ten actors
   esplanade serve --scene scenes/plaza.json --actors 30 --port 9000
-  esplanade serve --data world                     operators and the audit are kept there
+  esplanade serve --data world                     the world goes on from there after a restart
   esplanade serve --crowd zara1.csv                then `esplanade bots --replay zara1.csv`
 
 Every option can also be given as an environment variable: --tick-rate is ESPLANADE_TICK_RATE.

@@ -46,6 +46,7 @@ class ServerSettings(BaseSettings):
 
     data: Path | None = _field("data")
     store: SecretStr = _field("store")
+    fresh: bool = _field("fresh")
     durable: bool = _field("durable")
 
     host: str = _field("host")

@@ -28,3 +28,5 @@ class Kept:
     one_time: OneTime
     invitations: Invitations
     bots: Bots
+    started: int
+    """The row of the audit that says that this server has started."""

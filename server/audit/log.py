@@ -91,6 +91,30 @@ class AuditLog:
         more = len(found) > limit
         return Page(rows, (rows[-1].at_us, rows[-1].id) if more else None)
 
+    async def own_rows(self, after: int, most: int) -> list[Row]:
+        """The rows of this writer with numbers above `after`, in order; at most the last ones.
+
+        Raises
+        ------
+        StoreError
+            The store cannot be read.
+        """
+        query = (
+            select(*(AUDIT.c[name] for name in _SHOWN))
+            .where(
+                AUDIT.c.zone == self._store.zone,
+                AUDIT.c.writer == self._writer,
+                AUDIT.c.seq > after,
+            )
+            .order_by(AUDIT.c.seq.desc())
+            .limit(most)
+        )
+
+        def read(connection: Connection) -> list[Row]:
+            return [_row(found) for found in connection.execute(query)]
+
+        return (await self._store.read(read))[::-1]
+
     async def rows(self, wanted: Filter) -> AsyncIterator[Row]:
         """All rows that are wanted, the newest first, in reads that are short."""
         after: Cursor | None = None

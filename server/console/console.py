@@ -29,6 +29,7 @@ from esplanade.server.accounts.identity import Identity
 from esplanade.server.accounts.rights import COMMANDS, as_text, may
 from esplanade.server.audit.log import AuditLog, now_us
 from esplanade.server.console.changes import Change, Changes
+from esplanade.server.console.facts import together
 from esplanade.server.console.figures import ContactRate, zone_figures
 from esplanade.server.console.groups import GROUP
 from esplanade.server.console.guards import Guard
@@ -37,7 +38,8 @@ from esplanade.server.console.inputs import inputs_for
 from esplanade.server.console.intents import intended
 from esplanade.server.console.kept_intents import KEPT, check_guard, kept_facts, ops_within
 from esplanade.server.console.kept_rows import rows_of
-from esplanade.server.console.lasting import LastingChanges
+from esplanade.server.console.lasting import LastingChanges, is_ramp, lasts
+from esplanade.server.console.listeners import Listener, Listeners
 from esplanade.server.console.moderation import (
     MODERATING,
     Moderation,
@@ -112,8 +114,12 @@ class Console:
         self.scheduler = Scheduler(self, self.figures, contacts, store, audit, clock_us)
         self._clock_us = clock_us
         self._preparation = Preparation(zone)
-        self._listeners: list[Callable[[str, dict[str, Any]], None]] = []
+        self._listeners = Listeners()
         self._ticks: list[tuple[int, asyncio.Future[int]]] = []
+        self.begun = 0
+        """The row of the audit, of the server's chain, with which the world of now began."""
+        self.settled = 0
+        """The last command whose outcome is in the audit; all before it is in the state too."""
         self._records = Records(store, audit)
         self.lasting = LastingChanges(self, self._records)
         self.turn = asyncio.Lock()
@@ -129,6 +135,25 @@ class Console:
     def waiting(self) -> int:
         """Number of lists of commands that wait for their turn, or are being carried out."""
         return self._waiting
+
+    def new_number(self) -> int:
+        """A number for an input, by which its outcome is known."""
+        return next(self._numbers)
+
+    def save(self) -> dict[str, Any]:
+        """What is set, and which commands are in it; call it between two ticks."""
+        return {"begun": self.begun, "settled": self.settled, "state": self.state.save()}
+
+    def load(self, saved: Mapping[str, Any]) -> None:
+        """Go on from what was saved.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            Something is missing, or cannot be.
+        """
+        self.begun, self.settled = int(saved["begun"]), int(saved["settled"])
+        self.state.load(saved["state"])
 
     # --- the path -------------------------------------------------------------------------------
 
@@ -161,15 +186,15 @@ class Console:
         if dragged is not None:
             return [self._answer(dragged.planned, **dragged.found)]
         planned = self._plan(by, commands)
-        facts = _together([one.after for one in planned])
-        inputs, doors = inputs_for(facts, self.state, lambda: next(self._numbers))
+        facts = together([one.after for one in planned])
+        inputs, doors = inputs_for(facts, self.state, self.new_number)
         price, bodies = await self.ask(lambda: self._checked(inputs, len(commands)))
         prepare_s = self._preparation.seconds(bodies) if price == "prepared" else None
         if commands[0].dry_run:
             return [self._answer(one, price=price, prepare_s=prepare_s) for one in planned]
-        if any(map(_is_ramp, commands)):  # their values come later, a bit in each tick
-            facts = _together([one.after for one in planned if not _is_ramp(one.command)])
-            inputs, doors = inputs_for(facts, self.state, lambda: next(self._numbers))
+        if any(map(is_ramp, commands)):  # their values come later, a bit in each tick
+            facts = together([one.after for one in planned if not is_ramp(one.command)])
+            inputs, doors = inputs_for(facts, self.state, self.new_number)
         numbers = await self._records.intents(by, planned, self.zone.tick)
         for one in planned:
             moderate(one.command, self.moderation)
@@ -177,6 +202,7 @@ class Console:
         tick, faults = await self._in_a_tick(inputs, doors, facts.get(PACE, {}))
         if faults:
             await self._records.outcomes(by, planned, numbers, tick, faults)
+            self.settled = numbers[-1]
             raise RefusedError(faults).within(0) if len(commands) == 1 else RefusedError(faults)
         self._preparation.took(bodies, perf_counter() - began)
         await self._settle(by, planned, numbers, tick, facts)
@@ -199,34 +225,35 @@ class Console:
         self.state.take(kept)
         guards = self._guards(by, both)
         rows = [*rows_of(kept, self.state), *map(guard_row, guards)]
-        done = [(one, number) for one, number in both if not _lasts(one.command)]
+        done = [(one, number) for one, number in both if not lasts(one.command)]
         ended, of_ended = [one for one, _ in done], [number for _, number in done]
         try:
             await self._records.outcomes(by, ended, of_ended, tick, [], rows=rows)
         except StoreError:
-            before = _together([one.before for one in reversed(planned)])
+            before = together([one.before for one in reversed(planned)])
             self.state.take({subject: before[subject] for subject in kept})
             raise
         self.state.take({s: f for s, f in facts.items() if s not in kept})
+        self.settled = numbers[-1]
         for one, number in both:
             if isinstance(one.command, MODERATING) or STEPPED in one.after.get(PACE, {}):
                 continue
-            is_ramp = _is_ramp(one.command)
+            ramps = is_ramp(one.command)
             change = Change(
                 number,
                 by.account,
                 one.command.op,
                 copy.deepcopy(one.before),
-                copy.deepcopy(one.before if is_ramp else one.after),
+                copy.deepcopy(one.before if ramps else one.after),
                 one.reverts,
                 at_us=self._clock_us(),
                 tick=tick,
                 note=one.command.text if isinstance(one.command, Mark) else one.command.note,
             )
             self.changes.add(change)
-            if is_ramp:
+            if ramps:
                 self.lasting.begin_ramp(by, one, change, tick or self.zone.tick)
-            elif _lasts(one.command):
+            elif lasts(one.command):
                 self.lasting.begin_stream(by, one, change, tick or self.zone.tick)
             self.tell_change(change)
         for guard in guards:
@@ -249,7 +276,7 @@ class Console:
         RefusedError
             The world does not take it.
         """
-        inputs, doors = inputs_for(facts, self.state, lambda: next(self._numbers))
+        inputs, doors = inputs_for(facts, self.state, self.new_number)
         price, _ = await self.ask(lambda: self._checked(inputs, 2))
         before = self.state.now(facts)
         tick, faults = await self._in_a_tick(inputs, doors)
@@ -262,31 +289,17 @@ class Console:
 
     # --- what others are told -------------------------------------------------------------------
 
-    def listen(self, listener: Callable[[str, dict[str, Any]], None]) -> None:
-        """Let somebody know of each change from now on, on the zone's loop.
-
-        The listener is called with `change` and the change as plain data, with `mark` and what was
-        marked, or with `about` and what is to be asked for anew: presets, schedules or groups.
-        """
-        self._listeners.append(listener)
+    def listen(self, listener: Listener) -> None:
+        """Let somebody know of each change from now on, on the zone's loop; see `Listeners`."""
+        self._listeners.add(listener)
 
     def tell(self, kind: str, what: dict[str, Any]) -> None:
-        """Tell the listeners something; a fault of one is logged."""
-        for listener in self._listeners:
-            try:
-                listener(kind, what)
-            except Exception:
-                log.exception("a listener of the console failed", kind=kind)
+        """Tell the listeners something."""
+        self._listeners.tell(kind, what)
 
     def tell_change(self, change: Change) -> None:
         """Tell the listeners what a change is now."""
-        if change.op == "mark":
-            told = {"number": change.number, "at_us": change.at_us, "tick": change.tick}
-            self.tell("mark", {**told, "account": change.account, "text": change.note})
-        self.tell("change", plain_change(change, self))
-        abouts = {_about(subject, field) for subject, field, _ in each(change.after)}
-        for about in sorted(abouts - {""}):
-            self.tell("about", {"about": about})
+        self._listeners.tell_change(change, plain_change(change, self))
 
     # --- checks ---------------------------------------------------------------------------------
 
@@ -294,7 +307,7 @@ class Console:
         planned: list[Planned] = []
         faults: list[CommandFault] = []
         for index, command in enumerate(commands):
-            pending = _together([one.after for one in planned])
+            pending = together([one.after for one in planned])
             try:
                 planned.append(self._plan_one(by, command, pending))
             except RefusedError as error:
@@ -481,7 +494,7 @@ class Console:
         self._ticks.append((due, future))
         return await future
 
-    async def load(self) -> None:
+    async def load_kept(self) -> None:
         """Take in the presets, schedules and guards that the store has kept.
 
         Raises
@@ -527,28 +540,3 @@ def _needed_for(change: Change) -> set[str]:
         if field == SCHEDULE and value is not None:
             needed |= ops_within(value["commands"])
     return needed
-
-
-def _is_ramp(command: Command) -> bool:
-    return isinstance(command, SetParameters) and command.over_s is not None
-
-
-def _lasts(command: Command) -> bool:
-    """Whether a change goes on after its first tick."""
-    return isinstance(command, SetParameters) and (command.stream or command.over_s is not None)
-
-
-def _about(subject: str, field: str) -> str:
-    """What is to be asked for anew when a fact is another."""
-    if field.startswith(GROUP):
-        return "groups"
-    return {"preset": "presets", "schedule": "schedules"}.get(subject.partition(":")[0], "")
-
-
-def _together(all_facts: Sequence[Facts]) -> Facts:
-    """Facts one after the other: later ones prevail."""
-    found: Facts = {}
-    for facts in all_facts:
-        for subject, fields in facts.items():
-            found[subject] = {**found.get(subject, {}), **fields}
-    return found

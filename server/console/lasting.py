@@ -216,6 +216,16 @@ class LastingChanges:
         await asyncio.gather(*ramps, *self._rows, return_exceptions=True)
 
 
+def is_ramp(command: Command) -> bool:
+    """Whether the values of a command come later, a bit in each tick."""
+    return isinstance(command, SetParameters) and command.over_s is not None
+
+
+def lasts(command: Command) -> bool:
+    """Whether a change goes on after its first tick."""
+    return isinstance(command, SetParameters) and (command.stream or command.over_s is not None)
+
+
 def start_of(facts: Facts, state: OperatedState) -> dict[str, dict[str, float]]:
     """The values that hold in the scopes of facts now, from wider scopes where they have none."""
     found: dict[str, dict[str, float]] = {}

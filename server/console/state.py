@@ -1,6 +1,6 @@
 """The facts that operators can change, as fields of subjects that can be compared."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
 from esplanade.actors import ActorSpec, Overrides, Scope
@@ -96,6 +96,41 @@ class OperatedState:
                     self.schedules.take(name, value)
         self.groups = self.groups.taking(facts)
         self.overrides = with_facts(self.overrides, facts)
+
+    def save(self) -> dict[str, Any]:
+        """What is set, as plain data."""
+        return {
+            "overrides": [
+                [scope.level, scope.name, dict(values)]
+                for scope, values in self.overrides.values.items()
+            ],
+            "held": list(self.held),
+            "doors": dict(self._doors),
+            "groups": self.groups.save(),
+        }
+
+    def load(self, saved: Mapping[str, Any]) -> None:
+        """Set what was saved.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            Something is missing, or cannot be.
+        """
+        overrides = Overrides()
+        for level, name, values in saved["overrides"]:
+            if level not in {"world", "group", "own"}:
+                raise ValueError(f"there is no scope of level {level!r}")
+            for value in values.values():
+                if isinstance(value, bool) or not isinstance(value, int | float):
+                    raise TypeError(f"a parameter cannot be {value!r}")
+            overrides = overrides.with_values(Scope(level, name), values)
+        groups = Groups.load(saved.get("groups", {"actors": {}}))
+        for spec in self.zone.actors.values():
+            overrides.parameters(spec.id, groups.names(spec))
+        doors = {str(name): bool(is_open) for name, is_open in saved["doors"].items()}
+        self.overrides, self.held, self._doors = overrides, set(saved["held"]), doors
+        self.groups = groups
 
     def reached(self, scopes: Iterable[Scope], facts: Facts) -> list[ActorSpec]:
         """The actors whose parameters may be others when values in these scopes are, or groups."""

@@ -2,12 +2,15 @@
 
 import asyncio
 from collections.abc import Callable, Mapping
-from typing import Final
+from typing import Any, Final
 
 import structlog
 
 from esplanade.protocol import ByeCode, CloseCode, ErrorCode, ProtocolError
-from esplanade.protocol.messages import Bye, Hello, Move, SetDoor, WalkTo
+from esplanade.protocol.messages import Bye, Error, Hello, Move, SetDoor, WalkTo
+from esplanade.server.checkpoint.returning import Left
+from esplanade.server.checkpoint.rows import KeptSeat
+from esplanade.server.checkpoint.seat_keeper import SeatKeeper
 from esplanade.server.metrics import Metrics
 from esplanade.server.net import frames
 from esplanade.server.net.door_commands import DoorCommands
@@ -46,6 +49,8 @@ from esplanade.server.world.zone import Zone
 
 MAX_JOINS_PER_TICK: Final = 16
 """Each join costs every neighbour an enter message, so a crowd comes in over some ticks."""
+NAMELESS: Final = "Guest"
+"""The name of somebody who comes back with one that nobody may bear any more."""
 MAX_LINES: Final = 1024
 """Lines of chat that may wait for the next tick, of all people together."""
 
@@ -71,8 +76,12 @@ class Hub:
         derived: Mapping[str, object],
         entrance: Entrance | None = None,
         pace: Pace | None = None,
+        keeper: SeatKeeper | None = None,
     ) -> None:
-        """Without an entrance nobody is asked what lets them in."""
+        """Without an entrance nobody is asked what lets them in.
+
+        With a `keeper`, nobody is welcomed before their seat is in the store.
+        """
         self.server_time = server_time
         self.sessions: dict[int, Session] = {}
         """Sessions that have been welcomed, by their avatar's id."""
@@ -83,6 +92,7 @@ class Hub:
         self._metrics = metrics
         self._welcomes = Welcomes(world, settings, server_time, derived)
         self._seats: Seats[Session] = Seats()
+        self._keeper = keeper
         self._names = Names(world.actor_names)
         self._leases = Leases(world.moves)
         self._operator_keys = OperatorKeys(settings.operator_key.get_secret_value(), metrics)
@@ -258,6 +268,8 @@ class Hub:
         seat = None if session.avatar_id is None else self._seats.of(session.avatar_id)
         if seat is not None and seat.occupant is session:
             self._seats.confirm(seat)
+            if self._keeper is not None:
+                self._keeper.confirm(seat.avatar_id, seat.address, tuple(seat.digests))
 
     def depart(self, session: Session, comes_back: bool) -> None:
         """Let go of a session that has ended; its avatar waits if the person may come back."""
@@ -291,7 +303,7 @@ class Hub:
         # A line is said before its speaker goes.
         inputs: list[Input] = [*self._spoken(), *self._comings]
         at_the_door = [ticket for ticket in self._joining if ticket not in self._asked]
-        for ticket in at_the_door[:MAX_JOINS_PER_TICK]:
+        for ticket in at_the_door[: min(MAX_JOINS_PER_TICK, self._world.state.ids_left)]:
             session, hello = self._joining[ticket]
             anywhere = session.is_operator or self._settings.crowd is not None
             inputs.append(Join(ticket, session.name, hello.at, anywhere))
@@ -324,12 +336,12 @@ class Hub:
             session.token = self._seats.issue(avatar_id, session.name, session.address, session)
             self._seats.walks_in(avatar_id, session.operator)
             session.avatar_id = avatar_id
-            self._bind(session, avatar_id, resumed=False)
+            self._keep_new(session, avatar_id)
         for ticket, avatar_id in frame.attached:
             seat = self._seats.of(avatar_id)
             # Somebody else may have come back to the avatar since; the later one has it.
             if seat is not None and seat.occupant is not None and seat.occupant.ticket == ticket:
-                self._bind(seat.occupant, avatar_id, resumed=True)
+                self._bind(seat.occupant, avatar_id, resumed=seat.occupant.resumes)
 
     async def close(self) -> None:
         """Say goodbye to everyone and wait until they are gone, or cut off."""
@@ -341,6 +353,54 @@ class Hub:
             await asyncio.wait(tasks)
 
     # --- seats --------------------------------------------------------------------------------
+
+    def save_seats(self) -> dict[str, Any]:
+        """The seats there are, and for how long each has waited; their rows say whose they are."""
+        now = asyncio.get_running_loop().time()
+        return {"next_id": self._world.state.next_id, "vacant_s": self._seats.vacant_s(now)}
+
+    def restore(self, left: Left) -> None:
+        """Let people come back to seats from before a restart; the world has their avatars."""
+        now = asyncio.get_running_loop().time()
+        for kept, waited_s in left.waiting:
+            try:
+                name = self._names.take(kept.name)
+            except ReservedNameError:
+                name = self._names.take(NAMELESS)
+            digests = list(kept.digests)
+            seat: Seat[Session] = Seat(kept.avatar, name, kept.address, None, digests)
+            self._seats.restore(seat, now - waited_s)
+        if self._keeper is not None:
+            for avatar_id in left.gone:
+                self._keeper.remove(avatar_id)
+
+    def _keep_new(self, session: Session, avatar_id: int) -> None:
+        """Write the seat of a newcomer, who is welcomed once it is committed."""
+        seat = self._seats.of(avatar_id)
+        if self._keeper is None or seat is None:
+            self._bind(session, avatar_id, resumed=False)
+            return
+        place, digests = self._world.where(avatar_id), tuple(seat.digests)
+        kept = KeptSeat(avatar_id, seat.name, seat.address, digests, place)
+        self._when_kept(self._keeper.add(kept), session)
+
+    def _when_kept(self, done: "asyncio.Future[bool]", session: Session) -> None:
+        done.add_done_callback(lambda done: self._let_in(session, is_kept=done.result()))
+
+    def _let_in(self, session: Session, *, is_kept: bool) -> None:
+        """Let somebody look whose seat is in the store now, or end the session if it is not."""
+        seat = None if session.avatar_id is None else self._seats.of(session.avatar_id)
+        if seat is None or seat.occupant is not session:
+            return
+        if is_kept:
+            self._comings += [Detach(seat.avatar_id), Attach(seat.avatar_id, session.ticket)]
+            return
+        text = "your seat cannot be kept just now; come again"
+        self._unbind(seat)
+        self._remove(seat)
+        self._metrics.errors.labels(ErrorCode.SERVER_FULL.value).inc()
+        farewell = frames.message(Error(error=ErrorCode.SERVER_FULL, text=text))
+        session.dismiss(farewell, CloseCode.SERVER_FULL, ErrorCode.SERVER_FULL.value)
 
     def _make_room(self) -> None:
         """Take a vacant seat away, so that a newcomer finds room.
@@ -406,7 +466,13 @@ class Hub:
         session.token = self._seats.renew(seat, token)
         session.ticket = self._next_ticket
         self._next_ticket += 1
-        self._comings += [Detach(seat.avatar_id), Attach(seat.avatar_id, session.ticket)]
+        session.resumes = True
+        self._comings.append(Detach(seat.avatar_id))
+        if self._keeper is None:
+            self._comings.append(Attach(seat.avatar_id, session.ticket))
+            return
+        digests = tuple(seat.digests)
+        self._when_kept(self._keeper.change(seat.avatar_id, seat.address, digests), session)
 
     def _bind(self, session: Session, avatar_id: int, resumed: bool) -> None:
         self.sessions[avatar_id] = session
@@ -436,6 +502,8 @@ class Hub:
         self._seats.remove(seat)
         self._names.give_back(seat.name)
         self._comings.append(Leave(seat.avatar_id))
+        if self._keeper is not None:
+            self._keeper.remove(seat.avatar_id)
 
     def _run_for_s(self, now: float) -> float:
         """A clock that stands while the world does: nobody's seat is lost in a pause."""

@@ -1,7 +1,8 @@
 """Moderates people for operators: announcements, mutes, and the way out."""
 
+import math
 from collections.abc import Callable, Mapping
-from typing import Final
+from typing import Any, Final
 
 import structlog
 
@@ -30,6 +31,24 @@ class PeopleModeration:
         self._kick = kick
         self._now_s = now_s
         self._muted_until_s: dict[int, float] = {}
+
+    def save(self) -> dict[int, float]:
+        """For how many seconds each person is muted yet, by the avatar."""
+        now_s = self._now_s()
+        return {who: end - now_s for who, end in self._muted_until_s.items() if end > now_s}
+
+    def load(self, saved: Mapping[Any, Any]) -> None:
+        """Go on from what was saved: time counts only while the world runs.
+
+        Raises
+        ------
+        ValueError, TypeError
+            It is not what `save` gives.
+        """
+        now_s = self._now_s()
+        if len(saved) > MOST_MUTED or not all(map(math.isfinite, saved.values())):
+            raise ValueError("these are no mutes")
+        self._muted_until_s = {int(who): now_s + left_s for who, left_s in saved.items()}
 
     def name_of(self, person: int) -> str | None:
         """Return the name of a connected person."""

@@ -56,6 +56,22 @@ class Seats(Generic[Occupant]):
         if operator is not None and operator.via == "pass":
             self._by_avatar[avatar_id].operator = operator
 
+    def restore(self, seat: Seat[Occupant], vacant_since: float) -> None:
+        """Put in a seat from before a restart, whose person is lost since that moment.
+
+        Seats must come in the order of those moments.
+        """
+        self._by_avatar[seat.avatar_id] = seat
+        for digest in seat.digests:
+            self._by_digest[digest] = seat
+        self._vacant[seat.avatar_id] = vacant_since
+
+    def vacant_s(self, now: float) -> dict[int, float | None]:
+        """For how many seconds each seat has been vacant, by its avatar; None for one in use."""
+        found: dict[int, float | None] = dict.fromkeys(self._by_avatar)
+        found.update((avatar_id, now - since) for avatar_id, since in self._vacant.items())
+        return found
+
     def find(self, token: str) -> Seat[Occupant] | None:
         return self._by_digest.get(_digest(token))
 

@@ -113,6 +113,8 @@ class Session:
         """What the client was let in by."""
         self.fault_at_welcome: ProtocolError | None = None
         """The fault of a hello that lets the client in all the same; it is told of it then."""
+        self.resumes = False
+        """Whether it has taken a seat that there was."""
         self.unconfirmed = False
         """Whether the client got a renewed token that it may not have read yet."""
         self._connection = connection

@@ -4,6 +4,7 @@ import asyncio
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from time import perf_counter
+from typing import Self
 
 import structlog
 
@@ -14,6 +15,7 @@ from esplanade.server.metrics import Metrics
 from esplanade.server.net.delivery import Delivery
 from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.hub import Hub
+from esplanade.server.net.lasting import Lasting
 from esplanade.server.net.schedule import Schedule
 from esplanade.server.world.audience import Audience
 from esplanade.server.world.inputs import Input, Still
@@ -51,6 +53,7 @@ class Ticker:
         self.tap: Tap | None = None
         """Where the ticks go that operators see."""
         self._stopping = asyncio.Event()
+        self._lasting: Lasting | None = None
         metrics.gauge(
             "walkers_shown",
             "Walkers whose steps are sent, counted for each viewer",
@@ -68,9 +71,19 @@ class Ticker:
             "ticks_given_up", "Ticks' worth of time lost", lambda: schedule.given_up_ticks
         )
 
+    def keeping(self, lasting: Lasting) -> Self:
+        """The same, seeing between ticks to what outlasts the process."""
+        self._lasting = lasting
+        return self
+
     def stop(self) -> None:
         """Let the tick that runs be the last."""
         self._stopping.set()
+
+    async def keep(self, *, in_order: bool) -> None:
+        """Keep what is to outlast the process, after the last tick."""
+        if self._lasting is not None:
+            await self._lasting.stop(in_order=in_order)
 
     async def run(self) -> None:
         loop, tick_s = asyncio.get_running_loop(), self._world.tick_s
@@ -107,7 +120,8 @@ class Ticker:
     async def _tick(self) -> None:
         loop = asyncio.get_running_loop()
         self._schedule.begin(loop.time())
-        given = [*self._hub.drain(loop.time()), *self._console.drain()]
+        kept: list[Input] = [] if self._lasting is None else self._lasting.drain()
+        given = [*kept, *self._hub.drain(loop.time()), *self._console.drain()]
         await self._run(given, self._ground_work.drain())
         self._schedule.pace.ticked(loop.time(), self._world.tick, self._world.tick_s)
 
@@ -129,6 +143,8 @@ class Ticker:
         if self.tap is not None:
             for frame in frames:
                 self.tap.take(frame, seconds, self._schedule.late_ticks)
+        if self._lasting is not None:
+            self._lasting.between_ticks(loop.time())
 
     def _think(self) -> bool:
         try:

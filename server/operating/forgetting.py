@@ -14,7 +14,7 @@ from esplanade.server.audit.erasing import Erased, erase
 from esplanade.server.audit.log import AuditLog
 from esplanade.server.audit.verifying import FORGET
 from esplanade.server.store.store import Store
-from esplanade.server.store.tables import ACCOUNTS, BOTS, INVITATIONS
+from esplanade.server.store.tables import ACCOUNTS, BOTS, INVITATIONS, SEATS
 
 Forgetter = Callable[[Connection, str, str], int]
 """Forgets in a zone a person of this name, within a write of the store; returns how many rows were
@@ -41,10 +41,19 @@ def _forget_bots(connection: Connection, zone: str, person: str) -> int:
     return connection.execute(made).rowcount
 
 
+def _forget_seats(connection: Connection, zone: str, person: str) -> int:
+    """Take away seats that bear the name; a checkpoint knows people by numbers only."""
+    chosen = (SEATS.c.zone == zone, SEATS.c.name == person)
+    count = connection.execute(select(func.count()).where(*chosen)).scalar() or 0
+    connection.execute(delete(SEATS).where(*chosen))
+    return count
+
+
 FORGETTERS: Final[Mapping[str, Forgetter]] = {
     "accounts": _forget_account,
     "invitations": _forget_invitations,
     "bots": _forget_bots,
+    "seats": _forget_seats,
 }
 """Forgetters by the name of what each forgets in; the audit comes last and is not among them."""
 

@@ -4,6 +4,7 @@ It is a ZIP archive of one file of JSON lines for each table, and of a manifest.
 that are used once are not in it, since they would be good again for who has lost them.
 """
 
+import base64
 import json
 import os
 import zipfile
@@ -12,7 +13,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Final
 
-from sqlalchemy import Connection, Engine, MetaData, Table, func, insert, select
+from sqlalchemy import Connection, Engine, LargeBinary, MetaData, Table, func, insert, select
 
 from esplanade.server.store.location import Location
 from esplanade.server.store.store import StoreError
@@ -96,9 +97,15 @@ def _write_table(connection: Connection, archive: zipfile.ZipFile, table: Table)
     with archive.open(f"{table.name}.jsonl", "w", force_zip64=True) as file:
         for row in connection.execution_options(yield_per=_AT_ONCE).execute(query):
             values = dict(zip([column.name for column in columns], row, strict=True))
-            file.write(json.dumps(values, ensure_ascii=False).encode() + b"\n")
+            line = json.dumps(values, ensure_ascii=False, default=_as_text)
+            file.write(line.encode() + b"\n")
             count += 1
     return count
+
+
+def _as_text(value: bytes) -> str:
+    """Bytes as JSON can hold them."""
+    return base64.b64encode(value).decode()
 
 
 def _check_empty(connection: Connection, location: Location) -> None:
@@ -117,11 +124,15 @@ def _check_empty(connection: Connection, location: Location) -> None:
 def _read_table(connection: Connection, archive: zipfile.ZipFile, name: str, expected: int) -> int:
     present = MetaData()
     present.reflect(connection, only=[name])
+    table = present.tables[name]
+    packed = [column.name for column in table.columns if isinstance(column.type, LargeBinary)]
     count = 0
     with archive.open(f"{name}.jsonl") as file:
         rows = map(json.loads, file)
         while chunk := list(islice(rows, _AT_ONCE)):
-            connection.execute(insert(present.tables[name]), chunk)
+            for row in chunk:
+                row.update({column: base64.b64decode(row[column]) for column in packed})
+            connection.execute(insert(table), chunk)
             count += len(chunk)
     if count != expected:
         raise ValueError(f"{name} has {count} rows instead of {expected}")

@@ -8,10 +8,12 @@ from typing import Final
 from sqlalchemy import (
     BigInteger,
     Column,
+    Float,
     ForeignKeyConstraint,
     Identity,
     Index,
     Integer,
+    LargeBinary,
     MetaData,
     String,
     Table,
@@ -19,7 +21,7 @@ from sqlalchemy import (
     UniqueConstraint,
 )
 
-REVISION: Final = "0002"
+REVISION: Final = "0003"
 """The newest migration: what the tables below are after it."""
 
 METADATA: Final = MetaData()
@@ -180,3 +182,44 @@ OPERATED: Final = Table(
     Column("body", Text, nullable=False),
 )
 """Presets, schedules and guards of operators, each as JSON."""
+
+CHECKPOINTS: Final = Table(
+    "checkpoints",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("made_us", BigInteger, nullable=False),
+    Column("tick", BigInteger, nullable=False),
+    Column("scene", String(64), nullable=False),
+    Column("scene_name", Text, nullable=False),
+    Column("format", String(64), nullable=False),
+    Column("digest", String(64), nullable=False),
+    Column("payload", LargeBinary, nullable=False),
+)
+"""The newest checkpoint of the world; `scene` and `digest` are SHA-256 of scene and payload."""
+
+SEATS: Final = Table(
+    "seats",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("avatar", BigInteger, primary_key=True, autoincrement=False),
+    Column("name", Text, nullable=False),
+    Column("address", Text, nullable=False),
+    Column("digests", Text, nullable=False),
+    Column("x", Float(53), nullable=False),
+    Column("y", Float(53), nullable=False),
+    Column("z", Float(53), nullable=False),
+    Index("seats_by_name", "zone", "name"),
+)
+"""Seats of people, with SHA-256 digests of the tokens that take each, between blanks.
+
+The place is that at which the avatar came into the world.
+"""
+
+RESERVED: Final = Table(
+    "reserved",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("name", String(64), primary_key=True),
+    Column("until", BigInteger, nullable=False),
+)
+"""Numbers below `until` may have been given away, by what they number."""

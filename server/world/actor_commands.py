@@ -63,6 +63,10 @@ class ActorCommands:
         """Number of commands that wait."""
         return len(self._waiting)
 
+    def restore(self, specs: Iterable[ActorSpec]) -> None:
+        """Know these actors, and no others: those of a zone that goes on after a restart."""
+        self._effects.specs = {spec.id: spec for spec in specs}
+
     def begin(self) -> None:
         """A new tick: nothing has come of it yet."""
         self._outcomes = []

@@ -78,6 +78,18 @@ class ActorAvatars:
         state.ahead[slots] = planned_places(agents.planned, slice_s, self._tick_s, places)
         return self._point()
 
+    @property
+    def avatars(self) -> Mapping[Hashable, int]:
+        """The avatar of each actor that is in the world, by the actor's id."""
+        return self._avatars
+
+    def restore(self, avatars: Mapping[str, int], names: Mapping[Hashable, str]) -> None:
+        """Give actors the avatars that they had before a restart; those without get new ones."""
+        self._names = dict(names)
+        for row, actor_id in enumerate(self._population.table):
+            if actor_id in avatars:
+                self._add(actor_id, row, avatars[str(actor_id)])
+
     def name(self, actor_id: Hashable, name: str) -> None:
         """Set the name that others see of an actor which comes into the world next."""
         self._names[actor_id] = name
@@ -165,7 +177,7 @@ class ActorAvatars:
         self._slots = np.array(slots, dtype=np.int64)
         self._version = table.version
 
-    def _add(self, actor_id: Hashable, row: int) -> None:
+    def _add(self, actor_id: Hashable, row: int, had: int | None = None) -> None:
         agents = self._population.table.agents
         x, y = agents.positions[row].tolist()
         slot = self._state.add(
@@ -174,6 +186,7 @@ class ActorAvatars:
             (x, y, float(agents.heights[row])),
             int(agents.layers[row]),
             float(agents.parameters["radius_m"][row]),
+            had,
         )
         avatar_id = int(self._state.ids[slot])
         self._avatars[actor_id] = avatar_id

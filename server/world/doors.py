@@ -34,6 +34,11 @@ class Doors:
         if name in self._grid.doors:
             self._wanted[name] = is_open
 
+    @property
+    def wanted(self) -> dict[str, bool]:
+        """The doors that are wanted otherwise than they are, the longest first."""
+        return dict(self._wanted)
+
     def due(self) -> list[tuple[str, bool]]:
         """The doors that are wanted elsewhere and can be moved now, the longest wanted first."""
         return [

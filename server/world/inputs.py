@@ -208,6 +208,14 @@ class ActorsDerived:
 
 
 @dataclass(frozen=True, slots=True)
+class IdsReserved:
+    """New avatars may get these ids too: from `first` up to and without `end`."""
+
+    first: int
+    end: int
+
+
+@dataclass(frozen=True, slots=True)
 class ActorsStood:
     """In this tick planning failed when it was recorded: the actors stand."""
 
@@ -262,4 +270,4 @@ def parts_of(command: ActorCommand) -> tuple[OneActorCommand, ...]:
 
 
 DerivedInput = DoorDerived | PotentialDerived | ActorsDerived
-Input = Join | MoveDoor | OfPerson | DerivedInput | ActorCommand | ActorsStood | Still
+Input = Join | MoveDoor | OfPerson | DerivedInput | ActorCommand | ActorsStood | Still | IdsReserved

@@ -25,7 +25,8 @@ class Spawning:
         self._scene = scene
         self._grid = grid
         self._clearance_m = clearance_m
-        self._random = np.random.default_rng(seed)
+        self.random = np.random.default_rng(seed)
+        """The chance by which newcomers are placed."""
         x0, y0, x1, y1 = scene.bounds
         middle = ((x0 + x1) / 2.0, (y0 + y1) / 2.0)
         if grid.nearest_free(middle, 0.0, clearance_m) is None:
@@ -40,21 +41,21 @@ class Spawning:
             return self._free(at)
         if not self._scene.spawns:
             x0, y0, x1, y1 = self._scene.bounds
-            x, y = self._random.uniform((x0, y0), (x1, y1))
+            x, y = self.random.uniform((x0, y0), (x1, y1))
             return self._free((float(x), float(y), 0.0))
         return self._around(self._spawn(at))
 
     def _spawn(self, at: Point | None) -> Spawn:
         spawns = self._scene.spawns
         if at is None:
-            return spawns[int(self._random.integers(len(spawns)))]
+            return spawns[int(self.random.integers(len(spawns)))]
         return min(spawns, key=lambda spawn: math.dist((*spawn.position, spawn.z_m), at))
 
     def _around(self, spawn: Spawn) -> Point:
         """A free place within the spawn's radius, drawn evenly; the nearest to it if none is."""
         for _ in range(DRAWS):
-            angle = self._random.uniform(0.0, 2.0 * np.pi)
-            distance_m = spawn.radius_m * np.sqrt(self._random.uniform())
+            angle = self.random.uniform(0.0, 2.0 * np.pi)
+            distance_m = spawn.radius_m * np.sqrt(self.random.uniform())
             x = spawn.position[0] + distance_m * np.cos(angle)
             y = spawn.position[1] + distance_m * np.sin(angle)
             place = self._free((float(x), float(y), spawn.z_m))

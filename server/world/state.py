@@ -14,10 +14,16 @@ Slots = npt.NDArray[np.int64]
 PERSON: Final = 0
 ACTOR: Final = 1
 KINDS: Final = (Kind.PERSON, Kind.ACTOR)
+ANY_ID: Final = (1, 2**32)
+"""Ids have 32 bits on the wire."""
 
 
 class WorldFullError(RuntimeError):
     """Every slot is taken."""
+
+
+class NoIdError(RuntimeError):
+    """Every id that was reserved is given away; more are on their way."""
 
 
 class State:
@@ -50,7 +56,26 @@ class State:
         self.names = [""] * capacity
         self._slots: dict[int, int] = {}
         self._free = list(range(capacity - 1, -1, -1))
-        self._next_id = 1
+        self._next_id, self._ids_end = ANY_ID
+        self._more_ids: list[tuple[int, int]] = []
+
+    @property
+    def next_id(self) -> int:
+        """The id that the next avatar gets, unless none is left."""
+        return self._next_id
+
+    @property
+    def ids_left(self) -> int:
+        """Number of ids that new avatars can get."""
+        return self._ids_end - self._next_id + sum(end - first for first, end in self._more_ids)
+
+    def begin_ids(self, first: int, end: int) -> None:
+        """Let new avatars get these ids and no others, from `first` up to and without `end`."""
+        self._next_id, self._ids_end, self._more_ids = first, end, []
+
+    def add_ids(self, first: int, end: int) -> None:
+        """Let new avatars get further ids, from `first` up to and without `end`."""
+        self._more_ids.append((first, end))
 
     def __contains__(self, avatar_id: int) -> bool:
         return avatar_id in self._slots
@@ -67,20 +92,30 @@ class State:
         return np.flatnonzero(self.alive & (self.kinds == kind))
 
     def add(
-        self, kind: int, name: str, place: tuple[float, float, float], layer: int, radius_m: float
+        self,
+        kind: int,
+        name: str,
+        place: tuple[float, float, float],
+        layer: int,
+        radius_m: float,
+        avatar_id: int | None = None,
     ) -> int:
-        """The slot of a new avatar.
+        """The slot of a new avatar, or of one that was here before and keeps its id.
 
         Raises
         ------
         WorldFullError
             Every slot is taken.
+        NoIdError
+            No id is left.
         """
         if not self._free:
             raise WorldFullError(f"the world holds {self.capacity} avatars, all slots are taken")
+        if avatar_id is None:
+            avatar_id = self._take_id()
         slot = self._free.pop()
         self.alive[slot] = True
-        self.ids[slot] = self._next_id
+        self.ids[slot] = avatar_id
         self.kinds[slot] = kind
         self.layers[slot] = layer
         self.positions[slot] = self.before[slot] = place[:2]
@@ -91,9 +126,16 @@ class State:
         self.radii[slot] = radius_m
         self.scales[slot] = 1.0
         self.names[slot] = name
-        self._slots[self._next_id] = slot
-        self._next_id += 1
+        self._slots[avatar_id] = slot
         return slot
+
+    def _take_id(self) -> int:
+        if self._next_id >= self._ids_end:
+            if not self._more_ids:
+                raise NoIdError("every id that was reserved is given away")
+            self._next_id, self._ids_end = self._more_ids.pop(0)
+        self._next_id += 1
+        return self._next_id - 1
 
     def remove(self, avatar_id: int) -> int:
         """Take an avatar out; returns the slot that is free now."""

@@ -1,7 +1,7 @@
 """A zone, tick by tick: begin (people), think (actors, elsewhere), finish (what is told of it)."""
 
-from collections.abc import Callable, Hashable, Iterable, Mapping
-from typing import Final
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from typing import Any, Final
 
 import numpy as np
 import structlog
@@ -32,6 +32,7 @@ from esplanade.server.world.inputs import (
     Detach,
     DoorDerived,
     Follow,
+    IdsReserved,
     Input,
     Join,
     Leave,
@@ -46,10 +47,11 @@ from esplanade.server.world.inputs import (
     Watch,
 )
 from esplanade.server.world.latest_steps import LatestSteps
-from esplanade.server.world.outcomes import Fault, fault_of
+from esplanade.server.world.outcomes import Fault, Outcome, fault_of
 from esplanade.server.world.people import People
 from esplanade.server.world.routes import Point, RouteSearch, SharedWaves
 from esplanade.server.world.rules import Rules
+from esplanade.server.world.saved_zone import Returning, SavedZone
 from esplanade.server.world.spawning import Spawning
 from esplanade.server.world.stage_times import StageTimes
 from esplanade.server.world.state import ACTOR, PERSON, State
@@ -120,6 +122,17 @@ class Zone:
             scene, grid, rules.person_clearance_m, np.random.SeedSequence(seed)
         )
         self._observed = NOBODY
+        self._saved = SavedZone(
+            self.state,
+            population,
+            self._actors,
+            self._commands,
+            self.doors,
+            self._spawning,
+            self.contacts,
+            rules.person_radius_m,
+            grid,
+        )
 
     # --- one tick -----------------------------------------------------------------------------
 
@@ -212,6 +225,43 @@ class Zone:
         self.doors.derived_outside = self._commands.derived_outside = True
         self._population.derive_outside()
 
+    # --- restarts -----------------------------------------------------------------------------
+
+    def save(self) -> dict[str, Any]:
+        """Everything that later ticks depend on, as plain data; call it between two ticks."""
+        return {"tick": self.tick, "people_seen": self.people_seen, **self._saved.save()}
+
+    def load(self, saved: Mapping[str, Any], people: Sequence[Returning] = ()) -> None:
+        """Go on from what was saved, with these people of it, before the first tick.
+
+        The doors of the grid must stand as they did then already (`saved_zone.set_doors`).
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            Something is missing, or cannot be. Nothing is to be done with this zone then.
+        """
+        self._saved.load(saved, people)
+        self.tick, self.people_seen = int(saved["tick"]), int(saved["people_seen"])
+        self.actor_names = tuple(spec.name for spec in self.actors.values())
+
+    def skip_to(self, tick: int) -> None:
+        """Let the next tick have the number after that one, at least; time of actors stands."""
+        self.tick = max(self.tick, tick)
+
+    def put(self, person: Returning) -> None:
+        """Let a person stand in the world who was here before, before the first tick."""
+        self._saved.put(person)
+
+    def redo(self, inputs: Iterable[ActorCommand | MoveDoor]) -> list[Outcome]:
+        """Carry out before the first tick what was acknowledged after the zone was saved."""
+        self._commands.begin()
+        for item in inputs:
+            self._take(item)
+        outcomes = self._commands.outcomes
+        self._begin_frame()
+        return outcomes
+
     # --- questions ----------------------------------------------------------------------------
 
     @property
@@ -230,7 +280,7 @@ class Zone:
 
     def route_search(self, avatar_id: int, goal: Point) -> RouteSearch:
         """A search for a way from where that avatar is now; heavy, and meant for another thread."""
-        return RouteSearch(self._waves, self._where(avatar_id), goal, self.rules.person_clearance_m)
+        return RouteSearch(self._waves, self.where(avatar_id), goal, self.rules.person_clearance_m)
 
     def outdated_potential(self) -> Callable[[], RenewedPotential] | None:
         """Derives the next potential that is out of date, if any; heavy, safe in any thread.
@@ -318,7 +368,8 @@ class Zone:
         """The blocker of an actor, named by its avatar's id, as in `explain`; None for others."""
         return self._actors.blocker(avatar_id) if self.is_actor(avatar_id) else None
 
-    def _where(self, avatar_id: int) -> Point:
+    def where(self, avatar_id: int) -> Point:
+        """Where an avatar is: x, y and the height of its feet, metres."""
         slot = self.state.slot(avatar_id)
         x, y = self.state.positions[slot].tolist()
         return x, y, float(self.state.heights[slot])
@@ -351,6 +402,8 @@ class Zone:
                 self._stands = True
             case Still():
                 self._still = True
+            case IdsReserved():
+                self.state.add_ids(item.first, item.end)
             case Attach() | Detach() | Leave() | Stand() | Steer() | Follow() | Say() | Watch():
                 if item.id in self.state:
                     self._apply(item, self.state.slot(item.id))

@@ -50,9 +50,14 @@ class Populated:
     """A world of these actors. With `outside`, what is heavy comes as inputs of later ticks."""
 
     def __init__(
-        self, specs: Sequence[ActorSpec], *, outside: bool = False, scene: Scene = HALL
+        self,
+        specs: Sequence[ActorSpec],
+        *,
+        outside: bool = False,
+        scene: Scene = HALL,
     ) -> None:
-        grid, roster = LayeredGrid.from_scene(scene), Roster(actors=tuple(specs))
+        self.grid = grid = LayeredGrid.from_scene(scene)
+        roster = Roster(actors=tuple(specs))
         self.population = populate_from(roster, grid, scene, TICK_S, 3)
         self.zone = Zone(
             scene,

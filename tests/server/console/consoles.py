@@ -98,7 +98,7 @@ async def desk(
     clock, audit = clock or Clock(), AuditLog(store, "server")
     presets = Presets(read_presets(None))
     console = Console(world.zone, Nobody(), store, audit, presets=presets, clock_us=clock)
-    await console.load()
+    await console.load_kept()
     found = Desk(console, world, clock, audit)
     console.listen(lambda kind, what: found.told.append((kind, what)))
     ticking = asyncio.create_task(_tick(world, console))

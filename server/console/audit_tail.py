@@ -1,0 +1,113 @@
+"""The end of the audit, read at a start: what can be taken back, what has to be done again."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+from pydantic import ValidationError
+
+from esplanade.protocol.commands import COMMAND, Facts, Mark, Revert
+from esplanade.server.accounts.rights import COMMANDS
+from esplanade.server.audit.entries import Entry, Row
+from esplanade.server.console.changes import REMEMBERED, Change
+from esplanade.server.console.facts import together
+from esplanade.server.console.moderation import MODERATING
+
+MOST_ROWS: Final = 2 * REMEMBERED + 5_000
+"""No more rows are read: one for each change that is remembered, and one for its outcome."""
+NOT_DONE: Final = "not_done"
+"""The outcome of a command that nobody was told of, and that was rolled back at a start."""
+
+
+@dataclass(frozen=True)
+class Tail:
+    """What the audit says of commands on a world that goes on."""
+
+    changes: list[Change] = field(default_factory=list)
+    """Those that were made, the oldest first."""
+    facts: Facts = field(default_factory=dict)
+    """What has to be true, of all that changed after the checkpoint or while it was taken."""
+    muted_s: dict[int, float] = field(default_factory=dict)
+    """People who were muted after the checkpoint, and for how many seconds."""
+    kicked: set[int] = field(default_factory=set)
+    """People who were sent out after the checkpoint."""
+    lost: list[Row] = field(default_factory=list)
+    """Commands that nobody was told of: they are rolled back."""
+    settled: int = 0
+    """The number of the last command."""
+    tick: int = 0
+    """The last tick that a row names."""
+
+
+def read_tail(rows: Sequence[Row], settled: int) -> Tail:
+    """What rows of the server's own chain say, in their order.
+
+    Of commands up to `settled` the checkpoint has what they did. Of later ones, those are redone of
+    which the audit knows that they were done; all others never happened.
+    """
+    outcomes = {row.refers_to: row.outcome for row in rows if row.refers_to is not None}
+    last = {row.refers_to: row.body for row in rows if "after" in row.body}
+    tail = Tail(
+        settled=max([settled, *(row.seq for row in rows if _is_command(row))]),
+        tick=max((row.tick or 0 for row in rows), default=0),
+    )
+    facts: list[Facts] = []
+    for row in rows:
+        if not _is_command(row):
+            continue
+        outcome = outcomes.get(row.seq)
+        if outcome is None and row.seq > settled:
+            tail.lost.append(row)
+        is_done = outcome == "done" or (outcome is None and row.seq <= settled)
+        ended = last.get(row.seq, row.body)  # of what went on, such as a ramp
+        before, after = ended.get("before", {}), ended.get("after", {})
+        if is_done:
+            _remember(tail, row, before, after)
+        if row.seq > settled:
+            facts.append(after if is_done else before)
+    for subject, fields in together(facts).items():
+        kind, _, name = subject.partition(":")
+        if kind == "person":
+            _about_person(tail, int(name), fields)
+        elif kind != "people":
+            tail.facts[subject] = fields
+    return tail
+
+
+def not_done(row: Row) -> Entry:
+    """The row that says that a command never happened."""
+    return Entry(
+        command=row.command,
+        account=row.account,
+        role=row.role,
+        target=row.target,
+        outcome=NOT_DONE,
+        refers_to=row.seq,
+        body={"faults": [{"code": NOT_DONE, "text": "the server ended before it was answered"}]},
+    )
+
+
+def _is_command(row: Row) -> bool:
+    return row.command in COMMANDS and not row.outcome and row.refers_to is None
+
+
+def _remember(tail: Tail, row: Row, before: Facts, after: Facts) -> None:
+    try:
+        command = COMMAND.validate_python(row.body["command"])
+    except (ValidationError, KeyError):
+        return  # of a program that knew other commands, or one about people
+    if isinstance(command, MODERATING):
+        return
+    reverts = row.body.get("reverts") if isinstance(command, Revert) else None
+    note = command.text if isinstance(command, Mark) else row.note
+    change = Change(row.seq, row.account, command.op, before, after, reverts)
+    change.at_us, change.tick, change.note = row.at_us, row.tick, note
+    tail.changes.append(change)
+
+
+def _about_person(tail: Tail, person: int, fields: dict[str, object]) -> None:
+    if fields.get("kicked"):
+        tail.kicked.add(person)
+    muted_s = fields.get("muted_s")
+    if isinstance(muted_s, int | float):
+        tail.muted_s[person] = float(muted_s)
