@@ -53,10 +53,10 @@ def _still_wanted(facts: Facts, state: OperatedState) -> Facts:
         kind, _, name = subject.partition(":")
         if kind == "actor":
             found = _of_actor(fields, state, subject, is_there=name in state.zone.actors)
-        elif kind == "door" and name not in state.zone.doors.states():
-            found = {}
-        else:
+        elif kind in {"world", "group"} or name in state.zone.doors.states():
             found = dict(fields)
+        else:
+            found = {}
         if found:
             wanted[subject] = found
     return wanted

@@ -53,5 +53,9 @@ async def test_where_one_table_fails_nothing_is_forgotten(
 
 async def test_nothing_known_is_no_row(store: SqlStore, log: AuditLog) -> None:
     before = await log.page(Filter())
-    assert await forgetting.forget(store, log, MACHINE, "nobody") == {"accounts": 0, "audit": 0}
+    assert await forgetting.forget(store, log, MACHINE, "nobody") == {
+        "accounts": 0,
+        "seats": 0,
+        "audit": 0,
+    }
     assert await log.page(Filter()) == before
