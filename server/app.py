@@ -1,8 +1,9 @@
 """Puts the server together and runs it: the one place that knows all of its parts."""
 
 import asyncio
+import socket
 import time
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass, replace
@@ -72,6 +73,7 @@ class Running:
     metrics: Metrics
     kept: Kept
     gate: Gate
+    console: Console
     ticking: "asyncio.Task[None]"
     """Runs as long as the world does; ends early only by a fault."""
 
@@ -185,11 +187,16 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         guiding = asyncio.create_task(route_requests.run(hub.route_found))
         readiness.open()
         try:
-            yield Running(sockets[0].getsockname()[1], private, world, metrics, kept, gate, ticking)
+            yield Running(_port_of(sockets), private, world, metrics, kept, gate, console, ticking)
         finally:
             readiness.close()
             guiding.cancel()
             await _stop(ticker, ticking, hub, gate)
+
+
+def _port_of(sockets: Sequence[socket.socket]) -> int:
+    port: int = sockets[0].getsockname()[1]
+    return port
 
 
 def build_world(
