@@ -6,19 +6,11 @@ from typing import Annotated, Final
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
-from esplanade.actors.behaviour_spec import BehaviourSpec, Point, WanderSpec
+from esplanade.actors.behaviour_spec import ActorId, BehaviourSpec, Point, WanderSpec
 from esplanade.actors.overrides import WORLD, Overrides
 
 ZONE: Final = "main"
 """The zone that there is; each zone has a name of its own."""
-ActorId = Annotated[
-    str,
-    Field(
-        pattern=r"^[a-z0-9][a-z0-9-]{0,31}/[a-z0-9][a-z0-9._-]{0,47}$",
-        description="The zone that the actor came into first, a slash, and a name in it.",
-    ),
-]
-"""One text, since it is a key in many places: tables, paths of an interface, what is stored."""
 Tag = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]{0,31}$")]
 
 
@@ -43,6 +35,9 @@ class ActorSpec(BaseModel):
     ] = {}
     place: Point | None = None
     """Where it comes in; None for a free place, chosen with the seed."""
+    near: Annotated[
+        bool, Field(description="Whether it comes in beside those who stand at that place.")
+    ] = False
 
     @field_validator("overrides")
     @classmethod

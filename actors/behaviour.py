@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
 from typing import ClassVar, Literal
@@ -19,7 +19,7 @@ Goal = tuple[float, float, float]
 """x, y and the height of the floor, metres."""
 Target = str | Goal
 """A place's name or a point."""
-BehaviourName = Literal["go_to", "wander", "patrol", "guide", "idle"]
+BehaviourName = Literal["go_to", "wander", "patrol", "guide", "follow", "idle"]
 
 
 @dataclass(frozen=True)
@@ -38,6 +38,8 @@ class Perception:
     grid: LayeredGrid
     body: Body
     rng: np.random.Generator
+    actor_at: Callable[[str], Goal | None] = lambda _: None
+    """Tells where an actor is, by its id; None for one that is not there."""
 
     def resolve(self, target: Target) -> Goal:
         """The point that a target means; KeyError for a place that the scene does not have."""

@@ -7,6 +7,16 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, model_validator
 
 from esplanade.actors.behaviour import Behaviour, GoTo, Guide, Idle, Patrol, Wander
+from esplanade.actors.following import Follow
+
+ActorId = Annotated[
+    str,
+    Field(
+        pattern=r"^[a-z0-9][a-z0-9-]{0,31}/[a-z0-9][a-z0-9._-]{0,47}$",
+        description="The zone that the actor came into first, a slash, and a name in it.",
+    ),
+]
+"""One text, since it is a key in many places: tables, paths of an interface, what is stored."""
 
 Metres = Annotated[float, Field(allow_inf_nan=False, ge=-100_000.0, le=100_000.0)]
 Place = Annotated[str, Field(min_length=1, max_length=64, description="A place of the scene.")]
@@ -96,8 +106,27 @@ class GuideSpec(_Spec):
         )
 
 
+class FollowSpec(_Spec):
+    """Walk after an actor or a person, and stay at a distance."""
+
+    kind: Literal["follow"] = "follow"
+    actor: ActorId | None = None
+    person: Annotated[int, Field(ge=0, description="The id of a person's avatar.")] | None = None
+    distance_m: Annotated[float, Field(ge=0.8, le=20.0, allow_inf_nan=False)] = 2.0
+
+    @model_validator(mode="after")
+    def _one_of_them(self) -> FollowSpec:
+        if (self.actor is None) == (self.person is None):
+            raise ValueError("follow an actor or a person: give one of them")
+        return self
+
+    def make(self) -> Behaviour:
+        return Follow(actor=self.actor, person=self.person, distance_m=self.distance_m)
+
+
 BehaviourSpec = Annotated[
-    IdleSpec | GoToSpec | WanderSpec | PatrolSpec | GuideSpec, Field(discriminator="kind")
+    IdleSpec | GoToSpec | WanderSpec | PatrolSpec | GuideSpec | FollowSpec,
+    Field(discriminator="kind"),
 ]
 BEHAVIOUR_SPEC: TypeAdapter[BehaviourSpec] = TypeAdapter(BehaviourSpec)
 """Reads and checks one; its `json_schema` is a form."""

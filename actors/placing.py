@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable
 from dataclasses import dataclass
 
@@ -15,6 +16,9 @@ from esplanade.planning.grid.clearances import kind_of
 from esplanade.planning.scene.heights import SAME_FLOOR_M
 
 _TRIES = 64
+_MOST_BESIDE = 4000
+"""Places that are tried around one."""
+_GOLDEN_RAD = math.pi * (3.0 - math.sqrt(5.0))
 Place = tuple[float, float, float]
 """x, y and the height that is meant, metres."""
 
@@ -30,6 +34,8 @@ class Newcomer:
     """None for a free place, chosen with the seed."""
     z_m: float = 0.0
     """The height of the floor on which such a place is sought first."""
+    near: bool = False
+    """Whether the nearest free ground is meant where somebody stands at the place."""
 
 
 class Placing:
@@ -59,6 +65,40 @@ class Placing:
         if free is None:
             raise ValueError("nobody of that body can stand anywhere in this scene")
         return (*free, z_m)
+
+    def beside(
+        self, body: Body, place: Place, taken: NDArray[np.float64], passed: dict[Place, int]
+    ) -> Place:
+        """The ground nearest to a place that is free of those who stand at x, y, z, `taken` (N, 3).
+
+        `passed` counts what was tried around each place, so that many who come to one find theirs
+        in turn.
+
+        Raises
+        ------
+        ValueError
+            There is none near.
+        """
+        x, y, z_m = place
+        x0, y0, x1, y1 = self._scene.bounds
+        apart_m = 2.5 * body.radius_m
+        level = taken[np.abs(taken[:, 2] - z_m) < SAME_FLOOR_M, :2]
+        for k in range(passed.get(place, 0), _MOST_BESIDE):
+            # Sunflower seeds: evenly apart, the nearest first.
+            away_m, angle = apart_m * math.sqrt(k), k * _GOLDEN_RAD
+            point = np.array((x + away_m * math.cos(angle), y + away_m * math.sin(angle)))
+            if not (x0 <= point[0] <= x1 and y0 <= point[1] <= y1):
+                continue
+            crowded = len(level) and np.hypot(*(level - point).T).min() < 0.9 * apart_m
+            here = float(point[0]), float(point[1])
+            if (
+                not crowded
+                and self._has_a_way(point, z_m, body)
+                and abs(self._grid.floor_at(here, z_m) - z_m) < SAME_FLOOR_M
+            ):
+                passed[place] = k + 1
+                return (*here, z_m)
+        raise ValueError(f"no free ground near ({x:g}, {y:g}) at height {z_m:g}")
 
     def anywhere(
         self, body: Body, z_m: float, taken: NDArray[np.float64], rng: np.random.Generator

@@ -131,11 +131,15 @@ class Population:
     ) -> list[Goal]:
         """Places where newcomers can stand, away from each other and from `taken` (N, 3)."""
         places: list[Goal] = []
+        passed: dict[Goal, int] = {}
         for each, generator in zip(newcomers, generators, strict=True):
             body = each.parameters.body
             if each.place is not None:
                 self.navigator.check_place(each.place[:2], each.place[2])
-                places.append(placing.near(body, each.place))
+                if each.near:
+                    places.append(placing.beside(body, each.place, taken, passed))
+                else:
+                    places.append(placing.near(body, each.place))
             else:
                 places.append(placing.anywhere(body, each.z_m, taken, generator))
             taken = np.concatenate([taken, [places[-1]]])
@@ -323,6 +327,7 @@ class Population:
                 self.grid,
                 body_of(agents.parameters[row]),
                 generator,
+                self._place_of,
             )
         )
         self.doors_wanted.update(behaviour.moves_doors)
@@ -335,6 +340,14 @@ class Population:
         trips.arrived_when_asked[row] = arrived
         trips.ask_at_s[row] = behaviour.ask_at_s
         trips.points_at[row] = np.nan if behaviour.points_at is None else behaviour.points_at
+
+    def _place_of(self, actor_id: str) -> Goal | None:
+        """Where an actor is; None if there is none of that id."""
+        if actor_id not in self.table:
+            return None
+        row, agents = self.table.row(actor_id), self.table.agents
+        x, y = agents.positions[row].tolist()
+        return x, y, float(agents.heights[row])
 
     def _keep_account(self, before: NDArray[np.int64]) -> None:
         """Count the trips that ended in this tick, and for how long things are as they are.

@@ -119,3 +119,12 @@ class ByeCode(StrEnum):
     REPLACED = "replaced"
     SILENT = "silent"
     KICKED = "kicked"
+
+
+class NoticeCode(StrEnum):
+    """The matter of a notice; empty for a sentence that stands for itself."""
+
+    NONE = ""
+    PAUSED = "paused"
+    RESUMED = "resumed"
+    PACE = "pace"

@@ -17,6 +17,7 @@ from esplanade.protocol.codes import (
     ClientCode,
     ErrorCode,
     Kind,
+    NoticeCode,
     Reason,
     ServerCode,
 )
@@ -30,6 +31,8 @@ Layer = Annotated[int, Field(ge=0, le=255)]
 Token = Annotated[str, Field(max_length=MAX_TOKEN_CHARS)]
 EntityId = Annotated[int, Field(ge=0, le=0xFFFF_FFFF)]
 Sequence = Annotated[int, Field(ge=0, le=0xFFFF_FFFF)]
+Arguments = dict[str, Any]
+"""Numbers and texts for programs, from which they make sentences in any language."""
 Name = Annotated[str, AfterValidator(plain_name)]
 Line = Annotated[
     str,
@@ -217,10 +220,12 @@ class Chat(FromServer):
 
 
 class Notice(FromServer):
-    """A sentence from the server for the person to read."""
+    """A sentence from the server for the person to read, and its matter for programs."""
 
     code = ServerCode.NOTICE
     text: str
+    notice: Annotated[NoticeCode | str, Field(union_mode="left_to_right")] = NoticeCode.NONE
+    arguments: Arguments = {}
 
 
 class Error(FromServer):
@@ -278,7 +283,7 @@ class Plan(FromServer):
     tick: int
     id: EntityId
     reason: Annotated[Reason | int, Field(union_mode="left_to_right")]
-    behaviour: Literal["go_to", "wander", "patrol", "guide", "idle"] | str
+    behaviour: Literal["go_to", "wander", "patrol", "guide", "follow", "idle"] | str
     goal: Place | None
     path: list[tuple[float, float, float, float]]
     """Points (x, y, z, seconds from now)."""

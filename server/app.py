@@ -45,6 +45,7 @@ from esplanade.server.rehearsal import rehearse, rehearse_walking
 from esplanade.server.settings import ServerSettings
 from esplanade.server.warming import kernels_compiled
 from esplanade.server.world.audience import Audience
+from esplanade.server.world.pace import Pace
 from esplanade.server.world.zone import Zone
 
 log = structlog.get_logger(__name__)
@@ -143,13 +144,14 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             metrics,
             lambda: schedule.world_time(world.tick, loop.time()),
             {"storeys": storeys} if mesh is None else {"storeys": storeys, "mesh": mesh},
+            schedule.pace,
         )
         delivery = Delivery(audience, hub.sessions, settings.tick_rate, hub.stop_watching)
         link = LocalLink()
         deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
         ground_work = GroundWork(world, deriving)
         console = gate.console = await stack.enter_async_context(
-            _console(world, hub, kept, loaded, metrics, presets)
+            _console(world, hub, kept, loaded, metrics, presets, schedule.pace)
         )
         ticker = Ticker(
             world, ground_work, audience, link, hub, delivery, schedule, metrics, thread, console
@@ -288,11 +290,17 @@ def _presets(settings: ServerSettings) -> Presets:
 
 @asynccontextmanager
 async def _console(
-    world: Zone, hub: Hub, kept: Kept, loaded: LoadedScene, metrics: Metrics, presets: Presets
+    world: Zone,
+    hub: Hub,
+    kept: Kept,
+    loaded: LoadedScene,
+    metrics: Metrics,
+    presets: Presets,
+    pace: Pace,
 ) -> AsyncIterator[Console]:
     """Make the console, which all commands of operators go through."""
     overrides = None if loaded.roster is None else loaded.roster.overrides
-    console = Console(world, hub.moderation, kept.store, kept.audit, overrides, presets)
+    console = Console(world, hub.moderation, kept.store, kept.audit, overrides, presets, pace)
     console.figures.add(
         "tick_p99_ms",
         "ms",

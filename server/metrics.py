@@ -184,6 +184,10 @@ class Metrics:
         for stage, stage_seconds in stages.items():
             self._stage_seconds.labels(stage).inc(stage_seconds)
 
+    def stood(self) -> None:
+        """No tick was due, since the world is paused."""
+        self.ticked_at = monotonic()
+
     def sample(self) -> None:
         """Read all figures that are kept elsewhere, in the thread that changes them."""
         for figure in self._figures:

@@ -20,7 +20,7 @@ from esplanade.protocol.commands.parameters import ClearParameters, Revert, SetP
 from esplanade.protocol.commands.people import Announce, Kick, Mute
 from esplanade.protocol.commands.presets import ApplyPreset, DeletePreset, SavePreset
 from esplanade.protocol.commands.schedules import CancelSchedule, Mark, ScheduleCommands
-from esplanade.protocol.commands.world import MoveDoor
+from esplanade.protocol.commands.world import MoveDoor, Pace
 
 __all__ = [
     "COMMAND",
@@ -46,6 +46,7 @@ __all__ = [
     "MoveDoor",
     "Mute",
     "NewActor",
+    "Pace",
     "Price",
     "RemoveActors",
     "Revert",
@@ -70,6 +71,7 @@ Command = Annotated[
     | AddActors
     | RemoveActors
     | MoveDoor
+    | Pace
     | Announce
     | Mute
     | Kick

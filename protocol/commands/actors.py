@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Final, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
 from esplanade.protocol.commands.fields import (
     NO_NUL,
+    TAG,
     ActorRef,
     Actors,
     BaseCommand,
@@ -15,7 +16,9 @@ from esplanade.protocol.commands.fields import (
     Number,
     ParameterName,
     Place,
+    all_different,
 )
+from esplanade.protocol.commands.presets import PresetName
 
 MOST_NEW: Final = 200
 """One command adds no more actors than this."""
@@ -63,14 +66,53 @@ class NewActor(BaseModel):
 
 
 class AddActors(BaseCommand):
-    """Let actors come into the world: all of them, or none."""
+    """Let actors come into the world, each as it is described, or a wave of many alike.
+
+    All of them come, or none.
+    """
 
     op: Literal["add_actors"]
-    actors: Annotated[tuple[NewActor, ...], Field(min_length=1, max_length=MOST_NEW)]
+    actors: Annotated[tuple[NewActor, ...], Field(max_length=MOST_NEW)] = ()
+    count: Annotated[int, Field(ge=1, le=MOST_NEW)] | None = Field(
+        None, description="A wave of so many, which are called after their numbers."
+    )
+    behaviour: dict[str, Any] = Field(
+        default_factory=lambda: {"kind": "wander"}, description="Of everybody in a wave."
+    )
+    preset: PresetName | None = Field(
+        None, description="Everybody in a wave has the values of this preset as its own."
+    )
+    overrides: Annotated[dict[ParameterName, Number], Field(max_length=64)] = Field(
+        {}, description="The same; they go before those of the preset."
+    )
+    tags: Annotated[tuple[str, ...], Field(max_length=8)] = ()
+    near: Place | tuple[Metres, Metres, Metres] | None = Field(
+        None, description="A wave comes in around this place of the scene, or this point."
+    )
+
+    @model_validator(mode="after")
+    def _one_or_the_other(self) -> AddActors:
+        wave = {"count", "behaviour", "preset", "overrides", "tags", "near"}
+        if self.actors and wave & self.model_fields_set:
+            raise ValueError("give actors, or count and what all of a wave have, not both")
+        if not self.actors and self.count is None:
+            raise ValueError("give actors or count")
+        return self
 
 
 class RemoveActors(BaseCommand):
-    """Take actors out of the world: all of them, or none."""
+    """Take actors out of the world: those that are named, or all with a tag; all, or none."""
 
     op: Literal["remove_actors"]
-    actors: Actors
+    actors: Annotated[
+        tuple[ActorRef, ...], Field(max_length=500), AfterValidator(all_different)
+    ] = ()
+    tag: Annotated[str, Field(pattern=f"^{TAG}$")] | None = Field(
+        None, description="All actors that have this tag."
+    )
+
+    @model_validator(mode="after")
+    def _one_or_the_other(self) -> RemoveActors:
+        if bool(self.actors) == (self.tag is not None):
+            raise ValueError("give actors or tag")
+        return self

@@ -38,14 +38,14 @@ ScopeText = Annotated[
 ]
 
 
-def _all_different(actors: tuple[str, ...]) -> tuple[str, ...]:
+def all_different(actors: tuple[str, ...]) -> tuple[str, ...]:
     if len(set(actors)) < len(actors):
         raise ValueError("an actor is named twice")
     return actors
 
 
 Actors = Annotated[
-    tuple[ActorRef, ...], Field(min_length=1, max_length=500), AfterValidator(_all_different)
+    tuple[ActorRef, ...], Field(min_length=1, max_length=500), AfterValidator(all_different)
 ]
 NO_NUL: Final = r"^[^\x00]*$"
 """Databases keep no text with a null character in it."""

@@ -4,7 +4,7 @@ import asyncio
 import copy
 import itertools
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from time import perf_counter
 from typing import Any, Final, TypeVar
 
@@ -44,6 +44,7 @@ from esplanade.server.console.moderation import (
     moderate,
     wanted_of_people,
 )
+from esplanade.server.console.pacing import change_pace
 from esplanade.server.console.preparation import Preparation
 from esplanade.server.console.presets import PRESET, Presets
 from esplanade.server.console.records import Planned, Records
@@ -52,9 +53,13 @@ from esplanade.server.console.scheduler import Scheduler, guard_of, guard_row
 from esplanade.server.console.schedules import SCHEDULE
 from esplanade.server.console.state import (
     BEHAVIOUR,
+    FACTOR,
     HELD,
     OPEN,
+    PACE,
+    PAUSED,
     PRESENT,
+    STEPPED,
     OperatedState,
     each,
     parameters_of,
@@ -64,9 +69,11 @@ from esplanade.server.store.store import StoreError
 from esplanade.server.world.frame import Frame
 from esplanade.server.world.inputs import ActorCommand, Input, MoveDoor
 from esplanade.server.world.outcomes import Outcome
+from esplanade.server.world.pace import Pace
 from esplanade.server.world.zone import Zone
 
 Result = TypeVar("Result")
+_AS_IT_IS: Final[Mapping[str, Any]] = {}
 MOST_WAITING: Final = 32
 """Commands, or lists of them, that may wait for their turn; more are refused."""
 MOST_QUESTIONS: Final = 64
@@ -92,10 +99,12 @@ class Console:
         audit: AuditLog,
         overrides: Overrides | None = None,
         presets: Presets | None = None,
+        pace: Pace | None = None,
         clock_us: Callable[[], int] = now_us,
     ) -> None:
         self.zone = zone
-        self.state = OperatedState(zone, overrides or Overrides(), presets)
+        self.pace = pace or Pace()
+        self.state = OperatedState(zone, overrides or Overrides(), presets, self.pace)
         self.changes = Changes()
         self.moderation = moderation
         contacts = ContactRate(zone)
@@ -165,7 +174,7 @@ class Console:
         for one in planned:
             moderate(one.command, self.moderation)
         began = perf_counter()
-        tick, faults = await self._in_a_tick(inputs, doors)
+        tick, faults = await self._in_a_tick(inputs, doors, facts.get(PACE, {}))
         if faults:
             await self._records.outcomes(by, planned, numbers, tick, faults)
             raise RefusedError(faults).within(0) if len(commands) == 1 else RefusedError(faults)
@@ -200,7 +209,7 @@ class Console:
             raise
         self.state.take({s: f for s, f in facts.items() if s not in kept})
         for one, number in both:
-            if isinstance(one.command, MODERATING):
+            if isinstance(one.command, MODERATING) or STEPPED in one.after.get(PACE, {}):
                 continue
             is_ramp = _is_ramp(one.command)
             change = Change(
@@ -350,14 +359,22 @@ class Console:
         return self._preparation.price(inputs), self._preparation.bodies(inputs)
 
     async def _in_a_tick(
-        self, inputs: list[ActorCommand], doors: list[MoveDoor]
+        self,
+        inputs: list[ActorCommand],
+        doors: list[MoveDoor],
+        pace: Mapping[str, Any] = _AS_IT_IS,
     ) -> tuple[int | None, list[CommandFault]]:
         """Put inputs into the next tick; the last tick in which one took effect, and faults."""
         loop = asyncio.get_running_loop()
+        if pace and not (inputs or doors):
+            change_pace(self.pace, pace, loop.time())
+            return self.zone.tick, []
         for one in inputs:
             self._outcomes[one.command] = loop.create_future()
         self._tick = begun = loop.create_future()
         self._inputs += [*inputs, *doors]
+        # They enter the next tick, be it the last before a pause or the first that is stepped.
+        change_pace(self.pace, pace, loop.time())
         try:
             async with asyncio.timeout(PATIENCE_S):
                 tick = await begun
@@ -418,8 +435,19 @@ class Console:
         except TimeoutError:
             raise RefusedError.of("busy", "the world does not answer") from None
 
+    @property
+    def waits_for_tick(self) -> bool:
+        """Whether a list of commands needs a tick, though it may have no inputs for it."""
+        return self._tick is not None and not self._tick.done()
+
     def drain(self) -> list[Input]:
         """Answer the questions, and return the inputs for the tick that is about to begin."""
+        self.answer()
+        inputs, self._inputs = self._inputs, []
+        return inputs
+
+    def answer(self) -> None:
+        """Answer the questions that can be asked between two ticks only."""
         for _ in range(len(self._questions)):
             question, future = self._questions.popleft()
             if future.done():
@@ -428,8 +456,6 @@ class Console:
                 future.set_result(question())
             except Exception as error:  # noqa: BLE001 - it is raised where it was asked
                 future.set_exception(error)
-        inputs, self._inputs = self._inputs, []
-        return inputs
 
     def take(self, frame: Frame) -> None:
         """Learn from a frame what became of commands."""
@@ -487,6 +513,8 @@ def _needed_for(change: Change) -> set[str]:
         HELD: "hold_actor",
         OPEN: "move_door",
         PRESENT: "add_actors",
+        FACTOR: "pace",
+        PAUSED: "pace",
         PRESET: "save_preset",
         SCHEDULE: "schedule",
     }

@@ -22,9 +22,11 @@ from esplanade.server.console.state import (
 from esplanade.server.world.inputs import (
     ActorCommand,
     AddActors,
+    Batch,
     ChangeBehaviour,
     HoldActors,
     MoveDoor,
+    OneActorCommand,
     RemoveActors,
     SetParameters,
 )
@@ -35,9 +37,19 @@ def inputs_for(
 ) -> tuple[list[ActorCommand], list[MoveDoor]]:
     """The inputs that make facts true, each command with a new number.
 
-    Parameters of all actors become one command, so that all of them change or none.
+    Parameters of all actors become one command. Of several commands, and of commands and doors, one
+    batch is made, so that all of it becomes true in one tick or nothing.
     """
-    commands: list[ActorCommand] = []
+    commands, doors = _one_by_one(facts, state, number)
+    if commands and len(commands) + len(doors) > 1:
+        return [Batch(number(), tuple(commands), tuple(doors))], []
+    return [*commands], doors
+
+
+def _one_by_one(
+    facts: Facts, state: OperatedState, number: Callable[[], int]
+) -> tuple[list[OneActorCommand], list[MoveDoor]]:
+    commands: list[OneActorCommand] = []
     overrides = with_facts(state.overrides, facts)
     leaving = _leaving(facts)
     if leaving:
@@ -69,7 +81,7 @@ def inputs_for(
 
 def _parameters(
     facts: Facts, state: OperatedState, leaving: list[str], number: Callable[[], int]
-) -> list[ActorCommand]:
+) -> list[OneActorCommand]:
     """The command for all parameters that become others, if any do."""
     scopes = parameters_of(facts)
     changed_names = {name for values in scopes.values() for name in values}

@@ -1,6 +1,7 @@
 """Turns commands into the facts that they want, checked as far as data alone allow."""
 
-from collections.abc import Mapping
+import itertools
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Final
 
 from pydantic import TypeAdapter, ValidationError
@@ -18,6 +19,7 @@ from esplanade.protocol.commands import (
     HoldActor,
     MoveDoor,
     NewActor,
+    Pace,
     RemoveActors,
     SendActor,
     SetBehaviour,
@@ -27,13 +29,18 @@ from esplanade.server.console.groups import GROUP
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.console.state import (
     BEHAVIOUR,
+    FACTOR,
     HELD,
     OPEN,
+    PACE,
+    PAUSED,
     PRESENT,
+    STEPPED,
     OperatedState,
     scope_of,
     with_facts,
 )
+from esplanade.server.console.waves import leaving, of_wave
 
 _FIELDS: Final[Mapping[str, TypeAdapter[Any]]] = {
     name: TypeAdapter(Annotated[field.annotation, *field.metadata])  # type: ignore[arg-type]
@@ -66,8 +73,9 @@ def intended(  # noqa: PLR0911 (one for each command)
         case HoldActor():
             return _of_actors((command.actor,), HELD, command.held, state, "actor")
         case RemoveActors():
-            gone = _of_actors(command.actors, PRESENT, None, state, "actors")
-            for actor in command.actors:
+            leavers = leaving(command, state)
+            gone = _of_actors(leavers, PRESENT, None, state, "actors")
+            for actor in leavers:
                 gone[f"actor:{actor}"] |= {
                     f"{GROUP}{each}": None for each in state.groups.of(actor)
                 }
@@ -79,8 +87,21 @@ def intended(  # noqa: PLR0911 (one for each command)
                 text = f"the scene has no door {command.door!r}"
                 raise RefusedError.of("unknown_door", text, "door", door=command.door)
             return {f"door:{command.door}": {OPEN: command.open}}
+        case Pace():
+            return _pace(command, state, pending)
         case _:
             raise AssertionError(f"{command.op} wants nothing of the zone itself")
+
+
+def _pace(command: Pace, state: OperatedState, pending: Facts) -> Facts:
+    if command.factor is not None:
+        return {PACE: {FACTOR: command.factor}}
+    if command.pause is not None:
+        return {PACE: {PAUSED: command.pause}}
+    if not pending.get(PACE, {}).get(PAUSED, state.fact(PACE, PAUSED)):
+        text = "only a world that is paused goes on tick by tick"
+        raise RefusedError.of("not_paused", text, "step")
+    return {PACE: {STEPPED: command.step}}
 
 
 def checked_values(values: Mapping[str, float], *path: str) -> dict[str, Any]:
@@ -145,9 +166,10 @@ def _behaviour(given: Mapping[str, Any], *path: str | int) -> Any:
 def _newcomers(command: AddActors, state: OperatedState, pending: Facts) -> Facts:
     wanted: Facts = {}
     overrides = with_facts(state.overrides, pending)
-    for index, new in enumerate(command.actors):
+    free = _free_ids(state, pending, wanted)
+    for index, new in enumerate(of_wave(command, state, pending)):
         own = _own_values(new, index)
-        given = new.id or _free_id(state, pending, wanted)
+        given = new.id or next(free)
         subject = f"actor:{given}"
         try:
             spec = ActorSpec(
@@ -157,6 +179,7 @@ def _newcomers(command: AddActors, state: OperatedState, pending: Facts) -> Fact
                 tags=new.tags,
                 overrides=own,
                 place=new.place,
+                near=command.count is not None and new.place is not None,
             )
             overrides.with_values(scope_of(subject), own).parameters(spec.id, spec.tags)
         except ValidationError as error:
@@ -175,14 +198,12 @@ def _own_values(new: NewActor, index: int) -> dict[str, Any]:
         raise error.within("actors", index) from None
 
 
-def _free_id(state: OperatedState, pending: Facts, wanted: Facts) -> str:
-    number = len(state.zone.actors) + 1
-    while True:
+def _free_ids(state: OperatedState, pending: Facts, wanted: Facts) -> Iterator[str]:
+    for number in itertools.count(len(state.zone.actors) + 1):
         found = f"{ZONE}/actor-{number}"
         subject = f"actor:{found}"
-        if found not in state.zone.actors and subject not in {**pending, **wanted}:
-            return found
-        number += 1
+        if found not in state.zone.actors and subject not in pending and subject not in wanted:
+            yield found
 
 
 def _of_errors(error: ValidationError, code: str, *path: str | int) -> RefusedError:

@@ -5,7 +5,7 @@ from typing import Final
 
 from esplanade.actors.parameter_records import MEASURES
 from esplanade.protocol.commands import Price
-from esplanade.server.world.inputs import ActorCommand, AddActors, SetParameters
+from esplanade.server.world.inputs import ActorCommand, AddActors, SetParameters, parts_of
 from esplanade.server.world.zone import Zone
 
 _FIRST_S: Final = 0.15
@@ -28,7 +28,7 @@ class Preparation:
     def bodies(self, inputs: Sequence[ActorCommand]) -> int:
         """Number of bodies with their goals that inputs need; call it between two ticks."""
         count = 0
-        for one in inputs:
+        for one in (part for command in inputs for part in parts_of(command)):
             if isinstance(one, AddActors):
                 count += len(one.specs)
             elif isinstance(one, SetParameters) and _is_prepared(one):
@@ -46,6 +46,8 @@ class Preparation:
 
 
 def _is_prepared(command: ActorCommand) -> bool:
-    if isinstance(command, SetParameters):
-        return not command.values.keys().isdisjoint(MEASURES)
-    return isinstance(command, AddActors)
+    return any(
+        isinstance(one, AddActors)
+        or (isinstance(one, SetParameters) and not one.values.keys().isdisjoint(MEASURES))
+        for one in parts_of(command)
+    )

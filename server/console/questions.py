@@ -7,6 +7,7 @@ from esplanade.actors.behaviour_spec import BEHAVIOUR_SPEC
 from esplanade.actors.state import Reason
 from esplanade.protocol.commands import COMMAND, ZONE
 from esplanade.server.console.console import Console
+from esplanade.server.console.pacing import told
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.world.state import PERSON
 
@@ -37,6 +38,7 @@ def world(console: Console) -> dict[str, Any]:
         "doors": zone.doors.states(),
         "places": {place.name: [*place.position, place.z_m] for place in zone.scene.places},
         "revision": console.changes.revision,
+        "pace": told(console.pace),
     }
 
 

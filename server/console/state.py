@@ -9,20 +9,33 @@ from esplanade.protocol.commands import Facts
 from esplanade.server.console.groups import GROUP, Groups, moved
 from esplanade.server.console.presets import Presets
 from esplanade.server.console.schedules import Schedules
+from esplanade.server.world.pace import Pace
 from esplanade.server.world.zone import Zone
 
 BEHAVIOUR: Final = "behaviour"
 HELD: Final = "held"
 PRESENT: Final = "present"
 OPEN: Final = "open"
+FACTOR: Final = "factor"
+PAUSED: Final = "paused"
+STEPPED: Final = "stepped"
 """Fields of subjects that are no parameters."""
+PACE: Final = "pace"
+"""The subject that the time of the world is."""
 
 
 class OperatedState:
     """The facts of a zone. A value of None stands for what is not set, or not there."""
 
-    def __init__(self, zone: Zone, overrides: Overrides, presets: Presets | None = None) -> None:
+    def __init__(
+        self,
+        zone: Zone,
+        overrides: Overrides,
+        presets: Presets | None = None,
+        pace: Pace | None = None,
+    ) -> None:
         self.zone = zone
+        self.pace = pace or Pace()
         self.overrides = overrides
         self.groups = Groups()
         self.presets = presets or Presets()
@@ -34,6 +47,8 @@ class OperatedState:
     def fact(self, subject: str, field: str) -> Any:  # noqa: PLR0911 (one for each kind)
         """Return the present value of a field of a subject."""
         kind, _, name = subject.partition(":")
+        if kind == PACE:
+            return getattr(self.pace.state, field, None)
         match kind, field:
             case "door", _:
                 return self._doors.get(name, self.zone.doors.states().get(name))

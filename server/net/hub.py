@@ -16,6 +16,7 @@ from esplanade.server.net.leases import ANSWER_S, PING_S, Leases
 from esplanade.server.net.moderation import PeopleModeration
 from esplanade.server.net.names import Names, ReservedNameError
 from esplanade.server.net.operator_keys import OperatorKeys, TooManyKeysError
+from esplanade.server.net.pace_notices import PaceNotices
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.seats import Seat, Seats
 from esplanade.server.net.session import Session
@@ -37,6 +38,7 @@ from esplanade.server.world.inputs import (
     Steer,
     Watch,
 )
+from esplanade.server.world.pace import Pace
 from esplanade.server.world.routes import Route
 from esplanade.server.world.zone import Zone
 
@@ -65,6 +67,7 @@ class Hub:
         metrics: Metrics,
         server_time: Callable[[], float],
         derived: Mapping[str, object],
+        pace: Pace | None = None,
     ) -> None:
         self.server_time = server_time
         self.sessions: dict[int, Session] = {}
@@ -82,6 +85,9 @@ class Hub:
         self.moderation = PeopleModeration(
             self.sessions, self._kick, lambda: asyncio.get_running_loop().time()
         )
+        self._pace = pace or Pace()
+        self._pace_notices = PaceNotices(self.sessions, server_time)
+        self._pace.changed.append(self._pace_notices.tell_all)
         self._next_ticket = 1
         self._joining: dict[int, tuple[Session, Hello]] = {}
         self._comings: list[Attach | Detach | Leave | Stand] = []
@@ -232,7 +238,7 @@ class Hub:
             return
         self._unbind(seat)
         if comes_back and self._settings.resume_seconds > 0.0:
-            self._seats.vacate(seat, asyncio.get_running_loop().time())
+            self._seats.vacate(seat, self._run_for_s(asyncio.get_running_loop().time()))
             self._comings.append(Detach(seat.avatar_id))
         else:
             self._remove(seat)
@@ -240,9 +246,12 @@ class Hub:
 
     # --- requests of the tick -----------------------------------------------------------------
 
-    def drain(self, now: float) -> list[Input]:
-        """Return everything for the next tick: at most one movement a person, and a few joins."""
-        for seat in self._seats.vacant_since(now - self._settings.resume_seconds):
+    def drain(self, now: float, *, still: bool = False) -> list[Input]:
+        """Return everything for the next tick: at most one movement a person, and a few joins.
+
+        For a `still` tick, in which nobody moves, movements wait for the next one.
+        """
+        for seat in self._seats.vacant_since(self._run_for_s(now) - self._settings.resume_seconds):
             self._remove(seat)
         self._check_leases(now)
         # A line is said before its speaker goes.
@@ -253,10 +262,12 @@ class Hub:
             anywhere = session.is_operator or self._settings.crowd is not None
             inputs.append(Join(ticket, session.name, hello.at, anywhere))
             self._asked.add(ticket)
-        inputs.extend(self._movements.values())
+        if not still:
+            inputs.extend(self._movements.values())
+            self._movements = {}
         inputs.extend(self._doors.values())
         inputs.extend(self._watches.values())
-        self._comings, self._movements, self._doors, self._watches = [], {}, {}, {}
+        self._comings, self._doors, self._watches = [], {}, {}
         return inputs
 
     def _spoken(self) -> list[Say]:
@@ -364,6 +375,7 @@ class Hub:
         if not session.wants_steps:
             self._audience.send_no_steps(avatar_id)
         session.outbox.welcome(self._welcomes.frame(session, avatar_id, resumed))
+        self._pace_notices.tell_newcomer(session, self._pace.state)
         session.unconfirmed = resumed
         if session.fault_at_welcome is not None:
             session.tell(session.fault_at_welcome)
@@ -386,6 +398,10 @@ class Hub:
         self._seats.remove(seat)
         self._names.give_back(seat.name)
         self._comings.append(Leave(seat.avatar_id))
+
+    def _run_for_s(self, now: float) -> float:
+        """A clock that stands while the world does: nobody's seat is lost in a pause."""
+        return now - self._pace.standing_s(now)
 
     def _vacant(self) -> int:
         return self._seats.vacant

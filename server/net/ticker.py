@@ -1,6 +1,7 @@
 """The ticker runs the zone's ticks at their times, and the actors' planning in its own thread."""
 
 import asyncio
+from collections.abc import Sequence
 from concurrent.futures import Executor
 from time import perf_counter
 
@@ -15,6 +16,7 @@ from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.hub import Hub
 from esplanade.server.net.schedule import Schedule
 from esplanade.server.world.audience import Audience
+from esplanade.server.world.inputs import Input, Still
 from esplanade.server.world.zone import Zone
 
 log = structlog.get_logger(__name__)
@@ -55,6 +57,12 @@ class Ticker:
             lambda: audience.walkers_shown,
         )
         metrics.total("ticks", "Ticks of the world", lambda: world.tick)
+        pace = schedule.pace
+        metrics.gauge("pace_factor", "Pace that is wanted, 1 as usual", lambda: pace.state.factor)
+        metrics.gauge(
+            "pace_rate", "Seconds of the world in a second, 0 in a pause", lambda: pace.state.rate
+        )
+        metrics.gauge("paused", "Whether the world is paused", lambda: int(pace.state.paused))
         metrics.total("ticks_late", "Ticks that began late", lambda: schedule.late_ticks)
         metrics.total(
             "ticks_given_up", "Ticks' worth of time lost", lambda: schedule.given_up_ticks
@@ -65,8 +73,18 @@ class Ticker:
         self._stopping.set()
 
     async def run(self) -> None:
-        while not await self._stopped_by(self._schedule.next_deadline):
-            await self._tick()
+        loop, tick_s = asyncio.get_running_loop(), self._world.tick_s
+        while not self._stopping.is_set():
+            now, due = loop.time(), self._schedule.next_deadline
+            if self._schedule.pace.stands:
+                if not await self._stopped_by(now + tick_s):
+                    await self._attend()
+            elif due > now:
+                # A slow world is asked no less often, and another pace holds at once.
+                await self._stopped_by(min(due, now + tick_s))
+                self._console.answer()
+            else:
+                await self._tick()
 
     async def _stopped_by(self, deadline: float) -> bool:
         try:
@@ -76,12 +94,29 @@ class Ticker:
             pass
         return self._stopping.is_set()
 
+    async def _attend(self) -> None:
+        """Take in what came to a world that stands, in a tick in which nobody moves, if need be."""
+        now = asyncio.get_running_loop().time()
+        given = [*self._hub.drain(now, still=True), *self._console.drain()]
+        derived = self._ground_work.drain()
+        if given or derived or self._console.waits_for_tick:
+            await self._run([Still(), *given], derived)
+        else:
+            self._metrics.stood()
+            if self.tap is not None:
+                self.tap.stand()
+
     async def _tick(self) -> None:
         loop = asyncio.get_running_loop()
-        start = perf_counter()
         self._schedule.begin(loop.time())
-        self._link.send([*self._hub.drain(loop.time()), *self._console.drain()])
-        self._world.begin([*self._link.inputs(), *self._ground_work.drain()])
+        given = [*self._hub.drain(loop.time()), *self._console.drain()]
+        await self._run(given, self._ground_work.drain())
+        self._schedule.pace.ticked(loop.time(), self._world.tick, self._world.tick_s)
+
+    async def _run(self, given: Sequence[Input], derived: Sequence[Input]) -> None:
+        loop, start = asyncio.get_running_loop(), perf_counter()
+        self._link.send(list(given))
+        self._world.begin([*self._link.inputs(), *derived])
         actors_moved = await loop.run_in_executor(self._thread, self._think)
         self._link.publish(self._world.finish(actors_moved))
         frames = self._link.frames()

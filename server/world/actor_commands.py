@@ -1,30 +1,26 @@
 """Carries out what operators want of actors while the world runs, as inputs of ticks."""
 
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping
 from typing import Final
 
 import structlog
 
-from esplanade.actors import ActorSpec, BehaviourSpec, Newcomer, Population
-from esplanade.actors.behaviour_spec import GoToSpec
+from esplanade.actors import ActorSpec, Population
 from esplanade.actors.parameter_records import MEASURES
 from esplanade.planning import Scene
 from esplanade.server.world.actors import ActorAvatars
 from esplanade.server.world.command_checks import check
+from esplanade.server.world.command_effects import CommandEffects
 from esplanade.server.world.derivation import Derivation
 from esplanade.server.world.inputs import (
     ActorCommand,
     ActorsDerived,
     AddActors,
-    ChangeBehaviour,
-    HoldActors,
-    PlaceActor,
-    RemoveActors,
-    SendActors,
+    OneActorCommand,
     SetParameters,
+    parts_of,
 )
 from esplanade.server.world.outcomes import CommandError, Fault, FaultCode, Outcome, fault_of
-from esplanade.server.world.routes import Point
 
 MOST_WAITING: Final = 64
 """Commands that wait for what is derived for them; more are refused."""
@@ -46,17 +42,21 @@ class ActorCommands:
         scene: Scene,
         most_actors: int,
         roster: Iterable[ActorSpec],
+        want_door: Callable[[str, bool], None],
     ) -> None:
         self._population = population
-        self._avatars = avatars
         self._scene = scene
         self._most_actors = most_actors
         self.derived_outside = False
         """Whether commands wait for `ActorsDerived`, where they have anything to wait for."""
-        self.specs: dict[Hashable, ActorSpec] = {spec.id: spec for spec in roster}
-        """The specification of each actor; its behaviour is the latest that it was given."""
+        self._effects = CommandEffects(population, avatars, want_door, roster)
         self._waiting: dict[int, ActorCommand] = {}
         self._outcomes: list[Outcome] = []
+
+    @property
+    def specs(self) -> Mapping[Hashable, ActorSpec]:
+        """The specification of each actor; its behaviour is the latest that it was given."""
+        return self._effects.specs
 
     @property
     def waiting(self) -> int:
@@ -112,6 +112,9 @@ class ActorCommands:
         return None
 
     def _is_heavy(self, command: ActorCommand) -> bool:
+        return any(self._derives(one) for one in parts_of(command))
+
+    def _derives(self, command: OneActorCommand) -> bool:
         if isinstance(command, SetParameters):
             makes_bodies = not command.values.keys().isdisjoint(MEASURES)
             return makes_bodies and bool(
@@ -159,10 +162,10 @@ class ActorCommands:
         try:
             if derived is not None:
                 check(command, self._population, self._most_actors)
-            undo = self._population.undo_point()
+            undo = self._effects.undo_point()
             if derived is not None and derived.bodies is not None:
                 self._population.grid.apply_bodies(derived.bodies)
-            left = self._apply(command, derived or ActorsDerived(command.command))
+            left = self._effects.apply(command, derived or ActorsDerived(command.command))
         except Exception as error:  # noqa: BLE001 - whatever it is, the world goes on
             if undo is not None:
                 undo()
@@ -170,50 +173,6 @@ class ActorCommands:
             return []
         self._outcomes.append(Outcome(command.command, tick))
         return left
-
-    def _apply(self, command: ActorCommand, derived: ActorsDerived) -> list[int]:
-        population = self._population
-        match command:
-            case SetParameters():
-                population.set_many(command.actors, command.values, derived.potentials)
-            case AddActors():
-                self._add(command, derived.places)
-            case RemoveActors():
-                population.remove_many(command.actors)
-                for actor in command.actors:
-                    self.specs.pop(actor, None)
-                return self._avatars.remove(command.actors)
-            case PlaceActor():
-                population.place(command.actor, command.place)
-                self._avatars.put(command.actor)
-            case ChangeBehaviour() | SendActors() | HoldActors():
-                for actor in command.actors:
-                    self._lead(actor, command)
-        return []
-
-    def _add(self, command: AddActors, places: Sequence[Point]) -> None:
-        found: Sequence[Point | None] = places or [spec.place for spec in command.specs]
-        arrivals = zip(command.specs, command.parameters, found, strict=True)
-        self._population.add_many(
-            [Newcomer(spec.id, spec.behaviour.make(), own, place) for spec, own, place in arrivals]
-        )
-        for spec in command.specs:
-            self._avatars.name(spec.id, spec.name)
-            self.specs[spec.id] = spec
-
-    def _lead(self, actor: str, command: ChangeBehaviour | SendActors | HoldActors) -> None:
-        if isinstance(command, HoldActors):
-            self._population.hold(actor, command.held)
-            return
-        behaviour: BehaviourSpec
-        if isinstance(command, SendActors):
-            behaviour = GoToSpec(target=command.target)
-        else:
-            behaviour = command.behaviour
-        self._population.set_behaviour(actor, behaviour.make())
-        if actor in self.specs:
-            update = {"behaviour": behaviour}
-            self.specs[actor] = self.specs[actor].model_copy(update=update)
 
     def _tell(self, number: int, tick: int, error: Exception) -> None:
         fault = fault_of(error)

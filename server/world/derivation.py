@@ -1,14 +1,20 @@
 """Derives what a command on actors needs before a tick can carry it out."""
 
-from collections.abc import Callable
-
 import numpy as np
+from numpy.typing import NDArray
 
 from esplanade.actors import Newcomer, Population
 from esplanade.actors.placing import Placing
 from esplanade.actors.potential_pool import Goal, GoalKey, goal_key, potential_of
 from esplanade.planning import Body, Scene
-from esplanade.server.world.inputs import ActorCommand, ActorsDerived, AddActors, SetParameters
+from esplanade.server.world.inputs import (
+    ActorCommand,
+    ActorsDerived,
+    AddActors,
+    SetParameters,
+    parts_of,
+)
+from esplanade.server.world.routes import Point
 
 
 class Derivation:
@@ -26,13 +32,19 @@ class Derivation:
         self._fork = population.grid.fork()
         agents = population.table.agents
         self._taken = np.column_stack([agents.positions, agents.heights])
-        self._derive: Callable[[], ActorsDerived] = lambda: ActorsDerived(command.command)
-        match command:
-            case SetParameters():
-                changes = population.new_bodies(command.actors, command.values)
-                self._derive = lambda: self._bodies(changes)
-            case AddActors():
-                self._derive = lambda: self._newcomers(command)
+        self._changes: list[tuple[Goal | None, Body]] = []
+        self._newcomers: list[Newcomer] = []
+        for one in parts_of(command):
+            match one:
+                case SetParameters():
+                    self._changes += population.new_bodies(one.actors, one.values)
+                case AddActors():
+                    self._newcomers += [
+                        Newcomer(
+                            spec.id, spec.behaviour.make(), parameters, spec.place, near=spec.near
+                        )
+                        for spec, parameters in zip(one.specs, one.parameters, strict=True)
+                    ]
 
     def derive(self) -> ActorsDerived:
         """Everything that can be derived now; a fault is told, not raised."""
@@ -41,28 +53,30 @@ class Derivation:
         except Exception as error:  # noqa: BLE001 - the command is refused, the thread goes on
             return ActorsDerived(self._command.command, fault=str(error))
 
-    def _bodies(self, changes: list[tuple[Goal | None, Body]]) -> ActorsDerived:
+    def _derive(self) -> ActorsDerived:
+        changed = [body for _, body in self._changes]
+        self._know([*changed, *(each.parameters.body for each in self._newcomers)])
+        potentials = self._potentials()
+        places = self._places()
+        bodies = self._grid.bodies_change(self._fork) if changed or self._newcomers else None
+        return ActorsDerived(self._command.command, bodies, potentials, tuple(places))
+
+    def _potentials(self) -> dict[GoalKey, NDArray[np.float32]]:
         population, fork = self._population, self._fork
-        self._know([body for _, body in changes])
-        potentials: dict[GoalKey, np.ndarray[tuple[int, ...], np.dtype[np.float32]]] = {}
-        for goal, body in changes:
+        potentials: dict[GoalKey, NDArray[np.float32]] = {}
+        for goal, body in self._changes:
             key = None if goal is None else goal_key(fork, goal, body)
             if key is None or key in potentials or population.navigator.potentials.has(key):
                 continue
             potentials[key] = potential_of(fork, key)
-        return ActorsDerived(self._command.command, self._grid.bodies_change(fork), potentials)
+        return potentials
 
-    def _newcomers(self, command: AddActors) -> ActorsDerived:
-        population, fork = self._population, self._fork
-        self._know([parameters.body for parameters in command.parameters])
-        who = [
-            Newcomer(spec.id, spec.behaviour.make(), parameters, spec.place)
-            for spec, parameters in zip(command.specs, command.parameters, strict=True)
-        ]
-        generators = [population.generator(each.id) for each in who]
-        places = population.places(who, Placing(fork, self._scene), generators, self._taken)
-        change = self._grid.bodies_change(fork)
-        return ActorsDerived(self._command.command, change, places=tuple(places))
+    def _places(self) -> list[Point]:
+        """Places of all newcomers, in the order of the commands that bring them."""
+        population = self._population
+        generators = [population.generator(each.id) for each in self._newcomers]
+        placing = Placing(self._fork, self._scene)
+        return population.places(self._newcomers, placing, generators, self._taken)
 
     def _know(self, bodies: list[Body]) -> None:
         """Let the fork know these bodies all at once: as many as there may be."""

@@ -212,10 +212,18 @@ class ActorsStood:
     """In this tick planning failed when it was recorded: the actors stand."""
 
 
+@dataclass(frozen=True, slots=True)
+class Still:
+    """In this tick nobody moves and nothing is planned, since the world is paused.
+
+    All other inputs of the tick are taken in, so that people can come, talk and go meanwhile.
+    """
+
+
 Movement = Steer | Follow
 OfPerson = Attach | Detach | Leave | Stand | Steer | Follow | Say | Watch
 """Inputs of one avatar, by its `id`."""
-ActorCommand = (
+OneActorCommand = (
     SetParameters
     | AddActors
     | RemoveActors
@@ -224,6 +232,34 @@ ActorCommand = (
     | PlaceActor
     | HoldActors
 )
+"""Commands on actors that do one thing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """Commands on actors and doors, one after the other in one tick: all of them, or none.
+
+    The numbers of its commands count for nothing; the outcome is that of the batch.
+    """
+
+    command: int
+    commands: tuple[OneActorCommand, ...]
+    doors: tuple[MoveDoor, ...] = ()
+
+    @property
+    def actors(self) -> tuple[str, ...]:
+        """Ids of all actors that it is about."""
+        return tuple(dict.fromkeys(actor for one in self.commands for actor in one.actors))
+
+
+ActorCommand = OneActorCommand | Batch
 """Commands on actors. Each has a number, and a frame has the outcome of each by that number."""
+
+
+def parts_of(command: ActorCommand) -> tuple[OneActorCommand, ...]:
+    """The commands that a batch consists of, or the command itself."""
+    return command.commands if isinstance(command, Batch) else (command,)
+
+
 DerivedInput = DoorDerived | PotentialDerived | ActorsDerived
-Input = Join | MoveDoor | OfPerson | DerivedInput | ActorCommand | ActorsStood
+Input = Join | MoveDoor | OfPerson | DerivedInput | ActorCommand | ActorsStood | Still

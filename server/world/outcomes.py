@@ -13,6 +13,7 @@ class FaultCode(StrEnum):
 
     UNKNOWN_ACTOR = "unknown_actor"
     UNKNOWN_PLACE = "unknown_place"
+    UNKNOWN_DOOR = "unknown_door"
     TAKEN = "taken"
     VALUES = "values"
     REFUSED = "refused"

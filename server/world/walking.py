@@ -49,6 +49,13 @@ class Feet:
         It reads the state and writes the latest steps, and newcomers' legs and statures. Any thread
         may call it while nobody changes the state; most of the time it holds no interpreter lock.
         """
+        self._update(tick, still=False)
+
+    def stand_newcomers(self, tick: int) -> None:
+        """The same in a tick in which nobody moves: newcomers stand, and no step begins."""
+        self._update(tick, still=True)
+
+    def _update(self, tick: int, *, still: bool) -> None:
         self._tick = tick
         state = self._state
         live = state.live()
@@ -63,7 +70,8 @@ class Feet:
             if len(new):
                 self._walkers.join(tick, new, traits, self._course(new))
                 self._ids[new], self._scales[new] = state.ids[new], state.scales[new]
-            self._walkers.update(tick, live, self._course(live))
+            if not still:
+                self._walkers.update(tick, live, self._course(live))
         except Exception:
             # In the next tick everyone stands anew; meanwhile the world goes on.
             if self._failed != tick - 1:

@@ -42,6 +42,7 @@ from esplanade.server.world.inputs import (
     SetParameters,
     Stand,
     Steer,
+    Still,
     Watch,
 )
 from esplanade.server.world.latest_steps import LatestSteps
@@ -106,7 +107,9 @@ class Zone:
         self._people = People(self.state, grid, rules, tick_s)
         self._population = population
         self._actors = ActorAvatars(self.state, population, names, tick_s)
-        self._commands = ActorCommands(population, self._actors, scene, self.most_actors, roster)
+        self._commands = ActorCommands(
+            population, self._actors, scene, self.most_actors, roster, self.doors.want
+        )
         self._recorder = Recorder(self.state, self.origin_m)
         self._plan_period = max(1, round(1.0 / tick_s) // PLANS_PER_SECOND)
         self._watched: dict[int, int] = {}
@@ -139,8 +142,9 @@ class Zone:
             if self._moved_doors:
                 self._population.ground_changed(renewed_outside=self.doors.derived_outside)
         with self.times.stage("people"):
-            self._people.move()
-            self._observed = self._observe()
+            if not self._still:
+                self._people.move()
+                self._observed = self._observe()
 
     def think(self) -> bool:
         """Find the next step of every actor; whether there are any.
@@ -149,6 +153,8 @@ class Zone:
         same world in a replay, `ActorsStood` is then an input of this tick.
         """
         with self.times.stage("actors"):
+            if self._still:
+                return False
             if self._stands:
                 self._actors.stand(self._observed)
                 return False
@@ -157,13 +163,18 @@ class Zone:
     def finish(self, actors_moved: bool) -> Frame:
         """Move the actors, if they have moved, and say what is new in this tick."""
         with self.times.stage("contacts"):
-            pointing = self._place(actors_moved)
+            # In a still tick actors who have come or were put elsewhere are shown all the same.
+            pointing = self._place(actors_moved or self._still)
             if actors_moved:
                 for name, is_open in self._actors.doors_wanted.items():
                     self.doors.want(name, is_open)
-            self.contacts.update(self.state)
+            if not self._still:
+                self.contacts.update(self.state)
         with self.times.stage("steps"):
-            self.feet.update(self.tick)
+            if self._still:
+                self.feet.stand_newcomers(self.tick)
+            else:
+                self.feet.update(self.tick)
         with self.times.stage("encode"):
             people, actors = self.count()
             return Frame(
@@ -181,7 +192,7 @@ class Zone:
                 steps=self.steps.begun_in(self.tick, self.state.live()),
                 events=Events(self._moved_doors, pointing, self._chat, self._plans()),
                 outcomes=self._commands.outcomes,
-                actors_stood=not actors_moved and len(self._population) > 0,
+                actors_stood=not (actors_moved or self._still) and len(self._population) > 0,
             )
 
     def _place(self, actors_moved: bool) -> dict[int, Point | None]:
@@ -321,7 +332,7 @@ class Zone:
         self._left: list[int] = []
         self._acks: dict[int, int] = {}
         self._chat: list[Line] = []
-        self._stands = False
+        self._stands = self._still = False
         self._commands.begin()
 
     def _take(self, item: Input) -> None:
@@ -338,6 +349,8 @@ class Zone:
                 self._go(self._commands.take_derived(item, self.tick))
             case ActorsStood():
                 self._stands = True
+            case Still():
+                self._still = True
             case Attach() | Detach() | Leave() | Stand() | Steer() | Follow() | Say() | Watch():
                 if item.id in self.state:
                     self._apply(item, self.state.slot(item.id))

@@ -5,7 +5,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from esplanade.protocol import ByeCode, ErrorCode, Kind, Reason
+from esplanade.protocol import ByeCode, ErrorCode, Kind, NoticeCode, Reason
 from esplanade.protocol.codes import MAX_CHAT_CHARS, MAX_DOOR_CHARS, MAX_NAME_CHARS, MAX_TOKEN_CHARS
 from esplanade.protocol.messages import (
     Blocker,
@@ -145,7 +145,12 @@ server_messages: st.SearchStrategy[FromServer] = st.one_of(
     st.builds(Leave, tick=u32, ids=st.lists(u32)),
     st.builds(Snapshot, tick=u32, ack=u32, block=st.binary(max_size=400)),
     st.builds(Chat, id=u32, name=texts, text=texts),
-    st.builds(Notice, text=texts),
+    st.builds(
+        Notice,
+        text=texts,
+        notice=st.sampled_from(NoticeCode),
+        arguments=st.dictionaries(texts, st.integers(0, 9) | texts, max_size=3),
+    ),
     st.builds(Error, error=st.sampled_from(ErrorCode), text=texts),
     st.builds(Bye, reason=st.sampled_from(ByeCode), text=texts),
     st.builds(Pong, nonce=u32, server_time=floats),

@@ -80,4 +80,4 @@ def test_a_place_that_the_scene_does_not_have_is_named() -> None:
 def test_a_roster_has_a_schema_that_a_form_can_be_made_of() -> None:
     schema = Roster.model_json_schema()["$defs"]["ActorSpec"]["properties"]
     mapping = schema["behaviour"]["discriminator"]["mapping"]
-    assert set(mapping) == {"idle", "go_to", "wander", "patrol", "guide"}
+    assert set(mapping) == {"idle", "go_to", "wander", "patrol", "guide", "follow"}

@@ -13,6 +13,7 @@ import { Invitation } from "../ui/invitation";
 import { JoinDialog } from "../ui/join";
 import { Minimap } from "../ui/minimap";
 import { Panel } from "../ui/panels";
+import { PaceBanner } from "../ui/pace";
 import { PeopleList } from "../ui/people";
 import { PlanPanel } from "../ui/plan";
 import { StatusChip } from "../ui/status";
@@ -37,6 +38,7 @@ export class Session {
   private readonly join: JoinDialog;
   private readonly chat: ChatPanel;
   private readonly status = new StatusChip();
+  private readonly pace = new PaceBanner();
   private readonly minimap = new Minimap();
   private readonly people: PeopleList;
   private readonly planPanel = new PlanPanel();
@@ -181,7 +183,7 @@ export class Session {
         this.chat.note(`The server says: ${message.text}.`);
         break;
       case "notice":
-        this.chat.note(message.text);
+        if (!this.pace.show(message)) this.chat.note(message.text);
         break;
       case "doors":
         world?.doorsMoved(message.doors);
@@ -199,6 +201,7 @@ export class Session {
     this.walking.enter(this.world);
     this.minimap.show(welcome.scene);
     this.chosenId = null;
+    this.pace.hide();
     if (welcome.scene.mesh !== undefined) void this.build(this.world, welcome.scene.mesh);
   }
 
@@ -254,7 +257,7 @@ export class Session {
     this.view.camera.orbit(this.walking.turnPerS * steppedS, 0);
     this.walking.frame(this.view.camera.yaw);
     this.moving.of(() => {
-      world.advance(this.serverNowS(), steppedS);
+      world.advance(this.serverNowS(), steppedS, this.connection.clock.rate);
     });
     this.view.frame(world, this.planSwitch.open ? this.chosenId : null, frameS);
     if (ms - this.panelsMs > PANELS_MS) {

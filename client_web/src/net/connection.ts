@@ -6,7 +6,7 @@ import { closing, type Closing } from "./closing";
 import { CloseCode } from "./codes";
 import { decodeServer, encodeClient } from "./codec";
 import { WireError } from "./errors";
-import type { ClientMessage, ServerMessage, Welcome } from "./messages";
+import type { Arguments, ClientMessage, ServerMessage, Welcome } from "./messages";
 
 export type ConnectionState =
   | { phase: "idle" }
@@ -133,6 +133,7 @@ export class Connection {
       return;
     }
     if (message.type === "error" || message.type === "bye") this.stated = message.text;
+    if (message.type === "notice") this.pace(message.arguments);
     this.events.message(message);
     if (message.type === "welcome") this.welcome(message);
   }
@@ -143,6 +144,13 @@ export class Connection {
     this.clock.seed(message.server_time, nowS());
     this.change({ phase: "live" });
     this.ping();
+  }
+
+  /** The world runs at another pace from now on, if the notice is of that. */
+  private pace({ rate, server_time: serverTimeS }: Arguments): void {
+    if (typeof rate !== "number" || typeof serverTimeS !== "number") return;
+    this.pings.clear();
+    this.clock.pace(rate, serverTimeS, nowS());
   }
 
   private pulse(): void {

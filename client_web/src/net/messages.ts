@@ -17,6 +17,9 @@ export type ClientMessage =
   | { type: "watch"; id: number | null }
   | { type: "set_door"; name: string; open: boolean };
 
+/** What a sentence of the server is made of, by names. */
+export type Arguments = Record<string, unknown>;
+
 /** Whether each door stands open, by name. */
 export type Doors = Record<string, boolean>;
 
@@ -188,7 +191,7 @@ export type ServerMessage =
   | ChatMessage
   | { type: "enter"; tick: number; entities: EntityInfo[] }
   | { type: "leave"; tick: number; ids: number[] }
-  | { type: "notice"; text: string }
+  | { type: "notice"; notice: string; text: string; arguments: Arguments }
   | { type: "error"; error: string; text: string }
   | { type: "bye"; reason: string; text: string }
   | { type: "pong"; nonce: number; server_time: number }

@@ -19,6 +19,9 @@ export class Playout {
   private lateness: number | null = null;
   private deviation = 0.005;
   private timeS_: number | null = null;
+  /** Seconds of the world in a second, of the frame before; not 0. */
+  private rate = 1;
+  private stands = false;
 
   /** `cushionS` is kept beyond the deviation of arrivals, and never less than `leastS` at all. */
   constructor(
@@ -28,6 +31,7 @@ export class Playout {
 
   /** A snapshot of the tick at `tickTimeS` came in when the server's time was `serverNowS`. */
   arrived(tickTimeS: number, serverNowS: number): void {
+    if (this.stands) return;
     const latenessS = serverNowS - tickTimeS;
     if (this.lateness === null) {
       this.lateness = latenessS;
@@ -44,9 +48,33 @@ export class Playout {
     return (this.lateness ?? 0) + Math.max(this.leastS, behindS);
   }
 
-  /** The drawn time, one frame of `frameS` later. Never runs backwards but for a jump. */
-  advance(serverNowS: number, frameS: number): number {
-    const aimS = serverNowS - this.delayS;
+  /**
+   * The drawn time, one frame of `frameS` later, in a world whose time runs `rate` times as fast.
+   * Never runs backwards but for a jump.
+   */
+  advance(serverNowS: number, frameS: number, rate = 1): number {
+    this.stands = rate === 0;
+    if (this.stands) return this.comeToRest(serverNowS - this.delayS, frameS);
+    this.changeRate(rate);
+    return this.run(serverNowS - this.delayS, frameS * rate);
+  }
+
+  /** The world stands: go on to where it stands, and no further. */
+  private comeToRest(aimS: number, frameS: number): number {
+    const before = this.timeS_ ?? aimS;
+    this.timeS_ = before + Math.max(0, Math.min(frameS, aimS - before));
+    return this.timeS_;
+  }
+
+  /** Messages take as long as ever, which is more time of the world if that runs faster. */
+  private changeRate(rate: number): void {
+    if (rate === this.rate) return;
+    if (this.lateness !== null) this.lateness *= rate / this.rate;
+    this.deviation *= rate / this.rate;
+    this.rate = rate;
+  }
+
+  private run(aimS: number, frameS: number): number {
     const next = (this.timeS_ ?? aimS) + frameS;
     const off = aimS - next;
     const slower = off < -AHEAD_S ? SLOW : STRETCH;

@@ -96,17 +96,17 @@ export class Prediction {
     this.offset = Math.hypot(...off) > JUMP_M ? [0, 0] : off;
   }
 
-  /** Advance by one frame. */
-  advance(frameS: number): void {
+  /** Advance by one frame of the world's time, which took `passedS` of ours. */
+  advance(frameS: number, passedS = frameS): void {
     const current = this.pending.at(-1);
     if (!current) return;
     current.playedS += frameS;
     this.play(current.command, frameS);
-    const left = Math.exp(-frameS / FADE_S);
+    const left = Math.exp(-passedS / FADE_S);
     this.offset = [this.offset[0] * left, this.offset[1] * left];
     const turn = this.body.heading - this.heading;
     const shortWay = Math.atan2(Math.sin(turn), Math.cos(turn));
-    this.heading += shortWay * Math.min(1, TURN_PER_S * frameS);
+    this.heading += shortWay * Math.min(1, TURN_PER_S * passedS);
   }
 
   get shown(): Pose {

@@ -73,6 +73,9 @@ export class World {
     this.heardS = welcome.server_time;
   }
 
+  /** The time at which everybody is drawn; null before the first frame. */
+  private drawnS: number | null = null;
+
   get avatars(): ReadonlyMap<number, Avatar> {
     return this.avatars_;
   }
@@ -188,11 +191,18 @@ export class World {
     this.prediction?.command(command);
   }
 
-  /** Move everybody to where they are drawn `frameS` later. */
-  advance(serverNowS: number, frameS: number): void {
-    const timeS = this.playout.advance(serverNowS, frameS);
-    const ownS = this.ownPlayout.advance(serverNowS, frameS);
-    this.prediction?.advance(frameS);
+  /**
+   * Move everybody to where they are drawn `passedS` later, in a world whose time runs `rate` times
+   * as fast as ours; 0 while it stands.
+   */
+  advance(serverNowS: number, passedS: number, rate = 1): void {
+    const before = this.drawnS ?? -Infinity;
+    const timeS = this.playout.advance(serverNowS, passedS, rate);
+    const ownS = this.ownPlayout.advance(serverNowS, passedS, rate);
+    this.drawnS = timeS;
+    // What is drawn comes to rest a moment after the world does.
+    const frameS = rate === 0 ? Math.min(passedS, timeS - before) : passedS * rate;
+    this.prediction?.advance(passedS * rate, passedS);
     for (const avatar of this.avatars_.values()) {
       const { animator, interpolator, own } = avatar;
       avatar.pose =

@@ -23,3 +23,24 @@ it("starts from a reading without a round trip", () => {
   expect(clock.at(4)).toBe(51);
   expect(clock.roundTripS).toBeNull();
 });
+
+it("runs at the pace of the world, and goes on from there without a leap", () => {
+  const clock = new ServerClock();
+  clock.seed(50, 3);
+  clock.add(3, 3.1, 50.05);
+  clock.pace(0.25, 52, 5);
+  expect(clock.at(5)).toBeCloseTo(52 + 0.25 * 0.05);
+  expect(clock.at(9)).toBeCloseTo(53, 1);
+  clock.add(9, 9.2, 53.025);
+  expect(clock.at(9.2)).toBeCloseTo(53.05);
+});
+
+it("stands in a pause, but for the ticks that are run meanwhile", () => {
+  const clock = new ServerClock();
+  clock.seed(50, 3);
+  clock.pace(0, 52, 5);
+  expect(clock.at(100)).toBe(52);
+  clock.add(100, 100.1, 52.05);
+  clock.add(101, 101.3, 52.1);
+  expect(clock.at(200)).toBe(52.1);
+});

@@ -55,4 +55,24 @@ describe("Playout", () => {
     playout.advance(1, 0.016);
     expect(playout.advance(20, 0.25)).toBeCloseTo(20 - playout.delayS);
   });
+
+  it("comes to rest where a paused world stands, and goes on from there", () => {
+    const playout = fed(20, () => 0.02);
+    let before = playout.advance(1, 0.016);
+    for (let frame = 1; frame < 40; frame++) {
+      const now = playout.advance(1.08, 0.016, 0);
+      expect(now - before).toBeGreaterThanOrEqual(0);
+      expect(now - before).toBeLessThanOrEqual(0.016 + 1e-9);
+      before = now;
+    }
+    expect(before).toBeCloseTo(1.08 - playout.delayS);
+    const next = playout.advance(1.08, 0.016);
+    expect(next - before).toBeLessThanOrEqual(0.016 * 1.1);
+  });
+
+  it("takes messages to be later in a world that runs faster", () => {
+    const playout = fed(200, () => 0.02);
+    playout.advance(10, 0.016, 4);
+    expect(playout.delayS).toBeGreaterThan(0.08 + 0.1 - 1e-3);
+  });
 });

@@ -221,3 +221,20 @@ async def test_a_stream_tells_the_same_without_a_socket(serving: Serving) -> Non
 
 def _values(storey: Any) -> Any:
     return np.frombuffer(base64.b64decode(storey["values"]), "<f4")
+
+
+async def test_a_world_that_stands_is_shown_all_the_same(serving: Serving) -> None:
+    async with serving(actors=1) as server:
+        olga = await operator(server, "olga", "director")
+        status, answer = await olga.send({"op": "pace", "pause": True})
+        assert status == 200, answer
+        async with live_console(server.private_port, olga.token) as console:
+            await console.subscribe("map")
+            await console.subscribe("actor:actor-1")
+            await console.subscribe("map.layers", goals=True)
+            await console.until(lambda: console.records)
+            told = await console.next("actor:actor-1")
+            assert {told["id"]} == set(console.records)
+            await console.next("map.layers")
+        _, found = await olga.get("/events?kind=pace")
+        assert [each["arguments"]["account"] for each in found["events"]] == ["olga"]

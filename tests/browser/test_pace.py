@@ -1,0 +1,137 @@
+"""The page in a world that is paused, stepped and slowed: everybody stands, or walks smoothly."""
+
+import math
+from collections.abc import AsyncIterator
+from itertools import pairwise
+from typing import Any, Final
+
+import pytest
+import pytest_asyncio
+from playwright.async_api import BrowserContext, ViewportSize
+
+from esplanade.server.app import Running, running
+from esplanade.server.assets import CLIENT_ASSETS
+from esplanade.server.settings import ServerSettings
+from tests.browser.visitor import Visitor
+from tests.browser.worlds import PROMENADE, PROMENADE_END, entered_at
+from tests.patience import PATIENCE_S
+from tests.server.console.operators import Operator, operator
+
+pytestmark = [pytest.mark.browser, pytest.mark.asyncio(loop_scope="module")]
+
+SMALL: Final[ViewportSize] = {"width": 480, "height": 360}
+WALK_MPS: Final = 1.4
+BACK_M: Final = 0.02
+"""Nobody who walks on is drawn further back than this from one frame to the next."""
+
+# Where the own avatar and others are drawn in every frame, and when.
+_RECORD: Final = """(seconds) => new Promise((resolve) => {
+  const frames = [];
+  const begun = performance.now();
+  const look = (ms) => {
+    const { avatars, correctionM } = window.esplanade;
+    const places = avatars.map(({ id, own, pose }) => [id, own, pose.x, pose.y]);
+    frames.push({ s: ms / 1000, places, correctionM });
+    if (performance.now() - begun < 1000 * seconds) requestAnimationFrame(look);
+    else resolve(frames);
+  };
+  requestAnimationFrame(look);
+})"""
+
+
+@pytest_asyncio.fixture(scope="module", loop_scope="module")
+async def promenade(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[Running]:
+    """A server of bare ground with actors, on which nothing stops a walk to the south."""
+    if not (CLIENT_ASSETS / "index.html").is_file():
+        pytest.fail("the web client is not built; run: make client")
+    scene = entered_at(PROMENADE, PROMENADE_END, tmp_path_factory.mktemp("promenade"))
+    values: dict[str, Any] = {
+        "host": "127.0.0.1",
+        "port": 0,
+        "private_port": 0,
+        "scene": scene,
+        "actors": 12,
+        "hello_timeout_s": 60.0,
+        "drop_seconds": PATIENCE_S,
+    }
+    async with running(ServerSettings(**values)) as server:
+        yield server
+
+
+async def test_the_picture_goes_at_the_pace_of_the_world(
+    promenade: Running, profile: BrowserContext
+) -> None:
+    olga = await operator(promenade, "olga", "director")
+    ann = await Visitor.arrive(profile, f"http://127.0.0.1:{promenade.port}/")
+    await ann.page.set_viewport_size(SMALL)
+    await ann.join("Ann")
+    await ann.page.keyboard.down("s")
+    await _frames(ann, 2.0)  # the first steps
+    usual = await _frames(ann, 2.0)
+    assert _own_mps(usual) > 0.7 * WALK_MPS
+    assert _back_m(usual) < BACK_M
+
+    paused = await _changed(ann, olga, 0.8, pause=True)
+    assert _back_m(paused) < BACK_M
+    assert await ann.page.is_visible("#pace")
+    assert "paused" in (await ann.page.inner_text("#pace"))
+    stood = await _frames(ann, 0.5)
+    assert _most_moved_m(stood) == 0.0
+    tick = promenade.world.tick
+    stepped = await _changed(ann, olga, 1.5, step=10)
+    assert promenade.world.tick == tick + 10
+    assert _back_m(stepped) < BACK_M
+    assert 0.4 < math.dist(_own(stood[-1]), _own(stepped[-1])) < 1.1
+    assert _most_moved_m(await _frames(ann, 0.5)) == 0.0
+
+    await olga.send({"op": "pace", "factor": 0.25})
+    slow = await _changed(ann, olga, 3.0, pause=False)
+    assert _back_m(slow) < BACK_M
+    late = slow[len(slow) // 2 :]
+    assert 0.15 * WALK_MPS < _own_mps(late) < 0.4 * WALK_MPS
+    assert "0.25" in (await ann.page.inner_text("#pace"))
+
+    again = await _changed(ann, olga, 2.0, factor=1)
+    assert _back_m(again) < BACK_M
+    assert _own_mps(again[len(again) // 2 :]) > 0.7 * WALK_MPS
+    await ann.page.wait_for_selector("#pace", state="hidden")
+    await ann.page.keyboard.up("s")
+    assert await ann.complaints() == []
+
+
+async def _changed(
+    ann: Visitor, olga: Operator, seconds: float, **pace: object
+) -> list[dict[str, Any]]:
+    """Everything that is drawn from just before another pace on."""
+    recording = ann.page.evaluate(_RECORD, seconds)
+    status, answer = await olga.send({"op": "pace", **pace})
+    assert status == 200, answer
+    return list(await recording)
+
+
+async def _frames(ann: Visitor, seconds: float) -> list[dict[str, Any]]:
+    return list(await ann.page.evaluate(_RECORD, seconds))
+
+
+def _own(frame: dict[str, Any]) -> tuple[float, float]:
+    return next((x, y) for _, own, x, y in frame["places"] if own)
+
+
+def _own_mps(frames: list[dict[str, Any]]) -> float:
+    return math.dist(_own(frames[0]), _own(frames[-1])) / (frames[-1]["s"] - frames[0]["s"])
+
+
+def _back_m(frames: list[dict[str, Any]]) -> float:
+    """The furthest that the own avatar, which walks to the south, is drawn back in a frame."""
+    return max(_own(after)[1] - _own(before)[1] for before, after in pairwise(frames))
+
+
+def _most_moved_m(frames: list[dict[str, Any]]) -> float:
+    """The furthest that anybody is drawn from where they were."""
+    first = {who: (x, y) for who, _, x, y in frames[0]["places"]}
+    return max(
+        math.dist(first[who], (x, y))
+        for frame in frames
+        for who, _, x, y in frame["places"]
+        if who in first
+    )

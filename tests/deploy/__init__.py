@@ -1,0 +1,1 @@
+"""What is shipped to watch a world with other programs."""
