@@ -35,13 +35,25 @@ class Bulletin:
         self._add(Notice(_now_us(), change=dict(change)))
 
     def heard(self, kind: str, what: Mapping[str, Any]) -> None:
-        """Take in what a console tells its listeners: a change, a mark, or what is others now."""
+        """Take in what a console or those who serve people tell their listeners.
+
+        That is a change, a mark, what is others now, or a report; other kinds are passed over.
+        """
         if kind == "change":
             self.change(what)
         elif kind == "mark":
             self.event("mark", str(what.get("text") or ""), account=what.get("account"))
         elif kind == "about":
             self.about(str(what["about"]))
+        elif kind == "report":
+            self.event(
+                "report",
+                str(what.get("text") or ""),
+                who=what.get("who"),
+                other=what.get("other"),
+                place=what.get("place"),
+                report=what.get("report"),
+            )
 
     def about(self, what: str) -> None:
         """Tell that presets, schedules, groups or accounts are others now."""

@@ -119,16 +119,19 @@ class Happenings:
             )
         if notice.event is not None:
             event = notice.event
+            words, said = "", event["text"]
+            if event["kind"] == "report":
+                words, said = "{who} reports {other}", f": {said}" if said else ""
             self._events.add(
                 event["kind"],
                 notice.at_us,
                 self._feed.tick,
-                "" if event["kind"] != "report" else "a report",
+                words,
                 who=self._named(event["who"]),
                 other=self._named(event["other"]),
                 place=event["place"],
                 arguments=event["arguments"],
-                said=event["text"] if event["kind"] != "report" else f": {event['text']}",
+                said=said,
                 private=event["kind"] in NAMING,
             )
 

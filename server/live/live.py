@@ -117,7 +117,10 @@ class Live:
         if ticks:
             self._happenings.stops(ticks[-1].at_us)
             self.reasons.ask()
-        self._telling.beat(self._beats, ticks)
+        found: dict[str, Any] = {}
+        for results in (*self.tap.fetch_found(), *(tick.found for tick in ticks)):
+            found |= results
+        self._telling.beat(self._beats, found)
 
     def _take(self, tick: Tick) -> None:
         self._happenings.before(tick)

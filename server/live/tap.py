@@ -19,6 +19,8 @@ from esplanade.server.world.zone import Zone
 MOST_TICKS: Final = 1200
 """Of more ticks that nobody has fetched the oldest are lost; then everybody is told of anew."""
 MOST_PROBES_A_TICK: Final = 4
+MOST_FOUND: Final = 64
+"""Answers that are kept while the world stands; the oldest is lost."""
 
 log = structlog.get_logger(__name__)
 
@@ -83,11 +85,26 @@ class Tap:
         """By their names; the other thread puts other dictionaries in its place."""
         self.lost = 0
         self._ticks: deque[Tick] = deque()
+        self._found: deque[dict[str, Any]] = deque(maxlen=MOST_FOUND)
+        self._clock = 0
+        """Number of times that questions could be asked so far."""
         self._all = True
 
     def fetch(self) -> list[Tick]:
         """Take the ticks that have come since the last call, in another thread."""
         return [self._ticks.popleft() for _ in range(len(self._ticks))]
+
+    def fetch_found(self) -> list[dict[str, Any]]:
+        """Take what probes have found while the world stood, in another thread."""
+        return [self._found.popleft() for _ in range(len(self._found))]
+
+    def stand(self) -> None:
+        """Ask what is due while the world stands; call it as often as there would be a tick."""
+        self._clock += 1
+        found: dict[str, Any] = {}
+        self._probe(found)
+        if found:
+            self._found.append(found)
 
     def take(self, frame: Frame, seconds: float, late: int) -> None:
         """Hand a tick over that has ended and taken this time."""
@@ -109,23 +126,23 @@ class Tap:
             tick.everyone, self._all = self._everyone(), False
         if tick.everyone is not None or frame.outcomes or frame.entered:
             tick.specs = dict(zone.actors)
-        if self.probes:
-            self._probe(tick)
+        self._clock += 1
+        self._probe(tick.found)
         self._ticks.append(tick)
 
-    def _probe(self, tick: Tick) -> None:
+    def _probe(self, found: dict[str, Any]) -> None:
         """Ask what is due, the longest due first, and no more than a few."""
-        now = tick.frame.tick
+        now = self._clock
         due = sorted((probe.due, name) for name, probe in self.probes.items() if probe.due <= now)
         for _, name in due[:MOST_PROBES_A_TICK]:
             probe = self.probes[name]
             probe.due = 2**62 if probe.once else now + probe.every
             try:
-                tick.found[name] = probe.ask(self.zone)
+                found[name] = probe.ask(self.zone)
             except Exception:
                 # An operator's question never ends a world.
-                log.exception("a question of operators failed", tick=now, name=name)
-                tick.found[name] = None
+                log.exception("a question of operators failed", tick=self.zone.tick, name=name)
+                found[name] = None
 
     def _avatar(self, avatar_id: int, kind: str, name: str) -> Avatar:
         state = self.zone.state

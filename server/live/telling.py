@@ -12,7 +12,7 @@ from esplanade.server.live import layers, one_actor, trips
 from esplanade.server.live.bulletin import Notice
 from esplanade.server.live.subscriber import Subscriber
 from esplanade.server.live.subscriptions import ACTOR, ActorWish, EventsWish, LayersWish
-from esplanade.server.live.tap import Probe, Tick
+from esplanade.server.live.tap import Probe
 
 if TYPE_CHECKING:
     from esplanade.server.live.live import Live
@@ -49,16 +49,15 @@ class Telling:
         if notice.about is not None:
             self._publish("changes", lambda _: {"about": notice.about})
 
-    def beat(self, beat: int, ticks: list[Tick]) -> None:
-        """Tell all that is new since the last beat."""
+    def beat(self, beat: int, found: Mapping[str, Any]) -> None:
+        """Tell all that is new since the last beat; `found` are the latest results of probes."""
         live = self._live
         self._tell_events()
         self._tell_contacts()
-        found = {name: result for tick in ticks for name, result in tick.found.items()}
         for subscriber in live.subscribers:
             if subscriber.ready("map", beat):
                 subscriber.offer_map()
-            if layers.PROBE in found and subscriber.ready("map.layers", beat):
+            if found.get(layers.PROBE) is not None and subscriber.ready("map.layers", beat):
                 wish = cast(LayersWish, subscriber.wishes["map.layers"])
                 subscriber.post(layers.told(found[layers.PROBE], wish, live.map))
             self._tell_of_actors(subscriber, found, beat)

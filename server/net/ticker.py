@@ -116,6 +116,8 @@ class Ticker:
             await self._run([Still(), *given], derived)
         else:
             self._metrics.stood()
+            if self.tap is not None:
+                self.tap.stand()
 
     async def _tick(self) -> None:
         loop = asyncio.get_running_loop()

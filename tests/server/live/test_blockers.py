@@ -9,6 +9,8 @@ from esplanade.actors.state import Reason
 from esplanade.server.live.bulletin import Bulletin
 from esplanade.server.live.encounters import NearMisses
 from esplanade.server.live.live import Live
+from esplanade.server.live.subscriber import Subscriber
+from esplanade.server.live.subscriptions import read_wish
 from esplanade.server.live.trips import Progress, TimeRatios
 from esplanade.server.metrics import Traffic
 from tests.server.populated import HALL, Populated, spec
@@ -147,3 +149,19 @@ def test_the_time_of_a_trip_is_held_against_its_way_alone() -> None:
     assert at(6.0, there, 3.0) == []
     assert at(13.0, there, 0.0, arrived=True) == [12.0 / 8.0]
     assert at(14.0, there, 0.0, arrived=True) == []
+
+
+def test_questions_are_answered_while_the_world_stands() -> None:
+    watched = Watched(spec(1))
+    watched.ticks(1)
+    avatar = watched.world.zone.avatar_of("main/a1")
+    assert avatar is not None
+    subscriber = Subscriber(names=True)
+    subscriber.take(read_wish('{"subscribe": "actor:a1"}'))
+    watched.live.hello(subscriber)
+    watched.live.beat()
+    before = subscriber.waiting
+    for _ in range(8):
+        watched.live.tap.stand()
+    watched.live.beat()
+    assert subscriber.waiting == before + 1

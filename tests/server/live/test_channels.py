@@ -68,11 +68,16 @@ async def test_changes_and_marks_are_lines_in_all_series(serving: Serving) -> No
             change = {"number": 12, "op": "set_parameters", "account": "olga", "subjects": []}
             server.live.bulletin.heard("change", change)
             server.live.bulletin.heard("mark", {"text": "here", "account": "olga"})
+            report = {"report": 1, "who": 3, "other": 4, "text": "pushes", "place": (1.0, 1.0, 0.0)}
+            server.live.bulletin.heard("report", report)
             server.live.bulletin.heard("about", {"about": "presets"})
             assert (await console.next("changes", about="presets"))["channel"] == "changes"
             assert {"channel": "changes", "change": change} in console.told
             assert (await console.event("command"))["arguments"]["number"] == 12
             assert (await console.event("mark"))["text"] == "here"
+            told = await console.event("report")
+            assert (told["who"], told["other"], told["arguments"]) == (3, 4, {"report": 1})
+            assert told["text"].endswith(": pushes")
         body = await _until(vera, "/series", lambda found: len(found["marks"]) == 2)
         assert [each["text"] for each in body["marks"]] == ["set_parameters", "here"]
         assert {each["account"] for each in body["marks"]} == {"olga"}
@@ -216,3 +221,20 @@ async def test_a_stream_tells_the_same_without_a_socket(serving: Serving) -> Non
 
 def _values(storey: Any) -> Any:
     return np.frombuffer(base64.b64decode(storey["values"]), "<f4")
+
+
+async def test_a_world_that_stands_is_shown_all_the_same(serving: Serving) -> None:
+    async with serving(actors=1) as server:
+        olga = await operator(server, "olga", "director")
+        status, answer = await olga.send({"op": "pace", "pause": True})
+        assert status == 200, answer
+        async with live_console(server.private_port, olga.token) as console:
+            await console.subscribe("map")
+            await console.subscribe("actor:actor-1")
+            await console.subscribe("map.layers", goals=True)
+            await console.until(lambda: console.records)
+            told = await console.next("actor:actor-1")
+            assert {told["id"]} == set(console.records)
+            await console.next("map.layers")
+        _, found = await olga.get("/events?kind=pace")
+        assert [each["arguments"]["account"] for each in found["events"]] == ["olga"]
