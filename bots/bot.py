@@ -8,6 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Self
 
+from esplanade.bots.admission import admission
 from esplanade.bots.clock import ServerClock
 from esplanade.bots.connection import NO_CLOSE_CODE, OPEN_TIMEOUT_S, Connection
 from esplanade.bots.errors import Disconnected, Unreachable
@@ -229,6 +230,7 @@ async def connect(
     operator: str | None = None,
     steps: bool = True,
     trust: Path | None = None,
+    token: str | None = None,
 ) -> AsyncIterator[Bot]:
     """Join the world at `url` and leave it at the end of the block.
 
@@ -243,6 +245,7 @@ async def connect(
     steps : whether to be sent steps; of others who walk by steps, places come once a second only
     trust : file of the server's certificate, PEM; no other is trusted then, and the server's name
         is not checked. Without it, certificates are checked as the machine does
+    token : a bot's token, which lets it into a closed world and at a rate of its own
 
     Raises
     ------
@@ -253,7 +256,15 @@ async def connect(
     Disconnected
         The connection ended before the avatar stood in the world.
     """
-    hello = Hello(name=name, version=VERSION, resume=resume, at=at, operator=operator, steps=steps)
+    hello = Hello(
+        name=name,
+        version=VERSION,
+        resume=resume,
+        at=at,
+        operator=operator,
+        admission=admission(token),
+        steps=steps,
+    )
     bot = await Bot.join(url, hello, trust)
     try:
         yield bot

@@ -84,6 +84,7 @@ def _load_jobs(settings: BotsSettings) -> list[Job]:
             stages=settings.plan,
             scenario=settings.scenario,
             trust=settings.trust,
+            token=settings.token.get_secret_value(),
         )
         for first in range(step)
     ]
@@ -93,7 +94,14 @@ def _replay_jobs(settings: BotsSettings, crowd: Crowd) -> tuple[list[Job], int]:
     """The job, if anybody has a way, and how many have none."""
     tracks = sorted(crowd.tracks, key=lambda track: track.start_s)[: settings.limit]
     walking = tuple(track for track in tracks if len(track.times) > 1)
-    job = ReplayJob(settings.url, walking, settings.speedup, settings.linger, settings.trust)
+    job = ReplayJob(
+        settings.url,
+        walking,
+        settings.speedup,
+        settings.linger,
+        settings.trust,
+        settings.token.get_secret_value(),
+    )
     return [job] if walking else [], len(tracks) - len(walking)
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from esplanade.bots.admission import admission
 from esplanade.bots.client import Client, sleep_until, until_first, visit
 from esplanade.bots.clock import ServerClock
 from esplanade.bots.player import Player
@@ -46,6 +47,8 @@ class LoadJob:
     """The bots do what this class in a file says, FILE:CLASS; without it they wander."""
     trust: Path | None = None
     """The only certificate that is trusted."""
+    token: str = ""
+    """The token of a bot, by which all of them come in."""
 
     async def run(self, tally: Tally, stop: asyncio.Event) -> None:
         """Send the visitors in and take them out again, all at their times."""
@@ -83,7 +86,7 @@ class LoadJob:
         end_s: float,
         stop: asyncio.Event,
     ) -> None:
-        hello = Hello(name=f"Visitor {index + 1}", version=VERSION)
+        hello = Hello(name=f"Visitor {index + 1}", version=VERSION, admission=admission(self.token))
 
         async def stay(client: Client) -> None:
             works = play(client, index)

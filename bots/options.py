@@ -7,7 +7,7 @@ from typing import Any, Final
 from esplanade.bots.address import websocket_url
 from esplanade.bots.stages import read_stages
 from esplanade.commandline.parser import Parser
-from esplanade.commandline.readers import SEED_LIMIT, InputFile, Number, OutputFile, Whole
+from esplanade.commandline.readers import SEED_LIMIT, InputFile, Number, OutputFile, Text, Whole
 from esplanade.commandline.settings import Setting, Settings, settings_parser
 
 MEASURES: Final = """\
@@ -168,6 +168,12 @@ SETTINGS: Final = Settings(
                 "trust exactly this certificate of a wss:// server, PEM, whatever name is in it; "
                 "without it, those that the machine trusts",
                 InputFile(),
+            ),
+            "token": Setting(
+                "token of a bot, for a closed world or a rate of its own; better set in the "
+                "environment than here",
+                Text(),
+                "",
             ),
         },
         "load test (without --replay)": _LOAD,

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from esplanade.bots.admission import admission
 from esplanade.bots.client import Client, until_first, visit
 from esplanade.bots.clock import ServerClock
 from esplanade.bots.follower import Follower
@@ -36,6 +37,8 @@ class ReplayJob:
     """Time that a pedestrian stands at its last place before it leaves (real time)."""
     trust: Path | None = None
     """The only certificate that is trusted."""
+    token: str = ""
+    """The token of a bot, by which all of them come in."""
 
     async def run(self, tally: Tally, stop: asyncio.Event) -> None:
         """Send everyone in at their time, until all have left or `stop` is set."""
@@ -55,7 +58,12 @@ class ReplayJob:
         self, track: Track, pace: Pace, clock: ServerClock, tally: Tally, stop: asyncio.Event
     ) -> None:
         name = f"Pedestrian {track.id}"[:MAX_NAME_CHARS].strip()
-        hello = Hello(name=name, version=VERSION, at=(*track.at(track.start_s), 0.0))
+        hello = Hello(
+            name=name,
+            version=VERSION,
+            at=(*track.at(track.start_s), 0.0),
+            admission=admission(self.token),
+        )
 
         async def stay(client: Client) -> None:
             done = asyncio.Event()

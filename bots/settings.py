@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Final, Self
 
-from pydantic import field_validator, model_validator
+from pydantic import SecretStr, field_validator, model_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from esplanade.bots.address import websocket_url
@@ -34,6 +34,7 @@ class BotsSettings(BaseSettings):
 
     url: str = _field("url")
     trust: Path | None = _field("trust")
+    token: SecretStr = _field("token")
 
     count: int = _field("count")
     duration: float = _field("duration")

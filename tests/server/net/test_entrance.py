@@ -6,8 +6,10 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
+import pytest
 from websockets.asyncio.client import connect
 
+from esplanade import bots
 from esplanade.planning import Door
 from esplanade.protocol import VERSION
 from esplanade.protocol.messages import Admission, Doors, Error, Hello, SetDoor, Welcome
@@ -225,6 +227,19 @@ async def test_a_bot_comes_in_by_its_token_and_at_its_rate(serving: Serving) -> 
         assert await refusal(server, "bot", token) == REFUSED
         _, found = await anna.send("GET", "/bots")
         assert found == {"bots": []}
+
+
+async def test_a_bot_of_the_python_client_comes_in_by_its_token(serving: Serving) -> None:
+    async with serving(closed=True) as server:
+        token = await server.kept.bots.add(
+            MACHINE, "crowd", message_rate=60, connections=1, lasts_us=10**9
+        )
+        url = f"ws://127.0.0.1:{server.port}"
+        with pytest.raises(bots.Refused):
+            async with bots.connect(url, "Bot"):
+                pass
+        async with bots.connect(url, "Bot", token=token) as bot:
+            assert bot.welcome.name == "Bot"
 
 
 async def test_a_token_of_an_operator_is_none_of_a_bot_and_no_way_in(serving: Serving) -> None:
