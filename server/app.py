@@ -12,12 +12,15 @@ import structlog
 from esplanade.actors import Population
 from esplanade.planning import LayeredGrid
 from esplanade.planning.routes.storey_heights import reached_from, storeys_of
+from esplanade.server.accounts.kept import Kept
 from esplanade.server.assets import Assets
 from esplanade.server.console.console import Console
 from esplanade.server.console.gate import Gate
 from esplanade.server.crowding import warn_of_crowding
-from esplanade.server.keeping import Kept, keeping
+from esplanade.server.entrances import make_gate, people_url, private_certificate
+from esplanade.server.keeping import keeping
 from esplanade.server.link.local import LocalLink
+from esplanade.server.live.live import Live
 from esplanade.server.loading import LoadedScene, LoadingError, load_scene
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.delivery import Delivery
@@ -32,7 +35,7 @@ from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.schedule import Schedule
 from esplanade.server.net.search_budget import SearchBudget
 from esplanade.server.net.ticker import Ticker
-from esplanade.server.net.tls import Tls
+from esplanade.server.net.tls import Tls, renewed
 from esplanade.server.populating import default_roster, names_of, populate_from
 from esplanade.server.rehearsal import rehearse, rehearse_walking
 from esplanade.server.settings import ServerSettings
@@ -52,8 +55,16 @@ class Running:
     world: Zone
     metrics: Metrics
     kept: Kept
+    gate: Gate
     ticking: "asyncio.Task[None]"
     """Runs as long as the world does; ends early only by a fault."""
+
+    @property
+    def live(self) -> Live:
+        """What operators see of the world, which is there for as long as that runs."""
+        if self.gate.live is None:
+            raise RuntimeError("the world has ended")
+        return self.gate.live
 
     def summary(self) -> dict[str, int | float]:
         """The run in figures."""
@@ -87,9 +98,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     warn_of_crowding(settings)
     # What the machine cannot give is said now, not after a minute of building the world.
     places = places_for_people(connections_wanted(settings))
-    tls = None
-    if settings.tls_cert is not None and settings.tls_key is not None:
-        tls = Tls(settings.tls_cert, settings.tls_key)
+    tls = _tls(settings)
     loaded = _with_roster(load_scene(settings), settings)
     assets, mesh = assets or Assets.load(), None
     if loaded.triangles is not None:
@@ -100,12 +109,17 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     async with AsyncExitStack() as stack:
         thread = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="actors"))
         kept = await stack.enter_async_context(keeping(settings, metrics))
-        gate = Gate(kept.tokens, kept.audit, loop)
-        private = await stack.enter_async_context(private_port(settings, metrics, readiness, gate))
+        private_tls = private_certificate(settings, tls)
+        stack.enter_context(renewed(tls, private_tls))
+        gate = make_gate(settings, kept, loop, encrypted=private_tls is not None)
+        private = await stack.enter_async_context(
+            private_port(settings, metrics, readiness, gate, assets, private_tls)
+        )
         # This finds out now, not after a minute of compiling, whether the port can be had.
         sockets = await bound_sockets(settings.host, settings.port)
         for each in sockets:
             stack.callback(each.close)
+        gate.people_url = people_url(settings, sockets[0].getsockname()[1])
         population, world, storeys = await loop.run_in_executor(
             thread, build_world, loaded, settings
         )
@@ -128,30 +142,24 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         )
         delivery = Delivery(audience, hub.sessions, settings.tick_rate, hub.stop_watching)
         link = LocalLink()
-        metrics.gauge(
-            "doors_waiting",
-            "Doors that are wanted open or closed, and are not",
-            world.doors.waiting,
-        )
         deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
         ground_work = GroundWork(world, deriving)
-        gate.console = console = _console(world, hub, kept, loaded, metrics)
+        console = gate.console = _console(world, hub, kept, loaded, metrics)
         ticker = Ticker(
             world, ground_work, audience, link, hub, delivery, schedule, metrics, thread, console
         )
+        gate.live = live = _live(world, storeys, console, metrics, settings)
+        ticker.tap = live.tap
         await stack.enter_async_context(
             Listener(hub, assets, settings, metrics, places).listening(sockets, tls)
         )
         ticking = asyncio.create_task(ticker.run())
         guiding = asyncio.create_task(route_requests.run(hub.route_found))
-        renewing = asyncio.create_task(tls.renew()) if tls else None
         readiness.open()
         try:
-            yield Running(sockets[0].getsockname()[1], private, world, metrics, kept, ticking)
+            yield Running(sockets[0].getsockname()[1], private, world, metrics, kept, gate, ticking)
         finally:
             readiness.close()
-            if renewing:
-                renewing.cancel()
             guiding.cancel()
             await _stop(ticker, ticking, hub, gate)
 
@@ -209,7 +217,7 @@ def _build_warm(
 
 
 async def _stop(ticker: Ticker, ticking: "asyncio.Task[None]", hub: Hub, gate: Gate) -> None:
-    gate.console = None
+    gate.console = gate.live = None
     ticker.stop()
     try:
         await ticking
@@ -225,6 +233,9 @@ def _watch(world: Zone, population: Population, metrics: Metrics) -> None:
     contacts = world.contacts
     metrics.total("contacts_actor_person", "Actor-person contacts", lambda: contacts.actor_person)
     metrics.total("contacts_actor_actor", "Actor-actor contacts", lambda: contacts.actor_actor)
+    metrics.gauge(
+        "doors_waiting", "Doors that are wanted open or closed, and are not", world.doors.waiting
+    )
     feet = world.feet
     metrics.total("steps", "Steps that began or were re-aimed", lambda: feet.begun)
     metrics.total("walkers_lost", "Walkers set back onto their feet", lambda: feet.lost)
@@ -246,6 +257,13 @@ def _watch(world: Zone, population: Population, metrics: Metrics) -> None:
     )
 
 
+def _tls(settings: ServerSettings) -> Tls | None:
+    """The certificate of people's port, if it has one."""
+    if settings.tls_cert is None or settings.tls_key is None:
+        return None
+    return Tls(settings.tls_cert, settings.tls_key)
+
+
 def _with_roster(loaded: LoadedScene, settings: ServerSettings) -> LoadedScene:
     """A scene with the actors of its own roster, or with those that it usually has."""
     if loaded.roster is not None:
@@ -264,6 +282,17 @@ def _console(world: Zone, hub: Hub, kept: Kept, loaded: LoadedScene, metrics: Me
         lambda: console.waiting,
     )
     return console
+
+
+def _live(
+    world: Zone,
+    storeys: list[float],
+    console: Console,
+    metrics: Metrics,
+    settings: ServerSettings,
+) -> Live:
+    """Make what operators see of the world."""
+    return Live(world, storeys, console.bulletin, metrics.traffic, hide_names=settings.hide_names)
 
 
 def _watch_routes(route_requests: RouteRequests, metrics: Metrics) -> None:

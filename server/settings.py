@@ -52,8 +52,13 @@ class ServerSettings(BaseSettings):
     tls_cert: Path | None = _field("tls_cert")
     tls_key: Path | None = _field("tls_key")
     root_path: str = _field("root_path")
+    public_url: str = _field("public_url")
     private_host: str = _field("private_host")
     private_port: int = _field("private_port")
+    private_tls_cert: Path | None = _field("private_tls_cert")
+    private_tls_key: Path | None = _field("private_tls_key")
+    private_names: str = _field("private_names")
+    behind_proxy: bool = _field("behind_proxy")
     trusted_proxies: str = _field("trusted_proxies")
     allowed_origins: str = _field("allowed_origins")
 
@@ -70,7 +75,9 @@ class ServerSettings(BaseSettings):
     slow_bytes: int = _field("slow_bytes")
     drop_bytes: int = _field("drop_bytes")
     drop_seconds: float = _field("drop_seconds")
+    operator_commands: int = _field("operator_commands")
     operator_key: SecretStr = _field("operator_key")
+    hide_names: bool = _field("hide_names")
 
     log_format: Literal["console", "json"] = _field("log_format")
     log_level: Literal["debug", "info", "warning", "error"] = _field("log_level")
