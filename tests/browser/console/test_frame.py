@@ -20,7 +20,7 @@ async def test_a_layout_is_kept_for_the_account(visit: Visit) -> None:
     await page.keyboard.press("ArrowRight")
     assert await bar.get_attribute("aria-valuenow") == str(before + 40)
     await page.click("esp-area.right summary")
-    await page.click("text=Move to: left")
+    await page.click("esp-area.right button:has-text('Move to: left')")
     await page.wait_for_selector("esp-area.left esp-inspector")
     assert await page.locator("esp-area.right").count() == 0
     await page.reload()

@@ -69,8 +69,8 @@ describe("search tree", () => {
 
 describe("compare", () => {
   it("tells what differs first", () => {
-    const own = { value: 12, source: "own" };
-    const usual = { value: 8, source: "default" };
+    const own = { value: 12, level: "own", group: null } as const;
+    const usual = { value: 8, level: "default", group: null } as const;
     const rows = compare([
       { a: usual, b: own },
       { a: usual, b: usual },
