@@ -94,6 +94,10 @@ class Tap:
         """Take the ticks that have come since the last call, in another thread."""
         return [self._ticks.popleft() for _ in range(len(self._ticks))]
 
+    def begin_anew(self) -> None:
+        """Have everybody told of in the next tick, since some tick may not have been taken in."""
+        self._all = True
+
     def fetch_found(self) -> list[dict[str, Any]]:
         """Take what probes have found while the world stood, in another thread."""
         return [self._found.popleft() for _ in range(len(self._found))]

@@ -191,3 +191,17 @@ async def test_a_console_that_does_not_read_is_closed_and_delays_nobody(serving:
             with pytest.raises(ConnectionClosed):
                 await deaf.until(lambda: False)
             assert deaf.socket.close_code == live_socket.TOO_SLOW
+
+
+async def test_of_too_many_consoles_the_last_is_not_let_in(
+    serving: Serving, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(live_socket, "MOST_SUBSCRIBERS", 1)
+    async with serving() as server:
+        vera = await operator(server, "vera", "viewer")
+        async with live_console(server.private_port, vera.token) as console:
+            await console.until(lambda: console.told)
+            with pytest.raises(InvalidStatus):
+                async with live_console(server.private_port, vera.token):
+                    pass
+            assert (await vera.get("/live.sse"))[0] == 503

@@ -1,11 +1,14 @@
-"""Who holds an actor, and whom it touches, in a world that a test drives tick by tick."""
+"""Live views of a world that a test drives tick by tick: who holds an actor, whom it touches."""
 
 import base64
+import json
 from typing import Any
 
 import numpy as np
+import pytest
 
 from esplanade.actors.state import Reason
+from esplanade.server.live import bulletin, tap
 from esplanade.server.live.bulletin import Bulletin
 from esplanade.server.live.encounters import NearMisses
 from esplanade.server.live.live import Live
@@ -165,3 +168,30 @@ def test_questions_are_answered_while_the_world_stands() -> None:
         watched.live.tap.stand()
     watched.live.beat()
     assert subscriber.waiting == before + 1
+
+
+def test_after_lost_ticks_everybody_is_told_of_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tap, "MOST_TICKS", 3)
+    watched = Watched(spec(1, "wander"), spec(2))
+    watched.ticks(2)
+    for _ in range(6):
+        watched.live.tap.take(watched.world.frame(), 0.001, 0)
+    assert watched.live.tap.lost == 3
+    watched.live.beat()
+    assert watched.live.map.ids.tolist() == sorted(
+        watched.world.zone.state.ids[watched.world.zone.state.live()].tolist()
+    )
+    text, block = watched.live.map.since(2, names=True)
+    assert text is not None
+    assert json.loads(text)["reset"] is True
+    assert block is not None
+
+
+def test_of_too_many_notices_the_oldest_are_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bulletin, "MOST_NOTICES", 2)
+    board = Bulletin()
+    for name in ("one", "two", "three"):
+        board.about(name)
+    assert board.lost == 1
+    assert [notice.about for notice in board.fetch()] == ["two", "three"]
+    assert board.fetch() == []
