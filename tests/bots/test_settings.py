@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from pydantic import ValidationError
+from pydantic import SecretStr, ValidationError
 
 from esplanade.bots.settings import CLIENTS_PER_PROCESS, BotsSettings
 
@@ -22,6 +22,7 @@ def test_defaults() -> None:
     assert BotsSettings().model_dump() == {
         "url": "ws://localhost:8080",
         "trust": None,
+        "token": SecretStr(""),
         "count": 20,
         "duration": 60.0,
         "seed": 0,
