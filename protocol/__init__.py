@@ -17,6 +17,7 @@ from esplanade.protocol.codes import (
     CloseCode,
     ErrorCode,
     Kind,
+    NoticeCode,
     Reason,
     ServerCode,
 )
@@ -30,6 +31,7 @@ __all__ = [
     "CloseCode",
     "ErrorCode",
     "Kind",
+    "NoticeCode",
     "ProtocolError",
     "Reason",
     "ServerCode",

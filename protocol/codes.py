@@ -20,6 +20,8 @@ MAX_NAME_CHARS = 32
 MAX_CHAT_CHARS = 300
 MAX_TOKEN_CHARS = 64
 MAX_DOOR_CHARS = 64
+MAX_LINE_NUMBER = 2**53 - 1
+"""Numbers of lines are whole in a float of 64 bits, which is all that browsers have."""
 
 
 class ClientCode(IntEnum):
@@ -32,6 +34,8 @@ class ClientCode(IntEnum):
     PING = 5
     WATCH = 6
     SET_DOOR = 7
+    REPORT = 8
+    MUTE = 9
 
 
 class ServerCode(IntEnum):
@@ -52,6 +56,7 @@ class ServerCode(IntEnum):
     STEPS = 76
     POINT = 77
     RESHAPE = 78
+    HIDE = 79
 
 
 class Kind(StrEnum):
@@ -90,6 +95,10 @@ class ErrorCode(StrEnum):
     KEY_UNREAD = "key_unread"
     LEASE_ENDED = "lease_ended"
     MUTED = "muted"
+    BANNED = "banned"
+    SLOW_MODE = "slow_mode"
+    WORD_REFUSED = "word_refused"
+    QUIET_ZONE = "quiet_zone"
 
 
 class CloseCode(IntEnum):
@@ -110,6 +119,7 @@ class CloseCode(IntEnum):
     SILENT = 4010
     NAME_RESERVED = 4011
     KICKED = 4012
+    BANNED = 4013
 
 
 class ByeCode(StrEnum):
@@ -119,3 +129,17 @@ class ByeCode(StrEnum):
     REPLACED = "replaced"
     SILENT = "silent"
     KICKED = "kicked"
+    BANNED = "banned"
+    WALKED_OUT = "walked_out"
+
+
+class NoticeCode(StrEnum):
+    """The matter of a notice; empty for a sentence that stands for itself."""
+
+    NONE = ""
+    ANNOUNCEMENT = "announcement"
+    MUTED = "muted"
+    UNMUTED = "unmuted"
+    WARNED = "warned"
+    WALKED_OUT = "walked_out"
+    REPORT_TAKEN = "report_taken"

@@ -12,11 +12,13 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstra
 from esplanade.protocol.codes import (
     MAX_CHAT_CHARS,
     MAX_DOOR_CHARS,
+    MAX_LINE_NUMBER,
     MAX_TOKEN_CHARS,
     ByeCode,
     ClientCode,
     ErrorCode,
     Kind,
+    NoticeCode,
     Reason,
     ServerCode,
 )
@@ -30,6 +32,9 @@ Layer = Annotated[int, Field(ge=0, le=255)]
 Token = Annotated[str, Field(max_length=MAX_TOKEN_CHARS)]
 EntityId = Annotated[int, Field(ge=0, le=0xFFFF_FFFF)]
 Sequence = Annotated[int, Field(ge=0, le=0xFFFF_FFFF)]
+LineNumber = Annotated[int, Field(ge=0, le=MAX_LINE_NUMBER)]
+Arguments = dict[str, Any]
+"""Numbers and texts for programs, from which they make sentences in any language."""
 Name = Annotated[str, AfterValidator(plain_name)]
 Line = Annotated[
     str,
@@ -123,7 +128,25 @@ class SetDoor(FromClient):
     open: bool
 
 
-ClientMessage = Hello | Move | WalkTo | ChatLine | Ping | Watch | SetDoor
+class Report(FromClient):
+    """Tell those who look after the world of somebody, or of a line that somebody said."""
+
+    code = ClientCode.REPORT
+    id: EntityId
+    line: LineNumber | None = None
+    """The number of a line of chat."""
+    text: Line
+
+
+class MutePerson(FromClient):
+    """Hear a person no more, or hear them again; it holds for this connection."""
+
+    code = ClientCode.MUTE
+    id: EntityId
+    muted: bool
+
+
+ClientMessage = Hello | Move | WalkTo | ChatLine | Ping | Watch | SetDoor | Report | MutePerson
 
 # --- server → client --------------------------------------------------------------------------
 
@@ -214,13 +237,24 @@ class Chat(FromServer):
     id: EntityId
     name: str
     text: str
+    line: LineNumber = 0
+    """The number of the line, by which it can be hidden and reported; 0 for one without."""
+
+
+class Hide(FromServer):
+    """Lines of chat that are to be shown no more."""
+
+    code = ServerCode.HIDE
+    lines: list[LineNumber]
 
 
 class Notice(FromServer):
-    """A sentence from the server for the person to read."""
+    """A sentence from the server for the person to read, and its matter for programs."""
 
     code = ServerCode.NOTICE
     text: str
+    notice: Annotated[NoticeCode | str, Field(union_mode="left_to_right")] = NoticeCode.NONE
+    arguments: Arguments = {}
 
 
 class Error(FromServer):
@@ -229,6 +263,7 @@ class Error(FromServer):
     code = ServerCode.ERROR
     error: Annotated[ErrorCode | str, Field(union_mode="left_to_right")]
     text: str
+    arguments: Arguments = {}
 
 
 class Bye(FromServer):
@@ -237,6 +272,7 @@ class Bye(FromServer):
     code = ServerCode.BYE
     reason: Annotated[ByeCode | str, Field(union_mode="left_to_right")]
     text: str
+    arguments: Arguments = {}
 
 
 class Pong(FromServer):
@@ -337,6 +373,7 @@ ServerMessage = (
     | Leave
     | Snapshot
     | Chat
+    | Hide
     | Notice
     | Error
     | Bye

@@ -28,6 +28,7 @@ const CLOSINGS = new Map<number, Closing>([
   ],
   [CloseCode.SILENT, { text: "Nothing came from this page for a while.", retry: true }],
   [CloseCode.NAME_RESERVED, { text: "That name cannot be had here.", retry: false }],
+  [CloseCode.BANNED, { text: "You cannot come in here.", retry: false }],
   [CloseCode.KICKED, { text: "An operator has asked you to leave.", retry: false }],
 ]);
 

@@ -16,6 +16,8 @@ const CLIENT_CODES: Record<ClientMessage["type"], number> = {
   ping: ClientCode.PING,
   watch: ClientCode.WATCH,
   set_door: ClientCode.SET_DOOR,
+  report: ClientCode.REPORT,
+  mute: ClientCode.MUTE,
 };
 
 const SERVER_TYPES = new Map<unknown, ServerMessage["type"]>([
@@ -32,6 +34,7 @@ const SERVER_TYPES = new Map<unknown, ServerMessage["type"]>([
   [ServerCode.DOORS, "doors"],
   [ServerCode.POINT, "point"],
   [ServerCode.RESHAPE, "reshape"],
+  [ServerCode.HIDE, "hide"],
 ]);
 
 const RECORD_BYTES = 14;
