@@ -125,8 +125,11 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             metrics,
             lambda: schedule.world_time(world.tick, loop.time()),
             {"storeys": storeys} if mesh is None else {"storeys": storeys, "mesh": mesh},
+            kept.moderated,
         )
-        delivery = Delivery(audience, hub.sessions, settings.tick_rate, hub.stop_watching)
+        delivery = Delivery(
+            audience, hub.sessions, settings.tick_rate, hub.stop_watching, hub.moderation.lines
+        )
         link = LocalLink()
         metrics.gauge(
             "doors_waiting",

@@ -16,6 +16,8 @@ from esplanade.server.accounts.tokens import Tokens
 from esplanade.server.audit.entries import Entry
 from esplanade.server.audit.log import AuditLog
 from esplanade.server.metrics import Metrics
+from esplanade.server.moderating import moderating
+from esplanade.server.moderation.state import ModerationState
 from esplanade.server.settings import ServerSettings
 from esplanade.server.store.location import Location
 from esplanade.server.store.sql_store import SqlStore, open_store
@@ -36,6 +38,7 @@ class Kept:
     sessions: Sessions
     tokens: Tokens
     one_time: OneTime
+    moderated: ModerationState
 
 
 @asynccontextmanager
@@ -57,14 +60,16 @@ async def keeping(settings: ServerSettings, metrics: Metrics) -> AsyncIterator[K
             log.info("kept", store=str(location))
         await audit.record(Entry(command="server_start"))
         try:
-            yield Kept(
-                store,
-                audit,
-                Directory(store, audit, passwords),
-                Sessions(store, audit, passwords, lockout),
-                Tokens(store, audit),
-                OneTime(store, audit, passwords),
-            )
+            async with moderating(settings, store, metrics) as moderated:
+                yield Kept(
+                    store,
+                    audit,
+                    Directory(store, audit, passwords),
+                    Sessions(store, audit, passwords, lockout),
+                    Tokens(store, audit),
+                    OneTime(store, audit, passwords),
+                    moderated,
+                )
         finally:
             passwords.close()
             await audit.record(Entry(command="server_stop"))

@@ -46,6 +46,8 @@ class ServerSettings(BaseSettings):
     data: Path | None = _field("data")
     store: SecretStr = _field("store")
     durable: bool = _field("durable")
+    keep_chat: bool = _field("keep_chat")
+    keep_chat_days: int = _field("keep_chat_days")
 
     host: str = _field("host")
     port: int = _field("port")

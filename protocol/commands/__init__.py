@@ -15,7 +15,20 @@ from esplanade.protocol.commands.actors import (
 from esplanade.protocol.commands.answers import Answer, CommandFault, Facts, Price
 from esplanade.protocol.commands.fields import NO_NUL, ZONE, full_id
 from esplanade.protocol.commands.parameters import ClearParameters, Revert, SetParameters
-from esplanade.protocol.commands.people import Announce, Kick, Mute
+from esplanade.protocol.commands.people import (
+    Announce,
+    Ban,
+    HideLine,
+    Kick,
+    Mute,
+    QuietZone,
+    SettleReport,
+    SetWordFilter,
+    SlowMode,
+    Unban,
+    WalkOut,
+    Warn,
+)
 from esplanade.protocol.commands.world import MoveDoor
 
 __all__ = [
@@ -26,22 +39,31 @@ __all__ = [
     "AddActors",
     "Announce",
     "Answer",
+    "Ban",
     "ClearParameters",
     "Command",
     "CommandFault",
     "Commands",
     "Facts",
+    "HideLine",
     "HoldActor",
     "Kick",
     "MoveDoor",
     "Mute",
     "NewActor",
     "Price",
+    "QuietZone",
     "RemoveActors",
     "Revert",
     "SendActor",
     "SetBehaviour",
     "SetParameters",
+    "SetWordFilter",
+    "SettleReport",
+    "SlowMode",
+    "Unban",
+    "WalkOut",
+    "Warn",
     "full_id",
 ]
 
@@ -58,8 +80,17 @@ Command = Annotated[
     | RemoveActors
     | MoveDoor
     | Announce
-    | Mute
+    | Ban
+    | HideLine
     | Kick
+    | Mute
+    | QuietZone
+    | SetWordFilter
+    | SettleReport
+    | SlowMode
+    | Unban
+    | WalkOut
+    | Warn
     | Revert,
     Field(discriminator="op"),
 ]

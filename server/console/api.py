@@ -18,6 +18,7 @@ from esplanade.server.audit.log import MOST_ROWS, Filter
 from esplanade.server.console import questions
 from esplanade.server.console.console import Console
 from esplanade.server.console.gate import Gate, status_of
+from esplanade.server.console.people_api import people_router
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.store.store import StoreError
 
@@ -76,6 +77,9 @@ def add_api(app: FastAPI, gate: Gate) -> None:
     """Let an application answer operators."""
     app.state.gate = gate
     app.include_router(router)
+    app.include_router(
+        people_router(APIRouter(prefix=PREFIX, route_class=_Guarded, responses=_REFUSALS))
+    )
     app.add_exception_handler(RefusedError, _refused)
     app.add_exception_handler(RequestValidationError, _invalid)
     app.add_exception_handler(StoreError, _no_store)

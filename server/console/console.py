@@ -16,8 +16,6 @@ from esplanade.protocol.commands import (
     Command,
     CommandFault,
     Facts,
-    Kick,
-    Mute,
     Price,
     Revert,
     SetParameters,
@@ -28,12 +26,8 @@ from esplanade.server.audit.log import AuditLog
 from esplanade.server.console.changes import Change, Changes
 from esplanade.server.console.inputs import inputs_for
 from esplanade.server.console.intents import intended
-from esplanade.server.console.moderation import (
-    MODERATING,
-    Moderation,
-    moderate,
-    wanted_of_people,
-)
+from esplanade.server.console.moderating import KINDS, LASTING, MODERATING, Moderating
+from esplanade.server.console.moderation import Moderation
 from esplanade.server.console.records import Planned, Records
 from esplanade.server.console.refusals import RefusedError, of_world
 from esplanade.server.console.state import (
@@ -82,6 +76,8 @@ class Console:
         self.state = OperatedState(zone, overrides or Overrides())
         self.changes = Changes()
         self.moderation = moderation
+        self._moderating = Moderating(moderation, zone)
+        self.state.elsewhere.update(dict.fromkeys(KINDS, self._moderating.fact))
         self._records = Records(store, audit)
         self._turn = asyncio.Lock()
         self._waiting = 0
@@ -130,15 +126,14 @@ class Console:
         if commands[0].dry_run:
             return [self._answer(one, price=price) for one in planned]
         numbers = await self._records.intents(by, planned, self.zone.tick)
-        for one in planned:
-            moderate(one.command, self.moderation)
+        await self._moderating.carry_out(planned, by.account)
         tick, faults = await self._in_a_tick(inputs, doors)
         await self._records.outcomes(by, planned, numbers, tick, faults)
         if faults:
             raise RefusedError(faults).within(0) if len(commands) == 1 else RefusedError(faults)
         self.state.take(facts)
         for number, one in zip(numbers, planned, strict=True):
-            if isinstance(one.command, MODERATING):
+            if isinstance(one.command, MODERATING) and not isinstance(one.command, LASTING):
                 continue
             self.changes.add(
                 Change(number, by.account, one.command, one.before, one.after, one.reverts)
@@ -168,20 +163,21 @@ class Console:
                 _check_right(by, op)
             self.changes.check_untouched(change, self.state)
             return Planned(command, change.after, change.before, change.number)
+        person = None
         if isinstance(command, MODERATING):
-            facts = wanted_of_people(command, self.moderation)
-            name = None
-            if isinstance(command, Kick | Mute):
-                name = self.moderation.name_of(command.person)
-            return Planned(command, {}, facts, person=name)
-        facts = intended(command, self.state, pending)
+            wanted = self._moderating.wanted(command, pending)
+            facts, person = wanted.facts, wanted.person
+            if not isinstance(command, LASTING):
+                return Planned(command, {}, facts, person=person)
+        else:
+            facts = intended(command, self.state, pending)
         if isinstance(command, SetParameters | ClearParameters):
             self.changes.check_revision(command.if_revision, facts, self.state)
         before = self.state.now(facts)
         for subject, fields in pending.items():
             for field in fields.keys() & before.get(subject, {}).keys():
                 before[subject][field] = fields[field]
-        return Planned(command, before, facts)
+        return Planned(command, before, facts, person=person)
 
     def _checked(self, inputs: list[ActorCommand], count: int) -> Price:
         """Return the price of inputs that the world would take; call it between two ticks."""
@@ -293,7 +289,10 @@ def _check_right(by: Identity, op: str, *path: int) -> None:
 def _needed_for(change: Change) -> set[str]:
     """The commands whose rights are needed to take a change back."""
     ops = {BEHAVIOUR: "set_behaviour", HELD: "hold_actor", OPEN: "move_door", PRESENT: "add_actors"}
-    return {ops.get(field, "set_parameters") for _, field, _ in each(change.after)}
+    return {
+        "unban" if subject.partition(":")[0] in KINDS else ops.get(field, "set_parameters")
+        for subject, field, _ in each(change.after)
+    }
 
 
 def _is_prepared(command: ActorCommand) -> bool:

@@ -1,6 +1,6 @@
 """The facts that operators can change, as fields of subjects that can be compared."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Final
 
 from esplanade.actors import ActorSpec, Overrides, Scope
@@ -22,12 +22,16 @@ class OperatedState:
         self.zone = zone
         self.overrides = overrides
         self.held: set[str] = set()
+        self.elsewhere: dict[str, Callable[[str, str], Any]] = {}
+        """Tells the fields of subjects that are kept elsewhere, by the kind of subject."""
         self._doors: dict[str, bool] = {}
         """The latest wish for each door that was wanted open or closed."""
 
     def fact(self, subject: str, field: str) -> Any:
         """Return the present value of a field of a subject."""
         kind, _, name = subject.partition(":")
+        if kind in self.elsewhere:
+            return self.elsewhere[kind](subject, field)
         match kind, field:
             case "door", _:
                 return self._doors.get(name, self.zone.doors.states().get(name))

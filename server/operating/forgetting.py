@@ -13,6 +13,7 @@ from esplanade.server.accounts.identity import Identity
 from esplanade.server.audit.erasing import Erased, erase
 from esplanade.server.audit.log import AuditLog
 from esplanade.server.audit.verifying import FORGET
+from esplanade.server.moderation import rows as moderation
 from esplanade.server.store.store import Store
 from esplanade.server.store.tables import ACCOUNTS
 
@@ -29,7 +30,10 @@ def _forget_account(connection: Connection, zone: str, person: str) -> int:
     return count
 
 
-FORGETTERS: Final[Mapping[str, Forgetter]] = {"accounts": _forget_account}
+FORGETTERS: Final[Mapping[str, Forgetter]] = {
+    "accounts": _forget_account,
+    **moderation.FORGETTERS,
+}
 """Forgetters by the name of what each forgets in; the audit comes last and is not among them."""
 
 
