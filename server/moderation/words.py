@@ -8,8 +8,7 @@ from esplanade.server.moderation.skeletons import skeleton
 
 MASK: Final = "•••"
 Action = Literal["mask", "refuse"]
-_WORD: Final = re.compile(r"[\w$@!|]*\w[\w$@!|]*")
-"""A word may hold signs that stand for letters."""
+_WORD: Final = re.compile(r"\w+")
 
 
 class WordFilter:
@@ -27,7 +26,4 @@ class WordFilter:
         return _WORD.sub(lambda found: self._seen(found[0]), text)
 
     def _seen(self, word: str) -> str:
-        inner = word.strip("$@!|")
-        if skeleton(word) in self._skeletons or skeleton(inner) in self._skeletons:
-            return MASK
-        return word
+        return MASK if skeleton(word) in self._skeletons else word
