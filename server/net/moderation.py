@@ -144,8 +144,13 @@ class PeopleModeration:
         session = self._sessions.get(person)
         if session is None or self.walk_outs is None:
             return
-        self._tell(person, _notice(text, NoticeCode.WALKED_OUT))
-        self.walk_outs.begin(session, text, self._now_s())
+        goal = self.walk_outs.way_out(person)
+        if goal is None:
+            self.has_walked_out(session, text)
+            return
+        x, y, z = goal
+        self._tell(person, _notice(text, NoticeCode.WALKED_OUT, {"x": x, "y": y, "z": z}))
+        self.walk_outs.begin(session, text, goal, self._now_s())
 
     def has_walked_out(self, session: Session, text: str) -> None:
         """Let somebody go who has arrived at the way out."""

@@ -9,6 +9,7 @@ import structlog
 
 from esplanade.protocol import ProtocolError
 from esplanade.protocol.messages import WalkTo
+from esplanade.server.moderation.areas import Place
 from esplanade.server.net.fair_queue import Asker
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.session import Session
@@ -27,7 +28,7 @@ log = structlog.get_logger(__name__)
 class _WalkOut:
     text: str
     until_s: float
-    goal: tuple[float, float, float]
+    goal: Place
     begun: bool = False
 
 
@@ -56,18 +57,18 @@ class WalkOuts:
     def __contains__(self, avatar_id: int | None) -> bool:
         return avatar_id in self._under_way
 
-    def begin(self, session: Session, text: str, now_s: float) -> None:
-        """Walk somebody out, to the place of arrival that is nearest to them."""
-        avatar_id = session.avatar_id
-        if avatar_id is None:
-            return
+    def way_out(self, avatar_id: int) -> Place | None:
+        """The place of arrival that is nearest to an avatar; None where the scene has none."""
         state = self._world.state
         slot = state.slot(avatar_id)
         place = (*state.positions[slot].tolist(), float(state.heights[slot]))
         spawns = [(*spawn.position, spawn.z_m) for spawn in self._world.scene.spawns]
-        goal = min(spawns, key=lambda spawn: math.dist(spawn, place), default=None)
-        if goal is None:
-            self._leave(session, text)
+        return min(spawns, key=lambda spawn: math.dist(spawn, place), default=None)
+
+    def begin(self, session: Session, text: str, goal: Place, now_s: float) -> None:
+        """Walk somebody out to that place."""
+        avatar_id = session.avatar_id
+        if avatar_id is None:
             return
         self._under_way[avatar_id] = _WalkOut(text, now_s + LONGEST_S, goal)
         x, y, z = goal
@@ -84,7 +85,8 @@ class WalkOuts:
             self._end(avatar_id)
             return
         self._under_way[avatar_id].begun = True
-        self._follow(Follow(avatar_id, self._sessions[avatar_id].last_seq, route))
+        # It counts as a movement of the client, which learns of it by a notice.
+        self._follow(Follow(avatar_id, self._sessions[avatar_id].last_seq + 1, route))
 
     def forget(self, avatar_id: int) -> None:
         """Somebody has gone by themselves."""

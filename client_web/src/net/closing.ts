@@ -35,5 +35,6 @@ const CLOSINGS = new Map<number, Closing>([
 /** `stated` is what the server said before it closed (an error or a bye), if anything. */
 export function closing(code: number, stated: string | null): Closing {
   const known = CLOSINGS.get(code) ?? { text: "The connection was lost.", retry: true };
+  if (stated === known.text) return known;
   return known.retry || stated === null ? known : { ...known, text: `${known.text} (${stated})` };
 }

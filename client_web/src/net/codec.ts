@@ -37,6 +37,14 @@ const SERVER_TYPES = new Map<unknown, ServerMessage["type"]>([
   [ServerCode.HIDE, "hide"],
 ]);
 
+/** Fields that servers before them do not send. */
+const ADDED = new Map<ServerMessage["type"], object>([
+  ["chat", { line: 0 }],
+  ["notice", { notice: "", arguments: {} }],
+  ["error", { arguments: {} }],
+  ["bye", { arguments: {} }],
+]);
+
 const RECORD_BYTES = 14;
 const POSITION_M = 0.01;
 const HEADING_RAD = (2 * Math.PI) / 256;
@@ -77,7 +85,7 @@ export function decodeServer(frame: ArrayBuffer | Uint8Array): ServerMessage | n
   if (typeof fields !== "object" || fields === null) {
     throw new WireError(`${type}: the fields are no map`);
   }
-  return { ...fields, type } as ServerMessage;
+  return { ...ADDED.get(type), ...fields, type } as ServerMessage;
 }
 
 /** The records of a snapshot's block (see `protocol/snapshot.py`), in world coordinates. */

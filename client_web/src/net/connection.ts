@@ -6,6 +6,7 @@ import { closing, type Closing } from "./closing";
 import { CloseCode } from "./codes";
 import { decodeServer, encodeClient } from "./codec";
 import { WireError } from "./errors";
+import { stated } from "./stated";
 import type { ClientMessage, ServerMessage, Welcome } from "./messages";
 
 export type ConnectionState =
@@ -132,7 +133,7 @@ export class Connection {
       this.pong(message.nonce, message.server_time);
       return;
     }
-    if (message.type === "error" || message.type === "bye") this.stated = message.text;
+    if (message.type === "error" || message.type === "bye") this.stated = stated(message);
     this.events.message(message);
     if (message.type === "welcome") this.welcome(message);
   }
