@@ -58,7 +58,6 @@ class WrittenLater:
             self._wanted.clear()
             while self._changes:
                 await self._some()
-            self._idle.set()
 
     async def flush(self) -> None:
         """Write what is left, once, at the end."""
@@ -76,4 +75,6 @@ class WrittenLater:
             return False
         for _ in some:
             self._changes.popleft()
+        if not self._changes:
+            self._idle.set()
         return True
