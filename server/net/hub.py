@@ -255,7 +255,15 @@ class Hub:
         made = self._reporting.take(session, report, asyncio.get_running_loop().time())
         if made is not None:
             log.info("person reported", report=made.id, id=made.person, by=made.reporter)
-            self.moderation.happened("report", {"report": made.id, "id": made.person})
+            about = {
+                "report": made.id,
+                "who": made.reporter,
+                "other": made.person,
+                "name": made.name,
+                "text": made.text,
+                "place": made.place,
+            }
+            self.moderation.happened("report", about)
 
     def mute(self, session: Session, wish: MutePerson) -> None:
         """Send no lines of somebody to the session any more, or send them again."""

@@ -216,14 +216,27 @@ class PeopleModeration:
         arguments = {"seconds": seconds} if seconds > 0.0 else {}
         self._tell(person, _notice(text, code, arguments))
 
-    def save_mutes(self) -> dict[str, int]:
-        """The mutes that last, for a checkpoint: until when, by avatar."""
+    def save(self) -> dict[int, float]:
+        """For how many seconds each person is muted yet, by the avatar."""
         now_us = self.kept.now_us()
-        return {str(who): end for who, end in self._muted_until_us.items() if end > now_us}
+        return {
+            who: (end - now_us) / 1e6 for who, end in self._muted_until_us.items() if end > now_us
+        }
 
-    def load_mutes(self, data: Mapping[str, int]) -> None:
-        """Begin with the mutes of a checkpoint."""
-        self._muted_until_us = {int(who): int(end) for who, end in data.items()}
+    def load(self, saved: Mapping[Any, Any]) -> None:
+        """Go on from what was saved: time counts only while the world runs.
+
+        Raises
+        ------
+        ValueError, TypeError
+            It is not what `save` gives.
+        """
+        now_us = self.kept.now_us()
+        if len(saved) > MOST_MUTED or not all(map(math.isfinite, saved.values())):
+            raise ValueError("these are no mutes")
+        self._muted_until_us = {
+            int(who): now_us + round(left_s * 1e6) for who, left_s in saved.items()
+        }
 
     # --- parts ----------------------------------------------------------------------------------
 
@@ -247,8 +260,8 @@ class PeopleModeration:
                 seen=tuple(viewers),
             )
         )
-        about = {"line": number, "id": line.id, "name": heard.name, "text": line.text}
-        self.happened("chat", about)
+        about = {"line": number, "who": line.id, "name": heard.name, "text": line.text}
+        self.happened("chat", {**about, "place": self.where(line.id)})
 
     def _of(self, session: Session) -> KnownPerson:
         avatar_id = session.avatar_id or 0

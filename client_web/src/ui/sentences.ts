@@ -57,9 +57,15 @@ export function faultOf({ error, text, arguments: given }: Fault): string {
 /** A length of time in words, such as "9:58 minutes". */
 export function spanOf(seconds: number): string {
   const whole = Math.max(0, Math.ceil(seconds));
-  if (whole < 60) return whole === 1 ? "1 second" : `${whole} seconds`;
-  if (whole < 3600) return `${Math.floor(whole / 60)}:${two(whole % 60)} minutes`;
-  return `${Math.floor(whole / 3600)}:${two(Math.floor((whole % 3600) / 60))} hours`;
+  if (whole < 60) return counted(whole, 0, "second");
+  if (whole < 3600) return counted(Math.floor(whole / 60), whole % 60, "minute");
+  return counted(Math.floor(whole / 3600), Math.floor((whole % 3600) / 60), "hour");
+}
+
+/** A number of units and of sixtieths of them. */
+function counted(number: number, sixtieths: number, unit: string): string {
+  if (sixtieths > 0) return `${number}:${two(sixtieths)} ${unit}s`;
+  return number === 1 ? `1 ${unit}` : `${number} ${unit}s`;
 }
 
 function two(number: number): string {

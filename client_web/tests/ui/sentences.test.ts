@@ -7,9 +7,9 @@ describe("sentences", () => {
       "0 seconds",
       "1 second",
       "59 seconds",
-      "1:00 minutes",
+      "1 minute",
       "9:59 minutes",
-      "1:00 hours",
+      "1 hour",
       "2:01 hours",
     ]);
   });
@@ -21,7 +21,7 @@ describe("sentences", () => {
       text: "some text in another language",
       arguments: { text: "Softly, please.", seconds: 600 },
     });
-    expect(muted).toEqual({ head: "You are muted for 10:00 minutes.", words: "Softly, please." });
+    expect(muted).toEqual({ head: "You are muted for 10 minutes.", words: "Softly, please." });
     const fault = { type: "error" as const, error: "quiet_zone", text: "?", arguments: {} };
     expect(faultOf(fault)).toBe("Nobody heard that: where you stand it is quiet.");
     expect(faultOf({ ...fault, arguments: { name: "library" } })).toContain("(library)");

@@ -6,6 +6,7 @@ import pytest
 from esplanade.protocol import ClientCode, CloseCode, ErrorCode, NoticeCode
 from esplanade.protocol.messages import Chat, ChatLine, Error, MutePerson, Notice, Report
 from esplanade.server.moderation import inbox
+from esplanade.server.net.moderation import PeopleModeration
 from tests.server.client import joined
 from tests.server.conftest import Serving
 from tests.server.console.operators import operator
@@ -139,3 +140,38 @@ async def test_no_more_than_some_can_be_muted(serving: Serving) -> None:
         await ann.send(MutePerson(id=1000, muted=False))
         await ann.send(MutePerson(id=5000, muted=True))
         await ann.ticks(2)
+
+
+async def test_the_console_is_told_of_reports(
+    serving: Serving, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[tuple[str, dict[str, object]]] = []
+
+    def happened(moderation: PeopleModeration, kind: str, about: dict[str, object]) -> None:
+        told.append((kind, about))
+
+    monkeypatch.setattr(PeopleModeration, "happened", happened)
+    async with (
+        serving(keep_chat=True) as server,
+        joined(server.port) as ann,
+        joined(server.port, "Ben") as ben,
+    ):
+        await ben.send(ChatLine(text="silly"))
+        line = (await ann.until(Chat)).line
+        await ann.send(Report(id=ben.id, line=line, text="says so"))
+        await ann.until(Notice)
+    (chat, said), (report, about) = told
+    assert (chat, said["line"], said["text"]) == ("chat", line, "silly")
+    assert (report, about["who"], about["other"], about["text"]) == (
+        *("report", ann.id, ben.id, "says so"),
+    )
+
+
+async def test_operators_see_who_is_there(serving: Serving) -> None:
+    async with serving() as server, joined(server.port) as ann:
+        mona = await operator(server, "mona", "moderator")
+        assert (await mona.send({"op": "mute", "person": ann.id, "seconds": 600}))[0] == 200
+        (person,) = (await mona.get("/people"))[1]["people"]
+        assert 590 < person["muted_s"] <= 600
+        assert (person["name"], len(person["address_hash"])) == ("Ann", 10)
+        assert person["queue_bytes"] >= 0
