@@ -146,20 +146,29 @@ _REPORT_FIELDS: Final = (
 _LINE_FIELDS: Final = ("line", "at_us", "tick", "name", "text", "hidden")
 
 
-def _forgetter(table: Table, *columns: str) -> Callable[[Connection, str, str], int]:
-    """A function that removes the rows in which one of these columns is a person's name."""
+def _forgetter(
+    table: Table, *columns: str, account: str | None = None
+) -> Callable[[Connection, str, str], int]:
+    """A function that removes the rows in which one of these columns is a person's name.
+
+    Of an account of that name, which stands in the column `account`, only the name goes.
+    """
 
     def forget(connection: Connection, zone: str, person: str) -> int:
         named = or_(*(table.c[column] == person for column in columns))
-        found = connection.execute(delete(table).where(table.c.zone == zone, named))
-        return int(found.rowcount)
+        count = connection.execute(delete(table).where(table.c.zone == zone, named)).rowcount
+        if account is not None:
+            done_by = (table.c.zone == zone) & (table.c[account] == person)
+            emptied = update(table).where(done_by).values({account: None})
+            count += connection.execute(emptied).rowcount
+        return int(count)
 
     return forget
 
 
 FORGETTERS: Final[Mapping[str, Callable[[Connection, str, str], int]]] = {
-    "bans": _forgetter(BANS, "name_pattern"),
-    "reports": _forgetter(REPORTS, "name", "reporter_name"),
+    "bans": _forgetter(BANS, "name_pattern", account="account"),
+    "reports": _forgetter(REPORTS, "name", "reporter_name", account="settled_by"),
     "chat": _forgetter(CHAT_LINES, "name"),
 }
 """Forgetters of these tables, for `esplanade.server.operating.forgetting`."""

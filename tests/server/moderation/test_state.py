@@ -65,6 +65,10 @@ async def test_who_is_forgotten_in_the_store_is_forgotten_here(store: SqlStore) 
     assert [each.id for each in held.bans] == [2]
     assert list(held.inbox) == []
     assert [each.line for each in held.chat] == [78, 79]
+    counts = await forget(store, AuditLog(store, "server"), MACHINE, "mona")
+    assert counts["bans"] == 1
+    again = await opened(store)
+    assert [(each.name_pattern, each.by) for each in again.bans] == [("Bob", None)]
 
 
 async def test_what_cannot_be_written_does_not_hold(store: SqlStore) -> None:
