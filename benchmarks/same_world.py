@@ -24,6 +24,7 @@ from esplanade.protocol.messages import ChatLine, Hello, Move, SetDoor, WalkTo, 
 from esplanade.server.app import build_world
 from esplanade.server.loading import load_scene
 from esplanade.server.metrics import Metrics
+from esplanade.server.moderation.state import ModerationState
 from esplanade.server.net.connection import Connection
 from esplanade.server.net.delivery import Delivery
 from esplanade.server.net.hub import Hub
@@ -32,6 +33,7 @@ from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.search_budget import SearchBudget, Share
 from esplanade.server.net.session import Session
 from esplanade.server.settings import ServerSettings
+from esplanade.server.store.store import Store
 from esplanade.server.world.audience import Audience
 
 KEY: Final = "key"
@@ -185,6 +187,7 @@ async def run(ticks: int, clients: int) -> str:
             Metrics(),
             lambda: world.tick * world.tick_s,
             {"storeys": storeys},
+            ModerationState(cast(Store, None)),
         )
         delivery = Delivery(audience, hub.sessions, settings.tick_rate, hub.stop_watching)
         visitors = Visitors(hub, world, settings, clients)

@@ -9,6 +9,7 @@ from esplanade.protocol.messages import (
     Doors,
     Enter,
     Error,
+    Hide,
     Leave,
     Notice,
     Plan,
@@ -92,4 +93,5 @@ Event = (
     | Doors
     | Point
     | Reshape
+    | Hide
 )

@@ -32,13 +32,16 @@ from esplanade.protocol.messages import (
     FromClient,
     FromServer,
     Hello,
+    Hide,
     Leave,
     Move,
+    MutePerson,
     Notice,
     Ping,
     Plan,
     Point,
     Pong,
+    Report,
     Reshape,
     ServerMessage,
     SetDoor,
@@ -50,13 +53,14 @@ from esplanade.protocol.messages import (
 )
 
 CLIENT_MESSAGES: Final[dict[int, type[FromClient]]] = {
-    int(model.code): model for model in (Hello, Move, WalkTo, ChatLine, Ping, Watch, SetDoor)
+    int(model.code): model
+    for model in (Hello, Move, WalkTo, ChatLine, Ping, Watch, SetDoor, Report, MutePerson)
 }
 SERVER_MESSAGES: Final[dict[int, type[FromServer]]] = {
     int(model.code): model
     for model in (
         *(Welcome, Enter, Leave, Chat, Notice, Error, Bye),
-        *(Pong, Plan, Census, Doors, Point, Reshape),
+        *(Pong, Plan, Census, Doors, Point, Reshape, Hide),
     )
 }
 

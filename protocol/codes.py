@@ -21,6 +21,8 @@ MAX_CHAT_CHARS = 300
 MAX_TOKEN_CHARS = 64
 MAX_DOOR_CHARS = 64
 MAX_SECRET_CHARS = 256
+MAX_LINE_NUMBER = 2**53 - 1
+"""Numbers of lines are whole in a float of 64 bits, which is all that browsers have."""
 
 
 class ClientCode(IntEnum):
@@ -33,6 +35,8 @@ class ClientCode(IntEnum):
     PING = 5
     WATCH = 6
     SET_DOOR = 7
+    REPORT = 8
+    MUTE = 9
 
 
 class ServerCode(IntEnum):
@@ -53,6 +57,7 @@ class ServerCode(IntEnum):
     STEPS = 76
     POINT = 77
     RESHAPE = 78
+    HIDE = 79
 
 
 class Kind(StrEnum):
@@ -94,6 +99,10 @@ class ErrorCode(StrEnum):
     ADMISSION_NEEDED = "admission_needed"
     PASSWORD_NEEDED = "password_needed"  # noqa: S105
     ADMISSION_REFUSED = "admission_refused"
+    BANNED = "banned"
+    SLOW_MODE = "slow_mode"
+    WORD_REFUSED = "word_refused"
+    QUIET_ZONE = "quiet_zone"
 
 
 class CloseCode(IntEnum):
@@ -117,6 +126,7 @@ class CloseCode(IntEnum):
     ADMISSION_NEEDED = 4020
     PASSWORD_NEEDED = 4021
     ADMISSION_REFUSED = 4022
+    BANNED = 4013
 
 
 class ByeCode(StrEnum):
@@ -126,12 +136,20 @@ class ByeCode(StrEnum):
     REPLACED = "replaced"
     SILENT = "silent"
     KICKED = "kicked"
+    BANNED = "banned"
+    WALKED_OUT = "walked_out"
 
 
 class NoticeCode(StrEnum):
     """The matter of a notice; empty for a sentence that stands for itself."""
 
     NONE = ""
+    ANNOUNCEMENT = "announcement"
+    MUTED = "muted"
+    UNMUTED = "unmuted"
+    WARNED = "warned"
+    WALKED_OUT = "walked_out"
+    REPORT_TAKEN = "report_taken"
     PAUSED = "paused"
     RESUMED = "resumed"
     PACE = "pace"

@@ -12,6 +12,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstra
 from esplanade.protocol.codes import (
     MAX_CHAT_CHARS,
     MAX_DOOR_CHARS,
+    MAX_LINE_NUMBER,
     MAX_SECRET_CHARS,
     MAX_TOKEN_CHARS,
     ByeCode,
@@ -32,6 +33,7 @@ Layer = Annotated[int, Field(ge=0, le=255)]
 Token = Annotated[str, Field(max_length=MAX_TOKEN_CHARS)]
 EntityId = Annotated[int, Field(ge=0, le=0xFFFF_FFFF)]
 Sequence = Annotated[int, Field(ge=0, le=0xFFFF_FFFF)]
+LineNumber = Annotated[int, Field(ge=0, le=MAX_LINE_NUMBER)]
 Arguments = dict[str, Any]
 """Numbers and texts for programs, from which they make sentences in any language."""
 Name = Annotated[str, AfterValidator(plain_name)]
@@ -137,7 +139,25 @@ class SetDoor(FromClient):
     open: bool
 
 
-ClientMessage = Hello | Move | WalkTo | ChatLine | Ping | Watch | SetDoor
+class Report(FromClient):
+    """Tell those who look after the world of somebody, or of a line that somebody said."""
+
+    code = ClientCode.REPORT
+    id: EntityId
+    line: LineNumber | None = None
+    """The number of a line of chat."""
+    text: Line
+
+
+class MutePerson(FromClient):
+    """Hear a person no more, or hear them again; it holds for this connection."""
+
+    code = ClientCode.MUTE
+    id: EntityId
+    muted: bool
+
+
+ClientMessage = Hello | Move | WalkTo | ChatLine | Ping | Watch | SetDoor | Report | MutePerson
 
 # --- server → client --------------------------------------------------------------------------
 
@@ -228,6 +248,15 @@ class Chat(FromServer):
     id: EntityId
     name: str
     text: str
+    line: LineNumber = 0
+    """The number of the line, by which it can be hidden and reported; 0 for one without."""
+
+
+class Hide(FromServer):
+    """Lines of chat that are to be shown no more."""
+
+    code = ServerCode.HIDE
+    lines: list[LineNumber]
 
 
 class Notice(FromServer):
@@ -245,6 +274,7 @@ class Error(FromServer):
     code = ServerCode.ERROR
     error: Annotated[ErrorCode | str, Field(union_mode="left_to_right")]
     text: str
+    arguments: Arguments = {}
 
 
 class Bye(FromServer):
@@ -253,6 +283,7 @@ class Bye(FromServer):
     code = ServerCode.BYE
     reason: Annotated[ByeCode | str, Field(union_mode="left_to_right")]
     text: str
+    arguments: Arguments = {}
 
 
 class Pong(FromServer):
@@ -353,6 +384,7 @@ ServerMessage = (
     | Leave
     | Snapshot
     | Chat
+    | Hide
     | Notice
     | Error
     | Bye

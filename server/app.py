@@ -157,11 +157,14 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             metrics,
             lambda: schedule.world_time(world.tick, loop.time()),
             {"storeys": storeys, **mesh},
+            kept.moderated,
             Entrance(settings, kept, metrics),
             schedule.pace,
             lasting.seats,
         )
-        delivery = Delivery(audience, hub.sessions, settings.tick_rate, hub.stop_watching)
+        delivery = Delivery(
+            audience, hub.sessions, settings.tick_rate, hub.stop_watching, hub.moderation.lines
+        )
         link = LocalLink()
         console = await _went_on(
             await stack.enter_async_context(
@@ -178,7 +181,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         ticker = Ticker(
             world, ground_work, audience, link, hub, delivery, schedule, metrics, thread, console
         ).keeping(lasting)
-        gate.live = live = _live(world, storeys, console, metrics, settings)
+        gate.live = live = _live(world, storeys, console, hub, metrics, settings)
         ticker.tap = live.tap
         await stack.enter_async_context(
             Listener(hub, assets, settings, metrics, places).listening(sockets, tls)
@@ -393,6 +396,7 @@ def _live(
     world: Zone,
     storeys: list[float],
     console: Console,
+    hub: Hub,
     metrics: Metrics,
     settings: ServerSettings,
 ) -> Live:
@@ -406,6 +410,7 @@ def _live(
         groups=lambda spec: console.state.groups.names(spec),  # noqa: PLW0108 - they are replaced
     )
     console.listen(live.bulletin.heard)
+    hub.moderation.listeners.append(live.bulletin.heard)
     return live
 
 

@@ -18,6 +18,7 @@ from esplanade.server.accounts.tokens import Tokens
 from esplanade.server.audit.entries import Entry
 from esplanade.server.audit.log import AuditLog
 from esplanade.server.metrics import Metrics
+from esplanade.server.moderating import moderating
 from esplanade.server.settings import ServerSettings
 from esplanade.server.store.location import Location
 from esplanade.server.store.sql_store import SqlStore, open_store
@@ -48,19 +49,21 @@ async def keeping(settings: ServerSettings, metrics: Metrics) -> AsyncIterator[K
         body = {"fresh": True} if settings.fresh else {}
         started = await audit.record(Entry(command="server_start", body=body))
         try:
-            yield Kept(
-                store,
-                audit,
-                passwords,
-                lockout,
-                Directory(store, audit, passwords),
-                Sessions(store, audit, passwords, lockout),
-                Tokens(store, audit),
-                OneTime(store, audit, passwords),
-                Invitations(store, audit),
-                Bots(store, audit),
-                started,
-            )
+            async with moderating(settings, store, metrics) as moderated:
+                yield Kept(
+                    store,
+                    audit,
+                    passwords,
+                    lockout,
+                    Directory(store, audit, passwords),
+                    Sessions(store, audit, passwords, lockout),
+                    Tokens(store, audit),
+                    OneTime(store, audit, passwords),
+                    Invitations(store, audit),
+                    Bots(store, audit),
+                    moderated,
+                    started,
+                )
         finally:
             passwords.close()
             await audit.record(Entry(command="server_stop"))

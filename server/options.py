@@ -103,6 +103,18 @@ _DATA: Final = {
         Flag(),
         default=False,
     ),
+    "keep_chat": Setting(
+        "keep the last 500 lines of chat for moderators, and who was sent each; without it no "
+        "line is kept",
+        Flag(),
+        default=False,
+    ),
+    "keep_chat_days": Setting(
+        "keep lines of chat for so long in the store too; 0: in memory alone",
+        Whole(0, 3650),
+        0,
+        "days",
+    ),
 }
 _NETWORK: Final = {
     "host": Setting(
@@ -295,6 +307,8 @@ def check(given: Mapping[str, Any]) -> None:
     if bool(given.get("tls_cert")) != bool(given.get("tls_key")):
         raise ValueError("tls_cert and tls_key: give both of them, or none")
     _check_ways_in(given)
+    if given.get("keep_chat_days") and not given.get("keep_chat"):
+        raise ValueError("keep_chat_days: it needs keep_chat, which keeps chat at all")
     if not _ROOT_PATH.fullmatch(given.get("root_path", "")):
         raise ValueError(
             f"root_path: {given['root_path']!r} is no path such as /world, of letters, digits "

@@ -48,6 +48,8 @@ class ServerSettings(BaseSettings):
     store: SecretStr = _field("store")
     fresh: bool = _field("fresh")
     durable: bool = _field("durable")
+    keep_chat: bool = _field("keep_chat")
+    keep_chat_days: int = _field("keep_chat_days")
 
     host: str = _field("host")
     port: int = _field("port")

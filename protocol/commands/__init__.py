@@ -17,7 +17,20 @@ from esplanade.protocol.commands.conditions import FigureCondition, GuardConditi
 from esplanade.protocol.commands.fields import NO_NUL, ZONE, full_id
 from esplanade.protocol.commands.groups import SetGroup
 from esplanade.protocol.commands.parameters import ClearParameters, Revert, SetParameters
-from esplanade.protocol.commands.people import Announce, Kick, Mute
+from esplanade.protocol.commands.people import (
+    Announce,
+    Ban,
+    HideLine,
+    Kick,
+    Mute,
+    QuietZone,
+    SettleReport,
+    SetWordFilter,
+    SlowMode,
+    Unban,
+    WalkOut,
+    Warn,
+)
 from esplanade.protocol.commands.presets import ApplyPreset, DeletePreset, SavePreset
 from esplanade.protocol.commands.schedules import CancelSchedule, Mark, ScheduleCommands
 from esplanade.protocol.commands.world import MoveDoor, Pace
@@ -31,6 +44,7 @@ __all__ = [
     "Announce",
     "Answer",
     "ApplyPreset",
+    "Ban",
     "CancelSchedule",
     "ClearParameters",
     "Command",
@@ -40,6 +54,7 @@ __all__ = [
     "Facts",
     "FigureCondition",
     "GuardCondition",
+    "HideLine",
     "HoldActor",
     "Kick",
     "Mark",
@@ -48,6 +63,7 @@ __all__ = [
     "NewActor",
     "Pace",
     "Price",
+    "QuietZone",
     "RemoveActors",
     "Revert",
     "SavePreset",
@@ -56,6 +72,12 @@ __all__ = [
     "SetBehaviour",
     "SetGroup",
     "SetParameters",
+    "SetWordFilter",
+    "SettleReport",
+    "SlowMode",
+    "Unban",
+    "WalkOut",
+    "Warn",
     "full_id",
 ]
 
@@ -73,8 +95,17 @@ Command = Annotated[
     | MoveDoor
     | Pace
     | Announce
-    | Mute
+    | Ban
+    | HideLine
     | Kick
+    | Mute
+    | QuietZone
+    | SetWordFilter
+    | SettleReport
+    | SlowMode
+    | Unban
+    | WalkOut
+    | Warn
     | Revert
     | ApplyPreset
     | SavePreset

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Final
+from typing import Annotated, ClassVar, Final
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
@@ -59,6 +59,8 @@ class BaseCommand(BaseModel):
     """What every command has."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
+    private: ClassVar[frozenset[str]] = frozenset()
+    """Fields that may speak of a person: the audit keeps them where they can be forgotten."""
 
     dry_run: bool = Field(False, description="Check it, and tell its price; change nothing.")
     note: Annotated[str, Field(max_length=500, pattern=NO_NUL)] | None = Field(

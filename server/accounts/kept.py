@@ -11,6 +11,7 @@ from esplanade.server.accounts.passwords import Passwords
 from esplanade.server.accounts.sessions import Sessions
 from esplanade.server.accounts.tokens import Tokens
 from esplanade.server.audit.log import AuditLog
+from esplanade.server.moderation.state import ModerationState
 from esplanade.server.store.sql_store import SqlStore
 
 
@@ -28,5 +29,6 @@ class Kept:
     one_time: OneTime
     invitations: Invitations
     bots: Bots
+    moderated: ModerationState
     started: int
     """The row of the audit that says that this server has started."""

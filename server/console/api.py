@@ -19,6 +19,7 @@ from esplanade.server.console.gate import Gate
 from esplanade.server.console.kept_api import router as kept
 from esplanade.server.console.live_api import router as live
 from esplanade.server.console.live_socket import router as sockets
+from esplanade.server.console.people_api import people_router
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.console.routing import (
     PREFIX,
@@ -53,8 +54,9 @@ router = APIRouter(prefix=PREFIX, route_class=Guarded, responses=REFUSALS)
 def add_api(app: FastAPI, gate: Gate) -> None:
     """Let an application answer operators."""
     app.state.gate = gate
+    people = people_router(APIRouter(prefix=PREFIX, route_class=Guarded, responses=REFUSALS))
     # Paths of the live views below an actor's go before the actor's own.
-    for each in (live, sockets, router, kept, auth, accounts, admission):
+    for each in (live, sockets, router, kept, people, auth, accounts, admission):
         app.include_router(each)
     add_refusals(app)
 

@@ -18,9 +18,7 @@ from esplanade.protocol.commands import (
     Command,
     CommandFault,
     Facts,
-    Kick,
     Mark,
-    Mute,
     Price,
     Revert,
     SetParameters,
@@ -40,12 +38,8 @@ from esplanade.server.console.kept_intents import KEPT, check_guard, kept_facts,
 from esplanade.server.console.kept_rows import rows_of
 from esplanade.server.console.lasting import LastingChanges, is_ramp, lasts
 from esplanade.server.console.listeners import Listener, Listeners
-from esplanade.server.console.moderation import (
-    MODERATING,
-    Moderation,
-    moderate,
-    wanted_of_people,
-)
+from esplanade.server.console.moderating import KINDS, LASTING, MODERATING, Moderating
+from esplanade.server.console.moderation import Moderation
 from esplanade.server.console.pacing import change_pace
 from esplanade.server.console.preparation import Preparation
 from esplanade.server.console.presets import PRESET, Presets
@@ -120,6 +114,8 @@ class Console:
         """The row of the audit, of the server's chain, with which the world of now began."""
         self.settled = 0
         """The last command whose outcome is in the audit; all before it is in the state too."""
+        self._moderating = Moderating(moderation, zone)
+        self.state.elsewhere.update(dict.fromkeys(KINDS, self._moderating.fact))
         self._records = Records(store, audit)
         self.lasting = LastingChanges(self, self._records)
         self.turn = asyncio.Lock()
@@ -196,8 +192,7 @@ class Console:
             facts = together([one.after for one in planned if not is_ramp(one.command)])
             inputs, doors = inputs_for(facts, self.state, self.new_number)
         numbers = await self._records.intents(by, planned, self.zone.tick)
-        for one in planned:
-            moderate(one.command, self.moderation)
+        await self._moderating.carry_out(planned, by.account)
         began = perf_counter()
         tick, faults = await self._in_a_tick(inputs, doors, facts.get(PACE, {}))
         if faults:
@@ -236,7 +231,7 @@ class Console:
         self.state.take({s: f for s, f in facts.items() if s not in kept})
         self.settled = numbers[-1]
         for one, number in both:
-            if isinstance(one.command, MODERATING) or STEPPED in one.after.get(PACE, {}):
+            if _passes(one.command) or STEPPED in one.after.get(PACE, {}):
                 continue
             ramps = is_ramp(one.command)
             change = Change(
@@ -319,18 +314,19 @@ class Console:
     def _plan_one(self, by: Identity, command: Command, pending: Facts) -> Planned:
         if isinstance(command, Revert):
             return self._plan_revert(by, command, pending)
+        person = None
         if isinstance(command, MODERATING):
-            facts = wanted_of_people(command, self.moderation)
-            name = None
-            if isinstance(command, Kick | Mute):
-                name = self.moderation.name_of(command.person)
-            return Planned(command, {}, facts, person=name)
-        if isinstance(command, Mark):
+            wanted = self._moderating.wanted(command, pending)
+            facts, person = wanted.facts, wanted.person
+            if not isinstance(command, LASTING):
+                return Planned(command, {}, facts, person=person)
+        elif isinstance(command, Mark):
             return Planned(command, {}, {})
-        self._check_conditions(command)
-        if isinstance(command, KEPT):
+        elif isinstance(command, KEPT):
+            self._check_conditions(command)
             facts = kept_facts(command, by, self.state, pending, self._clock_us())
         else:
+            self._check_conditions(command)
             facts = intended(command, self.state, pending)
         if isinstance(command, SetParameters | ClearParameters):
             self.changes.check_revision(command.if_revision, facts, self.state)
@@ -338,7 +334,7 @@ class Console:
         for subject, fields in pending.items():
             for field in fields.keys() & before.get(subject, {}).keys():
                 before[subject][field] = fields[field]
-        return Planned(command, before, facts)
+        return Planned(command, before, facts, person=person)
 
     def _plan_revert(self, by: Identity, command: Revert, pending: Facts) -> Planned:
         change = self.changes.found(command.change, by.account)
@@ -510,6 +506,11 @@ class Console:
         await self.lasting.close()
 
 
+def _passes(command: Command) -> bool:
+    """Whether a command is about people and leaves nothing that could be taken back."""
+    return isinstance(command, MODERATING) and not isinstance(command, LASTING)
+
+
 def _check_right(by: Identity, op: str, *path: int) -> None:
     if may(by.rights, op):
         return
@@ -532,8 +533,10 @@ def _needed_for(change: Change) -> set[str]:
         SCHEDULE: "schedule",
     }
     needed = set()
-    for _, field, value in each(change.before):
-        if field.startswith(GROUP):
+    for subject, field, value in each(change.before):
+        if subject.partition(":")[0] in KINDS:
+            needed.add("unban")
+        elif field.startswith(GROUP):
             needed.add("set_group")
         else:
             needed.add(ops.get(field, "set_parameters"))

@@ -89,9 +89,19 @@ def people(console: Console) -> dict[str, Any]:
         name = console.moderation.name_of(avatar)
         if name is not None:
             x, y = state.positions[state.slot(avatar)].tolist()
-            muted_s = round(console.moderation.muted_s(avatar), 1)
-            place = [round(x, 3), round(y, 3), round(float(state.heights[state.slot(avatar)]), 3)]
-            found.append({"id": avatar, "name": name, "position": place, "muted_s": muted_s})
+            x, y, z = round(x, 3), round(y, 3), round(float(state.heights[state.slot(avatar)]), 3)
+            found.append(
+                {
+                    "id": avatar,
+                    "name": name,
+                    "position": [x, y, z],
+                    "x": x,
+                    "y": y,
+                    "z": z,
+                    "muted_s": round(console.moderation.muted_s(avatar), 1),
+                    **console.moderation.details(avatar),
+                }
+            )
     return {"tick": console.zone.tick, "people": found}
 
 

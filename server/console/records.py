@@ -64,7 +64,7 @@ class Records:
                     **({} if one.reverts is None else {"reverts": one.reverts}),
                 },
                 person=one.person,
-                detail=one.command.model_dump(include=_said_to_person(one)) or None,
+                detail=_detail(one),
                 note=one.command.note,
             )
             for one in planned
@@ -126,7 +126,12 @@ class Records:
 
 def _said_to_person(one: Planned) -> set[str]:
     """Fields that may speak of a person, and so must be kept where they can be forgotten."""
-    return set() if one.person is None else {"text"}
+    return set(one.command.private)
+
+
+def _detail(one: Planned) -> dict[str, object] | None:
+    said = one.command.model_dump(include=_said_to_person(one), exclude_none=True)
+    return said or None
 
 
 def _target(facts: Facts) -> str:

@@ -1,6 +1,6 @@
 """The facts that operators can change, as fields of subjects that can be compared."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, Final
 
 from esplanade.actors import ActorSpec, Overrides, Scope
@@ -41,6 +41,8 @@ class OperatedState:
         self.presets = presets or Presets()
         self.schedules = Schedules()
         self.held: set[str] = set()
+        self.elsewhere: dict[str, Callable[[str, str], Any]] = {}
+        """Tells the fields of subjects that are kept elsewhere, by the kind of subject."""
         self._doors: dict[str, bool] = {}
         """The latest wish for each door that was wanted open or closed."""
 
@@ -49,6 +51,8 @@ class OperatedState:
         kind, _, name = subject.partition(":")
         if kind == PACE:
             return getattr(self.pace.state, field, None)
+        if kind in self.elsewhere:
+            return self.elsewhere[kind](subject, field)
         match kind, field:
             case "door", _:
                 return self._doors.get(name, self.zone.doors.states().get(name))

@@ -6,8 +6,9 @@ import numpy as np
 
 from esplanade.actors import Explanation
 from esplanade.protocol import Reason
-from esplanade.protocol.messages import Blocker, Census, Chat, Circle, Doors, Plan, Point, Reshape
+from esplanade.protocol.messages import Blocker, Census, Circle, Doors, Plan, Point, Reshape
 from esplanade.server.net import frames
+from esplanade.server.net.lines import Lines
 from esplanade.server.net.packing import Packing
 from esplanade.server.net.session import Session
 from esplanade.server.world.audience import Audience, News, Snapshots
@@ -22,8 +23,10 @@ class Delivery:
         sessions: Mapping[int, Session],
         tick_rate: int,
         stop_watching: Callable[[Session], None],
+        lines: Lines | None = None,
     ) -> None:
         """`stop_watching` is called for those who watch an actor that went out of view."""
+        self._lines = lines or Lines()
         self._audience = audience
         self._sessions = sessions
         self._census_period = tick_rate
@@ -69,9 +72,8 @@ class Delivery:
             for viewer in viewers:
                 first.setdefault(viewer, []).append(frame)
         for heard in news.chat:
-            line = heard.line
-            frame = frames.message(Chat(id=line.id, name=heard.name, text=line.text))
-            for viewer in heard.viewers:
+            frame, viewers = self._lines.take(heard)
+            for viewer in viewers:
                 first.setdefault(viewer, []).append(frame)
         return first
 

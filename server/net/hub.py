@@ -7,24 +7,38 @@ from typing import Any, Final
 import structlog
 
 from esplanade.protocol import ByeCode, CloseCode, ErrorCode, ProtocolError
-from esplanade.protocol.messages import Bye, Error, Hello, Move, SetDoor, WalkTo
+from esplanade.protocol.messages import (
+    Bye,
+    Error,
+    Hello,
+    Move,
+    MutePerson,
+    Report,
+    SetDoor,
+    WalkTo,
+)
 from esplanade.server.checkpoint.returning import Left
 from esplanade.server.checkpoint.rows import KeptSeat
 from esplanade.server.checkpoint.seat_keeper import SeatKeeper
 from esplanade.server.metrics import Metrics
+from esplanade.server.moderation.state import ModerationState
 from esplanade.server.net import frames
+from esplanade.server.net.chat_gate import ChatGate
 from esplanade.server.net.door_commands import DoorCommands
 from esplanade.server.net.entrance import Entrance
 from esplanade.server.net.fair_queue import Asker
 from esplanade.server.net.ground_work import DOOR_PAUSE_S
 from esplanade.server.net.leases import ANSWER_S, PING_S, Leases
+from esplanade.server.net.lines import MOST_MUTED
 from esplanade.server.net.moderation import PeopleModeration
 from esplanade.server.net.names import Names, ReservedNameError
 from esplanade.server.net.operator_keys import SERVICE, OperatorKeys, TooManyKeysError
 from esplanade.server.net.pace_notices import PaceNotices
+from esplanade.server.net.reporting import Reporting
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.seats import Seat, Seats
 from esplanade.server.net.session import Session
+from esplanade.server.net.walk_outs import WalkOuts
 from esplanade.server.net.welcomes import Welcomes
 from esplanade.server.settings import ServerSettings
 from esplanade.server.world.audience import Audience
@@ -65,7 +79,7 @@ class Hub:
     `derived` holds the facts about the scene that a welcome adds to those in the scene's file.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913, PLR0917 (every part of the network meets here)
         self,
         world: Zone,
         audience: Audience,
@@ -74,6 +88,7 @@ class Hub:
         metrics: Metrics,
         server_time: Callable[[], float],
         derived: Mapping[str, object],
+        moderated: ModerationState,
         entrance: Entrance | None = None,
         pace: Pace | None = None,
         keeper: SeatKeeper | None = None,
@@ -96,8 +111,15 @@ class Hub:
         self._names = Names(world.actor_names)
         self._leases = Leases(world.moves)
         self._operator_keys = OperatorKeys(settings.operator_key.get_secret_value(), metrics)
+        storeys = _storeys(derived)
         self.moderation = PeopleModeration(
-            self.sessions, self._kick, lambda: asyncio.get_running_loop().time()
+            moderated,
+            world,
+            storeys,
+            self.sessions,
+            self._seats,
+            self._kick,
+            lambda: asyncio.get_running_loop().time(),
         )
         self._entrance = entrance
         self.by_commands: DoorCommands | None = None
@@ -105,6 +127,11 @@ class Hub:
         self._pace = pace or Pace()
         self._pace_notices = PaceNotices(self.sessions, server_time)
         self._pace.changed.append(self._pace_notices.tell_all)
+        self._walk_outs = self.moderation.walk_outs = WalkOuts(
+            world, self.sessions, route_requests, self._want, self.moderation.has_walked_out
+        )
+        self._chat_gate = ChatGate(moderated, storeys)
+        self._reporting = Reporting(moderated, self._reportable, self.moderation.where)
         self._next_ticket = 1
         self._joining: dict[int, tuple[Session, Hello]] = {}
         self._comings: list[Attach | Detach | Leave | Stand] = []
@@ -165,8 +192,9 @@ class Hub:
         Raises
         ------
         ProtocolError
-            The world is full, or the name is one that nobody may bear.
+            A ban keeps them out, the world is full, or the name is one that nobody may bear.
         """
+        self.moderation.check_ban(hello.name, session.address, hello.resume)
         self._check_key(session, hello.operator)
         seat = self._seats.find(hello.resume) if hello.resume else None
         if seat is not None:
@@ -187,7 +215,7 @@ class Hub:
     def move(self, session: Session, wish: Move | WalkTo) -> None:
         """Keep the wish for the next tick; it takes the place of an earlier one."""
         avatar_id = session.avatar_id
-        if avatar_id is None:
+        if avatar_id is None or avatar_id in self._walk_outs:
             return
         if isinstance(wish, Move):
             self._want(Steer(avatar_id, wish.seq, wish.direction, wish.speed))
@@ -202,7 +230,9 @@ class Hub:
         session = self.sessions.get(avatar_id)
         if session is None:
             return
-        if route is not None:
+        if avatar_id in self._walk_outs:
+            self._walk_outs.route_found(avatar_id, route)
+        elif route is not None:
             self._want(Follow(avatar_id, wish.seq, route))
         else:
             text = f"no way leads to ({wish.x:.2f}, {wish.y:.2f}, {wish.z:.2f})"
@@ -217,8 +247,15 @@ class Hub:
             muted_s = self.moderation.muted_s(session.avatar_id)
             if muted_s > 0.0:
                 text = f"an operator has muted you for {muted_s:.0f} s more; nobody heard your line"
-                session.tell(ProtocolError(ErrorCode.MUTED, text, None))
+                fault = ErrorCode.MUTED, text, None, {"seconds": round(muted_s, 1)}
+                session.tell(ProtocolError(*fault))
                 return
+        now = asyncio.get_running_loop().time()
+        try:
+            text = self._chat_gate.pass_words(session.avatar_id or -session.ticket, text, now)
+        except ProtocolError as fault:
+            session.tell(fault)
+            return
         self._metrics.chat_lines.inc()
         self._lines.append((session, text))
 
@@ -262,6 +299,37 @@ class Hub:
             return
         session.tell(ProtocolError(*fault, None))
 
+    def report(self, session: Session, report: Report) -> None:
+        """Put a report about somebody before moderators, and tell the person so."""
+        made = self._reporting.take(session, report, asyncio.get_running_loop().time())
+        if made is not None:
+            log.info("person reported", report=made.id, id=made.person, by=made.reporter)
+            about = {
+                "report": made.id,
+                "who": made.reporter,
+                "other": made.person,
+                "name": made.name,
+                "text": made.text,
+                "place": made.place,
+            }
+            self.moderation.happened("report", about)
+
+    def mute(self, session: Session, wish: MutePerson) -> None:
+        """Send no lines of somebody to the session any more, or send them again."""
+        avatar_id = session.avatar_id
+        if avatar_id is None:
+            return
+        if not self.moderation.lines.mute(avatar_id, wish.id, muted=wish.muted):
+            text = f"you have muted {MOST_MUTED} people, no more can be at once"
+            session.tell(ProtocolError(ErrorCode.FLOODING, text, None))
+
+    def _reportable(self, avatar_id: int) -> str | None:
+        """The name of a person or an actor who is here, or of a person who has just left."""
+        if avatar_id in self._world.state:
+            return self._world.state.names[self._world.state.slot(avatar_id)]
+        known = self.moderation.known(avatar_id)
+        return None if known is None else known.name
+
     def confirm(self, session: Session) -> None:
         """Note that a client that came back has its new token, so that the old one is void."""
         session.unconfirmed = False
@@ -282,6 +350,8 @@ class Hub:
         seat = self._seats.of(session.avatar_id)
         if seat is None or seat.occupant is not session:
             return
+        comes_back = comes_back and seat.avatar_id not in self._walk_outs
+        self.moderation.remember(session)
         self._unbind(seat)
         if comes_back and self._settings.resume_seconds > 0.0:
             self._seats.vacate(seat, self._run_for_s(asyncio.get_running_loop().time()))
@@ -300,6 +370,7 @@ class Hub:
         for seat in self._seats.vacant_since(self._run_for_s(now) - self._settings.resume_seconds):
             self._remove(seat)
         self._check_leases(now)
+        self._walk_outs.check(now)
         # A line is said before its speaker goes.
         inputs: list[Input] = [*self._spoken(), *self._comings]
         at_the_door = [ticket for ticket in self._joining if ticket not in self._asked]
@@ -320,9 +391,18 @@ class Hub:
         """The lines of those who are in the world; those at the door go on waiting."""
         lines, self._lines = self._lines, []
         self._lines = [line for line in lines if line[0].ticket in self._joining]
-        return [
-            Say(session.avatar_id, text) for session, text in lines if session.avatar_id is not None
-        ]
+        spoken = []
+        for session, text in lines:
+            place = None if session.avatar_id is None else self.moderation.where(session.avatar_id)
+            if session.avatar_id is None or place is None:
+                continue
+            try:
+                self._chat_gate.check_place(place)
+            except ProtocolError as fault:
+                session.tell(fault)
+            else:
+                spoken.append(Say(session.avatar_id, text))
+        return spoken
 
     def welcome(self, frame: Frame) -> None:
         """Welcome the people whom the tick has let in, before anything else is sent to them."""
@@ -450,6 +530,7 @@ class Hub:
         """Give up the seat of a session: whoever had it comes back as somebody new."""
         seat = None if session.avatar_id is None else self._seats.of(session.avatar_id)
         if seat is not None and seat.occupant is session:
+            self.moderation.remember(session)
             self._unbind(seat)
             self._remove(seat)
 
@@ -481,6 +562,8 @@ class Hub:
         session.outbox.welcome(self._welcomes.frame(session, avatar_id, resumed))
         self._pace_notices.tell_newcomer(session, self._pace.state)
         session.unconfirmed = resumed
+        if resumed:
+            self.moderation.greet(session)
         if session.fault_at_welcome is not None:
             session.tell(session.fault_at_welcome)
         self._metrics.joins.labels("resumed" if resumed else "new").inc()
@@ -491,6 +574,8 @@ class Hub:
         self._movements.pop(seat.avatar_id, None)
         self._watches.pop(seat.avatar_id, None)
         self._routes.forget(seat.avatar_id)
+        self._walk_outs.forget(seat.avatar_id)
+        self.moderation.lines.forget(seat.avatar_id)
 
     def _want(self, movement: Movement) -> None:
         if movement.id in self._movements:
@@ -514,3 +599,9 @@ class Hub:
 
     def _frames_waiting(self) -> int:
         return sum(session.outbox.waiting for session in self.sessions.values())
+
+
+def _storeys(derived: Mapping[str, object]) -> list[float]:
+    """The heights of the storeys among the facts that are derived from a scene."""
+    found = derived.get("storeys", ())
+    return [float(height) for height in found] if isinstance(found, list | tuple) else []

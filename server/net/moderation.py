@@ -1,19 +1,31 @@
-"""Moderates people for operators: announcements, mutes, and the way out."""
+"""Moderates people for operators: words to them, mutes, bans, and the way out."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from datetime import UTC, datetime
 from typing import Any, Final
 
 import structlog
 
-from esplanade.protocol import ByeCode, CloseCode
-from esplanade.protocol.messages import Bye, Notice
+from esplanade.protocol import ByeCode, CloseCode, ErrorCode, NoticeCode, ProtocolError
+from esplanade.protocol.messages import Bye, Hide, Notice
+from esplanade.server.moderation.areas import Area, Place, same_storey
+from esplanade.server.moderation.bans import Ban, Bans
+from esplanade.server.moderation.chat_log import KeptLine
+from esplanade.server.moderation.state import ModerationState
 from esplanade.server.net import frames
+from esplanade.server.net.known_people import AddressHashes, Gone, KnownPerson
+from esplanade.server.net.lines import Lines
+from esplanade.server.net.seats import Seats, digest_of
 from esplanade.server.net.session import Session
+from esplanade.server.net.walk_outs import WalkOuts
+from esplanade.server.world.audience import Heard
+from esplanade.server.world.zone import Zone
 
 MOST_MUTED: Final = 4096
 """Of more people who are muted, the mute that ends first is forgotten."""
 
+Listener = Callable[[str, dict[str, Any]], None]
 log = structlog.get_logger(__name__)
 
 
@@ -22,20 +34,194 @@ class PeopleModeration:
 
     def __init__(
         self,
+        kept: ModerationState,
+        world: Zone,
+        storeys: Sequence[float],
         sessions: Mapping[int, Session],
+        seats: Seats[Session],
         kick: Callable[[Session], None],
         now_s: Callable[[], float],
     ) -> None:
         """`kick` gives up the seat of a session, so that its token opens nothing any more."""
+        self.kept = kept
+        self.lines = Lines(kept.now_us() // 1000, self._said)
+        self.walk_outs: WalkOuts | None = None
+        self.listeners: list[Listener] = []
+        """Are told of reports and, where chat is kept, of lines: the kind, and plain data."""
+        self._world = world
+        self._storeys = storeys
         self._sessions = sessions
+        self._seats = seats
         self._kick = kick
         self._now_s = now_s
-        self._muted_until_s: dict[int, float] = {}
+        self._gone = Gone()
+        self._hashes = AddressHashes()
+        self._muted_until_us: dict[int, int] = {}
+
+    # --- who there is ---------------------------------------------------------------------------
+
+    def name_of(self, person: int) -> str | None:
+        """Return the name of a connected person."""
+        session = self._sessions.get(person)
+        return None if session is None else session.name
+
+    def known(self, person: int) -> KnownPerson | None:
+        """A person who is connected, or has left within the last minutes."""
+        session = self._sessions.get(person)
+        return self._gone.get(person, self._now_s()) if session is None else self._of(session)
+
+    def remember(self, session: Session) -> None:
+        """Remember somebody whose connection ends."""
+        if session.avatar_id is not None:
+            self._gone.add(self._of(session), self._now_s())
+
+    def where(self, avatar_id: int) -> Place | None:
+        """The place of an avatar; None if it is not in the world."""
+        state = self._world.state
+        if avatar_id not in state:
+            return None
+        slot = state.slot(avatar_id)
+        x, y = state.positions[slot].tolist()
+        return round(x, 3), round(y, 3), round(float(state.heights[slot]), 3)
+
+    def within(
+        self,
+        *,
+        storey_m: float | None,
+        polygon: Sequence[tuple[float, float]] | None,
+        centre: Place | None,
+        radius_m: float,
+    ) -> list[int]:
+        """Connected people on a storey, in a polygon, or around a centre; all of them without."""
+        area = None if polygon is None else Area(tuple(polygon), storey_m)
+        found = []
+        for avatar_id in self._sessions:
+            place = self.where(avatar_id)
+            if place is None:
+                continue
+            if area is not None:
+                wanted = area.holds(place, self._storeys)
+            elif storey_m is not None:
+                wanted = same_storey(place[2], storey_m, self._storeys)
+            else:
+                wanted = centre is None or _near(place, centre, radius_m)
+            if wanted:
+                found.append(avatar_id)
+        return found
+
+    def details(self, person: int) -> dict[str, Any]:
+        """What operators are shown of a connected person beside the place and the name."""
+        session = self._sessions[person]
+        return {
+            "since_us": session.since_us,
+            "address_hash": self._hashes.of(session.address),
+            "delay_ms": None,
+            "queue_bytes": session.outbox.unsent,
+            "operator": session.is_operator,
+            "walked_out": self.walk_outs is not None and person in self.walk_outs,
+        }
+
+    # --- what operators want --------------------------------------------------------------------
+
+    def announce(self, text: str, people: Iterable[int]) -> int:
+        """Say something to these people; returns to how many."""
+        notice = _notice(text, NoticeCode.ANNOUNCEMENT)
+        there = [self._sessions[one] for one in people if one in self._sessions]
+        for session in there:
+            session.outbox.post(notice)
+        return len(there)
+
+    def warn(self, person: int, text: str) -> None:
+        """Say something to one person, as a warning."""
+        self._tell(person, _notice(text, NoticeCode.WARNED))
+
+    def kick(self, person: int, text: str) -> None:
+        """End a person's connection, and say why; the avatar is gone, and its token void."""
+        self._dismiss(person, text, ByeCode.KICKED, CloseCode.KICKED, {"text": text})
+
+    def walk_out(self, person: int, text: str) -> None:
+        """Let a person's avatar walk to a place of arrival, and then go."""
+        session = self._sessions.get(person)
+        if session is None or self.walk_outs is None:
+            return
+        goal = self.walk_outs.way_out(person)
+        if goal is None:
+            self.has_walked_out(session, text)
+            return
+        x, y, z = goal
+        self._tell(person, _notice(text, NoticeCode.WALKED_OUT, {"x": x, "y": y, "z": z}))
+        self.walk_outs.begin(session, text, goal, self._now_s())
+
+    def has_walked_out(self, session: Session, text: str) -> None:
+        """Let somebody go who has arrived at the way out."""
+        if session.avatar_id is not None:
+            arguments = {"text": text}
+            self._dismiss(session.avatar_id, text, ByeCode.WALKED_OUT, CloseCode.KICKED, arguments)
+
+    def turn_out(self, ban: Ban, person: int | None = None) -> int:
+        """Send out whoever a ban is of, and this person; returns how many."""
+        only = Bans()
+        only.put(ban)
+        found = [
+            avatar_id
+            for avatar_id, session in self._sessions.items()
+            if avatar_id == person or self._keeps_out(only, self._of(session))
+        ]
+        arguments = _of_ban(ban)
+        for avatar_id in found:
+            self._dismiss(avatar_id, _farewell(ban), ByeCode.BANNED, CloseCode.BANNED, arguments)
+        return len(found)
+
+    def check_ban(self, name: str, address: str, resume: str | None) -> None:
+        """Check that no ban keeps a newcomer out.
+
+        Raises
+        ------
+        ProtocolError
+            One does, and why and until when.
+        """
+        digest = None if resume is None else digest_of(resume).hex()
+        ban = self.kept.bans.against(name, address, digest, self.kept.now_us())
+        if ban is not None:
+            code, close = ErrorCode.BANNED, CloseCode.BANNED
+            raise ProtocolError(code, _farewell(ban), close, _of_ban(ban))
+
+    def hide(self, line: int) -> None:
+        """Let a line be shown no more by anybody's client."""
+        self._tell_all(frames.message(Hide(lines=[line])))
+
+    def greet(self, session: Session) -> None:
+        """Tell somebody who comes back what was hidden meanwhile."""
+        hidden = self.kept.chat.hidden
+        if hidden:
+            session.outbox.post(frames.message(Hide(lines=hidden)))
+
+    # --- mutes ----------------------------------------------------------------------------------
+
+    def muted_s(self, person: int) -> float:
+        """For how many seconds nobody hears a person yet."""
+        until_us = self._muted_until_us.get(person)
+        return 0.0 if until_us is None else max(0.0, (until_us - self.kept.now_us()) / 1e6)
+
+    def mute(self, person: int, seconds: float, text: str) -> None:
+        """Let nobody hear a person for a time, and say so; 0 ends it."""
+        now_us = self.kept.now_us()
+        self._muted_until_us.pop(person, None)
+        if seconds > 0.0:
+            lasting = {who: end for who, end in self._muted_until_us.items() if end > now_us}
+            if len(lasting) >= MOST_MUTED:
+                del lasting[min(lasting, key=lasting.__getitem__)]
+            self._muted_until_us = {**lasting, person: now_us + round(seconds * 1e6)}
+        code = NoticeCode.MUTED if seconds > 0.0 else NoticeCode.UNMUTED
+        arguments = {"seconds": seconds} if seconds > 0.0 else {}
+        self._tell(person, _notice(text, code, arguments))
 
     def save(self) -> dict[int, float]:
         """For how many seconds each person is muted yet, by the avatar."""
-        now_s = self._now_s()
-        return {who: end - now_s for who, end in self._muted_until_s.items() if end > now_s}
+        now_us = self.kept.now_us()
+        return {
+            who: (end - now_us) / 1e6 for who, end in self._muted_until_us.items() if end > now_us
+        }
 
     def load(self, saved: Mapping[Any, Any]) -> None:
         """Go on from what was saved: time counts only while the world runs.
@@ -45,46 +231,94 @@ class PeopleModeration:
         ValueError, TypeError
             It is not what `save` gives.
         """
-        now_s = self._now_s()
+        now_us = self.kept.now_us()
         if len(saved) > MOST_MUTED or not all(map(math.isfinite, saved.values())):
             raise ValueError("these are no mutes")
-        self._muted_until_s = {int(who): now_s + left_s for who, left_s in saved.items()}
+        self._muted_until_us = {
+            int(who): now_us + round(left_s * 1e6) for who, left_s in saved.items()
+        }
 
-    def name_of(self, person: int) -> str | None:
-        """Return the name of a connected person."""
-        session = self._sessions.get(person)
-        return None if session is None else session.name
+    # --- parts ----------------------------------------------------------------------------------
 
-    def muted_s(self, person: int) -> float:
-        """For how many seconds nobody hears a person yet."""
-        return max(0.0, self._muted_until_s.get(person, 0.0) - self._now_s())
+    def happened(self, kind: str, about: dict[str, Any]) -> None:
+        """Tell the console of something that people did."""
+        for listener in self.listeners:
+            listener(kind, about)
 
-    def announce(self, text: str) -> int:
-        """Say something to everyone who is connected; returns to how many."""
-        notice = frames.message(Notice(text=text))
-        for session in self._sessions.values():
-            session.outbox.post(notice)
-        return len(self._sessions)
+    def _said(self, number: int, heard: Heard, viewers: list[int]) -> None:
+        if not self.kept.chat.keeps:
+            return
+        line = heard.line
+        self.kept.said(
+            KeptLine(
+                line=number,
+                at_us=self.kept.now_us(),
+                tick=self._world.tick,
+                id=line.id,
+                name=heard.name,
+                text=line.text,
+                seen=tuple(viewers),
+            )
+        )
+        about = {"line": number, "who": line.id, "name": heard.name, "text": line.text}
+        self.happened("chat", {**about, "place": self.where(line.id)})
 
-    def kick(self, person: int, text: str) -> None:
-        """End a person's connection, and say why; the avatar is gone, and its token void."""
+    def _of(self, session: Session) -> KnownPerson:
+        avatar_id = session.avatar_id or 0
+        seat = self._seats.of(avatar_id)
+        digests = () if seat is None else tuple(each.hex() for each in seat.digests)
+        return KnownPerson(avatar_id, session.name, session.wished, session.address, digests)
+
+    def _keeps_out(self, bans: Bans, person: KnownPerson) -> bool:
+        now_us = self.kept.now_us()
+        return any(
+            bans.against(name, person.address, digest, now_us) is not None
+            for name in (person.wished, person.name)
+            for digest in person.digests or (None,)
+        )
+
+    def _dismiss(
+        self,
+        person: int,
+        text: str,
+        reason: ByeCode,
+        close: CloseCode,
+        arguments: dict[str, Any],
+    ) -> None:
         session = self._sessions.get(person)
         if session is None:
             return
-        farewell = frames.message(Bye(reason=ByeCode.KICKED, text=text))
+        farewell = frames.message(Bye(reason=reason, text=text, arguments=arguments))
         self._kick(session)
-        session.dismiss(farewell, CloseCode.KICKED, ByeCode.KICKED.value)
-        log.info("person kicked", id=person)
+        session.dismiss(farewell, close, reason.value)
+        log.info("person sent out", id=person, why=reason.value)
 
-    def mute(self, person: int, seconds: float, text: str) -> None:
-        """Let nobody hear a person for a time, and say so; 0 ends it."""
-        now_s = self._now_s()
-        self._muted_until_s.pop(person, None)
-        if seconds > 0.0:
-            lasting = {who: end for who, end in self._muted_until_s.items() if end > now_s}
-            if len(lasting) >= MOST_MUTED:
-                del lasting[min(lasting, key=lasting.__getitem__)]
-            self._muted_until_s = {**lasting, person: now_s + seconds}
+    def _tell(self, person: int, frame: bytes) -> None:
         session = self._sessions.get(person)
         if session is not None:
-            session.outbox.post(frames.message(Notice(text=text)))
+            session.outbox.post(frame)
+
+    def _tell_all(self, frame: bytes) -> None:
+        for session in self._sessions.values():
+            session.outbox.post(frame)
+
+
+def _notice(text: str, code: NoticeCode, more: Mapping[str, Any] | None = None) -> bytes:
+    return frames.message(Notice(text=text, notice=code, arguments={"text": text, **(more or {})}))
+
+
+def _of_ban(ban: Ban) -> dict[str, Any]:
+    """The arguments of what somebody is told whom a ban keeps out."""
+    until_s = None if ban.until_us is None else ban.until_us / 1e6
+    return {"text": ban.text, "until_s": until_s}
+
+
+def _farewell(ban: Ban) -> str:
+    if ban.until_us is None:
+        return ban.text
+    end = datetime.fromtimestamp(ban.until_us / 1e6, UTC)
+    return f"{ban.text} (until {end:%Y-%m-%d %H:%M} UTC)"
+
+
+def _near(place: Place, centre: Place, radius_m: float) -> bool:
+    return math.dist(place, centre) <= radius_m

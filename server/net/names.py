@@ -1,16 +1,13 @@
 """Names that people have in a world: no two look alike, and nobody is taken for the server.
 
-Two names look alike if they have one skeleton of Unicode Technical Standard 39. The library makes
-it without regard to case and folds digits to the letters that they look like. It keeps "rn" and
-"m" apart, which the standard does not.
+What looking alike means is said in `esplanade.server.moderation.skeletons`.
 """
 
 from collections.abc import Iterable
 from typing import Final, NamedTuple
 
-import disarm
-
 from esplanade.protocol.codes import MAX_NAME_CHARS
+from esplanade.server.moderation.skeletons import skeleton
 
 RESERVED: Final = ("admin", "administrator", "moderator", "operator", "server", "system")
 """These names are refused, with any digits and signs around or between the letters."""
@@ -18,12 +15,6 @@ RESERVED: Final = ("admin", "administrator", "moderator", "operator", "server", 
 
 class ReservedNameError(ValueError):
     """The name is one that nobody may bear, or looks like one."""
-
-
-def skeleton(name: str) -> str:
-    """The form that names which look alike have in common; for comparing, not for showing."""
-    folded = disarm.skeleton_key(name, digit_policy="tr39").replace("rn", "m")
-    return folded or name
 
 
 _RESERVED_SKELETONS: Final = frozenset(skeleton(name) for name in RESERVED)

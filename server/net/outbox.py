@@ -63,6 +63,11 @@ class Outbox:
         return len(self._waiting)
 
     @property
+    def unsent(self) -> int:
+        """Bytes that were written and that the client has not taken yet."""
+        return self._unsent()
+
+    @property
     def open(self) -> bool:
         return self._connection.state is State.OPEN and self.dropped is None
 

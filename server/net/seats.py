@@ -73,14 +73,14 @@ class Seats(Generic[Occupant]):
         return found
 
     def find(self, token: str) -> Seat[Occupant] | None:
-        return self._by_digest.get(_digest(token))
+        return self._by_digest.get(digest_of(token))
 
     def of(self, avatar_id: int) -> Seat[Occupant] | None:
         return self._by_avatar.get(avatar_id)
 
     def renew(self, seat: Seat[Occupant], token: str) -> str:
         """Return a new token of a seat; of the old ones only the given one remains valid."""
-        used = _digest(token)
+        used = digest_of(token)
         for digest in seat.digests:
             if digest != used:
                 del self._by_digest[digest]
@@ -130,11 +130,12 @@ class Seats(Generic[Occupant]):
 
     def _add_token(self, seat: Seat[Occupant]) -> str:
         token = secrets.token_urlsafe(24)
-        digest = _digest(token)
+        digest = digest_of(token)
         seat.digests.append(digest)
         self._by_digest[digest] = seat
         return token
 
 
-def _digest(token: str) -> bytes:
+def digest_of(token: str) -> bytes:
+    """Return the SHA-256 digest of a resume token."""
     return hashlib.sha256(token.encode("utf-8", "surrogatepass")).digest()

@@ -1,6 +1,7 @@
 """A session reads one connection of one person, from its hello to its end."""
 
 import asyncio
+import time
 from collections.abc import Callable
 from typing import Final, Protocol
 
@@ -24,8 +25,10 @@ from esplanade.protocol.messages import (
     Error,
     Hello,
     Move,
+    MutePerson,
     Ping,
     Pong,
+    Report,
     SetDoor,
     WalkTo,
     Watch,
@@ -73,6 +76,12 @@ class SessionRequests(Protocol):
     def set_door(self, session: "Session", wish: SetDoor) -> None:
         """Open or close a door in the next tick, if the session may."""
 
+    def report(self, session: "Session", report: Report) -> None:
+        """Put a report about somebody before moderators."""
+
+    def mute(self, session: "Session", wish: MutePerson) -> None:
+        """Send no lines of somebody to the session any more, or send them again."""
+
     def confirm(self, session: "Session") -> None:
         """Note that the client has read its welcome: it has sent something since."""
 
@@ -103,6 +112,12 @@ class Session:
         self.token = ""
         """The seat's resume token, which is never logged."""
         self.name = ""
+        self.wished = ""
+        """The name that the person asked for; the server may have added a number."""
+        self.since_us = time.time_ns() // 1000
+        """When the connection was made, microseconds since 1970."""
+        self.last_seq = 0
+        """The number of the latest movement that came."""
         self.version = VERSION
         """The version that the client speaks, once it has said hello."""
         self.wants_steps = True
@@ -167,7 +182,9 @@ class Session:
     def tell(self, fault: ProtocolError) -> None:
         """Tell the client of a fault in something that it sent."""
         self._metrics.errors.labels(fault.code.value).inc()
-        self.outbox.post(frames.message(Error(error=fault.code, text=fault.text)))
+        self.outbox.post(
+            frames.message(Error(error=fault.code, text=fault.text, arguments=fault.arguments))
+        )
 
     def refuse_line(self, why: str, text: str) -> None:
         """Tell the client that nobody hears its line of chat, and note that."""
@@ -186,6 +203,7 @@ class Session:
         hello = await self._hello()
         self._connection.place.settle()
         self.name, self.wants_steps = hello.name, hello.steps
+        self.wished = hello.name
         await self._hub.receive(self, hello)
         if self.admitted.bot is not None:
             self._connection.grant(self.admitted.bot.message_rate)
@@ -254,10 +272,11 @@ class Session:
             self._hub.confirm(self)
         match message:
             case Move() | WalkTo():
+                self.last_seq = message.seq
                 self._hub.move(self, message)
             case Ping():
-                time = self._hub.server_time()
-                self.outbox.post(frames.message(Pong(nonce=message.nonce, server_time=time)))
+                now_s = self._hub.server_time()
+                self.outbox.post(frames.message(Pong(nonce=message.nonce, server_time=now_s)))
             case ChatLine():
                 if self._lines.take(asyncio.get_running_loop().time()):
                     self._hub.say(self, message.text)
@@ -267,6 +286,10 @@ class Session:
                 self._hub.watch(self, message.id)
             case SetDoor():
                 self._hub.set_door(self, message)
+            case Report():
+                self._hub.report(self, message)
+            case MutePerson():
+                self._hub.mute(self, message)
             case Hello():
                 raise ProtocolError(ErrorCode.INVALID, "hello comes only once", CloseCode.INVALID)
 

@@ -13,6 +13,7 @@ from esplanade.server.accounts.identity import Identity
 from esplanade.server.audit.erasing import Erased, erase
 from esplanade.server.audit.log import AuditLog
 from esplanade.server.audit.verifying import FORGET
+from esplanade.server.moderation import rows as moderation
 from esplanade.server.store.store import Store
 from esplanade.server.store.tables import ACCOUNTS, BOTS, INVITATIONS, SEATS
 
@@ -54,6 +55,7 @@ FORGETTERS: Final[Mapping[str, Forgetter]] = {
     "invitations": _forget_invitations,
     "bots": _forget_bots,
     "seats": _forget_seats,
+    **moderation.FORGETTERS,
 }
 """Forgetters by the name of what each forgets in; the audit comes last and is not among them."""
 

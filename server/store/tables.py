@@ -7,6 +7,7 @@ from typing import Final
 
 from sqlalchemy import (
     BigInteger,
+    Boolean,
     Column,
     Float,
     ForeignKeyConstraint,
@@ -21,7 +22,7 @@ from sqlalchemy import (
     UniqueConstraint,
 )
 
-REVISION: Final = "0004"
+REVISION: Final = "0005"
 """The newest migration: what the tables below are after it."""
 
 METADATA: Final = MetaData()
@@ -223,3 +224,63 @@ RESERVED: Final = Table(
     Column("until", BigInteger, nullable=False),
 )
 """Numbers below `until` may have been given away, by what they number."""
+BANS: Final = Table(
+    "bans",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("id", BigInteger, primary_key=True),
+    Column("text", Text, nullable=False),
+    Column("until_us", BigInteger),
+    Column("at_us", BigInteger, nullable=False),
+    Column("account", String(64)),
+    Column("digests", Text, nullable=False),
+    Column("name_pattern", Text),
+    Column("address", Text),
+    Column("lifted", Boolean, nullable=False),
+)
+"""People who are not let in; the digests are a list in JSON."""
+
+REPORTS: Final = Table(
+    "reports",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("id", BigInteger, primary_key=True),
+    Column("at_us", BigInteger, nullable=False),
+    Column("reporter", BigInteger, nullable=False),
+    Column("reporter_name", Text, nullable=False),
+    Column("person", BigInteger, nullable=False),
+    Column("name", Text, nullable=False),
+    Column("text", Text, nullable=False),
+    Column("place", Text),
+    Column("line", BigInteger),
+    Column("said", Text),
+    Column("state", String(16), nullable=False),
+    Column("settled_by", String(64)),
+)
+"""What people report to moderators."""
+
+CHAT_RULES: Final = Table(
+    "chat_rules",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("name", String(128), primary_key=True),
+    Column("value", Text, nullable=False),
+)
+"""Rules of chat by their names, JSON."""
+
+CHAT_LINES: Final = Table(
+    "chat_lines",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("line", BigInteger, primary_key=True),
+    Column("at_us", BigInteger, nullable=False),
+    Column("tick", BigInteger, nullable=False),
+    Column("avatar", BigInteger, nullable=False),
+    Column("name", Text, nullable=False),
+    Column("text", Text, nullable=False),
+    Column("seen", Text, nullable=False),
+    Column("hidden", Boolean, nullable=False),
+    Index("chat_lines_by_time", "zone", "at_us"),
+    Index("chat_lines_by_name", "zone", "name"),
+)
+"""Lines of chat, where a server is told to keep them for some days."""

@@ -6,7 +6,13 @@ from typing import Any
 from hypothesis import strategies as st
 
 from esplanade.protocol import ByeCode, ErrorCode, Kind, NoticeCode, Reason
-from esplanade.protocol.codes import MAX_CHAT_CHARS, MAX_DOOR_CHARS, MAX_NAME_CHARS, MAX_TOKEN_CHARS
+from esplanade.protocol.codes import (
+    MAX_CHAT_CHARS,
+    MAX_DOOR_CHARS,
+    MAX_LINE_NUMBER,
+    MAX_NAME_CHARS,
+    MAX_TOKEN_CHARS,
+)
 from esplanade.protocol.messages import (
     Blocker,
     Bye,
@@ -21,13 +27,16 @@ from esplanade.protocol.messages import (
     FromClient,
     FromServer,
     Hello,
+    Hide,
     Leave,
     Move,
+    MutePerson,
     Notice,
     Ping,
     Plan,
     Point,
     Pong,
+    Report,
     Reshape,
     SetDoor,
     Snapshot,
@@ -46,6 +55,8 @@ texts = st.text(st.characters(codec="utf-8"), max_size=80)
 bounds = st.tuples(floats, floats)
 places = st.tuples(floats, floats, floats)
 tokens = st.text(st.characters(codec="utf-8"), max_size=MAX_TOKEN_CHARS)
+numbers = st.integers(0, MAX_LINE_NUMBER)
+arguments = st.dictionaries(texts, texts | floats | st.booleans() | st.none(), max_size=3)
 doors = st.dictionaries(texts, st.booleans(), max_size=3)
 
 
@@ -92,6 +103,8 @@ client_messages: st.SearchStrategy[FromClient] = st.one_of(
         name=st.text(st.characters(codec="utf-8"), min_size=1, max_size=MAX_DOOR_CHARS),
         open=st.booleans(),
     ),
+    st.builds(Report, id=u32, line=st.none() | numbers, text=lines(MAX_CHAT_CHARS)),
+    st.builds(MutePerson, id=u32, muted=st.booleans()),
 )
 
 entities = st.builds(
@@ -144,15 +157,11 @@ server_messages: st.SearchStrategy[FromServer] = st.one_of(
     st.builds(Enter, tick=u32, entities=st.lists(entities, max_size=4)),
     st.builds(Leave, tick=u32, ids=st.lists(u32)),
     st.builds(Snapshot, tick=u32, ack=u32, block=st.binary(max_size=400)),
-    st.builds(Chat, id=u32, name=texts, text=texts),
-    st.builds(
-        Notice,
-        text=texts,
-        notice=st.sampled_from(NoticeCode),
-        arguments=st.dictionaries(texts, st.integers(0, 9) | texts, max_size=3),
-    ),
-    st.builds(Error, error=st.sampled_from(ErrorCode), text=texts),
-    st.builds(Bye, reason=st.sampled_from(ByeCode), text=texts),
+    st.builds(Chat, id=u32, name=texts, text=texts, line=numbers),
+    st.builds(Hide, lines=st.lists(numbers)),
+    st.builds(Notice, text=texts, notice=st.sampled_from(NoticeCode), arguments=arguments),
+    st.builds(Error, error=st.sampled_from(ErrorCode), text=texts, arguments=arguments),
+    st.builds(Bye, reason=st.sampled_from(ByeCode), text=texts, arguments=arguments),
     st.builds(Pong, nonce=u32, server_time=floats),
     st.builds(
         Plan,

@@ -12,14 +12,18 @@ import { byId } from "../ui/dom";
 import { Invitation } from "../ui/invitation";
 import { JoinDialog } from "../ui/join";
 import { Minimap } from "../ui/minimap";
+import { NoticeBanner } from "../ui/notices";
 import { Panel } from "../ui/panels";
 import { PaceBanner } from "../ui/pace";
 import { PeopleList } from "../ui/people";
+import { PersonPanel } from "../ui/person";
 import { PlanPanel } from "../ui/plan";
+import { faultOf, noticeOf } from "../ui/sentences";
 import { StatusChip } from "../ui/status";
 import { World } from "../world/world";
 import type { AddressWish } from "./address";
 import { Cost } from "./cost";
+import { Mutes } from "./mutes";
 import type { View } from "./view";
 import { Walking } from "./walking";
 
@@ -42,6 +46,9 @@ export class Session {
   private readonly pace = new PaceBanner();
   private readonly minimap = new Minimap();
   private readonly people: PeopleList;
+  private readonly notices = new NoticeBanner();
+  private readonly mutes = new Mutes(localStorage);
+  private readonly person: PersonPanel;
   private readonly planPanel = new PlanPanel();
   private readonly planSwitch: Panel;
   /** The operator key; null for people without one. */
@@ -88,9 +95,25 @@ export class Session {
       },
     );
     new Panel(byId("people-open", HTMLButtonElement), byId("people", HTMLElement));
-    this.people = new PeopleList((id) => {
-      this.choose(id);
+    this.person = new PersonPanel({
+      mute: (id, name, muted) => {
+        this.mutes.set(name, muted);
+        this.people.refresh();
+        this.connection.send({ type: "mute", id, muted });
+      },
+      report: (id, line, text) => this.connection.send({ type: "report", id, line, text }),
+      linesOf: (id) => this.chat.linesOf(id),
+      isMuted: (name) => this.mutes.has(name),
     });
+    this.people = new PeopleList(
+      (id) => {
+        this.choose(id);
+      },
+      (id, name) => {
+        this.person.open(id, name);
+      },
+      (name) => this.mutes.has(name),
+    );
   }
 
   /** Rejoin at once after a reload; otherwise ask for a name. */
@@ -116,6 +139,7 @@ export class Session {
     if ("floor" in hit) this.walking.walkTo(hit.floor);
     else if ("door" in hit) this.moveDoor(hit.door);
     else if (hit.avatar.kind === "actor") this.choose(hit.avatar.id);
+    else if (!hit.avatar.own) this.person.open(hit.avatar.id, hit.avatar.name);
   }
 
   private moveDoor(name: string): void {
@@ -147,7 +171,10 @@ export class Session {
       );
     }
     if (state.phase === "reconnecting") this.join.wait(state.text);
-    if (state.phase === "refused") this.join.open(state.text);
+    if (state.phase === "refused") {
+      this.notices.hide();
+      this.join.open(state.text);
+    }
   }
 
   private receive(message: ServerMessage): void {
@@ -158,6 +185,11 @@ export class Session {
         break;
       case "enter":
         world?.enter(message.tick, message.entities);
+        for (const { id, kind, name } of message.entities) {
+          if (kind === "person" && this.mutes.has(name)) {
+            this.connection.send({ type: "mute", id, muted: true });
+          }
+        }
         break;
       case "leave":
         world?.leave(message.ids);
@@ -183,8 +215,10 @@ export class Session {
         if (world && message.id === this.chosenId && this.planSwitch.open) world.plan = message;
         break;
       case "chat": {
+        // A line may have been under way when its speaker was muted.
+        if (this.mutes.has(message.name) && message.id !== world?.ownId) break;
         const speaker = world?.avatars.get(message.id);
-        this.chat.said(message.name, message.text, speaker?.own ?? false);
+        this.chat.said(message, speaker?.own ?? false);
         if (speaker) this.view.say(speaker, message.text);
         break;
       }
@@ -195,10 +229,14 @@ export class Session {
         if (message.error === "password_needed") this.join.askPassword();
         if (message.error === "admission_refused") this.admission = null;
         if (message.error === "no_path" || message.error === "lease_ended") this.walking.callOff();
-        this.chat.note(`The server says: ${message.text}.`);
+        this.chat.note(faultOf(message));
+        this.person.tell(faultOf(message));
         break;
       case "notice":
-        if (!this.pace.show(message)) this.chat.note(message.text);
+        if (!this.pace.show(message)) this.notice(message);
+        break;
+      case "hide":
+        this.chat.hide(message.lines);
         break;
       case "doors":
         world?.doorsMoved(message.doors);
@@ -206,6 +244,23 @@ export class Session {
       case "bye":
       case "pong":
         break;
+    }
+  }
+
+  /** A notice goes into the chat, and one of moderators into a banner too. */
+  private notice(message: Extract<ServerMessage, { type: "notice" }>): void {
+    const saying = noticeOf(message);
+    if (!saying) {
+      this.chat.note(message.text);
+      return;
+    }
+    this.chat.note(`${saying.head} ${saying.words}`);
+    const { seconds, x, y, z } = message.arguments;
+    if (message.notice === "report_taken") this.person.tell(`${saying.head} ${saying.words}`);
+    else if (message.notice === "muted") this.notices.muted(saying.words, Number(seconds));
+    else this.notices.show(saying, ["warned", "walked_out"].includes(message.notice));
+    if (typeof x === "number" && typeof y === "number" && typeof z === "number") {
+      this.walking.leadTo({ x, y, z });
     }
   }
 

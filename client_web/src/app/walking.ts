@@ -23,6 +23,8 @@ export class Walking {
   private world: World | null = null;
   private seq = 0;
   private target: Place | null = null;
+  /** Whether the server walks the avatar out, and listens to nothing else. */
+  private led = false;
 
   constructor(
     private readonly send: (message: ClientMessage) => boolean,
@@ -39,8 +41,16 @@ export class Walking {
 
   enter(world: World): void {
     this.world = world;
+    this.led = false;
     this.steering.reset();
     this.setTarget(null);
+  }
+
+  /** The server walks the avatar to a place from now on, as if the person had wished it. */
+  leadTo(place: Place): void {
+    this.led = true;
+    this.world?.command({ kind: "walk_to", seq: ++this.seq, ...place });
+    this.setTarget(place);
   }
 
   /** Sequence numbers go on after those that the server has from an earlier page. */
@@ -49,7 +59,7 @@ export class Walking {
   }
 
   walkTo(place: Place): void {
-    if (!this.world?.own) return;
+    if (!this.world?.own || this.led) return;
     const seq = ++this.seq;
     if (!this.send({ type: "walk_to", seq, ...place })) return;
     this.steering.reset();
@@ -69,7 +79,7 @@ export class Walking {
 
   frame(cameraYaw: number): void {
     const own = this.world?.own;
-    if (!own || !this.world) return;
+    if (!own || !this.world || this.led) return;
     const wish = headingOf(this.keys.wish, this.stick.value, cameraYaw, this.world.gait);
     this.steering.update(wish, performance.now());
     const { target } = this;

@@ -31,11 +31,13 @@ const CLOSINGS = new Map<number, Closing>([
   [CloseCode.ADMISSION_NEEDED, { text: "Not everybody can come in here.", retry: false }],
   [CloseCode.PASSWORD_NEEDED, { text: "Not everybody can come in here.", retry: false }],
   [CloseCode.ADMISSION_REFUSED, { text: "You were not let in.", retry: false }],
+  [CloseCode.BANNED, { text: "You cannot come in here.", retry: false }],
   [CloseCode.KICKED, { text: "An operator has asked you to leave.", retry: false }],
 ]);
 
 /** `stated` is what the server said before it closed (an error or a bye), if anything. */
 export function closing(code: number, stated: string | null): Closing {
   const known = CLOSINGS.get(code) ?? { text: "The connection was lost.", retry: true };
+  if (stated === known.text) return known;
   return known.retry || stated === null ? known : { ...known, text: `${known.text} (${stated})` };
 }

@@ -16,6 +16,8 @@ const CLIENT_CODES: Record<ClientMessage["type"], number> = {
   ping: ClientCode.PING,
   watch: ClientCode.WATCH,
   set_door: ClientCode.SET_DOOR,
+  report: ClientCode.REPORT,
+  mute: ClientCode.MUTE,
 };
 
 const SERVER_TYPES = new Map<unknown, ServerMessage["type"]>([
@@ -32,6 +34,15 @@ const SERVER_TYPES = new Map<unknown, ServerMessage["type"]>([
   [ServerCode.DOORS, "doors"],
   [ServerCode.POINT, "point"],
   [ServerCode.RESHAPE, "reshape"],
+  [ServerCode.HIDE, "hide"],
+]);
+
+/** Fields that servers before them do not send. */
+const ADDED = new Map<ServerMessage["type"], object>([
+  ["chat", { line: 0 }],
+  ["notice", { notice: "", arguments: {} }],
+  ["error", { arguments: {} }],
+  ["bye", { arguments: {} }],
 ]);
 
 const RECORD_BYTES = 14;
@@ -74,7 +85,7 @@ export function decodeServer(frame: ArrayBuffer | Uint8Array): ServerMessage | n
   if (typeof fields !== "object" || fields === null) {
     throw new WireError(`${type}: the fields are no map`);
   }
-  return { ...fields, type } as ServerMessage;
+  return { ...ADDED.get(type), ...fields, type } as ServerMessage;
 }
 
 /** The records of a snapshot's block (see `protocol/snapshot.py`), in world coordinates. */

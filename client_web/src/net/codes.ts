@@ -13,6 +13,8 @@ export const ClientCode = {
   PING: 5,
   WATCH: 6,
   SET_DOOR: 7,
+  REPORT: 8,
+  MUTE: 9,
 } as const;
 
 export const ServerCode = {
@@ -31,6 +33,7 @@ export const ServerCode = {
   STEPS: 76,
   POINT: 77,
   RESHAPE: 78,
+  HIDE: 79,
 } as const;
 
 export const Reason = {
@@ -62,6 +65,7 @@ export const CloseCode = {
   ADMISSION_NEEDED: 4020,
   PASSWORD_NEEDED: 4021,
   ADMISSION_REFUSED: 4022,
+  BANNED: 4013,
 } as const;
 
 export type Kind = "person" | "actor";

@@ -7,6 +7,7 @@ import { CloseCode } from "./codes";
 import { decodeServer, encodeClient } from "./codec";
 import { WireError } from "./errors";
 import type { Admission, Arguments, ClientMessage, ServerMessage, Welcome } from "./messages";
+import { stated } from "./stated";
 
 export type ConnectionState =
   | { phase: "idle" }
@@ -136,7 +137,7 @@ export class Connection {
       this.pong(message.nonce, message.server_time);
       return;
     }
-    if (message.type === "error" || message.type === "bye") this.stated = message.text;
+    if (message.type === "error" || message.type === "bye") this.stated = stated(message);
     if (message.type === "notice") this.pace(message.arguments);
     this.events.message(message);
     if (message.type === "welcome") this.welcome(message);

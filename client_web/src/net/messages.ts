@@ -21,10 +21,13 @@ export type ClientMessage =
   | { type: "chat"; text: string }
   | { type: "ping"; nonce: number }
   | { type: "watch"; id: number | null }
-  | { type: "set_door"; name: string; open: boolean };
+  | { type: "set_door"; name: string; open: boolean }
+  | { type: "report"; id: number; line: number | null; text: string }
+  | { type: "mute"; id: number; muted: boolean };
 
 /** What a sentence of the server is made of, by names. */
 export type Arguments = Record<string, unknown>;
+
 /** What lets somebody into a closed world, or with an operator's rights. */
 export interface Admission {
   way: "invitation" | "password" | "pass";
@@ -193,6 +196,8 @@ export interface ChatMessage {
   id: number;
   name: string;
   text: string;
+  /** The number by which it can be hidden and reported. */
+  line: number;
 }
 
 export type ServerMessage =
@@ -203,8 +208,10 @@ export type ServerMessage =
   | { type: "enter"; tick: number; entities: EntityInfo[] }
   | { type: "leave"; tick: number; ids: number[] }
   | { type: "notice"; notice: string; text: string; arguments: Arguments }
-  | { type: "error"; error: string; text: string }
-  | { type: "bye"; reason: string; text: string }
+  | { type: "error"; error: string; text: string; arguments: Arguments }
+  | { type: "bye"; reason: string; text: string; arguments: Arguments }
+  /** Lines of chat that are to be shown no more. */
+  | { type: "hide"; lines: number[] }
   | { type: "pong"; nonce: number; server_time: number }
   | { type: "census"; people: number; actors: number }
   | { type: "doors"; doors: Doors }

@@ -1,9 +1,13 @@
 /** The chat: a log, a line to write in, and on small screens a button that opens both. */
 
 import { MAX_CHAT_CHARS } from "../net/codes";
+import type { ChatMessage } from "../net/messages";
 import { byId, element } from "./dom";
+import type { SaidLine } from "./person";
 
 const KEPT_LINES = 80;
+/** So many of the lines of one person can be chosen for a report. */
+const OFFERED_LINES = 5;
 
 export class ChatPanel {
   private readonly panel = byId("chat", HTMLElement);
@@ -39,10 +43,28 @@ export class ChatPanel {
     });
   }
 
-  said(name: string, text: string, own: boolean): void {
+  said({ id, name, text, line }: ChatMessage, own: boolean): void {
     const who = element("b", own ? { class: "own" } : {}, name);
-    this.add(element("li", {}, who, ` ${text}`));
+    const words = element("span", {}, text);
+    this.add(element("li", { "data-line": String(line), "data-id": String(id) }, who, " ", words));
     if (!this.panel.classList.contains("open")) this.toggle.classList.add("unread");
+  }
+
+  /** Show lines no more. */
+  hide(lines: readonly number[]): void {
+    for (const line of lines) this.log.querySelector(`[data-line="${line}"]`)?.remove();
+  }
+
+  /** The last lines of somebody, the newest first. */
+  linesOf(id: number): SaidLine[] {
+    const items = [...this.log.querySelectorAll<HTMLElement>(`[data-id="${id}"]`)];
+    return items
+      .slice(-OFFERED_LINES)
+      .reverse()
+      .map((item) => ({
+        line: Number(item.dataset["line"]),
+        text: item.querySelector("span")?.textContent ?? "",
+      }));
   }
 
   /** A line from the server or from this page itself. */

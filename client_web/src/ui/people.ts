@@ -9,7 +9,16 @@ export class PeopleList {
   private readonly count = byId("people-count", HTMLElement);
   private shown = "";
 
-  constructor(private readonly choose: (id: number) => void) {}
+  constructor(
+    private readonly choose: (id: number) => void,
+    private readonly open: (id: number, name: string) => void,
+    private readonly isMuted: (name: string) => boolean,
+  ) {}
+
+  /** Draw the list anew, though nobody came or went. */
+  refresh(): void {
+    this.shown = "";
+  }
 
   census(people: number, actors: number): void {
     this.total.textContent = `${plural(people, "person", "people")} and ${plural(actors, "actor", "actors")} in the world`;
@@ -28,8 +37,8 @@ export class PeopleList {
   }
 
   private row({ id, kind, name, own }: Avatar, chosenId: number | null): HTMLElement {
-    const text = own ? "you" : kind;
-    const row = element("li", { class: own ? "own" : kind });
+    const muted = !own && this.isMuted(name);
+    const row = element("li", { class: own ? "own" : muted ? `${kind} muted` : kind });
     if (kind === "actor") {
       const button = element(
         "button",
@@ -41,8 +50,19 @@ export class PeopleList {
         this.choose(id);
       });
       row.append(button);
+    } else if (own) {
+      row.append(element("span", {}, name), element("small", {}, "you"));
     } else {
-      row.append(element("span", {}, name), element("small", {}, text));
+      const button = element("input", {
+        type: "button",
+        "data-id": String(id),
+        value: muted ? "muted" : "mute, report",
+        "aria-label": `${name}: mute or report`,
+      });
+      button.addEventListener("click", () => {
+        this.open(id, name);
+      });
+      row.append(element("span", {}, name), button);
     }
     return row;
   }

@@ -14,7 +14,6 @@ from typing import Any, Final
 import numpy as np
 from fastapi import FastAPI, Request, Response, WebSocket
 from fastapi.responses import JSONResponse
-
 from starlette.websockets import WebSocketDisconnect
 
 from esplanade.protocol.snapshot import pack_records
@@ -168,7 +167,10 @@ async def _read(socket: WebSocket, wanted: dict[str, dict[str, Any]]) -> None:
 
 
 async def _write(
-    socket: WebSocket, stage: Stage, wanted: dict[str, dict[str, Any]], reading: "asyncio.Task[None]"
+    socket: WebSocket,
+    stage: Stage,
+    wanted: dict[str, dict[str, Any]],
+    reading: "asyncio.Task[None]",
 ) -> None:
     told: set[str] = set()
     beat = 0

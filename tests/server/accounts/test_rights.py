@@ -27,6 +27,14 @@ announce          -      yes       yes   yes      yes   -
 mute              -      yes       yes   yes      yes   -
 kick              -      yes       yes   yes      yes   -
 ban               -      yes       yes   yes      yes   -
+unban             -      yes       yes   yes      yes   -
+warn              -      yes       yes   yes      yes   -
+walk_out          -      yes       yes   yes      yes   -
+hide_line         -      yes       yes   yes      yes   -
+slow_mode         -      yes       yes   yes      yes   -
+word_filter       -      yes       yes   yes      yes   -
+quiet_zone        -      yes       yes   yes      yes   -
+settle_report     -      yes       yes   yes      yes   -
 add_actors        -      -         -     yes      yes   -
 remove_actors     -      -         -     yes      yes   -
 move_door         -      -         -     yes      yes   -

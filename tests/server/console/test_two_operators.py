@@ -3,7 +3,7 @@
 import asyncio
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, cast
 
 import pytest
 from hypothesis import given, settings
@@ -15,6 +15,7 @@ from esplanade.server.accounts.identity import Identity
 from esplanade.server.accounts.rights import ROLES
 from esplanade.server.audit.log import AuditLog
 from esplanade.server.console.console import Console
+from esplanade.server.console.moderation import Moderation
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.store.location import Location
 from esplanade.server.store.sql_store import open_store
@@ -32,23 +33,8 @@ NAMES = ["risk_weight", "speed_mps", "max_speed_mps"]
 Acts = list[tuple[str, list[dict[str, Any]]]]
 
 
-class Nobody:
-    """A world without people."""
-
-    def name_of(self, person: int) -> str | None:
-        return None
-
-    def muted_s(self, person: int) -> float:
-        return 0.0
-
-    def announce(self, text: str) -> int:
-        return 0
-
-    def kick(self, person: int, text: str) -> None:
-        """There is nobody."""
-
-    def mute(self, person: int, seconds: float, text: str) -> None:
-        """There is nobody."""
+NOBODY = cast(Moderation, None)
+"""A world without people, whom no command here is about."""
 
 
 _values = st.dictionaries(
@@ -123,7 +109,7 @@ def test_the_world_is_as_the_answers_say(world: Populated, acts: Acts) -> None:
 
 async def _play(world: Populated, acts: Acts) -> None:
     async with open_store(Location.of(None)) as store:
-        console = Console(world.zone, Nobody(), store, AuditLog(store, "server"))
+        console = Console(world.zone, NOBODY, store, AuditLog(store, "server"))
         ticking = asyncio.create_task(_tick(world, console))
         try:
             await _act(world.zone, console, acts)
@@ -166,7 +152,7 @@ async def _act(zone: Zone, console: Console, acts: Acts) -> None:
 
 async def test_a_dry_run_of_the_same_tells_the_same(world: Populated) -> None:
     async with open_store(Location.of(None)) as store:
-        console = Console(world.zone, Nobody(), store, AuditLog(store, "server"))
+        console = Console(world.zone, NOBODY, store, AuditLog(store, "server"))
         ticking = asyncio.create_task(_tick(world, console))
         command = {"op": "set_parameters", "scope": "group:fast", "values": {"risk_weight": 7}}
         tried, done = [

@@ -1,0 +1,110 @@
+"""Decisions are committed before they hold; reports are written later; the forgotten go."""
+
+import asyncio
+from contextlib import suppress
+
+import pytest
+
+from esplanade.server.accounts.identity import MACHINE
+from esplanade.server.audit.log import AuditLog
+from esplanade.server.moderation import inbox, state
+from esplanade.server.moderation.bans import Ban
+from esplanade.server.moderation.chat_log import KeptLine
+from esplanade.server.moderation.inbox import Inbox, InboxFullError, Report
+from esplanade.server.moderation.state import ModerationState
+from esplanade.server.operating.forgetting import forget
+from esplanade.server.store.sql_store import SqlStore
+from esplanade.server.store.store import StoreError
+
+
+def ban(number: int, name: str = "Eve") -> Ban:
+    return Ban(number, "No.", None, 5, "mona", ("ab", "cd"), name, "192.0.2.0/24")
+
+
+def report(number: int) -> Report:
+    return Report(number, 5, 1, "Ann", 2, "Eve", "is rude", (1.0, 2.0, 0.0), 77, "hey")
+
+
+def line(number: int, name: str = "Eve") -> KeptLine:
+    return KeptLine(number, 10**18, 3, 2, name, "hey", (1, 2))
+
+
+async def opened(store: SqlStore, **more: object) -> ModerationState:
+    made = ModerationState(store, **more)  # type: ignore[arg-type]
+    await made.load()
+    return made
+
+
+async def test_all_is_there_again(store: SqlStore) -> None:
+    first = await opened(store, keeps_chat=True, chat_days=3)
+    number = first.next_ban()
+    await first.decide({f"ban:{number}": {"banned": True}}, [ban(number)], "mona")
+    assert first.report(report(1), "192.0.2.7")
+    first.said(line(77))
+    await first.later.flush()
+    await first.decide({"line:77": {"hidden": True}, "report:1": {"state": "done"}}, [], "mona")
+    again = await opened(store, keeps_chat=True, chat_days=3)
+    assert list(again.bans) == list(first.bans)
+    assert list(again.inbox) == list(first.inbox)
+    assert [each.hidden for each in again.chat] == [True]
+    assert again.next_ban() == number + 1
+
+
+async def test_who_is_forgotten_in_the_store_is_forgotten_here(store: SqlStore) -> None:
+    held = await opened(store, keeps_chat=True, chat_days=3)
+    await held.decide({"ban:1": {"banned": True}}, [ban(1)], None)
+    await held.decide({"ban:2": {"banned": True}}, [ban(2, "Bob")], None)
+    held.report(report(1), "192.0.2.7")
+    held.said(line(77))
+    held.said(line(78, "Bob"))
+    await held.later.flush()
+    counts = await forget(store, AuditLog(store, "server"), MACHINE, "Eve")
+    assert (counts["bans"], counts["reports"], counts["chat"]) == (1, 1, 1)
+    held.said(line(79, "Bob"))  # not written yet, so that its row is missing for another reason
+    await held.refresh()
+    assert [each.id for each in held.bans] == [2]
+    assert list(held.inbox) == []
+    assert [each.line for each in held.chat] == [78, 79]
+    counts = await forget(store, AuditLog(store, "server"), MACHINE, "mona")
+    assert counts["bans"] == 1
+    again = await opened(store)
+    assert [(each.name_pattern, each.by) for each in again.bans] == [("Bob", None)]
+
+
+async def test_what_cannot_be_written_does_not_hold(store: SqlStore) -> None:
+    held = await opened(store)
+    await store.close()
+    with pytest.raises(StoreError):
+        await held.decide({"ban:1": {"banned": True}}, [ban(1)], None)
+    assert held.bans.get(1) is None
+
+
+async def test_a_full_queue_refuses_and_what_waits_is_written_in_the_end(
+    store: SqlStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(state, "MOST_WRITTEN_LATER", 2)
+    held = await opened(store)
+    taken = [held.report(report(k), f"192.0.2.{k}") for k in (1, 2, 3)]
+    assert taken == [True, True, False]
+    assert held.later.refused == 1
+    running = asyncio.create_task(held.run())
+    await held.later.written()
+    running.cancel()
+    with suppress(asyncio.CancelledError):
+        await running
+    assert [each.id for each in (await opened(store)).inbox] == [1, 2]
+
+
+def test_an_inbox_forgets_the_oldest_that_are_settled(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(inbox, "MOST_KEPT", 3)
+    monkeypatch.setattr(inbox, "MOST_OPEN", 3)
+    box = Inbox()
+    for k in (1, 2, 3):
+        box.check_room(f"a{k}")
+        assert box.add(report(k), f"a{k}") == []
+    with pytest.raises(InboxFullError):
+        box.check_room("a4")
+    box.settle(2, "done", "mona")
+    box.check_room("a4")
+    assert box.add(report(4), "a4") == [2]
+    assert ([each.id for each in box], box.open) == ([1, 3, 4], 3)
