@@ -50,6 +50,8 @@ def load_mind(packed: bytes, behaviour: Behaviour, generator: np.random.Generato
     ValueError, KeyError, TypeError
         These are no such bytes.
     """
+    if not isinstance(packed, bytes):
+        raise TypeError(f"what an actor has in mind is {type(packed).__name__}, not bytes")
     try:
         saved, chance = msgpack.unpackb(packed, strict_map_key=False)
     except msgpack.UnpackException as error:

@@ -15,7 +15,6 @@ from esplanade.actors import Population
 from esplanade.planning import LayeredGrid
 from esplanade.planning.routes.storey_heights import reached_from, storeys_of
 from esplanade.protocol.preset_files import PresetFileError
-from esplanade.server.accounts.kept import Kept
 from esplanade.server.assets import Assets
 from esplanade.server.checkpoint.parts import with_faults_told
 from esplanade.server.checkpoint.seat_keeper import SeatKeeper
@@ -28,6 +27,7 @@ from esplanade.server.console.redoing import redo, remember
 from esplanade.server.crowding import warn_of_crowding
 from esplanade.server.entrances import make_gate, people_url, private_certificate
 from esplanade.server.keeping import keeping
+from esplanade.server.kept import Kept
 from esplanade.server.link.local import LocalLink
 from esplanade.server.live.bulletin import Bulletin
 from esplanade.server.live.live import Live

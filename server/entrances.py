@@ -4,11 +4,11 @@ import asyncio
 from collections.abc import Callable
 from urllib.parse import urlsplit
 
-from esplanade.server.accounts.kept import Kept
 from esplanade.server.console.brakes import Brakes
 from esplanade.server.console.callers import Callers
 from esplanade.server.console.gate import Gate
 from esplanade.server.console.origins import Origins
+from esplanade.server.kept import Kept
 from esplanade.server.net.addresses import TrustedProxies
 from esplanade.server.net.tls import Tls
 from esplanade.server.options import is_loopback

@@ -9,7 +9,6 @@ import structlog
 from esplanade.server.accounts.bots import Bots
 from esplanade.server.accounts.directory import Directory
 from esplanade.server.accounts.invitations import Invitations
-from esplanade.server.accounts.kept import Kept
 from esplanade.server.accounts.lockout import Lockout
 from esplanade.server.accounts.one_time import OneTime
 from esplanade.server.accounts.passwords import Passwords
@@ -17,6 +16,7 @@ from esplanade.server.accounts.sessions import Sessions
 from esplanade.server.accounts.tokens import Tokens
 from esplanade.server.audit.entries import Entry
 from esplanade.server.audit.log import AuditLog
+from esplanade.server.kept import Kept
 from esplanade.server.metrics import Metrics
 from esplanade.server.moderating import moderating
 from esplanade.server.settings import ServerSettings

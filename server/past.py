@@ -6,7 +6,6 @@ from typing import Any
 
 import structlog
 
-from esplanade.server.accounts.kept import Kept
 from esplanade.server.checkpoint.errors import WHAT_HELPS, CheckpointError
 from esplanade.server.checkpoint.ids import Block
 from esplanade.server.checkpoint.parts import Parts, with_faults_told
@@ -14,6 +13,7 @@ from esplanade.server.checkpoint.restoring import restored
 from esplanade.server.checkpoint.returning import Left, those_left
 from esplanade.server.checkpoint.scene import SceneKey
 from esplanade.server.console.audit_tail import MOST_ROWS, Tail, not_done, read_tail
+from esplanade.server.kept import Kept
 from esplanade.server.loading import LoadedScene
 from esplanade.server.settings import ServerSettings
 from esplanade.server.world.saved_zone import Returning

@@ -54,7 +54,7 @@ def with_faults_told(name: str, load: Callable[[Any], Result], data: Any) -> Res
     """
     try:
         return load(data)
-    except (ValueError, TypeError, KeyError, LookupError, AttributeError, OverflowError) as error:
+    except Exception as error:
         why = f"{type(error).__name__}: {error}"
         raise CheckpointError(
             f"the part {name!r} of the checkpoint cannot be read ({why}): {WHAT_HELPS}"

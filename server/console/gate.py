@@ -5,11 +5,11 @@ from collections.abc import Callable, Coroutine
 from http import HTTPStatus
 from typing import Any, Final, TypeVar
 
-from esplanade.server.accounts.kept import Kept
 from esplanade.server.console.brakes import Brakes
 from esplanade.server.console.callers import Callers
 from esplanade.server.console.console import Console
 from esplanade.server.console.refusals import RefusedError
+from esplanade.server.kept import Kept
 from esplanade.server.live.live import Live
 
 Result = TypeVar("Result")

@@ -18,9 +18,9 @@ from esplanade.protocol import CloseCode, ErrorCode, ProtocolError
 from esplanade.protocol.messages import Admission
 from esplanade.server.accounts.bots import Bot
 from esplanade.server.accounts.identity import Identity
-from esplanade.server.accounts.kept import Kept
 from esplanade.server.accounts.lockout import LockedOutError, Lockout
 from esplanade.server.accounts.passwords import PasswordsBusyError
+from esplanade.server.kept import Kept
 from esplanade.server.metrics import Metrics
 from esplanade.server.settings import ServerSettings
 from esplanade.server.store.store import StoreError
