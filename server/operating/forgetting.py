@@ -13,6 +13,7 @@ from esplanade.server.accounts.identity import Identity
 from esplanade.server.audit.erasing import Erased, erase
 from esplanade.server.audit.log import AuditLog
 from esplanade.server.audit.verifying import FORGET
+from esplanade.server.operating.forgetting_operated import forget_operated
 from esplanade.server.store.store import Store
 from esplanade.server.store.tables import ACCOUNTS, SEATS
 
@@ -40,6 +41,7 @@ def _forget_seats(connection: Connection, zone: str, person: str) -> int:
 FORGETTERS: Final[Mapping[str, Forgetter]] = {
     "accounts": _forget_account,
     "seats": _forget_seats,
+    "operated": forget_operated,
 }
 """Forgetters by the name of what each forgets in; the audit comes last and is not among them."""
 
