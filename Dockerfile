@@ -16,7 +16,7 @@ RUN useradd --create-home --uid 10001 esplanade
 COPY --from=build /opt/esplanade /opt/esplanade
 ENV PATH=/opt/esplanade/bin:$PATH PYTHONUNBUFFERED=1
 USER esplanade
-# Compiled kernels are kept here: on a volume, the second start takes seconds. So are operators and the audit.
+# Compiled kernels are kept here: on a volume, the second start takes seconds. So is the world as it was, with its operators and the audit.
 RUN mkdir -p /home/esplanade/.cache && mkdir -m 700 /home/esplanade/data
 VOLUME /home/esplanade/.cache /home/esplanade/data
 ENV ESPLANADE_DATA=/home/esplanade/data

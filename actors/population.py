@@ -31,6 +31,8 @@ from esplanade.planning import (
 
 _EXPLAINED_WITHIN_M = 8.0
 _STUCK_AFTER_S = 3.0
+_DERIVED_AT_ONCE = 32
+"""If saved actors have more goals than this, their potentials are derived outside of ticks."""
 _SPARE_POTENTIALS = 64
 """Room for so many goals more is made beforehand; it takes memory only once they are there."""
 
@@ -283,6 +285,9 @@ class Population:
         ValueError, KeyError, TypeError
             Something is missing, or cannot be. Nothing is to be done with this population then.
         """
+        wanted = np.asarray(saved["columns"]["wanted"])
+        if len(np.unique(wanted, axis=0)) > _DERIVED_AT_ONCE:
+            self.derive_outside()
         self.navigator.load(saved["table"], saved["columns"])
         ids, minds, held = self.table.ids, saved["minds"], set(saved["held"])
         if not held <= set(ids):

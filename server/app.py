@@ -1,8 +1,9 @@
 """Puts the server together and runs it: the one place that knows all of its parts."""
 
 import asyncio
+import socket
 import time
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass, replace
@@ -64,6 +65,7 @@ class Running:
     world: Zone
     metrics: Metrics
     kept: Kept
+    console: Console
     ticking: "asyncio.Task[None]"
     """Runs as long as the world does; ends early only by a fault."""
 
@@ -168,12 +170,17 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             beside.append(asyncio.create_task(tls.renew()))
         readiness.open()
         try:
-            yield Running(sockets[0].getsockname()[1], private, world, metrics, kept, ticking)
+            yield Running(_port_of(sockets), private, world, metrics, kept, console, ticking)
         finally:
             readiness.close()
             for task in beside:
                 task.cancel()
             await _stop(ticker, ticking, hub, gate)
+
+
+def _port_of(sockets: Sequence[socket.socket]) -> int:
+    port: int = sockets[0].getsockname()[1]
+    return port
 
 
 def build_world(

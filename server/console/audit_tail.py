@@ -88,7 +88,9 @@ def not_done(row: Row) -> Entry:
 
 
 def _is_command(row: Row) -> bool:
-    return row.command in COMMANDS and not row.outcome and row.refers_to is None
+    """Whether a row says what somebody wants of the world."""
+    is_command = isinstance(row.body.get("command"), dict) and row.refers_to is None
+    return is_command and not row.outcome and row.command in COMMANDS
 
 
 def _remember(tail: Tail, row: Row, before: Facts, after: Facts) -> None:

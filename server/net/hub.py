@@ -299,7 +299,7 @@ class Hub:
         """Say goodbye to everyone and wait until they are gone, or cut off."""
         text = "the server is shutting down"
         farewell = frames.message(Bye(reason=ByeCode.SHUTDOWN, text=text))
-        everyone = [*self.sessions.values(), *(session for session, _ in self._joining.values())]
+        everyone = [*self._seats.occupants(), *(session for session, _ in self._joining.values())]
         tasks = [session.dismiss(farewell, CloseCode.GOING_AWAY, text) for session in everyone]
         if tasks:
             await asyncio.wait(tasks)

@@ -63,6 +63,11 @@ class Seats(Generic[Occupant]):
         found.update((avatar_id, now - since) for avatar_id, since in self._vacant.items())
         return found
 
+    def occupants(self) -> list[Occupant]:
+        """Everyone who has a seat and is there."""
+        seats = self._by_avatar.values()
+        return [seat.occupant for seat in seats if seat.occupant is not None]
+
     def find(self, token: str) -> Seat[Occupant] | None:
         return self._by_digest.get(_digest(token))
 

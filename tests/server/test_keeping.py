@@ -54,7 +54,7 @@ async def test_without_a_folder_nothing_is_kept_and_the_start_says_so() -> None:
                 assert await kept.directory.list() == []
                 await kept.directory.add(MACHINE, "olga", "tuner", None)
     told = [line["event"] for line in lines]
-    assert told == ["nothing is kept when this ends; --data keeps operators and the audit"] * 2
+    assert told == ["nothing is kept when this ends; --data keeps the world and its operators"] * 2
 
 
 @pytest.mark.usefixtures("fresh_log")

@@ -307,8 +307,8 @@ def test_a_person_is_forgotten_and_the_audit_still_holds(
     asyncio.run(kick())
     if location.is_sqlite:
         assert any(b"Harrington" in file.read_bytes() for file in folder.iterdir())
-    assert "0 in accounts, 1 in audit" in shell.done("data", "forget", "Eve Harrington")
-    assert "1 in accounts, 2 in audit" in shell.done("data", "forget", "olga")
+    assert "0 in accounts, 0 in seats, 1 in audit" in shell.done("data", "forget", "Eve Harrington")
+    assert "1 in accounts, 0 in seats, 2 in audit" in shell.done("data", "forget", "olga")
     shell.done("op", "audit", "--verify")
     for name in ("Harrington", "olga", "rude"):
         assert name not in shell.done("op", "audit", "--json")
