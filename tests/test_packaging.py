@@ -111,6 +111,7 @@ def test_wheel_carries_every_package_and_the_scenes(tmp_path: Path) -> None:
     assert len(sources) > 250
     assert sources <= set(names)
     assert {f"esplanade/scenes/{name}" for name in SCENES} <= set(names)
+    assert "esplanade/presets/museum-guide.toml" in names
     assert "esplanade/py.typed" in names
     assert "License-Expression: Apache-2.0 AND BSD-3-Clause AND ISC AND MIT\n" in metadata
     for holder in ("Apache License", *HOLDERS):

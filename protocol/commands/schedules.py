@@ -60,7 +60,8 @@ class ScheduleCommands(BaseCommand):
         Field(
             min_length=1,
             max_length=MOST_SCHEDULED,
-            description="As they are sent alone; they hold no schedules, and take nothing back.",
+            description="As they are sent alone; they hold no schedules, take nothing back, "
+            "and are about no person.",
         ),
     ]
     when: When

@@ -190,6 +190,9 @@ def _check_later(given: Mapping[str, Any], by: Identity, index: int) -> None:
         if command.dry_run:
             text = "a dry run cannot be put off"
         raise RefusedError.of("not_later", text, "commands", index)
+    if hasattr(command, "person"):
+        text = f"{command.op} is about a person, who may be somebody else by then"
+        raise RefusedError.of("not_later", text, "commands", index)
     if not may(by.rights, command.op):
         needed = COMMANDS[command.op].value
         text = f"{command.op} needs the right {needed}, which you do not have"

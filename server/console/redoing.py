@@ -58,7 +58,9 @@ def _still_wanted(facts: Facts, state: OperatedState) -> Facts:
         kind, _, name = subject.partition(":")
         if kind == "actor":
             found = _of_actor(fields, state, subject, is_there=name in state.zone.actors)
-        elif kind in {"world", "group"} or name in state.zone.doors.states():
+        elif kind in {"world", "group"} or (
+            kind == "door" and name in state.zone.doors.states()
+        ):  # what is saved and scheduled has rows of its own
             found = dict(fields)
         else:
             found = {}

@@ -32,14 +32,16 @@ class Refusal(BaseModel):
 REFUSALS: Final[dict[int | str, dict[str, Any]]] = {
     status: {"model": Refusal, "description": text}
     for status, text in {
-        400: "A header that may come once has come more than once.",
+        400: "The body cannot be read, or a header that may come once has come more than once.",
         401: "There is no token and no session, or it opens nothing.",
         403: "The right is missing, or the header X-Esplanade, or a page of others asks.",
         404: "There is no such thing.",
         409: "Somebody has changed the same since; both values are told.",
+        413: "The body is too long.",
         422: "Something in it cannot be; the path of each fault says where.",
         429: "Too many came in too short a time.",
         503: "Too much waits, or the world is not ready.",
+        504: "The world has not answered; it may still do it.",
     }.items()
 }
 

@@ -14,6 +14,7 @@ from esplanade.server.audit.erasing import Erased, erase
 from esplanade.server.audit.log import AuditLog
 from esplanade.server.audit.verifying import FORGET
 from esplanade.server.moderation import rows as moderation
+from esplanade.server.operating.forgetting_operated import forget_operated
 from esplanade.server.store.store import Store
 from esplanade.server.store.tables import ACCOUNTS, BOTS, INVITATIONS, SEATS
 
@@ -56,6 +57,7 @@ FORGETTERS: Final[Mapping[str, Forgetter]] = {
     "bots": _forget_bots,
     "seats": _forget_seats,
     **moderation.FORGETTERS,
+    "operated": forget_operated,
 }
 """Forgetters by the name of what each forgets in; the audit comes last and is not among them."""
 

@@ -109,6 +109,7 @@ async def test_what_cannot_be_put_off_is_refused_with_its_place(
     async with desk(world, memory) as at:
         for command, path in (
             ({"op": "revert"}, ["commands", 1]),
+            ({"op": "kick", "person": 1}, ["commands", 1]),
             (_later({"after_s": 1}), ["commands", 1]),
             ({**RISK, "values": {}}, ["commands", 1, "values"]),
             ({**RISK, "dry_run": True}, ["commands", 1]),
