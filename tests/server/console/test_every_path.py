@@ -48,6 +48,10 @@ PATHS: Final[dict[tuple[str, str], Row]] = {
     ("GET", "/schedules"): Row(Right.WATCH),
     ("GET", "/changes"): Row(Right.WATCH),
     ("GET", "/diff"): Row(Right.WATCH),
+    ("GET", "/reports"): Row(Right.MODERATE),
+    ("GET", "/bans"): Row(Right.MODERATE),
+    ("GET", "/chat"): Row(Right.MODERATE),
+    ("GET", "/moderation"): Row(Right.MODERATE),
     ("GET", "/live.sse"): Row(Right.WATCH, query="?channels=none"),
     ("POST", "/commands"): Row(
         Right.PARAMETERS,
@@ -101,6 +105,15 @@ COMMAND_RIGHTS: Final[dict[str, Right]] = {
     "announce": Right.ANNOUNCE,
     "mute": Right.MODERATE,
     "kick": Right.MODERATE,
+    "warn": Right.MODERATE,
+    "walk_out": Right.MODERATE,
+    "ban": Right.MODERATE,
+    "unban": Right.MODERATE,
+    "hide_line": Right.MODERATE,
+    "slow_mode": Right.MODERATE,
+    "word_filter": Right.MODERATE,
+    "quiet_zone": Right.MODERATE,
+    "settle_report": Right.MODERATE,
 }
 COMMAND_BODIES: Final[dict[str, dict[str, Any]]] = {
     "set_parameters": {"scope": "world", "values": {"risk_weight": 9}},
@@ -123,6 +136,15 @@ COMMAND_BODIES: Final[dict[str, dict[str, Any]]] = {
     "announce": {"text": "hear"},
     "mute": {"person": 1, "seconds": 1},
     "kick": {"person": 1},
+    "warn": {"person": 1, "text": "softly"},
+    "walk_out": {"person": 1},
+    "ban": {"name_pattern": "rude*"},
+    "unban": {"ban": 1},
+    "hide_line": {"line": 1},
+    "slow_mode": {"seconds": 5},
+    "word_filter": {"words": ["rude"]},
+    "quiet_zone": {"name": "hall", "polygon": [[0, 0], [1, 0], [1, 1]]},
+    "settle_report": {"report": 1},
 }
 _ROLES: Final = {
     "viewer": {Right.WATCH},
