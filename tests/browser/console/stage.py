@@ -168,7 +168,10 @@ async def _read(socket: WebSocket, wanted: dict[str, dict[str, Any]]) -> None:
 
 
 async def _write(
-    socket: WebSocket, stage: Stage, wanted: dict[str, dict[str, Any]], reading: "asyncio.Task[None]"
+    socket: WebSocket,
+    stage: Stage,
+    wanted: dict[str, dict[str, Any]],
+    reading: "asyncio.Task[None]",
 ) -> None:
     told: set[str] = set()
     beat = 0
