@@ -27,8 +27,9 @@ class Visit:
         page.on("console", self._heard)
 
     def _heard(self, message: Any) -> None:
-        # The browser tells of every answer with 401, which the page asks for on purpose.
-        if message.type in ("error", "warning") and "401" not in message.text:
+        # The browser tells of every refusal, which the page shows by itself.
+        refusal = message.text.startswith("Failed to load resource")
+        if message.type in ("error", "warning") and not refusal:
             self.complaints.append(message.text)
 
     async def open(self, fragment: str = "") -> None:

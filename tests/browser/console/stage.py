@@ -136,6 +136,11 @@ def _app(stage: Stage) -> FastAPI:
             return _refused(404, "unknown", f"there is no {path}")
         return JSONResponse(found)
 
+    _add_live(app, stage)
+    return app
+
+
+def _add_live(app: FastAPI, stage: Stage) -> None:
     @app.websocket("/api/v1/live")
     async def live(socket: WebSocket) -> None:
         if socket.cookies.get(COOKIE) not in stage.sessions:
@@ -152,8 +157,6 @@ def _app(stage: Stage) -> FastAPI:
         finally:
             reading.cancel()
             stage.sockets.discard(socket)
-
-    return app
 
 
 async def _read(socket: WebSocket, wanted: dict[str, dict[str, Any]]) -> None:

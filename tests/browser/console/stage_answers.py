@@ -30,6 +30,12 @@ def answers(
             return ground()
         case "heat":
             return _heat()
+        case "series/names":
+            return {"series": []}
+        case "series":
+            return {"step_s": 1, "at_us": [], "values": {}, "marks": []}
+        case "events" | "changes":
+            return {path: []}
         case "commands":
             return {"op": body["op"], "tick": tick, "revision": 1, "faults": []}
     return None
