@@ -1,7 +1,7 @@
 import { beforeEach, describe, expect, it } from "vitest";
 
 import { Draft } from "../../src/console/models/draft";
-import type { Fault } from "../../src/console/models/draft";
+import type { Fault } from "../../src/console/net/types";
 
 function fault(code: string, text: string, more: Partial<Fault> = {}): Fault {
   return { code, text, path: [], arguments: {}, ...more };
@@ -39,6 +39,16 @@ describe("a draft", () => {
     draft.heard({ ...SOURCES, speed_mps: { value: 0.9, from: "world" } }, 4, "otto");
     expect(draft.value("speed_mps")).toBe(0.9);
     expect(draft.beside("speed_mps")).toBeNull();
+  });
+
+  it("is checked against the revision from before a change of others, until it is decided", () => {
+    draft.set("risk_weight", 12);
+    draft.heard(SOURCES, 4);
+    expect(draft.knownRevision).toBe(4);
+    draft.heard({ ...SOURCES, risk_weight: { value: 30, from: "world" } }, 5);
+    expect(draft.knownRevision).toBe(4);
+    draft.keepMine("risk_weight");
+    expect(draft.knownRevision).toBe(5);
   });
 
   it("lets one take theirs, or keep the own", () => {
@@ -114,7 +124,8 @@ describe("a link", () => {
     draft.set("risk_weight", 12);
     draft.set("speed_mps", null);
     const other = new Draft("world");
-    other.fromText(`${draft.toText()},evil=3,`, (name) => name in SOURCES);
+    const link = JSON.parse(JSON.stringify({ ...draft.values, evil: 3, foresight_s: "x" })) as object;
+    other.load({ ...link }, (name) => name in SOURCES);
     expect(other.names).toEqual(["risk_weight", "speed_mps"]);
     other.heard(SOURCES, 3);
     expect(other.value("risk_weight")).toBe(12);

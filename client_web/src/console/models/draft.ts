@@ -1,10 +1,7 @@
 /** Edits of a scope's parameters that wait for being applied, beside what others do meanwhile. */
 
-export interface Source {
-  readonly value: number;
-  /** Where the value comes from: `default`, `world`, `group:TAG`, `actor:ID`. */
-  readonly from: string;
-}
+import type { Fault } from "../net/types";
+import type { Effective } from "./scopes";
 
 /** An edit: a value for the scope, or null to take its own value away. */
 export type Edit = number | null;
@@ -22,13 +19,14 @@ export interface FieldFault {
 
 export type Price = "tick" | "prepared";
 
-/** Texts typed here are only parsed at their end; what is no number yet waits as text. */
 export class Draft {
   /** The server's effective values, as last heard. */
-  private known = new Map<string, Source>();
+  private known = new Map<string, Effective>();
   private readonly edits = new Map<string, Edit>();
   /** The value that a field had when its edit began. */
   private readonly begun = new Map<string, number>();
+  /** The revision since which changes of others to a field matter. */
+  private readonly seenAt = new Map<string, number>();
   private readonly besides = new Map<string, Beside>();
   private faultTexts = new Map<string, FieldFault>();
   private flying: Map<string, Edit> | null = null;
@@ -50,7 +48,7 @@ export class Draft {
     return this.known.get(name)?.value ?? null;
   }
 
-  source(name: string): Source | null {
+  source(name: string): Effective | null {
     return this.known.get(name) ?? null;
   }
 
@@ -81,6 +79,11 @@ export class Draft {
   /** Whether there is anything to send that is not under way. */
   get hasUnsent(): boolean {
     return [...this.edits].some(([name, edit]) => this.flying?.get(name) !== edit);
+  }
+
+  /** The revision to be checked against: others have not touched the edited fields up to there. */
+  get knownRevision(): number {
+    return Math.min(this.revision, ...this.names.map((name) => this.seenAt.get(name) ?? Infinity));
   }
 
   get canUndo(): boolean {
@@ -130,16 +133,15 @@ export class Draft {
 
   /** The edit stands, knowing what others have set. */
   keepMine(name: string): void {
-    const there = this.known.get(name);
-    this.besides.delete(name);
-    if (there) this.begun.set(name, there.value);
+    const theirs = this.besides.get(name)?.value ?? this.known.get(name)?.value;
+    if (theirs !== undefined) this.agreed(name, theirs);
   }
 
   // --- the server ------------------------------------------------------------------------------
 
   /** Take effective values from the server; a field that is edited here keeps its edit. */
   heard(
-    sources: Readonly<Record<string, Source>>,
+    sources: Readonly<Record<string, Effective>>,
     revision: number,
     by: string | null = null,
   ): void {
@@ -179,9 +181,9 @@ export class Draft {
     for (const [name, edit] of sent) {
       if (edit !== null) {
         this.known.set(name, { value: edit, from: this.scope });
-        this.begun.set(name, edit);
       }
-      this.besides.delete(name);
+      const now = this.known.get(name)?.value;
+      if (now !== undefined) this.agreed(name, now);
       if (this.edits.get(name) === edit) this.forget(name);
     }
     if (this.isEmpty) this.price = null;
@@ -209,25 +211,20 @@ export class Draft {
     return others;
   }
 
-  /** The revision of a conflict is known now: applying again is meant. */
-  seen(revision: number): void {
-    this.revision = Math.max(this.revision, revision);
-  }
-
   // --- links -----------------------------------------------------------------------------------
 
-  /** The draft as text of a link: `risk_weight=12,foresight_s=`. */
-  toText(): string {
-    return [...this.edits].map(([name, edit]) => `${name}=${edit ?? ""}`).join(",");
+  /** The edits as plain data. */
+  get values(): Record<string, Edit> {
+    return Object.fromEntries(this.edits);
   }
 
-  /** Take a draft from a link; what is no edit is left out. */
-  fromText(text: string, isKnown: (name: string) => boolean): void {
-    for (const part of text.split(",")) {
-      const [name = "", value = ""] = part.split("=");
-      if (!isKnown(name) || !part.includes("=")) continue;
-      const edit = value === "" ? null : Number(value);
-      if (edit === null || Number.isFinite(edit)) this.put(name, edit);
+  /** Take edits over, of a link for example; what is no edit of a known field is left out. */
+  load(values: Readonly<Record<string, unknown>>, isKnown: (name: string) => boolean): void {
+    for (const [name, value] of Object.entries(values)) {
+      if (!isKnown(name)) continue;
+      if (value === null || (typeof value === "number" && Number.isFinite(value))) {
+        this.put(name, value);
+      }
     }
   }
 
@@ -236,20 +233,22 @@ export class Draft {
   private put(name: string, edit: Edit): void {
     this.edits.set(name, edit);
     const now = this.known.get(name)?.value;
-    if (!this.begun.has(name) && now !== undefined) this.begun.set(name, now);
+    if (!this.begun.has(name) && now !== undefined) this.agreed(name, now);
     this.faultTexts.delete(name);
   }
 
   private forget(name: string): void {
     this.edits.delete(name);
     this.begun.delete(name);
+    this.seenAt.delete(name);
     this.besides.delete(name);
     this.faultTexts.delete(name);
   }
 
-  /** Others, or our own change under way, have set the field to what the draft says. */
+  /** Up to this revision, whoever edits the field knows that it had this value. */
   private agreed(name: string, now: number): void {
     this.begun.set(name, now);
+    this.seenAt.set(name, this.revision);
     this.besides.delete(name);
   }
 
@@ -268,13 +267,15 @@ export class Draft {
 
   /** The fields that a fault speaks of: by its path, or because its text names them. */
   private namedIn(fault: Fault): string[] {
-    const inPath = this.names.filter((name) => fault.path.includes(name));
+    const inPath = this.names.filter((name) => fault.path?.includes(name));
     if (inPath.length > 0) return inPath;
     return this.names.filter((name) => new RegExp(`\\b${name}\\b`).test(fault.text));
   }
 
   private differences(fault: Fault): void {
-    const found = fault.arguments["differences"];
+    const found = fault.arguments?.["differences"];
+    const revision = fault.arguments?.["revision"];
+    if (typeof revision === "number") this.revision = Math.max(this.revision, revision);
     if (!Array.isArray(found)) return;
     for (const one of found as Readonly<Record<string, unknown>>[]) {
       const { field, now } = one;
@@ -284,11 +285,4 @@ export class Draft {
       if (value !== undefined) this.besides.set(field, { value, by });
     }
   }
-}
-
-export interface Fault {
-  readonly code: string;
-  readonly text: string;
-  readonly path: readonly (string | number)[];
-  readonly arguments: Readonly<Record<string, unknown>>;
 }
