@@ -13,9 +13,14 @@ export default defineConfig({
     sourcemap: false,
     target: "es2022",
     chunkSizeWarningLimit: 900,
+    // Two pages: people come in by the one, operators look after the world on the other.
+    rolldownOptions: { input: ["index.html", "console.html"] },
   },
   server: {
-    proxy: { "/ws": { target: "ws://localhost:8080", ws: true } },
+    proxy: {
+      "/ws": { target: "ws://localhost:8080", ws: true },
+      "/api": { target: "http://localhost:8081", ws: true },
+    },
   },
   test: {
     include: ["tests/**/*.test.ts"],

@@ -1,0 +1,3 @@
+/** Begins the operators' page. */
+
+import "./frame/console";

@@ -1,0 +1,35 @@
+/** All panels of the page. A new one needs a row here, and nothing else. */
+
+import type { Right } from "../net/types";
+
+/** Where a panel stands until somebody moves it. */
+export type Area = "left" | "centre" | "right" | "bottom";
+
+export interface PanelEntry {
+  id: string;
+  title: string;
+  /** Without this right the panel is not offered. */
+  right: Right;
+  tag: `esp-${string}`;
+  area: Area;
+  /** Whether it is there when the page is opened for the first time. */
+  open: boolean;
+  /** Brings the element; it is called once, when the panel is first shown. */
+  load: () => Promise<unknown>;
+}
+
+export const PANELS: readonly PanelEntry[] = [
+  {
+    id: "connection",
+    title: "Connection",
+    right: "watch",
+    tag: "esp-connection",
+    area: "bottom",
+    open: false,
+    load: () => import("./connection"),
+  },
+];
+
+export function panelOf(id: string): PanelEntry | undefined {
+  return PANELS.find((panel) => panel.id === id);
+}

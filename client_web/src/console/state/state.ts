@@ -1,0 +1,29 @@
+/** What the parts of the page know together. */
+
+import type { Me, World } from "../net/types";
+import { Signal } from "./signal";
+
+/** Values of a form that nobody has sent yet. */
+export interface Draft {
+  scope: string;
+  values: Readonly<Record<string, unknown>>;
+}
+
+export class State {
+  readonly me = new Signal<Me | null>(null);
+  readonly world = new Signal<World | null>(null);
+  /** Ids of actors (`main/actor-1`), or of people (`person:12`); the first one is inspected. */
+  readonly chosen = new Signal<readonly string[]>([]);
+  /** A moment under the pointer in one panel, which the others show too; microseconds since 1970. */
+  readonly hovered = new Signal<number | null>(null);
+  /** The moment that all panels look at; null is now. */
+  readonly moment = new Signal<number | null>(null);
+  readonly draft = new Signal<Draft | null>(null);
+  /** A place that the map shall show. */
+  readonly lookAt = new Signal<readonly [number, number, number] | null>(null);
+  readonly revision = new Signal(0);
+
+  may(right: string): boolean {
+    return this.me.value?.rights.some((held) => held === right) ?? false;
+  }
+}
