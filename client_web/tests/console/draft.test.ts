@@ -124,7 +124,9 @@ describe("a link", () => {
     draft.set("risk_weight", 12);
     draft.set("speed_mps", null);
     const other = new Draft("world");
-    const link = JSON.parse(JSON.stringify({ ...draft.values, evil: 3, foresight_s: "x" })) as object;
+    const link = JSON.parse(
+      JSON.stringify({ ...draft.values, evil: 3, foresight_s: "x" }),
+    ) as object;
     other.load({ ...link }, (name) => name in SOURCES);
     expect(other.names).toEqual(["risk_weight", "speed_mps"]);
     other.heard(SOURCES, 3);

@@ -110,6 +110,12 @@ export class Draft {
     this.forget(name);
   }
 
+  /** Note that what is typed in a field is no value; null takes the note away. */
+  mistyped(name: string, text: string | null): void {
+    if (text === null) this.faultTexts.delete(name);
+    else this.faultTexts.set(name, { code: "mistyped", text });
+  }
+
   discard(): void {
     if (this.isEmpty) return;
     this.remember();
@@ -145,16 +151,16 @@ export class Draft {
     revision: number,
     by: string | null = null,
   ): void {
+    // An answer that was asked for before a change of our own says what was, not what others did.
+    if (revision < this.revision) return;
     this.known = new Map(Object.entries(sources));
-    this.revision = Math.max(this.revision, revision);
+    this.revision = revision;
     for (const name of this.edits.keys()) {
       const now = this.known.get(name)?.value;
       const before = this.begun.get(name);
       if (now === undefined) continue;
-      if (before === undefined) this.begun.set(name, now);
-      else if (now === before) this.besides.delete(name);
-      else if (now === this.edits.get(name) || now === this.flying?.get(name))
-        this.agreed(name, now);
+      const own = now === this.edits.get(name) || now === this.flying?.get(name);
+      if (before === undefined || now === before || own) this.agreed(name, now);
       else this.besides.set(name, { value: now, by: by ?? this.besides.get(name)?.by ?? null });
     }
   }

@@ -36,12 +36,12 @@ export class ParameterWork {
   private readonly drafts = new Map<string, Draft>();
   private readonly check = new Debounced(() => void this.dryRun(), TYPING_PAUSE_MS);
   private readonly stream: Stream<string>;
-  private checking: AbortController | null = null;
+  private checks = 0;
 
-  constructor(
-    private readonly api: Api,
-    private readonly changed: () => void,
-  ) {
+  /** Called whenever there is something else to show. */
+  changed: () => void = () => undefined;
+
+  constructor(private readonly api: Api) {
     this.stream = new Stream((scope) => this.sendStreamed(scope), STREAM_EVERY_MS);
   }
 
@@ -98,11 +98,11 @@ export class ParameterWork {
 
   edit(name: string, value: number | null, together = false): void {
     this.draft.set(name, value, together);
-    this.edited_();
+    this.touched();
   }
 
   /** Call this after any change of the draft. */
-  edited_(): void {
+  touched(): void {
     if (this.draft.isEmpty) {
       this.check.cancel();
       this.faults = [];
@@ -129,17 +129,22 @@ export class ParameterWork {
   /** Apply the draft; what is typed meanwhile is applied after it. Says what was done. */
   async apply(): Promise<Answer | null> {
     this.check.cancel();
-    this.checking?.abort();
+    this.checks += 1;
     const draft = this.draft;
     let last: Answer | null = null;
     for (;;) {
       const known = draft.knownRevision;
       const taken = draft.take();
       if (!taken) return last;
-      const sent = commandsOf(draft.scope, taken, {
-        if_revision: known,
-        ...(this.note.trim() === "" ? {} : { note: this.note.trim() }),
-      }, this.manner);
+      const sent = commandsOf(
+        draft.scope,
+        taken,
+        {
+          if_revision: known,
+          ...(this.note.trim() === "" ? {} : { note: this.note.trim() }),
+        },
+        this.manner,
+      );
       this.changed();
       try {
         const answers = await this.api.commands(sent);
@@ -160,7 +165,7 @@ export class ParameterWork {
   stop(): void {
     this.check.cancel();
     this.stream.stop();
-    this.checking?.abort();
+    this.checks += 1;
   }
 
   private draftOf(scope: string): Draft {
@@ -192,9 +197,7 @@ export class ParameterWork {
   private async dryRun(): Promise<void> {
     const draft = this.draft;
     if (draft.isEmpty || draft.isFlying) return;
-    this.checking?.abort();
-    const asked = new AbortController();
-    this.checking = asked;
+    const asked = (this.checks += 1);
     const edits = draft.values;
     const values = Object.entries(edits).filter((one): one is [string, number] => one[1] !== null);
     const cleared = Object.keys(edits).filter((name) => edits[name] === null);
@@ -202,15 +205,16 @@ export class ParameterWork {
     const taken = { values: Object.fromEntries(values), cleared };
     const sent = commandsOf(draft.scope, taken, more, this.manner);
     try {
-      const answers = await this.api.commands(sent, asked.signal);
+      const answers = await this.api.commands(sent);
+      if (asked !== this.checks) return;
       const prices = answers.map((answer) => answer.price);
       draft.checked([]);
       draft.price = prices.includes("prepared") ? "prepared" : "tick";
       draft.prepareSeconds = Math.max(0, ...answers.map((answer) => answer.prepare_s ?? 0)) || null;
       this.faults = [];
     } catch (error) {
-      if (asked.signal.aborted) return;
       if (!(error instanceof RefusedError)) throw error;
+      if (asked !== this.checks) return;
       draft.price = null;
       this.faults = draft.checked(error.faults);
     }

@@ -48,7 +48,11 @@ const MEANING: Readonly<Record<string, string>> = {
 };
 
 /** Why a command cannot be given with these rights; null if it can. */
-export function whyNot(command: string, may: (right: string) => boolean, role: string): string | null {
+export function whyNot(
+  command: string,
+  may: (right: string) => boolean,
+  role: string,
+): string | null {
   const right = COMMAND_RIGHTS[command] ?? command;
   if (may(right)) return null;
   return `The role ${role} may not ${MEANING[right] ?? right}.`;

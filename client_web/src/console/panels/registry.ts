@@ -28,6 +28,15 @@ export const PANELS: readonly PanelEntry[] = [
     open: false,
     load: () => import("./connection"),
   },
+  {
+    id: "parameters",
+    title: "Parameters",
+    right: "watch",
+    tag: "esp-parameters",
+    area: "left",
+    open: true,
+    load: () => import("./parameters/parameters"),
+  },
 ];
 
 export function panelOf(id: string): PanelEntry | undefined {
