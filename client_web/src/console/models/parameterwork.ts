@@ -8,7 +8,7 @@ import type { JsonObject, NumberField } from "./fields";
 import { numberFields } from "./fields";
 import { Debounced, Stream } from "./pacing";
 import type { ParametersAnswer, Tagged } from "./scopes";
-import { clearing, effective, shadowing } from "./scopes";
+import { clearing, effective, groupsOf, shadowing } from "./scopes";
 
 const TYPING_PAUSE_MS = 250;
 /** A slider that is dragged sends no more often than this. */
@@ -181,7 +181,8 @@ export class ParameterWork {
   }
 
   private tagsOf(scope: string): readonly string[] {
-    return this.actors.find((actor) => `actor:${actor.id}` === scope)?.tags ?? [];
+    const actor = this.actors.find((one) => `actor:${one.id}` === scope);
+    return actor ? groupsOf(actor) : [];
   }
 
   private hear(by: string | null): void {
@@ -257,8 +258,8 @@ export function commandsOf(
     commands.push({ op: "set_parameters", scope, values, ...more, ...manner });
   }
   if (cleared.length > 0) {
-    const { stream: _, ...rest } = more;
-    commands.push({ op: "clear_parameters", scope, names: cleared, ...rest });
+    const rest = Object.entries(more).filter(([name]) => name !== "stream");
+    commands.push({ op: "clear_parameters", scope, names: cleared, ...Object.fromEntries(rest) });
   }
   return commands;
 }

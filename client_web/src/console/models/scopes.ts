@@ -19,6 +19,14 @@ export interface Tagged {
   readonly id: string;
   readonly name: string;
   readonly tags: readonly string[];
+  /** The name of its group for each purpose. */
+  readonly groups?: Readonly<Record<string, string>>;
+}
+
+/** All groups of an actor; the last one prevails over those before. */
+export function groupsOf(actor: Tagged): string[] {
+  const purposes = Object.entries(actor.groups ?? {}).sort(([a], [b]) => (a < b ? -1 : 1));
+  return [...actor.tags, ...purposes.map(([purpose, name]) => `${purpose}:${name}`)];
 }
 
 /** Scopes from wide to narrow that hold where this one does; of groups the last one prevails. */
@@ -57,7 +65,7 @@ export function shadowing(
   const members = scope.startsWith("group:")
     ? new Set(
         actors
-          .filter((actor) => actor.tags.includes(scope.slice("group:".length)))
+          .filter((actor) => groupsOf(actor).includes(scope.slice("group:".length)))
           .map((actor) => `actor:${actor.id}`),
       )
     : null;

@@ -5,7 +5,7 @@ import type { AppContext } from "../../context";
 import { byGroup, fromSlider, labelOf, outOfRange, parsed, shown } from "../../models/fields";
 import type { NumberField } from "../../models/fields";
 import { ParameterWork } from "../../models/parameterwork";
-import { scopeName, shortId } from "../../models/scopes";
+import { groupsOf, scopeName, shortId } from "../../models/scopes";
 import { RefusedError } from "../../net/api";
 import type { LiveMessage } from "../../net/live";
 import { CommandingPanel } from "../commanding";
@@ -47,7 +47,7 @@ class ParametersPanel extends CommandingPanel {
       if (draft && work.fields.length > 0 && JSON.stringify(draft) !== JSON.stringify(told(work)))
         work.take(draft.scope, draft.values);
     });
-    this.hear<ChangeMessage>("changes", {}, (message) => {
+    this.hear("changes", {}, (message: ChangeMessage) => {
       const by = message.change?.account ?? null;
       void work.refresh(by).catch(() => undefined);
       if (/actor|group/.test(message.change?.op ?? "")) void work.refreshActors().catch(() => null);
@@ -94,7 +94,9 @@ class ParametersPanel extends CommandingPanel {
   }
 
   private head(work: ParameterWork): TemplateResult {
-    const groups = new Set(work.actors.flatMap((actor) => actor.tags.map((tag) => `group:${tag}`)));
+    const groups = new Set(
+      work.actors.flatMap((actor) => groupsOf(actor).map((name) => `group:${name}`)),
+    );
     for (const scope of Object.keys(work.answer?.scopes ?? {})) {
       if (scope.startsWith("group:")) groups.add(scope);
     }
