@@ -2,8 +2,15 @@
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { whyNot } from "../models/rights";
+import { type Query, RefusedError } from "../net/api";
+import type { LiveMessage } from "../net/live";
 import type { Answer, Command } from "../net/types";
 import { Panel } from "./panel";
+
+interface ChangeMessage extends LiveMessage {
+  about?: string;
+  change?: { op?: string };
+}
 
 export interface ButtonLook {
   main?: boolean;
@@ -84,6 +91,8 @@ export abstract class CommandingPanel extends Panel {
     `,
   ];
 
+  private refusal: string | null = null;
+
   constructor() {
     super();
     this.watchRights();
@@ -132,6 +141,39 @@ export abstract class CommandingPanel extends Panel {
     const answers = await this.attempt(this.app.api.commands(commands));
     if (answers && done !== undefined) this.app.toast(done, "done");
     return answers;
+  }
+
+  /** Ask for something that this panel shows; a refusal stands in the panel instead of a toast. */
+  protected async ask<T>(path: string, query: Query = {}): Promise<T | undefined> {
+    try {
+      const found = await this.app.api.get<T>(path, query);
+      this.refusal = null;
+      return found;
+    } catch (error) {
+      if (!(error instanceof RefusedError)) throw error;
+      this.refusal = error.message;
+      return undefined;
+    } finally {
+      this.requestUpdate();
+    }
+  }
+
+  /** Call with every change of one of these commands, or news about one of these subjects. */
+  protected hearAbout(about: RegExp, call: () => void): void {
+    this.hear("changes", {}, (message: ChangeMessage) => {
+      if (about.test(message.change?.op ?? message.about ?? "")) call();
+    });
+    // What was missed while the connection was away is asked for when it is back.
+    this.watch(this.app.live.phase, (phase) => {
+      if (phase === "on") call();
+    });
+  }
+
+  /** Why there is nothing to see, where the server has refused to tell. */
+  protected refused(): TemplateResult | typeof nothing {
+    return this.refusal === null
+      ? nothing
+      : html`<p class="fault" role="alert">${this.refusal}</p>`;
   }
 
   private watchRights(): void {

@@ -1,7 +1,6 @@
 /** What the parts of the page know together. */
 
 import type { Me, World } from "../net/types";
-import type { Picking } from "./picking";
 import { Signal } from "./signal";
 
 /** Values of a form that nobody has sent yet. */
@@ -22,8 +21,6 @@ export class State {
   readonly draft = new Signal<Draft | null>(null);
   /** A place that the map shall show. */
   readonly lookAt = new Signal<readonly [number, number, number] | null>(null);
-  /** What a panel wants to be shown on the map; clicks there are its places meanwhile. */
-  readonly picking = new Signal<Picking | null>(null);
   readonly revision = new Signal(0);
 
   may(right: string): boolean {
