@@ -1,55 +1,343 @@
 /** The whole page: who is logged in, and the panels around the map. */
 
-import { css, html, LitElement, nothing, type TemplateResult } from "lit";
-import { html as staticHtml, unsafeStatic } from "lit/static-html.js";
-import type { AppContext } from "../context";
-import { addressesOf } from "../net/addresses";
-import { Api } from "../net/api";
-import { Live } from "../net/live";
-import { PANELS } from "../panels/registry";
-import { State } from "../state/state";
+import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
+import type { AppContext, Mood } from "../context";
+import { LayoutStore } from "../layout/keeping";
+import {
+  AREAS,
+  areaOf,
+  type AreaLayout,
+  type Layout,
+  moved,
+  readLayout,
+  resized,
+  shown,
+  shut,
+  usualLayout,
+  writeLayout,
+} from "../layout/layout";
+import { type Area, panelOf } from "../panels/registry";
+import { firstToken, readFragment, type Shared, writeFragment } from "../state/fragment";
+import { Session } from "../state/session";
+import { type Stop, Watching } from "../state/signal";
+import { takesText } from "../state/shortcuts";
 import { controls } from "../style/controls";
+import type { AreaWish } from "./area";
+import "./area";
+import { frame } from "./framestyle";
+import "./login";
+import { Panels } from "./panels";
+import { pageKeys } from "./pagekeys";
+import type { Sheet } from "./sheet";
+import "./sheet";
+import "./splitter";
+import { makeContext } from "./starting";
+import type { Toasts } from "./toasts";
+import "./toasts";
+import "./topbar";
+import { watchWorld } from "./worldwatch";
+
+/** Below this width there are tabs instead of columns. */
+const NARROW = "(max-width: 759px)";
+const ADDRESS_MS = 300;
 
 export class Console extends LitElement {
-  static override styles = [
-    controls,
-    css`
-      :host {
-        display: block;
-        padding: 8px;
-      }
-    `,
-  ];
+  static override styles = [controls, frame];
 
   readonly app: AppContext;
+  private readonly session: Session;
+  private readonly panels: Panels;
+  private readonly store = new LayoutStore(localStorage);
+  private readonly narrow = matchMedia(NARROW);
+  private layout: Layout = usualLayout();
+  /** The panel that was shown last, which a narrow page shows alone. */
+  private front: string;
+  private shared: Shared | null;
+  private stopWatching: Stop | null = null;
+  private addressTimer: ReturnType<typeof setTimeout> | undefined;
 
   constructor() {
     super();
-    const addresses = addressesOf(new URL(location.href));
-    const state = new State();
-    this.app = {
-      api: new Api(addresses.api),
-      live: new Live(addresses.live),
-      state,
-      choose: (ids) => {
-        state.chosen.value = ids === null ? [] : typeof ids === "string" ? [ids] : ids;
+    const token = firstToken(location.hash);
+    this.shared = readFragment(location.hash);
+    // The token is for this page alone: it goes from the address before anything else happens.
+    if (token !== null) history.replaceState(null, "", location.pathname + location.search);
+    this.app = makeContext(new URL(location.href), {
+      toast: (text: string, mood: Mood = "note") => {
+        this.renderRoot.querySelector<Toasts>("esp-toasts")?.add(text, mood);
       },
-      toast: (text) => {
-        console.info(text);
+      show: (panel) => {
+        this.show(panel);
       },
-      show: () => undefined,
+    });
+    this.panels = new Panels(this.app, () => {
+      this.requestUpdate();
+    });
+    this.front = "map";
+    this.session = new Session(this.app.api, this.app.state, token);
+    this.app.live.mayConnect = () => this.session.holds();
+    const { state } = this.app;
+    new Watching(this, () => [this.session.standing, state.me, state.picking]);
+    this.session.standing.watch((standing) => {
+      if (standing === "in") this.enter();
+      else if (standing === "out") this.leave();
+    });
+    for (const signal of [state.chosen, state.draft, state.moment]) {
+      signal.watch(() => {
+        this.writeAddress();
+      });
+    }
+    this.narrow.addEventListener("change", () => {
+      this.requestUpdate();
+    });
+    addEventListener("hashchange", () => {
+      this.shared = readFragment(location.hash);
+      if (this.session.standing.value === "in") this.useShared();
+    });
+    addEventListener("keydown", (event) => {
+      this.key(event);
+    });
+    pageKeys(this.app, {
+      focusArea: (step) => {
+        this.focusArea(step);
+      },
+      sheet: () => {
+        this.renderRoot.querySelector<Sheet>("esp-sheet")?.open();
+      },
+      copyLink: () => {
+        void this.copyLink();
+      },
+    });
+    void this.session.begin();
+  }
+
+  protected override render(): TemplateResult {
+    const standing = this.session.standing.value;
+    const isIn = standing === "in" || standing === "away";
+    return html`
+      ${isIn ? this.page(standing === "away") : nothing}
+      ${
+        standing === "in"
+          ? nothing
+          : html`<esp-login
+              .session=${this.session}
+              .account=${this.app.state.me.value?.account ?? ""}
+              .over=${standing === "away"}
+              data-standing=${standing}
+            ></esp-login>`
+      }
+      <esp-sheet .shortcuts=${this.app.shortcuts}></esp-sheet>
+      <esp-toasts></esp-toasts>
+    `;
+  }
+
+  protected override updated(changes: PropertyValues): void {
+    super.updated(changes);
+    const { left, right, bottom } = this.layout.areas;
+    this.style.setProperty("--left", `${left.size}px`);
+    this.style.setProperty("--right", `${right.size}px`);
+    this.style.setProperty("--bottom", `${bottom.size}px`);
+    this.renderRoot.querySelector<LitElement>("esp-login")?.requestUpdate();
+  }
+
+  private page(isAway: boolean): TemplateResult {
+    const open = new Set(AREAS.flatMap((area) => this.visible(area).panels));
+    return html`
+      <div class="page" ?inert=${isAway}>
+        <header>
+          <esp-topbar
+            .app=${this.app}
+            .layout=${this.layout}
+            .shown=${open}
+            @layout=${(event: CustomEvent<Layout>) => {
+              this.setLayout(event.detail);
+            }}
+            @copylink=${() => void this.copyLink()}
+            @keys=${() => this.renderRoot.querySelector<Sheet>("esp-sheet")?.open()}
+            @logout=${() => void this.logOut()}
+          ></esp-topbar>
+        </header>
+        <main class=${this.narrow.matches ? "narrow" : "wide"}>
+          ${this.narrow.matches ? this.alone() : this.areas()}
+        </main>
+      </div>
+    `;
+  }
+
+  private areas(): TemplateResult {
+    const has = (name: Area): boolean => this.visible(name).panels.length > 0;
+    return html`
+      ${has("left") ? html`${this.area("left")}${this.splitter("left", "Width of the left area")}` : nothing}
+      ${this.area("centre")}
+      ${
+        has("right")
+          ? html`${this.splitter("right", "Width of the right area")}${this.area("right")}`
+          : nothing
+      }
+      ${
+        has("bottom")
+          ? html`${this.splitter("bottom", "Height of the bottom area")}${this.area("bottom")}`
+          : nothing
+      }
+    `;
+  }
+
+  /** All panels as tabs of one area. */
+  private alone(): TemplateResult {
+    const order: readonly Area[] = ["centre", "left", "right", "bottom"];
+    const panels = order.flatMap((area) => this.visible(area).panels);
+    const active = panels.includes(this.front) ? this.front : (panels[0] ?? null);
+    return this.areaElement("centre", { panels, active, size: 0 }, true);
+  }
+
+  private area(name: Area): TemplateResult {
+    return this.areaElement(name, this.visible(name), false);
+  }
+
+  private areaElement(name: Area, { panels, active }: AreaLayout, alone: boolean): TemplateResult {
+    return html`<esp-area
+      class=${name}
+      .name=${name}
+      .panels=${panels}
+      .active=${active}
+      .content=${active === null ? null : this.panels.element(active)}
+      .alone=${alone}
+      @wish=${this.wish}
+    ></esp-area>`;
+  }
+
+  private splitter(name: Area, label: string): TemplateResult {
+    return html`<esp-splitter
+      class=${name}
+      .label=${label}
+      .size=${this.layout.areas[name].size}
+      .grows=${name === "left" ? 1 : -1}
+      ?across=${name === "bottom"}
+      @resized=${(event: CustomEvent<number>) => {
+        this.setLayout(resized(this.layout, name, event.detail));
+      }}
+    ></esp-splitter>`;
+  }
+
+  /** An area without the panels for which the account lacks the right. */
+  private visible(name: Area): AreaLayout {
+    const { panels, active, size } = this.layout.areas[name];
+    const allowed = panels.filter((id) => {
+      const entry = panelOf(id);
+      return entry !== undefined && this.app.state.may(entry.right);
+    });
+    return {
+      panels: allowed,
+      active: allowed.find((id) => id === active) ?? allowed[0] ?? null,
+      size,
     };
-    void Promise.all(PANELS.map((panel) => panel.load()));
+  }
+
+  private readonly wish = (event: CustomEvent<AreaWish>): void => {
+    const wish = event.detail;
+    if (wish.wish === "move") this.setLayout(moved(this.layout, wish.panel, wish.to));
+    else if (wish.wish === "shut") this.setLayout(shut(this.layout, wish.panel));
+    else this.show(wish.panel);
+  };
+
+  private show(panel: string): void {
+    const entry = panelOf(panel);
+    if (!entry) return;
+    this.front = panel;
+    this.setLayout(shown(this.layout, entry));
+    this.writeAddress();
+  }
+
+  private setLayout(layout: Layout): void {
+    this.layout = layout;
+    const account = this.app.state.me.value?.account;
+    if (account !== undefined) this.store.write(account, layout);
+    this.requestUpdate();
+  }
+
+  private enter(): void {
+    if (this.stopWatching) return;
+    this.layout = this.store.read(this.app.state.me.value?.account ?? "");
+    this.useShared();
+    this.stopWatching = watchWorld(this.app);
     this.app.live.start();
   }
 
-  protected override render(): TemplateResult | typeof nothing {
-    return html`<main>
-      ${PANELS.map((panel) => {
-        const tag = unsafeStatic(panel.tag);
-        return staticHtml`<section><h2>${panel.title}</h2><${tag} .app=${this.app}></${tag}></section>`;
-      })}
-    </main>`;
+  private leave(): void {
+    this.stopWatching?.();
+    this.stopWatching = null;
+    this.app.live.stop();
+    this.panels.drop();
+    this.app.state.world.value = null;
+    history.replaceState(null, "", location.pathname + location.search);
+  }
+
+  private useShared(): void {
+    const { shared } = this;
+    this.shared = null;
+    if (!shared) return;
+    const layout = shared.layout === null ? null : readLayout(shared.layout);
+    if (layout) this.layout = layout;
+    if (shared.chosen.length > 0) this.app.choose(shared.chosen);
+    if (shared.draft) this.app.state.draft.value = shared.draft;
+    if (shared.moment !== null) this.app.state.moment.value = shared.moment;
+    if (shared.panel !== null) this.show(shared.panel);
+    this.requestUpdate();
+  }
+
+  private toShare(): Shared {
+    const { chosen, draft, moment } = this.app.state;
+    const panel = areaOf(this.layout, this.front) ? this.front : null;
+    return {
+      chosen: chosen.value,
+      panel,
+      draft: draft.value,
+      moment: moment.value,
+      layout: null,
+    };
+  }
+
+  /** The address shows the same after it is loaded anew. */
+  private writeAddress(): void {
+    clearTimeout(this.addressTimer);
+    this.addressTimer = setTimeout(() => {
+      if (this.session.standing.value !== "in") return;
+      const text = writeFragment(this.toShare());
+      history.replaceState(null, "", location.pathname + location.search + (text && `#${text}`));
+    }, ADDRESS_MS);
+  }
+
+  private async copyLink(): Promise<void> {
+    const text = writeFragment({ ...this.toShare(), layout: writeLayout(this.layout) });
+    const link = `${location.origin}${location.pathname}#${text}`;
+    try {
+      await navigator.clipboard.writeText(link);
+      this.app.toast("The link is copied. It shows the same to whoever may log in.", "done");
+    } catch {
+      // Without a clipboard the link stands in the address.
+      history.replaceState(null, "", link);
+      this.app.toast("The link stands in the address of this page now.");
+    }
+  }
+
+  private async logOut(): Promise<void> {
+    try {
+      await this.session.logOut();
+    } catch {
+      this.app.toast("the server does not answer; you are still logged in", "fault");
+    }
+  }
+
+  private key(event: KeyboardEvent): void {
+    if (this.session.standing.value !== "in" || event.defaultPrevented) return;
+    const [target] = event.composedPath();
+    if (this.app.shortcuts.press(event, takesText(target))) event.preventDefault();
+  }
+
+  private focusArea(step: number): void {
+    const areas = [...this.renderRoot.querySelectorAll<HTMLElement>("esp-area")];
+    const at = areas.findIndex((area) => area === this.shadowRoot?.activeElement);
+    areas[(at + step + areas.length) % areas.length]?.focus();
   }
 }
 

@@ -117,3 +117,77 @@ export interface Answer {
   shadowed?: readonly string[];
   faults: readonly Fault[];
 }
+
+export interface DoorPlace {
+  name: string;
+  x0: number;
+  y0: number;
+  x1: number;
+  y1: number;
+  z_m: number;
+  open: boolean;
+}
+
+/** The part of the world that never moves, and the doors. */
+export interface MapData {
+  scene: string;
+  origin_m: readonly [number, number];
+  bounds: readonly [number, number, number, number];
+  storeys: readonly { z_m: number; name: string }[];
+  /** Both ends, and the heights of foot and top. */
+  walls: readonly (readonly [number, number, number, number, number, number])[];
+  doors: readonly DoorPlace[];
+  places: readonly { name: string; x: number; y: number; z: number }[];
+  /** For each storey the rings of its floor. */
+  outlines?: readonly (readonly (readonly (readonly [number, number])[])[])[];
+}
+
+/** Values in the cells of a storey; rows go from south to north. */
+export interface Raster {
+  width: number;
+  height: number;
+  cell_m: number;
+  origin_m: readonly [number, number];
+  /** float32, little-endian, in base64. */
+  values: string;
+}
+
+export interface Heat {
+  storeys: readonly (Raster & { z_m: number })[];
+}
+
+/** A time for which an actor did the same for the same reason. */
+export interface WhySpan {
+  from_tick: number;
+  to_tick: number;
+  reason: string;
+  blocker: Blocker | null;
+  seconds: number;
+}
+
+/** The parts of the cost of a path, in seconds of walking. */
+export interface Cost {
+  time: number;
+  risk: number;
+  turn: number;
+  wall: number;
+  hurry: number;
+  keep_right: number;
+  total: number;
+}
+
+export type PathPoint = readonly [x: number, y: number, z: number, t_s: number];
+
+/** How the last path of an actor was searched for. */
+export interface Trace {
+  tick: number;
+  status: string;
+  expansions: number;
+  budget: number;
+  /** x, y, z, seconds ahead, the node before, cost, and when it was expanded (-1: never). */
+  nodes: readonly (readonly [number, number, number, number, number, number, number])[];
+  path: readonly PathPoint[];
+  cost?: Cost | null;
+  risk: readonly (Raster & { t_s: number })[];
+  why?: string;
+}

@@ -20,12 +20,39 @@ export interface PanelEntry {
 
 export const PANELS: readonly PanelEntry[] = [
   {
+    id: "everybody",
+    title: "Everybody",
+    right: "watch",
+    tag: "esp-everybody",
+    area: "left",
+    open: true,
+    load: () => import("../everybody/everybody"),
+  },
+  {
+    id: "map",
+    title: "Map",
+    right: "watch",
+    tag: "esp-map",
+    area: "centre",
+    open: true,
+    load: () => import("../map/map"),
+  },
+  {
+    id: "inspector",
+    title: "Inspector",
+    right: "watch",
+    tag: "esp-inspector",
+    area: "right",
+    open: true,
+    load: () => import("../inspector/inspector"),
+  },
+  {
     id: "connection",
     title: "Connection",
     right: "watch",
     tag: "esp-connection",
     area: "bottom",
-    open: false,
+    open: true,
     load: () => import("./connection"),
   },
   {

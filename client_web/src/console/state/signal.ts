@@ -4,7 +4,12 @@ import type { ReactiveController, ReactiveControllerHost } from "lit";
 
 export type Stop = () => void;
 
-export class Signal<T> {
+/** A signal of any kind, for those who only want to know that it has changed. */
+export interface Watchable {
+  watch(tell: () => void): Stop;
+}
+
+export class Signal<T> implements Watchable {
   private readonly watchers = new Set<(value: T) => void>();
 
   constructor(private held: T) {}
@@ -33,7 +38,7 @@ export class Watching implements ReactiveController {
 
   constructor(
     private readonly host: ReactiveControllerHost,
-    private readonly signals: () => readonly Signal<never>[],
+    private readonly signals: () => readonly Watchable[],
   ) {
     host.addController(this);
   }

@@ -1,6 +1,8 @@
 /** What the parts of the page know together. */
 
 import type { Me, World } from "../net/types";
+import type { Overlay } from "./overlays";
+import type { Picking } from "./picking";
 import { Signal } from "./signal";
 
 /** Values of a form that nobody has sent yet. */
@@ -21,7 +23,21 @@ export class State {
   readonly draft = new Signal<Draft | null>(null);
   /** A place that the map shall show. */
   readonly lookAt = new Signal<readonly [number, number, number] | null>(null);
+  /** What a panel wants to be shown on the map; clicks there are its places meanwhile. */
+  readonly picking = new Signal<Picking | null>(null);
   readonly revision = new Signal(0);
+  /** Drawn on the map, by the name of who drew it. */
+  readonly overlays = new Signal<ReadonlyMap<string, Overlay>>(new Map());
+  /** Whether the map goes where the first chosen one goes. */
+  readonly following = new Signal(false);
+
+  /** Draw something on the map, or take it away again with null. */
+  overlay(name: string, overlay: Overlay | null): void {
+    const next = new Map(this.overlays.value);
+    if (overlay) next.set(name, overlay);
+    else if (!next.delete(name)) return;
+    this.overlays.value = next;
+  }
 
   may(right: string): boolean {
     return this.me.value?.rights.some((held) => held === right) ?? false;

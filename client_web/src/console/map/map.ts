@@ -1,0 +1,367 @@
+/** The panel of the live map. */
+
+import { html, nothing, type PropertyValues, type TemplateResult } from "lit";
+import type { MapData, Point } from "../net/types";
+import { Panel } from "../panels/panel";
+import type { Stop } from "../state/signal";
+import { controls } from "../style/controls";
+import { PointerGestures, type Mode } from "./gestures";
+import { drawScale, HeatMap } from "./heat";
+import { Contacts, type ContactsMessage, type LayersMessage } from "./layers";
+import { type MapOptions, readOptions } from "./options";
+import { Painter } from "./painter";
+import { boxOf, isWithin, nearest, type Pixel } from "./picking";
+import { mapStyle } from "./mapstyle";
+import { legend, toolbar } from "./toolbar";
+import { MapView } from "./views";
+
+const KEY = "esplanade-console-map";
+const CLICK_PX = 14;
+const HEAT_MS = 10_000;
+const PAN_PX = 60;
+const ZOOM = 1.3;
+const FOLLOW_PX_PER_M = 18;
+
+class MapPanel extends Panel {
+  static override styles = [controls, mapStyle];
+
+  private readonly view = new MapView();
+  private readonly contacts = new Contacts();
+  private options: MapOptions = readOptions(localStorage.getItem(KEY));
+  private mode: Mode = "pan";
+  private heat: HeatMap | null = null;
+  private painter: Painter | null = null;
+  private pen: CanvasRenderingContext2D | null = null;
+  private frame = 0;
+  private stopLayers: Stop | null = null;
+  private isFitted = false;
+
+  protected override begin(): void {
+    const { app } = this;
+    this.heat ??= new HeatMap(app.api);
+    this.painter ??= new Painter(app, this.view, this.heat, this.contacts);
+    this.watch(app.state.chosen);
+    this.watch(app.state.picking);
+    this.watch(app.state.following);
+    this.watch(app.scheme);
+    this.watch(app.state.lookAt, (at) => {
+      if (at) this.lookAt(at);
+    });
+    this.watch(app.state.world, (world) => {
+      if (world && this.painter) this.painter.doors = world.doors;
+    });
+    this.watch(app.live.phase, (phase) => {
+      // What changed while the line was cut is asked for anew.
+      if (phase === "on") void this.load();
+    });
+    this.hear("contacts", {}, (message: ContactsMessage) => {
+      this.contacts.hear(message, performance.now() / 1000);
+    });
+    const timer = setInterval(() => void this.askHeat(), HEAT_MS);
+    this.atEnd(() => {
+      clearInterval(timer);
+      cancelAnimationFrame(this.frame);
+      this.stopLayers?.();
+      this.stopLayers = null;
+    });
+    this.hearLayers();
+    void this.load();
+    void this.askHeat();
+    this.frame = requestAnimationFrame(this.draw);
+  }
+
+  protected override firstUpdated(): void {
+    const canvas = this.canvas;
+    this.pen = canvas.getContext("2d", { alpha: false });
+    new PointerGestures(canvas, {
+      mode: () => this.mode,
+      pan: (dx, dy) => {
+        this.app.state.following.value = false;
+        this.view.panPx(dx, dy);
+      },
+      zoom: (factor, [x, y]) => {
+        this.view.zoom(factor, x, y);
+      },
+      click: (at, adds) => {
+        this.clicked(at, adds);
+      },
+      twice: () => this.app.state.picking.value?.end(),
+      drawing: (ring) => {
+        if (this.painter) this.painter.ring = ring;
+      },
+      region: (ring, adds) => {
+        this.chooseWithin(ring, adds);
+      },
+      hover: (at) => {
+        this.hover(at);
+      },
+    });
+    new ResizeObserver(() => {
+      this.resize();
+    }).observe(canvas);
+  }
+
+  protected override updated(changes: PropertyValues): void {
+    super.updated(changes);
+    const scale = this.renderRoot.querySelector<HTMLCanvasElement>("canvas.scale");
+    if (scale) drawScale(scale);
+  }
+
+  protected override render(): TemplateResult {
+    const { state } = this.app;
+    const picking = state.picking.value;
+    return html`
+      <div class="bar" role="toolbar" aria-label="Map">
+        ${toolbar({
+          mode: this.mode,
+          options: this.options,
+          storeys: this.painter?.map?.storeys ?? [],
+          only: this.view.only,
+          following: state.following.value,
+          mayFollow: state.chosen.value.length > 0,
+          setMode: (mode) => {
+            this.mode = mode;
+            this.requestUpdate();
+          },
+          set: (change) => {
+            this.setOptions(change);
+          },
+          show: (storey) => {
+            this.showStorey(storey);
+          },
+          follow: (on) => {
+            state.following.value = on;
+          },
+          zoom: (factor) => {
+            this.view.zoom(factor);
+          },
+          fit: () => {
+            this.fit();
+          },
+        })}
+      </div>
+      <div class="ground">
+        <canvas
+          class="map ${this.mode === "pan" && !picking ? "" : "drawing"}"
+          tabindex="0"
+          role="application"
+          aria-label="Map: arrows move it, plus and minus zoom, 0 shows all, Enter chooses the nearest to the middle"
+          @keydown=${this.key}
+        ></canvas>
+        ${
+          picking
+            ? html`<div class="asked row" role="status">
+                <span>${picking.text}</span>
+                <button
+                  @click=${() => {
+                    picking.end();
+                  }}
+                >
+                  Done
+                </button>
+              </div>`
+            : nothing
+        }
+        ${legend(this.options, this.heat?.most ?? null, this.app.scheme.value.dark)}
+      </div>
+    `;
+  }
+
+  private get canvas(): HTMLCanvasElement {
+    const canvas = this.renderRoot.querySelector<HTMLCanvasElement>("canvas.map");
+    if (!canvas) throw new Error("the map is not drawn yet");
+    return canvas;
+  }
+
+  private async load(): Promise<void> {
+    const map = await this.attempt(this.app.api.get<MapData>("/map"));
+    if (!map || !this.painter) return;
+    this.painter.map = map;
+    this.painter.doors = Object.fromEntries(map.doors.map(({ name, open }) => [name, open]));
+    this.view.setWorld(
+      map.bounds,
+      map.storeys.map(({ z_m }) => z_m),
+    );
+    if (!this.isFitted) this.fit();
+    this.requestUpdate();
+  }
+
+  private fit(): void {
+    this.app.state.following.value = false;
+    this.view.fit();
+    this.isFitted = this.view.width > 1;
+  }
+
+  private resize(): void {
+    const { canvas, view } = this;
+    const ratio = Math.min(2, devicePixelRatio);
+    view.width = Math.max(1, canvas.clientWidth);
+    view.height = Math.max(1, canvas.clientHeight);
+    canvas.width = Math.round(view.width * ratio);
+    canvas.height = Math.round(view.height * ratio);
+    if (!this.isFitted && this.painter?.map) this.fit();
+  }
+
+  private readonly draw = (): void => {
+    this.frame = requestAnimationFrame(this.draw);
+    const { pen, painter, view } = this;
+    if (!pen || !painter || view.width <= 1) return;
+    const nowS = performance.now() / 1000;
+    this.follow();
+    painter.paint(pen, pen.canvas.width / view.width, nowS, this.options);
+    pen.canvas.dataset["ms"] = painter.tookMs.toFixed(2);
+  };
+
+  private follow(): void {
+    const { state, avatars } = this.app;
+    const [first] = state.chosen.value;
+    const avatar = first === undefined ? undefined : avatars.get(first);
+    if (!state.following.value || !avatar) return;
+    const drawn = this.painter?.drawn.find((one) => one.avatar === avatar);
+    if (this.view.only !== null) this.view.only = this.view.storeyOf(avatar.to.z);
+    if (drawn) this.view.panPx(this.view.width / 2 - drawn.px, this.view.height / 2 - drawn.py);
+    else this.view.lookAt(avatar.to.x, avatar.to.y, this.view.storeyOf(avatar.to.z));
+    if (this.view.scale < FOLLOW_PX_PER_M) this.view.zoom(FOLLOW_PX_PER_M / this.view.scale);
+  }
+
+  private lookAt([x, y, z]: Point): void {
+    const storey = this.view.storeyOf(z);
+    if (this.view.only !== null) this.view.only = storey;
+    this.app.state.following.value = false;
+    this.view.lookAt(x, y, storey);
+    if (this.view.scale < FOLLOW_PX_PER_M) this.view.zoom(FOLLOW_PX_PER_M / this.view.scale);
+    this.app.state.lookAt.value = null;
+  }
+
+  private showStorey(storey: number | null): void {
+    this.view.only = storey;
+    this.fit();
+    this.requestUpdate();
+  }
+
+  private setOptions(change: Partial<MapOptions>): void {
+    this.options = { ...this.options, ...change };
+    localStorage.setItem(KEY, JSON.stringify(this.options));
+    this.hearLayers();
+    if (change.heat ?? change.heatS) void this.askHeat();
+    this.requestUpdate();
+  }
+
+  /** Subscribe to the layers that are shown. */
+  private hearLayers(): void {
+    const { ways, goals, circles } = this.options;
+    const before = this.stopLayers;
+    this.stopLayers =
+      ways || goals || circles
+        ? this.app.live.subscribe(
+            "map.layers",
+            { ways, goals, circles, hz: 2 },
+            (message: LayersMessage) => {
+              if (this.painter) this.painter.layers = message;
+            },
+          )
+        : null;
+    before?.();
+    if (!this.stopLayers && this.painter) this.painter.layers = null;
+  }
+
+  private async askHeat(): Promise<void> {
+    const { heat, heatS } = this.options;
+    if (heat === "none" || document.hidden) {
+      if (heat === "none") this.heat?.clear();
+      return;
+    }
+    const asked = this.heat?.ask(heat, heatS);
+    if (asked) await this.attempt(asked);
+    this.requestUpdate();
+  }
+
+  private clicked(at: Pixel, adds: boolean): void {
+    const world = this.view.toWorld(...at);
+    const picking = this.app.state.picking.value;
+    if (picking) {
+      const floor = world ? (this.painter?.map?.storeys[world.storey]?.z_m ?? 0) : 0;
+      if (world) picking.take([world.x, world.y, floor]);
+      return;
+    }
+    const key = this.keyAt(at, CLICK_PX);
+    const { chosen } = this.app.state;
+    if (key === null) {
+      if (!adds) this.app.choose(null);
+    } else if (!adds) {
+      this.app.choose(key);
+    } else {
+      const without = chosen.value.filter((other) => other !== key);
+      this.app.choose(without.length < chosen.value.length ? without : [...chosen.value, key]);
+    }
+  }
+
+  private keyAt(at: Pixel, withinPx: number): string | null {
+    const drawn = this.painter?.drawn ?? [];
+    const index = nearest(
+      drawn.map(({ px, py }) => [px, py]),
+      at,
+      withinPx,
+    );
+    return index === null ? null : (drawn[index]?.avatar.key ?? null);
+  }
+
+  private chooseWithin(ring: readonly Pixel[], adds: boolean): void {
+    const drawn = this.painter?.drawn ?? [];
+    const within = drawn
+      .filter(({ px, py }) => isWithin([px, py], ring))
+      .map(({ avatar }) => avatar.key);
+    const before = adds ? this.app.state.chosen.value : [];
+    this.app.choose([...new Set([...before, ...within])]);
+  }
+
+  private hover(at: Pixel | null): void {
+    const key = at && this.keyAt(at, CLICK_PX);
+    this.canvas.title = key ? (this.app.avatars.get(key)?.name ?? "") : "";
+  }
+
+  private readonly key = (event: KeyboardEvent): void => {
+    const { view } = this;
+    const middle: Pixel = [view.width / 2, view.height / 2];
+    const moves: Record<string, () => void> = {
+      ArrowLeft: () => {
+        view.panPx(PAN_PX, 0);
+      },
+      ArrowRight: () => {
+        view.panPx(-PAN_PX, 0);
+      },
+      ArrowUp: () => {
+        view.panPx(0, PAN_PX);
+      },
+      ArrowDown: () => {
+        view.panPx(0, -PAN_PX);
+      },
+      "+": () => {
+        view.zoom(ZOOM);
+      },
+      "-": () => {
+        view.zoom(1 / ZOOM);
+      },
+      "0": () => {
+        this.fit();
+      },
+      Enter: () => {
+        if (this.app.state.picking.value) this.clicked(middle, false);
+        else this.app.choose(this.keyAt(middle, Number.POSITIVE_INFINITY));
+      },
+      a: () => {
+        if (event.ctrlKey) {
+          this.chooseWithin(boxOf([0, 0], [view.width, view.height]), false);
+        }
+      },
+    };
+    const move = moves[event.key];
+    if (!move || event.altKey || (event.ctrlKey && event.key !== "a")) return;
+    if (event.key.startsWith("Arrow")) this.app.state.following.value = false;
+    event.preventDefault();
+    event.stopPropagation();
+    move();
+  };
+}
+
+customElements.define("esp-map", MapPanel);

@@ -1,0 +1,161 @@
+/** Draws avatars with heading, tag and trail; many at once, by colour. */
+
+import { reasonColour, reasonName, reasonText } from "../state/reasons";
+import type { Scheme } from "../state/scheme";
+import { type Avatar, type Place, placeAt } from "./avatars";
+import type { MapOptions } from "./options";
+import type { MapView } from "./views";
+
+const LEAST_RADIUS_PX = 3;
+/** With more tags than this nobody could read one. */
+const MOST_TAGS = 120;
+const TURN = 2 * Math.PI;
+
+/** An avatar where it is drawn. */
+export interface Drawn {
+  avatar: Avatar;
+  px: number;
+  py: number;
+  heading: number;
+}
+
+const place: Place = { x: 0, y: 0, z: 0, heading: 0 };
+
+/** Where everybody within the canvas is at a moment. */
+export function placed(avatars: Iterable<Avatar>, view: MapView, timeS: number): Drawn[] {
+  const found: Drawn[] = [];
+  for (const avatar of avatars) {
+    placeAt(avatar, timeS, place);
+    const storey = view.storeyOf(place.z);
+    if (!view.isShown(storey)) continue;
+    const [px, py] = view.toCanvas(place.x, place.y, storey);
+    if (px < -20 || py < -20 || px > view.width + 20 || py > view.height + 20) continue;
+    found.push({ avatar, px, py, heading: place.heading });
+  }
+  return found;
+}
+
+export function colourOf({ kind, reason }: Avatar, scheme: Scheme): string {
+  return kind === "person"
+    ? scheme.colour("person")
+    : reasonColour(reasonName(reason), scheme.dark);
+}
+
+export function drawPeople(
+  pen: CanvasRenderingContext2D,
+  view: MapView,
+  drawn: readonly Drawn[],
+  chosen: ReadonlySet<string>,
+  scheme: Scheme,
+): void {
+  const byColour = new Map<string, Drawn[]>();
+  for (const one of drawn) {
+    const colour = colourOf(one.avatar, scheme);
+    const same = byColour.get(colour);
+    if (same) same.push(one);
+    else byColour.set(colour, [one]);
+  }
+  for (const [colour, same] of byColour) {
+    pen.fillStyle = pen.strokeStyle = colour;
+    pen.beginPath();
+    for (const { avatar, px, py } of same) {
+      const radius = radiusPx(avatar, view);
+      // People are round, actors are square.
+      if (avatar.kind === "person") {
+        pen.moveTo(px + radius, py);
+        pen.arc(px, py, radius, 0, TURN);
+      } else {
+        pen.rect(px - radius, py - radius, 2 * radius, 2 * radius);
+      }
+    }
+    pen.fill();
+    pen.lineWidth = 1.5;
+    pen.beginPath();
+    for (const { avatar, px, py, heading } of same) {
+      const length = radiusPx(avatar, view) + 5;
+      pen.moveTo(px, py);
+      pen.lineTo(px + Math.cos(heading) * length, py - Math.sin(heading) * length);
+    }
+    pen.stroke();
+  }
+  pen.strokeStyle = scheme.colour("focus");
+  pen.lineWidth = 2.5;
+  pen.beginPath();
+  for (const { avatar, px, py } of drawn) {
+    if (!chosen.has(avatar.key)) continue;
+    const radius = radiusPx(avatar, view) + 5;
+    pen.moveTo(px + radius, py);
+    pen.arc(px, py, radius, 0, TURN);
+  }
+  pen.stroke();
+}
+
+export function drawTags(
+  pen: CanvasRenderingContext2D,
+  drawn: readonly Drawn[],
+  chosen: ReadonlySet<string>,
+  tags: MapOptions["tags"],
+  scheme: Scheme,
+): void {
+  if (tags === "none") return;
+  const told =
+    drawn.length <= MOST_TAGS ? drawn : drawn.filter((one) => chosen.has(one.avatar.key));
+  pen.font = "11px system-ui, sans-serif";
+  pen.textAlign = "left";
+  pen.lineWidth = 3;
+  pen.lineJoin = "round";
+  pen.strokeStyle = scheme.colour("map-ground");
+  pen.fillStyle = scheme.colour("ink");
+  for (const { avatar, px, py } of told.slice(0, MOST_TAGS)) {
+    const text = tagOf(avatar, tags);
+    if (text === "") continue;
+    pen.strokeText(text, px + 8, py - 6);
+    pen.fillText(text, px + 8, py - 6);
+  }
+}
+
+export function tagOf(avatar: Avatar, tags: MapOptions["tags"]): string {
+  if (tags === "name") return avatar.name;
+  if (tags === "group") return avatar.groups.join(", ");
+  if (tags === "reason")
+    return avatar.kind === "actor" ? reasonText(reasonName(avatar.reason)) : "";
+  return "";
+}
+
+/** Trails of all, or of those who are chosen where many are long. */
+export function drawTrails(
+  pen: CanvasRenderingContext2D,
+  view: MapView,
+  avatars: Iterable<Avatar>,
+  drawnS: number,
+  trailS: number,
+  scheme: Scheme,
+): void {
+  pen.lineWidth = 1.25;
+  pen.globalAlpha = 0.55;
+  const byColour = new Map<string, Path2D>();
+  for (const avatar of avatars) {
+    const colour = scheme.colour(avatar.kind);
+    const path = byColour.get(colour) ?? new Path2D();
+    byColour.set(colour, path);
+    placeAt(avatar, drawnS, place);
+    let storey = view.storeyOf(place.z);
+    if (view.isShown(storey)) path.moveTo(...view.toCanvas(place.x, place.y, storey));
+    avatar.trail.each(drawnS - trailS, (x, y, z) => {
+      const next = view.storeyOf(z);
+      const at = view.toCanvas(x, y, next);
+      if (next === storey && view.isShown(next)) path.lineTo(...at);
+      else path.moveTo(...at);
+      storey = next;
+    });
+  }
+  for (const [colour, path] of byColour) {
+    pen.strokeStyle = colour;
+    pen.stroke(path);
+  }
+  pen.globalAlpha = 1;
+}
+
+function radiusPx({ radiusM }: Avatar, view: MapView): number {
+  return Math.max(LEAST_RADIUS_PX, radiusM * view.scale);
+}
