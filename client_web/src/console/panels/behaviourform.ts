@@ -2,6 +2,7 @@
 
 import { html, nothing, type TemplateResult } from "lit";
 import type { AppContext } from "../context";
+import { pick } from "./pick";
 import type { BehaviourKind, Input } from "../models/behaviours";
 import type { Json } from "../models/fields";
 import { factText } from "../models/facts";
@@ -145,7 +146,7 @@ function placeControl(
     <button
       type="button"
       @click=${() =>
-        void app.pick(`Click where: ${input.label.toLowerCase()}`, "point").then((points) => {
+        void pick(app, `Click where: ${input.label.toLowerCase()}`, "point").then((points) => {
           const [first] = points ?? [];
           if (first) set(input.name, rounded(first));
         })}
@@ -217,7 +218,7 @@ function placesControl(
       <button
         type="button"
         @click=${() =>
-          void app.pick(`Click the stops: ${input.label.toLowerCase()}`, "line").then((points) => {
+          void pick(app, `Click the stops: ${input.label.toLowerCase()}`, "line").then((points) => {
             if (points) put([...stops, ...points.map(rounded)]);
           })}
       >

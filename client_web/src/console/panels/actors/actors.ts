@@ -6,6 +6,7 @@ import { type JsonObject, labelOf } from "../../models/fields";
 import { groupsOf, shortId } from "../../models/scopes";
 import type { Actor, Actors, Command } from "../../net/types";
 import { behaviourForm, type BehaviourWish } from "../behaviourform";
+import { pick } from "../pick";
 import { CommandingPanel } from "../commanding";
 import { newActors, type NewActors, newActorsForm, commandFor } from "./newactors";
 
@@ -199,7 +200,7 @@ class ActorsPanel extends CommandingPanel {
   }
 
   private async send(ids: readonly string[]): Promise<void> {
-    const [target] = (await this.app.pick("Click where they are to go", "point")) ?? [];
+    const [target] = (await pick(this.app, "Click where they are to go", "point")) ?? [];
     if (!target) return;
     await this.all(
       ids.map((actor) => ({ op: "send_actor", actor, target })),

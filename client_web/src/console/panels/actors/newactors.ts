@@ -6,6 +6,7 @@ import type { BehaviourKind } from "../../models/behaviours";
 import type { JsonObject } from "../../models/fields";
 import type { Command, Point } from "../../net/types";
 import { behaviourForm, type BehaviourWish } from "../behaviourform";
+import { pick } from "../pick";
 
 /** One command adds no more actors than this. */
 export const MOST_NEW = 200;
@@ -93,7 +94,7 @@ export function newActorsForm(
       </label>
       <button
         @click=${() =>
-          void app.pick("Click where they are to come in", "point").then((points) => {
+          void pick(app, "Click where they are to come in", "point").then((points) => {
             change({ ...form, near: points?.[0] ?? null });
           })}
       >

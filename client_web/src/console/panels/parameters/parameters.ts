@@ -19,8 +19,17 @@ interface ChangeMessage extends LiveMessage {
   change?: { account?: string | null; op?: string };
 }
 
-/** Drafts outlive the panel: it may be shut and opened again. */
-const works = new WeakMap<AppContext, ParameterWork>();
+/** Drafts outlive the panel, which may be shut and opened again, but not their account's visit. */
+const works = new WeakMap<AppContext, { account: string; work: ParameterWork }>();
+
+function workOf(app: AppContext): ParameterWork {
+  const account = app.state.me.value?.account ?? "";
+  const kept = works.get(app);
+  if (kept?.account === account) return kept.work;
+  const work = new ParameterWork(app.api);
+  works.set(app, { account, work });
+  return work;
+}
 
 class ParametersPanel extends CommandingPanel {
   static override styles = [...CommandingPanel.styles, rowStyle, style()];
@@ -35,8 +44,7 @@ class ParametersPanel extends CommandingPanel {
 
   protected override begin(): void {
     const { api, live, state } = this.app;
-    const work = works.get(this.app) ?? new ParameterWork(api);
-    works.set(this.app, work);
+    const work = workOf(this.app);
     this.work = work;
     work.changed = () => {
       this.tellDraft(work);
