@@ -59,6 +59,22 @@ export abstract class CommandingPanel extends Panel {
       label.field > * {
         color: var(--ink);
       }
+      label.field > input:not(.short),
+      label.field > select,
+      .grow > input,
+      .grow > select {
+        width: 100%;
+        min-width: 0;
+      }
+      .row {
+        margin-bottom: 6px;
+      }
+      .row:has(> label.field) {
+        align-items: end;
+      }
+      :host {
+        display: block;
+      }
       .grow {
         flex: 1 1 8em;
         min-width: 0;
@@ -152,9 +168,8 @@ export abstract class CommandingPanel extends Panel {
     } catch (error) {
       if (!(error instanceof RefusedError)) throw error;
       this.refusal = error.message;
-      return undefined;
-    } finally {
       this.requestUpdate();
+      return undefined;
     }
   }
 

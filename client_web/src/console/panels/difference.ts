@@ -148,7 +148,7 @@ class DifferencePanel extends CommandingPanel {
 
 function columnName(column: string): string {
   if (column.startsWith("preset:")) return `preset ${column.slice("preset:".length)}`;
-  if (column.startsWith("change:")) return `before change ${column.slice("change:".length)}`;
+  if (column.startsWith("change:")) return `after change ${column.slice("change:".length)}`;
   return scopeName(column);
 }
 

@@ -79,7 +79,6 @@ class EventsPanel extends CommandingPanel {
         >
           Hold still
         </button>
-        ${this.button("Mark this moment", "mark", () => this.mark())}
       </div>
       <div class="row kinds" role="group" aria-label="Kinds of events; none pressed means all">
         ${this.events.kinds.map(
@@ -141,11 +140,7 @@ class EventsPanel extends CommandingPanel {
     const kind = this.kinds.size === 1 ? [...this.kinds][0] : undefined;
     const found = await this.ask<{ events: WorldEvent[] }>("/events", { kind, limit: 200 });
     if (found) this.events.add(found.events);
-  }
-
-  private async mark(): Promise<void> {
-    const text = prompt("What is there to remember about this moment?")?.trim();
-    if (text) await this.carryOut({ op: "mark", text }, "This moment is marked.");
+    this.requestUpdate();
   }
 }
 

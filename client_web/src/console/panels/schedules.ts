@@ -19,6 +19,15 @@ interface Schedule {
   again_after_s?: number | null;
 }
 
+/** A change that is taken back by itself when a figure is beyond its limit for too long. */
+interface Guard {
+  id: string;
+  changes: readonly number[];
+  condition: When;
+  state: string;
+  by: string | null;
+}
+
 const OVER = /done|cancel|fired|failed|over|refused/;
 
 class SchedulesPanel extends CommandingPanel {
@@ -37,6 +46,7 @@ class SchedulesPanel extends CommandingPanel {
     `,
   ];
   private schedules: readonly Schedule[] = [];
+  private guards: readonly Guard[] = [];
   private figures: readonly string[] = [];
   private form: OccasionForm = occasionForm();
   private what = "";
@@ -46,13 +56,6 @@ class SchedulesPanel extends CommandingPanel {
     this.watch(this.app.state.draft);
     this.hearAbout(/schedule/, () => void this.load());
     void this.load();
-    void this.app.api
-      .get<{ series: { name: string }[] }>("/series/names")
-      .then(({ series }) => {
-        this.figures = series.map((one) => one.name);
-        this.requestUpdate();
-      })
-      .catch(() => undefined);
   }
 
   protected override render(): TemplateResult {
@@ -62,6 +65,21 @@ class SchedulesPanel extends CommandingPanel {
         ${this.schedules.map((one) => this.row(one))}
       </ul>
       ${this.schedules.length === 0 ? html`<p class="soft">Nothing is scheduled.</p>` : nothing}
+      <ul class="plain" aria-label="Guards">
+        ${this.guards.map(
+          (one) =>
+            html`<li>
+              <div class="row">
+                <b>${one.id}</b>
+                <span class="grow">${whenText({ figure: one.condition })}</span>
+                <span class="chip">${one.state.replaceAll("_", " ")}</span>
+              </div>
+              <div class="soft">
+                takes back change ${one.changes.join(", ")} of ${one.by ?? "the server"}
+              </div>
+            </li>`,
+        )}
+      </ul>
       ${this.maker()}
     `;
   }
@@ -259,8 +277,17 @@ class SchedulesPanel extends CommandingPanel {
   }
 
   private async load(): Promise<void> {
-    const found = await this.ask<{ schedules: Schedule[] }>("/schedules");
-    if (found) this.schedules = found.schedules;
+    interface Found {
+      schedules: Schedule[];
+      guards?: Guard[];
+      figures?: { name: string }[];
+    }
+    const found = await this.ask<Found>("/schedules");
+    if (!found) return;
+    this.schedules = found.schedules;
+    this.guards = found.guards ?? [];
+    this.figures = (found.figures ?? []).map((one) => one.name);
+    this.requestUpdate();
   }
 }
 

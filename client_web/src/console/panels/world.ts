@@ -150,6 +150,7 @@ class WorldPanel extends CommandingPanel {
   private async load(): Promise<void> {
     const found = await this.ask<World>("/world");
     if (found) this.world = found;
+    this.requestUpdate();
   }
 }
 

@@ -255,6 +255,7 @@ class AccountsPanel extends CommandingPanel {
   private async load(): Promise<void> {
     const found = await this.ask<{ accounts: Account[] }>("/accounts");
     if (found) this.accounts = found.accounts;
+    this.requestUpdate();
   }
 }
 

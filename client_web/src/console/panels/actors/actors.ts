@@ -67,9 +67,10 @@ class ActorsPanel extends CommandingPanel {
     return html`
       <div class="row">
         <label class="field grow">
-          Name, group, behaviour or reason
+          Find
           <input
             type="search"
+            placeholder="name, group, behaviour, reason"
             .value=${this.sought}
             @input=${(event: Event) => {
               this.sought = (event.currentTarget as HTMLInputElement).value;
@@ -242,6 +243,7 @@ class ActorsPanel extends CommandingPanel {
   private async load(): Promise<void> {
     const found = await this.ask<Actors>("/actors");
     if (found) this.actors = found.actors;
+    this.requestUpdate();
   }
 }
 

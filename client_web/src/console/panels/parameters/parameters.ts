@@ -37,7 +37,7 @@ class ParametersPanel extends CommandingPanel {
   private typing: { name: string; text: string } | null = null;
   private dragged: string | null = null;
   private liveDrag = false;
-  private explained = true;
+  private explained = false;
   private sought = "";
   private how: Manner = manner();
   private figures: readonly string[] = [];
@@ -72,9 +72,9 @@ class ParametersPanel extends CommandingPanel {
       if (given) work.take(given.scope, given.values);
     });
     void api
-      .get<{ series: { name: string }[] }>("/series/names")
-      .then(({ series }) => {
-        this.figures = series.map((one) => one.name);
+      .get<{ figures?: { name: string }[] }>("/schedules")
+      .then(({ figures }) => {
+        this.figures = (figures ?? []).map((one) => one.name);
         this.requestUpdate();
       })
       .catch(() => undefined);
@@ -457,17 +457,36 @@ function style(): ReturnType<typeof css> {
       min-width: 0;
     }
     fieldset {
-      padding: 4px 6px;
+      padding: 2px 4px 4px;
+      border: 0;
+      border-top: 1px solid var(--line);
+      border-radius: 0;
     }
     .foot {
       position: sticky;
-      bottom: 0;
-      padding: 8px 2px 4px;
+      bottom: -8px;
+      z-index: 1;
+      margin: 0 -8px -8px;
+      padding: 6px 8px 8px;
       background: var(--paper);
       border-top: 1px solid var(--line);
     }
     .foot .row {
-      margin-bottom: 6px;
+      flex-wrap: nowrap;
+      gap: 4px;
+    }
+    .foot button {
+      padding: 2px 7px;
+      white-space: nowrap;
+    }
+    .foot label {
+      white-space: nowrap;
+    }
+    .foot details {
+      margin: 0;
+    }
+    .foot p {
+      margin: 0 0 4px;
     }
     .foot .note {
       width: 100%;

@@ -107,11 +107,7 @@ export function row(state: RowState, events: RowEvents): TemplateResult {
         ${edit === undefined ? state.from : edit === null ? "to be cleared" : "draft"}
       </span>
       ${field.prepared ? html`<span class="chip" title="Takes effect once it is prepared">body</span>` : nothing}
-      ${
-        state.explained
-          ? html`<span class="doc">${field.doc}</span>`
-          : html`<span class="visually-hidden">${field.doc}</span>`
-      }
+      <span class="doc ${state.explained ? "" : "on-focus"}">${field.doc}</span>
     </span>
     ${
       state.shadows > 0
@@ -143,7 +139,8 @@ export const rowStyle = css`
     display: grid;
     grid-template-columns: minmax(0, 1fr) auto;
     gap: 1px 8px;
-    padding: 5px 6px 5px 8px;
+    position: relative;
+    padding: 4px 2px 4px 6px;
     border-left: 3px solid transparent;
     border-radius: 4px;
     align-content: start;
@@ -155,7 +152,8 @@ export const rowStyle = css`
   .field-row > label {
     align-self: center;
     font-weight: 600;
-    overflow-wrap: anywhere;
+    hyphens: auto;
+    line-height: 1.2;
   }
   .field-row .value {
     display: flex;
@@ -163,14 +161,18 @@ export const rowStyle = css`
     gap: 4px;
   }
   .field-row .value input {
-    width: 5.4em;
+    width: 4.6em;
+    padding: 2px 5px;
   }
   .field-row .value button {
-    padding: 2px 6px;
+    padding: 2px 4px;
+  }
+  .field-row .value button[aria-disabled="true"] {
+    visibility: hidden;
   }
   .field-row .unit {
-    min-width: 2.6em;
-    font-size: 0.9em;
+    min-width: 2.2em;
+    font-size: 0.86em;
   }
   .field-row > input[type="range"],
   .field-row > .about,
@@ -186,6 +188,13 @@ export const rowStyle = css`
   }
   .field-row .doc {
     display: block;
+  }
+  .field-row:not(:focus-within) .on-focus {
+    position: absolute;
+    width: 1px;
+    height: 1px;
+    overflow: hidden;
+    clip-path: inset(50%);
   }
   .chip.set {
     border-color: var(--accent);

@@ -121,6 +121,7 @@ class BansPanel extends CommandingPanel {
   private async load(): Promise<void> {
     const found = await this.ask<{ bans: Ban[] }>("/bans");
     if (found) this.bans = found.bans;
+    this.requestUpdate();
   }
 }
 

@@ -272,6 +272,7 @@ class PeoplePanel extends CommandingPanel {
   private async load(): Promise<void> {
     const found = await this.ask<{ people: Person[] }>("/people");
     if (found) this.people = found.people;
+    this.requestUpdate();
   }
 }
 

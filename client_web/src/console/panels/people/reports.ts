@@ -140,6 +140,7 @@ class ReportsPanel extends CommandingPanel {
   private async load(): Promise<void> {
     const found = await this.ask<{ reports: Report[] }>("/reports");
     if (found) this.reports = found.reports;
+    this.requestUpdate();
   }
 }
 

@@ -30,7 +30,8 @@ export class Chart {
 
   constructor(at: HTMLElement, width: number, wishes: ChartWishes) {
     const { look, height } = wishes;
-    const axis = { stroke: look.ink, grid: { stroke: look.grid }, ticks: { stroke: look.grid } };
+    const rule = { stroke: look.grid, width: 1 };
+    const axis = { stroke: look.ink, grid: rule, ticks: rule };
     this.plot = new uPlot(
       {
         width,

@@ -29,9 +29,9 @@ interface ActorNews extends LiveMessage {
 }
 
 const KEPT = "esplanade-console-series";
-const USUAL = ["people", "actors", "tick_p99_ms", "contacts_per_person_min"];
+const USUAL = ["people", "contacts", "waiting_s", "tick_p99_ms"];
 const MOST = 12;
-const HEIGHT = 116;
+const HEIGHT = 104;
 
 class SeriesPanel extends CommandingPanel {
   static override styles = [
@@ -150,20 +150,20 @@ class SeriesPanel extends CommandingPanel {
               </button>`
             : nothing
         }
+        <span class="told grow" role="status">${this.told()}</span>
       </div>
       <details>
         <summary>Choose series (${this.chosen.length})</summary>
         <div class="choice">${this.names.map((one) => this.choice(one))}</div>
       </details>
       ${this.refused()}
-      <p class="told" role="status">${this.told()}</p>
       <div class="charts">
         ${this.chosen.map((name) => {
           const known = this.names.find((one) => one.name === name);
           return html`<figure data-series=${name} aria-label="Chart of ${known?.text ?? name}">
             <figcaption>
               <b title=${known?.text ?? name}>${labelOf(name)}</b>
-              <span>${this.value(name)} ${known?.unit ?? ""}</span>
+              <span>${this.value(name)} ${unitOf(known)}</span>
             </figcaption>
             <div class="plot"></div>
           </figure>`;
@@ -214,7 +214,7 @@ class SeriesPanel extends CommandingPanel {
           void this.load();
         }}
       />
-      ${labelOf(one.name)} <span class="soft">${one.unit}</span>
+      ${labelOf(one.name)} <span class="soft">${unitOf(one)}</span>
     </label>`;
   }
 
@@ -311,6 +311,11 @@ class SeriesPanel extends CommandingPanel {
     for (const chart of this.charts.values()) chart.destroy();
     this.charts.clear();
   }
+}
+
+/** The unit as people read it; of a mere number there is none. */
+function unitOf(one: SeriesName | undefined): string {
+  return one === undefined || one.unit === "1" ? "" : one.unit;
 }
 
 function keptNames(): string[] {
