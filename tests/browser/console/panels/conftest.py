@@ -13,7 +13,7 @@ from esplanade.server.app import Running, running
 from esplanade.server.assets import CLIENT_ASSETS
 from esplanade.server.settings import ServerSettings
 from tests.browser.conftest import executable
-from tests.browser.console.page import operator
+from tests.browser.console.panels.page import operator
 from tests.patience import PATIENCE_S
 
 FLAGS: Final = ("--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking")
