@@ -1,10 +1,10 @@
 /** The panel that lists all actors and people; only the rows in sight are in the page. */
 
 import { css, html, type TemplateResult } from "lit";
-import { styleMap } from "lit/directives/style-map.js";
 import { Panel } from "../panels/panel";
 import { reasonColour, reasonName } from "../state/reasons";
 import { controls } from "../style/controls";
+import { styled } from "../style/styled";
 import { choiceAfter, type Row, rowsOf, windowOf } from "./rows";
 
 const ROW_PX = 28;
@@ -146,10 +146,7 @@ class EverybodyPanel extends Panel {
         }}
         @keydown=${this.key}
       >
-        <div
-          style=${styleMap({ height: `${this.rows.length * ROW_PX}px` })}
-          role="presentation"
-        ></div>
+        <div ${styled({ height: `${this.rows.length * ROW_PX}px` })} role="presentation"></div>
         ${this.rows.slice(from, to).map((row, index) => this.row(row, from + index, chosen))}
       </div>
     `;
@@ -167,7 +164,7 @@ class EverybodyPanel extends Panel {
       aria-selected=${chosen.has(row.key) ? "true" : "false"}
       aria-setsize=${this.rows.length}
       aria-posinset=${index + 1}
-      style=${styleMap({ top: `${index * ROW_PX}px` })}
+      ${styled({ top: `${index * ROW_PX}px` })}
       @click=${(event: MouseEvent) => {
         this.active = index;
         this.choose(row.key, event);
@@ -177,7 +174,7 @@ class EverybodyPanel extends Panel {
         this.app.state.following.value = true;
       }}
     >
-      <span class="dot ${row.kind}" style=${styleMap(colour)}></span>
+      <span class="dot ${row.kind}" ${styled(colour)}></span>
       <span class="name">${row.name}</span>
       <span class="soft">${row.kind === "person" ? "person" : row.detail}</span>
     </div>`;

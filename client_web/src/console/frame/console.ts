@@ -76,6 +76,9 @@ export class Console extends LitElement {
     this.front = "map";
     this.session = new Session(this.app.api, this.app.state, token);
     this.app.live.mayConnect = () => this.session.holds();
+    this.app.live.refused = (faults) => {
+      this.app.toast(faults.map(({ text }) => text).join("; "), "fault");
+    };
     const { state } = this.app;
     new Watching(this, () => [this.session.standing, state.me, state.picking]);
     this.session.standing.watch((standing) => {

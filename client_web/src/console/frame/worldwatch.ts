@@ -37,9 +37,7 @@ export function watchWorld(app: AppContext): Stop {
     }),
     live.subscribe("changes", {}, soon),
     live.phase.watch((phase) => {
-      if (phase !== "on") return;
-      avatars.clear();
-      soon();
+      if (phase === "on") soon();
     }),
   ];
   void ask();

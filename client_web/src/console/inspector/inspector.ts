@@ -1,8 +1,282 @@
-import { html } from "lit";
+/** The panel on whom is chosen: what an actor does and why, or several beside each other. */
+
+import { css, html, nothing, type TemplateResult } from "lit";
 import { Panel } from "../panels/panel";
+import { reasonText } from "../state/reasons";
+import { controls } from "../style/controls";
+import { valueText } from "./compare";
+import { costTable, parameterTable, searchPart, whyBand } from "./parts";
+import { traceOverlay } from "./tree";
+import { WatchedActor } from "./watching";
+import { blockerText } from "./why";
+
+const OVERLAY = "inspector";
+const TRACE = "trace";
+const USUAL_TICK_S = 0.05;
+/** So many actors are watched at once, the first that are chosen. */
+const MOST = 2;
+
 class InspectorPanel extends Panel {
-  protected override render(): unknown {
-    return html`<p>…</p>`;
+  static override styles = [
+    controls,
+    css`
+      h2 {
+        font-size: 16px;
+      }
+
+      section {
+        margin-top: 14px;
+      }
+
+      dl {
+        display: grid;
+        grid-template-columns: max-content 1fr;
+        gap: 2px 10px;
+        margin: 0;
+      }
+
+      dt {
+        color: var(--soft-ink);
+      }
+
+      dd {
+        margin: 0;
+        overflow-wrap: anywhere;
+      }
+
+      .band {
+        position: relative;
+        height: 22px;
+        border-radius: 4px;
+        background: var(--raised);
+        overflow: hidden;
+      }
+
+      .band span {
+        position: absolute;
+        top: 0;
+        bottom: 0;
+      }
+
+      .stops {
+        margin: 6px 0 0;
+        padding: 0;
+        list-style: none;
+        max-height: 180px;
+        overflow: auto;
+      }
+
+      .dot {
+        display: inline-block;
+        width: 9px;
+        height: 9px;
+      }
+
+      th.name {
+        color: inherit;
+        font-weight: 400;
+      }
+
+      .set {
+        color: var(--accent);
+        font-weight: 600;
+      }
+
+      .slice {
+        display: flex;
+        gap: 8px;
+        align-items: center;
+      }
+
+      .slice input {
+        flex: 1;
+        min-width: 60px;
+      }
+    `,
+  ];
+
+  private watched: WatchedActor[] = [];
+  private slice: number | null = null;
+
+  protected override begin(): void {
+    const { state, scheme } = this.app;
+    this.watch(state.chosen, () => {
+      this.look();
+    });
+    this.watch(state.following);
+    this.watch(scheme);
+    const timer = setInterval(() => {
+      // People are told of by the map alone.
+      if (this.watched.length === 0) this.requestUpdate();
+    }, 500);
+    this.atEnd(() => {
+      clearInterval(timer);
+      this.forget();
+    });
+    this.look();
+  }
+
+  protected override render(): TemplateResult {
+    const { chosen } = this.app.state;
+    if (chosen.value.length === 0) {
+      return html`<p class="soft">
+        Choose somebody on the map or in the list. With Ctrl you choose more, to compare them.
+      </p>`;
+    }
+    const [first] = this.watched;
+    const more = chosen.value.length - Math.max(1, this.watched.length);
+    return html`
+      ${this.watched.length > 0 ? this.watched.map((actor) => this.state(actor)) : this.person()}
+      ${more > 0 ? html`<p class="soft">${more} more chosen.</p>` : nothing}
+      ${first ? this.about(first) : nothing}
+    `;
+  }
+
+  private about(first: WatchedActor): TemplateResult {
+    const tickS = this.app.state.world.value?.tick_s ?? USUAL_TICK_S;
+    const tick = first.now?.tick ?? this.app.avatars.tick.value;
+    return html`
+      ${
+        this.watched.length > 1
+          ? nothing
+          : whyBand(first.spans, tick, tickS, this.app.scheme.value.dark, (agoS) => {
+              this.app.state.hovered.value =
+                agoS === null ? null : (Date.now() - agoS * 1000) * 1000;
+            })
+      }
+      ${costTable(first)} ${parameterTable(this.watched)}
+      ${
+        this.watched.length > 1
+          ? nothing
+          : searchPart(
+              first.trace,
+              this.slice,
+              () => void this.askTrace(first),
+              (slice) => {
+                this.showTrace(first, slice);
+              },
+            )
+      }
+    `;
+  }
+
+  private state({ id, details, now }: WatchedActor): TemplateResult {
+    const avatar = this.app.avatars.get(id);
+    const reason = now?.reason ?? details?.reason ?? "none";
+    const blocker = now ? now.blocker : (details?.blocker ?? null);
+    const { following } = this.app.state;
+    const at = now ? ([now.x, now.y, now.z] as const) : details?.position;
+    return html`
+      <div class="row">
+        <h2>${avatar?.name ?? details?.name ?? id}</h2>
+        <button
+          aria-pressed=${following.value ? "true" : "false"}
+          @click=${() => {
+            following.value = !following.value;
+          }}
+        >
+          Follow
+        </button>
+      </div>
+      <dl>
+        <dt>Id</dt>
+        <dd>${id}</dd>
+        <dt>Does</dt>
+        <dd>
+          <strong>${reasonText(reason)}</strong
+          >${blocker ? html`: ${blockerText(blocker)}` : nothing}
+          ${details?.held ? html` <span class="warn">held by an operator</span>` : nothing}
+        </dd>
+        <dt>Place</dt>
+        <dd>${at ? at.map((value) => value.toFixed(1)).join(", ") : "not in the world"}</dd>
+        <dt>Speed</dt>
+        <dd>${(now?.speed ?? details?.speed_mps ?? 0).toFixed(2)} m/s</dd>
+        <dt>Groups</dt>
+        <dd>${details?.tags.join(", ") || "none"}</dd>
+        ${Object.entries(now?.behaviour ?? details?.behaviour ?? {}).map(
+          ([name, value]) =>
+            html`<dt>${name === "kind" ? "Behaviour" : name.replaceAll("_", " ")}</dt>
+              <dd>${valueText(value)}</dd>`,
+        )}
+      </dl>
+    `;
+  }
+
+  private person(): TemplateResult {
+    const [key = ""] = this.app.state.chosen.value;
+    const avatar = this.app.avatars.get(key);
+    if (!avatar) return html`<p class="soft">${key} is not in the world.</p>`;
+    const { to, name, speed, kind } = avatar;
+    return html`<h2>${name}</h2>
+      <dl>
+        <dt>Kind</dt>
+        <dd>${kind}</dd>
+        <dt>Place</dt>
+        <dd>${[to.x, to.y, to.z].map((value) => value.toFixed(1)).join(", ")}</dd>
+        <dt>Speed</dt>
+        <dd>${speed.toFixed(2)} m/s</dd>
+      </dl>`;
+  }
+
+  /** Watch the actors that are chosen, and no others. */
+  private look(): void {
+    const wanted = this.app.state.chosen.value.filter((id) => !id.startsWith("person:"));
+    const ids = wanted.slice(0, MOST);
+    const before = this.watched;
+    this.watched = ids.map(
+      (id) =>
+        before.find((actor) => actor.id === id) ??
+        new WatchedActor(id, this.app, () => {
+          this.drawPaths();
+          this.requestUpdate();
+        }),
+    );
+    for (const actor of before) if (!this.watched.includes(actor)) actor.end();
+    if (before[0] !== this.watched[0]) this.app.state.overlay(TRACE, null);
+    this.drawPaths();
+    this.requestUpdate();
+  }
+
+  private forget(): void {
+    for (const actor of this.watched) actor.end();
+    this.watched = [];
+    this.app.state.overlay(OVERLAY, null);
+    this.app.state.overlay(TRACE, null);
+  }
+
+  private drawPaths(): void {
+    const { scheme, state } = this.app;
+    const lines = this.watched.flatMap(({ now }) => [
+      ...(now?.previous
+        ? [line(now.previous.path, scheme.value.colour("soft-ink"), 1.5, true)]
+        : []),
+      ...(now?.path ? [line(now.path, scheme.value.colour("focus"), 2.5, false)] : []),
+    ]);
+    state.overlay(OVERLAY, lines.length > 0 ? { lines } : null);
+  }
+
+  private async askTrace(actor: WatchedActor): Promise<void> {
+    await actor.askTrace();
+    if (actor.trace) this.showTrace(actor, this.slice ?? 0);
+    else this.app.toast("nothing is known of its last search");
+  }
+
+  private showTrace(actor: WatchedActor, slice: number | null): void {
+    this.slice = slice;
+    if (slice === null) actor.trace = null;
+    const { trace } = actor;
+    this.app.state.overlay(TRACE, trace ? traceOverlay(trace, slice) : null);
+    this.requestUpdate();
   }
 }
+
+function line(
+  path: readonly (readonly [number, number, number, number])[],
+  colour: string,
+  widthPx: number,
+  dashed: boolean,
+): { points: [number, number, number][]; colour: string; widthPx: number; dashed: boolean } {
+  return { points: path.map(([x, y, z]) => [x, y, z]), colour, widthPx, dashed };
+}
+
 customElements.define("esp-inspector", InspectorPanel);

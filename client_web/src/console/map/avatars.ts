@@ -49,6 +49,8 @@ export interface Entered {
 }
 
 export interface MapMessage extends LiveMessage {
+  /** Whether those who entered are all there are. */
+  reset?: boolean;
   entered?: readonly Entered[];
   left?: readonly number[];
   origin_m?: readonly [number, number];
@@ -69,6 +71,7 @@ export class Avatars {
   }
 
   hear(message: MapMessage): void {
+    if (message.reset) this.forgetOthers(message.entered ?? []);
     if (message.origin_m) this.origin = message.origin_m;
     for (const id of message.left ?? []) this.remove(id);
     for (const entered of message.entered ?? []) this.enter(entered);
@@ -105,6 +108,11 @@ export class Avatars {
     this.byId.clear();
     this.byKey.clear();
     this.roster.value++;
+  }
+
+  private forgetOthers(all: readonly Entered[]): void {
+    const kept = new Set(all.map(({ id }) => id));
+    for (const id of [...this.byId.keys()]) if (!kept.has(id)) this.remove(id);
   }
 
   private enter(entered: Entered): void {

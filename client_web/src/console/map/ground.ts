@@ -1,6 +1,6 @@
 /** The part of the map that stands still: floors, walls, doors and places. */
 
-import type { MapData } from "../net/types";
+import type { MapData, Ring } from "../net/types";
 import type { Scheme } from "../state/scheme";
 import type { MapView } from "./views";
 
@@ -9,6 +9,11 @@ const HEADROOM_M = 2;
 const KERB_M = 0.3;
 /** Names of places are left out where the map is smaller than this. */
 const NAMES_PX_PER_M = 5;
+
+const SOLIDS: Readonly<Partial<Record<string, string>>> = {
+  plant: "map-plant",
+  water: "map-water",
+};
 
 export function drawGround(
   pen: CanvasRenderingContext2D,
@@ -28,28 +33,37 @@ export function drawGround(
 function drawFloor(
   pen: CanvasRenderingContext2D,
   view: MapView,
-  { bounds: [x0, y0, x1, y1], outlines }: MapData,
+  { bounds: [x0, y0, x1, y1], outlines, floors, kinds }: MapData,
   storey: number,
   scheme: Scheme,
 ): void {
-  const whole = [
+  const whole: Ring = [
     [x0, y0],
     [x1, y0],
     [x1, y1],
     [x0, y1],
-  ] as const;
-  const rings = outlines?.[storey];
-  pen.fillStyle = scheme.colour("map-ground");
+  ];
+  // The ground itself is no piece of a scene.
+  const found = floors?.[storey] ?? [];
+  const rings = storey === 0 || found.length === 0 ? [whole, ...found] : found;
+  for (const ring of rings) fillRing(pen, view, ring, storey, scheme.colour("map-ground"));
+  outlines?.[storey]?.forEach((ring, index) => {
+    const kind = kinds?.[storey]?.[index] ?? "furniture";
+    fillRing(pen, view, ring, storey, scheme.colour(SOLIDS[kind] ?? "map-solid"));
+  });
+}
+
+function fillRing(
+  pen: CanvasRenderingContext2D,
+  view: MapView,
+  ring: Ring,
+  storey: number,
+  colour: string,
+): void {
+  pen.fillStyle = colour;
   pen.beginPath();
-  for (const ring of rings?.length ? rings : [whole]) {
-    ring.forEach(([x, y], index) => {
-      const at = view.toCanvas(x, y, storey);
-      if (index === 0) pen.moveTo(...at);
-      else pen.lineTo(...at);
-    });
-    pen.closePath();
-  }
-  pen.fill("evenodd");
+  for (const [x, y] of ring) pen.lineTo(...view.toCanvas(x, y, storey));
+  pen.fill();
 }
 
 function drawWalls(

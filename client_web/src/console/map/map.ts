@@ -19,6 +19,8 @@ const KEY = "esplanade-console-map";
 const CLICK_PX = 14;
 const HEAT_MS = 10_000;
 const PAN_PX = 60;
+/** The legend lies over this part of the map. */
+const LEGEND_PX = 30;
 const ZOOM = 1.3;
 const FOLLOW_PX_PER_M = 18;
 
@@ -188,7 +190,7 @@ class MapPanel extends Panel {
 
   private fit(): void {
     this.app.state.following.value = false;
-    this.view.fit();
+    this.view.fit(LEGEND_PX);
     this.isFitted = this.view.width > 1;
   }
 

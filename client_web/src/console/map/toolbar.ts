@@ -1,8 +1,8 @@
 /** The controls above the map, and the legend in its corner. */
 
 import { html, nothing, type TemplateResult } from "lit";
-import { styleMap } from "lit/directives/style-map.js";
 import { reasonColour, REASONS, reasonText } from "../state/reasons";
+import { styled } from "../style/styled";
 import type { Mode } from "./gestures";
 import { CHOICES, type MapOptions, SWITCHES } from "./options";
 
@@ -142,7 +142,7 @@ export function legend(
     ${REASONS.slice(1).map(
       (reason) =>
         html`<span
-          ><span class="dot" style=${styleMap({ background: reasonColour(reason, dark) })}></span
+          ><span class="dot" ${styled({ background: reasonColour(reason, dark) })}></span
           >${reasonText(reason)}</span
         >`,
     )}

@@ -81,8 +81,12 @@ export class MapView {
     return null;
   }
 
-  /** Show all of it, with storeys in as many columns as make it largest. */
-  fit(): void {
+  /**
+   * Show all of it, with storeys in as many columns as make it largest; at the bottom some pixels
+   * stay free.
+   */
+  fit(freePx = 0): void {
+    const height = Math.max(1, this.height - freePx);
     const [x0, y0, x1, y1] = this.bounds;
     const count = this.storeys.length;
     const gap = GAP * Math.max(x1 - x0, y1 - y0);
@@ -91,13 +95,13 @@ export class MapView {
       const across = columns * (x1 - x0 + gap) + gap;
       const rows = Math.ceil(count / columns);
       const down = rows * (y1 - y0 + gap) + gap;
-      const scale = Math.min(this.width / across, this.height / down);
+      const scale = Math.min(this.width / across, height / down);
       if (scale > best.scale) best = { scale, columns, across, down };
     }
     this.columns = best.columns;
     this.scale = Math.max(LEAST_PX_PER_M, Math.min(MOST_PX_PER_M, best.scale));
     this.centreX = x0 - gap + best.across / 2;
-    this.centreY = y1 + gap - best.down / 2;
+    this.centreY = y1 + gap - best.down / 2 - freePx / 2 / this.scale;
   }
 
   panPx(dx: number, dy: number): void {

@@ -3,6 +3,7 @@
 import { backoffMs } from "../../net/backoff";
 import { Signal, type Stop } from "../state/signal";
 import { type Arguments, merged } from "./merging";
+import type { Fault } from "./types";
 
 export type LiveMessage = Readonly<Record<string, unknown>> & { readonly channel: string };
 export type Phase = "off" | "connecting" | "on";
@@ -42,6 +43,8 @@ export class Live {
   readonly closed = new Signal<number | null>(null);
   /** Asked before each attempt but the first: whether there is still a session. */
   mayConnect: () => Promise<boolean> = () => Promise.resolve(true);
+  /** Called when the server does not let something be subscribed to. */
+  refused: (faults: readonly Fault[]) => void = () => undefined;
 
   private readonly listeners = new Map<string, Set<Listener>>();
   private readonly asked = new Map<string, string>();
@@ -152,7 +155,11 @@ export class Live {
       return;
     }
     if (typeof data !== "string") return;
-    const message = JSON.parse(data) as LiveMessage;
+    const message = JSON.parse(data) as LiveMessage & { faults?: readonly Fault[] };
+    if (message.faults) {
+      this.refused(message.faults);
+      return;
+    }
     for (const listener of this.listeners.get(message.channel) ?? []) {
       listener.hear(message as never);
     }

@@ -128,6 +128,8 @@ export interface DoorPlace {
   open: boolean;
 }
 
+export type Ring = readonly (readonly [x: number, y: number])[];
+
 /** The part of the world that never moves, and the doors. */
 export interface MapData {
   scene: string;
@@ -138,8 +140,12 @@ export interface MapData {
   walls: readonly (readonly [number, number, number, number, number, number])[];
   doors: readonly DoorPlace[];
   places: readonly { name: string; x: number; y: number; z: number }[];
-  /** For each storey the rings of its floor. */
-  outlines?: readonly (readonly (readonly (readonly [number, number])[])[])[];
+  /** For each storey the rings of what stands in the way on it. */
+  outlines?: readonly (readonly Ring[])[];
+  /** The kinds of the same: furniture, plant, water… */
+  kinds?: readonly (readonly string[])[];
+  /** For each storey the rings of what one walks on. */
+  floors?: readonly (readonly Ring[])[];
 }
 
 /** Values in the cells of a storey; rows go from south to north. */

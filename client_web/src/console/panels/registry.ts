@@ -52,7 +52,7 @@ export const PANELS: readonly PanelEntry[] = [
     right: "watch",
     tag: "esp-connection",
     area: "bottom",
-    open: true,
+    open: false,
     load: () => import("./connection"),
   },
   {

@@ -1,0 +1,199 @@
+/** The parts of the inspector: the band of reasons, costs, parameters, the search. */
+
+import { html, nothing, type TemplateResult } from "lit";
+import type { Cost, Trace, WhySpan } from "../net/types";
+import { reasonColour, reasonText } from "../state/reasons";
+import { styled } from "../style/styled";
+import { compare, valueText } from "./compare";
+import { countNodes } from "./tree";
+import type { WatchedActor } from "./watching";
+import { piecesOf, secondsText, shares, SHOWN_S, spanText, stopsOf } from "./why";
+
+const MOST_STOPS = 12;
+const PARTS: readonly (readonly [keyof Cost, string])[] = [
+  ["time", "time"],
+  ["risk", "risk"],
+  ["turn", "turning"],
+  ["wall", "near walls"],
+  ["hurry", "hurrying"],
+  ["keep_right", "keeping right"],
+  ["total", "in all"],
+];
+
+export function whyBand(
+  spans: readonly WhySpan[],
+  tick: number,
+  tickS: number,
+  dark: boolean,
+  hover: (agoS: number | null) => void,
+): TemplateResult {
+  const told = shares(spans)
+    .map(([reason, seconds]) => `${reasonText(reason)} ${secondsText(seconds)}`)
+    .join(", ");
+  return html`<section aria-labelledby="why">
+    <h3 id="why">Why, in the last ${SHOWN_S / 60} minutes</h3>
+    <div
+      class="band"
+      role="img"
+      aria-label=${told || "nothing is known yet"}
+      @pointermove=${(event: PointerEvent) => {
+        const box = (event.currentTarget as HTMLElement).getBoundingClientRect();
+        hover(SHOWN_S * (1 - (event.clientX - box.left) / box.width));
+      }}
+      @pointerleave=${() => {
+        hover(null);
+      }}
+    >
+      ${piecesOf(spans, tick, tickS).map(
+        ({ from, length, span }) =>
+          html`<span
+            title=${spanText(span)}
+            ${styled({
+              left: `${100 * from}%`,
+              width: `${100 * length}%`,
+              background: reasonColour(span.reason, dark),
+            })}
+          ></span>`,
+      )}
+    </div>
+    <ol class="stops" aria-label="What held it, the newest first">
+      ${stopsOf(spans, MOST_STOPS).map(
+        (span) =>
+          html`<li>
+            <span class="dot" ${styled({ background: reasonColour(span.reason, dark) })}></span>
+            ${spanText(span)}
+            <span class="soft">${secondsText(Math.max(0, (tick - span.to_tick) * tickS))} ago</span>
+          </li>`,
+      )}
+    </ol>
+  </section>`;
+}
+
+export function costTable({ now }: WatchedActor): TemplateResult | typeof nothing {
+  if (!now?.cost) return nothing;
+  const before = now.previous?.cost ?? null;
+  return html`<section aria-labelledby="cost">
+    <h3 id="cost">Cost of the path</h3>
+    <table>
+      <thead>
+        <tr>
+          <th scope="col">part</th>
+          <th scope="col">now</th>
+          ${before ? html`<th scope="col">the one before</th>` : nothing}
+        </tr>
+      </thead>
+      <tbody>
+        ${PARTS.map(
+          ([part, text]) =>
+            html`<tr>
+              <th scope="row">${text}</th>
+              <td>${now.cost?.[part].toFixed(2)}</td>
+              ${before ? html`<td>${before[part].toFixed(2)}</td>` : nothing}
+            </tr>`,
+        )}
+      </tbody>
+    </table>
+  </section>`;
+}
+
+/** Parameters of one actor, or of several beside each other. */
+export function parameterTable(actors: readonly WatchedActor[]): TemplateResult | typeof nothing {
+  const known = actors.filter(({ details }) => details !== null);
+  if (known.length === 0) return nothing;
+  const rows = compare(known.map(({ details }) => details?.parameters ?? {}));
+  const several = known.length > 1;
+  const shown = several ? rows.filter(({ differs }) => differs) : rows;
+  return html`<section aria-labelledby="parameters">
+    <h3 id="parameters">${several ? "Parameters that differ" : "Parameters"}</h3>
+    <table>
+      <thead>
+        <tr>
+          <th scope="col">name</th>
+          ${known.map(({ details }) => html`<th scope="col">${several ? details?.name : "value"}</th>`)}
+          ${several ? nothing : html`<th scope="col">from</th>`}
+        </tr>
+      </thead>
+      <tbody>
+        ${shown.map(
+          ({ name, values }) =>
+            html`<tr>
+              <th scope="row" class="name">${name.replaceAll("_", " ")}</th>
+              ${values.map(
+                (source) =>
+                  html`<td>
+                    ${valueText(source?.value)}
+                    ${several ? html`<span class="soft">${source?.source}</span>` : nothing}
+                  </td>`,
+              )}
+              ${
+                several
+                  ? nothing
+                  : html`<td class=${values[0]?.source === "default" ? "soft" : "set"}>
+                      ${values[0]?.source}
+                    </td>`
+              }
+            </tr>`,
+        )}
+      </tbody>
+    </table>
+    ${several && shown.length === 0 ? html`<p class="soft">None.</p>` : nothing}
+  </section>`;
+}
+
+export function searchPart(
+  trace: Trace | null,
+  slice: number | null,
+  ask: () => void,
+  show: (slice: number | null) => void,
+): TemplateResult {
+  return html`<section aria-labelledby="search">
+    <h3 id="search">How it searches</h3>
+    <div class="row">
+      <button @click=${ask}>${trace ? "Ask again" : "Show the search and the risk"}</button>
+      ${
+        trace
+          ? html`<button
+              @click=${() => {
+                show(null);
+              }}
+            >
+              Hide
+            </button>`
+          : nothing
+      }
+    </div>
+    ${trace ? traceFacts(trace, slice, show) : nothing}
+  </section>`;
+}
+
+function traceFacts(
+  trace: Trace,
+  slice: number | null,
+  show: (slice: number | null) => void,
+): TemplateResult {
+  const { expanded, open } = countNodes(trace);
+  const at = slice ?? 0;
+  return html`
+    <p>
+      ${trace.status.replaceAll("_", " ")}: ${trace.expansions} of ${trace.budget} expansions, tick
+      ${trace.tick}; on the map ${expanded} nodes from blue (first) to orange (last), ${open} left
+      open in grey.
+    </p>
+    ${trace.why ? html`<p>${trace.why}</p>` : nothing}
+    ${
+      trace.risk.length > 0
+        ? html`<label class="slice"
+            >Risk in ${trace.risk[at]?.t_s.toFixed(1)} s
+            <input
+              type="range"
+              min="0"
+              max=${trace.risk.length - 1}
+              .value=${String(at)}
+              @input=${(event: Event) => {
+                show(Number((event.target as HTMLInputElement).value));
+              }}
+          /></label>`
+        : nothing
+    }
+  `;
+}

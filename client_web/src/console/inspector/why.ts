@@ -1,0 +1,61 @@
+/** The last ten minutes of an actor: what it did and why, and who or what held it for how long. */
+
+import type { Blocker, WhySpan } from "../net/types";
+import { reasonText } from "../state/reasons";
+
+export const SHOWN_S = 600;
+/** Reasons for which an actor is held up. */
+const HELD: ReadonlySet<string> = new Set(["giving_way", "waiting", "replanning", "no_path"]);
+
+/** A part of the band, as parts of its whole length from the left. */
+export interface Piece {
+  from: number;
+  length: number;
+  span: WhySpan;
+}
+
+/** The pieces of the band that ends now, at `tick`. */
+export function piecesOf(spans: readonly WhySpan[], tick: number, tickS: number): Piece[] {
+  const ticks = SHOWN_S / tickS;
+  const begin = tick - ticks;
+  return spans
+    .map((span) => ({
+      from: Math.max(0, (span.from_tick - begin) / ticks),
+      to: Math.min(1, (span.to_tick - begin) / ticks),
+      span,
+    }))
+    .filter(({ from, to }) => to > from)
+    .map(({ from, to, span }) => ({ from, length: to - from, span }));
+}
+
+/** The spans in which something held the actor, the newest first. */
+export function stopsOf(spans: readonly WhySpan[], most: number): WhySpan[] {
+  return spans
+    .filter(({ reason }) => HELD.has(reason))
+    .slice(-most)
+    .reverse();
+}
+
+/** Who or what it is, and how far away. */
+export function blockerText({ kind, id, name, away_m }: Blocker): string {
+  const who = name ?? (id === null ? "" : String(id));
+  const what = kind === "actor" || kind === "person" ? who || kind : `${kind} ${who}`.trim();
+  return Number.isFinite(away_m) ? `${what}, ${away_m.toFixed(1)} m away` : what;
+}
+
+export function spanText({ reason, blocker, seconds }: WhySpan): string {
+  const held = blocker ? `, ${blockerText(blocker)}` : "";
+  return `${reasonText(reason)} for ${secondsText(seconds)}${held}`;
+}
+
+export function secondsText(seconds: number): string {
+  if (seconds < 60) return `${seconds < 10 ? seconds.toFixed(1) : Math.round(seconds)} s`;
+  return `${Math.floor(seconds / 60)} min ${Math.round(seconds % 60)} s`;
+}
+
+/** Seconds for each reason in the spans, the most first. */
+export function shares(spans: readonly WhySpan[]): readonly (readonly [string, number])[] {
+  const sums = new Map<string, number>();
+  for (const { reason, seconds } of spans) sums.set(reason, (sums.get(reason) ?? 0) + seconds);
+  return [...sums].sort((a, b) => b[1] - a[1]);
+}
