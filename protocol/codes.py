@@ -20,6 +20,7 @@ MAX_NAME_CHARS = 32
 MAX_CHAT_CHARS = 300
 MAX_TOKEN_CHARS = 64
 MAX_DOOR_CHARS = 64
+MAX_SECRET_CHARS = 256
 
 
 class ClientCode(IntEnum):
@@ -90,6 +91,9 @@ class ErrorCode(StrEnum):
     KEY_UNREAD = "key_unread"
     LEASE_ENDED = "lease_ended"
     MUTED = "muted"
+    ADMISSION_NEEDED = "admission_needed"
+    PASSWORD_NEEDED = "password_needed"  # noqa: S105
+    ADMISSION_REFUSED = "admission_refused"
 
 
 class CloseCode(IntEnum):
@@ -110,6 +114,9 @@ class CloseCode(IntEnum):
     SILENT = 4010
     NAME_RESERVED = 4011
     KICKED = 4012
+    ADMISSION_NEEDED = 4020
+    PASSWORD_NEEDED = 4021
+    ADMISSION_REFUSED = 4022
 
 
 class ByeCode(StrEnum):

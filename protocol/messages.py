@@ -12,6 +12,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstra
 from esplanade.protocol.codes import (
     MAX_CHAT_CHARS,
     MAX_DOOR_CHARS,
+    MAX_SECRET_CHARS,
     MAX_TOKEN_CHARS,
     ByeCode,
     ClientCode,
@@ -56,6 +57,14 @@ class FromServer(BaseModel):
 # --- client → server --------------------------------------------------------------------------
 
 
+class Admission(BaseModel):
+    """What lets a client in: to a closed world, with an operator's rights, or at a bot's rate."""
+
+    model_config = ConfigDict(strict=True, frozen=True, extra="forbid")
+    way: Literal["invitation", "password", "pass", "bot"]
+    secret: Annotated[str, Field(min_length=1, max_length=MAX_SECRET_CHARS)]
+
+
 class Hello(FromClient):
     """First message: who comes in. With a live resume token the same avatar is taken up again."""
 
@@ -68,6 +77,8 @@ class Hello(FromClient):
     the server takes the nearest free one; in others the place of arrival that is nearest."""
     operator: Token | None = None
     """The server's operator key; without the right key a client has no operator's rights."""
+    admission: Admission | None = None
+    """What lets the client in where not everybody comes in."""
     steps: bool = True
     """Whether steps are wanted; who draws no feet gets all places in snapshots instead."""
 

@@ -12,16 +12,20 @@ import structlog
 from esplanade.actors import Population
 from esplanade.planning import LayeredGrid
 from esplanade.planning.routes.storey_heights import reached_from, storeys_of
+from esplanade.server.accounts.kept import Kept
 from esplanade.server.assets import Assets
 from esplanade.server.console.console import Console
 from esplanade.server.console.gate import Gate
 from esplanade.server.crowding import warn_of_crowding
-from esplanade.server.keeping import Kept, keeping
+from esplanade.server.entrances import make_gate, people_url, private_certificate
+from esplanade.server.keeping import keeping
 from esplanade.server.link.local import LocalLink
 from esplanade.server.loading import LoadedScene, LoadingError, load_scene
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.delivery import Delivery
 from esplanade.server.net.descriptors import places_for_people
+from esplanade.server.net.door_commands import DoorCommands
+from esplanade.server.net.entrance import Entrance
 from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.hub import Hub
 from esplanade.server.net.listener import Listener, connections_wanted
@@ -32,7 +36,7 @@ from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.schedule import Schedule
 from esplanade.server.net.search_budget import SearchBudget
 from esplanade.server.net.ticker import Ticker
-from esplanade.server.net.tls import Tls
+from esplanade.server.net.tls import Tls, renewed
 from esplanade.server.populating import default_roster, names_of, populate_from
 from esplanade.server.rehearsal import rehearse, rehearse_walking
 from esplanade.server.settings import ServerSettings
@@ -52,6 +56,7 @@ class Running:
     world: Zone
     metrics: Metrics
     kept: Kept
+    gate: Gate
     ticking: "asyncio.Task[None]"
     """Runs as long as the world does; ends early only by a fault."""
 
@@ -100,12 +105,17 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     async with AsyncExitStack() as stack:
         thread = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="actors"))
         kept = await stack.enter_async_context(keeping(settings, metrics))
-        gate = Gate(kept.tokens, kept.audit, loop)
-        private = await stack.enter_async_context(private_port(settings, metrics, readiness, gate))
+        private_tls = private_certificate(settings, tls)
+        stack.enter_context(renewed(tls, private_tls))
+        gate = make_gate(settings, kept, loop, encrypted=private_tls is not None)
+        private = await stack.enter_async_context(
+            private_port(settings, metrics, readiness, gate, assets, private_tls)
+        )
         # This finds out now, not after a minute of compiling, whether the port can be had.
         sockets = await bound_sockets(settings.host, settings.port)
         for each in sockets:
             stack.callback(each.close)
+        gate.people_url = people_url(settings, sockets[0].getsockname()[1])
         population, world, storeys = await loop.run_in_executor(
             thread, build_world, loaded, settings
         )
@@ -125,6 +135,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             metrics,
             lambda: schedule.world_time(world.tick, loop.time()),
             {"storeys": storeys} if mesh is None else {"storeys": storeys, "mesh": mesh},
+            Entrance(settings, kept, metrics),
         )
         delivery = Delivery(audience, hub.sessions, settings.tick_rate, hub.stop_watching)
         link = LocalLink()
@@ -144,14 +155,11 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         )
         ticking = asyncio.create_task(ticker.run())
         guiding = asyncio.create_task(route_requests.run(hub.route_found))
-        renewing = asyncio.create_task(tls.renew()) if tls else None
         readiness.open()
         try:
-            yield Running(sockets[0].getsockname()[1], private, world, metrics, kept, ticking)
+            yield Running(sockets[0].getsockname()[1], private, world, metrics, kept, gate, ticking)
         finally:
             readiness.close()
-            if renewing:
-                renewing.cancel()
             guiding.cancel()
             await _stop(ticker, ticking, hub, gate)
 
@@ -258,6 +266,12 @@ def _console(world: Zone, hub: Hub, kept: Kept, loaded: LoadedScene, metrics: Me
     """Make the console, which all commands of operators go through."""
     overrides = None if loaded.roster is None else loaded.roster.overrides
     console = Console(world, hub.moderation, kept.store, kept.audit, overrides)
+    hub.by_commands = doors = DoorCommands(console, kept.directory.again)
+    metrics.gauge(
+        "door_commands_waiting",
+        "Doors that operators who walk about want moved, and that wait",
+        lambda: doors.waiting,
+    )
     metrics.gauge(
         "commands_in_turn",
         "Operators' lists of commands that are carried out or wait for their turn",

@@ -70,6 +70,15 @@ class Asset:
     headers: Mapping[str, str]
 
 
+@dataclass(frozen=True)
+class Found:
+    """What a client is answered with who asks for an asset."""
+
+    status: HTTPStatus
+    body: bytes
+    headers: Mapping[str, str]
+
+
 class Assets:
     """A table from URL path to asset. Nothing outside the table can be reached."""
 
@@ -107,21 +116,32 @@ class Assets:
         return answer
 
     def _found(self, request: Request) -> Response:
-        asset = self._table.get(unquote(path_of(request)))
-        if asset is None:
+        found = self.found(
+            unquote(path_of(request)),
+            request.headers.get_all("If-None-Match"),
+            request.headers.get_all("Accept-Encoding"),
+        )
+        if found is None:
             return respond(HTTPStatus.NOT_FOUND, b"there is nothing here\n")
-        if _is_known(asset.headers["ETag"], _listed(request, "If-None-Match")):
-            return respond(HTTPStatus.NOT_MODIFIED, b"", asset.headers)
-        if asset.compressed is not None and _accepts_gzip(_listed(request, "Accept-Encoding")):
+        return respond(found.status, found.body, found.headers)
+
+    def found(self, path: str, known: list[str], codings: list[str]) -> "Found | None":
+        """The asset at a path, for a client that sends these lines of `If-None-Match` and of
+        `Accept-Encoding`; None if there is none."""
+        asset = self._table.get(path)
+        if asset is None:
+            return None
+        if _is_known(asset.headers["ETag"], _listed(known)):
+            return Found(HTTPStatus.NOT_MODIFIED, b"", asset.headers)
+        if asset.compressed is not None and _accepts_gzip(_listed(codings)):
             headers = {**asset.headers, "Content-Encoding": "gzip"}
-            return respond(HTTPStatus.OK, asset.compressed, headers)
-        return respond(HTTPStatus.OK, asset.body, asset.headers)
+            return Found(HTTPStatus.OK, asset.compressed, headers)
+        return Found(HTTPStatus.OK, asset.body, asset.headers)
 
 
-def _listed(request: Request, name: str) -> list[str]:
+def _listed(lines: list[str]) -> list[str]:
     """The items of a header that holds a list, from all lines that have it."""
-    lines = ",".join(request.headers.get_all(name))
-    return [item.strip() for item in lines.split(",") if item.strip()]
+    return [item.strip() for item in ",".join(lines).split(",") if item.strip()]
 
 
 def _is_known(tag: str, known: list[str]) -> bool:

@@ -2,12 +2,14 @@
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from dataclasses import dataclass
 from typing import Final
 
 import structlog
 
+from esplanade.server.accounts.bots import Bots
 from esplanade.server.accounts.directory import Directory
+from esplanade.server.accounts.invitations import Invitations
+from esplanade.server.accounts.kept import Kept
 from esplanade.server.accounts.lockout import Lockout
 from esplanade.server.accounts.one_time import OneTime
 from esplanade.server.accounts.passwords import Passwords
@@ -24,18 +26,6 @@ WRITER: Final = "server"
 """The writer of the audit's rows that the server writes."""
 
 log = structlog.get_logger(__name__)
-
-
-@dataclass(frozen=True)
-class Kept:
-    """The store of a server, and all that stands on it."""
-
-    store: SqlStore
-    audit: AuditLog
-    directory: Directory
-    sessions: Sessions
-    tokens: Tokens
-    one_time: OneTime
 
 
 @asynccontextmanager
@@ -60,10 +50,14 @@ async def keeping(settings: ServerSettings, metrics: Metrics) -> AsyncIterator[K
             yield Kept(
                 store,
                 audit,
+                passwords,
+                lockout,
                 Directory(store, audit, passwords),
                 Sessions(store, audit, passwords, lockout),
                 Tokens(store, audit),
                 OneTime(store, audit, passwords),
+                Invitations(store, audit),
+                Bots(store, audit),
             )
         finally:
             passwords.close()

@@ -9,6 +9,7 @@ import structlog
 from esplanade.commandline import interrupts
 from esplanade.server import logs
 from esplanade.server.app import Running, running
+from esplanade.server.entrances import in_url, private_url
 from esplanade.server.log_writer import LogWriter
 from esplanade.server.settings import ServerSettings
 
@@ -63,6 +64,7 @@ async def _serve(settings: ServerSettings, writer: LogWriter) -> None:
         gc.collect()
         gc.freeze()  # the world stays: looking through it for garbage would only hold up ticks
         _announce(settings, server)
+        await _offer_first_link(settings, server)
         waiting = asyncio.create_task(stop.wait())
         await asyncio.wait([waiting, server.ticking], return_when=asyncio.FIRST_COMPLETED)
         waiting.cancel()
@@ -75,14 +77,19 @@ def _announce(settings: ServerSettings, server: Running) -> None:
     root = settings.root_path.rstrip("/")
     log.info(
         "open",
-        url=f"{scheme}://{_in_url(host)}:{server.port}{root and f'{root}/'}",
-        private=f"http://{_in_url(settings.private_host)}:{server.private_port}",
+        url=f"{scheme}://{in_url(host)}:{server.port}{root and f'{root}/'}",
+        private=private_url(settings, server.private_port),
         scene=server.world.scene.name,
         actors=settings.actors,
         seed=settings.seed,
     )
 
 
-def _in_url(host: str) -> str:
-    """A host as it stands in an address: one of IPv6 in brackets."""
-    return f"[{host}]" if ":" in host else host
+async def _offer_first_link(settings: ServerSettings, server: Running) -> None:
+    """Tell who reads the log how the first operator gets in, where there is none yet."""
+    token = await server.kept.one_time.first_link()
+    if token is not None:
+        log.info(
+            "no operator yet: this link makes the first one, once, within 10 minutes",
+            url=f"{private_url(settings, server.private_port)}/console#first={token}",
+        )

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping
+from ipaddress import ip_address
 from typing import Any, Final
 
 from esplanade.commandline.parser import Parser
@@ -115,11 +116,38 @@ _NETWORK: Final = {
         Text(),
         "",
     ),
+    "public_url": Setting(
+        "address at which people reach the world, for links that are given out; without it, that "
+        "of the port for people under the name by which the private port was reached",
+        Text(),
+        "",
+    ),
     "private_host": Setting(
-        "address of /healthz, /readyz and /metrics; keep it private", Text(), "127.0.0.1"
+        "address of the port for operators, /healthz, /readyz and /metrics; keep it private, or "
+        "encrypt it",
+        Text(),
+        "127.0.0.1",
     ),
     "private_port": Setting(
-        "port of /healthz, /readyz and /metrics; 0 takes a free one", _PORT, 8081
+        "port for operators, /healthz, /readyz and /metrics; 0 takes a free one", _PORT, 8081
+    ),
+    "private_tls_cert": Setting(
+        "certificate chain of the private port, PEM; where --private-host is none of this machine "
+        "alone, that of people's port takes its place",
+        InputFile(),
+    ),
+    "private_tls_key": Setting("private key of that certificate, PEM", InputFile()),
+    "private_names": Setting(
+        "names by which operators' browsers reach the private port, separated by commas; addresses "
+        "and localhost need not be given",
+        Text(),
+        "",
+    ),
+    "behind_proxy": Setting(
+        "a proxy in front, or the machine around a container, encrypts the private port and keeps "
+        "others from it",
+        Flag(),
+        default=False,
     ),
     "trusted_proxies": Setting(
         "addresses or networks of proxies in front, separated by commas; limits then go by the "
@@ -135,6 +163,24 @@ _NETWORK: Final = {
 }
 _LIMITS: Final = {
     "max_clients": Setting("most people in the world", Whole(1, 4000), 1000),
+    "closed": Setting(
+        "nobody comes in but by an operator's invitation or pass, a bot's token, the world's "
+        "password, or an identity that a proxy in front has checked",
+        Flag(),
+        default=False,
+    ),
+    "world_password": Setting(
+        "password of a closed world, or its argon2id hash; better set in the environment than "
+        "here; empty: there is none",
+        Text(),
+        "",
+    ),
+    "identity_header": Setting(
+        "header in which a proxy of --trusted-proxies names whoever it has let in, such as "
+        "X-Forwarded-User; it lets them into a closed world",
+        Text(),
+        "",
+    ),
     "hello_timeout_s": Setting(
         "a connection must say hello within this time", Number(0.0, 60.0, above=True), 5.0, "s"
     ),
@@ -195,6 +241,12 @@ _LIMITS: Final = {
         "a client that stays slow for this time is dropped", Number(0.0, 600.0, above=True), 5.0,
         "s",
     ),
+    "operator_commands": Setting(
+        "commands that one operator's account may send; a twelfth of this within a second",
+        Whole(1, 1_000_000),
+        60,
+        "per minute",
+    ),
     "operator_key": Setting(
         "who says this key may open and close doors and come in anywhere; better set in the "
         "environment than here; "
@@ -227,6 +279,7 @@ def check(given: Mapping[str, Any]) -> None:
         raise ValueError("walls: they belong to a crowd, but none is given")
     if bool(given.get("tls_cert")) != bool(given.get("tls_key")):
         raise ValueError("tls_cert and tls_key: give both of them, or none")
+    _check_ways_in(given)
     if not _ROOT_PATH.fullmatch(given.get("root_path", "")):
         raise ValueError(
             f"root_path: {given['root_path']!r} is no path such as /world, of letters, digits "
@@ -239,6 +292,37 @@ def check(given: Mapping[str, Any]) -> None:
     slow_bytes = given.get("slow_bytes", _LIMITS["slow_bytes"].default)
     if given.get("drop_bytes", _LIMITS["drop_bytes"].default) <= slow_bytes:
         raise ValueError("drop_bytes: must be greater than slow_bytes")
+
+
+def is_loopback(host: str) -> bool:
+    """Whether an address to listen at is reached from this machine alone."""
+    try:
+        return ip_address(host.partition("%")[0]).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+def _check_ways_in(given: Mapping[str, Any]) -> None:
+    if bool(given.get("private_tls_cert")) != bool(given.get("private_tls_key")):
+        raise ValueError("private_tls_cert and private_tls_key: give both of them, or none")
+    encrypted = given.get("private_tls_cert") or given.get("tls_cert")
+    host = given.get("private_host", "127.0.0.1")
+    if not (is_loopback(host) or encrypted or given.get("behind_proxy")):
+        raise ValueError(
+            f"private_host: at {host!r} operators' passwords and tokens would go over the network "
+            "without encryption; give --private-tls-cert and --private-tls-key, or --behind-proxy "
+            "if something in front encrypts"
+        )
+    if not given.get("closed") and (given.get("world_password") or given.get("identity_header")):
+        raise ValueError("world_password, identity_header: they belong to a world that is --closed")
+    header = given.get("identity_header", "")
+    if header and not given.get("trusted_proxies"):
+        raise ValueError("identity_header: say by --trusted-proxies whose word is taken")
+    if header and not re.fullmatch(r"[A-Za-z0-9-]+", header):
+        raise ValueError(f"identity_header: {header!r} is no name of a header")
+    url = given.get("public_url", "")
+    if url and not re.fullmatch(r"https?://[^\s#?/]+(/[^\s#?]*)?", url):
+        raise ValueError(f"public_url: {url!r} is no address such as https://world.example.org/")
 
 
 SETTINGS: Final = Settings(

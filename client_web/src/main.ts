@@ -22,12 +22,16 @@ const locks =
     crypto.getRandomValues(new Uint32Array(3)).join("-"),
   );
 const seats = new Seats(sessionStorage, localStorage, locks, Date.now);
-const { operator, at, rest } = readAddress(location.hash);
-// The key is kept in memory alone: not where others read it over a shoulder, nor in the history.
-if (operator !== null) {
+const { operator, admission, at, rest } = readAddress(location.hash);
+// Secrets are kept in memory alone: not where others read over a shoulder, nor in the history.
+if (operator !== null || admission !== null) {
   history.replaceState(history.state, "", location.pathname + location.search + rest);
 }
-const session = new Session(view, seats, socketAddress(document.baseURI), operator, at);
+const session = new Session(view, seats, socketAddress(document.baseURI), {
+  operator,
+  admission,
+  at,
+});
 
 listenToPointer(picture, {
   orbit: (yaw, pitch) => {

@@ -1,18 +1,21 @@
 """The accounts: added, changed, removed and listed, each change with its row in the audit."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from sqlalchemy import Connection, delete, func, insert, select, update
 
 from esplanade.server.accounts.identity import (
+    MACHINE,
     AccountError,
     Identity,
+    check_reach,
     checked_name,
     checked_role,
 )
 from esplanade.server.accounts.passwords import Passwords
+from esplanade.server.accounts.rights import ROLES, Right
 from esplanade.server.audit.log import AuditLog, now_us
 from esplanade.server.store.store import Result, Store
 from esplanade.server.store.tables import ACCOUNTS, SESSIONS, TOKENS
@@ -76,6 +79,7 @@ class Directory:
         """
         checked_name(name)
         checked_role(role)
+        check_reach(by, ROLES[role])
         kept = None if password is None else await self._passwords.hash(password)
         entry = by.entry("user_add", person=name, role=role, password=kept is not None)
 
@@ -99,6 +103,7 @@ class Directory:
         zone = self._store.zone
 
         def change(connection: Connection) -> None:
+            check_changeable(connection, zone, by, name, stays_admin=False)
             remove_account(connection, zone, name)
             self._audit.add(connection, by.entry("user_remove", person=name))
 
@@ -117,8 +122,13 @@ class Directory:
         """
         checked_role(role)
 
+        check_reach(by, ROLES[role])
+
         def change(connection: Connection) -> str:
-            before = role_of(connection, self._store.zone, name)
+            stays_admin = Right.ACCOUNTS in ROLES[role]
+            before = check_changeable(
+                connection, self._store.zone, by, name, stays_admin=stays_admin
+            )
             _set(connection, self._store.zone, name, role=role)
             entry = by.entry("user_role", person=name, before=before, after=role)
             self._audit.add(connection, entry)
@@ -140,7 +150,7 @@ class Directory:
 
         def change(connection: Connection) -> None:
             zone = self._store.zone
-            role_of(connection, zone, name)
+            check_reach(by, ROLES.get(role_of(connection, zone, name), frozenset()))
             _set(connection, zone, name, password_hash=kept)
             connection.execute(
                 delete(SESSIONS).where(SESSIONS.c.zone == zone, SESSIONS.c.account == name)
@@ -148,6 +158,22 @@ class Directory:
             self._audit.add(connection, by.entry("user_password", person=name))
 
         await self._store.write(change)
+
+    async def again(self, before: Identity) -> Identity | None:
+        """Return an identity with the role and rights that its account has now; None if there is
+        no such account any more.
+
+        Raises
+        ------
+        StoreError
+            The store cannot be read.
+        """
+        zone, name = self._store.zone, before.account
+        query = select(ACCOUNTS.c.role).where(ACCOUNTS.c.zone == zone, ACCOUNTS.c.name == name)
+        role = await self._store.read(lambda connection: connection.execute(query).scalar())
+        if role is None:
+            return None
+        return replace(before, role=role, rights=ROLES.get(role, frozenset()))
 
     async def list(self) -> list[Account]:
         """All accounts, by name.
@@ -198,8 +224,32 @@ def role_of(connection: Connection, zone: str, name: str) -> str:
     query = select(ACCOUNTS.c.role).where(ACCOUNTS.c.zone == zone, ACCOUNTS.c.name == name)
     found = connection.execute(query).scalar()
     if found is None:
-        raise AccountError(f"there is no account {name!r}")
+        raise AccountError(f"there is no account {name!r}", "unknown_account")
     return str(found)
+
+
+def check_changeable(
+    connection: Connection, zone: str, by: Identity, name: str, *, stays_admin: bool
+) -> str:
+    """The role of an account that may be removed, or get another role.
+
+    Raises
+    ------
+    AccountError
+        It has rights beyond those of the one who asks; or it is the last that may see to accounts,
+        and would no longer be. Whoever is on the machine itself may do that: they can make another.
+    """
+    role = role_of(connection, zone, name)
+    check_reach(by, ROLES.get(role, frozenset()))
+    admins = [known for known, rights in ROLES.items() if Right.ACCOUNTS in rights]
+    if role in admins and not stays_admin and by != MACHINE:
+        query = select(func.count()).where(
+            ACCOUNTS.c.zone == zone, ACCOUNTS.c.role.in_(admins), ACCOUNTS.c.name != name
+        )
+        if not connection.execute(query).scalar():
+            text = f"{name!r} is the last who may see to accounts; let another one first"
+            raise AccountError(text, "last_admin")
+    return role
 
 
 def insert_account(
@@ -214,7 +264,7 @@ def insert_account(
     """
     query = select(func.count()).where(ACCOUNTS.c.zone == zone)
     if connection.execute(query.where(ACCOUNTS.c.name == name)).scalar():
-        raise AccountError(f"there is an account {name!r} already")
+        raise AccountError(f"there is an account {name!r} already", "taken")
     if (connection.execute(query).scalar() or 0) >= MOST:
         raise AccountError(f"there are {MOST} accounts already; remove one first")
     values = {"zone": zone, "name": name, "role": role, "password_hash": kept}

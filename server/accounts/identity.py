@@ -6,7 +6,7 @@ import secrets
 from dataclasses import dataclass
 from typing import Final
 
-from esplanade.server.accounts.rights import ROLES, Rights
+from esplanade.server.accounts.rights import ROLES, Rights, as_text
 from esplanade.server.audit.entries import Entry
 
 _NAME: Final = re.compile(r"[a-z][a-z0-9._-]{0,31}")
@@ -16,7 +16,14 @@ SECRET_BYTES: Final = 32
 
 class AccountError(Exception):
     """A wish about accounts that cannot be fulfilled; nothing was changed, and the message says
-    why."""
+    why to people, a code and its arguments to programs."""
+
+    code = "account"
+
+    def __init__(self, text: str, code: str | None = None, **arguments: object) -> None:
+        super().__init__(text)
+        self.code = code or type(self).code
+        self.arguments = arguments
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,7 +71,8 @@ def checked_name(name: str) -> str:
     if not is_name(name):
         raise AccountError(
             f"{name!r} is no name of 1 to 32 small letters, digits and . _ - that begins with a "
-            "letter"
+            "letter",
+            "bad_name",
         )
     return name
 
@@ -78,7 +86,9 @@ def checked_role(role: str) -> str:
         There is none.
     """
     if role not in ROLES:
-        raise AccountError(f"{role!r} is no role; there are {', '.join(ROLES)}")
+        raise AccountError(
+            f"{role!r} is no role; there are {', '.join(ROLES)}", "no_role", roles=[*ROLES]
+        )
     return role
 
 
@@ -90,3 +100,18 @@ def new_secret(prefix: str = "") -> str:
 def digest_of(secret: str) -> str:
     """Return the SHA-256 digest of a secret in hexadecimal, which is kept in its place."""
     return hashlib.sha256(secret.encode("utf-8", "surrogatepass")).hexdigest()
+
+
+def check_reach(by: Identity, rights: Rights) -> None:
+    """Check that somebody gives to others, or takes from them, no right that is not their own: a
+    token for accounts alone is no way to become more than it is.
+
+    Raises
+    ------
+    AccountError
+        It is more than theirs.
+    """
+    beyond = rights - by.rights
+    if beyond:
+        text = f"this is about rights that you do not have: {as_text(beyond)}"
+        raise AccountError(text, "beyond_reach", rights=as_text(beyond).split())

@@ -68,6 +68,18 @@ class OneTime:
 
         return await self._store.write(change)
 
+    async def is_first(self) -> bool:
+        """Whether there is no account yet.
+
+        Raises
+        ------
+        StoreError
+            The store cannot be read.
+        """
+        return not await self._store.read(
+            lambda connection: _accounts(connection, self._store.zone)
+        )
+
     async def add_first(self, token: str, name: str, password: str, address: str) -> None:
         """Make the first account, an admin, with the token of the link.
 
@@ -86,14 +98,14 @@ class OneTime:
             return _find(connection, zone, token, _LINK, self._clock_us()) is not None
 
         if not await self._store.read(is_good):  # before anything dear is done for a stranger
-            raise AccountError(_NO_LINK)
+            raise AccountError(_NO_LINK, "link")
         kept = await self._passwords.hash(password)
 
         def change(connection: Connection) -> None:
             if _accounts(connection, zone):
-                raise AccountError("there is an account already: log in")
+                raise AccountError("there is an account already: log in", "link")
             if not self._take(connection, token, _LINK)[0]:
-                raise AccountError(_NO_LINK)
+                raise AccountError(_NO_LINK, "link")
             insert_account(connection, zone, name, "admin", kept, self._clock_us())
             entry = Entry(
                 command="user_add",

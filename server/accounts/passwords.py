@@ -22,6 +22,8 @@ WAITING: Final = 16
 class PasswordsBusyError(AccountError):
     """Too many passwords wait to be compared."""
 
+    code = "busy"
+
 
 class Passwords:
     """Hashes passwords and compares them, with the parameters of RFC 9106 for little memory.
@@ -45,7 +47,16 @@ class Passwords:
         PasswordsBusyError
             Too many wait.
         """
-        checked_password(password)
+        return await self.hash_any(checked_password(password))
+
+    async def hash_any(self, password: str) -> str:
+        """The hash of a password of any length, for one that is no account's.
+
+        Raises
+        ------
+        PasswordsBusyError
+            Too many wait.
+        """
         return await asyncio.wrap_future(self._submit(lambda: self._hash(password)))
 
     async def fits(self, password: str, kept: str | None) -> bool:
@@ -95,9 +106,11 @@ def checked_password(password: str) -> str:
         It is too short or too long.
     """
     if len(password) < SHORTEST:
-        raise AccountError(f"the password has fewer than {SHORTEST} characters")
+        text = f"the password has fewer than {SHORTEST} characters"
+        raise AccountError(text, "password_length", shortest=SHORTEST, longest=LONGEST)
     if len(password) > LONGEST:
-        raise AccountError(f"the password has more than {LONGEST} characters")
+        text = f"the password has more than {LONGEST} characters"
+        raise AccountError(text, "password_length", shortest=SHORTEST, longest=LONGEST)
     return password
 
 

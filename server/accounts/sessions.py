@@ -33,6 +33,8 @@ MOST: Final = 20
 class WrongPasswordError(AccountError):
     """Name and password do not belong together."""
 
+    code = "wrong_password"
+
 
 class Sessions:
     """Logs operators in and out. `log_in` is to be called on one event loop only."""
@@ -66,6 +68,22 @@ class Sessions:
         StoreError
             The store cannot be used.
         """
+        role, kept = await self._compare(name, password, address)
+        better = await self._passwords.hash(password) if self._is_outdated(kept) else None
+        return await self._begin(name, role, kept, better, address)
+
+    async def confirm(self, name: str, password: str, address: str) -> None:
+        """Compare the password of somebody who is logged in already, before it becomes another.
+
+        Raises
+        ------
+        LockedOutError, WrongPasswordError, AccountError, StoreError
+            As with `log_in`.
+        """
+        await self._compare(name, password, address)
+
+    async def _compare(self, name: str, password: str, address: str) -> tuple[str, str | None]:
+        """The role and the hash of an account whose password this is."""
         zone, counted = self._store.zone, name if is_name(name) else ""
         self._lockout.take(counted, address, self._clock_us() / 1e6)
         query = select(ACCOUNTS.c.role, ACCOUNTS.c.password_hash).where(
@@ -79,13 +97,15 @@ class Sessions:
             await self._audit.record(_refusal(name if account is not None else None, address))
             raise WrongPasswordError("name and password do not belong together")
         self._lockout.forgive(counted, address, self._clock_us() / 1e6)
-        better = await self._passwords.hash(password) if self._is_outdated(kept) else None
-        return await self._begin(name, account.role, kept, better, address)
+        return account.role, kept
 
-    async def identity(self, token: str, address: str | None = None) -> Identity | None:
+    async def identity(
+        self, token: str, address: str | None = None, *, used: bool = True
+    ) -> Identity | None:
         """Return the identity that the token of a session stands for; None once it has ended.
 
-        Role and rights are those that the account has now.
+        Role and rights are those that the account has now. Without `used` the session is only
+        looked at, and ends as if nothing had been asked.
 
         Raises
         ------
@@ -101,7 +121,7 @@ class Sessions:
         found = await self._store.read(lambda connection: connection.execute(query).first())
         if found is None:
             return None
-        if now - found.used_us >= NOTED_US:
+        if used and now - found.used_us >= NOTED_US:
             noted = (
                 update(SESSIONS)
                 .where(SESSIONS.c.zone == zone, SESSIONS.c.digest == digest)

@@ -10,6 +10,7 @@ from esplanade.server.accounts.directory import role_of
 from esplanade.server.accounts.identity import (
     AccountError,
     Identity,
+    check_reach,
     checked_name,
     digest_of,
     new_secret,
@@ -102,6 +103,7 @@ class Tokens:
         if surplus:
             raise AccountError(f"the role {role} does not have the right {as_text(surplus)}")
         granted = of_role if rights is None else rights
+        check_reach(by, granted)
         if not granted:
             raise AccountError("a token needs a right at least")
         _check_free(connection, zone, account, name)
@@ -141,7 +143,7 @@ class Tokens:
         chosen = (TOKENS.c.zone == zone, TOKENS.c.account == account, TOKENS.c.name == name)
 
         def change(connection: Connection) -> None:
-            role_of(connection, zone, account)
+            check_reach(by, ROLES.get(role_of(connection, zone, account), frozenset()))
             revoked = connection.execute(
                 update(TOKENS)
                 .where(*chosen, TOKENS.c.revoked_us.is_(None))
@@ -150,7 +152,7 @@ class Tokens:
             if not revoked.rowcount:
                 found = connection.execute(select(TOKENS.c.name).where(*chosen)).first()
                 why = "has no token" if found is None else "has revoked already its token"
-                raise AccountError(f"the account {account!r} {why} {name!r}")
+                raise AccountError(f"the account {account!r} {why} {name!r}", "unknown_token")
             self._audit.add(connection, by.entry("token_revoke", person=account, token=name))
 
         await self._store.write(change)
@@ -220,7 +222,8 @@ class Tokens:
 def _check_free(connection: Connection, zone: str, account: str, name: str) -> None:
     query = select(func.count()).where(TOKENS.c.zone == zone, TOKENS.c.account == account)
     if connection.execute(query.where(TOKENS.c.name == name)).scalar():
-        raise AccountError(f"the account {account!r} has had a token {name!r} already")
+        text = f"the account {account!r} has had a token {name!r} already"
+        raise AccountError(text, "taken")
     if (connection.execute(query).scalar() or 0) >= MOST:
         raise AccountError(f"the account {account!r} has had {MOST} tokens already")
 

@@ -1,27 +1,33 @@
 """The HTTP interface for operators: what is asked with GET, and commands."""
 
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Sequence
 from http import HTTPStatus
 from typing import Annotated, Any, Final
 
-from fastapi import APIRouter, FastAPI, Query, Request, Response
-from fastapi.exceptions import RequestValidationError
+from fastapi import APIRouter, FastAPI, Query, Request
 from fastapi.responses import JSONResponse
-from fastapi.routing import APIRoute
-from pydantic import BaseModel, Discriminator, Tag
-from starlette.exceptions import HTTPException
+from pydantic import Discriminator, Tag
 
-from esplanade.protocol.commands import NO_NUL, Answer, Command, CommandFault, Commands, full_id
-from esplanade.server.accounts.identity import Identity
+from esplanade.protocol.commands import NO_NUL, Answer, Command, Commands, full_id
 from esplanade.server.accounts.rights import Right
 from esplanade.server.audit.log import MOST_ROWS, Filter
 from esplanade.server.console import questions
-from esplanade.server.console.console import Console
-from esplanade.server.console.gate import Gate, status_of
+from esplanade.server.console.accounts_api import router as accounts
+from esplanade.server.console.admission_api import router as admission
+from esplanade.server.console.auth_api import router as auth
+from esplanade.server.console.gate import Gate
 from esplanade.server.console.refusals import RefusedError
-from esplanade.server.store.store import StoreError
-
-PREFIX: Final = "/api/v1"
+from esplanade.server.console.routing import (
+    PREFIX,
+    REFUSALS,
+    Guarded,
+    add_refusals,
+    asked,
+    caller,
+    gate_of,
+    may,
+    told,
+)
 
 
 def _one_or_list(body: object) -> str:
@@ -37,100 +43,67 @@ Moment = Annotated[int | None, Query(ge=0, lt=2**62, description="Microseconds s
 Word = Annotated[str | None, Query(max_length=200, pattern=NO_NUL)]
 
 
-class Refusal(BaseModel):
-    """Nothing was changed, and why."""
-
-    faults: list[CommandFault]
-
-
-_REFUSALS: Final[dict[int | str, dict[str, Any]]] = {
-    status: {"model": Refusal, "description": text}
-    for status, text in {
-        401: "There is no token, or it opens nothing.",
-        403: "The token does not have the right, or the header X-Esplanade is missing.",
-        404: "There is no such thing.",
-        409: "Somebody has changed the same since; both values are told.",
-        422: "Something in it cannot be; the path of each fault says where.",
-        503: "Too much waits, or the world is not ready.",
-    }.items()
-}
-
-
-class _Guarded(APIRoute):
-    """A path whose body is not looked at before it is known who sends it."""
-
-    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
-        handle = super().get_route_handler()
-
-        async def guarded(request: Request) -> Response:
-            request.state.identity = await _gate(request).identity(request)
-            return await handle(request)
-
-        return guarded
-
-
-router = APIRouter(prefix=PREFIX, route_class=_Guarded, responses=_REFUSALS)
+router = APIRouter(prefix=PREFIX, route_class=Guarded, responses=REFUSALS)
 
 
 def add_api(app: FastAPI, gate: Gate) -> None:
     """Let an application answer operators."""
     app.state.gate = gate
-    app.include_router(router)
-    app.add_exception_handler(RefusedError, _refused)
-    app.add_exception_handler(RequestValidationError, _invalid)
-    app.add_exception_handler(StoreError, _no_store)
-    app.add_exception_handler(HTTPException, _unread)
+    for each in (router, auth, accounts, admission):
+        app.include_router(each)
+    add_refusals(app)
 
 
 @router.get("/schema")
 async def schema(request: Request) -> dict[str, Any]:
     """The schemas of parameters, behaviours and commands, for forms."""
-    _may_watch(request)
+    may(request, Right.WATCH)
     return questions.schema()
 
 
 @router.get("/world")
 async def world(request: Request) -> dict[str, Any]:
     """The zone at this moment."""
-    return await _asked(request, questions.world)
+    return await asked(request, questions.world)
 
 
 @router.get("/actors")
 async def actors(request: Request) -> dict[str, Any]:
     """All actors at this moment."""
-    return await _asked(request, questions.actors)
+    return await asked(request, questions.actors)
 
 
 @router.get("/actors/{actor_id:path}")
 async def actor(request: Request, actor_id: str) -> dict[str, Any]:
     """One actor: what it does, what holds it, its parameters and where each comes from."""
     try:
-        return await _asked(request, lambda console: questions.actor(console, _id(actor_id)))
+        return await asked(request, lambda console: questions.actor(console, _id(actor_id)))
     except RefusedError as error:
         if error.faults[0].code != "unknown_actor":
             raise
-        return JSONResponse(_told(error), HTTPStatus.NOT_FOUND)  # type: ignore[return-value]
+        return JSONResponse(told(error), HTTPStatus.NOT_FOUND)  # type: ignore[return-value]
 
 
 @router.get("/people")
 async def people(request: Request) -> dict[str, Any]:
     """Everyone who is connected, at this moment."""
-    return await _asked(request, questions.people)
+    return await asked(request, questions.people)
 
 
 @router.get("/parameters")
 async def parameters(request: Request) -> dict[str, Any]:
     """All values that are set, by scope, and the usual ones."""
-    return await _asked(request, questions.parameters)
+    return await asked(request, questions.parameters)
 
 
 @router.post("/commands")
 async def commands(request: Request, body: OneOrList) -> Answer | list[Answer]:
     """Carry out a command, or a list of them in one tick: all of it, or nothing."""
-    identity: Identity = request.state.identity
+    identity = caller(request)
     given: Sequence[Command] = body if isinstance(body, list) else [body]
+    gate_of(request).brakes.take(identity, given)
     try:
-        answers = await _gate(request).call(lambda console: console.carry_out(identity, given))
+        answers = await gate_of(request).call(lambda console: console.carry_out(identity, given))
     except RefusedError as error:
         raise error if isinstance(body, list) else _of_the_one(error) from None
     return answers if isinstance(body, list) else answers[0]
@@ -150,7 +123,7 @@ async def audit(
     limit: Annotated[int, Query(ge=1, le=MOST_ROWS)] = 100,
 ) -> dict[str, Any]:
     """A page of the audit, the newest row first."""
-    _may(request, Right.AUDIT)
+    may(request, Right.AUDIT)
     wanted = Filter(
         since_us=since_us, until_us=until_us, account=account, command=command, target=target
     )
@@ -158,7 +131,7 @@ async def audit(
     if after is not None:
         at_us, _, row = after.partition("-")
         cursor = int(at_us), int(row)
-    page = await _gate(request).audit.page(wanted, after=cursor, limit=limit)
+    page = await gate_of(request).audit.page(wanted, after=cursor, limit=limit)
     rows = [{name: getattr(row, name) for name in _SHOWN} for row in page.rows]
     return {"rows": rows, "next": None if page.next is None else f"{page.next[0]}-{page.next[1]}"}
 
@@ -167,32 +140,6 @@ _SHOWN: Final = (
     *("id", "writer", "seq", "at_us", "tick", "command", "account", "role", "address", "target"),
     *("outcome", "refers_to", "body", "person", "note", "detail", "hash"),
 )
-
-
-def _gate(request: Request) -> Gate:
-    gate: Gate = request.app.state.gate
-    return gate
-
-
-def _may(request: Request, right: Right) -> None:
-    identity: Identity = request.state.identity
-    if right not in identity.rights:
-        text = f"this needs the right {right.value}, which you do not have"
-        raise RefusedError.of("forbidden", text, right=right.value)
-
-
-def _may_watch(request: Request) -> None:
-    _may(request, Right.WATCH)
-
-
-async def _asked(request: Request, question: Callable[[Console], dict[str, Any]]) -> dict[str, Any]:
-    """The answer to a question about the zone, asked between two ticks."""
-    _may_watch(request)
-
-    async def ask(console: Console) -> dict[str, Any]:
-        return await console.ask(lambda: question(console))
-
-    return await _gate(request).call(ask)
 
 
 def _id(text: str) -> str:
@@ -207,44 +154,3 @@ def _of_the_one(error: RefusedError) -> RefusedError:
             for fault in error.faults
         ]
     )
-
-
-def _told(refusal: RefusedError) -> dict[str, Any]:
-    return {"faults": [fault.model_dump(mode="json") for fault in refusal.faults]}
-
-
-async def _refused(_: Request, error: Exception) -> Response:
-    assert isinstance(error, RefusedError)  # noqa: S101 (it is registered for this class)
-    status = status_of(error)
-    headers = {"WWW-Authenticate": "Bearer"} if status == HTTPStatus.UNAUTHORIZED else None
-    return JSONResponse(_told(error), status, headers)
-
-
-async def _invalid(_: Request, error: Exception) -> Response:
-    assert isinstance(error, RequestValidationError)  # noqa: S101
-    faults = [
-        CommandFault(code="invalid", text=fault["msg"], path=_path(fault["loc"]))
-        for fault in error.errors()
-    ]
-    return JSONResponse(_told(RefusedError(faults)), HTTPStatus.UNPROCESSABLE_ENTITY)
-
-
-def _path(loc: Sequence[str | int]) -> list[str | int]:
-    """Return the place of a fault, without the words that pydantic adds for kinds it has tried."""
-    if loc[:1] != ("body",) or len(loc) < 2:
-        return list(loc)
-    _, kind, *rest = loc
-    if kind == "list":
-        return [*rest[:1], *rest[2:]]
-    return rest[1:] if kind == "one" else [kind, *rest]
-
-
-async def _unread(_: Request, error: Exception) -> Response:
-    assert isinstance(error, HTTPException)  # noqa: S101
-    refusal = RefusedError.of("invalid", str(error.detail))
-    return JSONResponse(_told(refusal), error.status_code, error.headers)
-
-
-async def _no_store(_: Request, error: Exception) -> Response:
-    refusal = RefusedError.of("busy", f"the store cannot be used: {error}")
-    return JSONResponse(_told(refusal), HTTPStatus.SERVICE_UNAVAILABLE)

@@ -1,62 +1,51 @@
-"""The gate between operators' requests and the zone: who asks, and the way to the zone's loop."""
+"""The gate between operators' requests and the zone: the way to the zone's event loop."""
 
 import asyncio
 from collections.abc import Callable, Coroutine
 from http import HTTPStatus
 from typing import Any, Final, TypeVar
 
-from fastapi import Request
-
-from esplanade.server.accounts.identity import Identity
-from esplanade.server.accounts.tokens import Tokens
-from esplanade.server.audit.log import AuditLog
+from esplanade.server.accounts.kept import Kept
+from esplanade.server.console.brakes import Brakes
+from esplanade.server.console.callers import Callers
 from esplanade.server.console.console import Console
 from esplanade.server.console.refusals import RefusedError
 
 Result = TypeVar("Result")
-HEADER: Final = "X-Esplanade"
-"""Pages of others cannot send this header: requests that change something must have it."""
-SAFE: Final = frozenset({"GET", "HEAD", "OPTIONS"})
 MOST_UNDER_WAY: Final = 64
 """Requests that may wait for the zone at once; more are refused."""
-_SCHEME: Final = "bearer "
+
+
+def _no_link(host: str) -> str:
+    raise RefusedError.of("busy", f"the port for people is not open yet, at {host} or elsewhere")
 
 
 class Gate:
     """Lets requests of the private port's thread through to the console in the zone's loop."""
 
-    def __init__(self, tokens: Tokens, audit: AuditLog, zone: asyncio.AbstractEventLoop) -> None:
-        self.audit = audit
+    def __init__(
+        self,
+        callers: Callers,
+        kept: Kept,
+        zone: asyncio.AbstractEventLoop,
+        *,
+        secure_cookies: bool = False,
+        brakes: Brakes,
+        people_url: Callable[[str], str] = _no_link,
+    ) -> None:
+        self.callers = callers
+        self.kept = kept
+        self.audit = kept.audit
+        self.brakes = brakes
+        self.secure_cookies = secure_cookies
+        """Whether browsers may send cookies of this port over encrypted connections only."""
+        self.people_url = people_url
+        """The address of people's port, as seen by whoever has reached this one by a name."""
         self.console: Console | None = None
         """None until the world is built, and again when it ends."""
-        self._tokens = tokens
         self._zone = zone
         self.under_way = 0
         """Requests that wait for the zone."""
-
-    async def identity(self, request: Request) -> Identity:
-        """Return the identity of the caller, by the token in `Authorization`.
-
-        Raises
-        ------
-        RefusedError
-            There is no token, or it opens nothing; or the header against forged requests is
-            missing.
-        StoreError
-            It cannot be looked up.
-        """
-        given = request.headers.get("authorization", "")
-        if not given.lower().startswith(_SCHEME):
-            text = "send a token of yours: Authorization: Bearer esplanade_…"
-            raise RefusedError.of("unauthorized", text)
-        address = request.client.host if request.client else None
-        identity = await self._tokens.identity(given[len(_SCHEME) :].strip(), address)
-        if identity is None:
-            raise RefusedError.of("unauthorized", "this token opens nothing, or no longer does")
-        if request.method not in SAFE and not request.headers.get(HEADER):
-            text = f"a request that changes something needs the header {HEADER}: 1"
-            raise RefusedError.of("header_missing", text)
-        return identity
 
     async def call(self, work: Callable[[Console], Coroutine[Any, Any, Result]]) -> Result:
         """Do some work on the zone's loop, and return its result.
@@ -88,6 +77,18 @@ STATUS: Final = {
     "unauthorized": HTTPStatus.UNAUTHORIZED,
     "forbidden": HTTPStatus.FORBIDDEN,
     "header_missing": HTTPStatus.FORBIDDEN,
+    "foreign_host": HTTPStatus.FORBIDDEN,
+    "foreign_origin": HTTPStatus.FORBIDDEN,
+    "beyond_reach": HTTPStatus.FORBIDDEN,
+    "link": HTTPStatus.FORBIDDEN,
+    "ambiguous": HTTPStatus.BAD_REQUEST,
+    "wrong_password": HTTPStatus.UNAUTHORIZED,
+    "locked": HTTPStatus.TOO_MANY_REQUESTS,
+    "too_many": HTTPStatus.TOO_MANY_REQUESTS,
+    "last_admin": HTTPStatus.CONFLICT,
+    "unknown_account": HTTPStatus.NOT_FOUND,
+    "unknown_token": HTTPStatus.NOT_FOUND,
+    "unknown": HTTPStatus.NOT_FOUND,
     "conflict": HTTPStatus.CONFLICT,
     "taken": HTTPStatus.CONFLICT,
     "superseded": HTTPStatus.CONFLICT,

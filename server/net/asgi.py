@@ -20,6 +20,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 from esplanade.server.assets import SECURITY_HEADERS
 from esplanade.server.net.connections import SHUT_S
 from esplanade.server.net.listening import bound_sockets
+from esplanade.server.net.tls import Tls
 
 MAX_CONNECTIONS: Final = 64
 """Further connections are cut off as they come."""
@@ -40,7 +41,7 @@ _WAITING_FOR_REQUEST: Final = (h11.IDLE, h11.SEND_BODY)
 
 
 @asynccontextmanager
-async def serving(app: Any, host: str, port: int) -> AsyncIterator[int]:
+async def serving(app: Any, host: str, port: int, tls: Tls | None = None) -> AsyncIterator[int]:
     """Serve an ASGI application and yield the port; afterwards nobody is connected any more.
 
     Raises
@@ -66,6 +67,7 @@ async def serving(app: Any, host: str, port: int) -> AsyncIterator[int]:
         server_header=False,
         headers=list(SECURITY_HEADERS.items()),
         backlog=_AT_ONCE,
+        ssl_context_factory=None if tls is None else lambda *_: tls.always_newest(),
         timeout_graceful_shutdown=round(2 * SHUT_S),
     )
     server = _Server(config)

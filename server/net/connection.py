@@ -64,6 +64,8 @@ class Connection(HeardConnection):
         """Whether an HTTP answer is on its way: what the client sends meanwhile is not parsed."""
         self.take_at_once: Callable[[bytes], bool] | None = None
         """Takes the payload of a frame that was read whole, or says that it is for the parser."""
+        self.identity: str | None = None
+        """What a trusted proxy calls the client, if it has checked that."""
         self._answered = False
         self._client_ended = False
         self._meter = meter
@@ -80,6 +82,10 @@ class Connection(HeardConnection):
     def client_address(self) -> str:
         """The key of the client's address, by which limits go (`addresses.address_key`)."""
         return self.place.address
+
+    def grant(self, message_rate: float) -> None:
+        """Let the client send so many messages a second from now on."""
+        self._meter.grant(message_rate, self.loop.time())
 
     async def asked(self) -> Request:
         """Wait for the request.

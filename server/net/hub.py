@@ -10,12 +10,14 @@ from esplanade.protocol import ByeCode, CloseCode, ErrorCode, ProtocolError
 from esplanade.protocol.messages import Bye, Hello, Move, SetDoor, WalkTo
 from esplanade.server.metrics import Metrics
 from esplanade.server.net import frames
+from esplanade.server.net.door_commands import DoorCommands
+from esplanade.server.net.entrance import Entrance
 from esplanade.server.net.fair_queue import Asker
 from esplanade.server.net.ground_work import DOOR_PAUSE_S
 from esplanade.server.net.leases import ANSWER_S, PING_S, Leases
 from esplanade.server.net.moderation import PeopleModeration
 from esplanade.server.net.names import Names, ReservedNameError
-from esplanade.server.net.operator_keys import OperatorKeys, TooManyKeysError
+from esplanade.server.net.operator_keys import SERVICE, OperatorKeys, TooManyKeysError
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.seats import Seat, Seats
 from esplanade.server.net.session import Session
@@ -65,7 +67,9 @@ class Hub:
         metrics: Metrics,
         server_time: Callable[[], float],
         derived: Mapping[str, object],
+        entrance: Entrance | None = None,
     ) -> None:
+        """Without an entrance nobody is asked what lets them in."""
         self.server_time = server_time
         self.sessions: dict[int, Session] = {}
         """Sessions that have been welcomed, by their avatar's id."""
@@ -82,6 +86,9 @@ class Hub:
         self.moderation = PeopleModeration(
             self.sessions, self._kick, lambda: asyncio.get_running_loop().time()
         )
+        self._entrance = entrance
+        self.by_commands: DoorCommands | None = None
+        """Carries out what operators want who have walked in by a pass."""
         self._next_ticket = 1
         self._joining: dict[int, tuple[Session, Hello]] = {}
         self._comings: list[Attach | Detach | Leave | Stand] = []
@@ -113,6 +120,28 @@ class Hub:
         )
 
     # --- requests of sessions -----------------------------------------------------------------
+
+    async def receive(self, session: Session, hello: Hello) -> None:
+        """Find out whether a client may come in, and admit it.
+
+        Raises
+        ------
+        ProtocolError
+            It may not, or there is no room.
+        """
+        if self._entrance is None:
+            self.admit(session, hello)
+            return
+        has_seat = bool(hello.resume) and self._seats.find(hello.resume or "") is not None
+        session.admitted = admitted = await self._entrance.check(
+            hello.admission, session.address, session.identity, has_seat
+        )
+        session.operator = admitted.operator
+        try:
+            self.admit(session, hello)
+        except ProtocolError:
+            await self._entrance.turn_away(admitted)
+            raise
 
     def admit(self, session: Session, hello: Hello) -> None:
         """Let a newcomer wait to join, or give a person who comes back their own avatar.
@@ -206,6 +235,9 @@ class Hub:
         elif wish.name not in self._world.doors.states():
             fault = ErrorCode.INVALID, f"set_door: the scene has no door {wish.name!r}"
         else:
+            if self.by_commands and session.operator and session.operator.via == "pass":
+                self.by_commands.ask(session, wish)
+                return
             now = asyncio.get_running_loop().time()
             if now >= self._door_lines.get(wish.name, now):
                 self._door_lines[wish.name] = now + DOOR_PAUSE_S
@@ -223,6 +255,8 @@ class Hub:
 
     def depart(self, session: Session, comes_back: bool) -> None:
         """Let go of a session that has ended; its avatar waits if the person may come back."""
+        if self._entrance is not None:
+            self._entrance.end(session.admitted)
         if self._joining.pop(session.ticket, None) is not None:
             self._names.give_back(session.name)
         if session.avatar_id is None:
@@ -277,6 +311,7 @@ class Hub:
                 continue
             session, _ = self._joining.pop(ticket)
             session.token = self._seats.issue(avatar_id, session.name, session.address, session)
+            self._seats.walks_in(avatar_id, session.operator)
             session.avatar_id = avatar_id
             self._bind(session, avatar_id, resumed=False)
         for ticket, avatar_id in frame.attached:
@@ -318,7 +353,8 @@ class Hub:
     def _check_key(self, session: Session, key: str | None) -> None:
         now = asyncio.get_running_loop().time()
         try:
-            session.is_operator = self._operator_keys.opens(key, session.address, now)
+            if self._operator_keys.opens(key, session.address, now):
+                session.operator = session.operator or SERVICE
         except TooManyKeysError as error:
             session.fault_at_welcome = ProtocolError(ErrorCode.KEY_UNREAD, str(error), None)
 
@@ -354,6 +390,8 @@ class Hub:
             farewell = frames.message(Bye(reason=ByeCode.REPLACED, text=text))
             before.dismiss(farewell, CloseCode.REPLACED, ByeCode.REPLACED.value)
         session.avatar_id, session.name = seat.avatar_id, seat.name
+        self._seats.walks_in(seat.avatar_id, session.operator)
+        session.operator = session.operator or seat.operator
         session.token = self._seats.renew(seat, token)
         session.ticket = self._next_ticket
         self._next_ticket += 1

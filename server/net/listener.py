@@ -21,6 +21,7 @@ from esplanade.server.metrics import Metrics
 from esplanade.server.net.address_limits import AddressBounds, AddressLimits
 from esplanade.server.net.addresses import TrustedProxies
 from esplanade.server.net.answers import Answers, busy
+from esplanade.server.net.checked_identities import CheckedIdentities
 from esplanade.server.net.connection import Connection
 from esplanade.server.net.connections import Connections, Place
 from esplanade.server.net.door import Door
@@ -71,10 +72,12 @@ class Listener:
         self._limits = AddressLimits(AddressBounds.of(settings))
         self._answers = Answers(settings.address_bytes, settings.answer_bytes, self._refusals)
         self._root = RootPath(settings.root_path)
+        proxies = TrustedProxies(settings.trusted_proxies)
+        self._identities = CheckedIdentities(settings.identity_header, proxies)
         self._connections = Connections(
             places,
             self._limits,
-            TrustedProxies(settings.trusted_proxies),
+            proxies,
             self._refusals,
         )
         # Nothing is kept of what the library logs of each connection: port scanners break off many.
@@ -174,6 +177,7 @@ class Listener:
             )
         if connection.place.attribute(request.headers.get_all("X-Forwarded-For")) is not None:
             return busy("too many connections from your address\n")
+        connection.identity = self._identities.of(connection.place.peer, request)
         within = self._root.enter(request)
         if isinstance(within, Response):
             return within

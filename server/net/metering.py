@@ -81,16 +81,20 @@ class Meter:
     """
 
     def __init__(self, message_rate: float, now: float) -> None:
-        rate = message_rate + CONTROL_RATE
-        self._frames = TokenBucket(rate, 2.0 * rate, now)
-        byte_rate = rate * MAX_CLIENT_FRAME_BYTES
-        self._bytes = TokenBucket(byte_rate, 2.0 * byte_rate + MAX_FRAME_BYTES, now)
+        self.grant(message_rate, now)
         self._walk = FrameWalk()
         self._in_request = True
         self._request_bytes = 0
         self._tail = b""
         self.began = 0
         """Frames that began in the last chunk."""
+
+    def grant(self, message_rate: float, now: float) -> None:
+        """Charge by another rate from now on, with all credit that it gives."""
+        rate = message_rate + CONTROL_RATE
+        self._frames = TokenBucket(rate, 2.0 * rate, now)
+        byte_rate = rate * MAX_CLIENT_FRAME_BYTES
+        self._bytes = TokenBucket(byte_rate, 2.0 * byte_rate + MAX_FRAME_BYTES, now)
 
     @property
     def within_frame(self) -> bool:

@@ -7,6 +7,8 @@ from typing import Final
 
 import structlog
 
+from esplanade.server.accounts.identity import Identity
+from esplanade.server.accounts.rights import Right
 from esplanade.server.metrics import Metrics
 
 WRONG_KEYS: Final = 5
@@ -15,6 +17,9 @@ WRONG_KEYS: Final = 5
 PERIOD_S: Final = 60.0
 MAX_ADDRESSES: Final = 4096
 """Addresses of which wrong keys are remembered; the one that was wrong longest ago goes first."""
+
+SERVICE: Final = Identity(account="key", role="doors", rights=frozenset({Right.DOORS}), via="key")
+"""Whoever says the key: a service account that moves doors, until all operators have accounts."""
 
 log = structlog.get_logger(__name__)
 

@@ -15,11 +15,16 @@ from typing import Final
 from fastapi import FastAPI, Request, Response
 from fastapi.responses import PlainTextResponse
 
-from esplanade.server.console.api import PREFIX, add_api
+from esplanade.server.assets import Assets
+from esplanade.server.console.api import add_api
 from esplanade.server.console.gate import Gate
+from esplanade.server.console.pages import add_pages
+from esplanade.server.console.refusals import RefusedError
+from esplanade.server.console.routing import PREFIX, answer_to
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.asgi import MAX_BODY_BYTES, serving
 from esplanade.server.net.readiness import Readiness
+from esplanade.server.net.tls import Tls
 from esplanade.server.settings import ServerSettings
 
 METRICS_TYPE: Final = "text/plain; version=0.0.4; charset=utf-8"
@@ -30,7 +35,12 @@ SAMPLE_LIMIT_S: Final = 1.0
 
 @asynccontextmanager
 async def private_port(
-    settings: ServerSettings, metrics: Metrics, readiness: Readiness, gate: Gate
+    settings: ServerSettings,
+    metrics: Metrics,
+    readiness: Readiness,
+    gate: Gate,
+    assets: Assets,
+    tls: Tls | None = None,
 ) -> AsyncIterator[int]:
     """Listen for operators, and yield the number of the port.
 
@@ -46,10 +56,20 @@ async def private_port(
         "Requests of operators that wait for the world",
         lambda: gate.under_way,
     )
+    metrics.total(
+        "commands_braked",
+        "Operators' commands, or lists of them, that came too soon",
+        lambda: gate.brakes.refused,
+    )
+    metrics.total(
+        "origins_refused",
+        "Requests of operators that were refused for their page or the name of the port",
+        lambda: gate.callers.origins.refused,
+    )
     loop = asyncio.get_running_loop()
-    app = operators_api(Figures(metrics, loop), readiness, gate)
+    app = operators_api(Figures(metrics, loop), readiness, gate, assets)
     opened: Future[tuple[int, Callable[[], object]]] = Future()
-    serve = partial(_serve, app, settings.private_host, settings.private_port, opened)
+    serve = partial(_serve, app, settings.private_host, settings.private_port, opened, tls)
     with ThreadPoolExecutor(1, thread_name_prefix="private") as thread:
         running = loop.run_in_executor(thread, lambda: asyncio.run(serve()))
         port, stop = await asyncio.wrap_future(opened)
@@ -61,12 +81,16 @@ async def private_port(
 
 
 async def _serve(
-    app: FastAPI, host: str, port: int, opened: "Future[tuple[int, Callable[[], object]]]"
+    app: FastAPI,
+    host: str,
+    port: int,
+    opened: "Future[tuple[int, Callable[[], object]]]",
+    tls: Tls | None,
 ) -> None:
     """Serve until stopped; `opened` is given the number of the port and what stops it."""
     stopping = asyncio.Event()
     try:
-        async with serving(app, host, port) as number:
+        async with serving(app, host, port, tls) as number:
             stop = partial(asyncio.get_running_loop().call_soon_threadsafe, stopping.set)
             opened.set_result((number, stop))
             await stopping.wait()
@@ -106,8 +130,8 @@ class Figures:
             asked.set_result(None)
 
 
-def operators_api(figures: Figures, readiness: Readiness, gate: Gate) -> FastAPI:
-    """The application behind the private port: /healthz, /readyz, /metrics, and operators' API."""
+def operators_api(figures: Figures, readiness: Readiness, gate: Gate, assets: Assets) -> FastAPI:
+    """The application behind the private port: /healthz, /readyz, /metrics, /console, the API."""
     app = FastAPI(
         title="Esplanade",
         version="1",
@@ -135,6 +159,7 @@ def operators_api(figures: Figures, readiness: Readiness, gate: Gate) -> FastAPI
     app.add_route("/healthz", alive)
     app.add_route("/readyz", is_ready)
     app.add_route("/metrics", exposition)
+    add_pages(app, assets)
     add_api(app, gate)
     return app
 
@@ -142,6 +167,8 @@ def operators_api(figures: Figures, readiness: Readiness, gate: Gate) -> FastAPI
 _UNCACHED: Final = {"Cache-Control": "no-cache"}
 
 
-async def _nothing_here(_: Request, __: Exception) -> Response:
-    paths = f"/healthz, /readyz, /metrics, /openapi.json, {PREFIX}/…\n"
+async def _nothing_here(request: Request, __: Exception) -> Response:
+    if request.url.path.startswith(f"{PREFIX}/"):
+        return answer_to(RefusedError.of("unknown", "there is nothing at this path"))
+    paths = f"/console, /healthz, /readyz, /metrics, /openapi.json, {PREFIX}/…\n"
     return PlainTextResponse(paths, HTTPStatus.NOT_FOUND, _UNCACHED)

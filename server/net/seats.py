@@ -6,6 +6,8 @@ from collections import Counter, OrderedDict
 from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
+from esplanade.server.accounts.identity import Identity
+
 Occupant = TypeVar("Occupant")
 
 
@@ -20,6 +22,8 @@ class Seat(Generic[Occupant]):
     occupant: Occupant | None
     digests: list[bytes] = field(repr=False)
     """Hashes of the tokens that take the seat: the newest is the last, before it at most one."""
+    operator: Identity | None = None
+    """The operator who has walked in by a pass, and comes back as one."""
 
 
 class Seats(Generic[Occupant]):
@@ -46,6 +50,11 @@ class Seats(Generic[Occupant]):
         seat = Seat(avatar_id, name, address, occupant, [])
         self._by_avatar[avatar_id] = seat
         return self._add_token(seat)
+
+    def walks_in(self, avatar_id: int, operator: Identity | None) -> None:
+        """Note that a seat is an operator's, who came by a pass; a key is sent again each time."""
+        if operator is not None and operator.via == "pass":
+            self._by_avatar[avatar_id].operator = operator
 
     def find(self, token: str) -> Seat[Occupant] | None:
         return self._by_digest.get(_digest(token))

@@ -30,9 +30,12 @@ from esplanade.protocol.messages import (
     WalkTo,
     Watch,
 )
+from esplanade.server.accounts.identity import Identity
+from esplanade.server.accounts.rights import Right
 from esplanade.server.metrics import Metrics
 from esplanade.server.net import frames
 from esplanade.server.net.connection import CLOSE_S, Connection
+from esplanade.server.net.entrance import Admitted
 from esplanade.server.net.leases import Lease
 from esplanade.server.net.limits import TokenBucket
 from esplanade.server.net.outbox import Outbox, SlowPolicy
@@ -55,7 +58,7 @@ class SessionRequests(Protocol):
     def server_time(self) -> Callable[[], float]:
         """Returns the seconds of the world's clock."""
 
-    def admit(self, session: "Session", hello: Hello) -> None:
+    async def receive(self, session: "Session", hello: Hello) -> None:
         """Give the person a place in the world, or raise ProtocolError."""
 
     def move(self, session: "Session", wish: Move | WalkTo) -> None:
@@ -104,7 +107,10 @@ class Session:
         """The version that the client speaks, once it has said hello."""
         self.wants_steps = True
         self.watching: int | None = None
-        self.is_operator = False
+        self.operator: Identity | None = None
+        """The operator who has walked in, with the rights from then."""
+        self.admitted = Admitted()
+        """What the client was let in by."""
         self.fault_at_welcome: ProtocolError | None = None
         """The fault of a hello that lets the client in all the same; it is told of it then."""
         self.unconfirmed = False
@@ -116,6 +122,16 @@ class Session:
         self._hello_timeout_s = settings.hello_timeout_s
         self._lines = TokenBucket(settings.chat_rate, CHAT_BURST, now)
         self._dismissal: asyncio.Task[None] | None = None
+
+    @property
+    def is_operator(self) -> bool:
+        """Whether the client may move doors, and come in anywhere."""
+        return self.operator is not None and Right.DOORS in self.operator.rights
+
+    @property
+    def identity(self) -> str | None:
+        """The name that a trusted proxy has for the client; None without one."""
+        return self._connection.identity
 
     async def run(self) -> None:
         """Serve the connection from its hello to its end."""
@@ -168,7 +184,9 @@ class Session:
         hello = await self._hello()
         self._connection.place.settle()
         self.name, self.wants_steps = hello.name, hello.steps
-        self._hub.admit(self, hello)
+        await self._hub.receive(self, hello)
+        if self.admitted.bot is not None:
+            self._connection.grant(self.admitted.bot.message_rate)
 
     async def _hello(self) -> Hello:
         try:

@@ -2,6 +2,8 @@
 
 import asyncio
 import ssl
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Final, NoReturn
 
@@ -43,6 +45,16 @@ class Tls:
         self.context = _context(certificate, key)
         """For the next connection."""
 
+    def always_newest(self) -> ssl.SSLContext:
+        """A context for a server that takes only one, whose handshakes use the newest pair."""
+        context = _context(self._certificate, self._key)
+
+        def take_newest(handshake: ssl.SSLObject, _: str | None, __: ssl.SSLContext) -> None:
+            handshake.context = self.context
+
+        context.sni_callback = take_newest
+        return context
+
     async def renew(self) -> None:
         """Take the files anew whenever they change, until cancelled."""
         while True:
@@ -66,6 +78,17 @@ class Tls:
     def _stamps(self) -> list[tuple[int, int, int] | None]:
         """Return stamps that differ when a file was written or replaced, also behind a link."""
         return [_stamp(path) for path in (self._certificate, self._key)]
+
+
+@contextmanager
+def renewed(*pairs: Tls | None) -> Iterator[None]:
+    """Take certificates anew whenever they change; call it on a running event loop."""
+    tasks = [asyncio.create_task(each.renew()) for each in {*pairs} if each is not None]
+    try:
+        yield
+    finally:
+        for task in tasks:
+            task.cancel()
 
 
 def _stamp(path: Path) -> tuple[int, int, int] | None:

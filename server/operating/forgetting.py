@@ -7,14 +7,14 @@ within one write of the store, so that a person is forgotten everywhere or nowhe
 from collections.abc import Callable, Mapping
 from typing import Final
 
-from sqlalchemy import Connection, delete, func, select
+from sqlalchemy import Connection, delete, func, select, update
 
 from esplanade.server.accounts.identity import Identity
 from esplanade.server.audit.erasing import Erased, erase
 from esplanade.server.audit.log import AuditLog
 from esplanade.server.audit.verifying import FORGET
 from esplanade.server.store.store import Store
-from esplanade.server.store.tables import ACCOUNTS
+from esplanade.server.store.tables import ACCOUNTS, BOTS, INVITATIONS
 
 Forgetter = Callable[[Connection, str, str], int]
 """Forgets in a zone a person of this name, within a write of the store; returns how many rows were
@@ -29,7 +29,23 @@ def _forget_account(connection: Connection, zone: str, person: str) -> int:
     return count
 
 
-FORGETTERS: Final[Mapping[str, Forgetter]] = {"accounts": _forget_account}
+def _forget_invitations(connection: Connection, zone: str, person: str) -> int:
+    of_person = update(INVITATIONS).where(INVITATIONS.c.zone == zone)
+    labels = connection.execute(of_person.where(INVITATIONS.c.label == person).values(label=None))
+    made = connection.execute(of_person.where(INVITATIONS.c.account == person).values(account=None))
+    return labels.rowcount + made.rowcount
+
+
+def _forget_bots(connection: Connection, zone: str, person: str) -> int:
+    made = update(BOTS).where(BOTS.c.zone == zone, BOTS.c.account == person).values(account=None)
+    return connection.execute(made).rowcount
+
+
+FORGETTERS: Final[Mapping[str, Forgetter]] = {
+    "accounts": _forget_account,
+    "invitations": _forget_invitations,
+    "bots": _forget_bots,
+}
 """Forgetters by the name of what each forgets in; the audit comes last and is not among them."""
 
 

@@ -19,7 +19,7 @@ from sqlalchemy import (
     UniqueConstraint,
 )
 
-REVISION: Final = "0001"
+REVISION: Final = "0002"
 """The newest migration: what the tables below are after it."""
 
 METADATA: Final = MetaData()
@@ -86,6 +86,38 @@ ONE_TIME: Final = Table(
     Column("expires_us", BigInteger, nullable=False),
 )
 """Tokens that are used once: the link of the first start, passes to a seat."""
+
+INVITATIONS: Final = Table(
+    "invitations",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("id", String(16), primary_key=True),
+    Column("digest", String(64), nullable=False),
+    Column("label", Text),
+    Column("account", String(64)),
+    Column("uses", BigInteger, nullable=False),
+    Column("used", BigInteger, nullable=False),
+    Column("created_us", BigInteger, nullable=False),
+    Column("expires_us", BigInteger, nullable=False),
+    Column("revoked_us", BigInteger),
+    UniqueConstraint("zone", "digest", name="invitations_by_digest"),
+)
+"""Invitations to a closed world, by the digest of their secret; `account` has made them."""
+
+BOTS: Final = Table(
+    "bots",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("name", String(64), primary_key=True),
+    Column("digest", String(64), nullable=False),
+    Column("account", String(64)),
+    Column("message_rate", BigInteger, nullable=False),
+    Column("connections", BigInteger, nullable=False),
+    Column("created_us", BigInteger, nullable=False),
+    Column("expires_us", BigInteger, nullable=False),
+    UniqueConstraint("zone", "digest", name="bots_by_digest"),
+)
+"""Tokens by which bots come in, each with a rate of its own; one that is removed opens nothing."""
 
 AUDIT: Final = Table(
     "audit",

@@ -25,6 +25,7 @@ from esplanade.protocol import (
 )
 from esplanade.protocol.codes import MAX_CHAT_CHARS, MAX_NAME_CHARS
 from esplanade.protocol.messages import (
+    Admission,
     Blocker,
     Bye,
     Census,
@@ -61,6 +62,7 @@ ORIGIN: Final = (-12.5, 3.25)
 
 FROM_CLIENT: Final[tuple[FromClient, ...]] = (
     Hello(name="Ann", version=VERSION, resume=None, at=None),
+    Hello(name="Ann", version=VERSION, admission=Admission(way="invitation", secret="token")),
     Hello(name="Zoë ✿", version=VERSION, resume="token", at=None, operator="key"),
     Move(seq=1, direction=-2.5, speed=1.6),
     WalkTo(seq=4294967295, x=-3.25, y=40.5, z=3.5),

@@ -49,6 +49,7 @@ def serving_assets(room_file: Path) -> ServingAssets:
             "private_port": 0,
             "actors": 0,
             "operator_key": PLACING_KEY,
+            "operator_commands": 1_000_000,
         }
         async with running(ServerSettings(**{**values, **changes}), assets) as server:
             yield server

@@ -58,6 +58,13 @@ def test_settings_are_frozen() -> None:
         ({"tls_cert": Path("a")}, "give both of them, or none"),
         ({"tls_key": Path("a")}, "give both of them, or none"),
         ({"root_path": "world"}, "'world' is no path such as /world"),
+        ({"world_password": "x"}, "they belong to a world that is --closed"),
+        ({"closed": True, "identity_header": "X-User"}, "say by --trusted-proxies"),
+        (
+            {"closed": True, "identity_header": "X User", "trusted_proxies": "::1"},
+            "is no name of a header",
+        ),
+        ({"public_url": "world.example.org"}, "is no address such as https://"),
         ({"root_path": "/a/../b"}, "is no path such as"),
         ({"root_path": "/a b"}, "is no path such as"),
         ({"port": -1}, "greater than or equal to 0"),

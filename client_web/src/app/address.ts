@@ -1,5 +1,6 @@
 /** The wishes in the page's address behind its #, which is in no request and no server's log. */
 
+import type { Admission } from "../net/messages";
 import type { Place } from "../render/picking";
 
 export interface AddressWish {
@@ -7,20 +8,35 @@ export interface AddressWish {
   operator: string | null;
   /** A place to look at and to be asked to walk to. */
   at: Place | null;
-  /** The part that may stay in the address: everything but the key. */
+  /** What lets this person in: an operator's pass or an invitation. */
+  admission: Admission | null;
+  /** The part that may stay in the address: everything that is not secret. */
   rest: string;
 }
 
-/** Read `#operator=KEY&at=x,y,z`; z may be left out. */
+const SECRETS = ["operator=", "pass=", "invitation="];
+
+/** Read `#operator=KEY&at=x,y,z`, with `pass=` or `invitation=`; z may be left out. */
 export function readAddress(hash: string): AddressWish {
   const parts = hash.replace(/^#/, "").split("&");
-  const rest = parts.filter((part) => part !== "" && !part.startsWith("operator="));
+  const rest = parts.filter(
+    (part) => part !== "" && !SECRETS.some((secret) => part.startsWith(secret)),
+  );
   const wishes = new URLSearchParams(hash.slice(1));
   return {
     operator: wishes.get("operator"),
+    admission: readAdmission(wishes),
     at: readPlace(wishes.get("at")),
     rest: rest.length > 0 ? `#${rest.join("&")}` : "",
   };
+}
+
+function readAdmission(wishes: URLSearchParams): Admission | null {
+  for (const way of ["pass", "invitation"] as const) {
+    const secret = wishes.get(way);
+    if (secret !== null && secret !== "" && secret.length <= 256) return { way, secret };
+  }
+  return null;
 }
 
 function readPlace(text: string | null): Place | null {

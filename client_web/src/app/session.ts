@@ -5,7 +5,7 @@ import { unpackSteps } from "../net/steps";
 import { fetchTriangles } from "../net/triangles";
 import { Connection, type ConnectionState } from "../net/connection";
 import type { Seats } from "../net/seats";
-import type { ServerMessage, Welcome } from "../net/messages";
+import type { Admission, ServerMessage, Welcome } from "../net/messages";
 import type { Place } from "../render/picking";
 import { ChatPanel } from "../ui/chat";
 import { byId } from "../ui/dom";
@@ -17,6 +17,7 @@ import { PeopleList } from "../ui/people";
 import { PlanPanel } from "../ui/plan";
 import { StatusChip } from "../ui/status";
 import { World } from "../world/world";
+import type { AddressWish } from "./address";
 import { Cost } from "./cost";
 import type { View } from "./view";
 import { Walking } from "./walking";
@@ -41,6 +42,12 @@ export class Session {
   private readonly people: PeopleList;
   private readonly planPanel = new PlanPanel();
   private readonly planSwitch: Panel;
+  /** The operator key; null for people without one. */
+  private readonly operator: string | null;
+  /** What lets this person in; null for those who came by an ordinary link. */
+  private admission: Admission | null;
+  /** A place that a link names; null once the view was turned to it. */
+  private linked: Place | null;
   /** The name that the person gave; the server may have added a number. */
   private wishedName = "";
   private frameMs = performance.now();
@@ -50,11 +57,11 @@ export class Session {
     private readonly view: View,
     private readonly seats: Seats,
     socketUrl: string,
-    /** The operator key; null for people without one. */
-    private readonly operator: string | null,
-    /** A place that a link names; null once the view was turned to it. */
-    private linked: Place | null,
+    wish: Pick<AddressWish, "operator" | "admission" | "at">,
   ) {
+    this.operator = wish.operator;
+    this.admission = wish.admission;
+    this.linked = wish.at;
     this.connection = new Connection(() => new WebSocket(socketUrl), {
       state: (state) => {
         this.stateChanged(state);
@@ -63,7 +70,7 @@ export class Session {
         this.receive(message);
       },
     });
-    this.join = new JoinDialog((name) => void this.comeIn(name));
+    this.join = new JoinDialog((name, password) => void this.comeIn(name, password));
     this.chat = new ChatPanel((text) => this.connection.send({ type: "chat", text }));
     this.walking = new Walking(
       (message) => this.connection.send(message),
@@ -95,7 +102,7 @@ export class Session {
     const seat = await this.seats.ofThisTab();
     if (seat) {
       this.wishedName = seat.name;
-      this.connection.join({ name: seat.name, resume: seat.token, operator: this.operator });
+      this.greet(seat.name, seat.token);
     } else this.join.open();
   }
 
@@ -114,11 +121,17 @@ export class Session {
     this.connection.send({ type: "set_door", name, open: !isOpen });
   }
 
-  private async comeIn(name: string): Promise<void> {
+  private async comeIn(name: string, password: string): Promise<void> {
     this.join.busy(true);
     this.wishedName = name;
+    if (password !== "") this.admission = { way: "password", secret: password };
     const seat = await this.seats.abandoned(name);
-    this.connection.join({ name, resume: seat?.token ?? null, operator: this.operator });
+    this.greet(name, seat?.token ?? null);
+  }
+
+  private greet(name: string, resume: string | null): void {
+    const { operator, admission } = this;
+    this.connection.join({ name, resume, operator, admission });
   }
 
   private stateChanged(state: ConnectionState): void {
@@ -177,6 +190,8 @@ export class Session {
         this.people.census(message.people, message.actors);
         break;
       case "error":
+        if (message.error === "password_needed") this.join.askPassword();
+        if (message.error === "admission_refused") this.admission = null;
         if (message.error === "no_path" || message.error === "lease_ended") this.walking.callOff();
         this.chat.note(`The server says: ${message.text}.`);
         break;

@@ -28,6 +28,9 @@ const CLOSINGS = new Map<number, Closing>([
   ],
   [CloseCode.SILENT, { text: "Nothing came from this page for a while.", retry: true }],
   [CloseCode.NAME_RESERVED, { text: "That name cannot be had here.", retry: false }],
+  [CloseCode.ADMISSION_NEEDED, { text: "Not everybody can come in here.", retry: false }],
+  [CloseCode.PASSWORD_NEEDED, { text: "Not everybody can come in here.", retry: false }],
+  [CloseCode.ADMISSION_REFUSED, { text: "You were not let in.", retry: false }],
   [CloseCode.KICKED, { text: "An operator has asked you to leave.", retry: false }],
 ]);
 

@@ -59,6 +59,9 @@ export const CloseCode = {
   SILENT: 4010,
   NAME_RESERVED: 4011,
   KICKED: 4012,
+  ADMISSION_NEEDED: 4020,
+  PASSWORD_NEEDED: 4021,
+  ADMISSION_REFUSED: 4022,
 } as const;
 
 export type Kind = "person" | "actor";

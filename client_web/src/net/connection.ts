@@ -6,7 +6,7 @@ import { closing, type Closing } from "./closing";
 import { CloseCode } from "./codes";
 import { decodeServer, encodeClient } from "./codec";
 import { WireError } from "./errors";
-import type { ClientMessage, ServerMessage, Welcome } from "./messages";
+import type { Admission, ClientMessage, ServerMessage, Welcome } from "./messages";
 
 export type ConnectionState =
   | { phase: "idle" }
@@ -27,11 +27,15 @@ export interface ConnectionEvents {
   message(message: ServerMessage): void;
 }
 
-/** The first message: a name, the token of an avatar to take up again, and the operator key. */
+/**
+ * The first message: a name, the token of an avatar to take up again, the operator key, and what
+ * lets somebody in.
+ */
 export interface Greeting {
   name: string;
   resume: string | null;
   operator: string | null;
+  admission: Admission | null;
 }
 
 const OPEN = 1;

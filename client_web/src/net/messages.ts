@@ -9,13 +9,25 @@ export type Point = [x: number, y: number];
 export type Place = [x: number, y: number, z: number];
 
 export type ClientMessage =
-  | { type: "hello"; name: string; resume: string | null; operator: string | null }
+  | {
+      type: "hello";
+      name: string;
+      resume: string | null;
+      operator: string | null;
+      admission: Admission | null;
+    }
   | { type: "move"; seq: number; direction: number; speed: number }
   | { type: "walk_to"; seq: number; x: number; y: number; z: number }
   | { type: "chat"; text: string }
   | { type: "ping"; nonce: number }
   | { type: "watch"; id: number | null }
   | { type: "set_door"; name: string; open: boolean };
+
+/** What lets somebody into a closed world, or with an operator's rights. */
+export interface Admission {
+  way: "invitation" | "password" | "pass";
+  secret: string;
+}
 
 /** Whether each door stands open, by name. */
 export type Doors = Record<string, boolean>;

@@ -12,7 +12,11 @@ export class JoinDialog {
   private readonly reason = byId("join-reason", HTMLElement);
   private readonly button = byId("join-button", HTMLButtonElement);
 
-  constructor(join: (name: string) => void) {
+  private readonly secret = byId("join-secret", HTMLElement);
+  private readonly password = byId("join-password", HTMLInputElement);
+
+  /** `join` is called with the name, and with the password of the place or an empty text. */
+  constructor(join: (name: string, password: string) => void) {
     this.name.maxLength = MAX_NAME_CHARS;
     this.name.value = localStorage.getItem(NAME_KEY) ?? "";
     this.form.addEventListener("submit", (event) => {
@@ -20,7 +24,7 @@ export class JoinDialog {
       const name = this.name.value.trim();
       if (name === "") return;
       localStorage.setItem(NAME_KEY, name);
-      join(name);
+      join(name, this.password.value);
     });
     // Nobody is in the world without a name.
     this.dialog.addEventListener("cancel", (event) => {
@@ -32,12 +36,20 @@ export class JoinDialog {
     this.busy(false);
     this.reason.textContent = reason;
     if (!this.dialog.open) this.dialog.showModal();
-    this.name.select();
+    if (this.secret.hidden) this.name.select();
+    else this.password.select();
+  }
+
+  /** Ask for the password of the place from now on. */
+  askPassword(): void {
+    this.secret.hidden = false;
+    this.password.required = true;
   }
 
   close(): void {
     this.busy(false);
     this.reason.textContent = "";
+    this.password.value = "";
     this.dialog.close();
   }
 

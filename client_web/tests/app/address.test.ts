@@ -3,11 +3,27 @@ import { readAddress } from "../../src/app/address";
 
 describe("readAddress", () => {
   it("takes the operator key out and leaves the rest", () => {
-    expect(readAddress("#operator=KEY")).toEqual({ operator: "KEY", at: null, rest: "" });
+    expect(readAddress("#operator=KEY")).toEqual({
+      operator: "KEY",
+      admission: null,
+      at: null,
+      rest: "",
+    });
     const both = readAddress("#at=1,2,3&operator=a%20b&more");
     expect(both.operator).toBe("a b");
     expect(both.rest).toBe("#at=1,2,3&more");
-    expect(readAddress("")).toEqual({ operator: null, at: null, rest: "" });
+    expect(readAddress("")).toEqual({ operator: null, admission: null, at: null, rest: "" });
+  });
+
+  it("takes a pass or an invitation out too", () => {
+    const pass = readAddress("#pass=abc&at=1,2");
+    expect(pass.admission).toEqual({ way: "pass", secret: "abc" });
+    expect(pass.rest).toBe("#at=1,2");
+    const invitation = readAddress("#invitation=def");
+    expect(invitation.admission).toEqual({ way: "invitation", secret: "def" });
+    expect(invitation.rest).toBe("");
+    expect(readAddress("#pass=").admission).toBeNull();
+    expect(readAddress(`#pass=${"x".repeat(257)}`).admission).toBeNull();
   });
 
   it("reads a place, with or without a height", () => {

@@ -35,7 +35,7 @@ afterEach(() => {
 });
 
 function comeIn(): void {
-  connection.join({ name: "Ann", resume: null, operator: null });
+  connection.join({ name: "Ann", resume: null, operator: null, admission: null });
   newest().accept();
   newest().say(ServerCode.WELCOME, WELCOME);
 }
@@ -43,21 +43,28 @@ function comeIn(): void {
 describe("joining", () => {
   it("greets as soon as the socket is open and is live with the welcome", () => {
     comeIn();
-    const hello = { name: "Ann", version: VERSION, resume: null, at: null, operator: null };
+    const hello = {
+      name: "Ann",
+      version: VERSION,
+      resume: null,
+      at: null,
+      operator: null,
+      admission: null,
+    };
     expect(newest().received[0]).toEqual([ClientCode.HELLO, hello]);
     expect(phases()).toEqual(["connecting", "live"]);
     expect(messages.map(({ type }) => type)).toEqual(["welcome"]);
   });
 
   it("sends nothing but the greeting before the welcome", () => {
-    connection.join({ name: "Ann", resume: null, operator: null });
+    connection.join({ name: "Ann", resume: null, operator: null, admission: null });
     newest().accept();
     expect(connection.send({ type: "chat", text: "too early" })).toBe(false);
     expect(newest().received).toHaveLength(1);
   });
 
   it("gives up on a server that does not answer, and tries again", () => {
-    connection.join({ name: "Ann", resume: null, operator: null });
+    connection.join({ name: "Ann", resume: null, operator: null, admission: null });
     newest().accept();
     vi.advanceTimersByTime(12_000);
     expect(phases()).toContain("reconnecting");
@@ -85,7 +92,7 @@ describe("pings", () => {
 
 describe("a later version of the server's messages", () => {
   it("is no fault: unknown codes, fields and names are passed over", () => {
-    connection.join({ name: "Ann", resume: null, operator: null });
+    connection.join({ name: "Ann", resume: null, operator: null, admission: null });
     newest().accept();
     newest().say(99, { before: "welcome" });
     newest().say(ServerCode.WELCOME, { ...WELCOME, later: { a: [1] } });

@@ -23,6 +23,7 @@ from esplanade.server.audit.entries import Entry
 from esplanade.server.audit.log import AuditLog
 from esplanade.server.store.location import FILE, Location
 from esplanade.server.store.sql_store import SqlStore, open_store
+from esplanade.server.store.tables import REVISION
 from tests.server.databases import new_database
 
 PASSWORD = "correct horse battery"
@@ -88,7 +89,7 @@ def shell(
         address = location.url.set(drivername="postgresql").render_as_string(hide_password=False)
         made = Shell(["--store", address], capsys, monkeypatch)
         assert "run `esplanade data upgrade`" in made.refused("op", "user", "list")
-        assert "the tables were of revision none, now 0001" in made.done("data", "upgrade")
+        assert f"revision none, now {REVISION}" in made.done("data", "upgrade")
         made.done("op", "user", "add", "first", "--role", "viewer", "--token")
     made.done("op", "user", "remove", "first")
     return made
@@ -281,7 +282,7 @@ def test_a_damaged_copy_changes_nothing(
                 if damage == "row" and name == "audit.jsonl":
                     content = content[: content.index(b"\n") + 1]
                 if damage == "newer" and name == "manifest.json":
-                    content = content.replace(b'"0001"', b'"9999"')
+                    content = content.replace(f'"{REVISION}"'.encode(), b'"9999"')
                 new.writestr(name, content)
     kind = "sqlite" if "--data" in shell.place else "postgresql"
     shell.place = other_place(kind, tmp_path, request)
@@ -306,8 +307,12 @@ def test_a_person_is_forgotten_and_the_audit_still_holds(
     asyncio.run(kick())
     if location.is_sqlite:
         assert any(b"Harrington" in file.read_bytes() for file in folder.iterdir())
-    assert "0 in accounts, 1 in audit" in shell.done("data", "forget", "Eve Harrington")
-    assert "1 in accounts, 2 in audit" in shell.done("data", "forget", "olga")
+    told = shell.done("data", "forget", "Eve Harrington")
+    assert "0 in accounts" in told
+    assert "1 in audit" in told
+    told = shell.done("data", "forget", "olga")
+    assert "1 in accounts" in told
+    assert "2 in audit" in told
     shell.done("op", "audit", "--verify")
     for name in ("Harrington", "olga", "rude"):
         assert name not in shell.done("op", "audit", "--json")
