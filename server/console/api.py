@@ -14,6 +14,7 @@ from esplanade.server.audit.log import MOST_ROWS, Filter
 from esplanade.server.console import questions
 from esplanade.server.console.accounts_api import router as accounts
 from esplanade.server.console.admission_api import router as admission
+from esplanade.server.console.audit_api import router as verifying
 from esplanade.server.console.auth_api import router as auth
 from esplanade.server.console.gate import Gate
 from esplanade.server.console.refusals import RefusedError
@@ -49,7 +50,7 @@ router = APIRouter(prefix=PREFIX, route_class=Guarded, responses=REFUSALS)
 def add_api(app: FastAPI, gate: Gate) -> None:
     """Let an application answer operators."""
     app.state.gate = gate
-    for each in (router, auth, accounts, admission):
+    for each in (router, auth, accounts, admission, verifying):
         app.include_router(each)
     add_refusals(app)
 

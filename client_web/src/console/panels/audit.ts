@@ -113,11 +113,11 @@ class AuditPanel extends CommandingPanel {
         <button @click=${() => void this.verify()}>Verify the chains</button>
       </div>
       ${this.refused()}
-      <div class="scroll">
+      <div class="scroll" tabindex="0" role="region" aria-label="Table">
         <table>
           <thead>
             <tr>
-              ${["When (UTC)", "Who", "Command", "About", "Outcome", "Why", ""].map(
+              ${["When (UTC)", "Who", "Command", "About", "Outcome", "Why", "Details"].map(
                 (name) => html`<th scope="col">${name}</th>`,
               )}
             </tr>

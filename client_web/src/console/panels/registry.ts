@@ -202,7 +202,7 @@ export const PANELS: readonly PanelEntry[] = [
   {
     id: "invitations",
     title: "Invitations",
-    right: "accounts",
+    right: "moderate",
     tag: "esp-invitations",
     area: "left",
     open: false,

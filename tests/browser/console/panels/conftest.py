@@ -16,7 +16,12 @@ from tests.browser.conftest import executable
 from tests.browser.console.panels.page import operator
 from tests.patience import PATIENCE_S
 
-FLAGS: Final = ("--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking")
+FLAGS: Final = (
+    "--no-sandbox",
+    "--disable-gpu",
+    "--no-first-run",
+    "--disable-background-networking",
+)
 ROOM: Final = Scene.open_space((0.0, 0.0, 16.0, 12.0), name="room")
 ACTORS: Final = 4
 OPERATORS: Final = {"olga": "admin", "otto": "admin", "vera": "viewer"}

@@ -6,20 +6,21 @@ import { CommandingPanel } from "../commanding";
 import { secret, secretStyle } from "./secret";
 
 interface Invitation {
-  id: string | number;
-  note?: string | null;
-  by?: string | null;
-  expires_us?: number | null;
-  uses?: number;
-  most_uses?: number | null;
+  id: string;
+  label: string | null;
+  by: string | null;
+  uses: number;
+  used: number;
+  expires_us: number;
+  revoked: boolean;
 }
 
 interface Bot {
   name: string;
-  rate_class?: string;
-  created_us?: number;
-  expires_us?: number | null;
-  last_us?: number | null;
+  by: string | null;
+  message_rate: number;
+  connections: number;
+  expires_us: number;
 }
 
 interface Made {
@@ -62,19 +63,25 @@ class InvitationsPanel extends CommandingPanel {
         <legend>Invitations of people</legend>
         <ul class="plain">
           ${this.invitations.map((one) => {
-            const uses = `used ${one.uses ?? 0}${one.most_uses ? ` of ${one.most_uses}` : ""} times`;
-            const until = one.expires_us ? `until ${day(one.expires_us)}` : "without an end";
+            const over = one.revoked || one.used >= one.uses || one.expires_us < Date.now() * 1000;
             return html`<li class="row">
               <span class="grow">
-                <b>${one.note ?? `#${one.id}`}</b>
-                <span class="soft">${uses}, ${until}, ${one.by ?? ""}</span>
+                <b>${one.label ?? one.id}</b>
+                <span class="soft">
+                  used ${one.used} of ${one.uses} times, until ${clock(one.expires_us)},
+                  ${one.by ?? ""}
+                </span>
               </span>
-              <button
-                aria-label="Take back invitation ${one.note ?? one.id}"
-                @click=${() => void this.drop(`/invitations/${one.id}`)}
-              >
-                Take back
-              </button>
+              ${
+                over
+                  ? html`<span class="chip">${one.revoked ? "taken back" : "over"}</span>`
+                  : html`<button
+                      aria-label="Take back invitation ${one.label ?? one.id}"
+                      @click=${() => void this.drop(`/invitations/${one.id}`)}
+                    >
+                      Take back
+                    </button>`
+              }
             </li>`;
           })}
         </ul>
@@ -85,9 +92,10 @@ class InvitationsPanel extends CommandingPanel {
             void this.invite(event.currentTarget as HTMLFormElement);
           }}
         >
-          <label class="field grow">For whom, or why <input name="note" maxlength="200" /></label>
+          <label class="field grow">For whom, or why <input name="label" maxlength="200" /></label>
           <label class="field"
-            >Days <input name="days" class="short number" type="number" min="1" max="365" value="7"
+            >Hours
+            <input name="hours" class="short number" type="number" min="1" max="8760" value="24"
           /></label>
           <label class="field"
             >Uses
@@ -104,7 +112,10 @@ class InvitationsPanel extends CommandingPanel {
               html`<li class="row">
                 <span class="grow">
                   <b>${one.name}</b>
-                  <span class="soft">${one.rate_class ?? ""}, last here ${clock(one.last_us)}</span>
+                  <span class="soft"
+                    >${one.message_rate} messages a second, ${one.connections} at once, until
+                    ${day(one.expires_us)}</span
+                  >
                 </span>
                 <button
                   aria-label="Revoke the bot ${one.name}"
@@ -132,9 +143,9 @@ class InvitationsPanel extends CommandingPanel {
   private async invite(form: HTMLFormElement): Promise<void> {
     const given = new FormData(form);
     const body = {
-      note: given.get("note"),
-      expires_days: Number(given.get("days")),
-      most_uses: Number(given.get("uses")),
+      label: given.get("label") === "" ? null : given.get("label"),
+      expires_hours: Number(given.get("hours")),
+      uses: Number(given.get("uses")),
     };
     await this.make("/invitations", body, form);
   }
@@ -159,8 +170,10 @@ class InvitationsPanel extends CommandingPanel {
   private async load(): Promise<void> {
     const found = await this.ask<{ invitations: Invitation[] }>("/invitations");
     if (found) this.invitations = found.invitations;
-    const bots = await this.app.api.get<{ bots: Bot[] }>("/bots").catch(() => null);
-    if (bots) this.bots = bots.bots;
+    if (this.whyNot("accounts") === null) {
+      const bots = await this.ask<{ bots: Bot[] }>("/bots");
+      if (bots) this.bots = bots.bots;
+    }
     this.requestUpdate();
   }
 }

@@ -87,7 +87,7 @@ class ActorsPanel extends CommandingPanel {
         </button>
       </div>
       ${this.refused()} ${this.deeds(chosen)}
-      <div class="scroll">
+      <div class="scroll" tabindex="0" role="region" aria-label="Table">
         <table>
           <thead>
             <tr>

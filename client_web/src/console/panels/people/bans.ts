@@ -37,11 +37,11 @@ class BansPanel extends CommandingPanel {
     const why = this.whyNot("ban");
     return html`
       ${this.refused()}
-      <div class="scroll">
+      <div class="scroll" tabindex="0" role="region" aria-label="Table">
         <table>
           <thead>
             <tr>
-              ${["Who", "Until", "Told", "By", ""].map((name) => html`<th scope="col">${name}</th>`)}
+              ${["Who", "Until", "Told", "By", "State"].map((name) => html`<th scope="col">${name}</th>`)}
             </tr>
           </thead>
           <tbody>
