@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from esplanade.actors.navigator import Navigator
+from esplanade.actors.people import ObservedPeople
 from esplanade.actors.state import Reason
 from esplanade.planning.scene.heights import SAME_FLOOR_M
 
@@ -39,7 +41,7 @@ def find_blocker(
 ) -> Blocker | None:
     """Find the blocker of an actor, the nearest on its way; None if the actor is not held.
 
-    It looks at everyone once, and is meant for the few actors that somebody looks at.
+    It looks at everyone once, in arrays.
     """
     table = navigator.table
     row, agents = table.row(actor_id), table.agents
@@ -56,34 +58,39 @@ def find_blocker(
         waypoint = navigator.potentials.arrays[slot, cell, 1:].astype(np.float64)
         ahead = waypoint - here[:2] if np.isfinite(waypoint).all() else None
     radius_m = float(agents.parameters["radius_m"][row])
-    others = [("person", who, where, navigator.person_radius_m) for who, where in people.items()]
-    others += [
-        ("actor", who, (*agents.positions[k].tolist(), float(agents.heights[k])), float(r))
-        for k, (who, r) in enumerate(zip(table, agents.parameters["radius_m"], strict=True))
-        if k != row
-    ]
-    best: Blocker | None = None
-    for kind, who, where, other_m in others:
-        away_m = math.dist(where[:2], here[:2]) - radius_m - other_m
-        if away_m > WITHIN_M or abs(where[2] - here[2]) >= SAME_FLOOR_M:
-            continue
-        in_the_way = _in_the_way(np.array(where[:2]) - here[:2], ahead, radius_m + other_m)
-        if in_the_way and (best is None or away_m < (best.away_m or 0.0)):
-            best = Blocker(kind, who, round(away_m, 3))  # type: ignore[arg-type]
-    return best or _wall(navigator, row)
+    known = people if isinstance(people, ObservedPeople) else None
+    ids: Sequence[Hashable] = list(people) if known is None else known.ids.tolist()
+    places = np.array(list(people.values())) if known is None else known.places
+    others = np.concatenate(
+        [places.reshape(-1, 3), np.column_stack([agents.positions, agents.heights])]
+    )
+    bodies_m = radius_m + np.concatenate(
+        [np.full(len(ids), navigator.person_radius_m), agents.parameters["radius_m"]]
+    )
+    offsets = others[:, :2] - here[:2]
+    away_m = np.hypot(offsets[:, 0], offsets[:, 1]) - bodies_m
+    away_m[len(ids) + row] = np.inf
+    near = (away_m <= WITHIN_M) & (np.abs(others[:, 2] - here[2]) < SAME_FLOOR_M)
+    near &= _in_the_way(offsets, ahead, bodies_m)
+    if not near.any():
+        return _wall(navigator, row)
+    first = int(np.where(near, away_m, np.inf).argmin())
+    rounded_m = round(float(away_m[first]), 3)
+    if first < len(ids):
+        return Blocker("person", ids[first], rounded_m)
+    return Blocker("actor", table.ids[first - len(ids)], rounded_m)
 
 
 def _in_the_way(
-    offset: np.ndarray[tuple[int], np.dtype[np.float64]],
-    ahead: np.ndarray[tuple[int], np.dtype[np.float64]] | None,
-    bodies_m: float,
-) -> bool:
-    """Whether somebody at an offset is on the way, a line ahead; anywhere near without a way."""
+    offsets: NDArray[np.float64], ahead: NDArray[np.float64] | None, bodies_m: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """Whether others at offsets (N, 2) are on the way, a line ahead; all of them without a way."""
     if ahead is None or not (length := float(np.hypot(*ahead))):
-        return True
-    along = float(offset @ ahead) / length
-    aside = abs(float(offset[0] * ahead[1] - offset[1] * ahead[0])) / length
-    return along > -bodies_m and aside <= bodies_m + ASIDE_M
+        return np.ones(len(offsets), dtype=np.bool_)
+    along = offsets @ ahead / length
+    aside = np.abs(offsets[:, 0] * ahead[1] - offsets[:, 1] * ahead[0]) / length
+    found: NDArray[np.bool_] = (along > -bodies_m) & (aside <= bodies_m + ASIDE_M)
+    return found
 
 
 def _door(navigator: Navigator, row: int) -> Blocker | None:

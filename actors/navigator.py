@@ -79,6 +79,11 @@ class Navigator:
         """Radius of the people of this zone, metres."""
         return self._batch.field.model.person_radius_m
 
+    @property
+    def prediction(self) -> Prediction:
+        """The places where people are expected, as of the latest tick."""
+        return self._prediction
+
     # --- actors --------------------------------------------------------------------------
 
     def add_actor(

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from esplanade.actors.behaviour import Behaviour, Goal, Perception
-from esplanade.actors.blockers import find_blocker
+from esplanade.actors.blockers import Blocker, find_blocker
 from esplanade.actors.explanation import Explanation
 from esplanade.actors.navigator import Navigator
 from esplanade.actors.parameters import ActorParameters, body_of
@@ -409,6 +409,10 @@ class Population:
             float(self.table.trips.reason_s[row]),
             find_blocker(self.navigator, actor_id, self._people),
         )
+
+    def blocker(self, actor_id: Hashable) -> Blocker | None:
+        """The blocker of an actor, as in `explain`, without the rest."""
+        return find_blocker(self.navigator, actor_id, self._people)
 
     def warm_up(self, ready_to_plan: Callable[[], None] = lambda: None) -> None:
         """Make ready all that a tick would have to wait for: kernels, and potentials of places.

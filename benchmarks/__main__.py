@@ -18,6 +18,7 @@ NAMES = (
     "steps",
     "gallery",
     "audit",
+    "consoles",
 )
 
 

@@ -20,6 +20,7 @@ from esplanade.server.crowding import warn_of_crowding
 from esplanade.server.entrances import make_gate, people_url, private_certificate
 from esplanade.server.keeping import keeping
 from esplanade.server.link.local import LocalLink
+from esplanade.server.live.live import Live
 from esplanade.server.loading import LoadedScene, LoadingError, load_scene
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.delivery import Delivery
@@ -60,6 +61,13 @@ class Running:
     ticking: "asyncio.Task[None]"
     """Runs as long as the world does; ends early only by a fault."""
 
+    @property
+    def live(self) -> Live:
+        """What operators see of the world, which is there for as long as that runs."""
+        if self.gate.live is None:
+            raise RuntimeError("the world has ended")
+        return self.gate.live
+
     def summary(self) -> dict[str, int | float]:
         """The run in figures."""
         ticks = self.metrics.ticks
@@ -92,9 +100,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     warn_of_crowding(settings)
     # What the machine cannot give is said now, not after a minute of building the world.
     places = places_for_people(connections_wanted(settings))
-    tls = None
-    if settings.tls_cert is not None and settings.tls_key is not None:
-        tls = Tls(settings.tls_cert, settings.tls_key)
+    tls = _tls(settings)
     loaded = _with_roster(load_scene(settings), settings)
     assets, mesh = assets or Assets.load(), None
     if loaded.triangles is not None:
@@ -139,17 +145,14 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         )
         delivery = Delivery(audience, hub.sessions, settings.tick_rate, hub.stop_watching)
         link = LocalLink()
-        metrics.gauge(
-            "doors_waiting",
-            "Doors that are wanted open or closed, and are not",
-            world.doors.waiting,
-        )
         deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
         ground_work = GroundWork(world, deriving)
-        gate.console = console = _console(world, hub, kept, loaded, metrics)
+        console = gate.console = _console(world, hub, kept, loaded, metrics)
         ticker = Ticker(
             world, ground_work, audience, link, hub, delivery, schedule, metrics, thread, console
         )
+        gate.live = live = _live(world, storeys, console, metrics, settings)
+        ticker.tap = live.tap
         await stack.enter_async_context(
             Listener(hub, assets, settings, metrics, places).listening(sockets, tls)
         )
@@ -217,7 +220,7 @@ def _build_warm(
 
 
 async def _stop(ticker: Ticker, ticking: "asyncio.Task[None]", hub: Hub, gate: Gate) -> None:
-    gate.console = None
+    gate.console = gate.live = None
     ticker.stop()
     try:
         await ticking
@@ -233,6 +236,9 @@ def _watch(world: Zone, population: Population, metrics: Metrics) -> None:
     contacts = world.contacts
     metrics.total("contacts_actor_person", "Actor-person contacts", lambda: contacts.actor_person)
     metrics.total("contacts_actor_actor", "Actor-actor contacts", lambda: contacts.actor_actor)
+    metrics.gauge(
+        "doors_waiting", "Doors that are wanted open or closed, and are not", world.doors.waiting
+    )
     feet = world.feet
     metrics.total("steps", "Steps that began or were re-aimed", lambda: feet.begun)
     metrics.total("walkers_lost", "Walkers set back onto their feet", lambda: feet.lost)
@@ -252,6 +258,13 @@ def _watch(world: Zone, population: Population, metrics: Metrics) -> None:
         "Potentials of goals that wait to be derived anew since a door has moved",
         lambda: population.navigator.potentials.outdated_rows,
     )
+
+
+def _tls(settings: ServerSettings) -> Tls | None:
+    """The certificate of people's port, if it has one."""
+    if settings.tls_cert is None or settings.tls_key is None:
+        return None
+    return Tls(settings.tls_cert, settings.tls_key)
 
 
 def _with_roster(loaded: LoadedScene, settings: ServerSettings) -> LoadedScene:
@@ -278,6 +291,17 @@ def _console(world: Zone, hub: Hub, kept: Kept, loaded: LoadedScene, metrics: Me
         lambda: console.waiting,
     )
     return console
+
+
+def _live(
+    world: Zone,
+    storeys: list[float],
+    console: Console,
+    metrics: Metrics,
+    settings: ServerSettings,
+) -> Live:
+    """Make what operators see of the world."""
+    return Live(world, storeys, console.bulletin, metrics.traffic, hide_names=settings.hide_names)
 
 
 def _watch_routes(route_requests: RouteRequests, metrics: Metrics) -> None:

@@ -254,6 +254,11 @@ _LIMITS: Final = {
         Text(),
         "",
     ),
+    "hide_names": Setting(
+        "operators who do not moderate are not told the names of people",
+        Flag(),
+        default=False,
+    ),
 }  # fmt: skip
 _LOGS: Final = {
     "log_format": Setting("lines for people or JSON", Choice("console", "json"), "console"),

@@ -80,6 +80,7 @@ class ServerSettings(BaseSettings):
     drop_seconds: float = _field("drop_seconds")
     operator_commands: int = _field("operator_commands")
     operator_key: SecretStr = _field("operator_key")
+    hide_names: bool = _field("hide_names")
 
     log_format: Literal["console", "json"] = _field("log_format")
     log_level: Literal["debug", "info", "warning", "error"] = _field("log_level")

@@ -23,7 +23,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "src" / "esplanade"
 SCENES = ("gallery.json", "pavilion.json", "pavilion.obj", "plaza.json")
 
-HOLDERS = ("three.js authors", "The MessagePack Community")
+HOLDERS = ("three.js authors", "The MessagePack Community", "Google LLC")
 """The holders of the code that the web client bundles."""
 
 NPM_THAT_BUILDS = """
@@ -112,7 +112,7 @@ def test_wheel_carries_every_package_and_the_scenes(tmp_path: Path) -> None:
     assert sources <= set(names)
     assert {f"esplanade/scenes/{name}" for name in SCENES} <= set(names)
     assert "esplanade/py.typed" in names
-    assert "License-Expression: Apache-2.0 AND ISC AND MIT\n" in metadata
+    assert "License-Expression: Apache-2.0 AND BSD-3-Clause AND ISC AND MIT\n" in metadata
     for holder in ("Apache License", *HOLDERS):
         assert any(holder in text for text in licences)
     built = sorted((PACKAGE / "server" / "client_assets").glob("**/*.*"))

@@ -17,6 +17,8 @@ from esplanade.server.console.admission_api import router as admission
 from esplanade.server.console.audit_api import router as verifying
 from esplanade.server.console.auth_api import router as auth
 from esplanade.server.console.gate import Gate
+from esplanade.server.console.live_api import router as live
+from esplanade.server.console.live_socket import router as sockets
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.console.routing import (
     PREFIX,
@@ -29,6 +31,7 @@ from esplanade.server.console.routing import (
     may,
     told,
 )
+from esplanade.server.live.names import stand_in
 
 
 def _one_or_list(body: object) -> str:
@@ -50,7 +53,8 @@ router = APIRouter(prefix=PREFIX, route_class=Guarded, responses=REFUSALS)
 def add_api(app: FastAPI, gate: Gate) -> None:
     """Let an application answer operators."""
     app.state.gate = gate
-    for each in (router, auth, accounts, admission, verifying):
+    # Paths of the live views below an actor's go before the actor's own.
+    for each in (live, sockets, router, auth, accounts, admission, verifying):
         app.include_router(each)
     add_refusals(app)
 
@@ -88,7 +92,11 @@ async def actor(request: Request, actor_id: str) -> dict[str, Any]:
 @router.get("/people")
 async def people(request: Request) -> dict[str, Any]:
     """Everyone who is connected, at this moment."""
-    return await asked(request, questions.people)
+    found = await asked(request, questions.people)
+    views = gate_of(request).live
+    if views is not None and not views.sees_names(caller(request)):
+        found["people"] = [{**one, "name": stand_in(one["id"])} for one in found["people"]]
+    return found
 
 
 @router.get("/parameters")

@@ -45,6 +45,7 @@ from esplanade.server.console.state import (
     each,
     parameters_of,
 )
+from esplanade.server.live.bulletin import Bulletin
 from esplanade.server.store.sql_store import SqlStore
 from esplanade.server.world.frame import Frame
 from esplanade.server.world.inputs import ActorCommand, AddActors, Input, MoveDoor
@@ -82,6 +83,7 @@ class Console:
         self.state = OperatedState(zone, overrides or Overrides())
         self.changes = Changes()
         self.moderation = moderation
+        self.bulletin = Bulletin()
         self._records = Records(store, audit)
         self._turn = asyncio.Lock()
         self._waiting = 0

@@ -10,6 +10,7 @@ from esplanade.server.console.brakes import Brakes
 from esplanade.server.console.callers import Callers
 from esplanade.server.console.console import Console
 from esplanade.server.console.refusals import RefusedError
+from esplanade.server.live.live import Live
 
 Result = TypeVar("Result")
 MOST_UNDER_WAY: Final = 64
@@ -43,6 +44,8 @@ class Gate:
         """The address of people's port, as seen by whoever has reached this one by a name."""
         self.console: Console | None = None
         """None until the world is built, and again when it ends."""
+        self.live: Live | None = None
+        """As `console`."""
         self._zone = zone
         self.under_way = 0
         """Requests that wait for the zone."""

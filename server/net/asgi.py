@@ -9,6 +9,7 @@ offers no place where connections can be counted.
 """
 
 import asyncio
+import socket
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, contextmanager, suppress
 from typing import Any, Final
@@ -16,6 +17,7 @@ from typing import Any, Final
 import h11
 import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
 from esplanade.server.assets import SECURITY_HEADERS
 from esplanade.server.net.connections import SHUT_S
@@ -33,6 +35,9 @@ MAX_BODY_BYTES: Final = 64 * 1024
 
 PATIENCE_S: Final = 30.0
 """A client is cut off when a request, or a pause in reading the answer, lasts longer than this."""
+
+SOCKET_BUFFER_BYTES: Final = 64 * 1024
+"""What the kernel may keep for a WebSocket whose client does not read; Linux doubles it."""
 
 _AT_ONCE: Final = 16
 """Connections that are accepted before any is looked at; the event loop takes them in a row."""
@@ -55,7 +60,7 @@ async def serving(app: Any, host: str, port: int, tls: Tls | None = None) -> Asy
     config = uvicorn.Config(
         app,
         http=_BoundedConnection,
-        ws="websockets-sansio",
+        ws=_BoundedSocket,
         ws_max_size=MAX_BODY_BYTES,
         ws_per_message_deflate=False,
         h11_max_incomplete_event_size=MAX_HEAD_BYTES,
@@ -128,13 +133,46 @@ class _BoundedConnection(H11Protocol):
     def _watch(self) -> None:
         """Start the time limit when it is the client's turn, and end it when it is ours.
 
-        A WebSocket connection is not watched here: the library ends it by its pings.
+        A WebSocket connection is watched by `_BoundedSocket` instead.
         """
         waiting = self.flow.write_paused or self.conn.their_state in _WAITING_FOR_REQUEST
         if not waiting:
             self._forget()
         elif self._deadline is None:
             self._deadline = self.loop.call_later(PATIENCE_S, self.transport.abort)
+
+    def _forget(self) -> None:
+        if self._deadline is not None:
+            self._deadline.cancel()
+            self._deadline = None
+
+
+class _BoundedSocket(WebSocketsSansIOProtocol):
+    """A WebSocket that is cut off when its client does not read; the library's pings do the rest.
+
+    The kernel's buffer is small, so that it soon shows whether a client reads.
+    """
+
+    _deadline: asyncio.TimerHandle | None = None
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        super().connection_made(transport)
+        sock = transport.get_extra_info("socket")
+        if sock is not None:
+            sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BUFFER_BYTES)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        super().connection_lost(exc)
+        self._forget()
+
+    def pause_writing(self) -> None:
+        super().pause_writing()
+        if self._deadline is None:
+            self._deadline = self.loop.call_later(PATIENCE_S, self.transport.abort)
+
+    def resume_writing(self) -> None:
+        super().resume_writing()
+        self._forget()
 
     def _forget(self) -> None:
         if self._deadline is not None:

@@ -21,6 +21,8 @@ from esplanade.server.console.gate import Gate
 from esplanade.server.console.pages import add_pages
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.console.routing import PREFIX, answer_to
+from esplanade.server.live.live import beating
+from esplanade.server.live.metrics import watch_live
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.asgi import MAX_BODY_BYTES, serving
 from esplanade.server.net.readiness import Readiness
@@ -67,9 +69,10 @@ async def private_port(
         lambda: gate.callers.origins.refused,
     )
     loop = asyncio.get_running_loop()
+    watch_live(metrics, lambda: gate.live)
     app = operators_api(Figures(metrics, loop), readiness, gate, assets)
     opened: Future[tuple[int, Callable[[], object]]] = Future()
-    serve = partial(_serve, app, settings.private_host, settings.private_port, opened, tls)
+    serve = partial(_serve, app, gate, settings.private_host, settings.private_port, opened, tls)
     with ThreadPoolExecutor(1, thread_name_prefix="private") as thread:
         running = loop.run_in_executor(thread, lambda: asyncio.run(serve()))
         port, stop = await asyncio.wrap_future(opened)
@@ -82,6 +85,7 @@ async def private_port(
 
 async def _serve(
     app: FastAPI,
+    gate: Gate,
     host: str,
     port: int,
     opened: "Future[tuple[int, Callable[[], object]]]",
@@ -93,7 +97,9 @@ async def _serve(
         async with serving(app, host, port, tls) as number:
             stop = partial(asyncio.get_running_loop().call_soon_threadsafe, stopping.set)
             opened.set_result((number, stop))
+            pulse = asyncio.create_task(beating(lambda: gate.live))
             await stopping.wait()
+            pulse.cancel()
     except OSError as error:
         if opened.done():
             raise

@@ -8,6 +8,7 @@ import structlog
 
 from esplanade.server.console.console import Console
 from esplanade.server.link.local import LocalLink
+from esplanade.server.live.tap import Tap
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.delivery import Delivery
 from esplanade.server.net.ground_work import GroundWork
@@ -45,6 +46,8 @@ class Ticker:
         self._metrics = metrics
         self._thread = thread
         self._console = console
+        self.tap: Tap | None = None
+        """Where the ticks go that operators see."""
         self._stopping = asyncio.Event()
         metrics.gauge(
             "walkers_shown",
@@ -81,13 +84,18 @@ class Ticker:
         self._world.begin([*self._link.inputs(), *self._ground_work.drain()])
         actors_moved = await loop.run_in_executor(self._thread, self._think)
         self._link.publish(self._world.finish(actors_moved))
-        for frame in self._link.frames():
+        frames = self._link.frames()
+        for frame in frames:
             self._hub.welcome(frame)
             self._console.take(frame)
             news = self._audience.take(frame)
             with self._world.times.stage("write"):
                 self._delivery.deliver(news, loop.time())
-        self._metrics.tick_took(perf_counter() - start, self._world.times.seconds)
+        seconds = perf_counter() - start
+        self._metrics.tick_took(seconds, self._world.times.seconds)
+        if self.tap is not None:
+            for frame in frames:
+                self.tap.take(frame, seconds, self._schedule.late_ticks)
 
     def _think(self) -> bool:
         try:

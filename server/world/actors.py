@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from esplanade.actors import Explanation, ObservedPeople, Population
+from esplanade.actors.blockers import Blocker
 from esplanade.actors.locomotion.footsteps.course import planned_places
 from esplanade.planning import Body
 from esplanade.server.world.routes import Point
@@ -85,6 +86,10 @@ class ActorAvatars:
         """The avatar of an actor, by its id; None if it is not in the world yet."""
         return self._avatars.get(actor_id)
 
+    def actor(self, avatar_id: int) -> Hashable | None:
+        """The id of the actor whose avatar that is; None if it is nobody's."""
+        return self._actor_ids.get(avatar_id)
+
     def remove(self, ids: Iterable[Hashable]) -> list[int]:
         """Take actors who have left the population out of the world; returns their avatars."""
         left = []
@@ -120,11 +125,16 @@ class ActorAvatars:
         Not while `plan` runs.
         """
         explanation = self._population.explain(self._actor_ids[avatar_id])
-        held = explanation.blocker
+        return replace(explanation, blocker=self._by_avatar(explanation.blocker))
+
+    def blocker(self, avatar_id: int) -> Blocker | None:
+        """The blocker of this actor, an actor by the id of its avatar; not while `plan` runs."""
+        return self._by_avatar(self._population.blocker(self._actor_ids[avatar_id]))
+
+    def _by_avatar(self, held: Blocker | None) -> Blocker | None:
         if held is None or held.kind != "actor":
-            return explanation
-        by = replace(held, id=self._avatars.get(held.id))
-        return replace(explanation, blocker=by)
+            return held
+        return replace(held, id=self._avatars.get(held.id))
 
     def _stop(self) -> None:
         state = self._state

@@ -13,10 +13,11 @@ from esplanade.actors import (
     ObservedPeople,
     Population,
 )
+from esplanade.actors.blockers import Blocker
 from esplanade.actors.locomotion.footsteps.ground import Ground
 from esplanade.actors.people import NOBODY
 from esplanade.actors.potential_pool import RenewedPotential
-from esplanade.planning import LayeredGrid, Scene
+from esplanade.planning import AgentTable, LayeredGrid, Prediction, Scene
 from esplanade.server.world.actor_commands import ActorCommands
 from esplanade.server.world.actors import ActorAvatars
 from esplanade.server.world.command_checks import check
@@ -206,6 +207,11 @@ class Zone:
         """Trips that the actors have completed."""
         return self._actors.trips
 
+    @property
+    def grid(self) -> LayeredGrid:
+        """The ground of the zone; its shape never changes, its doors do, between two ticks."""
+        return self._grid
+
     def count(self) -> tuple[int, int]:
         """People and actors in the world."""
         return len(self.state.of_kind(PERSON)), len(self.state.of_kind(ACTOR))
@@ -257,6 +263,25 @@ class Zone:
         """The id of an actor's avatar; None if there is no such actor, or not yet."""
         return self._actors.avatar(actor_id)
 
+    def actor_of(self, avatar_id: int) -> str | None:
+        """The id of the actor whose avatar that is; None if it is nobody's."""
+        actor_id = self._actors.actor(avatar_id)
+        return None if actor_id is None else str(actor_id)
+
+    @property
+    def agents(self) -> AgentTable:
+        """Every actor's state; read it between two ticks only."""
+        return self._population.table
+
+    @property
+    def slice_s(self) -> float:
+        """Time between the places of a plan, seconds."""
+        return self._population.navigator.plan.slice_s
+
+    def predicted(self) -> Prediction:
+        """The places where people are expected, as of the latest tick; between two ticks only."""
+        return self._population.navigator.prediction
+
     def moves(self, avatar_id: int) -> bool:
         """Whether that person means to move, by a direction or along a route."""
         return avatar_id in self.state and self._people.moves(self.state.slot(avatar_id))
@@ -269,6 +294,10 @@ class Zone:
     def explain(self, actor_id: int) -> Explanation:
         """Why an actor, named by its avatar's id, does what it does."""
         return self._actors.explain(actor_id)
+
+    def blocker(self, avatar_id: int) -> Blocker | None:
+        """The blocker of an actor, named by its avatar's id, as in `explain`; None for others."""
+        return self._actors.blocker(avatar_id) if self.is_actor(avatar_id) else None
 
     def _where(self, avatar_id: int) -> Point:
         slot = self.state.slot(avatar_id)

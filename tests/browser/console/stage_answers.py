@@ -159,8 +159,11 @@ def _of_actor(tick: int, actor: str, tail: str) -> dict[str, Any] | None:
     if tail == "trace":
         return _trace(tick)
     defaults = ActorParameters().model_dump()
-    sources = {name: {"value": value, "source": "default"} for name, value in defaults.items()}
-    sources["risk_weight"] = {"value": 12.0, "source": "world"}
+    sources = {
+        name: {"value": value, "level": "default", "group": None}
+        for name, value in defaults.items()
+    }
+    sources["risk_weight"] = {"value": 12.0, "level": "world", "group": None}
     return {
         "id": actor,
         "name": actor.removeprefix("main/").replace("-", " ").capitalize(),

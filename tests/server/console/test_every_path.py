@@ -36,6 +36,13 @@ PATHS: Final[dict[tuple[str, str], Row]] = {
     ("GET", "/actors/{actor_id:path}"): Row(Right.WATCH),
     ("GET", "/people"): Row(Right.WATCH),
     ("GET", "/parameters"): Row(Right.WATCH),
+    ("GET", "/map"): Row(Right.WATCH),
+    ("GET", "/actors/{actor_id:path}/why"): Row(Right.WATCH),
+    ("GET", "/series/names"): Row(Right.WATCH),
+    ("GET", "/series"): Row(Right.WATCH),
+    ("GET", "/events"): Row(Right.WATCH),
+    ("GET", "/heat"): Row(Right.WATCH),
+    ("GET", "/live.sse"): Row(Right.WATCH, query="?channels=none"),
     ("POST", "/commands"): Row(
         Right.PARAMETERS,
         body={"op": "set_parameters", "scope": "world", "values": {"risk_weight": 9}},
@@ -65,7 +72,7 @@ OPEN: Final = {
     "/healthz", "/readyz", "/metrics", "/openapi.json", "/console", "/console/{rest:path}",
 }  # fmt: skip
 """Paths outside the interface, which need no right and change nothing."""
-SOCKETS: Final[dict[str, Right]] = {}
+SOCKETS: Final = {"/live": Right.WATCH}
 """WebSockets, which each have a hostile test of their own."""
 
 COMMAND_RIGHTS: Final[dict[str, Right]] = {

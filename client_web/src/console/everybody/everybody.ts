@@ -182,7 +182,8 @@ class EverybodyPanel extends Panel {
 
   private summary(chosen: number): string {
     const all = this.app.avatars.byId.size;
-    const shown = this.rows.length === all ? `${all}` : `${this.rows.length} of ${all}`;
+    const shown =
+      this.rows.length === all ? `${all} in the world` : `${this.rows.length} of ${all}`;
     return chosen > 1 ? `${shown}, ${chosen} chosen` : shown;
   }
 

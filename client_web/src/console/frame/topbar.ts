@@ -90,6 +90,14 @@ class TopBar extends LitElement {
           padding: 2px 6px;
         }
 
+        h1 {
+          position: absolute;
+          width: 1px;
+          height: 1px;
+          overflow: hidden;
+          clip-path: inset(50%);
+        }
+
         summary {
           padding: 3px 6px;
         }

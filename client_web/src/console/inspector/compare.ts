@@ -19,6 +19,11 @@ export function compare(actors: readonly Readonly<Record<string, Source>>[]): Co
   return rows.sort((a, b) => Number(b.differs) - Number(a.differs));
 }
 
+/** Where a value comes from. */
+export function sourceText({ level, group }: Source): string {
+  return level === "group" && group !== null ? `group ${group}` : level;
+}
+
 export function valueText(value: unknown): string {
   if (typeof value === "number") return String(Math.round(value * 1000) / 1000);
   if (typeof value === "string") return value;

@@ -8,7 +8,7 @@ import { valueText } from "./compare";
 import { costTable, parameterTable, searchPart, whyBand } from "./parts";
 import { traceOverlay } from "./tree";
 import { WatchedActor } from "./watching";
-import { blockerText } from "./why";
+import { blockerText, secondsText } from "./why";
 
 const OVERLAY = "inspector";
 const TRACE = "trace";
@@ -165,6 +165,7 @@ class InspectorPanel extends Panel {
     const reason = now?.reason ?? details?.reason ?? "none";
     const blocker = now ? now.blocker : (details?.blocker ?? null);
     const { following } = this.app.state;
+    const sinceS = now?.since_s ?? details?.since_s;
     const at = now ? ([now.x, now.y, now.z] as const) : details?.position;
     return html`
       <div class="row">
@@ -183,8 +184,9 @@ class InspectorPanel extends Panel {
         <dd>${id}</dd>
         <dt>Does</dt>
         <dd>
-          <strong>${reasonText(reason)}</strong
-          >${blocker ? html`: ${blockerText(blocker)}` : nothing}
+          <strong>${reasonText(reason)}</strong>${
+            sinceS === undefined ? nothing : html` for ${secondsText(sinceS)}`
+          }${blocker ? html`: ${blockerText(blocker)}` : nothing}
           ${details?.held ? html` <span class="warn">held by an operator</span>` : nothing}
         </dd>
         <dt>Place</dt>

@@ -4,7 +4,7 @@ import { html, nothing, type TemplateResult } from "lit";
 import type { Cost, Trace, WhySpan } from "../net/types";
 import { reasonColour, reasonText } from "../state/reasons";
 import { styled } from "../style/styled";
-import { compare, valueText } from "./compare";
+import { compare, sourceText, valueText } from "./compare";
 import { countNodes } from "./tree";
 import type { WatchedActor } from "./watching";
 import { piecesOf, secondsText, shares, SHOWN_S, spanText, stopsOf } from "./why";
@@ -122,14 +122,14 @@ export function parameterTable(actors: readonly WatchedActor[]): TemplateResult 
                 (source) =>
                   html`<td>
                     ${valueText(source?.value)}
-                    ${several ? html`<span class="soft">${source?.source}</span>` : nothing}
+                    ${several ? html`<span class="soft">${source ? sourceText(source) : nothing}</span>` : nothing}
                   </td>`,
               )}
               ${
                 several
                   ? nothing
-                  : html`<td class=${values[0]?.source === "default" ? "soft" : "set"}>
-                      ${values[0]?.source}
+                  : html`<td class=${values[0]?.level === "default" ? "soft" : "set"}>
+                      ${values[0] ? sourceText(values[0]) : nothing}
                     </td>`
               }
             </tr>`,

@@ -25,6 +25,7 @@ export interface ActorMessage extends LiveMessage {
   z: number;
   speed: number;
   reason: ReasonName;
+  since_s?: number;
   blocker: Blocker | null;
   behaviour: Readonly<Record<string, unknown>> | null;
   path: readonly PathPoint[] | null;

@@ -85,7 +85,9 @@ export interface Blocker {
 /** An effective value, and the scope that it comes from. */
 export interface Source {
   value: unknown;
-  source: string;
+  level: "default" | "world" | "group" | "own";
+  /** The group, where it comes from one. */
+  group: string | null;
 }
 
 export interface ActorDetails extends Omit<Actor, "behaviour"> {

@@ -28,7 +28,7 @@ type Pair = readonly [light: string, dark: string];
 const COLOURS: Readonly<Partial<Record<string, Pair>> & Record<ReasonName, Pair>> = {
   none: ["#6b7280", "#9ca3af"],
   moving: ["#0b6f67", "#5ecdc1"],
-  giving_way: ["#1f57b5", "#8ab6ff"],
+  giving_way: ["#a3266f", "#f5a3cf"],
   waiting: ["#a85a00", "#f0b45c"],
   replanning: ["#7a3fb0", "#cba6f7"],
   no_path: ["#b3261e", "#ff9c92"],

@@ -133,6 +133,10 @@ export const controls = css`
     color: var(--warn);
   }
 
+  .row > h2 {
+    margin: 0;
+  }
+
   .row {
     display: flex;
     flex-wrap: wrap;

@@ -1,0 +1,85 @@
+import { describe, expect, it } from "vitest";
+import { compare, valueText } from "../../../src/console/inspector/compare";
+import { countNodes, segmentsOf, traceOverlay } from "../../../src/console/inspector/tree";
+import { piecesOf, shares, spanText, stopsOf } from "../../../src/console/inspector/why";
+import type { Trace, WhySpan } from "../../../src/console/net/types";
+import { reasonColour, REASONS, reasonText } from "../../../src/console/state/reasons";
+
+const span = (from: number, to: number, reason: string): WhySpan => ({
+  from_tick: from,
+  to_tick: to,
+  reason,
+  blocker: reason === "waiting" ? { kind: "person", id: 12, name: "Anna", away_m: 0.84 } : null,
+  seconds: (to - from) * 0.05,
+});
+const SPANS = [span(0, 13_000, "moving"), span(13_000, 13_240, "waiting")];
+
+describe("why", () => {
+  it("lays the last ten minutes out from the left to now", () => {
+    const pieces = piecesOf(SPANS, 13_240, 0.05);
+    expect(pieces.map(({ from }) => from)).toEqual([0, 0.98]);
+    expect(pieces[1]?.length).toBeCloseTo(0.02);
+    expect(piecesOf(SPANS, 60_000, 0.05)).toEqual([]);
+  });
+
+  it("names who held it and for how long", () => {
+    const [stop] = stopsOf(SPANS, 5);
+    expect(stop && spanText(stop)).toBe("waiting for 12 s, Anna, 0.8 m away");
+    expect(spanText(SPANS[0] ?? span(0, 0, ""))).toBe("moving for 10 min 50 s");
+    expect(shares(SPANS)[0]).toEqual(["moving", 650]);
+  });
+});
+
+describe("reasons", () => {
+  it("have a word and two colours each, and unknown ones have a word", () => {
+    for (const reason of REASONS) {
+      expect(reasonColour(reason, false)).not.toBe(reasonColour(reason, true));
+    }
+    expect(reasonText("looking_around")).toBe("looking around");
+  });
+});
+
+const TRACE: Trace = {
+  tick: 5,
+  status: "found",
+  expansions: 2,
+  budget: 70,
+  nodes: [
+    [0, 0, 1, 0, -1, 0, 0],
+    [1, 0, 1, 0.5, 0, 1, 1],
+    [2, 0, 1, 1, 1, 2, -1],
+  ],
+  path: [],
+  risk: [{ t_s: 0, width: 1, height: 1, cell_m: 1, origin_m: [0, 0], values: "" }],
+};
+
+describe("search tree", () => {
+  it("has a line to each node from the one before, by when it was expanded", () => {
+    expect(countNodes(TRACE)).toEqual({ expanded: 2, open: 1 });
+    const segments = segmentsOf(TRACE);
+    expect(segments.flatMap(({ pairs }) => pairs)).toHaveLength(2);
+    expect(new Set(segments.map(({ colour }) => colour)).size).toBe(2);
+  });
+
+  it("shows a slice of the risk at the height of the search", () => {
+    expect(traceOverlay(TRACE, 0).raster?.z_m).toBe(1);
+    expect(traceOverlay(TRACE, null).raster).toBeUndefined();
+  });
+});
+
+describe("compare", () => {
+  it("tells what differs first", () => {
+    const own = { value: 12, level: "own", group: null } as const;
+    const usual = { value: 8, level: "default", group: null } as const;
+    const rows = compare([
+      { a: usual, b: own },
+      { a: usual, b: usual },
+    ]);
+    expect(rows.map(({ name, differs }) => [name, differs])).toEqual([
+      ["b", true],
+      ["a", false],
+    ]);
+    expect(valueText(0.123456)).toBe("0.123");
+    expect(valueText(undefined)).toBe("–");
+  });
+});

@@ -1,0 +1,144 @@
+"""Live views of a zone: takes its ticks in, beat by beat, and tells subscribers what is new."""
+
+import asyncio
+from collections import deque
+from collections.abc import Callable, Sequence
+from typing import Any, Final
+
+import structlog
+
+from esplanade.server.accounts.identity import Identity
+from esplanade.server.live.bulletin import Bulletin
+from esplanade.server.live.encounters import NewContacts
+from esplanade.server.live.events import Events
+from esplanade.server.live.ground_plan import ground_plan
+from esplanade.server.live.happenings import Happenings
+from esplanade.server.live.heat import Heat
+from esplanade.server.live.history import History
+from esplanade.server.live.map_feed import MapFeed
+from esplanade.server.live.measures import FIGURES, Measures
+from esplanade.server.live.names import sees_names
+from esplanade.server.live.reasons import Reasons
+from esplanade.server.live.series import Series
+from esplanade.server.live.subscriber import Subscriber
+from esplanade.server.live.subscriptions import BEATS_A_SECOND
+from esplanade.server.live.tap import Tap, Tick
+from esplanade.server.live.telling import Telling
+from esplanade.server.metrics import Traffic
+from esplanade.server.world.zone import Zone
+
+MOST_SUBSCRIBERS: Final = 32
+"""Consoles with an open socket or stream; more are refused."""
+MOST_MARKS: Final = 10_000
+
+log = structlog.get_logger(__name__)
+
+
+class Live:
+    """All live views of one zone. Only `tap` and `bulletin` belong to other threads too."""
+
+    def __init__(
+        self,
+        zone: Zone,
+        storeys_m: Sequence[float],
+        bulletin: Bulletin,
+        traffic: Traffic,
+        *,
+        hide_names: bool,
+    ) -> None:
+        self.zone = zone
+        self.storeys_m = list(storeys_m)
+        self.hide_names = hide_names
+        self.bulletin = bulletin
+        self.tap = Tap(zone)
+        self.map = MapFeed(zone.origin_m, zone.tick_s)
+        self.reasons = Reasons(self.map, self.tap, zone.tick_s)
+        self.events = Events()
+        self.series = Series(FIGURES)
+        self.history = History(self.map)
+        self.heat = Heat(self.map, zone.scene.bounds, storeys_m)
+        self.marks: deque[dict[str, Any]] = deque(maxlen=MOST_MARKS)
+        """Lines in all series: every change of an operator, and what was marked."""
+        self.subscribers: set[Subscriber] = set()
+        self.map_frames_dropped = 0
+        """Of subscribers that are gone."""
+        self.too_slow = 0
+        """Subscribers that were closed since they did not read."""
+        self._happenings = Happenings(self.map, self.reasons, self.events)
+        self._measures = Measures(self.map, self.series, traffic, zone.tick_s)
+        self._contacts = NewContacts()
+        self._telling = Telling(self)
+        self._beats = 0
+        self._plan: dict[str, Any] | None = None
+
+    def sees_names(self, by: Identity) -> bool:
+        """Whether an operator is told the names of people."""
+        return sees_names(by, self.hide_names)
+
+    def plan(self) -> dict[str, Any]:
+        """The plan of the scene, without the states of doors."""
+        if self._plan is None:
+            self._plan = ground_plan(self.zone.scene, self.zone.grid, self.storeys_m)
+        return self._plan
+
+    def hello(self, subscriber: Subscriber) -> None:
+        """Take a new subscriber in."""
+        self.subscribers.add(subscriber)
+        subscriber.tell(
+            {
+                "channel": "hello",
+                "tick": self.map.tick,
+                "tick_s": self.zone.tick_s,
+                "names": subscriber.names,
+                "storeys": self.storeys_m,
+            }
+        )
+
+    def goodbye(self, subscriber: Subscriber) -> None:
+        """Let a subscriber go."""
+        self.subscribers.discard(subscriber)
+        self.map_frames_dropped += subscriber.map_frames_dropped
+        self.too_slow += subscriber.too_slow.is_set()
+
+    def beat(self) -> None:
+        """Take in what has happened since the last beat, and tell it."""
+        self._beats += 1
+        ticks = self.tap.fetch()
+        for tick in ticks:
+            self._take(tick)
+        for notice in self.bulletin.fetch():
+            self._happenings.notice(notice)
+            self._telling.notice(notice)
+        if ticks:
+            self._happenings.stops(ticks[-1].at_us)
+            self.reasons.ask()
+        self._telling.beat(self._beats, ticks)
+
+    def _take(self, tick: Tick) -> None:
+        self._happenings.before(tick)
+        self.map.take(tick)
+        contacts = self._contacts.take(tick.touching)
+        self.reasons.take(tick)
+        self._happenings.after(tick, contacts)
+        self._telling.contacts(contacts)
+        second = tick.at_us // 1_000_000
+        for actor, _ in contacts:
+            self.heat.contact(second, actor)
+        if self._measures.take(tick, contacts, self.zone.trips):
+            self.heat.add(second)
+            self.history.add(second)
+            self._telling.second(self.map.tick)
+
+
+async def beating(live_of: Callable[[], Live | None]) -> None:
+    """Beat for as long as a server runs; `live_of` gives the live views once there are any."""
+    while True:
+        await asyncio.sleep(1.0 / BEATS_A_SECOND)
+        live = live_of()
+        if live is None:
+            continue
+        try:
+            live.beat()
+        except Exception:
+            # What operators see may be incomplete then; the world is not touched by it.
+            log.exception("live views failed")
