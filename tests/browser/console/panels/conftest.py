@@ -32,8 +32,7 @@ async def server(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[Runn
     """A small world with operators."""
     if not (CLIENT_ASSETS / "console.html").is_file():
         pytest.fail("the web client is not built; run: make client")
-    scene: Path = tmp_path_factory.mktemp("room") / "scene.json"
-    scene.write_text(ROOM.model_dump_json())
+    scene = _written(tmp_path_factory.mktemp("room"))
     settings = ServerSettings(
         host="127.0.0.1",
         port=0,
@@ -71,3 +70,9 @@ async def browser(chromium: Browser) -> AsyncIterator[Browser]:
     yield chromium
     for context in chromium.contexts:
         await context.close()
+
+
+def _written(folder: Path) -> Path:
+    scene = folder / "scene.json"
+    scene.write_text(ROOM.model_dump_json())
+    return scene

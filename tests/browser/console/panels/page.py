@@ -9,7 +9,7 @@ from esplanade.server.accounts.identity import MACHINE
 from esplanade.server.app import Running
 from tests.patience import PATIENCE_S
 
-PASSWORD: Final = "long enough for tests"  # noqa: S105
+PASSWORD: Final = "long enough for tests"
 _COLLECT_VIOLATIONS: Final = """
 window.violations = [];
 document.addEventListener("securitypolicyviolation", (event) => {
