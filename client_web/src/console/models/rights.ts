@@ -18,6 +18,7 @@ export const COMMAND_RIGHTS: Readonly<Record<string, Right>> = {
   move_door: "doors",
   pace: "pace",
   announce: "announce",
+  warn: "moderate",
   mute: "moderate",
   kick: "moderate",
   ban: "moderate",
