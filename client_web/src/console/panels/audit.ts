@@ -113,7 +113,7 @@ class AuditPanel extends CommandingPanel {
         <button @click=${() => void this.verify()}>Verify the chains</button>
       </div>
       ${this.refused()}
-      <div class="scroll" tabindex="0" role="region" aria-label="Table">
+      <div class="scroll" tabindex="0" role="region" aria-label="Rows of the audit">
         <table>
           <thead>
             <tr>
@@ -151,7 +151,7 @@ class AuditPanel extends CommandingPanel {
           <button
             class="plain"
             aria-expanded=${isOpen}
-            aria-label="Details of row ${row.id}"
+            aria-label="${isOpen ? "less" : "more"} about row ${row.id}"
             @click=${() => {
               if (!this.open.delete(row.id)) this.open.add(row.id);
               this.requestUpdate();

@@ -69,7 +69,7 @@ class DifferencePanel extends CommandingPanel {
         </label>
       </div>
       ${this.refused()}
-      <div class="scroll" tabindex="0" role="region" aria-label="Table">
+      <div class="scroll" tabindex="0" role="region" aria-label="Parameters in columns">
         <table>
           <thead>
             <tr>

@@ -111,7 +111,7 @@ class AccountsPanel extends CommandingPanel {
           </select>
         </label>
         <button
-          aria-label=${this.removing === name ? `Remove ${name} for good` : `Remove ${name}`}
+          aria-label=${this.removing === name ? `Really remove? ${name}` : `Remove ${name}`}
           @click=${() => {
             if (this.removing === name) void this.takeAway(name);
             else this.removing = name;

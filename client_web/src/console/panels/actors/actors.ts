@@ -87,7 +87,7 @@ class ActorsPanel extends CommandingPanel {
         </button>
       </div>
       ${this.refused()} ${this.deeds(chosen)}
-      <div class="scroll" tabindex="0" role="region" aria-label="Table">
+      <div class="scroll" tabindex="0" role="region" aria-label="Actors in the world">
         <table>
           <thead>
             <tr>

@@ -37,7 +37,7 @@ class BansPanel extends CommandingPanel {
     const why = this.whyNot("ban");
     return html`
       ${this.refused()}
-      <div class="scroll" tabindex="0" role="region" aria-label="Table">
+      <div class="scroll" tabindex="0" role="region" aria-label="Who is banned">
         <table>
           <thead>
             <tr>

@@ -78,7 +78,7 @@ class PeoplePanel extends CommandingPanel {
         />
       </label>
       ${this.refused()} ${this.deeds(chosen)}
-      <div class="scroll" tabindex="0" role="region" aria-label="Table">
+      <div class="scroll" tabindex="0" role="region" aria-label="People in the world">
         <table>
           <thead>
             <tr>

@@ -125,7 +125,7 @@ class ReportsPanel extends CommandingPanel {
         />
       </label>
       ${this.button("Done", "settle_report", () => this.settle(report.id), {
-        label: `Report ${report.id} is done with`,
+        label: `Done with report ${report.id}`,
       })}`;
   }
 
