@@ -119,3 +119,24 @@ async def test_a_token_is_shown_once(server: Running, browser: Browser) -> None:
     await expect(secret).to_have_count(0)
     await expect(vera).to_contain_text("report")
     await olga.check_nothing_went_wrong()
+
+
+async def test_nothing_typed_is_left_after_logging_out(server: Running, browser: Browser) -> None:
+    context = await browser.new_context(viewport={"width": 1280, "height": 800})
+    olga = await OperatorPage.arrive(context, server, "olga")
+    await olga.show("Parameters")
+    await olga.box("hurry_weight").fill("7")
+    await expect(olga.page).to_have_url(re.compile("draft"))
+    await olga.page.locator("esp-topbar summary", has_text="olga").click()
+    await olga.page.get_by_role("button", name="Log out").click()
+    await expect(olga.page.get_by_label("Password", exact=True)).to_be_visible()
+    await expect(olga.page).not_to_have_url(re.compile("draft"))
+    olga.name = "otto"
+    await olga.log_in()
+    await olga.show("Parameters")
+    await olga.box("catch_up").fill("0.5")
+    state = olga.panel("parameters").locator(".state")
+    await expect(state).to_contain_text("takes effect at once")
+    await expect(state).to_contain_text("1 edit")
+    await expect(olga.box("hurry_weight")).to_have_value("0.2")
+    await olga.check_nothing_went_wrong()

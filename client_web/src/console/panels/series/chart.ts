@@ -99,7 +99,7 @@ export class Chart {
 
 /** A range with some room, from zero where the values are near it. */
 function around(low: number | null, high: number | null): [number, number] {
-  if (low === null || high === null) return [0, 1];
+  if (low === null || high === null || (low === 0 && high === 0)) return [0, 1];
   const from = low >= 0 && low < 0.5 * high ? 0 : low;
   const room = Math.max(1e-6, (high - from) * 0.08);
   return high === from ? [from - 0.5, high + 0.5] : [from === 0 ? 0 : from - room, high + room];
