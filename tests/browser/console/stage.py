@@ -14,7 +14,6 @@ from typing import Any, Final
 import numpy as np
 from fastapi import FastAPI, Request, Response, WebSocket
 from fastapi.responses import JSONResponse
-
 from starlette.websockets import WebSocketDisconnect
 
 from esplanade.protocol.snapshot import pack_records
@@ -137,6 +136,11 @@ def _app(stage: Stage) -> FastAPI:
             return _refused(404, "unknown", f"there is no {path}")
         return JSONResponse(found)
 
+    _add_live(app, stage)
+    return app
+
+
+def _add_live(app: FastAPI, stage: Stage) -> None:
     @app.websocket("/api/v1/live")
     async def live(socket: WebSocket) -> None:
         if socket.cookies.get(COOKIE) not in stage.sessions:
@@ -154,8 +158,6 @@ def _app(stage: Stage) -> FastAPI:
             reading.cancel()
             stage.sockets.discard(socket)
 
-    return app
-
 
 async def _read(socket: WebSocket, wanted: dict[str, dict[str, Any]]) -> None:
     with suppress(Exception):
@@ -168,7 +170,10 @@ async def _read(socket: WebSocket, wanted: dict[str, dict[str, Any]]) -> None:
 
 
 async def _write(
-    socket: WebSocket, stage: Stage, wanted: dict[str, dict[str, Any]], reading: "asyncio.Task[None]"
+    socket: WebSocket,
+    stage: Stage,
+    wanted: dict[str, dict[str, Any]],
+    reading: "asyncio.Task[None]",
 ) -> None:
     told: set[str] = set()
     beat = 0

@@ -245,9 +245,7 @@ def _world(tick: int, actors: int, people: int) -> dict[str, Any]:
 
 def _heat() -> dict[str, Any]:
     return {
-        "storeys": [
-            {"z_m": z, **_raster(160, 100, (0.0, 0.0), 0.5, phase=z)} for z in (0.0, 4.0)
-        ]
+        "storeys": [{"z_m": z, **_raster(160, 100, (0.0, 0.0), 0.5, phase=z)} for z in (0.0, 4.0)]
     }
 
 

@@ -1,4 +1,4 @@
-"""Axe finds nothing in the operators' page, in both colour schemes and on small and large windows."""
+"""Axe finds nothing in the operators' page, in both colour schemes and at two sizes."""
 
 import pytest
 from playwright.async_api import Browser

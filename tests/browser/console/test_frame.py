@@ -45,7 +45,7 @@ async def test_a_link_shows_the_same_to_another_operator(
     page = visit.page
     await visit.come_in()
     await page.click("[role=option]:has-text('Actor 7')")
-    await page.wait_for_function("location.hash.includes('sel=main/actor-7')")
+    await page.wait_for_url("**#sel=main/actor-7*")
     other = await visit_of(browser, page.url, 1280, 720, "dark")
     await other.come_in()
     await other.page.wait_for_selector("esp-inspector h2:has-text('Actor 7')")
@@ -56,7 +56,7 @@ async def test_a_link_shows_the_same_to_another_operator(
 async def test_everything_goes_by_keyboard(visit: Visit) -> None:
     page = visit.page
     await visit.open()
-    await page.wait_for_selector("#name")
+    await page.wait_for_selector("#name:focus")
     await page.keyboard.type(ACCOUNT)
     await page.keyboard.press("Tab")
     await page.keyboard.type(PASSWORD)

@@ -17,16 +17,17 @@ CONSOLE: Final = Path(__file__).parents[3] / "client_web" / "src" / "console"
 def _interface(name: str) -> tuple[set[str], set[str]]:
     """The fields of an interface that must be there, and those that may be."""
     text = (CONSOLE / "net" / "types.ts").read_text("utf-8")
-    found = re.search(rf"^export interface {name}\b[^{{]*\{{\n(.*?)^\}}", text, re.M | re.S)
+    pattern = rf"^export interface {name}\b[^{{]*\{{\n(.*?)^\}}"
+    found = re.search(pattern, text, re.MULTILINE | re.DOTALL)
     assert found, name
-    fields = re.findall(r"^  (?:readonly )?(\w+)(\??):", found[1], re.M)
+    fields = re.findall(r"^  (?:readonly )?(\w+)(\??):", found[1], re.MULTILINE)
     return {each for each, may in fields if not may}, {each for each, may in fields if may}
 
 
 def _listed(file: str, name: str) -> list[str]:
     """The words of an array of the page."""
     text = (CONSOLE / file).read_text("utf-8")
-    found = re.search(rf"export const {name}\b[^=]*= \[(.*?)\]", text, re.S)
+    found = re.search(rf"export const {name}\b[^=]*= \[(.*?)\]", text, re.DOTALL)
     assert found, name
     return re.findall(r'"(\w+)"', found[1])
 

@@ -334,7 +334,10 @@ export class Console extends LitElement {
 
   private key(event: KeyboardEvent): void {
     if (this.session.standing.value !== "in" || event.defaultPrevented) return;
-    const [target] = event.composedPath();
+    const path = event.composedPath();
+    // A dialog has its own Escape.
+    if (path.some((each) => each instanceof HTMLDialogElement)) return;
+    const [target] = path;
     if (this.app.shortcuts.press(event, takesText(target))) event.preventDefault();
   }
 

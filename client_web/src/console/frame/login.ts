@@ -2,7 +2,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { RefusedError } from "../net/api";
-import type { Session } from "../state/session";
+import type { Session, Standing } from "../state/session";
 import { controls } from "../style/controls";
 
 const LEAST_CHARS = 12;
@@ -28,7 +28,7 @@ class Login extends LitElement {
 
       form,
       .told {
-        width: min(360px, 100%);
+        width: min(360px, 100vw - 32px);
         display: grid;
         gap: 8px;
         padding: 22px;
@@ -74,6 +74,7 @@ class Login extends LitElement {
   declare over: boolean;
   declare fault: string;
   declare busy: boolean;
+  private focused: Standing | null = null;
 
   constructor() {
     super();
@@ -83,7 +84,11 @@ class Login extends LitElement {
     this.busy = false;
   }
 
-  override firstUpdated(): void {
+  /** Bring the keyboard into a form that has just come. */
+  override updated(): void {
+    const standing = this.session.standing.value;
+    if (standing === this.focused) return;
+    this.focused = standing;
     const empty = [...this.renderRoot.querySelectorAll("input")].find(({ value }) => value === "");
     empty?.focus();
   }
@@ -107,77 +112,80 @@ class Login extends LitElement {
 
   private usual(): TemplateResult {
     const { over, account } = this;
-    return html`<form
-      aria-labelledby="title"
+    return html`<div
       role=${over ? "dialog" : "main"}
+      aria-labelledby="title"
       aria-modal=${over ? "true" : nothing}
-      @submit=${this.logIn}
     >
-      <h1 id="title">${over ? "Your session has ended" : "Esplanade: operators"}</h1>
-      ${over ? html`<p>Log in again; all that you typed is still there.</p>` : nothing}
-      ${
-        this.session.untouched.value
-          ? html`<p>
-              This world has no account yet. Open the one-time link that the server printed when it
-              started, or make one on its machine:
-              <code>esplanade op user add NAME --role admin</code>
-            </p>`
-          : nothing
-      }
-      <label for="name">Name</label>
-      <input
-        id="name"
-        name="name"
-        required
-        autocomplete="username"
-        autocapitalize="none"
-        .value=${account}
-      />
-      <label for="password">Password</label>
-      <input
-        id="password"
-        name="password"
-        type="password"
-        required
-        autocomplete="current-password"
-      />
-      <button type="submit" ?disabled=${this.busy}>Log in</button>
-      <p class="fault" role="alert">${this.fault}</p>
-    </form>`;
+      <form @submit=${this.logIn}>
+        <h1 id="title">${over ? "Your session has ended" : "Esplanade: operators"}</h1>
+        ${over ? html`<p>Log in again; all that you typed is still there.</p>` : nothing}
+        ${
+          this.session.untouched.value
+            ? html`<p>
+                This world has no account yet. Open the one-time link that the server printed when
+                it started, or make one on its machine:
+                <code>esplanade op user add NAME --role admin</code>
+              </p>`
+            : nothing
+        }
+        <label for="name">Name</label>
+        <input
+          id="name"
+          name="name"
+          required
+          autocomplete="username"
+          autocapitalize="none"
+          .value=${account}
+        />
+        <label for="password">Password</label>
+        <input
+          id="password"
+          name="password"
+          type="password"
+          required
+          autocomplete="current-password"
+        />
+        <button type="submit" ?disabled=${this.busy}>Log in</button>
+        <p class="fault" role="alert">${this.fault}</p>
+      </form>
+    </div>`;
   }
 
   private first(): TemplateResult {
-    return html`<form aria-labelledby="title" role="main" @submit=${this.makeFirst}>
-      <h1 id="title">The first account</h1>
-      <p>This link works once. The account may do everything, and make others.</p>
-      <label for="name">Name</label>
-      <input
-        id="name"
-        name="name"
-        required
-        maxlength="32"
-        pattern="[a-z][a-z0-9._\\-]*"
-        title="Small letters, digits and . _ -, beginning with a letter"
-        autocomplete="username"
-        autocapitalize="none"
-      />
-      <label for="password">Password, of ${LEAST_CHARS} characters or more</label>
-      <input
-        id="password"
-        name="password"
-        type="password"
-        required
-        minlength=${LEAST_CHARS}
-        autocomplete="new-password"
-      />
-      <label for="again">The same again</label>
-      <input id="again" name="again" type="password" required autocomplete="new-password" />
-      <button type="submit" ?disabled=${this.busy}>Make it and log in</button>
-      <button type="button" class="plain" @click=${() => void this.session.dropFirst()}>
-        I have an account
-      </button>
-      <p class="fault" role="alert">${this.fault}</p>
-    </form>`;
+    return html`<main>
+      <form @submit=${this.makeFirst}>
+        <h1 id="title">The first account</h1>
+        <p>This link works once. The account may do everything, and make others.</p>
+        <label for="name">Name</label>
+        <input
+          id="name"
+          name="name"
+          required
+          maxlength="32"
+          pattern="[a-z][a-z0-9._\\-]*"
+          title="Small letters, digits and . _ -, beginning with a letter"
+          autocomplete="username"
+          autocapitalize="none"
+        />
+        <label for="password">Password, of ${LEAST_CHARS} characters or more</label>
+        <input
+          id="password"
+          name="password"
+          type="password"
+          required
+          minlength=${LEAST_CHARS}
+          autocomplete="new-password"
+        />
+        <label for="again">The same again</label>
+        <input id="again" name="again" type="password" required autocomplete="new-password" />
+        <button type="submit" ?disabled=${this.busy}>Make it and log in</button>
+        <button type="button" class="plain" @click=${() => void this.session.dropFirst()}>
+          I have an account
+        </button>
+        <p class="fault" role="alert">${this.fault}</p>
+      </form>
+    </main>`;
   }
 
   private readonly logIn = (event: SubmitEvent): void => {

@@ -56,7 +56,7 @@ export function whyBand(
           ></span>`,
       )}
     </div>
-    <ol class="stops" aria-label="What held it, the newest first">
+    <ol class="stops" tabindex="0" aria-label="What held it, the newest first">
       ${stopsOf(spans, MOST_STOPS).map(
         (span) =>
           html`<li>
