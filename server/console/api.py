@@ -14,6 +14,7 @@ from esplanade.server.audit.log import MOST_ROWS, Filter
 from esplanade.server.console import questions
 from esplanade.server.console.accounts_api import router as accounts
 from esplanade.server.console.admission_api import router as admission
+from esplanade.server.console.audit_api import router as verifying
 from esplanade.server.console.auth_api import router as auth
 from esplanade.server.console.gate import Gate
 from esplanade.server.console.kept_api import router as kept
@@ -56,7 +57,7 @@ def add_api(app: FastAPI, gate: Gate) -> None:
     app.state.gate = gate
     people = people_router(APIRouter(prefix=PREFIX, route_class=Guarded, responses=REFUSALS))
     # Paths of the live views below an actor's go before the actor's own.
-    for each in (live, sockets, router, kept, people, auth, accounts, admission):
+    for each in (live, sockets, router, kept, people, auth, accounts, admission, verifying):
         app.include_router(each)
     add_refusals(app)
 

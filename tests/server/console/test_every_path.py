@@ -58,6 +58,7 @@ PATHS: Final[dict[tuple[str, str], Row]] = {
         body={"op": "set_parameters", "scope": "world", "values": {"risk_weight": 9}},
     ),
     ("GET", "/audit"): Row(Right.AUDIT),
+    ("GET", "/audit/verify"): Row(Right.AUDIT),
     ("POST", "/login"): Row(None),
     ("POST", "/first"): Row(None),
     ("GET", "/me"): Row(Right.WATCH),

@@ -272,6 +272,7 @@ export class Console extends LitElement {
     this.app.live.stop();
     this.panels.drop();
     this.app.state.world.value = null;
+    this.app.state.draft.value = null;
     history.replaceState(null, "", location.pathname + location.search);
   }
 

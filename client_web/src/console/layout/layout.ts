@@ -18,7 +18,7 @@ export interface Layout {
 
 export const LEAST_PX = 140;
 const MOST_PX = 2000;
-const USUAL_PX: Readonly<Record<Area, number>> = { left: 250, centre: 0, right: 340, bottom: 240 };
+const USUAL_PX: Readonly<Record<Area, number>> = { left: 320, centre: 0, right: 340, bottom: 240 };
 
 export function usualLayout(panels: readonly PanelEntry[] = PANELS): Layout {
   const area = (name: Area): AreaLayout => {

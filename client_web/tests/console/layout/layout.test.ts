@@ -64,7 +64,7 @@ describe("Layout", () => {
       },
     };
     const layout = readLayout(JSON.stringify(strange), PANELS);
-    expect(layout?.areas.left).toEqual({ panels: ["map"], active: "map", size: 250 });
+    expect(layout?.areas.left).toEqual({ panels: ["map"], active: "map", size: 320 });
     expect(layout?.areas.right).toEqual({ panels: ["list"], active: "list", size: 300 });
     for (const text of ["", "[]", "null", '{"version":2,"areas":{}}', '{"version":1}']) {
       expect(readLayout(text, PANELS)).toBeNull();

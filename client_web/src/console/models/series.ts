@@ -1,0 +1,116 @@
+/** Time series of the world's figures, as columns that a chart draws, and marks across them. */
+
+export interface Mark {
+  readonly atUs: number;
+  readonly text: string;
+  readonly account: string | null;
+}
+
+export interface SeriesAnswer {
+  readonly at_us: readonly number[];
+  readonly values: Readonly<Record<string, readonly (number | null)[]>>;
+  readonly marks?: readonly {
+    readonly at_us: number;
+    readonly text: string;
+    readonly account?: string | null;
+  }[];
+}
+
+/** Steps that the server keeps, and how long a window of each is shown. */
+export const STEPS = [
+  { stepS: 1, spanS: 600, label: "10 minutes", step: "1 s" },
+  { stepS: 10, spanS: 6 * 3600, label: "6 hours", step: "10 s" },
+  { stepS: 60, spanS: 7 * 24 * 3600, label: "7 days", step: "1 min" },
+] as const;
+const MOST_MARKS = 500;
+
+/** A window of some series at one step; all columns have the same length. */
+export class SeriesWindow {
+  private atUs: number[] = [];
+  private columns = new Map<string, (number | null)[]>();
+  private found: Mark[] = [];
+
+  constructor(
+    readonly stepS: number,
+    readonly spanS: number,
+  ) {}
+
+  get names(): string[] {
+    return [...this.columns.keys()];
+  }
+
+  get length(): number {
+    return this.atUs.length;
+  }
+
+  get marks(): readonly Mark[] {
+    return this.found;
+  }
+
+  /** Take what the server has kept; it replaces what was there. */
+  load(answer: SeriesAnswer): void {
+    this.atUs = [...answer.at_us];
+    this.columns = new Map(
+      Object.entries(answer.values).map(([name, values]) => [name, [...values]]),
+    );
+    this.found = (answer.marks ?? []).map((mark) => ({
+      atUs: mark.at_us,
+      text: mark.text,
+      account: mark.account ?? null,
+    }));
+    this.trim();
+  }
+
+  /** Take the figures of a second; in a window of longer steps it falls into its step. */
+  append(atUs: number, values: Readonly<Record<string, number | null>>): void {
+    const stepUs = this.stepS * 1e6;
+    const at = Math.floor(atUs / stepUs) * stepUs;
+    const last = this.atUs.at(-1);
+    if (last !== undefined && at < last) return;
+    if (at !== last) {
+      this.atUs.push(at);
+      for (const column of this.columns.values()) column.push(null);
+    }
+    for (const [name, value] of Object.entries(values)) {
+      let column = this.columns.get(name);
+      if (!column) {
+        column = new Array<number | null>(this.atUs.length).fill(null);
+        this.columns.set(name, column);
+      }
+      column[column.length - 1] = value;
+    }
+    this.trim();
+  }
+
+  mark(mark: Mark): void {
+    if (this.found.some((one) => one.atUs === mark.atUs && one.text === mark.text)) return;
+    this.found.push(mark);
+    this.trim();
+  }
+
+  /** Columns as uPlot takes them: seconds, then the values of each name. */
+  data(names: readonly string[]): (number | null)[][] {
+    const empty = (): null[] => new Array<null>(this.atUs.length).fill(null);
+    return [
+      this.atUs.map((us) => us / 1e6),
+      ...names.map((name) => this.columns.get(name) ?? empty()),
+    ];
+  }
+
+  /** The marks nearest to a time, within some seconds of it. */
+  near(atS: number, withinS: number): Mark[] {
+    return this.found.filter((mark) => Math.abs(mark.atUs / 1e6 - atS) <= withinS);
+  }
+
+  private trim(): void {
+    const last = this.atUs.at(-1);
+    if (last === undefined) return;
+    const from = last - this.spanS * 1e6;
+    const gone = this.atUs.findIndex((us) => us > from);
+    if (gone > 0) {
+      this.atUs.splice(0, gone);
+      for (const column of this.columns.values()) column.splice(0, gone);
+    }
+    this.found = this.found.filter((mark) => mark.atUs > from).slice(-MOST_MARKS);
+  }
+}

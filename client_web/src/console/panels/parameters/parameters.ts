@@ -1,0 +1,500 @@
+/** The form of parameters: made from the schema, edited as a draft, applied in one tick. */
+
+import { css, html, nothing, type TemplateResult } from "lit";
+import type { AppContext } from "../../context";
+import { byGroup, fromSlider, labelOf, outOfRange, parsed, shown } from "../../models/fields";
+import type { NumberField } from "../../models/fields";
+import { ParameterWork } from "../../models/parameterwork";
+import { groupsOf, scopeName, shortId } from "../../models/scopes";
+import { RefusedError } from "../../net/api";
+import type { LiveMessage } from "../../net/live";
+import { CommandingPanel } from "../commanding";
+import { manner, type Manner, mannerForm } from "./manner";
+import { row, rowStyle, type RowEvents } from "./row";
+
+/** Values are asked for anew this often while the live interface is away. */
+const POLL_MS = 2000;
+
+interface ChangeMessage extends LiveMessage {
+  change?: { account?: string | null; op?: string };
+}
+
+/** Drafts outlive the panel, which may be shut and opened again, but not their account's visit. */
+const works = new WeakMap<AppContext, { account: string; work: ParameterWork }>();
+
+function workOf(app: AppContext): ParameterWork {
+  const account = app.state.me.value?.account ?? "";
+  const kept = works.get(app);
+  if (kept?.account === account) return kept.work;
+  const work = new ParameterWork(app.api);
+  works.set(app, { account, work });
+  return work;
+}
+
+class ParametersPanel extends CommandingPanel {
+  static override styles = [...CommandingPanel.styles, rowStyle, style()];
+  private work: ParameterWork | null = null;
+  private typing: { name: string; text: string } | null = null;
+  private dragged: string | null = null;
+  private liveDrag = false;
+  private explained = false;
+  private sought = "";
+  private how: Manner = manner();
+  private figures: readonly string[] = [];
+
+  protected override begin(): void {
+    const { api, live, state } = this.app;
+    const work = workOf(this.app);
+    this.work = work;
+    work.changed = () => {
+      this.tellDraft(work);
+      this.requestUpdate();
+    };
+    this.watch(state.chosen);
+    this.watch(state.draft, (draft) => {
+      if (draft && work.fields.length > 0 && JSON.stringify(draft) !== JSON.stringify(told(work)))
+        work.take(draft.scope, draft.values);
+    });
+    this.hear("changes", {}, (message: ChangeMessage) => {
+      const by = message.change?.account ?? null;
+      void work.refresh(by).catch(() => undefined);
+      if (/actor|group/.test(message.change?.op ?? "")) void work.refreshActors().catch(() => null);
+    });
+    const poll = setInterval(() => {
+      if (live.phase.value !== "on") void work.refresh().catch(() => undefined);
+    }, POLL_MS);
+    this.atEnd(() => {
+      clearInterval(poll);
+      work.stop();
+    });
+    const given = state.draft.value;
+    void this.attempt(work.load()).then(() => {
+      if (given) work.take(given.scope, given.values);
+    });
+    void api
+      .get<{ figures?: { name: string }[] }>("/schedules")
+      .then(({ figures }) => {
+        this.figures = (figures ?? []).map((one) => one.name);
+        this.requestUpdate();
+      })
+      .catch(() => undefined);
+  }
+
+  protected override render(): TemplateResult {
+    const { work } = this;
+    if (!work || work.fields.length === 0)
+      return html`<p class="soft">The schema is on its way.</p>`;
+    const fields = work.fields.filter((field) => this.fits(field));
+    return html`<div class="form" @keydown=${this.pressed}>
+      ${this.head(work)}
+      <div class="fields">
+        ${[...byGroup(fields)].map(
+          ([group, members]) =>
+            html`<fieldset>
+              <legend>${labelOf(group)}</legend>
+              <div class="columns">${members.map((field) => this.row(work, field))}</div>
+            </fieldset>`,
+        )}
+        ${fields.length === 0 ? html`<p class="soft">No parameter is called that.</p>` : nothing}
+      </div>
+      ${this.foot(work)}
+    </div>`;
+  }
+
+  private head(work: ParameterWork): TemplateResult {
+    const groups = new Set(
+      work.actors.flatMap((actor) => groupsOf(actor).map((name) => `group:${name}`)),
+    );
+    for (const scope of Object.keys(work.answer?.scopes ?? {})) {
+      if (scope.startsWith("group:")) groups.add(scope);
+    }
+    if (work.scope.startsWith("group:")) groups.add(work.scope);
+    const edited = new Set(work.edited);
+    const option = (scope: string): TemplateResult =>
+      html`<option value=${scope} ?selected=${scope === work.scope}>
+        ${scopeName(scope, work.actors)}${edited.has(scope) ? " •" : ""}
+      </option>`;
+    const actors = work.actors.map((actor) => `actor:${actor.id}`);
+    const chosen = this.app.state.chosen.value.find((id) => actors.includes(`actor:${id}`));
+    return html`<div class="row head">
+      <label class="field grow">
+        Scope
+        <select
+          name="scope"
+          @change=${(event: Event) => {
+            work.choose((event.currentTarget as HTMLSelectElement).value);
+          }}
+        >
+          ${option("world")}
+          <optgroup label="Groups">${[...groups].sort().map(option)}</optgroup>
+          <optgroup label="Actors">
+            ${
+              actors.includes(work.scope) || !work.scope.startsWith("actor:")
+                ? nothing
+                : option(work.scope)
+            }
+            ${actors.map(option)}
+          </optgroup>
+        </select>
+      </label>
+      <label class="field grow">
+        Find
+        <input
+          type="search"
+          .value=${this.sought}
+          @input=${(event: Event) => {
+            this.sought = (event.currentTarget as HTMLInputElement).value;
+            this.requestUpdate();
+          }}
+        />
+      </label>
+      ${
+        chosen !== undefined && work.scope !== `actor:${chosen}`
+          ? html`<button
+              @click=${() => {
+                work.choose(`actor:${chosen}`);
+              }}
+            >
+              Tune ${shortId(chosen)}
+            </button>`
+          : nothing
+      }
+      <label>
+        <input
+          type="checkbox"
+          .checked=${this.explained}
+          @change=${() => {
+            this.explained = !this.explained;
+            this.requestUpdate();
+          }}
+        />
+        explain
+      </label>
+    </div>`;
+  }
+
+  private row(work: ParameterWork, field: NumberField): TemplateResult {
+    const { draft } = work;
+    const { name } = field;
+    const source = draft.source(name);
+    const edit = draft.edit(name);
+    const value = edit ?? source?.value ?? field.usual;
+    return row(
+      {
+        field,
+        value,
+        typed: this.typing?.name === name ? this.typing.text : null,
+        edit,
+        from: scopeName(source?.from ?? "default", work.actors),
+        own: source?.from === work.scope,
+        beside: draft.beside(name),
+        fault: draft.fault(name),
+        shadows: work.shadowing(name).length,
+        explained: this.explained,
+        locked: this.whyNot("set_parameters"),
+      },
+      this.events(work, field, value, source?.from === work.scope),
+    );
+  }
+
+  private events(work: ParameterWork, field: NumberField, value: number, own: boolean): RowEvents {
+    const { name } = field;
+    return {
+      slide: (place) => {
+        this.typing = null;
+        work.edit(name, fromSlider(field, place), this.dragged === name);
+        this.dragged = name;
+        if (this.liveDrag) work.drag();
+      },
+      slid: () => {
+        this.dragged = null;
+      },
+      type: (text) => {
+        const together = this.typing?.name === name;
+        this.typing = { name, text };
+        const typed = parsed(field, text);
+        if (typed !== null) work.edit(name, typed, together);
+        else work.draft.mistyped(name, "This is not a number yet.");
+        this.requestUpdate();
+      },
+      typedOut: () => {
+        const text = this.typing?.text;
+        if (this.typing?.name !== name || text === undefined) return;
+        this.typing = null;
+        if (parsed(field, text) === null) work.draft.mistyped(name, null);
+        this.requestUpdate();
+      },
+      step: (by) => {
+        this.typing = null;
+        const next = Number((value + by).toPrecision(10));
+        work.edit(name, Math.min(field.most, Math.max(field.least, next)), true);
+      },
+      reset: () => {
+        this.typing = null;
+        if (own) work.edit(name, null);
+        else this.drop(work, name);
+      },
+      drop: () => {
+        this.drop(work, name);
+      },
+      takeTheirs: () => {
+        this.drop(work, name);
+      },
+      keepMine: () => {
+        work.draft.keepMine(name);
+        work.touched();
+      },
+      clearShadows: () => void this.attempt(work.clearShadows(name)),
+    };
+  }
+
+  private foot(work: ParameterWork): TemplateResult {
+    const { draft } = work;
+    const count = draft.names.length;
+    const wrong = draft.names.find((name) => {
+      const field = work.fields.find((one) => one.name === name);
+      const edit = draft.edit(name);
+      return field && typeof edit === "number" && outOfRange(field, edit) !== null;
+    });
+    const blocked = count === 0 ? "There is nothing to apply." : null;
+    return html`<div class="foot">
+      <p class="state" role="status">
+        ${
+          count === 0
+            ? "No draft."
+            : html`<b>${count} ${count === 1 ? "edit" : "edits"}</b> for
+                ${scopeName(work.scope, work.actors)}; ${priceText(work, wrong !== undefined)}`
+        }
+        ${work.edited
+          .filter((scope) => scope !== work.scope)
+          .map(
+            (scope) =>
+              html` <button
+                class="plain"
+                @click=${() => {
+                  work.choose(scope);
+                }}
+              >
+                and a draft for ${scopeName(scope, work.actors)}
+              </button>`,
+          )}
+      </p>
+      ${work.faults.map((fault) => html`<p class="fault" role="alert">${fault.text}</p>`)}
+      <div class="row">
+        <label class="grow">
+          <span class="visually-hidden">Why (kept in the audit)</span>
+          <input
+            class="note"
+            maxlength="500"
+            placeholder="Why? (kept in the audit)"
+            .value=${work.note}
+            @input=${(event: Event) => {
+              work.note = (event.currentTarget as HTMLInputElement).value;
+            }}
+          />
+        </label>
+        ${this.button("Apply", "set_parameters", () => this.apply(), {
+          ...{ main: true, blocked, keys: "Control+Enter" },
+        })}
+      </div>
+      <div class="row">
+        ${this.button(
+          "Discard",
+          "watch",
+          () => {
+            draft.discard();
+            work.touched();
+          },
+          { blocked },
+        )}
+        ${this.button(draft.canUndo ? "Undo edit" : "Undo", "set_parameters", () => this.undo(), {
+          ...{ keys: "Control+Z", label: draft.canUndo ? "Undo edit" : "Undo my latest change" },
+        })}
+        ${this.button(draft.canRedo ? "Redo edit" : "Redo", "set_parameters", () => this.redo(), {
+          ...{ keys: "Control+Shift+Z", label: draft.canRedo ? "Redo edit" : "Redo what I undid" },
+        })}
+        <label title="Send while a slider is dragged, at most ten times a second">
+          <input
+            type="checkbox"
+            .checked=${this.liveDrag}
+            @change=${() => {
+              this.liveDrag = !this.liveDrag;
+              this.requestUpdate();
+            }}
+          />
+          live drag
+        </label>
+      </div>
+      ${mannerForm(this.how, this.figures, (how) => {
+        this.how = how;
+        work.manner = how.command;
+        work.touched();
+        this.requestUpdate();
+      })}
+    </div>`;
+  }
+
+  private readonly pressed = (event: KeyboardEvent): void => {
+    const { work } = this;
+    if (!work) return;
+    const control = event.ctrlKey || event.metaKey;
+    if (control && event.key === "Enter") void this.apply();
+    else if (control && event.key.toLowerCase() === "z" && event.shiftKey) void this.redo();
+    else if (control && event.key.toLowerCase() === "y") void this.redo();
+    else if (control && event.key.toLowerCase() === "z") void this.undo();
+    else if (event.key === "Escape") {
+      const field = (event.target as Element).closest<HTMLElement>("[data-field]")?.dataset[
+        "field"
+      ];
+      if (field === undefined || work.draft.edit(field) === undefined) return;
+      this.drop(work, field);
+    } else return;
+    event.preventDefault();
+    event.stopPropagation();
+  };
+
+  private drop(work: ParameterWork, name: string): void {
+    this.typing = null;
+    work.draft.drop(name);
+    work.touched();
+  }
+
+  private async apply(): Promise<void> {
+    const { work } = this;
+    if (!work) return;
+    const why = this.whyNot("set_parameters");
+    if (why !== null) {
+      this.app.toast(why);
+      return;
+    }
+    try {
+      const answer = await work.apply();
+      if (answer) this.app.toast(appliedText(answer.tick), "done");
+    } catch (error) {
+      if (!(error instanceof RefusedError)) throw error;
+      if (work.draft.names.every((name) => work.draft.fault(name) === null))
+        this.app.toast(error.message, "fault");
+    }
+  }
+
+  private async undo(): Promise<void> {
+    const { work } = this;
+    if (!work) return;
+    this.typing = null;
+    if (work.draft.canUndo) {
+      work.draft.undo();
+      work.touched();
+    } else await this.revert(work, "latest", "Your latest change is taken back.");
+  }
+
+  private async redo(): Promise<void> {
+    const { work } = this;
+    if (!work) return;
+    this.typing = null;
+    if (work.draft.canRedo) {
+      work.draft.redo();
+      work.touched();
+    } else await this.revert(work, "undone", "It is made anew.");
+  }
+
+  private async revert(work: ParameterWork, change: string, done: string): Promise<void> {
+    const answer = await this.carryOut({ op: "revert", change }, done);
+    if (answer) await work.refresh().catch(() => undefined);
+  }
+
+  private fits(field: NumberField): boolean {
+    const words = this.sought.toLowerCase().split(/\s+/);
+    const text = `${field.name} ${field.label} ${field.doc} ${field.group}`.toLowerCase();
+    return words.every((word) => text.includes(word));
+  }
+
+  private tellDraft(work: ParameterWork): void {
+    const now = told(work);
+    const { draft } = this.app.state;
+    if (JSON.stringify(now) !== JSON.stringify(draft.value)) draft.value = now;
+  }
+}
+
+function told(work: ParameterWork): { scope: string; values: Record<string, unknown> } | null {
+  return work.draft.isEmpty ? null : { scope: work.scope, values: work.draft.values };
+}
+
+function priceText(work: ParameterWork, wrong: boolean): string {
+  const { price, prepareSeconds, isFlying } = work.draft;
+  if (isFlying) return "being applied …";
+  if (wrong || work.faults.length > 0) return "it cannot be applied.";
+  if (price === "tick") return "takes effect at once.";
+  if (price === "prepared") {
+    if (prepareSeconds === null) return "needs a moment of preparation.";
+    return `needs ${shown(Number(prepareSeconds.toPrecision(2)))} s of preparation.`;
+  }
+  return work.draft.names.some((name) => work.draft.fault(name) !== null)
+    ? "it cannot be applied."
+    : "being checked …";
+}
+
+function appliedText(tick: number | null): string {
+  return tick === null ? "Applied." : `Applied in tick ${tick}.`;
+}
+
+function style(): ReturnType<typeof css> {
+  return css`
+    :host {
+      display: block;
+      container-type: inline-size;
+    }
+    .columns {
+      display: grid;
+      grid-template-columns: repeat(auto-fill, minmax(min(100%, 250px), 1fr));
+      gap: 4px 12px;
+    }
+    .head {
+      margin-bottom: 8px;
+    }
+    .head select,
+    .head input[type="search"] {
+      width: 100%;
+      min-width: 0;
+    }
+    fieldset {
+      padding: 2px 4px 4px;
+      border: 0;
+      border-top: 1px solid var(--line);
+      border-radius: 0;
+    }
+    .foot {
+      position: sticky;
+      bottom: -8px;
+      z-index: 1;
+      margin: 0 -8px -8px;
+      padding: 6px 8px 8px;
+      background: var(--paper);
+      border-top: 1px solid var(--line);
+    }
+    .foot .row {
+      flex-wrap: nowrap;
+      gap: 4px;
+    }
+    .foot button {
+      padding: 2px 7px;
+      white-space: nowrap;
+    }
+    .foot label {
+      white-space: nowrap;
+    }
+    .foot details {
+      margin: 0;
+    }
+    .foot p {
+      margin: 0 0 4px;
+    }
+    .foot .note {
+      width: 100%;
+    }
+    .state {
+      min-height: 1.4em;
+    }
+  `;
+}
+
+customElements.define("esp-parameters", ParametersPanel);

@@ -1,0 +1,330 @@
+/** Figures of the world over time: chosen ones, each with a line for every change. */
+
+import uPlotStyle from "uplot/dist/uPlot.min.css?inline";
+import { css, html, nothing, type TemplateResult, unsafeCSS } from "lit";
+import { summary } from "../../models/facts";
+import { labelOf, shown } from "../../models/fields";
+import { shortId } from "../../models/scopes";
+import { type SeriesAnswer, SeriesWindow, STEPS } from "../../models/series";
+import { clock } from "../../models/times";
+import type { LiveMessage } from "../../net/live";
+import type { ChangeRow } from "../changes";
+import { CommandingPanel } from "../commanding";
+import { Chart, type ChartLook } from "./chart";
+
+interface SeriesName {
+  name: string;
+  unit: string;
+  text: string;
+}
+
+interface Figures extends LiveMessage {
+  at_us: number;
+  values: Record<string, number | null>;
+}
+
+interface ActorNews extends LiveMessage {
+  speed: number;
+  cost?: { total?: number | null } | null;
+}
+
+const KEPT = "esplanade-console-series";
+const USUAL = ["people", "contacts", "waiting_s", "tick_p99_ms"];
+const MOST = 12;
+const HEIGHT = 104;
+
+class SeriesPanel extends CommandingPanel {
+  static override styles = [
+    ...CommandingPanel.styles,
+    unsafeCSS(uPlotStyle),
+    css`
+      :host {
+        display: block;
+      }
+      .charts {
+        display: grid;
+        grid-template-columns: repeat(auto-fill, minmax(min(100%, 340px), 1fr));
+        gap: 8px 14px;
+        margin-top: 8px;
+      }
+      figure {
+        margin: 0;
+        min-width: 0;
+      }
+      figcaption {
+        display: flex;
+        justify-content: space-between;
+        gap: 8px;
+        font-size: 0.93em;
+      }
+      .choice {
+        display: grid;
+        grid-template-columns: repeat(auto-fill, minmax(min(100%, 220px), 1fr));
+        max-height: 200px;
+        overflow: auto;
+      }
+      .told {
+        min-height: 1.4em;
+      }
+    `,
+  ];
+  private names: readonly SeriesName[] = [];
+  private chosen: string[] = USUAL;
+  private step = 0;
+  private window = new SeriesWindow(STEPS[0].stepS, STEPS[0].spanS);
+  private readonly charts = new Map<string, Chart>();
+  private readonly pinned = new Map<string, () => void>();
+  private looked: ChartLook | null = null;
+
+  protected override begin(): void {
+    const { live, state } = this.app;
+    void this.prepare();
+    this.hear("series", {}, (message: Figures) => {
+      this.window.append(message.at_us, message.values);
+      this.draw();
+    });
+    this.hear("changes", {}, (message: LiveMessage & { change?: ChangeRow }) => {
+      const { change } = message;
+      if (!change) return;
+      const text = `${change.op.replaceAll("_", " ")}: ${summary(change.before ?? null, change.after ?? null)}`;
+      this.window.mark({ atUs: change.at_us, text, account: change.account });
+    });
+    this.watch(live.phase, (phase) => {
+      if (phase === "on") void this.load();
+    });
+    this.watch(state.chosen);
+    this.watch(state.hovered, (us) => {
+      for (const chart of this.charts.values()) {
+        chart.point(us === null ? null : us / 1e6);
+        break; // the others follow it
+      }
+      this.requestUpdate();
+    });
+    const scheme = matchMedia("(prefers-color-scheme: dark)");
+    const anew = (): void => {
+      this.looked = null;
+      this.clear();
+      this.requestUpdate();
+    };
+    scheme.addEventListener("change", anew);
+    const sizes = new ResizeObserver(() => {
+      this.resize();
+    });
+    sizes.observe(this);
+    this.atEnd(() => {
+      scheme.removeEventListener("change", anew);
+      sizes.disconnect();
+      for (const stop of this.pinned.values()) stop();
+      this.pinned.clear();
+      this.clear();
+    });
+  }
+
+  protected override render(): TemplateResult {
+    const actor = this.app.state.chosen.value.find((id) => !id.startsWith("person:"));
+    return html`
+      <div class="row">
+        <div class="row" role="group" aria-label="How long">
+          ${STEPS.map(
+            (step, index) =>
+              html`<button
+                aria-pressed=${index === this.step}
+                title="In steps of ${step.step}"
+                @click=${() => {
+                  this.step = index;
+                  void this.load();
+                }}
+              >
+                ${step.label}
+              </button>`,
+          )}
+        </div>
+        ${
+          actor !== undefined && !this.pinned.has(actor)
+            ? html`<button
+                @click=${() => {
+                  this.pin(actor);
+                }}
+              >
+                Pin ${shortId(actor)}
+              </button>`
+            : nothing
+        }
+        <span class="told grow" role="status">${this.told()}</span>
+      </div>
+      <details>
+        <summary>Choose series (${this.chosen.length})</summary>
+        <div class="choice">${this.names.map((one) => this.choice(one))}</div>
+      </details>
+      ${this.refused()}
+      <div class="charts">
+        ${this.chosen.map((name) => {
+          const known = this.names.find((one) => one.name === name);
+          return html`<figure data-series=${name} aria-label="Chart of ${known?.text ?? name}">
+            <figcaption>
+              <b title=${known?.text ?? name}>${labelOf(name)}</b>
+              <span>${this.value(name)} ${unitOf(known)}</span>
+            </figcaption>
+            <div class="plot"></div>
+          </figure>`;
+        })}
+      </div>
+    `;
+  }
+
+  protected override updated(): void {
+    const look = (this.looked ??= this.look());
+    for (const figure of this.renderRoot.querySelectorAll<HTMLElement>("figure[data-series]")) {
+      const name = figure.dataset["series"] ?? "";
+      const at = figure.querySelector<HTMLElement>(".plot");
+      if (!at || at.childElementCount > 0) continue;
+      this.charts.get(name)?.destroy();
+      const chart = new Chart(at, Math.max(200, figure.clientWidth), {
+        title: name,
+        unit: "",
+        look,
+        height: HEIGHT,
+        hover: (atS) => {
+          this.app.state.hovered.value = atS === null ? null : Math.round(atS * 1e6);
+        },
+        marks: () => this.window.marks,
+      });
+      this.charts.set(name, chart);
+      this.fill(name, chart);
+    }
+    for (const [name, chart] of this.charts) {
+      if (this.chosen.includes(name)) continue;
+      chart.destroy();
+      this.charts.delete(name);
+    }
+  }
+
+  private choice(one: SeriesName): TemplateResult {
+    return html`<label title=${one.text}>
+      <input
+        type="checkbox"
+        .checked=${this.chosen.includes(one.name)}
+        ?disabled=${this.chosen.length >= MOST && !this.chosen.includes(one.name)}
+        @change=${() => {
+          this.chosen = this.chosen.includes(one.name)
+            ? this.chosen.filter((name) => name !== one.name)
+            : [...this.chosen, one.name];
+          localStorage.setItem(KEPT, JSON.stringify(this.chosen));
+          // The figures of what is newly chosen are not there yet.
+          void this.load();
+        }}
+      />
+      ${labelOf(one.name)} <span class="soft">${unitOf(one)}</span>
+    </label>`;
+  }
+
+  /** What is under the pointer: the moment, and whose changes were made about then. */
+  private told(): TemplateResult | string {
+    const us = this.app.state.hovered.value;
+    if (us === null) return `${this.window.marks.length} changes in this window`;
+    const [chart] = this.charts.values();
+    const marks = this.window.near(us / 1e6, 4 * (chart?.secondsPerPixel ?? 1));
+    return html`<b>${clock(us)}</b> ${marks.map(
+        (mark) => html`<span class="chip">${mark.account ?? "server"}</span> ${mark.text} `,
+      )}`;
+  }
+
+  private value(name: string): string {
+    const us = this.app.state.hovered.value;
+    const [times = [], values = []] = this.window.data([name]);
+    let index = values.length - 1;
+    if (us !== null) index = times.findLastIndex((at) => at !== null && at <= us / 1e6);
+    const value = values[index];
+    return value === null || value === undefined ? "—" : shown(Number(value.toPrecision(4)));
+  }
+
+  private async prepare(): Promise<void> {
+    const found = await this.ask<{ series: SeriesName[] }>("/series/names");
+    if (!found) return;
+    this.names = found.series;
+    const known = new Set(found.series.map((one) => one.name));
+    const kept = keptNames().filter((name) => known.has(name));
+    this.chosen = kept.length > 0 ? kept : USUAL.filter((name) => known.has(name));
+    if (this.chosen.length === 0) this.chosen = found.series.slice(0, 4).map((one) => one.name);
+    await this.load();
+  }
+
+  private async load(): Promise<void> {
+    const { stepS, spanS } = STEPS[this.step] ?? STEPS[0];
+    const window = new SeriesWindow(stepS, spanS);
+    const names = this.chosen.filter((name) => !name.includes(" ")).join(",");
+    const from = Math.round(Date.now() * 1000 - spanS * 1e6);
+    const query = { names, step_s: stepS, from_us: from };
+    const found = await this.ask<SeriesAnswer>("/series", query);
+    if (!found) return;
+    window.load(found);
+    this.window = window;
+    this.requestUpdate();
+    this.draw();
+  }
+
+  /** Show the speed and the cost of an actor beside the figures of all, from now on. */
+  private pin(actor: string): void {
+    const speed = `speed of ${shortId(actor)}`;
+    const cost = `cost of ${shortId(actor)}`;
+    const stop = this.app.live.subscribe(`actor:${actor}`, { hz: 1 }, (message: ActorNews) => {
+      this.window.append(Date.now() * 1000, {
+        [speed]: message.speed,
+        [cost]: message.cost?.total ?? null,
+      });
+    });
+    this.pinned.set(actor, stop);
+    this.names = [
+      ...this.names,
+      { name: speed, unit: "m/s", text: speed },
+      { name: cost, unit: "s", text: `cost of the path of ${shortId(actor)}` },
+    ];
+    this.chosen = [...this.chosen, speed].slice(-MOST);
+    this.requestUpdate();
+  }
+
+  private draw(): void {
+    if (document.hidden) return;
+    for (const [name, chart] of this.charts) this.fill(name, chart);
+    this.requestUpdate();
+  }
+
+  private fill(name: string, chart: Chart): void {
+    const [times = [], values = []] = this.window.data([name]);
+    chart.show(times, values);
+  }
+
+  private resize(): void {
+    for (const [name, chart] of this.charts) {
+      const figure = this.renderRoot.querySelector(`figure[data-series="${CSS.escape(name)}"]`);
+      if (figure) chart.resize(figure.clientWidth, HEIGHT);
+    }
+  }
+
+  private look(): ChartLook {
+    const style = getComputedStyle(this);
+    const of = (name: string): string => style.getPropertyValue(name).trim();
+    return { line: of("--accent"), ink: of("--soft-ink"), grid: of("--line"), mark: of("--warn") };
+  }
+
+  private clear(): void {
+    for (const chart of this.charts.values()) chart.destroy();
+    this.charts.clear();
+  }
+}
+
+/** The unit as people read it; of a mere number there is none. */
+function unitOf(one: SeriesName | undefined): string {
+  return one === undefined || one.unit === "1" ? "" : one.unit;
+}
+
+function keptNames(): string[] {
+  try {
+    const kept: unknown = JSON.parse(localStorage.getItem(KEPT) ?? "[]");
+    return Array.isArray(kept) ? kept.filter((one) => typeof one === "string") : [];
+  } catch {
+    return [];
+  }
+}
+
+customElements.define("esp-series", SeriesPanel);
