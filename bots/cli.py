@@ -29,6 +29,7 @@ from esplanade.bots.worker import Job
 from esplanade.commandline import fields
 from esplanade.commandline.errors import CommandError, UsageError
 from esplanade.commandline.output import console, write_json
+from esplanade.commandline.recording_settings import tell_recording
 from esplanade.commandline.settings import given_settings
 from esplanade.recordings import Crowd, RecordingError, read_crowd
 
@@ -42,9 +43,16 @@ def run(options: Namespace) -> int:
     crowd: Crowd | None = None
     if settings.replay is not None:
         try:
-            crowd = read_crowd(settings.replay)
+            crowd = read_crowd(
+                settings.replay,
+                settings.fps,
+                unit=settings.unit,
+                scale=settings.scale,
+                strict=settings.strict,
+            )
         except RecordingError as error:
             raise UsageError(str(error)) from None
+        tell_recording("esplanade bots", str(settings.replay), crowd.report)
     if settings.trust is not None:
         try:
             tls_context(settings.trust)

@@ -8,6 +8,7 @@ from esplanade.bots.address import websocket_url
 from esplanade.bots.stages import read_stages
 from esplanade.commandline.parser import Parser
 from esplanade.commandline.readers import SEED_LIMIT, InputFile, Number, OutputFile, Text, Whole
+from esplanade.commandline.recording_settings import READING, check_reading
 from esplanade.commandline.settings import Setting, Settings, settings_parser
 
 MEASURES: Final = """\
@@ -122,7 +123,8 @@ _LOAD: Final = {
 }
 _REPLAY: Final = {
     "replay": Setting(
-        "send in the people of this recording (CSV t,id,x,y) instead of visitors", InputFile()
+        "send in the people of this recording instead of visitors; docs/files.md lists the formats",
+        InputFile(),
     ),
     "speedup": Setting(
         "how many times faster than they were recorded", Number(0.1, 20.0), 1.0, "times"
@@ -131,6 +133,7 @@ _REPLAY: Final = {
     "linger": Setting(
         "how long each stands at the end of the way before leaving", Number(0.0, 3600.0), 0.0, "s"
     ),
+    **READING,
 }
 
 
@@ -148,6 +151,7 @@ def check(given: Mapping[str, Any]) -> None:
         raise ValueError(f"{misplaced[0]}: belongs to a load test, not to a replay")
     if misplaced:
         raise ValueError(f"{misplaced[0]}: belongs to a replay, but none is given")
+    check_reading(given)
     staged = sorted(given.keys() & {"count", "duration", "join_rate"})
     if staged and given.get("stages") is not None:
         raise ValueError(f"{staged[0]}: stages say that already, only one of the two can be given")

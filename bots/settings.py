@@ -48,6 +48,10 @@ class BotsSettings(BaseSettings):
     speedup: float = _field("speedup")
     limit: int | None = _field("limit")
     linger: float = _field("linger")
+    fps: float | None = _field("fps")
+    unit: str | None = _field("unit")
+    scale: float | None = _field("scale")
+    strict: bool = _field("strict")
 
     fail_if: Annotated[tuple[str, ...], NoDecode] = _field("fail_if")
     json_file: Path | None = _field("json_file")

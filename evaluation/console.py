@@ -5,16 +5,26 @@ from collections.abc import Sequence
 
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.progress import progress
+from esplanade.commandline.recording_settings import tell_recording
 from esplanade.evaluation.runner import TrialResult, run_trials
 from esplanade.evaluation.score_cache import ScoreCache
 from esplanade.evaluation.trials import Source, Trial
+from esplanade.recordings import Given
 
 
 def named_sources(options: Namespace) -> dict[Source, str]:
     """The recordings of the command line and their names; equal names are replaced by paths."""
     sources = dict.fromkeys(
-        Source(path, options.walls, options.fps, options.interp) for path in options.crowds
+        Source(
+            path,
+            options.walls,
+            Given(options.fps, options.unit, options.scale, options.strict),
+            options.interp,
+        )
+        for path in options.crowds
     )
+    for source in sources:
+        tell_recording("esplanade evaluate", str(source.path), source.read()[0].report)
     names = {source: source.read()[0].name for source in sources}
     shared = {name for name in names.values() if list(names.values()).count(name) > 1}
     return {s: str(s.path.with_suffix("")) if n in shared else n for s, n in names.items()}

@@ -13,6 +13,7 @@ from esplanade.commandline.readers import (
     OutputFile,
     Whole,
 )
+from esplanade.commandline.recording_settings import add_reading, check_reading
 from esplanade.evaluation.setting_names import NAMES
 
 POLICIES: Final = {
@@ -37,7 +38,7 @@ examples:
   esplanade evaluate eth.csv zara1.csv --sensitivity --score-cache done.jsonl --plots .
   esplanade evaluate eth.csv zara1.csv --tune --vary risk_weight=6,8,12 --score-cache done.jsonl
 
-files: CSV with the header t,id,x,y; ETH's obsmat.txt; TrajNet++ .ndjson
+files: CSV, PeTrack, obsmat, TrajNet, JuPedSim and others; see `esplanade recording check --help`
 
 exit code: 0 all went well, 1 with --strict: somebody was touched or a goal not reached,
 2 wrong usage, or a file that cannot be used
@@ -63,13 +64,7 @@ def parser() -> Parser:
         type=InputFile(),
         help="walls [default: NAME.walls.json beside it]",
     )
-    files.add_argument(
-        "--fps",
-        metavar="X",
-        type=Number(1e-3, 1e6),
-        help="frames a second, where a file counts frames [default: 15 for obsmat.txt; what the "
-        "scenes say for .ndjson]",
-    )
+    add_reading(files)
     files.add_argument(
         "--interp",
         choices=("linear", "cubic"),
@@ -122,7 +117,11 @@ def parser() -> Parser:
         default=2,
         help="processes that share the episodes [default: 2]",
     )
-    trips.add_argument("--strict", action="store_true", help="exit with 1 if an episode failed")
+    trips.add_argument(
+        "--strict",
+        action="store_true",
+        help="exit with 1 if an episode failed; refuse recordings with glitches of tracking",
+    )
     _add_studies(made.add_argument_group("settings of our actor"))
     forecasts = made.add_argument_group("prediction")
     forecasts.add_argument(
@@ -211,6 +210,10 @@ def check(options: Namespace) -> None:
         raise UsageError("--vary: --tune needs values, as NAME=V1,V2,..")
     if options.walls is not None and len(options.crowds) > 1:
         raise UsageError("--walls belongs to one recording; name them NAME.walls.json beside each")
+    try:
+        check_reading(vars(options))
+    except ValueError as error:
+        raise UsageError(str(error)) from None
 
 
 def _change(text: str) -> str:

@@ -157,7 +157,7 @@ def _recording_digest(source: Source) -> str:
     """A digest of the recording, its walls, and how they are read."""
     walls = source.walls or walls_beside(source.path)
     parts = [source.path.read_bytes(), b"" if walls is None else walls.read_bytes()]
-    how = repr((source.path.suffix, source.fps, source.interpolation)).encode()
+    how = repr((source.path.suffix, tuple(source.given), source.interpolation)).encode()
     return _digest([*parts, how])
 
 

@@ -7,14 +7,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from esplanade.evaluation.episodes import Episode, choose_episodes
 from esplanade.evaluation.policies import make_policy
 from esplanade.evaluation.replay import Interpolation, Replay
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.simulation import Environment
-from esplanade.recordings import Crowd, Obstacles, read_crowd, read_obstacles, walls_beside
+from esplanade.recordings import Crowd, Given, Obstacles, read_crowd, read_obstacles, walls_beside
+
+READ_AS_IT_SAYS: Final = Given()
 
 
 @dataclass(frozen=True)
@@ -23,7 +25,7 @@ class Source:
 
     path: Path
     walls: Path | None = None
-    fps: float | None = None
+    given: Given = READ_AS_IT_SAYS
     interpolation: Interpolation = "linear"
 
     def read(self) -> tuple[Crowd, Obstacles]:
@@ -48,7 +50,13 @@ class Source:
 @cache
 def _read(source: Source) -> tuple[Crowd, Obstacles]:
     walls = source.walls or walls_beside(source.path)
-    crowd = read_crowd(source.path, source.fps)
+    crowd = read_crowd(
+        source.path,
+        source.given.fps,
+        unit=source.given.unit,
+        scale=source.given.scale,
+        strict=source.given.strict,
+    )
     return crowd, Obstacles() if walls is None else read_obstacles(walls)
 
 

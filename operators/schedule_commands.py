@@ -9,6 +9,7 @@ from rich.table import Table
 from esplanade.commandline import exit_codes
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.output import console
+from esplanade.files.text import read_text
 from esplanade.operators.asking import asked, change, scope_of
 from esplanade.operators.history_commands import at_time
 
@@ -67,8 +68,8 @@ def _commands(options: Namespace) -> list[dict[str, Any]]:
         commands.append({"op": "set_parameters", "scope": scope, "values": values})
     if options.commands is not None:
         try:
-            found = json.loads(options.commands.read_text())
-        except (OSError, ValueError) as error:
+            found = json.loads(read_text(options.commands))
+        except ValueError as error:
             raise UsageError(f"--commands: {error}") from None
         commands += found if isinstance(found, list) else [found]
     if not commands:

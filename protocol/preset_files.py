@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from esplanade.files.text import read_text
 from esplanade.protocol.commands.fields import NO_NUL, Number, ParameterName
 from esplanade.protocol.commands.presets import PresetName, Version
 
@@ -38,10 +39,8 @@ def read_preset(path: Path) -> PresetFile:
         The file cannot be read, or holds no preset.
     """
     try:
-        text = path.read_bytes().decode()
+        text = read_text(path)
         found: Any = json.loads(text) if path.suffix == ".json" else tomllib.loads(text)
-    except OSError as error:
-        raise PresetFileError(f"{path}: {error.strerror}") from None
     except ValueError as error:
         raise PresetFileError(f"{path}: {error}") from None
     try:

@@ -1,10 +1,16 @@
 """A recorded crowd: the tracks of pedestrians over time."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from esplanade.recordings.plausibility import Report
 
 Floats = npt.NDArray[np.float64]
 
@@ -53,11 +59,12 @@ class Track:
 class Crowd:
     """The tracks of one recording, in the order in which the pedestrians first appear.
 
-    There is at least one track.
+    There is at least one track. `report` tells how the file was read, if it comes from one.
     """
 
     name: str
     tracks: tuple[Track, ...]
+    report: Report | None = None
 
     @cached_property
     def start_s(self) -> float:

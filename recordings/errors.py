@@ -3,6 +3,9 @@
 from pathlib import Path
 from typing import Final
 
+from esplanade.files.content import ContentError, read_content
+from esplanade.files.text import Text, decoded
+
 MAX_FILE_BYTES: Final = 128 * 2**20
 """Some three million samples of people; a device that never ends is read no further either."""
 
@@ -21,22 +24,40 @@ class RecordingError(ValueError):
         self.text = text
 
 
-def read_text(path: Path) -> str:
-    """Read a whole file as UTF-8 text without a byte order mark.
+def read_bytes(path: Path, most_bytes: int = MAX_FILE_BYTES) -> bytes:
+    """Read a whole file, unpacked where gzip packed it.
 
     Raises
     ------
     RecordingError
-        The file cannot be read, is not UTF-8, or has more than `MAX_FILE_BYTES`.
+        The file cannot be read, or has more than `most_bytes`.
     """
     try:
-        with path.open("rb") as file:
-            content = file.read(MAX_FILE_BYTES + 1)
-        if len(content) > MAX_FILE_BYTES:
-            most = MAX_FILE_BYTES // 2**20
-            raise RecordingError(path, f"has more than {most} MiB, the most that is read")
-        return content.decode("utf-8-sig")
-    except OSError as error:
-        raise RecordingError(path, f"cannot be read: {error.strerror or error}") from None
-    except UnicodeDecodeError as error:
-        raise RecordingError(path, f"is not UTF-8 text (byte {error.start})") from None
+        return read_content(path, most_bytes)
+    except ContentError as error:
+        raise RecordingError(path, str(error)) from None
+
+
+def text_of(path: Path, content: bytes) -> Text:
+    """The text that bytes of a file are.
+
+    Raises
+    ------
+    RecordingError
+        They are no text.
+    """
+    try:
+        return decoded(content, eight_bit=True)
+    except ContentError as error:
+        raise RecordingError(path, str(error)) from None
+
+
+def read_text(path: Path) -> str:
+    """Read a whole file as text.
+
+    Raises
+    ------
+    RecordingError
+        The file cannot be read, is no text, or has more than `MAX_FILE_BYTES`.
+    """
+    return text_of(path, read_bytes(path)).text

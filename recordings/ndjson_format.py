@@ -1,37 +1,25 @@
 """TrajNet++ recordings: one JSON object a line, which is a scene or a sample of a track.
 
 Frames keep the numbers that they had in the video, but the file holds only every sixth or tenth
-of them, and `fps` of a scene counts only frames in the file. Therefore one second has `fps` ×
-(difference of neighbouring frames) frame numbers.
+of them, and `fps` of a scene counts only frames in the file.
 """
 
 import json
 import math
-from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
-from esplanade.recordings.errors import RecordingError, read_text
-from esplanade.recordings.sample import Sample
+import numpy as np
+
+from esplanade.recordings.errors import RecordingError
+from esplanade.recordings.rows import Rows, people
 
 DEFAULT_SAMPLES_PER_S: Final = 2.5
 """The value for files whose scenes have no `fps`; all TrajNet++ files are sampled at this rate."""
 
 
-class _Row(NamedTuple):
-    frame: int
-    line: int
-    id: str
-    x: float
-    y: float
-
-
-def read_ndjson(path: Path, fps: float | None) -> Iterator[Sample]:
-    """Yield the samples in the order of time.
-
-    `fps` is the number of frame numbers in a second; it overrides the scenes of the file.
-    Predicted tracks, which have a `prediction_number`, are skipped. Exact repeats of a sample are
-    skipped too, as files have them where scenes overlap.
+def read_ndjson(path: Path, text: str) -> Rows:
+    """Read the samples; predicted tracks, which have a `prediction_number`, are passed over.
 
     Raises
     ------
@@ -39,20 +27,37 @@ def read_ndjson(path: Path, fps: float | None) -> Iterator[Sample]:
         A line is no JSON object with a scene or a track, a value is missing or of the wrong
         kind, or scenes differ in their `fps`.
     """
-    rows: dict[tuple[int, str, float, float], _Row] = {}
+    lines: list[int] = []
+    names: list[str] = []
+    columns: tuple[list[float], list[float], list[float]] = ([], [], [])
     samples_per_s: float | None = None
-    for line, text in enumerate(read_text(path).splitlines(), start=1):
-        if not text.strip():
+    for line, row in enumerate(text.split("\n"), start=1):
+        if not row.strip():
             continue
-        kind, content = _parse(path, line, text)
+        kind, content = _parse(path, line, row)
         if kind == "scene":
             samples_per_s = _scene_fps(path, line, content, samples_per_s)
         elif content.get("prediction_number") is None:
-            row = _row(path, line, content)
-            rows.setdefault((row.frame, row.id, row.x, row.y), row)
-    frames_per_s = fps or (samples_per_s or DEFAULT_SAMPLES_PER_S) * _frame_step(rows.values())
-    for row in sorted(rows.values()):
-        yield Sample(row.line, row.frame / frames_per_s, row.id, row.x, row.y)
+            lines.append(line)
+            names.append(_pedestrian(path, line, content))
+            for column, value in zip(columns, _sample(path, line, content), strict=True):
+                column.append(value)
+    ids, who = people(names)
+    clock, x, y = (np.array(column, np.float64) for column in columns)
+    return Rows(
+        format="TrajNet++",
+        lines=np.array(lines, np.int64),
+        ids=ids,
+        who=who,
+        clock=clock,
+        x=x,
+        y=y,
+        counts_frames=True,
+        samples_per_s=samples_per_s or DEFAULT_SAMPLES_PER_S,
+        usual_from="as its scenes say" if samples_per_s else "as all of TrajNet++ has",
+        unit="m",
+        unit_from="as its form has it",
+    )
 
 
 def _parse(path: Path, line: int, text: str) -> tuple[str, dict[str, Any]]:
@@ -71,22 +76,31 @@ def _scene_fps(path: Path, line: int, scene: dict[str, Any], before: float | Non
     if scene.get("fps") is None:
         return before
     fps = _number(path, line, scene, "fps")
-    if not (math.isfinite(fps) and fps > 0.0):
+    if not (math.isfinite(fps) and 0.0 < fps < 1e6):
         raise RecordingError(path, f"fps is {fps:g}, expected more than 0", line)
     if before is not None and fps != before:
         raise RecordingError(path, f"fps is {fps:g}, but {before:g} in a scene before", line)
     return fps
 
 
-def _row(path: Path, line: int, track: dict[str, Any]) -> _Row:
+def _pedestrian(path: Path, line: int, track: dict[str, Any]) -> str:
+    pedestrian = track.get("p")
+    if isinstance(pedestrian, float) and pedestrian.is_integer():
+        pedestrian = int(pedestrian)
+    if isinstance(pedestrian, bool) or not isinstance(pedestrian, int):
+        raise RecordingError(path, f"p is {pedestrian!r:.40}, expected a whole number", line)
+    try:
+        return str(pedestrian)
+    except ValueError:  # more digits than Python writes
+        raise RecordingError(path, "p is out of range", line) from None
+
+
+def _sample(path: Path, line: int, track: dict[str, Any]) -> tuple[float, float, float]:
     frame = _number(path, line, track, "f")
     if not (math.isfinite(frame) and frame.is_integer()):
         raise RecordingError(path, f"f is {frame:g}, expected a whole number", line)
-    pedestrian = track.get("p")
-    if isinstance(pedestrian, bool) or not isinstance(pedestrian, int):
-        raise RecordingError(path, f"p is {pedestrian!r:.40}, expected a whole number", line)
     x, y = (_number(path, line, track, name) for name in "xy")
-    return _Row(int(frame), line, str(pedestrian), x, y)
+    return frame, x, y
 
 
 def _number(path: Path, line: int, content: dict[str, Any], name: str) -> float:
@@ -97,9 +111,3 @@ def _number(path: Path, line: int, content: dict[str, Any], name: str) -> float:
         return float(value)
     except OverflowError:
         raise RecordingError(path, f"{name} is out of range", line) from None
-
-
-def _frame_step(rows: Iterable[_Row]) -> int:
-    """The greatest common divisor of all differences of frames; 1 for a single frame."""
-    frames = sorted({row.frame for row in rows})
-    return math.gcd(*(frame - frames[0] for frame in frames[1:])) or 1

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from esplanade.recordings.errors import RecordingError, read_text
-from esplanade.recordings.sample import MAX_METRES
+from esplanade.recordings.units import MAX_METRES
 
 Wall = tuple[tuple[float, float], tuple[float, float]]
 """A straight wall from (x, y) to (x, y), metres."""

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
+import structlog
 from pydantic import ValidationError
 
 from esplanade.planning import Place, Scene, Wall
@@ -35,6 +36,9 @@ CATCH_UP: Final = 1.5
 """A replayed person may be this much faster than the recording, to catch up with it."""
 MAX_TRIANGLES: Final = 400_000
 """A larger mesh is refused: each browser fetches it whole, and this many are 14 MB."""
+
+
+log = structlog.get_logger(__name__)
 
 
 class LoadingError(ValueError):
@@ -80,7 +84,13 @@ def load_scene(settings: ServerSettings) -> LoadedScene:
         triangles = None if scene.mesh is None else _triangles(scene.mesh)
         return LoadedScene(scene, rules, roster, triangles)
     try:
-        crowd = read_crowd(settings.crowd)
+        crowd = read_crowd(
+            settings.crowd,
+            settings.fps,
+            unit=settings.unit,
+            scale=settings.scale,
+            strict=settings.strict,
+        )
         path = settings.walls or walls_beside(settings.crowd)
         walls = open_doorways(read_walls(path), crowd, DOORWAY_M) if path else []
         scene = _scene_around(crowd, walls)
@@ -88,6 +98,7 @@ def load_scene(settings: ServerSettings) -> LoadedScene:
         raise LoadingError(str(error)) from None
     except ValidationError as error:
         raise LoadingError(str(SceneError(settings.crowd, scene_faults(error)))) from None
+    _tell(settings.crowd, crowd)
     needed_mps = CATCH_UP * crowd.max_speed_mps
     # Recorded people brush along walls: they are held to their tracks, not to a clearance.
     return LoadedScene(
@@ -99,6 +110,17 @@ def load_scene(settings: ServerSettings) -> LoadedScene:
         ),
         roster,
     )
+
+
+def _tell(path: Path, crowd: Crowd) -> None:
+    """Say how the crowd was understood, and what of it is not as crowds are."""
+    if (report := crowd.report) is None:
+        return
+    log.info("read the crowd: %s: %s", path, report.line)
+    for remark in report.remarks:
+        log.info("%s: %s", path, remark)
+    for warning in report.warnings:
+        log.warning("%s: %s", path, warning)
 
 
 def _read_roster(path: Path) -> Roster:

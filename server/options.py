@@ -16,6 +16,7 @@ from esplanade.commandline.readers import (
     Text,
     Whole,
 )
+from esplanade.commandline.recording_settings import READING, check_reading, misplaced
 from esplanade.commandline.settings import Setting, Settings, settings_parser
 
 _PORT: Final = Whole(0, 65535)
@@ -26,11 +27,13 @@ _WORLD: Final = {
         "scene to run, a JSON file; without one, the gallery that comes along", InputFile()
     ),
     "crowd": Setting(
-        "fit the scene to this recorded crowd (CSV t,id,x,y) instead of --scene", InputFile()
+        "fit the scene to this recorded crowd instead of --scene; docs/files.md lists the formats",
+        InputFile(),
     ),
     "walls": Setting(
         "walls around the crowd; without it, NAME.walls.json beside the crowd's file", InputFile()
     ),
+    **READING,
     "actors": Setting("computer-run actors that walk about", Whole(0, 500), 10),
     "roster": Setting(
         "which actors walk about instead, what each does and how, a JSON file", InputFile()
@@ -304,6 +307,9 @@ def check(given: Mapping[str, Any]) -> None:
         raise ValueError("roster and actors: give one of them, not both")
     if given.get("walls") and not given.get("crowd"):
         raise ValueError("walls: they belong to a crowd, but none is given")
+    if not given.get("crowd") and (name := misplaced(given)):
+        raise ValueError(f"{name}: it says how a crowd is read, but none is given")
+    check_reading(given)
     if bool(given.get("tls_cert")) != bool(given.get("tls_key")):
         raise ValueError("tls_cert and tls_key: give both of them, or none")
     _check_ways_in(given)

@@ -8,6 +8,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from esplanade.actors import ActorParameters, ActorSpec, Overrides, Scope
 from esplanade.actors.overrides import WORLD
+from esplanade.files.content import ContentError
+from esplanade.files.text import read_text
 
 MOST_ACTORS = 500
 
@@ -71,9 +73,9 @@ def read_roster(path: Path) -> Roster:
         The file cannot be read, or does not hold what it should.
     """
     try:
-        return Roster.model_validate_json(path.read_bytes())
-    except OSError as error:
-        raise RosterError(f"{path}: {error.strerror}") from error
+        return Roster.model_validate_json(read_text(path))
+    except ContentError as error:
+        raise RosterError(f"{path}: {error}") from error
     except ValidationError as error:
         fault = error.errors()[0]
         where = ".".join(map(str, fault["loc"]))

@@ -19,6 +19,8 @@ from esplanade.evaluation.studies.measures import (
 )
 from esplanade.evaluation.studies.variants import Tables, Variant
 from esplanade.evaluation.trials import Source
+from esplanade.files.content import ContentError
+from esplanade.files.text import read_text
 
 WEIGHT_BEYOND_GOALS: Final = 0.1
 """The weight of improvements once a goal is met; before that, their weight is 1 more."""
@@ -72,9 +74,9 @@ def read_candidates(path: Path) -> list[dict[str, Any]]:
         The file cannot be read, or a line is not an object of valid settings.
     """
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise SettingError(f"{path}: cannot be read: {error}") from None
+        lines = read_text(path).splitlines()
+    except ContentError as error:
+        raise SettingError(f"{path}: {error}") from None
     found = []
     for number, line in enumerate(lines, start=1):
         if not line.strip():

@@ -10,6 +10,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.files.text import read_text
 from esplanade.planning.scene.gltf_check import MAX_FILE_BYTES, check_gltf
 from esplanade.planning.scene.scene import MAX_EXTENT_M
 
@@ -83,7 +84,7 @@ def open_mesh(path: Path, *, materials: bool = False) -> Any:
         beside: dict[str, Any] = {}
         if path.suffix.lower() == ".obj":
             # Names and comments may be in any encoding; all that counts is ASCII.
-            source = io.StringIO(path.read_text(encoding="utf-8", errors="replace"))
+            source = io.StringIO(read_text(path, MAX_FILE_BYTES, eight_bit=True))
             beside = {"file_type": "obj", "resolver": trimesh.resolvers.FilePathResolver(str(path))}
         scene = trimesh.load_scene(source, process=False, skip_materials=not materials, **beside)
     # Readers of a dozen formats raise many kinds of errors on broken bytes.

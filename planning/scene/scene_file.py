@@ -7,6 +7,8 @@ from typing import Any, Final
 
 from pydantic import ValidationError
 
+from esplanade.files.content import ContentError
+from esplanade.files.text import decoded
 from esplanade.planning.scene.bounded_reading import read_bounded
 from esplanade.planning.scene.scene import Scene
 
@@ -65,7 +67,9 @@ def read_scene(path: Path) -> Scene:
         It holds no scene, or names a mesh that is not there.
     """
     try:
-        scene = Scene.model_validate_json(read_bounded(path, MAX_FILE_BYTES))
+        scene = Scene.model_validate_json(decoded(read_bounded(path, MAX_FILE_BYTES)).text)
+    except ContentError as error:
+        raise SceneError(path, (str(error),)) from None
     except ValidationError as error:
         raise SceneError(path, scene_faults(error)) from None
     if scene.mesh is None:

@@ -46,12 +46,13 @@ def test_obsmat_at_another_rate(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "line", "fault"),
     [
-        ("1 2 3\n", 1, "expected 8 columns frame id x z y vx vz vy, not 3"),
+        ("1 2 3\n", 1, "expected at least 4 columns (frame id x y, id frame x y z, ETH's eight"),
         (OBSMAT + "1 a 0 0 0 0 0 0\n", 5, "id is 'a', expected a number"),
         ("1 1.5 0 0 0 0 0 0\n", 1, "id is 1.5, expected a whole number"),
         ("1 nan 0 0 0 0 0 0\n", 1, "id is nan, expected a whole number"),
         ("1 1 0 0 nan 0 0 0\n", 1, "y is nan, expected a finite number"),
-        ("\n", None, "holds no samples"),
+        ("\n", None, "is empty"),
+        ("1 1 0 0 0 0 0 0\n2 1 0 0\n", 2, "expected 8 columns frame id x z y vx vz vy, not 4"),
     ],
 )
 def test_faults_of_obsmat(tmp_path: Path, text: str, line: int | None, fault: str) -> None:

@@ -83,8 +83,9 @@ def test_byte_order_mark_windows_lines_and_blank_lines_are_fine(tmp_path: Path) 
         (HEADER + "0,a,1,-inf\n", 2, "y is -inf, expected a finite number"),
         (HEADER + "inf,a,1,2\n", 2, "t is inf, expected a finite number"),
         (HEADER + "0,a,1e300,2\n", 2, "x is 1e+300, expected at most 100000"),
-        (HEADER + "0,a,1,2\n\n0,a,1,2\n", 4, "'a' is already at t=0 in line 2"),
-        (HEADER + "1,a,1,2\n0,b,1,2\n0.5,a,1,2\n", 4, "goes back in time from t=1 to t=0.5"),
+        (HEADER + "0,a,1,2\n\n0,a,1,3\n", 4, "'a' is already at t=0 in line 2, elsewhere"),
+        (HEADER + "0,a,1,2\n1_0,a,1,2\n", 3, "t is '1_0', expected a number"),
+        (HEADER + "0,nan,1,2\n", 2, "id is nan, expected the id of a pedestrian"),
     ],
 )
 def test_faults_name_file_line_and_expectation(
@@ -101,8 +102,11 @@ def test_faults_name_file_line_and_expectation(
 @pytest.mark.parametrize(
     ("name", "content", "fault"),
     [
-        ("crowd.tsv", b"0 1 2 3", "unknown format '.tsv', expected one of: .csv, .ndjson, .txt"),
-        ("crowd.csv", b"t,id,x,y\n0,\xff,1,2", "is not UTF-8 text (byte 11)"),
+        ("crowd.csv", b"t,id,x,y\n0,\xff,1,2\0", "is not UTF-8 text (byte 11)"),
+        ("crowd.csv", b"PK\x03\x04", "is a ZIP archive or a spreadsheet: unpack it, or save it"),
+        ("crowd.csv", b"<frame/>", "is XML or HTML. What is read: a table with columns"),
+        ("crowd.csv", b"\x1f\x8b\x08", "its gzip is damaged"),
+        ("crowd.txt", b"one\n", "none of 'one' is time or frame or id or x or y"),
         ("crowd.csv", b"\x00\x01\x02", "expected the header"),
     ],
 )

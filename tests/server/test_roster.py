@@ -66,7 +66,7 @@ def test_a_fault_in_a_roster_is_named(tmp_path: Path, roster: Any, fault: str) -
 
 
 def test_a_roster_that_is_not_there_is_named(tmp_path: Path) -> None:
-    with pytest.raises(RosterError, match=r"none\.json: No such file"):
+    with pytest.raises(RosterError, match=r"none\.json: cannot be read: No such file"):
         read_roster(tmp_path / "none.json")
 
 

@@ -1,0 +1,1 @@
+"""The one way to open files: up to a bound, unpacked, and decoded by what they say."""

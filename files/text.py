@@ -1,0 +1,80 @@
+"""Text of a file: the byte order mark is heeded, UTF-16 and UTF-32 too, and line ends are one."""
+
+import codecs
+import re
+from pathlib import Path
+from typing import Final, NamedTuple
+
+from esplanade.files.content import MAX_TEXT_BYTES, ContentError, read_content
+
+_MARKS: Final = (
+    (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF32_LE, "utf-32"),
+    (codecs.BOM_UTF32_BE, "utf-32"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
+_HEAD_BYTES: Final = 4096
+_CONTROLS: Final = re.compile(rb"[\x00-\x08\x0e-\x1a\x1c-\x1f]")
+"""Bytes that no text in eight bits holds."""
+
+
+class Text(NamedTuple):
+    """Decoded text with `\\n` at the end of its lines, and what is to be said of its encoding."""
+
+    text: str
+    remark: str = ""
+
+
+def read_text(path: Path, most_bytes: int = MAX_TEXT_BYTES, *, eight_bit: bool = False) -> str:
+    """Read a whole file as text, as `decoded` does.
+
+    Raises
+    ------
+    ContentError
+        The file cannot be read, holds too much, or is no text.
+    """
+    return decoded(read_content(path, most_bytes), eight_bit=eight_bit).text
+
+
+def decoded(content: bytes, *, eight_bit: bool = False) -> Text:
+    """Decode by the byte order mark, else by where the zeros of UTF-16 are, else as UTF-8.
+
+    With `eight_bit`, what is no UTF-8 but has no control characters is taken for Windows-1252, as
+    spreadsheets still write it, and a remark says so.
+
+    Raises
+    ------
+    ContentError
+        It is no text of these.
+    """
+    encoding = _encoding(content)
+    try:
+        return Text(_lines(content.decode(encoding)))
+    except UnicodeDecodeError as error:
+        if encoding == "utf-8" and eight_bit and not _CONTROLS.search(content):
+            text = _lines(content.decode("cp1252", errors="replace"))
+            return Text(text, f"byte {error.start} is no UTF-8: read as Windows-1252")
+        name = "UTF-8" if encoding.startswith("utf-8") else encoding.upper()
+        raise ContentError(f"is not {name} text (byte {error.start})") from None
+
+
+def _encoding(content: bytes) -> str:
+    for mark, encoding in _MARKS:
+        if content.startswith(mark):
+            return encoding
+    head = content[: _HEAD_BYTES - _HEAD_BYTES % 2]
+    if len(head) < 4 or b"\0" not in head:
+        return "utf-8"
+    even, odd = head[0::2].count(0), head[1::2].count(0)
+    half = len(head) // 2
+    # ASCII in UTF-16 has a zero in every second byte.
+    if odd > 0.8 * half and even < 0.05 * half:
+        return "utf-16-le"
+    if even > 0.8 * half and odd < 0.05 * half:
+        return "utf-16-be"
+    return "utf-8"
+
+
+def _lines(text: str) -> str:
+    return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text

@@ -1,0 +1,183 @@
+"""Tables of numbers without a header: TrajNet's four columns, Jülich's five, ETH's eight."""
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from esplanade.recordings.cells import Cells, read_cells
+from esplanade.recordings.dialect import Dialect, Table
+from esplanade.recordings.errors import RecordingError
+from esplanade.recordings.rows import Floats, Rows, Whole, numbered_people
+from esplanade.recordings.table_format import said_in
+
+OBSMAT: Final = ("frame", "id", "x", "z", "y", "vx", "vz", "vy")
+_SDD: Final = re.compile(r"(\S+\s+){9}\"?[A-Za-z]+\"?")
+_SDD_FPS: Final = 30.0
+_HEIGHTS: Final = {"m": (1.0, 2.3), "cm": (100.0, 230.0), "mm": (1000.0, 2300.0)}
+"""Heights of heads, by which the unit of a table shows itself."""
+_FEWEST: Final = 4
+
+
+def read_bare(path: Path, table: Table, dialect: Dialect) -> Rows:
+    """Read the samples of a table of numbers.
+
+    Raises
+    ------
+    RecordingError
+        The columns cannot be told, or a line does not fit.
+    """
+    first = table.lines[0]
+    if _SDD.fullmatch(first.text):
+        return _stanford(path, table, dialect)
+    width = len(dialect.cells(first.text))
+    if width < _FEWEST:
+        raise RecordingError(
+            path,
+            f"expected at least {_FEWEST} columns (frame id x y, id frame x y z, ETH's eight, or a "
+            f"header that names them), not {width}",
+            first.number,
+        )
+    if width == len(OBSMAT):
+        return _obsmat(path, table, dialect)
+    names = "id frame x y z" if width > _FEWEST else "frame id x y"
+    places = {"frame": 0, "id": 1, "x": 2, "y": 3, **({"z": 4} if width > _FEWEST else {})}
+    cells, _ = read_cells(path, table.lines, dialect, places, width, names)
+    firsts, seconds = cells.numbers["frame"], _marks(path, cells)
+    is_frame_first = _frame_first(firsts, seconds, cells.numbers, width)
+    clock, marks = (firsts, seconds) if is_frame_first else (seconds, firsts)
+    ids, who = _whole_people(path, cells.lines, marks)
+    said = said_in(path, table.comments)
+    unit, unit_from = said.unit, "as its header says"
+    if unit is None and width > _FEWEST:
+        unit, unit_from = _unit_of_heights(cells.numbers["z"]), "as the heights show"
+    return Rows(
+        format=f"table without a header, {'frame id' if is_frame_first else 'id frame'} x y",
+        lines=cells.lines,
+        ids=ids,
+        who=who,
+        clock=clock,
+        x=cells.numbers["x"],
+        y=cells.numbers["y"],
+        counts_frames=bool(np.all(clock == np.round(clock))) if len(clock) else True,
+        fps=said.fps,
+        unit=unit,
+        unit_from=unit_from if unit else "",
+    )
+
+
+def _obsmat(path: Path, table: Table, dialect: Dialect) -> Rows:
+    places = {"frame": 0, "id": 1, "x": 2, "y": 4, "vx": 5, "vy": 7}
+    cells, _ = read_cells(path, table.lines, dialect, places, len(OBSMAT), " ".join(OBSMAT))
+    ids, who = _whole_people(path, cells.lines, _marks(path, cells))
+    said = said_in(path, table.comments)
+    return Rows(
+        format="ETH obsmat",
+        lines=cells.lines,
+        ids=ids,
+        who=who,
+        clock=cells.numbers["frame"],
+        x=cells.numbers["x"],
+        y=cells.numbers["y"],
+        counts_frames=True,
+        velocities=np.stack([cells.numbers["vx"], cells.numbers["vy"]], axis=1),
+        fps=said.fps,
+        unit=said.unit,
+        unit_from="as its header says" if said.unit else "",
+    )
+
+
+def _stanford(path: Path, table: Table, dialect: Dialect) -> Rows:
+    """Stanford Drone: boxes in pixels, of which the middle counts; those marked lost do not."""
+    spaced = dialect._replace(delimiter=None)
+    names = "id xmin ymin xmax ymax frame lost occluded generated kind"
+    places = {name: place for place, name in enumerate(names.split())}
+    cells, others = read_cells(
+        path, table.lines, spaced, places, len(places), names,
+        lambda kind: kind.strip('"').lower() == "pedestrian",
+    )  # fmt: skip
+    numbers = cells.numbers
+    seen = numbers["lost"] == 0.0
+    ids, who = cells.ids, cells.who
+    dropped = int(others + np.count_nonzero(~seen))
+    remarks = [f"{others} samples of bikers, carts and others are left out"] if others else []
+    if not np.all(seen):
+        remarks.append(f"{np.count_nonzero(~seen)} samples that are marked as lost are left out")
+    return Rows(
+        format="Stanford Drone annotations",
+        lines=cells.lines[seen],
+        ids=ids,
+        who=who[seen],
+        clock=numbers["frame"][seen],
+        x=(numbers["xmin"] + numbers["xmax"])[seen] / 2.0,
+        y=-(numbers["ymin"] + numbers["ymax"])[seen] / 2.0,
+        counts_frames=True,
+        usual_fps=_SDD_FPS,
+        usual_from="as Stanford's videos have",
+        unit="px",
+        unit_from="as its form has it",
+        remarks=tuple(remarks),
+        dropped=dropped,
+    )
+
+
+def _marks(path: Path, cells: Cells) -> Floats:
+    try:
+        names = np.array([float(name) for name in cells.ids])
+    except ValueError:
+        wrong = next(i for i, name in enumerate(cells.ids) if not _is_float(name))
+        line = int(cells.lines[np.argmax(cells.who == wrong)])
+        raise RecordingError(
+            path, f"id is {cells.ids[wrong]!r:.40}, expected a number", line
+        ) from None
+    return names[cells.who] if len(names) else names
+
+
+def _is_float(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _whole_people(path: Path, lines: Whole, marks: Floats) -> tuple[list[str], Whole]:
+    with np.errstate(invalid="ignore"):
+        wrong = np.flatnonzero(~(np.isfinite(marks) & (marks == np.round(marks))))
+    if len(wrong):
+        text = f"id is {marks[wrong[0]]:g}, expected a whole number"
+        raise RecordingError(path, text, int(lines[wrong[0]]))
+    return numbered_people(marks)
+
+
+def _frame_first(first: Floats, second: Floats, numbers: Mapping[str, Floats], width: int) -> bool:
+    """Whether the first column counts frames and the second people, rather than the other way.
+
+    People do not jump: of the two readings that one is right in which each person's samples are
+    near each other.
+    """
+    if np.any(second != np.round(second)):
+        return False
+    if np.any(first != np.round(first)):
+        return True
+    jumps = [_jump(who, when, numbers) for who, when in ((second, first), (first, second))]
+    if jumps[0] == jumps[1] or not np.isfinite(jumps).any():
+        return width == _FEWEST
+    return bool(jumps[0] < jumps[1]) if np.isfinite(jumps).all() else bool(np.isfinite(jumps[0]))
+
+
+def _jump(who: Floats, when: Floats, numbers: Mapping[str, Floats]) -> float:
+    """The mean distance of neighbouring samples if these columns say whose and when."""
+    order = np.lexsort((when, who))
+    same = (np.diff(who[order]) == 0) & (np.diff(when[order]) > 0)
+    if not same.any():
+        return float("inf")
+    away = np.hypot(np.diff(numbers["x"][order]), np.diff(numbers["y"][order]))
+    return float(np.mean(away[same]))
+
+
+def _unit_of_heights(heights: Floats) -> str | None:
+    middle = float(np.median(heights)) if len(heights) else 0.0
+    return next((unit for unit, (low, high) in _HEIGHTS.items() if low <= middle <= high), None)

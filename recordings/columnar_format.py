@@ -1,0 +1,160 @@
+"""Columns in files of numbers: Parquet, and the HDF5 of the Jülich archive."""
+
+import io
+from collections.abc import Mapping, Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from esplanade.recordings.columns import Columns, find_columns
+from esplanade.recordings.errors import RecordingError
+from esplanade.recordings.rows import Rows, numbered_people, people
+from esplanade.recordings.units import FRAMES, length_named, time_named
+
+PARQUET: Final = b"PAR1"
+HDF5: Final = b"\x89HDF\r\n\x1a\n"
+MOST_SAMPLES: Final = 100_000_000
+
+
+def read_parquet(path: Path, content: bytes) -> Rows:
+    """Read the columns of a Parquet file.
+
+    Raises
+    ------
+    RecordingError
+        It is damaged, lacks a column, or no library for it is installed.
+    """
+    pq = _library(path, "pyarrow.parquet", "Parquet", "pyarrow")
+    try:
+        file = pq.ParquetFile(io.BytesIO(content))
+        _check_count(path, file.metadata.num_rows)
+        names = list(file.schema_arrow.names)
+        columns = _columns(path, names)
+        table = file.read(columns=[names[place] for place in columns.places.values()])
+        found = {role: table[names[p]].to_numpy() for role, p in columns.places.items()}
+        said = file.schema_arrow.metadata or {}
+    except RecordingError:
+        raise
+    except Exception as error:  # noqa: BLE001 (the library raises many kinds on damaged files)
+        raise RecordingError(
+            path, f"is a Parquet file that cannot be read: {error}"[:300]
+        ) from None
+    rate = {bytes(key).decode(errors="replace"): value for key, value in said.items()}
+    return _rows(path, "Parquet", columns, found, _rate(path, rate.get("fps")))
+
+
+def read_hdf5(path: Path, content: bytes) -> Rows:
+    """Read the data set `trajectory` of the Jülich archive.
+
+    Raises
+    ------
+    RecordingError
+        It is damaged, lacks a column, or no library for it is installed.
+    """
+    h5py = _library(path, "h5py", "HDF5", "h5py")
+    try:
+        with h5py.File(io.BytesIO(content), "r") as file:
+            held = _data_set(path, file)
+            names = list(held.dtype.names or ())
+            columns = _columns(path, names)
+            found = {role: np.asarray(held[names[p]]) for role, p in columns.places.items()}
+            fps = held.attrs.get("fps", file.attrs.get("fps"))
+    except RecordingError:
+        raise
+    except Exception as error:  # noqa: BLE001 (the library raises many kinds on damaged files)
+        raise RecordingError(path, f"is an HDF5 file that cannot be read: {error}"[:300]) from None
+    return _rows(path, "Jülich HDF5", columns, found, _rate(path, fps), "m")
+
+
+def _check_count(path: Path, count: int) -> None:
+    if count > MOST_SAMPLES:
+        raise RecordingError(path, f"has {count} samples, {MOST_SAMPLES} are possible")
+
+
+def _data_set(path: Path, file: Any) -> Any:
+    held = file.get("trajectory")
+    if held is None or not getattr(held, "shape", None) or held.dtype.names is None:
+        raise RecordingError(path, "is an HDF5 file without a table `trajectory`")
+    _check_count(path, held.shape[0])
+    return held
+
+
+def _library(path: Path, module: str, form: str, package: str) -> Any:
+    try:
+        return import_module(module)
+    except ImportError:
+        raise RecordingError(
+            path,
+            f"is a {form} file, which needs {package}: install it, or everything of "
+            "`esplanade[recordings]`",
+        ) from None
+
+
+def _columns(path: Path, names: Sequence[str]) -> Columns:
+    columns = find_columns(names)
+    if columns.missing:
+        raise RecordingError(
+            path,
+            f"expected the columns t,id,x,y or other names of these; none of "
+            f"{', '.join(names)!r:.100} is {' or '.join(columns.missing)}",
+        )
+    columns.places.pop("kind", None)
+    return columns
+
+
+def _rate(path: Path, value: Any) -> float | None:
+    if value is None:
+        return None
+    try:
+        fps = float(value)
+    except (TypeError, ValueError):
+        fps = 0.0
+    if not 0.0 < fps < 1e6:
+        raise RecordingError(path, f"fps is {value!r:.40}, expected more than 0")
+    return fps
+
+
+def _rows(
+    path: Path,
+    form: str,
+    columns: Columns,
+    found: Mapping[str, Any],
+    fps: float | None,
+    unit: str | None = None,
+) -> Rows:
+    numbers = {}
+    for role, values in found.items():
+        if role != "id":
+            if np.asarray(values).dtype.kind not in "iuf":
+                raise RecordingError(path, f"its column for {role} holds no numbers")
+            numbers[role] = np.asarray(values, np.float64)
+    marks = np.asarray(found["id"])
+    ids, who = (
+        numbered_people(marks.astype(np.float64))
+        if marks.dtype.kind in "iuf" and np.all(np.abs(marks.astype(np.float64)) < 2.0**53)
+        else people([str(mark) for mark in marks.tolist()])
+    )
+    unit_s = time_named(columns.units.get("time", ""))
+    in_frames = "time" not in numbers or unit_s == FRAMES
+    said = length_named(columns.units["x"]) or unit
+    velocities = None
+    if "vx" in numbers and "vy" in numbers:
+        velocities = np.stack([numbers["vx"], numbers["vy"]], axis=1)
+    return Rows(
+        format=form,
+        lines=np.arange(1, len(who) + 1),
+        ids=ids,
+        who=who,
+        clock=numbers.get("frame", numbers.get("time"))  # type: ignore[arg-type]
+        if in_frames
+        else numbers["time"] * (1.0 if unit_s is None else unit_s),
+        x=numbers["x"],
+        y=numbers["y"],
+        counts_frames=in_frames,
+        velocities=velocities,
+        fps=fps,
+        unit=said,
+        unit_from="as its columns say" if said else "",
+    )

@@ -1,0 +1,97 @@
+"""Columns by name: who, when and where, in the words of those who write such files."""
+
+import re
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+
+from esplanade.recordings.units import length_named, time_named
+
+_NAMES: Final = {
+    "time": (
+        *("t", "time", "times", "simtime", "simulationtime", "simsec", "timestamp", "seconds"),
+        *("sec", "secs", "timesec", "elapsed", "elapsedtime", "elapsedtimes", "datetime", "zeit"),
+        "unixtime",
+    ),
+    "frame": (
+        *("frame", "fr", "f", "frameid", "frameno", "framenr", "framenum", "framenumber"),
+        *("frameindex", "frames", "framecount", "step", "timestep", "tick"),
+    ),
+    "id": (
+        *("id", "personid", "pedestrianid", "pedid", "agentid", "trackid", "personnr", "pid"),
+        *("person", "pedestrian", "ped", "agent", "track", "p", "objectid", "objid", "targetid"),
+        *("actorid", "actor", "entityid", "entity", "uid", "no", "nr", "number", "name"),
+    ),
+    "x": (
+        *("x", "posx", "xpos", "positionx", "xposition", "px", "startx", "xcoord", "xcoordinate"),
+        *("coordx", "coordinatex", "coordcentx", "worldx", "xworld", "xcenter", "xcentre"),
+        *("centerx", "centrex", "centroidx", "xc", "localx", "poslocalx"),
+    ),
+    "y": (
+        *("y", "posy", "ypos", "positiony", "yposition", "py", "starty", "ycoord", "ycoordinate"),
+        *("coordy", "coordinatey", "coordcenty", "worldy", "yworld", "ycenter", "ycentre"),
+        *("centery", "centrey", "centroidy", "yc", "localy", "poslocaly"),
+    ),
+    "vx": ("vx", "velx", "xvel", "velocityx", "xvelocity", "speedx", "xspeed"),
+    "vy": ("vy", "vely", "yvel", "velocityy", "yvelocity", "speedy", "yspeed"),
+    "kind": ("type", "label", "class", "agenttype", "category", "objecttype"),
+}
+"""Names without anything but letters and digits, the likelier first."""
+
+_BRACKETS: Final = re.compile(r"(.*?)\s*[\[({<]\s*([^\])}>]*?)\s*[\])}>]\s*")
+_SLASH: Final = re.compile(r"(.*?)\s*/\s*([^\s/]+)")
+_TAIL: Final = re.compile(r"(.*?)[_\s.]+(?:in[_\s.]+)?([a-zµμ]+)")
+_NO_TAILS: Final = ("min", "h")
+"""What ends a name like x_min is no unit."""
+_VADERE: Final = re.compile(r"-PID\d+$", re.IGNORECASE)
+
+
+class Name(NamedTuple):
+    """A name of a column: letters and digits of it, and the unit that it gives."""
+
+    key: str
+    unit: str
+
+
+class Columns(NamedTuple):
+    """Where the columns stand that count, by what they are, with the names of their units."""
+
+    places: dict[str, int]
+    units: dict[str, str]
+
+    @property
+    def missing(self) -> list[str]:
+        """What no column was found for."""
+        found = self.places
+        lacking = [] if "time" in found or "frame" in found else ["time or frame"]
+        return lacking + [role for role in ("id", "x", "y") if role not in found]
+
+
+def name_of(cell: str) -> Name:
+    """The name in a cell of a header."""
+    text = _VADERE.sub("", cell.strip().strip("\"'").strip().lstrip("#$*% ").rpartition(":")[2])
+    stem, unit = text, ""
+    for form in (_BRACKETS, _SLASH, _TAIL):
+        found = form.fullmatch(text.lower() if form is _TAIL else text)
+        if found and (form is not _TAIL or _is_unit(found[2])):
+            stem, unit = found[1], found[2]
+            break
+    return Name(re.sub(r"[^a-z0-9]", "", stem.lower()), unit)
+
+
+def find_columns(header: Sequence[str]) -> Columns:
+    """Find the columns in a header; of two for the same the likelier name counts."""
+    names = [name_of(cell) for cell in header]
+    keys = [name.key for name in names]
+    places: dict[str, int] = {}
+    units: dict[str, str] = {}
+    for role, known in _NAMES.items():
+        place = next((keys.index(key) for key in known if key in keys), None)
+        if place is not None and place not in places.values():
+            places[role] = place
+            units[role] = names[place].unit
+    return Columns(places, units)
+
+
+def _is_unit(text: str) -> bool:
+    known = length_named(text) is not None or time_named(text) is not None
+    return known and text not in _NO_TAILS

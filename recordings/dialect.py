@@ -1,0 +1,118 @@
+"""The dialect of a table in text: what separates cells, the decimal point, what is comment."""
+
+import csv
+import re
+from collections.abc import Callable, Sequence
+from typing import Final, NamedTuple
+
+_SAMPLE_LINES: Final = 60
+_NUMBER: Final = re.compile(
+    r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|[-+]?(nan|inf|infinity)", re.IGNORECASE
+)
+_COMMA_NUMBER: Final = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?")
+_SEPARATOR_LINE: Final = re.compile(r"sep=(.)", re.IGNORECASE)
+COMMENTS: Final = ("#", "//", "%", "*")
+
+
+class Line(NamedTuple):
+    """A line of the file that is not blank; lines count from 1."""
+
+    number: int
+    text: str
+
+
+class Dialect(NamedTuple):
+    """How lines become cells; `delimiter` is None for white space."""
+
+    delimiter: str | None
+    decimal_comma: bool
+
+    @property
+    def cells(self) -> Callable[[str], list[str]]:
+        """What divides a line into cells, without quotes and white space around them."""
+        if self.delimiter is None:
+            return _by_space
+        return lambda text: _by(text, str(self.delimiter))
+
+    def plain(self, cell: str) -> str:
+        """The cell with a decimal point."""
+        if self.decimal_comma and _COMMA_NUMBER.fullmatch(cell):
+            return cell.replace(",", ".")
+        return cell
+
+    def is_number(self, cell: str) -> bool:
+        """Whether the cell holds a number."""
+        return bool(_NUMBER.fullmatch(self.plain(cell)))
+
+
+class Table(NamedTuple):
+    """The lines of a table, its comments apart; `separator` is what a line `sep=` names."""
+
+    lines: list[Line]
+    comments: list[Line]
+    separator: str | None = None
+
+
+def table_of(text: str) -> Table:
+    """Divide a text into content and comments."""
+    lines: list[Line] = []
+    comments: list[Line] = []
+    separator = None
+    for number, line in enumerate(text.split("\n"), start=1):
+        stripped = line.strip(" \f\v\0") if "\t" in line else line.strip()
+        if not stripped.strip():
+            continue
+        is_section = stripped.startswith("$") and ":" not in stripped  # of PTV's programs
+        if is_section or stripped.lstrip("\"'").startswith(COMMENTS):
+            comments.append(Line(number, stripped.strip().strip("\"'")))
+        elif not lines and (found := _SEPARATOR_LINE.fullmatch(stripped.strip().strip('"'))):
+            separator = found[1]
+        else:
+            lines.append(Line(number, stripped))
+    return Table(lines, comments, separator)
+
+
+def dialect_of(table: Table) -> Dialect:
+    """Find the dialect from the first lines."""
+    sample = [line.text for line in table.lines[:_SAMPLE_LINES]]
+    if table.separator is not None:
+        return _with_decimals(table.separator, sample)
+    spaced = [_by_space(text) for text in sample[1:] or sample]
+    for delimiter in (";", "\t", "|"):
+        if sample and sum(delimiter in text for text in sample) >= 0.9 * len(sample):
+            return _with_decimals(delimiter, sample)
+    if sample and sum("," in text for text in sample) >= 0.5 * len(sample):
+        is_decimal = all(
+            len(cells) >= 4
+            and all(_NUMBER.fullmatch(c) or _COMMA_NUMBER.fullmatch(c) for c in cells)
+            for cells in spaced
+        )
+        return Dialect(None, decimal_comma=True) if is_decimal else Dialect(",", False)
+    return Dialect(None, decimal_comma=False)
+
+
+def _with_decimals(delimiter: str, sample: Sequence[str]) -> Dialect:
+    cells = [cell for text in sample for cell in _by(text, delimiter)]
+    commas = sum(bool(_COMMA_NUMBER.fullmatch(cell)) for cell in cells)
+    return Dialect(delimiter, decimal_comma=delimiter != "," and commas > 0)
+
+
+def _by(text: str, delimiter: str) -> list[str]:
+    quote = next((mark for mark in "\"'" if mark in text), None)
+    return [cell.strip() for cell in _quoted(text, delimiter, quote)]
+
+
+def _by_space(text: str) -> list[str]:
+    if '"' not in text:
+        return text.split()
+    return [cell for cell in _quoted(" ".join(text.split()), " ", '"') if cell.strip()]
+
+
+def _quoted(text: str, delimiter: str, quote: str | None) -> list[str]:
+    if quote is None:
+        return text.split(delimiter)
+    try:
+        rows = csv.reader([text], delimiter=delimiter, quotechar=quote, skipinitialspace=True)
+        return next(rows, [])
+    except csv.Error:  # a cell longer than any that is meant
+        return text.split(delimiter)

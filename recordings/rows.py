@@ -1,0 +1,96 @@
+"""Rows: what every format is read into, before times, metres and tracks are made of it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from esplanade.recordings.errors import RecordingError
+
+Floats = npt.NDArray[np.float64]
+Whole = npt.NDArray[np.int64]
+
+EXACT_WHOLE: Final = 2.0**53
+"""Greater whole numbers are not told apart as floating-point numbers."""
+
+
+class Given(NamedTuple):
+    """What the reader of a file says about it, because the file does not, or says it wrongly.
+
+    `fps` is the number of frame numbers in a second, `unit` the name of a unit of length, `scale`
+    the metres in one unit of the file. With `strict`, glitches are refused.
+    """
+
+    fps: float | None = None
+    unit: str | None = None
+    scale: float | None = None
+    strict: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """The samples of a file in its order, with its own numbers.
+
+    `lines` (N,) is where each stands, `who` (N,) whose it is, an index into `ids`. `clock` (N,)
+    is seconds or, if `counts_frames`, numbers of frames. `x` and `y` (N,) are in units of the
+    file, `velocities` (N, 2) in metres a second.
+    """
+
+    format: str
+    lines: Whole
+    ids: Sequence[str]
+    who: Whole
+    clock: Floats
+    x: Floats
+    y: Floats
+    counts_frames: bool = False
+    velocities: Floats | None = None
+    fps: float | None = None
+    """Frames a second, as the file says."""
+    samples_per_s: float | None = None
+    """Samples a second, as the file says."""
+    usual_fps: float | None = None
+    """Frames a second of the sets that have this form."""
+    usual_from: str = ""
+    unit: str | None = None
+    """The unit of length, as the file says or shows; "px" for pixels."""
+    unit_from: str = ""
+    remarks: tuple[str, ...] = ()
+    dropped: int = 0
+    """Samples that the file itself marks as not those of people, or as not seen."""
+
+
+def number(path: Path, line: int, column: str, text: str) -> float:
+    """The number in a column of a line.
+
+    Raises
+    ------
+    RecordingError
+        The text is not a number.
+    """
+    try:
+        if "_" not in text:
+            return float(text)
+    except ValueError:
+        pass
+    raise RecordingError(path, f"{column} is {text!r:.40}, expected a number", line) from None
+
+
+def people(names: Sequence[str]) -> tuple[list[str], Whole]:
+    """The different names in the order in which they come, and the index of each into them."""
+    index: dict[str, int] = {}
+    who = np.fromiter((index.setdefault(name, len(index)) for name in names), np.int64, len(names))
+    return list(index), who
+
+
+def numbered_people(numbers: Floats) -> tuple[list[str], Whole]:
+    """The same of ids that are numbers; 1 and 1.0 are the same one."""
+    found, first, inverse = np.unique(numbers, return_index=True, return_inverse=True)
+    order = np.argsort(first, kind="stable")
+    rank = np.empty(len(order), np.int64)
+    rank[order] = np.arange(len(order))
+    names = [str(int(v)) if v.is_integer() else f"{v:.15g}" for v in found[order].tolist()]
+    return names, rank[inverse.reshape(-1)]

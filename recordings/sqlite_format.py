@@ -1,0 +1,95 @@
+"""JuPedSim's trajectories: an SQLite file with a table of samples and the frames a second."""
+
+import sqlite3
+import time
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from esplanade.recordings.errors import RecordingError
+from esplanade.recordings.rows import Rows, numbered_people
+
+MAGIC: Final = b"SQLite format 3\0"
+MOST_SAMPLES: Final = 40_000_000
+_PATIENCE_S: Final = 120.0
+_ALONE_STEPS: Final = 100_000
+_WANTED: Final = ("frame", "id", "pos_x", "pos_y")
+
+
+def read_sqlite(path: Path, content: bytes) -> Rows:
+    """Read the samples of a file of JuPedSim.
+
+    Raises
+    ------
+    RecordingError
+        It is damaged, or holds no table of trajectories.
+    """
+    connection = sqlite3.connect(":memory:")
+    try:
+        connection.deserialize(content)
+        connection.execute("PRAGMA query_only = 1")
+        connection.execute("PRAGMA trusted_schema = 0")
+        connection.execute("PRAGMA cell_size_check = 1")
+        until = time.monotonic() + _PATIENCE_S
+        connection.set_progress_handler(lambda: time.monotonic() > until, _ALONE_STEPS)
+        return _read(path, connection)
+    except (sqlite3.Error, OverflowError, UnicodeDecodeError) as error:
+        raise RecordingError(path, f"is an SQLite file that cannot be read: {error}") from None
+    finally:
+        connection.close()
+
+
+def _read(path: Path, connection: sqlite3.Connection) -> Rows:
+    kinds = dict(connection.execute("SELECT name, type FROM sqlite_master LIMIT 1000"))
+    if kinds.get("trajectory_data") != "table":
+        found = ", ".join(sorted(str(name) for name, kind in kinds.items() if kind == "table"))
+        raise RecordingError(
+            path,
+            "is an SQLite file without the table trajectory_data that JuPedSim writes; "
+            f"its tables: {found or 'none'}"[:300],
+        )
+    has = {row[1] for row in connection.execute("PRAGMA table_info(trajectory_data)")}
+    lacking = [name for name in _WANTED if name not in has]
+    if lacking:
+        raise RecordingError(path, f"its table trajectory_data has no column {', '.join(lacking)}")
+    count = connection.execute("SELECT count(*) FROM trajectory_data").fetchone()[0]
+    if count > MOST_SAMPLES:
+        raise RecordingError(path, f"has {count} samples, {MOST_SAMPLES} are possible")
+    cursor = connection.execute("SELECT frame, id, pos_x, pos_y FROM trajectory_data")
+    block = np.empty((count, 4))
+    for row, values in enumerate(cursor):
+        if not all(isinstance(value, int | float) for value in values):
+            raise RecordingError(
+                path,
+                f"{values!r:.80} is no sample, expected numbers for frame, id, x and y",
+                row + 1,
+            )
+        block[row] = values
+    ids, who = numbered_people(block[:, 1])
+    return Rows(
+        format="JuPedSim",
+        lines=np.arange(1, count + 1),
+        ids=ids,
+        who=who,
+        clock=block[:, 0],
+        x=block[:, 2],
+        y=block[:, 3],
+        counts_frames=True,
+        fps=_fps(path, connection) if "metadata" in kinds else None,
+        unit="m",
+        unit_from="as JuPedSim has it",
+    )
+
+
+def _fps(path: Path, connection: sqlite3.Connection) -> float | None:
+    found = connection.execute("SELECT value FROM metadata WHERE key = 'fps'").fetchone()
+    if found is None:
+        return None
+    try:
+        fps = float(found[0])
+    except (TypeError, ValueError):
+        fps = 0.0
+    if not 0.0 < fps < 1e6:
+        raise RecordingError(path, f"fps is {found[0]!r:.40} in its metadata, expected more than 0")
+    return fps

@@ -1,0 +1,189 @@
+"""Tables with named columns, in any dialect: comma, semicolon, tab or space between the cells."""
+
+import re
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from esplanade.recordings.cells import read_cells
+from esplanade.recordings.columns import Columns, find_columns
+from esplanade.recordings.dialect import Dialect, Line, Table
+from esplanade.recordings.errors import RecordingError
+from esplanade.recordings.rows import Floats, Rows
+from esplanade.recordings.units import FRAMES, length_named, length_said, time_named
+
+_RATE: Final = re.compile(
+    r"\b(?:frame\s*_?rate|fps)\b[^\d+-]{0,20}([-+]?[\d.]+(?:e[-+]?\d+)?)", re.IGNORECASE
+)
+_PEOPLE: Final = frozenset(
+    ("ped", "peds", "pedestrian", "pedestrians", "person", "people", "human")
+)
+_OTHERS: Final = frozenset(
+    ("veh", "vehicle", "car", "cart", "biker", "bicycle", "skater", "bus", "truck")
+)
+_CITR: Final = ["frame", "id", "x", "y", "type"]
+
+
+class Said(NamedTuple):
+    """What comments say of the numbers: frames a second, and the unit of length."""
+
+    fps: float | None = None
+    unit: str | None = None
+
+
+def said_in(path: Path, comments: Sequence[Line]) -> Said:
+    """Look for a rate and a unit in the comments.
+
+    Raises
+    ------
+    RecordingError
+        The rate is none.
+    """
+    fps = unit = None
+    for line in comments:
+        found = _RATE.search(line.text)
+        if found and fps is None:
+            try:
+                fps = float(found[1])
+            except ValueError:
+                continue
+            if not 0.0 < fps < 1e6:
+                raise RecordingError(
+                    path, f"the frame rate is {found[1]}, expected more than 0", line.number
+                )
+        unit = unit or length_said(line.text)
+    return Said(fps, unit)
+
+
+def header_in(comments: Sequence[Line], width: int) -> list[str] | None:
+    """The cells of the last comment that names all columns, as PeTrack and JPSreport write it."""
+    for line in reversed(comments):
+        text = line.text.lstrip("#/%* \t")
+        for cells in (text.split(), [c.strip() for c in re.split(r"[,;\t]", text)]):
+            if 4 <= len(cells) <= width and not find_columns(cells).missing:
+                return cells
+    return None
+
+
+def names_columns(dialect: Dialect, line: Line) -> bool:
+    """Whether the line is a header rather than a sample."""
+    cells = dialect.cells(line.text)
+    numbers = sum(dialect.is_number(cell) for cell in cells)
+    return numbers == 0 or len(find_columns(cells).places) >= 3
+
+
+def read_table(path: Path, table: Table, dialect: Dialect, header: list[str] | None) -> Rows:
+    """Read the samples; without `header` the first line names the columns.
+
+    Raises
+    ------
+    RecordingError
+        A column that is needed is missing, or a line does not fit.
+    """
+    lines = table.lines
+    if header is not None:
+        columns, width = find_columns(header), len(dialect.cells(lines[0].text))
+    else:
+        head, lines = lines[0], lines[1:]
+        header = dialect.cells(head.text)
+        columns, width = _columns(path, header, head), len(header)
+        first = dialect.cells(lines[0].text) if lines else []
+        if dialect.delimiter in (None, "\t") and len(first) == width + 1 and first[-1]:
+            # A table whose rows have names has no name for the column of these.
+            columns = Columns({r: p + 1 for r, p in columns.places.items()}, columns.units)
+            header, width = ["", *header], width + 1
+        elif _names_units(dialect, first, columns):
+            units = {r: first[p] or columns.units[r] for r, p in columns.places.items()}
+            columns, lines = Columns(columns.places, units), lines[1:]
+    said = said_in(path, table.comments)
+    unit = _length(path, columns, table) or said.unit
+    kinds = _kinds(dialect, lines, columns)
+    cells, dropped = read_cells(
+        path, lines, dialect, columns.places, width, ",".join(header), _is_person if kinds else None
+    )
+    others = ", ".join(f"{count} of {kind!r}" for kind, count in kinds.items())
+    in_frames, unit_s = _clock(columns)
+    numbers = cells.numbers
+    is_citr = [cell.strip().lower() for cell in header] == _CITR
+    return Rows(
+        format="table with named columns",
+        lines=cells.lines,
+        ids=cells.ids,
+        who=cells.who,
+        clock=numbers["frame"] if in_frames and "frame" in numbers else numbers["time"] * unit_s,
+        x=numbers["x"],
+        y=numbers["y"],
+        counts_frames=in_frames,
+        velocities=_velocities(numbers),
+        fps=said.fps,
+        usual_fps=30000 / 1001 if is_citr else None,
+        usual_from="as CITR is recorded" if is_citr else "",
+        unit=unit,
+        unit_from="as its header says" if unit else "",
+        remarks=(f"samples that are not people's are left out: {others}",) if dropped else (),
+        dropped=dropped,
+    )
+
+
+def _columns(path: Path, header: list[str], line: Line) -> Columns:
+    columns = find_columns(header)
+    if columns.missing:
+        names = ", ".join(cell or "''" for cell in header)
+        raise RecordingError(
+            path,
+            f"expected the header t,id,x,y or other names of these columns; none of {names!r:.100} "
+            f"is {' or '.join(columns.missing)}",
+            line.number,
+        )
+    return columns
+
+
+def _names_units(dialect: Dialect, cells: Sequence[str], columns: Columns) -> bool:
+    """Whether a line gives the units of the columns: no numbers, and a unit among them."""
+    found = [cells[p].strip("[]() ") for r, p in columns.places.items() if p < len(cells)]
+    if any(dialect.is_number(cell) for cell in found):
+        return False
+    return any(length_named(c) is not None or time_named(c) is not None for c in found)
+
+
+def _length(path: Path, columns: Columns, table: Table) -> str | None:
+    x, y = (length_named(columns.units[role].strip("[]() ")) for role in "xy")
+    if x != y and x is not None and y is not None:
+        line = table.lines[0].number if table.lines else None
+        raise RecordingError(path, f"x is in {x} and y in {y}, expected one unit", line)
+    return x or y
+
+
+def _clock(columns: Columns) -> tuple[bool, float]:
+    """Whether frames are counted, and the seconds in the unit of the times."""
+    if "time" not in columns.places:
+        return True, 1.0
+    unit_s = time_named(columns.units["time"].strip("[]() "))
+    if unit_s == FRAMES:
+        return True, 1.0
+    return False, 1.0 if unit_s is None else unit_s
+
+
+def _velocities(numbers: Mapping[str, Floats]) -> Floats | None:
+    if "vx" not in numbers or "vy" not in numbers:
+        return None
+    return np.stack([numbers["vx"], numbers["vy"]], axis=1)
+
+
+def _is_person(cell: str) -> bool:
+    return cell.strip().lower() in _PEOPLE
+
+
+def _kinds(dialect: Dialect, lines: Sequence[Line], columns: Columns) -> dict[str, int]:
+    """What is not a person, and how often, where a column says who is one."""
+    place = columns.places.get("kind")
+    if place is None:
+        return {}
+    split = dialect.cells
+    found = Counter(cells[place] for line in lines if len(cells := split(line.text)) > place)
+    if not any(_is_person(kind) for kind in found):
+        return {} if not any(kind.lower() in _OTHERS for kind in found) else dict(found)
+    return {kind: count for kind, count in found.items() if not _is_person(kind)}

@@ -1,0 +1,203 @@
+"""Small recordings of our own in every form that is read: two people who walk at 1.25 m/s.
+
+The first walks to the east from (0, 0), the second to the north from (4, 1) and comes later;
+samples are 0.4 s apart in files that hold a few of them, and a frame apart in those of experiments.
+"""
+
+# ruff: noqa: E501 (lines of files are as long as they are)
+
+import gzip
+import io
+import json
+import sqlite3
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, NamedTuple
+
+SPEED_MPS = 1.25
+SAMPLES = 12
+
+
+class Form(NamedTuple):
+    """A file, and what has to be given with it."""
+
+    name: str
+    content: bytes
+    sample_s: float = 0.4
+    given: dict[str, Any] = {}  # noqa: RUF012 (never written)
+
+
+def walk(sample_s: float) -> Iterator[tuple[int, int, float, float]]:
+    """All samples by time: number of the sample, person, x, y in metres."""
+    for n in range(SAMPLES + 3):
+        way = round(SPEED_MPS * sample_s * n, 6)
+        if n < SAMPLES:
+            yield n, 1, way, 0.0
+        if n >= 3:
+            yield n, 2, 4.0, round(1.0 + way - 3 * SPEED_MPS * sample_s, 6)
+
+
+def text(rows: Iterable[str], *head: str) -> bytes:
+    return "".join(f"{line}\n" for line in (*head, *rows)).encode()
+
+
+def lines(make: Callable[[int, int, float, float], str], sample_s: float = 0.4) -> list[str]:
+    return [make(*sample) for sample in walk(sample_s)]
+
+
+def excel(make: Callable[[int, int, float, float], str]) -> list[str]:
+    return [line.replace(".", ",") for line in lines(make)]
+
+
+def splines() -> bytes:
+    scale = 1 / 0.05
+    made = ["2 - the number of splines"]
+    for person, x, y, start in ((1, 0.0, 0.0, 0), (2, 4.0, 1.0, 30)):
+        made.append("5 - Num of control points")
+        for point in range(5):
+            way = SPEED_MPS * point * 30 / 25
+            east, north = (way, 0.0) if person == 1 else (0.0, way)
+            at = f"{(x + east) * scale:.6f} {(y + north) * scale:.6f} {start + 30 * point}"
+            made.append(f"{at} 90.0 - (2D point, m_id)")
+    return text(made)
+
+
+def stanford() -> bytes:
+    def row(n: int, who: int, x: float, y: float) -> str:
+        px, py = round(x / 0.04 + 400), round(400 - y / 0.04)
+        return f'{who} {px - 10} {py - 10} {px + 10} {py + 10} {12 * n} 0 0 0 "Pedestrian"'
+
+    return text(
+        [*lines(row), '7 1 1 20 20 0 0 0 0 "Biker"', '7 90 1 110 20 12 0 0 0 "Biker"',
+         '1 0 0 0 0 900 1 0 0 "Pedestrian"']
+    )  # fmt: skip
+
+
+def jupedsim(fps: float | None = 25.0) -> bytes:
+    connection = sqlite3.connect(":memory:")
+    connection.execute(
+        "CREATE TABLE trajectory_data (frame INTEGER NOT NULL, id INTEGER NOT NULL, pos_x REAL, "
+        "pos_y REAL, ori_x REAL, ori_y REAL)"
+    )
+    connection.execute("CREATE TABLE metadata (key TEXT PRIMARY KEY, value TEXT)")
+    connection.execute("CREATE INDEX frame_id_idx ON trajectory_data(frame, id)")
+    if fps is not None:
+        connection.execute("INSERT INTO metadata VALUES ('fps', ?)", (fps,))
+    connection.executemany(
+        "INSERT INTO trajectory_data VALUES (?, ?, ?, ?, 1, 0)", list(walk(0.04))
+    )
+    connection.commit()
+    return connection.serialize()
+
+
+def parquet() -> bytes:
+    import pyarrow as pa
+    from pyarrow import parquet as files
+
+    n, who, x, y = zip(*walk(0.4), strict=True)
+    table = pa.table({"time_s": [0.4 * k for k in n], "person": who, "x_m": x, "y_m": y})
+    file = io.BytesIO()
+    files.write_table(table, file)
+    return file.getvalue()
+
+
+def plain(n: int, who: int, x: float, y: float) -> str:
+    return f"{0.4 * n:.1f},{who},{x:.3f},{y:.3f}"
+
+
+def semicolons(n: int, who: int, x: float, y: float) -> str:
+    return f"{0.4 * n:.1f};{who};{x:.3f};{y:.3f}"
+
+
+def ndjson(n: int, who: int, x: float, y: float) -> str:
+    return json.dumps({"track": {"f": 12 * n, "p": who, "x": x, "y": y}})
+
+
+def obsmat(n: int, who: int, x: float, y: float) -> str:
+    east = SPEED_MPS if who == 1 else 0.0
+    return f" {10 * n:e} {who:e} {x:e} 0 {y:e} {east:e} 0 {SPEED_MPS - east:e}"
+
+
+CSV = text(lines(plain), "t,id,x,y")
+FORMS: dict[str, Form] = {
+    "csv": Form("a.csv", CSV),
+    "csv by another suffix": Form("a.dat", CSV),
+    "csv packed": Form("a.csv.gz", gzip.compress(CSV)),
+    "csv with a mark": Form("a.csv", b"\xef\xbb\xbf" + CSV.replace(b"\n", b"\r\n")),
+    "csv in UTF-16": Form("a.csv", CSV.decode().encode("utf-16")),
+    "csv of a spreadsheet": Form("a.csv", text(excel(semicolons), '"t";"id";"x";"y"')),
+    "csv with sep": Form("a.csv", text(excel(semicolons), "sep=;", "T;ID;X;Y")),
+    "csv in cm": Form(
+        "a.csv",
+        text(
+            lines(lambda n, who, x, y: f"{who},{400 * n},{100 * y:.1f},{100 * x:.1f}"),
+            "# made by hand",
+            "personID,t/ms,y/cm,x/cm",
+        ),
+    ),
+    "csv with tabs and an index": Form(
+        "a.tsv",
+        text(lines(lambda n, who, x, y: f"{n}\t{who}\t{x}\t{y}\tx\t{0.4 * n}"), "\tPed_ID\tPos_X\tPos_Y\tnote\tTime"),
+    ),
+    "csv with a row of units": Form(
+        "a.csv",
+        text(
+            lines(lambda n, who, x, y: f'{0.4 * n},{who},"{who:05d}",{x},{y},0.1'),
+            '"t","id","name","x","y","z"', '"s","","","m","m","m"',
+        ),
+    ),
+    "csv that R writes": Form(
+        "a.txt", text(lines(lambda n, who, x, y: f'"{n}" {0.4 * n} {who} {x} {y}'), '"time" "id" "x" "y"')
+    ),
+    "csv of crowd:it": Form("a.csv", text(lines(plain), "time,pedID,posX,posY")),
+    "csv with frames and velocities": Form(
+        "a.csv",
+        text(
+            lines(lambda n, who, x, y: f"{who},{1000 + 10 * n},{x},{y},{1.25 * (who == 1)},{1.25 * (who == 2)}"),
+            "ID,Frame,x,y,v_x,v_y",
+        ),
+    ),
+    "viswalk": Form(
+        "a.pp",
+        text(lines(lambda n, who, x, y: f"{who};{0.4 * n};{x};{y};0"),
+             "$VISION", "* File: ours", "$PEDESTRIAN:NO;SIMSEC;COORDCENTX;COORDCENTY;COORDCENTZ"),
+    ),
+    "vadere": Form(
+        "postvis.traj",
+        text(lines(lambda n, who, x, y: f"{who} {0.4 * n} {0.4 * n + 0.4} {x} {y} {x} {y} 1"),
+             "pedestrianId simTime endTime-PID1 startX-PID1 startY-PID1 endX-PID1 endY-PID1 targetId-PID2"),
+    ),
+    "petrack": Form(
+        "a.txt",
+        text(lines(lambda n, who, x, y: f"{who} {94 + n} {100 * x:.3f} {100 * y:.3f} 176", 0.04),
+             "# PeTrack project: ours.pet", "# framerate: 25 fps", "# id frame x/cm y/cm z/cm"),
+        0.04,
+    ),
+    "jpsreport": Form(
+        "a.txt",
+        text(lines(lambda n, who, x, y: f"{who}\t{n}\t{x}\t{y}\t0\t0.2\t0.2\t0\t255", 0.04),
+             "#description: ours", "#framerate: 25.00", "#X,Y,Z: the agents coordinates (in metres)",
+             "#ID\tFR\tX\tY\tZ\tA\tB\tANGLE\tCOLOR"),
+        0.04,
+    ),
+    "juelich without a header": Form(
+        "uo.txt",
+        text(lines(lambda n, who, x, y: f"{who} {43 + n} {100 * x:.3f} {100 * y:.3f} 183.02", 0.0625)),
+        0.0625,
+        {"fps": 16.0},
+    ),
+    "trajnet": Form("biwi.txt", text(lines(lambda n, who, x, y: f"{780 + 10 * n} {who}.0 {x} {y}"))),
+    "social-gan": Form("biwi.txt", text(lines(lambda n, who, x, y: f"{10 * n}.0\t{who}.0\t{x}\t{y}"))),
+    "trajnet with commas": Form("b.csv", text(lines(lambda n, who, x, y: f"{10 * n},{who},{x},{y}"))),
+    "trajnet++": Form("a.ndjson", text(lines(ndjson), '{"scene": {"id": 0, "p": 1, "s": 0, "e": 9, "fps": 2.5}}')),
+    "obsmat": Form("obsmat.txt", text(lines(obsmat))),
+    "splines": Form("annotation.vsp", splines(), 0.4, {"scale": 0.05}),
+    "stanford": Form("annotations.txt", stanford(), 0.4, {"scale": 0.04}),
+    "citr": Form(
+        "p1.csv",
+        text(lines(lambda n, who, x, y: f"{101 + n},{who},{x:.9f},{y:.9f},ped", 1001 / 30000),
+             "frame,id,x,y,type") + b"101,9,0,0,veh\n",
+        1001 / 30000,
+    ),
+    "jupedsim": Form("trajectory.sqlite", jupedsim(), 0.04),
+    "jupedsim packed": Form("trajectory.sqlite.gz", gzip.compress(jupedsim()), 0.04),
+}  # fmt: skip

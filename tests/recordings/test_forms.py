@@ -1,0 +1,102 @@
+"""Every form of a recording is read as the same two people at 1.25 m/s."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from esplanade.recordings import RecordingError, read_crowd
+from tests.recordings.forms import FORMS, SAMPLES, SPEED_MPS, Form, jupedsim, parquet, text
+
+
+def write(folder: Path, form: Form) -> Path:
+    path = folder / form.name
+    path.write_bytes(form.content)
+    return path
+
+
+@pytest.mark.parametrize("form", FORMS.values(), ids=list(FORMS))
+def test_two_people_walk(tmp_path: Path, form: Form) -> None:
+    crowd = read_crowd(write(tmp_path, form), **form.given)
+    report = crowd.report
+    assert report is not None
+    assert report.warnings == ()
+    assert report.sample_s == pytest.approx(form.sample_s, abs=1e-4)
+    assert report.median_mps == pytest.approx(SPEED_MPS, rel=0.02)
+    assert crowd.max_speed_mps == pytest.approx(SPEED_MPS, rel=0.06)
+    assert report.passed_over == 0
+    assert [track.id for track in crowd.tracks] == ["1", "2"]
+    first, second = (np.diff(track.positions[[0, -1]], axis=0)[0] for track in crowd.tracks)
+    assert abs(first[0]) > 5 * abs(first[1])
+    assert abs(second[1]) > 5 * abs(second[0])
+    if "splines" not in form.name and form.name != "annotation.vsp":
+        assert [len(track.times) for track in crowd.tracks] == [SAMPLES, SAMPLES]
+    again = read_crowd(write(tmp_path, form), **form.given, strict=True)
+    assert again.report == report
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "fault"),
+    [
+        ("stanford", {}, "its coordinates are pixels: give --scale"),
+        ("juelich without a header", {}, r"give --fps; .*--fps 16 \(1.25 m/s\)"),
+        ("splines", {}, "people would move at 25 m/s; give .*--scale"),
+    ],
+)
+def test_what_has_to_be_given_is_named(
+    tmp_path: Path, name: str, given: dict[str, float], fault: str
+) -> None:
+    with pytest.raises(RecordingError, match=fault):
+        read_crowd(write(tmp_path, FORMS[name]), **given)
+
+
+def test_unsorted_rows_and_repeats_are_forgiven_in_every_table(tmp_path: Path) -> None:
+    for name in ("csv", "petrack", "trajnet", "obsmat", "trajnet++", "vadere", "citr"):
+        form = FORMS[name]
+        rows = form.content.splitlines(keepends=True)
+        head = sum(not row.lstrip(b' {"track:f')[:1].isdigit() for row in rows)
+        mixed = b"".join([*rows[:head], *reversed(rows[head:]), rows[-1], rows[head]])
+        crowd = read_crowd(write(tmp_path, form._replace(content=mixed)), **form.given)
+        assert crowd.report is not None
+        assert crowd.report.median_mps == pytest.approx(SPEED_MPS, rel=0.02), name
+        assert any("exact repeats" in remark for remark in crowd.report.remarks), name
+
+
+def test_parquet_is_read_or_says_what_to_install(tmp_path: Path) -> None:
+    path = tmp_path / "a.parquet"
+    try:
+        content = parquet()
+    except ImportError:
+        path.write_bytes(b"PAR1 and more")
+        with pytest.raises(RecordingError, match="needs pyarrow: install it"):
+            read_crowd(path)
+        return
+    path.write_bytes(content)
+    crowd = read_crowd(path)
+    assert crowd.report is not None
+    assert crowd.report.median_mps == pytest.approx(SPEED_MPS)
+    path.write_bytes(content[:200])
+    with pytest.raises(RecordingError, match="Parquet file that cannot be read"):
+        read_crowd(path)
+
+
+def test_sqlite_that_is_no_trajectory(tmp_path: Path) -> None:
+    path = tmp_path / "a.sqlite"
+    path.write_bytes(jupedsim()[:5000])
+    with pytest.raises(RecordingError, match="SQLite file"):
+        read_crowd(path)
+    path.write_bytes(jupedsim().replace(b"trajectory_data", b"trajectory_date"))
+    with pytest.raises(RecordingError, match="without the table trajectory_data"):
+        read_crowd(path)
+    path.write_bytes(jupedsim(fps=None))
+    with pytest.raises(RecordingError, match=r"give --fps; .*--fps 25 \(1.25 m/s\)"):
+        read_crowd(path)
+    path.write_bytes(jupedsim(fps=0.0))
+    with pytest.raises(RecordingError, match=r"fps is '0\.0' in its metadata"):
+        read_crowd(path)
+
+
+def test_units_in_two_columns_must_agree(tmp_path: Path) -> None:
+    form = Form("a.csv", text(["0,1,2,3"], "t,id,x/m,y/cm"))
+    with pytest.raises(RecordingError, match="x is in m and y in cm"):
+        read_crowd(write(tmp_path, form))
