@@ -17,7 +17,7 @@ BENCHMARKS ?= $(patsubst benchmarks/%.py,%,$(wildcard benchmarks/[a-z]*.py))
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help serve test test-boundscheck test-nojit test-lowest test-pythons
+.PHONY: help serve test test-boundscheck test-nojit fuzz-files test-lowest test-pythons
 .PHONY: check release-check audit bench chaos format lock client clean
 
 help:  ## show what there is to do
@@ -43,6 +43,9 @@ test-boundscheck: $(VENV)/.test  ## run the planning tests with every array acce
 test-nojit: $(VENV)/.test  ## run the planning tests uncompiled, for branch coverage
 	NUMBA_DISABLE_JIT=1 $(RUN) -m coverage run -m pytest tests/planning $(ARGS)
 	$(RUN) -m coverage report
+
+fuzz-files: $(VENV)/.test  ## read 100 000 mutated recordings of every format
+	$(RUN) -m tests.recordings.fuzz $(ARGS)
 
 test-lowest: $(VENV)/.test  ## run tests with the oldest releases that pyproject.toml allows
 	$(RUN) -m tools.lowest

@@ -11,6 +11,8 @@ from esplanade.recordings.dialect import Dialect, Line
 from esplanade.recordings.errors import RecordingError
 from esplanade.recordings.rows import EXACT_WHOLE, Floats, Whole, number, numbered_people, people
 
+UNKNOWN: Final = "?"
+"""Stands for a place that is to be predicted, in the tests of TrajNet."""
 _NO_NUMBERS: Final = ("id", "kind")
 
 
@@ -105,6 +107,8 @@ def _one_by_one(
             )
         if keep is not None and "kind" in places and not keep(cells[places["kind"]]):
             dropped += 1
+            continue
+        if UNKNOWN in cells and all(cells[places.get(c, 0)] == UNKNOWN for c in "xy"):
             continue
         name = cells[places["id"]]
         if not name:

@@ -5,9 +5,15 @@ from typing import Final
 
 from esplanade.recordings.bare_format import read_bare
 from esplanade.recordings.columnar_format import HDF5, PARQUET, read_hdf5, read_parquet
-from esplanade.recordings.dialect import dialect_of, table_of
+from esplanade.recordings.dialect import Table, dialect_of, table_of
 from esplanade.recordings.errors import RecordingError, read_bytes, text_of
 from esplanade.recordings.ndjson_format import read_ndjson
+from esplanade.recordings.old_formats import (
+    looks_like_lists,
+    looks_like_triples,
+    read_lists,
+    read_triples,
+)
 from esplanade.recordings.rows import Rows
 from esplanade.recordings.spline_format import looks_like_splines, read_splines
 from esplanade.recordings.sqlite_format import MAGIC, read_sqlite
@@ -15,7 +21,8 @@ from esplanade.recordings.table_format import header_in, names_columns, read_tab
 
 READABLE: Final = (
     "a table with columns t or frame, id, x and y; PeTrack and Jülich text; ETH's obsmat; "
-    "TrajNet's four columns and ndjson; UCY's splines; Stanford Drone annotations; Vadere's .traj; "
+    "TrajNet's four columns and ndjson; UCY's splines; Stanford Drone, Grand Central and Edinburgh "
+    "annotations; Vadere's .traj; "
     "JuPedSim's SQLite; Parquet; HDF5; gzip of each"
 )
 MAX_NUMBERS_BYTES: Final = 2**31
@@ -66,6 +73,12 @@ def _read_text(path: Path, text: str) -> Rows:
     if not table.lines:
         what = "holds no samples, expected at least one" if text.strip() else "is empty, expected"
         raise RecordingError(path, f"{what} the header t,id,x,y and samples")
+    if looks_like_triples(table):
+        return read_triples(table)
+    return read_lists(path, table) if looks_like_lists(table) else _read_cells(path, table)
+
+
+def _read_cells(path: Path, table: Table) -> Rows:
     dialect = dialect_of(table)
     if names_columns(dialect, table.lines[0]):
         return read_table(path, table, dialect, None)

@@ -84,13 +84,13 @@ def advice(median_mps: float, *, unit_known: bool, rate_known: bool) -> str:
             for unit, metres in _FACTORS.items()
             if WALKING_MPS[0] <= median_mps * metres <= WALKING_MPS[1]
         ]
-        options += fitting or ["--unit or --scale, if coordinates are not in metres"]
+        options += fitting or ["--unit if its unit is not the metre"]
+        options.append("--scale if its unit is the pixel")
     if not rate_known:
-        options.append("--fps, if there are other frames a second")
-    return (
-        "; ".join(options)
-        or "the file says its rate and unit itself: --fps, --unit or --scale override it"
-    )
+        options.append("--fps if there are other frames a second")
+    if not options:
+        return "if what the file says itself is wrong, give --fps, --unit or --scale"
+    return f"give {', '.join(options)}"
 
 
 def warnings_of(
@@ -102,7 +102,7 @@ def warnings_of(
         told = advice(median_mps, unit_known=unit_known, rate_known=rate_known)
         found.append(
             f"the median speed is {median_mps:.3g} m/s, people walk at {WALKING_MPS[0]} to "
-            f"{WALKING_MPS[1]} m/s; give {told}"
+            f"{WALKING_MPS[1]} m/s; {told}"
         )
     if passed_over > _MANY_GLITCHES:
         share = f"{100.0 * passed_over:.2g} % of the samples"

@@ -182,7 +182,7 @@ def _crowd(
     usual_mps = float(np.nanmedian(paces)) if not np.all(np.isnan(paces)) else 0.0
     if beyond_meaning(usual_mps):
         told = advice(usual_mps, unit_known=unit_known, rate_known=rate_known)
-        raise RecordingError(path, f"people would move at {usual_mps:.4g} m/s; give {told}")
+        raise RecordingError(path, f"people would move at {usual_mps:.4g} m/s; {told}")
     tracks: list[tuple[float, int, Track]] = []
     glitches = divided = 0
     for part in parts:

@@ -33,6 +33,9 @@ COMMANDS: Final = {
     "scene": Command(
         "esplanade.scenery.options:parser", "check a scene, draw it, make one of a mesh"
     ),
+    "recording": Command(
+        "esplanade.trajectories.options:parser", "say how a recorded crowd is read, and draw it"
+    ),
     "gait": Command("esplanade.footage.options:parser", "draw and film how everyone walks"),
     "demo": Command("esplanade.options:demo", "run the demo world with actors and a few visitors"),
     "completion": Command(
@@ -88,6 +91,7 @@ def _help() -> str:
         "  esplanade bots --count 200 --duration 60",
         "  esplanade evaluate zara1.csv --policy esplanade straight",
         "  esplanade scene check my.json",
+        "  esplanade recording check zara1.csv --out zara1.png",
         "  esplanade gait render --out pictures",
         "  esplanade completion bash                then see `esplanade completion --help`",
         "",

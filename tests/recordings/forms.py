@@ -192,6 +192,28 @@ FORMS: dict[str, Form] = {
     "obsmat": Form("obsmat.txt", text(lines(obsmat))),
     "splines": Form("annotation.vsp", splines(), 0.4, {"scale": 0.05}),
     "stanford": Form("annotations.txt", stanford(), 0.4, {"scale": 0.04}),
+    "trajnet to be predicted": Form(
+        "biwi.txt", text([*lines(lambda n, who, x, y: f"{10 * n} {who} {x} {y}"), "999 1 ? ?"])
+    ),
+    "grand central": Form(
+        "000001.txt",
+        text(str(v) for n in range(SAMPLES) for v in (400 + 10 * n, 100, 10 * n)),
+        0.4,
+        {"scale": 0.05},
+    ),
+    "edinburgh": Form(
+        "tracks.txt",
+        text(
+            [
+                f"TRACK.R{who}=[" + ";".join(f"[{round(50 * x + 99)} {round(400 - 50 * y)} {n}]"
+                for n, w, x, y in walk(1 / 9) if w == who) + "];"
+                for who in (1, 2)
+            ],
+            "% Total number of trajectories in file are 2", "Properties.R1=[53 4471 4523 ];",
+        ),
+        1 / 9,
+        {"scale": 0.02},
+    ),
     "citr": Form(
         "p1.csv",
         text(lines(lambda n, who, x, y: f"{101 + n},{who},{x:.9f},{y:.9f},ped", 1001 / 30000),

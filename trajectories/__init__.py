@@ -1,0 +1,1 @@
+"""The command on recorded crowds: it says how a file is read, and draws it."""
