@@ -145,6 +145,7 @@ def check(given: Mapping[str, Any]) -> None:
     ValueError
         They do not; the message says which.
     """
+    given = {name: value for name, value in given.items() if value is not False}
     replays = given.get("replay") is not None
     misplaced = sorted(given.keys() & (_LOAD if replays else _REPLAY).keys() - {"replay"})
     if misplaced and replays:

@@ -85,7 +85,7 @@ def _sampled(path: Path, rows: list[tuple[int, list[str]]]) -> Floats:
     """The samples (x, y, frame) of a spline, (N, 3); the points themselves at its ends."""
     from scipy.interpolate import PchipInterpolator  # noqa: PLC0415 (few files need it)
 
-    points = np.empty((len(rows), 3))
+    points: Floats = np.empty((len(rows), 3))
     for i, (line, cells) in enumerate(rows):
         if len(cells) not in (3, 4):
             raise RecordingError(path, f"expected x y frame angle, not {len(cells)} columns", line)
@@ -99,15 +99,16 @@ def _sampled(path: Path, rows: list[tuple[int, list[str]]]) -> Floats:
             raise RecordingError(path, "the frame goes back, expected a later one", line)
     frames = points[:, 2]
     keep = np.append(True, np.diff(frames) > 0)
-    points, frames = points[keep], frames[keep]
+    kept: Floats = points[keep]
+    frames = frames[keep]
     if abs(frames[0]) > MAX_FRAMES or frames[-1] - frames[0] > MAX_FRAMES:
         raise RecordingError(path, f"frame {frames[-1]:g} is out of range", rows[-1][0])
     if len(frames) < 2:
-        return points
+        return kept
     first = np.ceil(frames[0] / SAMPLE_FRAMES) * SAMPLE_FRAMES
     at = np.arange(first, frames[-1] + 1e-9, SAMPLE_FRAMES)
     if len(at) < 2:
         at = frames[[0, -1]]
-    places: Floats = PchipInterpolator(frames, points[:, :2], axis=0)(at)
+    places: Floats = PchipInterpolator(frames, kept[:, :2], axis=0)(at)
     sampled: Floats = np.column_stack([places, at])
     return sampled

@@ -95,7 +95,7 @@ def read_table(path: Path, table: Table, dialect: Dialect, header: list[str] | N
             # A table whose rows have names has no name for the column of these.
             columns = Columns({r: p + 1 for r, p in columns.places.items()}, columns.units)
             header, width = ["", *header], width + 1
-        elif _names_units(dialect, first, columns):
+        elif len(first) == width and _names_units(dialect, first, columns):
             units = {r: first[p] or columns.units[r] for r, p in columns.places.items()}
             columns, lines = Columns(columns.places, units), lines[1:]
     said = said_in(path, table.comments)

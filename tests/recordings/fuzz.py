@@ -144,15 +144,16 @@ def tried(path: Path, form: Form, content: bytes) -> str:
     try:
         crowd = read_crowd(path, **form.given)
     except RecordingError as error:
-        outcome = "refused"
-        assert str(path) in str(error)
-        assert len(str(error)) < 900, str(error)[:2000]
+        outcome, said = "refused", str(error)
     else:
         fault = fault_of(crowd)
         assert fault is None, fault
         outcome = "odd" if crowd.report and crowd.report.warnings else "accepted"
+        said = str(path)
     took_s = time.perf_counter() - began
     assert took_s < SOON_S, f"{took_s:.1f} s"
+    assert str(path) in said
+    assert len(said) < 900, said[:2000]
     return outcome
 
 
@@ -168,6 +169,8 @@ def main() -> int:
             chance = random.Random(f"{options.seed}:{number}")
             form = FORMS[chance.choice(list(FORMS))]
             content = mutated(form.content, chance)
+            if number % 10_000 == 9_999:
+                sys.stderr.write(f"{number + 1} files: {dict(outcomes)}\n")
             try:
                 outcomes[tried(Path(folder, form.name), form, content)] += 1
             except BaseException:

@@ -103,3 +103,8 @@ def test_units_in_two_columns_must_agree(tmp_path: Path) -> None:
     form = Form("a.csv", text(["0,1,2,3"], "t,id,x/m,y/cm"))
     with pytest.raises(RecordingError, match="x is in m and y in cm"):
         read_crowd(write(tmp_path, form))
+
+
+def test_a_row_of_units_that_is_too_short_is_a_fault(tmp_path: Path) -> None:
+    with pytest.raises(RecordingError, match="expected 4 columns t,id,x,y, not 3"):
+        read_crowd(write(tmp_path, Form("a.csv", text(["s,,m", "0,1,2,3"], "t,id,x,y"))))

@@ -88,7 +88,8 @@ def test_walls_may_lie_elsewhere(crowd_file: Path, tmp_path: Path) -> None:
     [
         ("square.csv", "t,id,x,y\n0,a,0,nowhere\n", "square.csv:2"),
         ("square.walls.json", '{"segments": [[1, 2]]}', "segments[0]"),
-        ("square.csv", "t,id,x,y\n0,a,0,0\n1,a,900,0\n", "bounds: a side may measure"),
+        ("square.csv", "t,id,x,y\n0,a,0,0\n600,a,900,0\n", "bounds: a side may measure"),
+        ("square.csv", "t,id,x,y\n0,a,0,0\n1,a,900,0\n", "give --unit mm (0.9 m/s)"),
     ],
 )
 def test_faults_in_a_crowd_are_named(crowd_file: Path, name: str, text: str, fault: str) -> None:
