@@ -8,7 +8,7 @@ import numpy as np
 
 from esplanade.recordings.crowd import Track
 from esplanade.recordings.glitches import FASTEST_MPS
-from esplanade.recordings.rates import WALKING_MPS
+from esplanade.recordings.rates import WALKING_MPS, likely_rates
 
 _FACTORS: Final = {"cm": 0.01, "mm": 0.001, "ft": 0.3048, "km": 1000.0}
 _MANY_GLITCHES: Final = 0.05
@@ -75,8 +75,11 @@ def beyond_meaning(median_mps: float) -> bool:
     return bool(median_mps > FASTEST_MPS)
 
 
-def advice(median_mps: float, *, unit_known: bool, rate_known: bool) -> str:
-    """Which options would put a median speed right, with what it would be then."""
+def advice(median_mps: float, fps: float, *, unit_known: bool, rate_known: bool) -> str:
+    """Which options would put a median speed right, with what it would be then.
+
+    `fps` is the number of frames a second that were taken for it.
+    """
     options = []
     if not unit_known:
         fitting = [
@@ -87,19 +90,21 @@ def advice(median_mps: float, *, unit_known: bool, rate_known: bool) -> str:
         options += fitting or ["--unit if its unit is not the metre"]
         options.append("--scale if its unit is the pixel")
     if not rate_known:
-        options.append("--fps if there are other frames a second")
+        rates = likely_rates(median_mps / fps) if fps else ()
+        options += [f"--fps {rate:g} ({median_mps * rate / fps:.3g} m/s)" for rate in rates[:4]]
+        options += [] if rates else ["--fps if there are other frames a second"]
     if not options:
         return "if what the file says itself is wrong, give --fps, --unit or --scale"
     return f"give {', '.join(options)}"
 
 
 def warnings_of(
-    median_mps: float, passed_over: float, *, unit_known: bool, rate_known: bool
+    median_mps: float, fps: float, passed_over: float, *, unit_known: bool, rate_known: bool
 ) -> tuple[str, ...]:
     """What is not as recordings of people are."""
     found = []
     if not np.isnan(median_mps) and not WALKING_MPS[0] <= median_mps <= WALKING_MPS[1]:
-        told = advice(median_mps, unit_known=unit_known, rate_known=rate_known)
+        told = advice(median_mps, fps, unit_known=unit_known, rate_known=rate_known)
         found.append(
             f"the median speed is {median_mps:.3g} m/s, people walk at {WALKING_MPS[0]} to "
             f"{WALKING_MPS[1]} m/s; {told}"

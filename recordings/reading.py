@@ -181,7 +181,7 @@ def _crowd(
     paces = [own_pace(rows.clock[part], places[part]) for part in parts]
     usual_mps = float(np.nanmedian(paces)) if not np.all(np.isnan(paces)) else 0.0
     if beyond_meaning(usual_mps):
-        told = advice(usual_mps, unit_known=unit_known, rate_known=rate_known)
+        told = advice(usual_mps, rate.fps or 0.0, unit_known=unit_known, rate_known=rate_known)
         raise RecordingError(path, f"people would move at {usual_mps:.4g} m/s; {told}")
     tracks: list[tuple[float, int, Track]] = []
     glitches = divided = 0
@@ -227,7 +227,11 @@ def _crowd(
         remarks=tuple(remarks),
     )
     warnings = warnings_of(
-        median_mps, report.share_passed_over, unit_known=unit_known, rate_known=rate_known
+        median_mps,
+        rate.fps or 0.0,
+        report.share_passed_over,
+        unit_known=unit_known,
+        rate_known=rate_known,
     )
     return Crowd(_name(path), found, replace(report, warnings=(*rate.warnings, *warnings)))
 

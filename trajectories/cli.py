@@ -1,5 +1,6 @@
-"""`esplanade recording`: says how a recorded crowd is read, and draws it."""
+"""`esplanade recording`: says how a recorded crowd is read, draws it, writes it."""
 
+import hashlib
 import json
 import math
 import sys
@@ -8,10 +9,13 @@ from typing import Any
 
 from rich.table import Table
 
+from esplanade import __version__
 from esplanade.commandline import exit_codes
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.output import console
+from esplanade.commandline.recording_settings import tell_recording
 from esplanade.recordings import Crowd, RecordingError, Report, read_crowd
+from esplanade.recordings.writing import WritingError, write_crowd
 from esplanade.trajectories.drawing import DrawingError, draw_crowd
 
 
@@ -46,6 +50,36 @@ def check(options: Namespace) -> int:
             raise UsageError(f"--out: {error}") from None
         print(options.out, file=sys.stderr if options.json else sys.stdout)
     return exit_codes.FAILED if report.warnings else exit_codes.OK
+
+
+def convert(options: Namespace) -> int:
+    """Write a recording in another format; returns the exit code."""
+    try:
+        crowd = read_crowd(
+            options.recording,
+            options.fps,
+            unit=options.unit,
+            scale=options.scale,
+            strict=options.strict,
+        )
+        tell_recording(options.prog, str(options.recording), crowd.report)
+        write_crowd(options.out, crowd, _provenance(options, crowd), options.hz)
+    except (RecordingError, WritingError) as error:
+        raise UsageError(str(error)) from None
+    print(options.out)
+    return exit_codes.OK
+
+
+def _provenance(options: Namespace, crowd: Crowd) -> dict[str, str]:
+    """Where a written recording comes from."""
+    given = {name: getattr(options, name) for name in ("fps", "unit", "scale", "hz")}
+    told = "".join(f" --{name} {value}" for name, value in given.items() if value is not None)
+    return {
+        "written by": f"esplanade {__version__}, {options.prog}{told}",
+        "source": options.recording.name,
+        "source sha256": hashlib.sha256(options.recording.read_bytes()).hexdigest(),
+        "read as": "" if crowd.report is None else crowd.report.line,
+    }
 
 
 def figures(crowd: Crowd, report: Report) -> dict[str, Any]:

@@ -5,8 +5,8 @@ from typing import Final
 
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.parser import Parser
-from esplanade.commandline.readers import InputFile, OutputFile
-from esplanade.commandline.recording_settings import add_reading, check_reading
+from esplanade.commandline.readers import InputFile, Number, OutputFile
+from esplanade.commandline.recording_settings import add_reading, add_strict, check_reading
 
 EPILOG: Final = """\
 examples:
@@ -32,12 +32,21 @@ exit code: 0 all is as in recordings of people, 1 something is to be looked at, 
 file that cannot be read
 """
 
+CONVERT_EPILOG: Final = """\
+examples:
+  esplanade recording convert annotations.txt --scale 0.0384 --out little.csv
+  esplanade recording convert zara1.csv --hz 25 --out zara1.sqlite
+  esplanade recording convert zara1.csv --hz 25 --out zara1.txt
+
+exit code: 0 written, 2 wrong usage, or a file that cannot be read or written
+"""
+
 
 def parser() -> Parser:
     """The options of `esplanade recording` and of its command."""
     made = Parser(
         "esplanade recording",
-        description="Say how a recorded crowd is read, and draw it.",
+        description="Say how a recorded crowd is read, draw it, write it in another format.",
         epilog=EPILOG,
     )
     commands = made.add_subparsers(title="commands", metavar="COMMAND", required=True)
@@ -52,18 +61,41 @@ def parser() -> Parser:
     )
     one.add_argument("recording", metavar="FILE", type=InputFile(), help="recorded crowd")
     add_reading(one)
-    one.add_argument(
-        "--strict", action="store_true", help="refuse glitches of tracking, naming the first one"
-    )
+    add_strict(one)
     one.add_argument(
         "--out", metavar="PICTURE", type=OutputFile(), help="draw it there: .png, .svg or .pdf"
     )
     one.add_argument("--json", action="store_true", help="print the figures as JSON")
+    other = commands.add_parser(
+        "convert",
+        run="esplanade.trajectories.cli:convert",
+        check=check_reading_options,
+        help="write a recording as CSV, Jülich text, JuPedSim's SQLite or Parquet",
+        description="Write a recording in another format: seconds and metres, glitches passed over.\nWhat "
+        "it comes from is written into the file.",
+        epilog=CONVERT_EPILOG,
+    )
+    other.add_argument("recording", metavar="FILE", type=InputFile(), help="recorded crowd")
+    other.add_argument(
+        "--out",
+        metavar="FILE",
+        type=OutputFile(),
+        required=True,
+        help="file to write; .csv, .txt (PeTrack, for PedPy), .sqlite (JuPedSim) or .parquet",
+    )
+    other.add_argument(
+        "--hz",
+        metavar="X",
+        type=Number(0.01, 1000.0),
+        help="samples a second of everyone [default: those of the recording]",
+    )
+    add_reading(other)
+    add_strict(other)
     return made
 
 
-def check(options: Namespace) -> None:
-    """Whether these options fit together.
+def check_reading_options(options: Namespace) -> None:
+    """Whether the options on how a recording is read fit together.
 
     Raises
     ------
@@ -74,5 +106,16 @@ def check(options: Namespace) -> None:
         check_reading(vars(options))
     except ValueError as error:
         raise UsageError(str(error)) from None
+
+
+def check(options: Namespace) -> None:
+    """Whether these options fit together.
+
+    Raises
+    ------
+    UsageError
+        They do not.
+    """
+    check_reading_options(options)
     if options.out is not None and options.out.suffix.lower() not in {".png", ".svg", ".pdf"}:
         raise UsageError(f"--out: {options.out.name} is no .png, .svg or .pdf file")
