@@ -7,6 +7,7 @@ from esplanade.recordings.bare_format import read_bare
 from esplanade.recordings.columnar_format import HDF5, PARQUET, read_hdf5, read_parquet
 from esplanade.recordings.dialect import Table, dialect_of, table_of
 from esplanade.recordings.errors import RecordingError, read_bytes, text_of
+from esplanade.recordings.large_tables import read_large
 from esplanade.recordings.ndjson_format import read_ndjson
 from esplanade.recordings.old_formats import (
     looks_like_lists,
@@ -49,6 +50,8 @@ def read_rows(path: Path) -> Rows:
     RecordingError
         It cannot be read, or holds something else.
     """
+    if (rows := read_large(path)) is not None:
+        return rows
     content = read_bytes(path)
     for magic, read in ((MAGIC, read_sqlite), (PARQUET, read_parquet), (HDF5, read_hdf5)):
         if content.startswith(magic):

@@ -45,20 +45,23 @@ def own_pace(times: Floats, places: Floats) -> float:
     """The pace, m/s, that glitches hardly change: a quarter of the steps are slower."""
     if len(times) < 2:
         return float("nan")
-    return float(np.percentile(_speeds(times, places), 25.0, method="lower"))
+    speeds = _speeds(times, places)
+    slower = (len(speeds) - 1) // 4
+    return float(np.partition(speeds, slower)[slower])
 
 
-def sound_part(times: Floats, places: Floats, usual_mps: float) -> Sound:
-    """Find the glitches of a track in the order of time; `usual_mps` is the crowd's pace."""
+def sound_part(times: Floats, places: Floats, usual_mps: float, own_mps: float) -> Sound:
+    """Find the glitches of a track in the order of time; paces are the crowd's and its own."""
     pieces = np.zeros(len(times), np.int64)
     if len(times) < 2:
         return Sound(pieces)
     speeds = _speeds(times, places)
-    pace = max(float(np.percentile(speeds, 25.0, method="lower")), usual_mps)
+    pace = max(own_mps, usual_mps)
     limit = min(max(TIMES_OWN * pace, LEAST_SUSPICIOUS_MPS), FASTEST_MPS)
-    breaks = _breaks(speeds, pace, limit)
-    if breaks.any():
+    if speeds.max() > limit and (breaks := _breaks(speeds, pace, limit)).any():
         pieces = _pieces(times, places, breaks, limit)
+    elif not _spikes(times, places).any():
+        return Sound(pieces)
     for piece in range(pieces.max() + 1):
         own = np.flatnonzero(pieces == piece)
         pieces[own[_spikes(times[own], places[own])]] = -1
@@ -66,7 +69,8 @@ def sound_part(times: Floats, places: Floats, usual_mps: float) -> Sound:
 
 
 def _speeds(times: Floats, places: Floats) -> Floats:
-    found: Floats = np.hypot(*np.diff(places, axis=0).T) / np.diff(times)
+    steps = places[1:] - places[:-1]
+    found: Floats = np.hypot(steps[:, 0], steps[:, 1]) / (times[1:] - times[:-1])
     return found
 
 
@@ -119,6 +123,8 @@ def _spikes(times: Floats, places: Floats) -> Mask:
     straight = places[:-2] + share * (places[2:] - places[:-2])
     aside = np.hypot(*(places[1:-1] - straight).T)
     least = np.maximum(LEAST_SPIKE_M, 0.5 * GREATEST_ACCELERATION_MPS2 * before * after)
+    if not (aside > least).any():
+        return found
     least = np.maximum(least, TIMES_OWN_SPIKE * np.median(aside))
     peak = (aside >= np.append(0.0, aside[:-1])) & (aside >= np.append(aside[1:], 0.0))
     found[1:-1] = (aside > least) & peak

@@ -88,9 +88,31 @@ def people(names: Sequence[str]) -> tuple[list[str], Whole]:
 
 def numbered_people(numbers: Floats) -> tuple[list[str], Whole]:
     """The same of ids that are numbers; 1 and 1.0 are the same one."""
+    close = _close_people(numbers)
+    if close is not None:
+        return close
     found, first, inverse = np.unique(numbers, return_index=True, return_inverse=True)
     order = np.argsort(first, kind="stable")
     rank = np.empty(len(order), np.int64)
     rank[order] = np.arange(len(order))
     names = [str(int(v)) if v.is_integer() else f"{v:.15g}" for v in found[order].tolist()]
     return names, rank[inverse.reshape(-1)]
+
+
+def _close_people(numbers: Floats) -> tuple[list[str], Whole] | None:
+    """The same, without sorting, where ids are whole and not far apart."""
+    if not len(numbers):
+        return None
+    with np.errstate(invalid="ignore"):
+        marks = numbers.astype(np.int64)
+    low, high = int(marks.min()), int(marks.max())
+    if high - low > 4 * len(marks) or not np.array_equal(marks, numbers):
+        return None
+    marks -= low
+    first = np.full(high - low + 1, -1, np.int64)
+    first[marks[::-1]] = np.arange(len(marks) - 1, -1, -1)
+    there = np.flatnonzero(first >= 0)
+    there = there[np.argsort(first[there])]
+    rank = first  # its values are not needed any more
+    rank[there] = np.arange(len(there))
+    return [str(mark + low) for mark in there.tolist()], rank[marks]

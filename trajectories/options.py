@@ -71,8 +71,8 @@ def parser() -> Parser:
         run="esplanade.trajectories.cli:convert",
         check=check_reading_options,
         help="write a recording as CSV, Jülich text, JuPedSim's SQLite or Parquet",
-        description="Write a recording in another format: seconds and metres, glitches passed over.\nWhat "
-        "it comes from is written into the file.",
+        description="Write a recording in another format, in seconds, metres, without glitches.\n"
+        "What it comes from is written into the file.",
         epilog=CONVERT_EPILOG,
     )
     other.add_argument("recording", metavar="FILE", type=InputFile(), help="recorded crowd")

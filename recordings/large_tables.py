@@ -1,0 +1,152 @@
+"""Large tables of plain numbers, read in pieces by pyarrow where that is installed.
+
+Only what is sure to mean the same is read so: a header in the first line, one delimiter, no decimal
+comma, people with whole numbers. All else is read line by line, as far as that is bounded.
+"""
+
+from importlib import import_module
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from esplanade.recordings.columns import Columns, find_columns
+from esplanade.recordings.dialect import dialect_of, table_of
+from esplanade.recordings.errors import RecordingError
+from esplanade.recordings.rows import Floats, Rows, numbered_people
+from esplanade.recordings.units import FRAMES, length_named, time_named
+
+LARGE_BYTES: Final = 32 * 2**20
+MOST_BYTES: Final = 8 * 2**30
+_HEAD_BYTES: Final = 2**16
+_BLOCK_BYTES: Final = 2**18
+_PLAIN: Final = frozenset(("time", "frame", "id", "x", "y"))
+
+
+class _Head(NamedTuple):
+    """What the first lines of a large table say."""
+
+    delimiter: str
+    header: list[str]
+    columns: Columns
+
+
+def _head_of(path: Path) -> _Head | None:
+    """The header of a large table that is plain; None where it is not sure to be one."""
+    try:
+        if not path.is_file() or not LARGE_BYTES <= path.stat().st_size <= MOST_BYTES:
+            return None
+        with path.open("rb") as file:
+            head = file.read(_HEAD_BYTES)
+        text = head.removeprefix(b"\xef\xbb\xbf").decode("ascii").rpartition("\n")[0]
+    except (OSError, UnicodeDecodeError):
+        return None
+    table = table_of(text.replace("\r\n", "\n"))
+    if "\r" in text.replace("\r\n", "") or table.comments or len(table.lines) < 2:
+        return None
+    dialect = dialect_of(table)
+    if dialect.delimiter is None or dialect.decimal_comma or table.lines[0].number != 1:
+        return None
+    header, first = (dialect.cells(line.text) for line in table.lines[:2])
+    columns = find_columns(header)
+    fits = (
+        not columns.missing
+        and set(columns.places) <= _PLAIN
+        and len(first) == len(header)
+        and all(dialect.is_number(first[place]) for place in columns.places.values())
+    )
+    return _Head(dialect.delimiter, header, columns) if fits else None
+
+
+def read_large(path: Path) -> Rows | None:
+    """Read a large table; None where it is not one, or pyarrow is not installed.
+
+    Raises
+    ------
+    RecordingError
+        A cell holds no number, or a line has another number of cells.
+    """
+    head = _head_of(path)
+    if head is None:
+        return None
+    columns = head.columns
+    try:
+        reader = import_module("pyarrow.csv")
+    except ImportError:
+        return None
+    units = {role: unit for role, unit in columns.units.items() if unit}
+    blocks = _blocks(path, reader, head.delimiter, head.header, columns.places)
+    ids, who = numbered_people(blocks.pop("id"))
+    unit_s = time_named(units.get("time", ""))
+    in_frames = "time" not in blocks or unit_s == FRAMES
+    clock = blocks.get("time", blocks.get("frame", blocks["x"]))
+    if in_frames and "frame" in blocks:
+        clock = blocks["frame"]
+    elif unit_s is not None and not in_frames:
+        clock = clock * unit_s
+    unit = length_named(units.get("x", ""))
+    return Rows(
+        format="table with named columns",
+        lines=np.arange(2, len(who) + 2),
+        ids=ids,
+        who=who,
+        clock=clock,
+        x=blocks["x"],
+        y=blocks["y"],
+        counts_frames=in_frames,
+        unit=unit,
+        unit_from="as its header says" if unit else "",
+    )
+
+
+def _blocks(
+    path: Path, reader: Any, delimiter: str, header: list[str], places: dict[str, int]
+) -> dict[str, Floats]:
+    """The columns by role."""
+    pa: Any = import_module("pyarrow")
+    names = [f"c{i}" for i in range(len(header))]
+    used = {role: names[place] for role, place in places.items()}
+    options = {
+        "read_options": reader.ReadOptions(
+            use_threads=False, block_size=_BLOCK_BYTES, column_names=names, skip_rows=1
+        ),
+        "parse_options": reader.ParseOptions(delimiter=delimiter),
+        "convert_options": reader.ConvertOptions(
+            include_columns=list(used.values()),
+            column_types=dict.fromkeys(used.values(), pa.float64()),
+            null_values=[],
+            strings_can_be_null=False,
+        ),
+    }
+    parts: dict[str, list[Floats]] = {role: [] for role in used}
+    read = 1
+    try:
+        for batch in reader.open_csv(str(path), **options):
+            for role, name in used.items():
+                parts[role].append(batch.column(name).to_numpy(zero_copy_only=False))
+            read += batch.num_rows
+    except (pa.ArrowException, OSError) as error:
+        fault = _first_fault(path, read, delimiter, header, places) or (f"{error}"[:300], None)
+        raise RecordingError(path, *fault) from None
+    return {role: np.concatenate(parts.pop(role)) for role in used}
+
+
+def _first_fault(
+    path: Path, read: int, delimiter: str, header: list[str], places: dict[str, int]
+) -> tuple[str, int] | None:
+    """What is wrong, and in which line, looked for from the line after those that were read."""
+    count = len(header)
+    with path.open(encoding="utf-8", errors="replace") as file:
+        for number, text in enumerate(file, start=1):
+            if number <= read or not text.strip():
+                continue
+            cells = text.rstrip("\r\n").split(delimiter)
+            if len(cells) != count:
+                return f"expected {count} columns {','.join(header)}, not {len(cells)}", number
+            for place in places.values():
+                cell = cells[place].strip().strip('"')
+                try:
+                    float(cell)
+                except ValueError:
+                    return f"{header[place]} is {cell!r:.40}, expected a number", number
+    return None
