@@ -12,6 +12,7 @@ from esplanade.recordings.rates import WALKING_MPS, likely_rates
 
 _FACTORS: Final = {"cm": 0.01, "mm": 0.001, "ft": 0.3048, "km": 1000.0}
 _MANY_GLITCHES: Final = 0.05
+_FEW_GLITCHES: Final = 3
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,7 @@ class Report:
             pace = "nobody with two samples"
         share = f"{100.0 * self.share_passed_over:.2g} % of samples passed over"
         if self.passed_over:
-            share = f"{share} ({self.passed_over} glitches)"
+            share = f"{share} ({self.passed_over} glitch{'es' if self.passed_over > 1 else ''})"
         source = f"{self.format}, {self.rate}, {self.unit}"
         return f"{count}, {self.seconds:.6g} s, {pace}, {share}; {source}"
 
@@ -99,7 +100,13 @@ def advice(median_mps: float, fps: float, *, unit_known: bool, rate_known: bool)
 
 
 def warnings_of(
-    median_mps: float, fps: float, passed_over: float, *, unit_known: bool, rate_known: bool
+    median_mps: float,
+    fps: float,
+    glitches: int,
+    passed_over: float,
+    *,
+    unit_known: bool,
+    rate_known: bool,
 ) -> tuple[str, ...]:
     """What is not as recordings of people are."""
     found = []
@@ -109,7 +116,7 @@ def warnings_of(
             f"the median speed is {median_mps:.3g} m/s, people walk at {WALKING_MPS[0]} to "
             f"{WALKING_MPS[1]} m/s; {told}"
         )
-    if passed_over > _MANY_GLITCHES:
+    if passed_over > _MANY_GLITCHES and glitches >= _FEW_GLITCHES:
         share = f"{100.0 * passed_over:.2g} % of the samples"
         found.append(f"{share} are glitches: are --fps and --unit right?")
     return tuple(found)

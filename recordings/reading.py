@@ -239,6 +239,7 @@ def _crowd(
     warnings = warnings_of(
         median_mps,
         rate.fps or 0.0,
+        glitches,
         report.share_passed_over,
         unit_known=unit_known,
         rate_known=rate_known,
@@ -255,7 +256,8 @@ def _glitch(rows: Rows, sample: int) -> tuple[str, int]:
 
 
 def _first_glitch(count: int) -> str:
-    return f"{count} samples are glitches of tracking and passed over; --strict names the first"
+    what = "sample is a glitch" if count == 1 else "samples are glitches"
+    return f"{count} {what} of tracking and passed over; --strict names the first"
 
 
 def _track(name: str, times: Floats, positions: Floats) -> Track:

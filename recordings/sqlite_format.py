@@ -13,6 +13,7 @@ from esplanade.recordings.rows import Rows, numbered_people
 MAGIC: Final = b"SQLite format 3\0"
 MOST_SAMPLES: Final = 40_000_000
 _PATIENCE_S: Final = 120.0
+_PIECE: Final = 50_000
 _ALONE_STEPS: Final = 100_000
 _WANTED: Final = ("frame", "id", "pos_x", "pos_y")
 
@@ -53,19 +54,22 @@ def _read(path: Path, connection: sqlite3.Connection) -> Rows:
     lacking = [name for name in _WANTED if name not in has]
     if lacking:
         raise RecordingError(path, f"its table trajectory_data has no column {', '.join(lacking)}")
-    count = connection.execute("SELECT count(*) FROM trajectory_data").fetchone()[0]
+    cursor = connection.execute(
+        "SELECT frame, id, pos_x, pos_y FROM trajectory_data LIMIT ?", (MOST_SAMPLES + 1,)
+    )
+    parts = [np.empty((0, 4))]
+    count = 0
+    while found := cursor.fetchmany(_PIECE):
+        # What a damaged index counts says nothing, so that rows are counted as they come.
+        for row, values in enumerate(found, start=count + 1):
+            if not all(isinstance(value, int | float) for value in values):
+                fault = f"{values!s:.80} is no sample, expected numbers for frame, id, x and y"
+                raise RecordingError(path, fault, row)
+        parts.append(np.array(found, np.float64))
+        count += len(found)
     if count > MOST_SAMPLES:
-        raise RecordingError(path, f"has {count} samples, {MOST_SAMPLES} are possible")
-    cursor = connection.execute("SELECT frame, id, pos_x, pos_y FROM trajectory_data")
-    block = np.empty((count, 4))
-    for row, values in enumerate(cursor):
-        if not all(isinstance(value, int | float) for value in values):
-            raise RecordingError(
-                path,
-                f"{values!r:.80} is no sample, expected numbers for frame, id, x and y",
-                row + 1,
-            )
-        block[row] = values
+        raise RecordingError(path, f"has more than {MOST_SAMPLES} samples, the most that is read")
+    block = np.concatenate(parts)
     ids, who = numbered_people(block[:, 1])
     return Rows(
         format="JuPedSim",

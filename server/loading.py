@@ -116,11 +116,11 @@ def _tell(path: Path, crowd: Crowd) -> None:
     """Say how the crowd was understood, and what of it is not as crowds are."""
     if (report := crowd.report) is None:
         return
-    log.info("read the crowd: %s: %s", path, report.line)
+    log.info("read the crowd", file=str(path), told=report.line)
     for remark in report.remarks:
-        log.info("%s: %s", path, remark)
+        log.info("read the crowd", file=str(path), told=remark)
     for warning in report.warnings:
-        log.warning("%s: %s", path, warning)
+        log.warning("the crowd is odd", file=str(path), told=warning)
 
 
 def _read_roster(path: Path) -> Roster:

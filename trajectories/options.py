@@ -14,6 +14,7 @@ examples:
   esplanade recording check corridor.txt --fps 16 --unit cm --out corridor.png
   esplanade recording check annotations.txt --scale 0.0384 --out little.svg
   esplanade recording check trajectory.sqlite --json
+  esplanade recording convert zara1.csv --hz 25 --out zara1.sqlite
 
 what is read, whatever its name ends in, and packed by gzip or not:
   tables      comma, semicolon, tab or space; columns by name (t or frame, id, x, y, also vx, vy)

@@ -89,7 +89,7 @@ def test_a_jump_is_passed_over_at_any_rate(tmp_path: Path, sample_s: float, at: 
     crowd, report = read(tmp_path, table(times, x))
     assert report.passed_over == 1
     assert crowd.max_speed_mps == pytest.approx(1.25, rel=1e-3)
-    assert "1 samples are glitches" in " ".join(report.remarks)
+    assert "1 sample is a glitch" in " ".join(report.remarks)
     with pytest.raises(RecordingError, match=f":{at + 2}: pedestrian '1' jumps to"):
         read(tmp_path, table(times, x), strict=True)
 

@@ -121,3 +121,19 @@ def test_a_file_that_is_no_mesh_is_refused(tmp_path: Path) -> None:
     (tmp_path / "house.obj").write_text("v 0 0 0\n")
     with pytest.raises(LoadingError, match=r"house\.obj: it holds no triangles"):
         load_scene(ServerSettings(scene=path))
+
+
+def test_glitches_make_nobody_faster(crowd_file: Path) -> None:
+    rows = "".join(f"{0.4 * n:.1f},a,{60 if n == 2 else 0.5 * n},0\n" for n in range(4))
+    crowd_file.write_text("t,id,x,y\n" + rows)
+    assert load_scene(ServerSettings(crowd=crowd_file)).rules.person_max_speed_mps == 3.0
+    with pytest.raises(LoadingError, match=r":4: pedestrian 'a' jumps to \(60, 0\)"):
+        load_scene(ServerSettings(crowd=crowd_file, strict=True))
+
+
+def test_what_a_crowd_does_not_say_is_given(crowd_file: Path) -> None:
+    crowd_file.write_text("# id frame x y z\n1 0 0 0 0\n1 1 7.8 0 0\n1 2 15.6 0 0\n")
+    with pytest.raises(LoadingError, match="give --fps"):
+        load_scene(ServerSettings(crowd=crowd_file))
+    loaded = load_scene(ServerSettings(crowd=crowd_file, fps=16.0, unit="cm"))
+    assert loaded.scene.bounds[2] == pytest.approx(0.156 + 2.0)
