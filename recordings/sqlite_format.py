@@ -59,14 +59,14 @@ def _read(path: Path, connection: sqlite3.Connection) -> Rows:
     )
     parts = [np.empty((0, 4))]
     count = 0
-    while found := cursor.fetchmany(_PIECE):
+    while piece := cursor.fetchmany(_PIECE):
         # What a damaged index counts says nothing, so that rows are counted as they come.
-        for row, values in enumerate(found, start=count + 1):
+        for row, values in enumerate(piece, start=count + 1):
             if not all(isinstance(value, int | float) for value in values):
                 fault = f"{values!s:.80} is no sample, expected numbers for frame, id, x and y"
                 raise RecordingError(path, fault, row)
-        parts.append(np.array(found, np.float64))
-        count += len(found)
+        parts.append(np.array(piece, np.float64))
+        count += len(piece)
     if count > MOST_SAMPLES:
         raise RecordingError(path, f"has more than {MOST_SAMPLES} samples, the most that is read")
     block = np.concatenate(parts)
