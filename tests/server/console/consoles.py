@@ -1,7 +1,7 @@
 """A console on a small world that ticks as fast as it can, with a clock that a test moves."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from typing import Any
@@ -30,7 +30,10 @@ class Nobody:
     def muted_s(self, person: int) -> float:
         return 0.0
 
-    def announce(self, text: str) -> int:
+    def within(self, **_: Any) -> list[int]:
+        return []
+
+    def announce(self, text: str, people: Sequence[int]) -> int:
         return 0
 
     def kick(self, person: int, text: str) -> None:

@@ -1,7 +1,7 @@
 """A refused list of commands leaves no trace: in the planner, in actors, or in what is set."""
 
 import asyncio
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -70,7 +70,7 @@ class Listening(Nobody):
 
     announced = 0
 
-    def announce(self, text: str) -> int:
+    def announce(self, text: str, people: Sequence[int]) -> int:
         self.announced += 1
         return 0
 
