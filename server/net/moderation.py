@@ -34,7 +34,7 @@ class PeopleModeration:
 
     def __init__(
         self,
-        kept: ModerationState,
+        state: ModerationState,
         world: Zone,
         storeys: Sequence[float],
         sessions: Mapping[int, Session],
@@ -43,8 +43,8 @@ class PeopleModeration:
         now_s: Callable[[], float],
     ) -> None:
         """`kick` gives up the seat of a session, so that its token opens nothing any more."""
-        self.kept = kept
-        self.lines = Lines(kept.now_us() // 1000, self._said)
+        self.state = state
+        self.lines = Lines(state.now_us() // 1000, self._said)
         self.walk_outs: WalkOuts | None = None
         self.listeners: list[Listener] = []
         """Are told of reports and, where chat is kept, of lines: the kind, and plain data."""
@@ -181,7 +181,7 @@ class PeopleModeration:
             One does, and why and until when.
         """
         digest = None if resume is None else digest_of(resume).hex()
-        ban = self.kept.bans.against(name, address, digest, self.kept.now_us())
+        ban = self.state.bans.against(name, address, digest, self.state.now_us())
         if ban is not None:
             code, close = ErrorCode.BANNED, CloseCode.BANNED
             raise ProtocolError(code, _farewell(ban), close, _of_ban(ban))
@@ -192,7 +192,7 @@ class PeopleModeration:
 
     def greet(self, session: Session) -> None:
         """Tell somebody who comes back what was hidden meanwhile."""
-        hidden = self.kept.chat.hidden
+        hidden = self.state.chat.hidden
         if hidden:
             session.outbox.post(frames.message(Hide(lines=hidden)))
 
@@ -201,11 +201,11 @@ class PeopleModeration:
     def muted_s(self, person: int) -> float:
         """For how many seconds nobody hears a person yet."""
         until_us = self._muted_until_us.get(person)
-        return 0.0 if until_us is None else max(0.0, (until_us - self.kept.now_us()) / 1e6)
+        return 0.0 if until_us is None else max(0.0, (until_us - self.state.now_us()) / 1e6)
 
     def mute(self, person: int, seconds: float, text: str) -> None:
         """Let nobody hear a person for a time, and say so; 0 ends it."""
-        now_us = self.kept.now_us()
+        now_us = self.state.now_us()
         self._muted_until_us.pop(person, None)
         if seconds > 0.0:
             lasting = {who: end for who, end in self._muted_until_us.items() if end > now_us}
@@ -218,7 +218,7 @@ class PeopleModeration:
 
     def save(self) -> dict[int, float]:
         """For how many seconds each person is muted yet, by the avatar."""
-        now_us = self.kept.now_us()
+        now_us = self.state.now_us()
         return {
             who: (end - now_us) / 1e6 for who, end in self._muted_until_us.items() if end > now_us
         }
@@ -231,7 +231,7 @@ class PeopleModeration:
         ValueError, TypeError
             It is not what `save` gives.
         """
-        now_us = self.kept.now_us()
+        now_us = self.state.now_us()
         if len(saved) > MOST_MUTED or not all(map(math.isfinite, saved.values())):
             raise ValueError("these are no mutes")
         self._muted_until_us = {
@@ -246,13 +246,13 @@ class PeopleModeration:
             listener(kind, about)
 
     def _said(self, number: int, heard: Heard, viewers: list[int]) -> None:
-        if not self.kept.chat.keeps:
+        if not self.state.chat.keeps:
             return
         line = heard.line
-        self.kept.said(
+        self.state.said(
             KeptLine(
                 line=number,
-                at_us=self.kept.now_us(),
+                at_us=self.state.now_us(),
                 tick=self._world.tick,
                 id=line.id,
                 name=heard.name,
@@ -270,7 +270,7 @@ class PeopleModeration:
         return KnownPerson(avatar_id, session.name, session.wished, session.address, digests)
 
     def _keeps_out(self, bans: Bans, person: KnownPerson) -> bool:
-        now_us = self.kept.now_us()
+        now_us = self.state.now_us()
         return any(
             bans.against(name, person.address, digest, now_us) is not None
             for name in (person.wished, person.name)
