@@ -46,7 +46,7 @@ async def resume(
     hub.restore(recovery.left)
     parts.part("zone", console.zone.save)
     parts.part("seats", hub.save_seats)
-    parts.part("mutes", hub.moderation.save, hub.moderation.load)
+    parts.part("mutes", hub.moderation.mutes.save, hub.moderation.mutes.load)
     parts.part("console", console.save, console.load)
     parts.part("pace", console.pace.save, lambda saved: console.pace.load(saved, loop.time()))
     if parts.restored is not None:
