@@ -169,7 +169,8 @@ async def test_what_was_not_acknowledged_never_happened(
             return stop_first
 
         if moment == "before_tick":
-            monkeypatch.setattr(console, "_in_a_tick", stopping(console._in_a_tick))
+            inputs = console._tick_inputs
+            monkeypatch.setattr(inputs, "carry_out", stopping(inputs.carry_out))
         else:
             monkeypatch.setattr(console._records, "outcomes", stopping(console._records.outcomes))
         list_of = [
