@@ -161,10 +161,10 @@ async def test_what_was_not_acknowledged_never_happened(
         reached, go_on = asyncio.Event(), asyncio.Event()
 
         def stopping(method: Callable[..., Any]) -> Callable[..., Any]:
-            async def stop_first(*arguments: Any) -> Any:
+            async def stop_first(*arguments: Any, **named: Any) -> Any:
                 reached.set()
                 await go_on.wait()
-                return await method(*arguments)
+                return await method(*arguments, **named)
 
             return stop_first
 
