@@ -10,7 +10,6 @@ from esplanade.actors import (
     ActorParameters,
     ActorSpec,
     Explanation,
-    ObservedPeople,
     Population,
 )
 from esplanade.actors.blockers import Blocker
@@ -20,35 +19,28 @@ from esplanade.actors.potential_pool import RenewedPotential
 from esplanade.planning import AgentTable, LayeredGrid, Prediction, Scene
 from esplanade.server.world.actor_commands import ActorCommands
 from esplanade.server.world.actors import ActorAvatars
-from esplanade.server.world.command_checks import check
+from esplanade.server.world.command_checks import fault_in
 from esplanade.server.world.contacts import Contacts
 from esplanade.server.world.doors import Doors
-from esplanade.server.world.frame import Events, Frame, Line, Recorder, Tickets
+from esplanade.server.world.frame import Events, Frame, Recorder
 from esplanade.server.world.inputs import (
     ActorCommand,
     ActorsDerived,
     ActorsStood,
-    Attach,
-    Detach,
     DoorDerived,
-    Follow,
     IdsReserved,
     Input,
     Join,
-    Leave,
     MoveDoor,
     OfPerson,
     PotentialDerived,
-    Say,
     SetParameters,
-    Stand,
-    Steer,
     Still,
-    Watch,
 )
 from esplanade.server.world.latest_steps import LatestSteps
-from esplanade.server.world.outcomes import Fault, Outcome, fault_of
+from esplanade.server.world.outcomes import Fault, Outcome
 from esplanade.server.world.people import People
+from esplanade.server.world.person_inputs import PersonInputs
 from esplanade.server.world.routes import Point, RouteSearch, SharedWaves
 from esplanade.server.world.rules import Rules
 from esplanade.server.world.saved_zone import Returning, SavedZone
@@ -114,13 +106,13 @@ class Zone:
         )
         self._recorder = Recorder(self.state, self.origin_m)
         self._plan_period = max(1, round(1.0 / tick_s) // PLANS_PER_SECOND)
-        self._watched: dict[int, int] = {}
-        self._begin_frame()
         self.steps = LatestSteps(self.state.capacity)
         self.feet = Feet(self.state, self.steps, Ground(scene, grid), tick_s, seed)
         self._spawning = Spawning(
             scene, grid, rules.person_clearance_m, np.random.SeedSequence(seed)
         )
+        self._persons = PersonInputs(self.state, self._people, self._spawning, grid, rules)
+        self._begin_frame()
         self._observed = NOBODY
         self._saved = SavedZone(
             self.state,
@@ -157,7 +149,7 @@ class Zone:
         with self.times.stage("people"):
             if not self._still:
                 self._people.move()
-                self._observed = self._observe()
+                self._observed = self._people.observed()
 
     def think(self) -> bool:
         """Find the next step of every actor; whether there are any.
@@ -194,16 +186,16 @@ class Zone:
                 tick=self.tick,
                 people=people,
                 actors=actors,
-                left=self._left,
+                left=self._persons.left,
                 entered=self._recorder.entered(),
                 reshaped=self._recorder.reshaped(),
-                joined=self._joined,
-                attached=self._attached,
-                detached=self._detached,
-                acks=self._acks,
+                joined=self._persons.joined,
+                attached=self._persons.attached,
+                detached=self._persons.detached,
+                acks=self._persons.acks,
                 records=self._recorder.changed(),
                 steps=self.steps.begun_in(self.tick, self.state.live()),
-                events=Events(self._moved_doors, pointing, self._chat, self._plans()),
+                events=Events(self._moved_doors, pointing, self._persons.chat, self._plans()),
                 outcomes=self._commands.outcomes,
                 actors_stood=not (actors_moved or self._still) and len(self._population) > 0,
             )
@@ -306,11 +298,7 @@ class Zone:
 
         Ask between two ticks.
         """
-        try:
-            check(command, self._population, self.most_actors)
-        except Exception as error:  # noqa: BLE001 - whatever it is, it is told
-            return fault_of(error)
-        return None
+        return fault_in(command, self._population, self.most_actors)
 
     def new_bodies(self, command: SetParameters) -> int:
         """Number of bodies, each with a goal, that a command would make; ask between two ticks.
@@ -377,19 +365,15 @@ class Zone:
     # --- inputs -------------------------------------------------------------------------------
 
     def _begin_frame(self) -> None:
-        self._joined: Tickets = []
-        self._attached: Tickets = []
-        self._detached: list[int] = []
-        self._left: list[int] = []
-        self._acks: dict[int, int] = {}
-        self._chat: list[Line] = []
+        self._persons.begin_frame()
         self._stands = self._still = False
         self._commands.begin()
 
     def _take(self, item: Input) -> None:
         match item:
             case Join():
-                self._joined.append((item.ticket, self._join(item)))
+                self._persons.join(item)
+                self.people_seen += 1
             case MoveDoor():
                 self.doors.want(item.name, item.is_open)
             case DoorDerived():
@@ -397,73 +381,20 @@ class Zone:
             case PotentialDerived():
                 self._population.renew_potential(item.potential)
             case ActorsDerived():
-                self._go(self._commands.take_derived(item, self.tick))
+                self._persons.gone(self._commands.take_derived(item, self.tick))
             case ActorsStood():
                 self._stands = True
             case Still():
                 self._still = True
             case IdsReserved():
                 self.state.add_ids(item.first, item.end)
-            case Attach() | Detach() | Leave() | Stand() | Steer() | Follow() | Say() | Watch():
+            case _ if isinstance(item, OfPerson):
                 if item.id in self.state:
-                    self._apply(item, self.state.slot(item.id))
+                    self._persons.take(item, self.state.slot(item.id))
             case _:
-                self._go(self._commands.take(item, self.tick))
-
-    def _go(self, avatars: list[int]) -> None:
-        """Actors' avatars have left the world: nobody watches them any more."""
-        self._left += avatars
-        gone = set(avatars)
-        self._watched = {who: one for who, one in self._watched.items() if one not in gone}
-
-    def _join(self, join: Join) -> int:
-        place = self._spawning.place(join.at, join.anywhere)
-        layer = self._grid.layer_at(place[:2], place[2])
-        radius_m = self.rules.person_radius_m
-        slot = self.state.add(PERSON, join.name, place, layer, radius_m)
-        self._people.stop(slot)
-        self.people_seen += 1
-        return int(self.state.ids[slot])
-
-    def _apply(self, item: OfPerson, slot: int) -> None:
-        match item:
-            case Steer():
-                self._people.steer(slot, item)
-                self._acks[item.id] = item.seq
-            case Follow():
-                self._people.follow(slot, item)
-                self._acks[item.id] = item.seq
-            case Stand():
-                self._people.stop(slot)
-            case Attach():
-                self._attached.append((item.ticket, item.id))
-            case Detach():
-                self._people.stop(slot)
-                self._look_no_more(item.id)
-                self._detached.append(item.id)
-            case Leave():
-                self._people.stop(slot)
-                self._look_no_more(item.id)
-                self._left.append(item.id)
-                self.state.remove(item.id)
-            case Say():
-                self._chat.append(Line(item.id, item.text))
-            case Watch():
-                self._watched.pop(item.id, None)
-                if item.actor_id is not None and self.is_actor(item.actor_id):
-                    self._watched[item.id] = item.actor_id
-
-    def _look_no_more(self, avatar_id: int) -> None:
-        self._watched.pop(avatar_id, None)
-        self._attached = [(ticket, one) for ticket, one in self._attached if one != avatar_id]
+                self._persons.gone(self._commands.take(item, self.tick))
 
     def _plans(self) -> dict[int, Explanation]:
         """Why the watched actors do what they do, of those whose turn it is."""
-        in_turn = {a for a in self._watched.values() if (self.tick + a) % self._plan_period == 0}
+        in_turn = {a for a in self._persons.watched if (self.tick + a) % self._plan_period == 0}
         return {actor: self.explain(actor) for actor in sorted(in_turn)}
-
-    def _observe(self) -> ObservedPeople:
-        state = self.state
-        people = state.of_kind(PERSON)
-        places = np.column_stack([state.positions[people], state.heights[people]])
-        return ObservedPeople(state.ids[people], places)

@@ -1,7 +1,7 @@
 """A refused list of commands leaves no trace: in the planner, in actors, or in what is set."""
 
 import asyncio
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -70,7 +70,7 @@ class Listening(Nobody):
 
     announced = 0
 
-    def announce(self, text: str, people: Sequence[int]) -> int:
+    def announce(self, text: str, people: Iterable[int]) -> int:
         self.announced += 1
         return 0
 
@@ -144,5 +144,5 @@ def _all_of_it(world: Populated, console: Console) -> dict[str, Any]:
         "guards": list(console.scheduler.guards),
         "held wishes": set(state.held),
         "changes": console.changes.save(),
-        "lasting": console.lasting.under_way,
+        "ongoing": console.ongoing.under_way,
     }
