@@ -28,6 +28,7 @@ MOST_NODES: Final = 4096
 """Of a tree with more nodes those left open, the dearest first, are left out."""
 FIELD_CELLS: Final = 32
 FIELD_CELL_M: Final = 0.25
+_OUT_OF_REACH_S: Final = 1e9
 _NOT_KEPT: Final = frozenset({"followed", "planned", "headings", "heights", "layers", "reasons"})
 """Columns that no decision reads."""
 
@@ -107,17 +108,18 @@ class Tracing:
         paths = {"taken": again.paths[row].copy()}
         if memory.ends[2] > 0:
             paths["searched"] = self._path(memory)
-        changed = False
         if kept.known[row]:
             paths["previous"] = zone.world.reservations.paths[row]
-            paths["perturbed"], changed = self._perturbed(zone, kept, row, prediction)
         found = dict(zip(paths, self._priced(row, list(paths.values())), strict=True))
-        previous, perturbed = found.get("previous"), found.get("perturbed")
+        previous, perturbed, changed = found.get("previous"), None, False
+        if previous is not None and previous.legal:
+            bent, changed = self._perturbed(zone, kept, row, prediction)
+            (perturbed,) = self._priced(row, [bent])
         return Trace(
             exact,
             Decided(found["taken"], previous),
             found.get("searched"),
-            perturbed if previous is not None and previous.legal else None,
+            perturbed,
             _winner(found["taken"], previous, perturbed, changed),
             float(kept.parameters["hysteresis_s"][row]),
             tree,
@@ -157,11 +159,11 @@ class Tracing:
     ) -> tuple[Floats, bool]:
         """The path before, perturbed if that pays, and whether it is another then.
 
-        No search finds a path that is better by an infinite margin: the path before is kept.
+        No search finds a path that is better by such a margin: the path before is kept.
         """
         margins = kept.parameters["hysteresis_s"]
         before = float(margins[row])
-        margins[row] = np.inf
+        margins[row] = _OUT_OF_REACH_S
         try:
             again = self._decide(zone, kept, row, prediction)
         finally:
@@ -262,9 +264,9 @@ class Tracing:
 def _winner(
     taken: PricedPath, previous: PricedPath | None, perturbed: PricedPath | None, changed: bool
 ) -> Winner:
-    if previous is None or perturbed is None:
+    if previous is None:
         return "first"
-    if not previous.legal:
+    if perturbed is None:
         return "forced"
     if np.array_equal(taken.places, perturbed.places):
         return "perturbation" if changed else "kept"

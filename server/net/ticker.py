@@ -118,10 +118,9 @@ class Ticker:
             self._metrics.stood()
             if self.tap is not None:
                 self.tap.stand()
-                if self.tap.traces.stood():
-                    await asyncio.get_running_loop().run_in_executor(
-                        self._thread, self.tap.traces.make_one
-                    )
+        if self.tap is not None and self.tap.traces.stood():
+            loop = asyncio.get_running_loop()
+            await loop.run_in_executor(self._thread, self.tap.traces.make_one)
 
     async def _tick(self) -> None:
         loop = asyncio.get_running_loop()
