@@ -78,7 +78,7 @@ def main() -> None:
 def print_traces(world: "World", rounds: int = 200) -> None:
     """The time of traces, and of what a subscription to an actor is told, tick after tick."""
     zone, live = world.zone, world.live
-    avatars = [avatar for each in zone.actors if (avatar := zone.avatar_of(str(each)))]
+    avatars = [avatar for each in zone.agents if (avatar := zone.avatar_of(str(each)))]
     traced, text, channel, kept = [], [], [], []
     zone.keep_decisions(True)
     world.tick()

@@ -73,7 +73,7 @@ def _told_why(trace: Trace) -> dict[str, Any]:
     margin_s = trace.hysteresis_s
     match trace.winner:
         case "first":
-            text = "it followed no path before, so the path of the search was taken"
+            text = "it followed no path to this goal before, so the path of the search was taken"
         case "forced":
             text = (
                 "the path followed before is not possible any more, so that of the search was taken"

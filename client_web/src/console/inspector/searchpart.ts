@@ -69,8 +69,8 @@ function traceFacts(
       ${trace.blocker ? html`It is held by ${blockerText(trace.blocker)}.` : nothing}
     </p>
     <p>
-      ${words}, with ${trace.expansions} of ${trace.budget} expansions. On the map are ${expanded}
-      nodes from blue (first) to orange (last); ${open} were left open.
+      ${words}, with ${trace.expansions} of ${trace.budget} expansions. Nodes on the map:
+      ${expanded} expanded, from blue (first) to orange (last); ${open} left open.
     </p>
     ${
       trace.exact
