@@ -422,12 +422,12 @@ class Navigator:
     ) -> list[NDArray[np.float64]]:
         """One array for each person now in that distance: (K, 4) float64 x, y, z, deviation m."""
         p: Prediction = self._prediction
-        out = []
-        for k in range(len(p.means)):
-            away = np.hypot(*(p.means[k, 0] - np.asarray(position)))
-            if abs(p.heights[k, 0] - z_m) < SAME_FLOOR_M and away <= within_m:
-                out.append(np.column_stack([p.means[k], p.heights[k], p.sigmas[k]]))
-        return out
+        away_m = np.hypot(p.means[:, 0, 0] - position[0], p.means[:, 0, 1] - position[1])
+        near = (np.abs(p.heights[:, 0] - z_m) < SAME_FLOOR_M) & (away_m <= within_m)
+        return [
+            np.column_stack([p.means[k], p.heights[k], p.sigmas[k]])
+            for k in np.flatnonzero(near).tolist()
+        ]
 
     def close(self) -> None:
         """End the planning threads."""
