@@ -33,6 +33,7 @@ from esplanade.server.console.routing import (
     may,
     told,
 )
+from esplanade.server.console.trace_api import router as traces
 from esplanade.server.live.names import stand_in
 
 
@@ -56,7 +57,7 @@ def add_api(app: FastAPI, gate: Gate) -> None:
     """Let an application answer operators."""
     app.state.gate = gate
     # Paths of the live views below an actor's go before the actor's own.
-    for each in (live, sockets, router, kept, people, auth, accounts, admission, verifying):
+    for each in (live, traces, sockets, router, kept, people, auth, accounts, admission, verifying):
         app.include_router(each)
     add_refusals(app)
 

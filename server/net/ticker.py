@@ -118,6 +118,9 @@ class Ticker:
             self._metrics.stood()
             if self.tap is not None:
                 self.tap.stand()
+        if self.tap is not None and self.tap.traces.stood():
+            loop = asyncio.get_running_loop()
+            await loop.run_in_executor(self._thread, self.tap.traces.make_one)
 
     async def _tick(self) -> None:
         loop = asyncio.get_running_loop()
@@ -126,6 +129,10 @@ class Ticker:
         given = [*kept, *self._hub.drain(loop.time()), *self._console.drain()]
         await self._run(given, self._ground_work.drain())
         self._schedule.pace.ticked(loop.time(), self._world.tick, self._world.tick_s)
+        room_s = self._schedule.next_deadline - loop.time()
+        if self.tap is not None and self.tap.traces.ticked(room_s):
+            # No tick begins meanwhile.
+            await loop.run_in_executor(self._thread, self.tap.traces.make_one)
 
     async def _run(self, given: Sequence[Input], derived: Sequence[Input]) -> None:
         loop, start = asyncio.get_running_loop(), perf_counter()

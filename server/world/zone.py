@@ -16,6 +16,8 @@ from esplanade.actors.blockers import Blocker
 from esplanade.actors.locomotion.footsteps.ground import Ground
 from esplanade.actors.people import NOBODY
 from esplanade.actors.potential_pool import RenewedPotential
+from esplanade.actors.traces import Decided, Trace
+from esplanade.actors.tracing import NotKeptError
 from esplanade.planning import AgentTable, LayeredGrid, Prediction, Scene
 from esplanade.server.world.actor_commands import ActorCommands
 from esplanade.server.world.actors import ActorAvatars
@@ -100,6 +102,8 @@ class Zone:
         self._moved_doors: dict[str, bool] = {}
         self._people = People(self.state, grid, rules, tick_s)
         self._population = population
+        self.decided_tick = 0
+        """The latest tick in which actors decided."""
         self._actors = ActorAvatars(self.state, population, names, tick_s)
         self._commands = ActorCommands(
             population, self._actors, scene, self.most_actors, roster, self.doors.want
@@ -163,7 +167,9 @@ class Zone:
             if self._stands:
                 self._actors.stand(self._observed)
                 return False
-            return self._actors.plan(self._observed)
+            decided = self._actors.plan(self._observed)
+            self.decided_tick = self.tick if decided else self.decided_tick
+            return decided
 
     def finish(self, actors_moved: bool) -> Frame:
         """Move the actors, if they have moved, and say what is new in this tick."""
@@ -355,6 +361,33 @@ class Zone:
     def blocker(self, avatar_id: int) -> Blocker | None:
         """The blocker of an actor, named by its avatar's id, as in `explain`; None for others."""
         return self._actors.blocker(avatar_id) if self.is_actor(avatar_id) else None
+
+    def keep_decisions(self, wanted: bool) -> bool:
+        """Set whether ticks keep what actors decide upon, for `decided` and `trace`; whether the
+        latest one has. Call it between two ticks."""
+        tracing = self._population.navigator.tracing
+        tracing.wanted = wanted
+        return tracing.has_kept
+
+    def decided(self, avatar_id: int) -> Decided | None:
+        """The path that an actor has taken, named by its avatar's id, and the one before.
+
+        None if that was not kept. Ask between two ticks, as for `trace`.
+        """
+        actor_id = self._actors.actor(avatar_id)
+        try:
+            return None if actor_id is None else self._population.navigator.decided(actor_id)
+        except NotKeptError:
+            return None
+
+    def trace(self, avatar_id: int) -> Trace | None:
+        """The decision of an actor in `decided_tick`, made once more; as `decided`. Heavy: it is
+        safe in the thread of `think`, if nothing else is done with the zone meanwhile."""
+        actor_id = self._actors.actor(avatar_id)
+        try:
+            return None if actor_id is None else self._population.navigator.trace(actor_id)
+        except NotKeptError:
+            return None
 
     def where(self, avatar_id: int) -> Point:
         """Where an avatar is: x, y and the height of its feet, metres."""

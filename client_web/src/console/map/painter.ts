@@ -128,11 +128,11 @@ export class Painter {
     drawMarks(pen, view, points, colour);
   }
 
-  private picture(raster: Raster): Picture {
+  private picture(raster: Raster & { most?: number }): Picture {
     const known = this.pictures.get(raster);
     if (known) return known;
     const values = valuesOf(raster);
-    const made = pictureOf(raster, values, fullValue(values));
+    const made = pictureOf(raster, values, raster.most ?? fullValue(values));
     this.pictures.set(raster, made);
     return made;
   }
