@@ -280,7 +280,7 @@ class Hub:
         elif wish.name not in self._world.doors.states():
             fault = ErrorCode.INVALID, f"set_door: the scene has no door {wish.name!r}"
         else:
-            if self.by_commands and session.operator and session.operator.via == "pass":
+            if self.by_commands:
                 self.by_commands.ask(session, wish)
                 return
             now = asyncio.get_running_loop().time()

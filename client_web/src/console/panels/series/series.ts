@@ -165,7 +165,8 @@ class SeriesPanel extends CommandingPanel {
   /** What is under the pointer: the moment, and whose changes were made about then. */
   private told(): TemplateResult | string {
     const us = this.app.state.hovered.value;
-    if (us === null) return `${this.window.marks.length} changes in this window`;
+    const many = this.window.marks.length;
+    if (us === null) return `${many} ${many === 1 ? "change" : "changes"} in this window`;
     const marks = this.window.near(us / 1e6, 4 * this.charts.secondsPerPixel);
     return html`<b>${clock(us)}</b> ${marks.map(
         (mark) => html`<span class="chip">${mark.account ?? "server"}</span> ${mark.text} `,
