@@ -17,6 +17,8 @@ from esplanade.actors.people import ObservedPeople, People
 from esplanade.actors.potential_pool import Goal, GoalKey, PotentialPool, goal_key
 from esplanade.actors.saved_agents import check_saved
 from esplanade.actors.state import ActorState, Reason
+from esplanade.actors.traces import Decided, Trace
+from esplanade.actors.tracing import Tracing
 from esplanade.planning import (
     AgentTable,
     Batch,
@@ -74,6 +76,7 @@ class Navigator:
         self._rows = DerivedRows(grid, self._batch.field, self.potentials)
         self.table = AgentTable(self.plan.slices)
         """Every actor's state; read it freely between two ticks."""
+        self.tracing = Tracing(self._batch, self.plan, tick_s)
 
     @property
     def person_radius_m(self) -> float:
@@ -291,6 +294,7 @@ class Navigator:
         def undo() -> None:
             self._rows.give_back(self.table)
             restore()
+            self.tracing.forget()
             self._rows.take_all(self.table)
             self._rank()
 
@@ -328,6 +332,7 @@ class Navigator:
         check_saved(table, self.grid)
         self._rows.give_back(self.table)
         self.table = table
+        self.tracing.forget()
         self._rows.take_all(table)
         self._rank()
 
@@ -354,6 +359,10 @@ class Navigator:
         self._prediction = self._history.predict(self.grid, self.plan.slices, self.plan.slice_s)
         if len(self.table):
             agents = self.table.agents
+            if self.tracing.wanted:
+                self.tracing.keep(agents, self.table.version)
+            else:
+                self.tracing.forget()
             self._batch.tick(agents, self.potentials.arrays, self._prediction, self.tick_s)
             self._batch.settle(self.tick_s)
             self._wait_for_potentials()
@@ -364,6 +373,24 @@ class Navigator:
         waiting = self.potentials.provisional(agents.potential_rows)
         waiting &= agents.reasons == Reason.NO_PATH
         agents.reasons[waiting] = Reason.WAITING
+
+    def decided(self, actor_id: Hashable) -> Decided:
+        """The path that an actor has taken in the latest tick, and the one before, priced.
+
+        Between two ticks only, as `trace`.
+
+        Raises
+        ------
+        NotKeptError
+            `tracing` was not wanted in that tick, or actors have come or gone since.
+        KeyError
+            There is none of that id.
+        """
+        return self.tracing.decided(self.table.row(actor_id), self.table.version)
+
+    def trace(self, actor_id: Hashable) -> Trace:
+        """An actor's decision of the latest tick, made once more; as `decided`. Heavy."""
+        return self.tracing.trace(self.table.row(actor_id), self.table.version, self._prediction)
 
     def tick(self) -> dict[Hashable, ActorState]:
         """`advance`, then the states of all actors; id -> state."""
@@ -395,12 +422,12 @@ class Navigator:
     ) -> list[NDArray[np.float64]]:
         """One array for each person now in that distance: (K, 4) float64 x, y, z, deviation m."""
         p: Prediction = self._prediction
-        out = []
-        for k in range(len(p.means)):
-            away = np.hypot(*(p.means[k, 0] - np.asarray(position)))
-            if abs(p.heights[k, 0] - z_m) < SAME_FLOOR_M and away <= within_m:
-                out.append(np.column_stack([p.means[k], p.heights[k], p.sigmas[k]]))
-        return out
+        away_m = np.hypot(p.means[:, 0, 0] - position[0], p.means[:, 0, 1] - position[1])
+        near = (np.abs(p.heights[:, 0] - z_m) < SAME_FLOOR_M) & (away_m <= within_m)
+        return [
+            np.column_stack([p.means[k], p.heights[k], p.sigmas[k]])
+            for k in np.flatnonzero(near).tolist()
+        ]
 
     def close(self) -> None:
         """End the planning threads."""

@@ -28,6 +28,7 @@ def warm_up(tick_s: float, ready_to_plan: Callable[[], None]) -> None:
     potential.distance([(1.0, 1.0)], [0])
     navigator.observe({"p": (3.0, 5.05)})
     navigator.tick()
+    navigator.tracing.wanted = True
     ready_to_plan()
     navigator.add_actor("a", (1.0, 1.0), (5.0, 1.0))
     navigator.add_actor("b", (5.0, 1.0), (1.0, 1.0))
@@ -37,4 +38,5 @@ def warm_up(tick_s: float, ready_to_plan: Callable[[], None]) -> None:
         if k == 30:
             for n in range(10):
                 navigator.add_actor(n, (0.5 + 0.5 * n, 3.5), (1.0, 1.0))
+    navigator.trace("a")
     navigator.close()

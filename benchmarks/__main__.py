@@ -19,6 +19,7 @@ NAMES = (
     "gallery",
     "audit",
     "consoles",
+    "shift",
 )
 
 

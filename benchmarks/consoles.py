@@ -7,16 +7,19 @@ A world ticks in real time; its operators' port has a thread of its own, as in a
 consoles are another process. `own` is the time that ticks are handed over in, by the clock of the
 thread that ticks; `other thread` is the processor time of the port's thread, which has turns of the
 interpreter between those of the tick; `tick` is a whole tick by the clock on the wall. Before and
-after each round with consoles there is one without.
+after each round with consoles there is one without. With actors, the time of a trace of a decision
+is told too, in the thread of the actors and for its text, and that of what `actor:ID` tells.
 """
 
 import argparse
 import asyncio
 import gc
+import json
 import multiprocessing as mp
 import tempfile
 import threading
 import time
+from collections.abc import Sequence
 from concurrent.futures import Future
 from itertools import cycle
 from multiprocessing.connection import Connection
@@ -34,6 +37,8 @@ from esplanade.server.accounts.identity import MACHINE
 from esplanade.server.console.live_socket import router
 from esplanade.server.live.bulletin import Bulletin
 from esplanade.server.live.live import Live, beating
+from esplanade.server.live.one_actor import actor_probe
+from esplanade.server.live.told_traces import told_trace
 from esplanade.server.loading import LoadedScene, load_scene
 from esplanade.server.metrics import Traffic
 from esplanade.server.net.asgi import serving
@@ -66,6 +71,48 @@ def main() -> None:
             print_round(world, port, consoles, options.seconds)
     finally:
         stop()
+    if options.actors:
+        print_traces(world)
+
+
+def print_traces(world: "World", rounds: int = 200) -> None:
+    """The time of traces, and of what a subscription to an actor is told, tick after tick."""
+    zone, live = world.zone, world.live
+    avatars = [avatar for each in zone.agents if (avatar := zone.avatar_of(str(each)))]
+    traced, text, channel, kept = [], [], [], []
+    zone.keep_decisions(True)
+    world.tick()
+    for k in range(rounds):
+        world.tick()
+        live.beat()
+        avatar = avatars[k % len(avatars)]
+        actor = zone.actor_of(avatar) or ""
+        answer = live.tap.traces.ask(avatar)
+        begun = time.thread_time()
+        live.tap.traces.make_one()
+        traced.append(1e3 * (time.thread_time() - begun))
+        found = answer.result()
+        if found is None or not found.trace.exact:
+            raise RuntimeError(f"the trace of {actor} is not what was decided")
+        begun = time.thread_time()
+        size = len(json.dumps(told_trace(actor, found, zone.slice_s)))
+        text.append(1e3 * (time.thread_time() - begun))
+        begun = time.thread_time()
+        actor_probe(avatar, 1).ask(zone)
+        channel.append(1e3 * (time.thread_time() - begun))
+        population = world.population
+        begun = time.thread_time()
+        population.navigator.tracing.keep(population.table.agents, population.table.version)
+        kept.append(1e3 * (time.thread_time() - begun))
+    for name, times in (
+        ("trace, actors' thread", traced),
+        ("trace, text, port's thread", text),
+        ("actor:ID, asking the zone", channel),
+        ("keeping what a tick decides upon", kept),
+    ):
+        p50, p99 = np.percentile(times, [50, 99])
+        print(f"{name}: p50 {p50:.3f}, p99 {p99:.3f} ms")
+    print(f"a trace has {size / 1e3:.0f} kB")
 
 
 def cycle_of(consoles: list[int]) -> list[int]:
@@ -103,11 +150,11 @@ class World:
     def __init__(self, people: int, actors: int) -> None:
         loaded = _field()
         scene, grid = loaded.scene, LayeredGrid.from_scene(loaded.scene)
-        population, names = populate(grid, scene, actors, TICK_S, 0)
+        self.population, names = populate(grid, scene, actors, TICK_S, 0)
         self.zone = Zone(
             scene,
             grid,
-            population,
+            self.population,
             names,
             loaded.rules,
             tick_s=TICK_S,
@@ -115,13 +162,13 @@ class World:
             seed=0,
             clock=time.perf_counter,
         )
-        population.warm_up()
+        self.population.warm_up()
         self.live = Live(self.zone, [0.0], Bulletin(), Traffic(), hide_names=False)
-        frame = self._tick([Join(k, f"Person {k}", None) for k in range(people)])
+        frame = self.tick([Join(k, f"Person {k}", None) for k in range(people)])
         ids = [avatar_id for _, avatar_id in frame.joined]
         self._wishes = cycle([]) if not ids else _stages.steering(ids, TICK_S)
 
-    def _tick(self, inputs: list[Input]) -> Any:
+    def tick(self, inputs: Sequence[Input] = ()) -> Any:
         self.zone.begin(inputs)
         frame = self.zone.finish(self.zone.think())
         self.live.tap.take(frame, 0.01, 0)

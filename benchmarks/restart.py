@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from esplanade.server.app import build_world
+from esplanade.server.building import build_world
 from esplanade.server.checkpoint.format import pack
 from esplanade.server.loading import load_scene
 from esplanade.server.settings import ServerSettings

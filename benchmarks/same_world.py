@@ -21,7 +21,7 @@ from websockets.protocol import State
 from esplanade.commandline.progress import progress
 from esplanade.protocol import VERSION, ServerCode, decode_client, encode
 from esplanade.protocol.messages import ChatLine, Hello, Move, SetDoor, WalkTo, Watch
-from esplanade.server.app import build_world
+from esplanade.server.building import build_world
 from esplanade.server.loading import load_scene
 from esplanade.server.metrics import Metrics
 from esplanade.server.moderation.state import ModerationState

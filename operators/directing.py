@@ -36,6 +36,18 @@ class Directing(Conversation):
         """Open or close a door."""
         return await self.send({"op": "move_door", "door": name, "open": is_open})
 
+    async def pace(self, factor: float) -> Answer:
+        """Let the time of the world run slower or faster; 1 is usual."""
+        return await self.send({"op": "pace", "factor": factor})
+
+    async def pause(self, *, paused: bool = True) -> Answer:
+        """Let time stand, or run again."""
+        return await self.send({"op": "pace", "pause": paused})
+
+    async def step(self, ticks: int = 1) -> Answer:
+        """Let a world that is paused go on by some ticks."""
+        return await self.send({"op": "pace", "step": ticks})
+
     async def announce(self, text: str) -> Answer:
         """Say something to all people."""
         return await self.send({"op": "announce", "text": text})

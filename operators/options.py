@@ -10,6 +10,7 @@ from esplanade.operators.parts import add_json, add_note, add_part, add_scope, a
 from esplanade.operators.preset_options import add_preset_parts
 from esplanade.operators.schedule_options import add_schedule_parts
 from esplanade.operators.scopes import guard
+from esplanade.operators.time_options import add_time_parts
 
 
 def add_parts(commands: "SubParsers[Parser]") -> list[Parser]:
@@ -20,6 +21,7 @@ def add_parts(commands: "SubParsers[Parser]") -> list[Parser]:
         *add_preset_parts(commands),
         *add_schedule_parts(commands),
         *add_actor_parts(commands),
+        *add_time_parts(commands),
         *add_account_parts(commands),
     ]
 

@@ -49,7 +49,7 @@ async def keeping(settings: ServerSettings, metrics: Metrics) -> AsyncIterator[K
         body = {"fresh": True} if settings.fresh else {}
         started = await audit.record(Entry(command="server_start", body=body))
         try:
-            async with moderating(settings, store, metrics) as moderated:
+            async with moderating(settings, store, metrics) as moderation:
                 yield Kept(
                     store,
                     audit,
@@ -61,7 +61,7 @@ async def keeping(settings: ServerSettings, metrics: Metrics) -> AsyncIterator[K
                     OneTime(store, audit, passwords),
                     Invitations(store, audit),
                     Bots(store, audit),
-                    moderated,
+                    moderation,
                     started,
                 )
         finally:

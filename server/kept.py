@@ -29,6 +29,6 @@ class Kept:
     one_time: OneTime
     invitations: Invitations
     bots: Bots
-    moderated: ModerationState
+    moderation: ModerationState
     started: int
     """The row of the audit that says that this server has started."""

@@ -10,15 +10,20 @@ from collections.abc import Iterator
 from functools import cache
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
+from fastapi import FastAPI
 
 from esplanade import bots
 from esplanade.cli import COMMANDS
 from esplanade.planning import Scene
+from esplanade.protocol.commands import COMMAND
 from esplanade.protocol.messages import Chat, Enter
+from esplanade.server.accounts.rights import COMMANDS as RIGHTS
 from esplanade.server.app import running
+from esplanade.server.console.api import add_api
+from esplanade.server.console.gate import Gate
 from esplanade.server.roster import Roster
 from esplanade.server.settings import ServerSettings
 from tests.patience import PATIENCE_S
@@ -130,6 +135,28 @@ def test_the_planner_goes_into_a_program_of_its_own(capsys: pytest.CaptureFixtur
     exec(example, names)
     assert names["state"].reason.name == "ARRIVED"
     assert " after 1" in capsys.readouterr().out
+
+
+def test_every_command_of_operators_is_in_its_table_with_the_right_it_needs() -> None:
+    page = (ROOT / "docs/operators.md").read_text()
+    table = page.partition("\n### Commands\n")[2].partition("\n### ")[0]
+    rights = {
+        op: right.split(",")[0]
+        for ops, right in re.findall(r"^\| (`.*?`) \| (\w[^|]*) \|", table, re.MULTILINE)
+        for op in SPAN.findall(ops)
+    }
+    commands_there_are = COMMAND.json_schema()["discriminator"]["mapping"]
+    assert rights == {op: RIGHTS[op].value for op in commands_there_are}
+
+
+def test_every_request_of_operators_is_in_its_table() -> None:
+    page = (ROOT / "docs/operators.md").read_text()
+    table = page.partition("\n### Requests\n")[2].partition("\n### ")[0]
+    app = FastAPI()
+    add_api(app, cast(Gate, None))
+    words = {path.split("/{")[0].rpartition("/")[2] for path in app.openapi()["paths"]}
+    words |= {path.rpartition("/")[2] for path in app.openapi()["paths"] if path[-1] != "}"}
+    assert {word for word in words if f"/{word}" not in table} == set()
 
 
 async def test_bot_of_the_readme_answers() -> None:

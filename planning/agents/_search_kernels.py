@@ -81,6 +81,8 @@ class Workspace(NamedTuple):
     """Number of cells in a row at steps and edges."""
     node_parent: NDArray[np.int64]
     node_step: NDArray[np.int64]
+    node_order: NDArray[np.int64]
+    """Number of a node's expansion; what is there of a node that was not expanded means nothing."""
     heap_keys: NDArray[np.float64]
     heap_items: NDArray[np.int64]
     table_key: NDArray[np.int64]
@@ -92,6 +94,8 @@ class Workspace(NamedTuple):
     halfway: NDArray[np.int64]
     ahead: NDArray[np.int64]
     """People near it in the middle and at the end of its moves."""
+    ends: NDArray[np.int64]
+    """(3,): nodes that were made, those of them left in the queue, and the last one of the path."""
 
 
 class Outcome(NamedTuple):
@@ -183,6 +187,7 @@ def search(
     workspace.node_edge[0] = 0
     workspace.node_parent[0] = -1
     workspace.node_step[0] = 0
+    workspace.ends[:] = 0
     speed = length(task.vx, task.vy)
     start = way_left(task, metres_left(potential, task, task.cell, task.x, task.y), speed)
     if not np.isfinite(start):
@@ -224,6 +229,7 @@ def search(
         if expansions == task.max_expansions:
             status = PARTIAL
             break
+        workspace.node_order[n] = expansions
         expansions += 1
         gx, gy, leg = direction_at(grid, potential, cell, x, y)
         if task.hold:
@@ -368,6 +374,9 @@ def search(
             count += 1
     if status == NO_PATH and best_step > 0:
         status = PARTIAL
+    workspace.ends[0] = count
+    workspace.ends[1] = size
+    workspace.ends[2] = best
     _trace(workspace, best, path)
     return Outcome(status, expansions, best_key)
 

@@ -12,6 +12,7 @@ from numba import typeof, types
 from numpy.typing import DTypeLike, NDArray
 
 from esplanade.planning.agents import _tick_kernels as kernels
+from esplanade.planning.agents import _trace_kernels as traces
 from esplanade.planning.agents._reservation_kernels import Reservations
 from esplanade.planning.agents._task_kernels import World
 from esplanade.planning.agents.agent_table import AgentTable
@@ -108,6 +109,14 @@ def signatures() -> list[tuple[Callable[..., object], tuple[types.Type, ...]]]:
         (kernels.put_in_order, (held, number)),
         (kernels.take_steps, (held, number)),
         (kernels.has_room, (held, memory, count)),
+        (traces.price_paths, (held, count, number, _type(_array(3)), _type(_array(2)))),
+        (
+            traces.risk_slices,
+            (
+                *(held, people, _type(_risk()), count, count),
+                *(_type(_array(1, np.int64)), _type(_array(2)), _type(_array(2))),
+            ),
+        ),
     ]
 
 

@@ -207,6 +207,16 @@ class Batch:
         take_steps(zone, tick_s)
         return True
 
+    @property
+    def zone(self) -> Zone:
+        """What the last tick was made of, and its decisions; for those who look between ticks."""
+        return self._zone
+
+    @property
+    def branching(self) -> int:
+        """Nodes that a search makes of one, at most."""
+        return self._branching
+
     def settle(self, tick_s: float) -> None:
         """Take the last tick over into the agents that it was made of."""
         settle_all(self._held, tick_s)

@@ -87,6 +87,7 @@ def make_workspace(max_expansions: int, branching: int) -> Workspace:
         np.zeros(nodes, dtype=np.int64),
         np.zeros(nodes, dtype=np.int64),
         np.zeros(nodes, dtype=np.int64),
+        np.zeros(nodes, dtype=np.int64),
         np.zeros(nodes + 1),
         np.zeros(nodes + 1, dtype=np.int64),
         np.zeros(table, dtype=np.int64),
@@ -96,6 +97,7 @@ def make_workspace(max_expansions: int, branching: int) -> Workspace:
         np.zeros(_MOST_NEAR, dtype=np.int64),
         np.zeros(_MOST_PEOPLE, dtype=np.int64),
         np.zeros(_MOST_PEOPLE, dtype=np.int64),
+        np.zeros(3, dtype=np.int64),
     )
 
 

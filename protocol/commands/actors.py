@@ -92,8 +92,12 @@ class AddActors(BaseCommand):
 
     @model_validator(mode="after")
     def _one_or_the_other(self) -> AddActors:
-        wave = {"count", "behaviour", "preset", "overrides", "tags", "near"}
-        if self.actors and wave & self.model_fields_set:
+        fields = type(self).model_fields
+        of_a_wave = any(
+            getattr(self, name) != fields[name].get_default(call_default_factory=True)
+            for name in ("count", "behaviour", "preset", "overrides", "tags", "near")
+        )
+        if self.actors and of_a_wave:  # what is written down has defaults too
             raise ValueError("give actors, or count and what all of a wave have, not both")
         if not self.actors and self.count is None:
             raise ValueError("give actors or count")

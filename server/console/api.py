@@ -17,10 +17,10 @@ from esplanade.server.console.admission_api import router as admission
 from esplanade.server.console.audit_api import router as verifying
 from esplanade.server.console.auth_api import router as auth
 from esplanade.server.console.gate import Gate
-from esplanade.server.console.kept_api import router as kept
 from esplanade.server.console.live_api import router as live
 from esplanade.server.console.live_socket import router as sockets
-from esplanade.server.console.people_api import people_router
+from esplanade.server.console.moderation_api import router as people
+from esplanade.server.console.operated_api import router as kept
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.console.routing import (
     PREFIX,
@@ -33,6 +33,7 @@ from esplanade.server.console.routing import (
     may,
     told,
 )
+from esplanade.server.console.trace_api import router as traces
 from esplanade.server.live.names import stand_in
 
 
@@ -55,9 +56,8 @@ router = APIRouter(prefix=PREFIX, route_class=Guarded, responses=REFUSALS)
 def add_api(app: FastAPI, gate: Gate) -> None:
     """Let an application answer operators."""
     app.state.gate = gate
-    people = people_router(APIRouter(prefix=PREFIX, route_class=Guarded, responses=REFUSALS))
     # Paths of the live views below an actor's go before the actor's own.
-    for each in (live, sockets, router, kept, people, auth, accounts, admission, verifying):
+    for each in (live, traces, sockets, router, kept, people, auth, accounts, admission, verifying):
         app.include_router(each)
     add_refusals(app)
 
@@ -93,7 +93,7 @@ async def actor(request: Request, actor_id: str) -> dict[str, Any]:
 
 
 @router.get("/people")
-async def people(request: Request) -> dict[str, Any]:
+async def everyone(request: Request) -> dict[str, Any]:
     """Everyone who is connected, at this moment."""
     found = await asked(request, questions.people)
     views = gate_of(request).live

@@ -11,7 +11,7 @@ from esplanade.server.accounts.rights import COMMANDS
 from esplanade.server.audit.entries import Entry, Row
 from esplanade.server.console.changes import REMEMBERED, Change
 from esplanade.server.console.facts import together
-from esplanade.server.console.moderating import LASTING, MODERATING
+from esplanade.server.console.moderation_intents import MODERATING, REVERTIBLE
 
 MOST_ROWS: Final = 2 * REMEMBERED + 5_000
 """No more rows are read: one for each change that is remembered, and one for its outcome."""
@@ -98,7 +98,7 @@ def _remember(tail: Tail, row: Row, before: Facts, after: Facts) -> None:
         command = COMMAND.validate_python(row.body["command"])
     except (ValidationError, KeyError):
         return  # of a program that knew other commands, or one about people
-    if isinstance(command, MODERATING) and not isinstance(command, LASTING):
+    if isinstance(command, MODERATING) and not isinstance(command, REVERTIBLE):
         return
     reverts = row.body.get("reverts") if isinstance(command, Revert) else None
     note = command.text if isinstance(command, Mark) else row.note

@@ -21,7 +21,7 @@ REMEMBERED: Final = 1024
 """Accounts whose latest commands are remembered; the one that was quiet longest goes first."""
 
 
-class _Window:
+class Window:
     """The times of the latest takes, `most` of them within `seconds`."""
 
     __slots__ = ("_seconds", "_times")
@@ -42,8 +42,8 @@ class _Window:
 class _Account:
     def __init__(self, a_minute: int) -> None:
         a_second = max(1, a_minute // AT_ONCE)
-        self.commands = _Window(a_minute, MINUTE_S), _Window(a_second, 1.0)
-        self.checks = (_Window(max(CHECKS, a_second), 1.0),)
+        self.commands = Window(a_minute, MINUTE_S), Window(a_second, 1.0)
+        self.checks = (Window(max(CHECKS, a_second), 1.0),)
         self.stream: tuple[object, ...] = ()
         self.stream_s = -math.inf
 

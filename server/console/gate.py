@@ -95,6 +95,7 @@ STATUS: Final = {
     "conflict": HTTPStatus.CONFLICT,
     "taken": HTTPStatus.CONFLICT,
     "superseded": HTTPStatus.CONFLICT,
+    "not_kept": HTTPStatus.CONFLICT,
     "unknown_change": HTTPStatus.NOT_FOUND,
     "unknown_preset": HTTPStatus.NOT_FOUND,
     "unknown_schedule": HTTPStatus.NOT_FOUND,

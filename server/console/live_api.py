@@ -30,7 +30,7 @@ Word = Annotated[str | None, Query(max_length=200, pattern=NO_NUL)]
 @router.get("/map")
 async def ground(request: Request) -> dict[str, Any]:
     """The plan of the scene, storey by storey, with the doors as they are."""
-    live = _live(request)
+    live = live_of(request)
 
     async def doors(console: Any) -> dict[str, bool]:
         states: dict[str, bool] = console.zone.doors.states()
@@ -44,7 +44,7 @@ async def ground(request: Request) -> dict[str, Any]:
 @router.get("/series/names")
 async def series_names(request: Request) -> dict[str, Any]:
     """All figures that are kept over time."""
-    return {"series": _live(request).series.names()}
+    return {"series": live_of(request).series.names()}
 
 
 @router.get("/series")
@@ -57,14 +57,14 @@ async def series(
     step_s: Literal["1", "10", "60"] = "1",
 ) -> Response:
     """Values of figures over time, or of one actor, with a mark for each change of operators."""
-    live, step = _live(request), int(step_s)
+    live, step = live_of(request), int(step_s)
     last = time.time_ns() // 1000 if to_us is None else to_us
     first = max(last - MOST_STEPS * step * 1_000_000, 0 if from_us is None else from_us)
     values: dict[str, Any] = {}
     if actor is not None:
         avatar = live.map.avatar_of(str(full_id(actor)))
         if avatar is None:
-            raise _unknown_actor(str(full_id(actor)))
+            raise unknown_actor(str(full_id(actor)))
         step = 1
         times, values = live.history.told(avatar, first, last)
     else:
@@ -91,7 +91,7 @@ async def events(
     limit: Annotated[int, Query(ge=1, le=1000)] = 100,
 ) -> dict[str, Any]:
     """The latest events, the newest first."""
-    live = _live(request)
+    live = live_of(request)
     names = live.sees_names(caller(request))
     kinds = [each for each in kind.split(",") if each]
     found = live.events.found(kinds, who, from_us or 0, limit)
@@ -106,7 +106,7 @@ async def heat(
 ) -> Response:
     """A heat map in cells of half a metre for each storey, over the last time."""
     found = None
-    for count, found in enumerate(_live(request).heat.told(kind, int(window_s))):
+    for count, found in enumerate(live_of(request).heat.told(kind, int(window_s))):
         if found is None and count % _AT_A_TIME == 0:
             await asyncio.sleep(0)
     return _json(json.dumps(found))
@@ -115,10 +115,10 @@ async def heat(
 @router.get("/actors/{actor_id:path}/why")
 async def why(request: Request, actor_id: str, from_us: Moment = None) -> Response:
     """The reasons of an actor over the last ten minutes, and who or what held it."""
-    live, actor = _live(request), str(full_id(actor_id))
+    live, actor = live_of(request), str(full_id(actor_id))
     avatar = live.map.avatar_of(actor)
     if avatar is None:
-        return _json(_unknown_actor(actor), HTTPStatus.NOT_FOUND)
+        return _json(unknown_actor(actor), HTTPStatus.NOT_FOUND)
     names = live.sees_names(caller(request))
     from_tick = 0
     if from_us is not None:
@@ -129,7 +129,7 @@ async def why(request: Request, actor_id: str, from_us: Moment = None) -> Respon
     return _json(json.dumps(found))
 
 
-def _live(request: Request) -> Live:
+def live_of(request: Request) -> Live:
     """The live views of the world, for whoever may watch.
 
     Raises
@@ -155,7 +155,7 @@ def _named(live: Live, names: str) -> list[str]:
     return wanted
 
 
-def _unknown_actor(actor: str) -> RefusedError:
+def unknown_actor(actor: str) -> RefusedError:
     return RefusedError.of("unknown_actor", f"there is no actor {actor}", actor=actor)
 
 

@@ -1,8 +1,6 @@
-"""Operators' commands on people: the facts that they want, and what is done for them."""
+"""Carries out what commands want of people: in the store, and for those who are connected."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any, Final, assert_never
 
 from esplanade.protocol.commands import (
     Announce,
@@ -12,197 +10,22 @@ from esplanade.protocol.commands import (
     HideLine,
     Kick,
     Mute,
-    QuietZone,
-    SettleReport,
-    SetWordFilter,
-    SlowMode,
-    Unban,
     WalkOut,
     Warn,
 )
 from esplanade.server.console.moderation import Moderation
-from esplanade.server.console.records import Planned
+from esplanade.server.console.moderation_intents import KINDS, ModerationIntents
+from esplanade.server.console.planned import Planned
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.moderation import bans
-from esplanade.server.moderation.bans import MOST_BANS, MOST_PATTERNS, check_pattern, network
-from esplanade.server.moderation.chat_rules import MOST_ZONES, ZONE
-from esplanade.server.moderation.state import PEOPLE
-from esplanade.server.world.zone import Zone
-
-ToPerson = Warn | Mute | Kick | WalkOut
-OnPeople = (
-    ToPerson
-    | Announce
-    | Ban
-    | Unban
-    | HideLine
-    | SlowMode
-    | SetWordFilter
-    | QuietZone
-    | SettleReport
-)
-MODERATING: Final = (
-    *(Announce, Warn, Mute, Kick, WalkOut, Ban, Unban, HideLine),
-    *(SlowMode, SetWordFilter, QuietZone, SettleReport),
-)
-LASTING: Final = (Ban, Unban, SlowMode, SetWordFilter, QuietZone, SettleReport)
-"""Commands that can be taken back, as their facts stay as they are."""
-KINDS: Final = ("ban", "report", "line", "quiet_zone", PEOPLE)
-"""The kinds of subjects whose facts are told here."""
-
-
-@dataclass(frozen=True)
-class Wanted:
-    """The facts that a command wants, and the name of the person whom it is about."""
-
-    facts: Facts
-    person: str | None = None
 
 
 class Moderating:
-    """Checks commands on people, and carries them out."""
+    """Does for people, or against them, what was planned."""
 
-    def __init__(self, people: Moderation, zone: Zone) -> None:
+    def __init__(self, people: Moderation, intents: ModerationIntents) -> None:
         self._people = people
-        self._zone = zone
-
-    def fact(self, subject: str, field: str) -> Any:
-        """The present value of a field of a subject of one of `KINDS`."""
-        return self._people.kept.fact(subject, field)
-
-    # --- checks ---------------------------------------------------------------------------------
-
-    def wanted(  # noqa: PLR0911 (one for each command)
-        self, command: OnPeople, pending: Facts
-    ) -> Wanted:
-        """The facts that a command wants; `pending` are those of commands before it.
-
-        Raises
-        ------
-        RefusedError
-            It cannot be had.
-        """
-        match command:
-            case Announce():
-                reached = len(self._addressed(command))
-                return Wanted({PEOPLE: {"announced": command.text, "reached": reached}})
-            case Warn() | Mute() | Kick() | WalkOut():
-                return self._to_person(command)
-            case Ban():
-                return self._ban(command, pending)
-            case Unban():
-                return self._unban(command)
-            case HideLine():
-                return self._line(command)
-            case SlowMode():
-                return Wanted({PEOPLE: {"slow_mode_s": command.seconds or None}})
-            case SetWordFilter():
-                rule = {"words": list(command.words), "action": command.action}
-                return Wanted({PEOPLE: {"word_filter": rule if command.words else None}})
-            case QuietZone():
-                return self._quiet_zone(command, pending)
-            case SettleReport():
-                return self._report(command)
-        assert_never(command)
-
-    def _to_person(self, command: ToPerson) -> Wanted:
-        name = self._people.name_of(command.person)
-        if name is None:
-            raise _nobody(command.person)
-        subject = f"person:{command.person}"
-        match command:
-            case Warn():
-                return Wanted({subject: {"warned": True}}, name)
-            case Mute():
-                return Wanted({subject: {"muted_s": command.seconds}}, name)
-            case Kick():
-                return Wanted({subject: {"kicked": True}}, name)
-            case WalkOut():
-                return Wanted({subject: {"walked_out": True}}, name)
-        assert_never(command)
-
-    def _ban(self, command: Ban, pending: Facts) -> Wanted:
-        kept, coming = self._people.kept, sum(subject.startswith("ban:") for subject in pending)
-        if kept.bans.holding + coming >= MOST_BANS:
-            raise RefusedError.of("full", f"{MOST_BANS} bans are the most there can be")
-        known = None
-        if command.person is not None:
-            known = self._people.known(command.person)
-            if known is None:
-                raise _nobody(command.person)
-        if command.until_s is not None and command.until_s * 1e6 <= kept.now_us():
-            raise RefusedError.of("invalid", "until_s is over already", "until_s")
-        if command.address is not None:
-            try:
-                network(command.address)
-            except ValueError as error:
-                raise RefusedError.of("invalid", str(error), "address") from None
-        if command.name_pattern is not None:
-            self._check_pattern(command.name_pattern, coming)
-        person = known.name if known is not None else command.name_pattern
-        return Wanted({f"ban:{kept.next_ban()}": {"banned": True}}, person)
-
-    def _check_pattern(self, pattern: str, coming: int) -> None:
-        try:
-            check_pattern(pattern)
-        except ValueError as error:
-            raise RefusedError.of("invalid", str(error), "name_pattern") from None
-        if "*" in pattern and self._people.kept.bans.patterns + coming >= MOST_PATTERNS:
-            text = f"{MOST_PATTERNS} patterns with * are the most there can be"
-            raise RefusedError.of("full", text, "name_pattern")
-
-    def _unban(self, command: Unban) -> Wanted:
-        ban = self._people.kept.bans.get(command.ban)
-        if ban is None or ban.lifted:
-            text = f"there is no ban {command.ban}, or it is lifted already"
-            raise RefusedError.of("unknown_ban", text, "ban", ban=command.ban)
-        return Wanted({f"ban:{command.ban}": {"banned": False}}, ban.name_pattern)
-
-    def _line(self, command: HideLine) -> Wanted:
-        people, kept = self._people, self._people.kept.chat.get(command.line)
-        if kept is None and not people.lines.first <= command.line <= people.lines.latest:
-            text = f"there is no line {command.line}"
-            raise RefusedError.of("unknown_line", text, "line", line=command.line)
-        name = None if kept is None else kept.name
-        return Wanted({f"line:{command.line}": {"hidden": True}}, name)
-
-    def _quiet_zone(self, command: QuietZone, pending: Facts) -> Wanted:
-        rules, subject = self._people.kept.rules, f"{ZONE}{command.name}"
-        if command.remove:
-            if command.name not in rules.quiet and subject not in pending:
-                text = f"there is no quiet zone {command.name!r}"
-                raise RefusedError.of("unknown_zone", text, "name", name=command.name)
-            return Wanted({subject: {"area": None}})
-        names = {*rules.quiet, command.name}
-        names.update(one.removeprefix(ZONE) for one in pending if one.startswith(ZONE))
-        if len(names) > MOST_ZONES:
-            raise RefusedError.of("full", f"{MOST_ZONES} quiet zones are the most there can be")
-        polygon = [list(point) for point in command.polygon or ()]
-        return Wanted({subject: {"area": {"polygon": polygon, "storey_m": command.storey_m}}})
-
-    def _report(self, command: SettleReport) -> Wanted:
-        report = self._people.kept.inbox.get(command.report)
-        if report is None:
-            text = f"there is no report {command.report}"
-            raise RefusedError.of("unknown_report", text, "report", report=command.report)
-        return Wanted({f"report:{command.report}": {"state": "done"}}, report.name)
-
-    def _addressed(self, command: Announce) -> list[int]:
-        centre = None
-        if command.near_actor is not None:
-            avatar = self._zone.avatar_of(command.near_actor)
-            centre = None if avatar is None else self._people.where(avatar)
-            if centre is None:
-                text = f"there is no actor {command.near_actor}"
-                raise RefusedError.of("unknown_actor", text, "near_actor", actor=command.near_actor)
-        return self._people.within(
-            storey_m=command.storey_m,
-            polygon=command.polygon,
-            centre=centre,
-            radius_m=command.radius_m,
-        )
-
-    # --- carrying out ---------------------------------------------------------------------------
+        self._intents = intents
 
     async def carry_out(self, planned: Sequence[Planned], account: str | None) -> None:
         """Write what is to last into the store, then do what commands want of people.
@@ -226,7 +49,7 @@ class Moderating:
                 ban = self._made(one.command, int(subject.partition(":")[2]), account)
                 new[ban.id] = ban
         if facts:
-            await self._people.kept.decide(facts, new.values(), account)
+            await self._people.state.decide(facts, new.values(), account)
         for one in planned:
             self._act(one.command)
             self._turn_out(one)
@@ -249,7 +72,7 @@ class Moderating:
 
     def _still_addressed(self, command: Announce) -> list[int]:
         try:
-            return self._addressed(command)
+            return self._intents.addressed(command)
         except RefusedError:  # the actor has gone since it was checked
             return []
 
@@ -257,7 +80,7 @@ class Moderating:
         """Send those out whom a new ban is of, or one that holds again."""
         for subject, fields in planned.after.items():
             kind, _, name = subject.partition(":")
-            ban = self._people.kept.bans.get(int(name)) if kind == "ban" else None
+            ban = self._people.state.bans.get(int(name)) if kind == "ban" else None
             if ban is not None and fields.get("banned"):
                 command = planned.command
                 person = command.person if isinstance(command, Ban) else None
@@ -276,13 +99,7 @@ class Moderating:
             if "address" in command.by and address is None:
                 address = known.address
         until_us = None if command.until_s is None else round(command.until_s * 1e6)
-        now_us = self._people.kept.now_us()
+        now_us = self._people.state.now_us()
         return bans.Ban(
             number, command.text, until_us, now_us, account, digests, name or None, address
         )
-
-
-def _nobody(person: int) -> RefusedError:
-    return RefusedError.of(
-        "unknown_person", f"there is no person {person}", "person", person=person
-    )

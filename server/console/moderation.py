@@ -41,7 +41,7 @@ class Moderation(Protocol):
     """Those who serve people carry out what moderators want of them."""
 
     @property
-    def kept(self) -> ModerationState:
+    def state(self) -> ModerationState:
         """All that moderators have decided."""
 
     @property

@@ -1,32 +1,21 @@
 """Rows of the audit for commands: what is wanted before a tick, and what came of it after."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import structlog
 from sqlalchemy import Connection
 
-from esplanade.protocol.commands import Command, CommandFault, Facts
+from esplanade.protocol.commands import CommandFault, Facts
 from esplanade.server.accounts.identity import Identity
 from esplanade.server.audit.entries import Entry
 from esplanade.server.audit.log import AuditLog
-from esplanade.server.console.kept_rows import KeptRow, write_rows
+from esplanade.server.console.operated_rows import OperatedRow, write_rows
+from esplanade.server.console.planned import Planned
 from esplanade.server.store.sql_store import SqlStore
 from esplanade.server.store.store import StoreError
 
 log = structlog.get_logger(__name__)
-
-
-@dataclass(frozen=True)
-class Planned:
-    """A command, with the facts that it changes."""
-
-    command: Command
-    before: Facts
-    after: Facts
-    reverts: int | None = None
-    person: str | None = None
 
 
 class Records:
@@ -81,7 +70,7 @@ class Records:
         tick: int | None,
         faults: list[CommandFault],
         *,
-        rows: Sequence[KeptRow] = (),
+        rows: Sequence[OperatedRow] = (),
         more: Mapping[str, Any] | None = None,
     ) -> None:
         """Write down what came of commands in that tick, and the rows that are others by them.

@@ -99,16 +99,17 @@ def may(request: Request, right: Right) -> Identity:
     return identity
 
 
-async def asked(request: Request, question: Callable[[Console], dict[str, Any]]) -> dict[str, Any]:
-    """The answer to a question about the zone, asked between two ticks; it needs the right to
-    watch.
+async def asked(
+    request: Request, question: Callable[[Console], dict[str, Any]], right: Right = Right.WATCH
+) -> dict[str, Any]:
+    """The answer to a question about the zone, asked between two ticks; it needs a right.
 
     Raises
     ------
     RefusedError
         The right is missing, or too much waits.
     """
-    may(request, Right.WATCH)
+    may(request, right)
 
     async def ask(console: Console) -> dict[str, Any]:
         return await console.ask(lambda: question(console))

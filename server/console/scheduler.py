@@ -14,11 +14,11 @@ from esplanade.server.audit.log import AuditLog
 from esplanade.server.console.authority import Authority
 from esplanade.server.console.figures import ContactRate, Figures
 from esplanade.server.console.guards import Guard, Guards
-from esplanade.server.console.kept_rows import (
+from esplanade.server.console.operated_rows import (
     GUARDS,
     PRESETS,
     SCHEDULES,
-    KeptRow,
+    OperatedRow,
     read_rows,
     write_rows,
 )
@@ -236,7 +236,7 @@ class Scheduler:
             outcome="missed",
             body={"why": why, "commands": schedule.commands},
         )
-        row = KeptRow(SCHEDULES, schedule.id, schedule.plain())
+        row = OperatedRow(SCHEDULES, schedule.id, schedule.plain())
 
         def change(connection: Any) -> None:
             self._audit.add(connection, entry)
@@ -250,7 +250,7 @@ class Scheduler:
         self._console.tell("about", {"about": "schedules"})
 
     async def _keep(self, part: str, name: str, body: Any) -> None:
-        row = KeptRow(part, name, body)
+        row = OperatedRow(part, name, body)
         await self._store.write(lambda connection: write_rows(connection, self._store.zone, [row]))
 
 
@@ -268,9 +268,9 @@ def guard_of(
     )
 
 
-def guard_row(guard: Guard) -> KeptRow:
+def guard_row(guard: Guard) -> OperatedRow:
     """What is kept of a guard."""
-    return KeptRow(GUARDS, guard.id, guard.plain())
+    return OperatedRow(GUARDS, guard.id, guard.plain())
 
 
 def _with_note(given: dict[str, Any], schedule: Schedule) -> Command:

@@ -10,12 +10,16 @@ from esplanade.planning.scene.scene import Polygon
 
 _KNEE_M, _HEAD_M = 0.3, 1.9
 """Between these heights above a storey, something is in a body's way there."""
+_THROUGH = ("wall", "building")
 
 
 def ground_plan(scene: Scene, grid: LayeredGrid, storeys_m: Sequence[float]) -> dict[str, Any]:
     """All of a scene that a map draws and that does not move, as plain data."""
     heights = list(storeys_m) or [0.0]
-    solids = [[each for each in scene.polygons if _in_the_way(each, z)] for z in heights]
+    solids = [
+        [each for each in scene.polygons if _in_the_way(each, z) and _shows(each, z, heights)]
+        for z in heights
+    ]
     floors = [[each for each in scene.polygons if _carries_at(each, z)] for z in heights]
     return {
         "scene": scene.name,
@@ -70,6 +74,15 @@ def _walls(scene: Scene, grid: LayeredGrid) -> list[list[float]]:
 def _in_the_way(polygon: Polygon, storey_m: float) -> bool:
     top = polygon.offset_m + polygon.height_m
     return polygon.offset_m < storey_m + _HEAD_M and top > storey_m + _KNEE_M
+
+
+def _shows(polygon: Polygon, storey_m: float, heights: Sequence[float]) -> bool:
+    """Whether a storey's plan has it: walls and buildings go on through storeys, all else belongs
+    to the one that it stands on, however high it grows."""
+    if polygon.kind in _THROUGH:
+        return True
+    below = [z for z in heights if z <= polygon.offset_m + _KNEE_M]
+    return storey_m == max(below, default=min(heights))
 
 
 def _carries_at(polygon: Polygon, storey_m: float) -> bool:

@@ -115,6 +115,8 @@ class Happenings:
                 self._feed.tick,
                 f"{change.get('account') or 'an operator'}: {change.get('op')}",
                 arguments={name: change.get(name) for name in told},
+                # Schedules and guards say in their notes that it was they.
+                said=f", {change['note']}" if change.get("note") else "",
                 private=True,
             )
         if notice.event is not None:

@@ -106,6 +106,7 @@ class Live:
     def beat(self) -> None:
         """Take in what has happened since the last beat, and tell it."""
         self._beats += 1
+        self.tap.traces.watched = bool(self.subscribers)
         ticks = self.tap.fetch()
         for tick in ticks:
             self._take(tick)

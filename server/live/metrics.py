@@ -41,6 +41,26 @@ def watch_live(metrics: Metrics, live_of: Callable[[], Live | None]) -> None:
         "Consoles that were closed because they did not read",
         figure(lambda live: live.too_slow),
     )
+    metrics.gauge(
+        "traces_waiting",
+        "Requests for traces of decisions that wait for the end of a tick",
+        figure(lambda live: live.tap.traces.waiting),
+    )
+    metrics.total(
+        "traces",
+        "Decisions of actors that were made once more for operators",
+        figure(lambda live: live.tap.traces.made),
+    )
+    metrics.total(
+        "traces_seconds",
+        "Time of the actors' thread between ticks that traces of decisions took",
+        figure(lambda live: live.tap.traces.seconds),
+    )
+    metrics.total(
+        "traces_refused",
+        "Requests for traces that were refused because too many waited",
+        figure(lambda live: live.tap.traces.refused),
+    )
     metrics.total(
         "live_ticks_lost",
         "Ticks that live views were not told of, since they were busy",

@@ -1,26 +1,48 @@
 """One actor as an inspector shows it: where it is, what it is about to do, and why."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from esplanade.actors import Explanation
+from esplanade.actors.traces import Decided
 from esplanade.protocol.snapshot import HEADING_RAD, SPEED_MPS
 from esplanade.server.live.map_feed import MapFeed
 from esplanade.server.live.reasons import Reasons
 from esplanade.server.live.subscriptions import ACTOR
 from esplanade.server.live.tap import Probe
+from esplanade.server.live.told_traces import told_cost, told_path
+from esplanade.server.world.zone import Zone
+
+
+class Seen(NamedTuple):
+    """What a zone tells of an actor."""
+
+    why: Explanation
+    decided: Decided | None
 
 
 def actor_probe(avatar_id: int, every: int) -> Probe:
     """Let the zone be asked to explain an actor, every so many ticks."""
-    return Probe(lambda zone: zone.explain(avatar_id), every)
+
+    def see(zone: Zone) -> Seen:
+        return Seen(zone.explain(avatar_id), zone.decided(avatar_id))
+
+    return Probe(see, every)
 
 
 def told(
-    actor: str, avatar_id: int, why: Explanation, feed: MapFeed, reasons: Reasons, *, names: bool
+    actor: str,
+    avatar_id: int,
+    seen: Seen,
+    feed: MapFeed,
+    reasons: Reasons,
+    *,
+    slice_s: float,
+    names: bool,
 ) -> dict[str, Any]:
     """The message of a subscription to an actor, with what the zone has explained."""
+    why, decided = seen
     row = int(np.searchsorted(feed.ids, avatar_id))
     record, spec = feed.records[row], feed.specs.get(actor)
     x, y, z = feed.place(avatar_id) or (0.0, 0.0, 0.0)
@@ -40,6 +62,6 @@ def told(
         "goal": None if why.goal is None else [round(v, 2) for v in why.goal],
         "path": np.round(why.path, 2).tolist(),
         "circles": [np.round(each, 2).tolist() for each in why.people],
-        "cost": None,
-        "previous": None,
+        "cost": None if decided is None else told_cost(decided.taken),
+        "previous": None if decided is None else told_path(decided.previous, slice_s),
     }

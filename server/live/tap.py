@@ -12,6 +12,7 @@ import structlog
 
 from esplanade.actors import ActorSpec
 from esplanade.protocol.snapshot import Records, pack_records
+from esplanade.server.live.traces import Traces
 from esplanade.server.world.frame import Frame
 from esplanade.server.world.state import ACTOR, KINDS
 from esplanade.server.world.zone import Zone
@@ -83,6 +84,7 @@ class Tap:
         self.zone = zone
         self.probes: dict[str, Probe] = {}
         """By their names; the other thread puts other dictionaries in its place."""
+        self.traces = Traces(zone)
         self.lost = 0
         self._ticks: deque[Tick] = deque()
         self._found: deque[dict[str, Any]] = deque(maxlen=MOST_FOUND)

@@ -113,10 +113,16 @@ class Telling:
                     subscriber.tell(_no_actor(channel, actor))
                 continue
             subscriber.missing.discard(channel)
-            why = found.get(ACTOR + actor)
-            if why is not None and subscriber.ready(channel, beat):
+            seen = found.get(ACTOR + actor)
+            if seen is not None and subscriber.ready(channel, beat):
                 told = one_actor.told(
-                    actor, avatar_id, why, live.map, live.reasons, names=subscriber.names
+                    actor,
+                    avatar_id,
+                    seen,
+                    live.map,
+                    live.reasons,
+                    slice_s=live.zone.slice_s,
+                    names=subscriber.names,
                 )
                 subscriber.tell({**told, "channel": channel})
 

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import UTC, datetime
-from typing import Any, Final
+from typing import Any
 
 import structlog
 
@@ -16,14 +16,12 @@ from esplanade.server.moderation.state import ModerationState
 from esplanade.server.net import frames
 from esplanade.server.net.known_people import AddressHashes, Gone, KnownPerson
 from esplanade.server.net.lines import Lines
+from esplanade.server.net.mutes import Mutes
 from esplanade.server.net.seats import Seats, digest_of
 from esplanade.server.net.session import Session
 from esplanade.server.net.walk_outs import WalkOuts
 from esplanade.server.world.audience import Heard
 from esplanade.server.world.zone import Zone
-
-MOST_MUTED: Final = 4096
-"""Of more people who are muted, the mute that ends first is forgotten."""
 
 Listener = Callable[[str, dict[str, Any]], None]
 log = structlog.get_logger(__name__)
@@ -34,7 +32,7 @@ class PeopleModeration:
 
     def __init__(
         self,
-        kept: ModerationState,
+        state: ModerationState,
         world: Zone,
         storeys: Sequence[float],
         sessions: Mapping[int, Session],
@@ -43,9 +41,10 @@ class PeopleModeration:
         now_s: Callable[[], float],
     ) -> None:
         """`kick` gives up the seat of a session, so that its token opens nothing any more."""
-        self.kept = kept
-        self.lines = Lines(kept.now_us() // 1000, self._said)
+        self.state = state
+        self.lines = Lines(state.now_us() // 1000, self._said)
         self.walk_outs: WalkOuts | None = None
+        self.mutes = Mutes(state.now_us)
         self.listeners: list[Listener] = []
         """Are told of reports and, where chat is kept, of lines: the kind, and plain data."""
         self._world = world
@@ -56,7 +55,6 @@ class PeopleModeration:
         self._now_s = now_s
         self._gone = Gone()
         self._hashes = AddressHashes()
-        self._muted_until_us: dict[int, int] = {}
 
     # --- who there is ---------------------------------------------------------------------------
 
@@ -181,7 +179,7 @@ class PeopleModeration:
             One does, and why and until when.
         """
         digest = None if resume is None else digest_of(resume).hex()
-        ban = self.kept.bans.against(name, address, digest, self.kept.now_us())
+        ban = self.state.bans.against(name, address, digest, self.state.now_us())
         if ban is not None:
             code, close = ErrorCode.BANNED, CloseCode.BANNED
             raise ProtocolError(code, _farewell(ban), close, _of_ban(ban))
@@ -192,7 +190,7 @@ class PeopleModeration:
 
     def greet(self, session: Session) -> None:
         """Tell somebody who comes back what was hidden meanwhile."""
-        hidden = self.kept.chat.hidden
+        hidden = self.state.chat.hidden
         if hidden:
             session.outbox.post(frames.message(Hide(lines=hidden)))
 
@@ -200,43 +198,14 @@ class PeopleModeration:
 
     def muted_s(self, person: int) -> float:
         """For how many seconds nobody hears a person yet."""
-        until_us = self._muted_until_us.get(person)
-        return 0.0 if until_us is None else max(0.0, (until_us - self.kept.now_us()) / 1e6)
+        return self.mutes.left_s(person)
 
     def mute(self, person: int, seconds: float, text: str) -> None:
         """Let nobody hear a person for a time, and say so; 0 ends it."""
-        now_us = self.kept.now_us()
-        self._muted_until_us.pop(person, None)
-        if seconds > 0.0:
-            lasting = {who: end for who, end in self._muted_until_us.items() if end > now_us}
-            if len(lasting) >= MOST_MUTED:
-                del lasting[min(lasting, key=lasting.__getitem__)]
-            self._muted_until_us = {**lasting, person: now_us + round(seconds * 1e6)}
+        self.mutes.put(person, seconds)
         code = NoticeCode.MUTED if seconds > 0.0 else NoticeCode.UNMUTED
         arguments = {"seconds": seconds} if seconds > 0.0 else {}
         self._tell(person, _notice(text, code, arguments))
-
-    def save(self) -> dict[int, float]:
-        """For how many seconds each person is muted yet, by the avatar."""
-        now_us = self.kept.now_us()
-        return {
-            who: (end - now_us) / 1e6 for who, end in self._muted_until_us.items() if end > now_us
-        }
-
-    def load(self, saved: Mapping[Any, Any]) -> None:
-        """Go on from what was saved: time counts only while the world runs.
-
-        Raises
-        ------
-        ValueError, TypeError
-            It is not what `save` gives.
-        """
-        now_us = self.kept.now_us()
-        if len(saved) > MOST_MUTED or not all(map(math.isfinite, saved.values())):
-            raise ValueError("these are no mutes")
-        self._muted_until_us = {
-            int(who): now_us + round(left_s * 1e6) for who, left_s in saved.items()
-        }
 
     # --- parts ----------------------------------------------------------------------------------
 
@@ -246,13 +215,13 @@ class PeopleModeration:
             listener(kind, about)
 
     def _said(self, number: int, heard: Heard, viewers: list[int]) -> None:
-        if not self.kept.chat.keeps:
+        if not self.state.chat.keeps:
             return
         line = heard.line
-        self.kept.said(
+        self.state.said(
             KeptLine(
                 line=number,
-                at_us=self.kept.now_us(),
+                at_us=self.state.now_us(),
                 tick=self._world.tick,
                 id=line.id,
                 name=heard.name,
@@ -270,7 +239,7 @@ class PeopleModeration:
         return KnownPerson(avatar_id, session.name, session.wished, session.address, digests)
 
     def _keeps_out(self, bans: Bans, person: KnownPerson) -> bool:
-        now_us = self.kept.now_us()
+        now_us = self.state.now_us()
         return any(
             bans.against(name, person.address, digest, now_us) is not None
             for name in (person.wished, person.name)

@@ -16,9 +16,17 @@ class PaceNotices:
         self._sessions = sessions
         self._server_time = server_time
         self._was_paused = False
+        self._told = PaceState(1.0, paused=False, rate=1.0)
 
     def tell_all(self, state: PaceState, _: float) -> None:
-        """Tell everyone who is connected."""
+        """Tell everyone who is connected.
+
+        People are not told that a world of usual pace falls behind: nobody has chosen that.
+        """
+        before, self._told = self._told, state
+        same = (before.factor, before.paused) == (state.factor, state.paused)
+        if same and state.factor == 1.0 and not state.paused:
+            return
         frame = frames.message(self._notice(state))
         self._was_paused = state.paused
         for session in self._sessions.values():
@@ -26,7 +34,7 @@ class PaceNotices:
 
     def tell_newcomer(self, session: Session, state: PaceState) -> None:
         """Tell somebody who has just been welcomed, unless all is as usual."""
-        if state.paused or state.rate != 1.0:
+        if state.paused or state.factor != 1.0:
             session.outbox.post(frames.message(self._notice(state)))
 
     def _notice(self, state: PaceState) -> Notice:
@@ -45,7 +53,7 @@ def _said(state: PaceState, *, was_paused: bool) -> tuple[NoticeCode, str]:
             "The world is paused: an operator has stopped time for a moment. Nobody moves, "
             "and you keep your place. You can go on talking."
         )
-    if state.factor == state.rate == 1.0:
+    if state.factor == 1.0:
         return (
             NoticeCode.RESUMED if was_paused else NoticeCode.PACE,
             "The world goes on as usual." if was_paused else "Time runs as usual again.",

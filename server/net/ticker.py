@@ -15,7 +15,7 @@ from esplanade.server.metrics import Metrics
 from esplanade.server.net.delivery import Delivery
 from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.hub import Hub
-from esplanade.server.net.lasting import Lasting
+from esplanade.server.net.persistence import Persistence
 from esplanade.server.net.schedule import Schedule
 from esplanade.server.world.audience import Audience
 from esplanade.server.world.inputs import Input, Still
@@ -53,7 +53,7 @@ class Ticker:
         self.tap: Tap | None = None
         """Where the ticks go that operators see."""
         self._stopping = asyncio.Event()
-        self._lasting: Lasting | None = None
+        self._persistence: Persistence | None = None
         metrics.gauge(
             "walkers_shown",
             "Walkers whose steps are sent, counted for each viewer",
@@ -71,9 +71,9 @@ class Ticker:
             "ticks_given_up", "Ticks' worth of time lost", lambda: schedule.given_up_ticks
         )
 
-    def keeping(self, lasting: Lasting) -> Self:
+    def keeping(self, persistence: Persistence) -> Self:
         """The same, seeing between ticks to what outlasts the process."""
-        self._lasting = lasting
+        self._persistence = persistence
         return self
 
     def stop(self) -> None:
@@ -82,8 +82,8 @@ class Ticker:
 
     async def keep(self, *, in_order: bool) -> None:
         """Keep what is to outlast the process, after the last tick."""
-        if self._lasting is not None:
-            await self._lasting.stop(in_order=in_order)
+        if self._persistence is not None:
+            await self._persistence.stop(in_order=in_order)
 
     async def run(self) -> None:
         loop, tick_s = asyncio.get_running_loop(), self._world.tick_s
@@ -118,14 +118,21 @@ class Ticker:
             self._metrics.stood()
             if self.tap is not None:
                 self.tap.stand()
+        if self.tap is not None and self.tap.traces.stood():
+            loop = asyncio.get_running_loop()
+            await loop.run_in_executor(self._thread, self.tap.traces.make_one)
 
     async def _tick(self) -> None:
         loop = asyncio.get_running_loop()
         self._schedule.begin(loop.time())
-        kept: list[Input] = [] if self._lasting is None else self._lasting.drain()
+        kept: list[Input] = [] if self._persistence is None else self._persistence.drain()
         given = [*kept, *self._hub.drain(loop.time()), *self._console.drain()]
         await self._run(given, self._ground_work.drain())
         self._schedule.pace.ticked(loop.time(), self._world.tick, self._world.tick_s)
+        room_s = self._schedule.next_deadline - loop.time()
+        if self.tap is not None and self.tap.traces.ticked(room_s):
+            # No tick begins meanwhile.
+            await loop.run_in_executor(self._thread, self.tap.traces.make_one)
 
     async def _run(self, given: Sequence[Input], derived: Sequence[Input]) -> None:
         loop, start = asyncio.get_running_loop(), perf_counter()
@@ -145,8 +152,8 @@ class Ticker:
         if self.tap is not None:
             for frame in frames:
                 self.tap.take(frame, seconds, self._schedule.late_ticks)
-        if self._lasting is not None:
-            self._lasting.between_ticks(loop.time())
+        if self._persistence is not None:
+            self._persistence.between_ticks(loop.time())
 
     def _think(self) -> bool:
         try:

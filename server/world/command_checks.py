@@ -15,7 +15,7 @@ from esplanade.server.world.inputs import (
     SetParameters,
     parts_of,
 )
-from esplanade.server.world.outcomes import CommandError, FaultCode
+from esplanade.server.world.outcomes import CommandError, Fault, FaultCode, fault_of
 
 
 def check(
@@ -39,6 +39,15 @@ def check(
                 raise CommandError(FaultCode.UNKNOWN_DOOR, text, door=door.name)
     for one in parts_of(command):
         _check_one(one, population, there, values=values)
+
+
+def fault_in(command: ActorCommand, population: Population, most_actors: int) -> Fault | None:
+    """What is wrong with a command, as `check` finds it; None if nothing is."""
+    try:
+        check(command, population, most_actors)
+    except Exception as error:  # noqa: BLE001 - whatever it is, it is told
+        return fault_of(error)
+    return None
 
 
 class Present:

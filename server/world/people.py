@@ -5,6 +5,7 @@ from typing import Final
 
 import numpy as np
 
+from esplanade.actors import ObservedPeople
 from esplanade.actors.locomotion.footsteps.course import AHEAD, AHEAD_S
 from esplanade.planning import LayeredGrid
 from esplanade.server.world.inputs import Follow, Steer
@@ -53,6 +54,12 @@ class People:
             self._following[slot] = True
             self._blocked[slot] = 0
             self._targets[slot] = wish.route[0][:2]
+
+    def observed(self) -> ObservedPeople:
+        """People as actors see them in this tick."""
+        people = self._state.of_kind(PERSON)
+        places = np.column_stack([self._state.positions[people], self._state.heights[people]])
+        return ObservedPeople(self._state.ids[people], places)
 
     def moves(self, slot: int) -> bool:
         """Whether that person has an intention to move."""

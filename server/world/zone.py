@@ -10,45 +10,39 @@ from esplanade.actors import (
     ActorParameters,
     ActorSpec,
     Explanation,
-    ObservedPeople,
     Population,
 )
 from esplanade.actors.blockers import Blocker
 from esplanade.actors.locomotion.footsteps.ground import Ground
 from esplanade.actors.people import NOBODY
 from esplanade.actors.potential_pool import RenewedPotential
+from esplanade.actors.traces import Decided, Trace
+from esplanade.actors.tracing import NotKeptError
 from esplanade.planning import AgentTable, LayeredGrid, Prediction, Scene
 from esplanade.server.world.actor_commands import ActorCommands
 from esplanade.server.world.actors import ActorAvatars
-from esplanade.server.world.command_checks import check
+from esplanade.server.world.command_checks import fault_in
 from esplanade.server.world.contacts import Contacts
 from esplanade.server.world.doors import Doors
-from esplanade.server.world.frame import Events, Frame, Line, Recorder, Tickets
+from esplanade.server.world.frame import Events, Frame, Recorder
 from esplanade.server.world.inputs import (
     ActorCommand,
     ActorsDerived,
     ActorsStood,
-    Attach,
-    Detach,
     DoorDerived,
-    Follow,
     IdsReserved,
     Input,
     Join,
-    Leave,
     MoveDoor,
     OfPerson,
     PotentialDerived,
-    Say,
     SetParameters,
-    Stand,
-    Steer,
     Still,
-    Watch,
 )
 from esplanade.server.world.latest_steps import LatestSteps
-from esplanade.server.world.outcomes import Fault, Outcome, fault_of
+from esplanade.server.world.outcomes import Fault, Outcome
 from esplanade.server.world.people import People
+from esplanade.server.world.person_inputs import PersonInputs
 from esplanade.server.world.routes import Point, RouteSearch, SharedWaves
 from esplanade.server.world.rules import Rules
 from esplanade.server.world.saved_zone import Returning, SavedZone
@@ -108,19 +102,21 @@ class Zone:
         self._moved_doors: dict[str, bool] = {}
         self._people = People(self.state, grid, rules, tick_s)
         self._population = population
+        self.decided_tick = 0
+        """The latest tick in which actors decided."""
         self._actors = ActorAvatars(self.state, population, names, tick_s)
         self._commands = ActorCommands(
             population, self._actors, scene, self.most_actors, roster, self.doors.want
         )
         self._recorder = Recorder(self.state, self.origin_m)
         self._plan_period = max(1, round(1.0 / tick_s) // PLANS_PER_SECOND)
-        self._watched: dict[int, int] = {}
-        self._begin_frame()
         self.steps = LatestSteps(self.state.capacity)
         self.feet = Feet(self.state, self.steps, Ground(scene, grid), tick_s, seed)
         self._spawning = Spawning(
             scene, grid, rules.person_clearance_m, np.random.SeedSequence(seed)
         )
+        self._persons = PersonInputs(self.state, self._people, self._spawning, grid, rules)
+        self._begin_frame()
         self._observed = NOBODY
         self._saved = SavedZone(
             self.state,
@@ -157,7 +153,7 @@ class Zone:
         with self.times.stage("people"):
             if not self._still:
                 self._people.move()
-                self._observed = self._observe()
+                self._observed = self._people.observed()
 
     def think(self) -> bool:
         """Find the next step of every actor; whether there are any.
@@ -171,7 +167,9 @@ class Zone:
             if self._stands:
                 self._actors.stand(self._observed)
                 return False
-            return self._actors.plan(self._observed)
+            decided = self._actors.plan(self._observed)
+            self.decided_tick = self.tick if decided else self.decided_tick
+            return decided
 
     def finish(self, actors_moved: bool) -> Frame:
         """Move the actors, if they have moved, and say what is new in this tick."""
@@ -194,16 +192,16 @@ class Zone:
                 tick=self.tick,
                 people=people,
                 actors=actors,
-                left=self._left,
+                left=self._persons.left,
                 entered=self._recorder.entered(),
                 reshaped=self._recorder.reshaped(),
-                joined=self._joined,
-                attached=self._attached,
-                detached=self._detached,
-                acks=self._acks,
+                joined=self._persons.joined,
+                attached=self._persons.attached,
+                detached=self._persons.detached,
+                acks=self._persons.acks,
                 records=self._recorder.changed(),
                 steps=self.steps.begun_in(self.tick, self.state.live()),
-                events=Events(self._moved_doors, pointing, self._chat, self._plans()),
+                events=Events(self._moved_doors, pointing, self._persons.chat, self._plans()),
                 outcomes=self._commands.outcomes,
                 actors_stood=not (actors_moved or self._still) and len(self._population) > 0,
             )
@@ -306,11 +304,7 @@ class Zone:
 
         Ask between two ticks.
         """
-        try:
-            check(command, self._population, self.most_actors)
-        except Exception as error:  # noqa: BLE001 - whatever it is, it is told
-            return fault_of(error)
-        return None
+        return fault_in(command, self._population, self.most_actors)
 
     def new_bodies(self, command: SetParameters) -> int:
         """Number of bodies, each with a goal, that a command would make; ask between two ticks.
@@ -368,6 +362,33 @@ class Zone:
         """The blocker of an actor, named by its avatar's id, as in `explain`; None for others."""
         return self._actors.blocker(avatar_id) if self.is_actor(avatar_id) else None
 
+    def keep_decisions(self, wanted: bool) -> bool:
+        """Set whether ticks keep what actors decide upon, for `decided` and `trace`; whether the
+        latest one has. Call it between two ticks."""
+        tracing = self._population.navigator.tracing
+        tracing.wanted = wanted
+        return tracing.has_kept
+
+    def decided(self, avatar_id: int) -> Decided | None:
+        """The path that an actor has taken, named by its avatar's id, and the one before.
+
+        None if that was not kept. Ask between two ticks, as for `trace`.
+        """
+        actor_id = self._actors.actor(avatar_id)
+        try:
+            return None if actor_id is None else self._population.navigator.decided(actor_id)
+        except NotKeptError:
+            return None
+
+    def trace(self, avatar_id: int) -> Trace | None:
+        """The decision of an actor in `decided_tick`, made once more; as `decided`. Heavy: it is
+        safe in the thread of `think`, if nothing else is done with the zone meanwhile."""
+        actor_id = self._actors.actor(avatar_id)
+        try:
+            return None if actor_id is None else self._population.navigator.trace(actor_id)
+        except NotKeptError:
+            return None
+
     def where(self, avatar_id: int) -> Point:
         """Where an avatar is: x, y and the height of its feet, metres."""
         slot = self.state.slot(avatar_id)
@@ -377,19 +398,15 @@ class Zone:
     # --- inputs -------------------------------------------------------------------------------
 
     def _begin_frame(self) -> None:
-        self._joined: Tickets = []
-        self._attached: Tickets = []
-        self._detached: list[int] = []
-        self._left: list[int] = []
-        self._acks: dict[int, int] = {}
-        self._chat: list[Line] = []
+        self._persons.begin_frame()
         self._stands = self._still = False
         self._commands.begin()
 
     def _take(self, item: Input) -> None:
         match item:
             case Join():
-                self._joined.append((item.ticket, self._join(item)))
+                self._persons.join(item)
+                self.people_seen += 1
             case MoveDoor():
                 self.doors.want(item.name, item.is_open)
             case DoorDerived():
@@ -397,73 +414,20 @@ class Zone:
             case PotentialDerived():
                 self._population.renew_potential(item.potential)
             case ActorsDerived():
-                self._go(self._commands.take_derived(item, self.tick))
+                self._persons.gone(self._commands.take_derived(item, self.tick))
             case ActorsStood():
                 self._stands = True
             case Still():
                 self._still = True
             case IdsReserved():
                 self.state.add_ids(item.first, item.end)
-            case Attach() | Detach() | Leave() | Stand() | Steer() | Follow() | Say() | Watch():
+            case _ if isinstance(item, OfPerson):
                 if item.id in self.state:
-                    self._apply(item, self.state.slot(item.id))
+                    self._persons.take(item, self.state.slot(item.id))
             case _:
-                self._go(self._commands.take(item, self.tick))
-
-    def _go(self, avatars: list[int]) -> None:
-        """Actors' avatars have left the world: nobody watches them any more."""
-        self._left += avatars
-        gone = set(avatars)
-        self._watched = {who: one for who, one in self._watched.items() if one not in gone}
-
-    def _join(self, join: Join) -> int:
-        place = self._spawning.place(join.at, join.anywhere)
-        layer = self._grid.layer_at(place[:2], place[2])
-        radius_m = self.rules.person_radius_m
-        slot = self.state.add(PERSON, join.name, place, layer, radius_m)
-        self._people.stop(slot)
-        self.people_seen += 1
-        return int(self.state.ids[slot])
-
-    def _apply(self, item: OfPerson, slot: int) -> None:
-        match item:
-            case Steer():
-                self._people.steer(slot, item)
-                self._acks[item.id] = item.seq
-            case Follow():
-                self._people.follow(slot, item)
-                self._acks[item.id] = item.seq
-            case Stand():
-                self._people.stop(slot)
-            case Attach():
-                self._attached.append((item.ticket, item.id))
-            case Detach():
-                self._people.stop(slot)
-                self._look_no_more(item.id)
-                self._detached.append(item.id)
-            case Leave():
-                self._people.stop(slot)
-                self._look_no_more(item.id)
-                self._left.append(item.id)
-                self.state.remove(item.id)
-            case Say():
-                self._chat.append(Line(item.id, item.text))
-            case Watch():
-                self._watched.pop(item.id, None)
-                if item.actor_id is not None and self.is_actor(item.actor_id):
-                    self._watched[item.id] = item.actor_id
-
-    def _look_no_more(self, avatar_id: int) -> None:
-        self._watched.pop(avatar_id, None)
-        self._attached = [(ticket, one) for ticket, one in self._attached if one != avatar_id]
+                self._persons.gone(self._commands.take(item, self.tick))
 
     def _plans(self) -> dict[int, Explanation]:
         """Why the watched actors do what they do, of those whose turn it is."""
-        in_turn = {a for a in self._watched.values() if (self.tick + a) % self._plan_period == 0}
+        in_turn = {a for a in self._persons.watched if (self.tick + a) % self._plan_period == 0}
         return {actor: self.explain(actor) for actor in sorted(in_turn)}
-
-    def _observe(self) -> ObservedPeople:
-        state = self.state
-        people = state.of_kind(PERSON)
-        places = np.column_stack([state.positions[people], state.heights[people]])
-        return ObservedPeople(state.ids[people], places)

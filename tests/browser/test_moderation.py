@@ -4,7 +4,7 @@ from collections.abc import AsyncIterator
 
 import pytest
 import pytest_asyncio
-from playwright.async_api import BrowserContext
+from playwright.async_api import Browser, BrowserContext
 
 from esplanade.server.app import Running, running
 from esplanade.server.settings import ServerSettings
@@ -144,3 +144,29 @@ async def test_who_is_walked_out_sees_their_avatar_go(
     await dan.page.locator("#join-reason", has_text="We close.").wait_for()
     await dan.page.keyboard.up("s")
     assert await dan.complaints() == []
+
+
+@pytest.mark.parametrize(("width", "height"), [(1280, 720), (390, 844)])
+async def test_what_a_person_is_told_stands_one_below_the_other(
+    server: Running, browser: Browser, width: int, height: int
+) -> None:
+    dora = await operator(server, f"dora-{width}", "director")
+    profile = await browser.new_context(viewport={"width": width, "height": height})
+    visitor, who = await arrived(server, profile, f"Ann {width}")
+    page = visitor.page
+    await done(dora, op="pace", pause=True)
+    await done(dora, op="mute", person=who, seconds=600, text="Please calm down for a while.")
+    try:
+        boxes = []
+        for banner in ("#pace", "#moderation"):
+            await page.wait_for_selector(banner)
+            box = await page.locator(banner).bounding_box()
+            assert box is not None
+            assert box["x"] >= 0
+            assert box["x"] + box["width"] <= width
+            boxes.append(box)
+        top, below = boxes
+        assert top["y"] + top["height"] <= below["y"]
+        await page.click("#moderation-close")
+    finally:
+        await done(dora, op="pace", pause=False)

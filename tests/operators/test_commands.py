@@ -126,6 +126,13 @@ async def test_actors_doors_and_people(
         await told("add", "--count", "2", "--id", "extra", code=2)
         assert "no door" in await told("door", "nowhere", "open", code=1)
         assert "no place" in (await told("send", "actor-1", "the", "moon", code=1)).lower()
+        await told("pace", "step", code=1)
+        await told("pace", "pause")
+        await told("pace", "step", "--ticks", "3")
+        await told("pace", "go")
+        await told("pace", "0.5", "--note", "look closely")
+        assert server.console.pace.state.factor == 0.5
+        await told("pace", "9", code=2)
         await told("announce", "hello")
         await told("mark", "now")
         async with joined(server.port, "Eve") as eve:

@@ -9,7 +9,7 @@ import pytest
 SERVED_TICKS = """
 import gc
 from esplanade.planning.compiled.jit import Kernel
-from esplanade.server.app import build_world
+from esplanade.server.building import build_world
 from esplanade.server.loading import load_scene
 from esplanade.server.settings import ServerSettings
 from esplanade.server.net.packing import Packing

@@ -161,15 +161,16 @@ async def test_what_was_not_acknowledged_never_happened(
         reached, go_on = asyncio.Event(), asyncio.Event()
 
         def stopping(method: Callable[..., Any]) -> Callable[..., Any]:
-            async def stop_first(*arguments: Any) -> Any:
+            async def stop_first(*arguments: Any, **named: Any) -> Any:
                 reached.set()
                 await go_on.wait()
-                return await method(*arguments)
+                return await method(*arguments, **named)
 
             return stop_first
 
         if moment == "before_tick":
-            monkeypatch.setattr(console, "_in_a_tick", stopping(console._in_a_tick))
+            inputs = console._tick_inputs
+            monkeypatch.setattr(inputs, "carry_out", stopping(inputs.carry_out))
         else:
             monkeypatch.setattr(console._records, "outcomes", stopping(console._records.outcomes))
         list_of = [

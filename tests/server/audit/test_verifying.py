@@ -138,7 +138,7 @@ async def test_the_fault_of_one_writer_is_none_of_another(store: SqlStore, tampe
 async def test_what_is_forgotten_in_good_order_is_no_fault(store: SqlStore, tamper: Tamper) -> None:
     heads = {chain.writer: chain.head for chain in await verify(store)}
     counts = await forget(store, AuditLog(store, "command line"), MACHINE, "Eve")
-    assert counts == {"accounts": 0, "seats": 0, "audit": 2}
+    assert {name: count for name, count in counts.items() if count} == {"audit": 2}
     chains = {chain.writer: chain for chain in await verify(store)}
     assert await faults(store) == []
     assert (chains["server"].forgotten, chains["server"].head) == (2, heads["server"])

@@ -1,7 +1,7 @@
 """A console on a small world that ticks as fast as it can, with a clock that a test moves."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Iterable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from typing import Any
@@ -30,7 +30,10 @@ class Nobody:
     def muted_s(self, person: int) -> float:
         return 0.0
 
-    def announce(self, text: str) -> int:
+    def within(self, **_: Any) -> list[int]:
+        return []
+
+    def announce(self, text: str, people: Iterable[int]) -> int:
         return 0
 
     def kick(self, person: int, text: str) -> None:
@@ -98,7 +101,7 @@ async def desk(
     clock, audit = clock or Clock(), AuditLog(store, "server")
     presets = Presets(read_presets(None))
     console = Console(world.zone, Nobody(), store, audit, presets=presets, clock_us=clock)
-    await console.load_kept()
+    await console.load_operated()
     found = Desk(console, world, clock, audit)
     console.listen(lambda kind, what: found.told.append((kind, what)))
     ticking = asyncio.create_task(_tick(world, console))

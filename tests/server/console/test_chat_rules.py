@@ -108,7 +108,7 @@ async def test_chat_is_kept_for_days(serving: Serving, tmp_path) -> None:
         await ann.send(ChatLine(text="another"))
         assert (await ann.until(Chat)).line > line
     async with serving(data=tmp_path / "world") as server:
-        assert list(server.kept.moderated.chat) == []
+        assert list(server.kept.moderation.chat) == []
 
 
 async def test_an_announcement_to_some(serving: Serving) -> None:

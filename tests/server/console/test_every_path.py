@@ -38,6 +38,7 @@ PATHS: Final[dict[tuple[str, str], Row]] = {
     ("GET", "/parameters"): Row(Right.WATCH),
     ("GET", "/map"): Row(Right.WATCH),
     ("GET", "/actors/{actor_id:path}/why"): Row(Right.WATCH),
+    ("GET", "/actors/{actor_id:path}/trace"): Row(Right.WATCH),
     ("GET", "/series/names"): Row(Right.WATCH),
     ("GET", "/series"): Row(Right.WATCH),
     ("GET", "/events"): Row(Right.WATCH),

@@ -78,7 +78,7 @@ class Operating(RuleBasedStateMachine):
             self.world.zone, Nobody(), self.store, audit, presets=presets, clock_us=self.clock
         )
         found.figures.add("crowd", "1", "For this test", lambda: self.model.crowd)
-        await found.load_kept()
+        await found.load_operated()
         return found
 
     # --- what is done -----------------------------------------------------------------------------

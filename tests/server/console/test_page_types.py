@@ -49,6 +49,9 @@ def test_the_page_knows_all_rights_and_reasons() -> None:
         ("/map", (), "MapData"),
         ("/heat", ("storeys", 0), "Raster"),
         ("/actors/actor-1/why", ("spans", 0), "WhySpan"),
+        ("/actors/actor-1/trace", (), "Trace"),
+        ("/actors/actor-1/trace", ("cost",), "Cost"),
+        ("/actors/actor-1/trace", ("risk", 0), "Raster"),
     ],
 )
 async def test_an_answer_has_the_fields_that_the_page_reads(

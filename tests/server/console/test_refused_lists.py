@@ -1,7 +1,7 @@
 """A refused list of commands leaves no trace: in the planner, in actors, or in what is set."""
 
 import asyncio
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -70,7 +70,7 @@ class Listening(Nobody):
 
     announced = 0
 
-    def announce(self, text: str) -> int:
+    def announce(self, text: str, people: Iterable[int]) -> int:
         self.announced += 1
         return 0
 
@@ -113,8 +113,11 @@ async def _refused(world: Populated, given_: list[dict[str, Any]], place: int) -
         with pytest.raises(RefusedError) as refused:
             await sending
         paths = [fault.path[:1] for fault in refused.value.faults]
-        # What the world finds wrong with all of it together has no place.
-        assert [place] in paths or not paths[0] or paths[0] == ["values"]
+        # What the world finds wrong with all of it together has no place, and whoever comes in with
+        # values that do not go together is refused where it comes in.
+        newcomers = [index for index, each in enumerate(given_) if each["op"] == "add_actors"]
+        places = [[place], [], ["values"], *([index] for index in newcomers if index > place)]
+        assert any(path in places for path in paths)
         world.frames(3)
         assert _all_of_it(world, console) == found
         assert (await audit.page(Filter())).rows == ()
@@ -144,5 +147,5 @@ def _all_of_it(world: Populated, console: Console) -> dict[str, Any]:
         "guards": list(console.scheduler.guards),
         "held wishes": set(state.held),
         "changes": console.changes.save(),
-        "lasting": console.lasting.under_way,
+        "ongoing": console.ongoing.under_way,
     }

@@ -110,6 +110,30 @@ async def test_a_command_is_told_as_change_event_mark_and_group(serving: Serving
         assert [each["text"] for each in body["marks"]] == ["set_group", "here"]
 
 
+async def test_a_guard_and_a_schedule_that_act_are_in_events_and_changes(serving: Serving) -> None:
+    async with serving(actors=1) as server:
+        olga = await operator(server, "olga", "tuner")
+        async with live_console(server.private_port, olga.token) as console:
+            await console.subscribe("events", kinds=["command"])
+            await console.subscribe("changes")
+            risk = {"op": "set_parameters", "scope": "world", "values": {"risk_weight": 12}}
+            guard = {"figure": "actors", "above": 0, "for_s": 0}
+            status, answer = await olga.send({**risk, "guard": guard})
+            assert status == 200, answer
+            why = f"guard g{answer['command']}: actors is 1, above 0"
+            await console.event("command", text=f"olga: revert, {why}")
+            status, answer = await olga.send(
+                {"op": "schedule", "commands": [risk], "when": {"after_s": 0.1}}
+            )
+            assert status == 200, answer
+            name = next(iter(answer["after"])).removeprefix("schedule:")
+            await console.event("command", text=f"olga: set_parameters, schedule {name}")
+        _, found = await olga.get("/changes")
+        notes = [each["note"] for each in found["changes"]]
+        assert why in notes
+        assert f"schedule {name}" in notes
+
+
 async def test_events_tell_who_came_spoke_and_left(serving: Serving) -> None:
     async with serving(hide_names=True) as server:
         vera = await operator(server, "vera", "viewer")

@@ -208,6 +208,23 @@ async def test_doors_that_are_clicked_are_in_the_audit_and_end_with_the_right(
             assert server.world.doors.states() == {"gate": False}
 
 
+async def test_the_operator_key_moves_doors_by_commands_that_are_in_the_audit(
+    serving: Serving, tmp_path: Path
+) -> None:
+    scene = tmp_path / "gated.json"
+    scene.write_text(GATED.model_dump_json())
+    async with serving(scene=scene, operator_key="the key") as server:
+        async with greeting(server, operator="the key") as client:
+            assert (await client.until(Welcome)).operator
+            await client.send(SetDoor(name="gate", open=False))
+            assert (await client.until(Doors)).doors == {"gate": False}
+        rows = (await server.kept.audit.page(Filter(command="move_door"))).rows
+        assert {(row.account, row.role) for row in rows} == {("key", "doors")}
+        olga = await operator(server, "olga", "viewer")
+        _, answer = await olga.get("/changes")
+        assert [each["account"] for each in answer["changes"]] == ["key"]
+
+
 async def test_a_bot_comes_in_by_its_token_and_at_its_rate(serving: Serving) -> None:
     async with serving(closed=True, message_rate=5.0) as server:
         anna = await logged_in(server, "anna", "admin")

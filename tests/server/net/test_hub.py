@@ -227,7 +227,7 @@ async def test_what_is_said_on_going_is_heard(serving: Serving) -> None:
 async def test_where_too_many_talk_at_once_a_speaker_is_told(
     serving: Serving, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("esplanade.server.net.hub.MAX_LINES", 0)
+    monkeypatch.setattr("esplanade.server.net.waiting_lines.MAX_LINES", 0)
     async with serving() as server, joined(server.port) as client:
         await client.send(ChatLine(text="hello"))
         error = await client.until(Error)

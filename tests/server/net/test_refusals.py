@@ -69,7 +69,7 @@ async def test_a_flood_of_chat_is_named_with_its_address(serving: Serving) -> No
 async def test_a_full_list_of_lines_is_named_too(
     serving: Serving, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("esplanade.server.net.hub.MAX_LINES", 0)
+    monkeypatch.setattr("esplanade.server.net.waiting_lines.MAX_LINES", 0)
     with structlog.testing.capture_logs() as lines:
         async with serving() as server, joined(server.port, source=ATTACKER) as client:
             await client.send(ChatLine(text="hello"))

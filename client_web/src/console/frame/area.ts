@@ -1,6 +1,6 @@
 /** One area of the page: tabs of the panels in it, and the one that is shown. */
 
-import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { type Area, panelOf } from "../panels/registry";
 import { AREAS } from "../layout/layout";
 import { rove } from "../state/roving";
@@ -156,6 +156,13 @@ class AreaElement extends LitElement {
   /** Bring the keyboard into the area: to its tab. */
   override focus(): void {
     this.renderRoot.querySelector<HTMLElement>('[role="tab"][aria-selected="true"]')?.focus();
+  }
+
+  protected override updated(changes: PropertyValues): void {
+    // Where there are more tabs than room, the one that is shown is in sight.
+    if (!changes.has("active") && !changes.has("panels")) return;
+    const tab = this.renderRoot.querySelector('[role="tab"][aria-selected="true"]');
+    tab?.scrollIntoView({ block: "nearest", inline: "nearest" });
   }
 
   protected override render(): TemplateResult {

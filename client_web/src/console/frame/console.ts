@@ -5,7 +5,6 @@ import type { AppContext, Mood } from "../context";
 import { LayoutStore } from "../layout/keeping";
 import {
   AREAS,
-  areaOf,
   type AreaLayout,
   type Layout,
   moved,
@@ -14,14 +13,14 @@ import {
   shown,
   shut,
   usualLayout,
-  writeLayout,
 } from "../layout/layout";
 import { type Area, panelOf } from "../panels/registry";
-import { firstToken, readFragment, type Shared, writeFragment } from "../state/fragment";
+import { firstToken, readFragment, type Shared } from "../state/fragment";
 import { Session } from "../state/session";
 import { type Stop, Watching } from "../state/signal";
 import { takesText } from "../state/shortcuts";
 import { controls } from "../style/controls";
+import { Address, takeShared } from "./address";
 import type { AreaWish } from "./area";
 import "./area";
 import { frame } from "./framestyle";
@@ -39,7 +38,6 @@ import { watchWorld } from "./worldwatch";
 
 /** Below this width there are tabs instead of columns. */
 const NARROW = "(max-width: 759px)";
-const ADDRESS_MS = 300;
 
 export class Console extends LitElement {
   static override styles = [controls, frame];
@@ -54,7 +52,7 @@ export class Console extends LitElement {
   private front: string;
   private shared: Shared | null;
   private stopWatching: Stop | null = null;
-  private addressTimer: ReturnType<typeof setTimeout> | undefined;
+  private readonly address: Address;
 
   constructor() {
     super();
@@ -75,6 +73,11 @@ export class Console extends LitElement {
     });
     this.front = "map";
     this.session = new Session(this.app.api, this.app.state, token);
+    this.address = new Address(this.app, {
+      layout: () => this.layout,
+      front: () => this.front,
+      isIn: () => this.session.standing.value === "in",
+    });
     this.app.live.mayConnect = () => this.session.holds();
     this.app.live.refused = (faults) => {
       this.app.toast(faults.map(({ text }) => text).join("; "), "fault");
@@ -87,7 +90,7 @@ export class Console extends LitElement {
     });
     for (const signal of [state.chosen, state.draft, state.moment]) {
       signal.watch(() => {
-        this.writeAddress();
+        this.address.write();
       });
     }
     this.narrow.addEventListener("change", () => {
@@ -108,7 +111,7 @@ export class Console extends LitElement {
         this.renderRoot.querySelector<Sheet>("esp-sheet")?.open();
       },
       copyLink: () => {
-        void this.copyLink();
+        void this.address.copyLink();
       },
     });
     void this.session.begin();
@@ -155,7 +158,7 @@ export class Console extends LitElement {
             @layout=${(event: CustomEvent<Layout>) => {
               this.setLayout(event.detail);
             }}
-            @copylink=${() => void this.copyLink()}
+            @copylink=${() => void this.address.copyLink()}
             @keys=${() => this.renderRoot.querySelector<Sheet>("esp-sheet")?.open()}
             @logout=${() => void this.logOut()}
           ></esp-topbar>
@@ -248,7 +251,7 @@ export class Console extends LitElement {
     if (!entry) return;
     this.front = panel;
     this.setLayout(shown(this.layout, entry));
-    this.writeAddress();
+    this.address.write();
   }
 
   private setLayout(layout: Layout): void {
@@ -282,46 +285,9 @@ export class Console extends LitElement {
     if (!shared) return;
     const layout = shared.layout === null ? null : readLayout(shared.layout);
     if (layout) this.layout = layout;
-    if (shared.chosen.length > 0) this.app.choose(shared.chosen);
-    if (shared.draft) this.app.state.draft.value = shared.draft;
-    if (shared.moment !== null) this.app.state.moment.value = shared.moment;
+    takeShared(this.app, shared);
     if (shared.panel !== null) this.show(shared.panel);
     this.requestUpdate();
-  }
-
-  private toShare(): Shared {
-    const { chosen, draft, moment } = this.app.state;
-    const panel = areaOf(this.layout, this.front) ? this.front : null;
-    return {
-      chosen: chosen.value,
-      panel,
-      draft: draft.value,
-      moment: moment.value,
-      layout: null,
-    };
-  }
-
-  /** The address shows the same after it is loaded anew. */
-  private writeAddress(): void {
-    clearTimeout(this.addressTimer);
-    this.addressTimer = setTimeout(() => {
-      if (this.session.standing.value !== "in") return;
-      const text = writeFragment(this.toShare());
-      history.replaceState(null, "", location.pathname + location.search + (text && `#${text}`));
-    }, ADDRESS_MS);
-  }
-
-  private async copyLink(): Promise<void> {
-    const text = writeFragment({ ...this.toShare(), layout: writeLayout(this.layout) });
-    const link = `${location.origin}${location.pathname}#${text}`;
-    try {
-      await navigator.clipboard.writeText(link);
-      this.app.toast("The link is copied. It shows the same to whoever may log in.", "done");
-    } catch {
-      // Without a clipboard the link stands in the address.
-      history.replaceState(null, "", link);
-      this.app.toast("The link stands in the address of this page now.");
-    }
   }
 
   private async logOut(): Promise<void> {

@@ -5,8 +5,9 @@ import { Panel } from "../panels/panel";
 import { reasonText } from "../state/reasons";
 import { controls } from "../style/controls";
 import { valueText } from "./compare";
-import { costTable, parameterTable, searchPart, whyBand } from "./parts";
-import { traceOverlay } from "./tree";
+import { costTable, parameterTable, whyBand } from "./parts";
+import { searchPart } from "./searchpart";
+import { traceOverlay, type TraceView } from "./tree";
 import { WatchedActor } from "./watching";
 import { blockerText, secondsText } from "./why";
 
@@ -82,6 +83,22 @@ class InspectorPanel extends Panel {
         font-weight: 600;
       }
 
+      .costs td {
+        min-width: 56px;
+      }
+
+      .bar {
+        display: block;
+        height: 4px;
+        border-radius: 2px;
+        background: var(--accent);
+      }
+
+      .bar.risk,
+      .bar.others {
+        background: var(--fault);
+      }
+
       .slice {
         display: flex;
         gap: 8px;
@@ -96,7 +113,7 @@ class InspectorPanel extends Panel {
   ];
 
   private watched: WatchedActor[] = [];
-  private slice: number | null = null;
+  private view: TraceView = { slice: 0, by: "order" };
 
   protected override begin(): void {
     const { state, scheme } = this.app;
@@ -150,10 +167,10 @@ class InspectorPanel extends Panel {
           ? nothing
           : searchPart(
               first.trace,
-              this.slice,
+              this.view,
               () => void this.askTrace(first),
-              (slice) => {
-                this.showTrace(first, slice);
+              (view) => {
+                this.showTrace(first, view);
               },
             )
       }
@@ -259,15 +276,20 @@ class InspectorPanel extends Panel {
 
   private async askTrace(actor: WatchedActor): Promise<void> {
     await actor.askTrace();
-    if (actor.trace) this.showTrace(actor, this.slice ?? 0);
-    else this.app.toast("nothing is known of its last search");
+    if (actor.trace) this.showTrace(actor, this.view);
   }
 
-  private showTrace(actor: WatchedActor, slice: number | null): void {
-    this.slice = slice;
-    if (slice === null) actor.trace = null;
+  /** Show what was traced on the map, or nothing of it any more. */
+  private showTrace(actor: WatchedActor, view: TraceView | null): void {
+    if (view === null) actor.trace = null;
+    else this.view = view;
     const { trace } = actor;
-    this.app.state.overlay(TRACE, trace ? traceOverlay(trace, slice) : null);
+    const { scheme, state } = this.app;
+    const colours = {
+      taken: scheme.value.colour("focus"),
+      before: scheme.value.colour("soft-ink"),
+    };
+    state.overlay(TRACE, trace ? traceOverlay(trace, this.view, colours) : null);
     this.requestUpdate();
   }
 }

@@ -1,25 +1,15 @@
-/** The parts of the inspector: the band of reasons, costs, parameters, the search. */
+/** The parts of the inspector: the band of reasons, costs, parameters. */
 
 import { html, nothing, type TemplateResult } from "lit";
-import type { Cost, Trace, WhySpan } from "../net/types";
+import type { WhySpan } from "../net/types";
 import { reasonColour, reasonText } from "../state/reasons";
 import { styled } from "../style/styled";
+import { costBars } from "./costs";
 import { compare, sourceText, valueText } from "./compare";
-import { countNodes } from "./tree";
 import type { WatchedActor } from "./watching";
 import { piecesOf, secondsText, shares, SHOWN_S, spanText, stopsOf } from "./why";
 
 const MOST_STOPS = 12;
-const PARTS: readonly (readonly [keyof Cost, string])[] = [
-  ["time", "time"],
-  ["risk", "risk"],
-  ["turn", "turning"],
-  ["wall", "near walls"],
-  ["hurry", "hurrying"],
-  ["keep_right", "keeping right"],
-  ["total", "in all"],
-];
-
 export function whyBand(
   spans: readonly WhySpan[],
   tick: number,
@@ -69,31 +59,13 @@ export function whyBand(
   </section>`;
 }
 
+/** The cost of the path now, and of the one before. */
 export function costTable({ now }: WatchedActor): TemplateResult | typeof nothing {
   if (!now?.cost) return nothing;
-  const before = now.previous?.cost ?? null;
-  return html`<section aria-labelledby="cost">
-    <h3 id="cost">Cost of the path</h3>
-    <table>
-      <thead>
-        <tr>
-          <th scope="col">part</th>
-          <th scope="col">now</th>
-          ${before ? html`<th scope="col">the one before</th>` : nothing}
-        </tr>
-      </thead>
-      <tbody>
-        ${PARTS.map(
-          ([part, text]) =>
-            html`<tr>
-              <th scope="row">${text}</th>
-              <td>${now.cost?.[part].toFixed(2)}</td>
-              ${before ? html`<td>${before[part].toFixed(2)}</td>` : nothing}
-            </tr>`,
-        )}
-      </tbody>
-    </table>
-  </section>`;
+  const columns = [{ title: "now", cost: now.cost }];
+  const before = now.previous?.cost;
+  if (before) columns.push({ title: "the one before", cost: before });
+  return costBars("cost", "Cost of the path", columns);
 }
 
 /** Parameters of one actor, or of several beside each other. */
@@ -138,62 +110,4 @@ export function parameterTable(actors: readonly WatchedActor[]): TemplateResult 
     </table>
     ${several && shown.length === 0 ? html`<p class="soft">None.</p>` : nothing}
   </section>`;
-}
-
-export function searchPart(
-  trace: Trace | null,
-  slice: number | null,
-  ask: () => void,
-  show: (slice: number | null) => void,
-): TemplateResult {
-  return html`<section aria-labelledby="search">
-    <h3 id="search">How it searches</h3>
-    <div class="row">
-      <button @click=${ask}>${trace ? "Ask again" : "Show the search and the risk"}</button>
-      ${
-        trace
-          ? html`<button
-              @click=${() => {
-                show(null);
-              }}
-            >
-              Hide
-            </button>`
-          : nothing
-      }
-    </div>
-    ${trace ? traceFacts(trace, slice, show) : nothing}
-  </section>`;
-}
-
-function traceFacts(
-  trace: Trace,
-  slice: number | null,
-  show: (slice: number | null) => void,
-): TemplateResult {
-  const { expanded, open } = countNodes(trace);
-  const at = slice ?? 0;
-  return html`
-    <p>
-      ${trace.status.replaceAll("_", " ")}: ${trace.expansions} of ${trace.budget} expansions, tick
-      ${trace.tick}; on the map ${expanded} nodes from blue (first) to orange (last), ${open} left
-      open in grey.
-    </p>
-    ${trace.why ? html`<p>${trace.why}</p>` : nothing}
-    ${
-      trace.risk.length > 0
-        ? html`<label class="slice"
-            >Risk in ${trace.risk[at]?.t_s.toFixed(1)} s
-            <input
-              type="range"
-              min="0"
-              max=${trace.risk.length - 1}
-              .value=${String(at)}
-              @input=${(event: Event) => {
-                show(Number((event.target as HTMLInputElement).value));
-              }}
-          /></label>`
-        : nothing
-    }
-  `;
 }

@@ -1,52 +1,86 @@
-/** The search for a path as lines on the map, coloured by the order in which nodes were expanded. */
+/** A decision on the map: the search as lines, the paths that were compared, a slice of risk. */
 
+import { valuesOf } from "../map/raster";
 import type { Point, Trace } from "../net/types";
-import type { Overlay, Segments } from "../state/overlays";
+import type { Line, Overlay, Segments } from "../state/overlays";
 
 const SHADES = 10;
 const UNEXPANDED = "#8a8f96";
+
+/** What the colour of a line of the search tells. */
+export type ColourBy = "order" | "time";
+
+export interface TraceView {
+  /** The index of the slice of the risk field. */
+  slice: number;
+  by: ColourBy;
+}
 
 export interface TreeCount {
   expanded: number;
   open: number;
 }
 
-export function countNodes({ nodes }: Trace): TreeCount {
+export function countNodes({ nodes, left_out }: Trace): TreeCount {
   const expanded = nodes.filter((node) => node[6] >= 0).length;
-  return { expanded, open: nodes.length - expanded };
+  return { expanded, open: nodes.length - expanded + left_out };
 }
 
-/** What is drawn on the map; `slice` is the index of the slice of the risk field. */
-export function traceOverlay(trace: Trace, slice: number | null): Overlay {
-  const risk = slice === null ? undefined : trace.risk[slice];
+/** What is drawn on the map; paths have the colours of those that are drawn live. */
+export function traceOverlay(
+  trace: Trace,
+  { slice, by }: TraceView,
+  colours: { taken: string; before: string },
+): Overlay {
+  const risk = trace.risk[slice];
   const z = trace.nodes[0]?.[2] ?? 0;
+  const lines: Line[] = [];
+  if (trace.previous) lines.push(lineOf(trace.previous.path, colours.before, true));
+  lines.push(lineOf(trace.path, colours.taken, false));
   return {
-    lines: [],
-    segments: segmentsOf(trace),
-    ...(risk ? { raster: { ...risk, z_m: z } } : {}),
+    lines,
+    segments: segmentsOf(trace, by),
+    ...(risk ? { raster: { ...risk, z_m: z, most: mostRisk(trace) } } : {}),
   };
 }
 
-export function segmentsOf({ nodes }: Trace): Segments[] {
-  const last = Math.max(1, ...nodes.map((node) => node[6]));
+/** The greatest value of all slices, so that one colour is the same at all times. */
+export function mostRisk({ risk }: Trace): number {
+  return Math.max(0, ...risk.map((slice) => Math.max(0, ...valuesOf(slice))));
+}
+
+export function segmentsOf({ nodes }: Trace, by: ColourBy): Segments[] {
+  const column = by === "order" ? 6 : 3;
+  const last = Math.max(by === "order" ? 1 : 0.1, ...nodes.map((node) => node[column]));
   const shades = Array.from({ length: SHADES + 1 }, () => [] as [Point, Point][]);
   for (const node of nodes) {
     const before = nodes[node[4]];
     if (!before) continue;
-    const order = node[6];
-    const shade = order < 0 ? SHADES : Math.min(SHADES - 1, Math.floor((order / last) * SHADES));
+    const part = node[column] / last;
+    const open = by === "order" && node[6] < 0;
+    const shade = open ? SHADES : Math.min(SHADES - 1, Math.floor(part * SHADES));
     shades[shade]?.push([
       [before[0], before[1], before[2]],
       [node[0], node[1], node[2]],
     ]);
   }
+  // Those left open are many, and lie below the others.
   return shades
     .map((pairs, shade) => ({ pairs, colour: shade === SHADES ? UNEXPANDED : shadeColour(shade) }))
+    .reverse()
     .filter(({ pairs }) => pairs.length > 0);
 }
 
-/** From blue for the first expanded to orange for the last. */
+/** From blue for the first to orange for the last. */
 function shadeColour(shade: number): string {
   const part = shade / (SHADES - 1);
   return `hsl(${Math.round(225 - 195 * part)} 70% 48%)`;
+}
+
+function lineOf(
+  path: readonly (readonly [number, number, number, number])[],
+  colour: string,
+  dashed: boolean,
+): Line {
+  return { points: path.map(([x, y, z]) => [x, y, z]), colour, widthPx: dashed ? 2 : 3, dashed };
 }

@@ -2,6 +2,7 @@
 
 import type { MapData, Ring } from "../net/types";
 import type { Scheme } from "../state/scheme";
+import { type Box, boxAt } from "./labels";
 import type { MapView } from "./views";
 
 /** A wall that begins lower than this above a floor, and ends higher than a kerb, stands on it. */
@@ -123,20 +124,28 @@ export function drawDoors(
   pen.setLineDash([]);
 }
 
+/** Places and their names, lighter than those of avatars; returns where the names are. */
 export function drawPlaces(
   pen: CanvasRenderingContext2D,
   view: MapView,
   { places }: MapData,
   scheme: Scheme,
-): void {
-  pen.fillStyle = scheme.colour("map-text");
-  pen.font = "12px system-ui, sans-serif";
+): Box[] {
+  const names: Box[] = [];
+  pen.fillStyle = scheme.colour("soft-ink");
+  pen.globalAlpha = 0.8;
+  pen.font = "italic 11px system-ui, sans-serif";
   pen.textAlign = "center";
   for (const place of places) {
     const storey = view.storeyOf(place.z);
     if (!view.isShown(storey)) continue;
     const [x, y] = view.toCanvas(place.x, place.y, storey);
     pen.fillRect(x - 2, y - 2, 4, 4);
-    if (view.scale >= NAMES_PX_PER_M) pen.fillText(place.name, x, y - 7);
+    if (view.scale < NAMES_PX_PER_M) continue;
+    pen.fillText(place.name, x, y - 7);
+    const { width } = pen.measureText(place.name);
+    names.push(boxAt({ x: x - width / 2, y: y - 7 }, width));
   }
+  pen.globalAlpha = 1;
+  return names;
 }

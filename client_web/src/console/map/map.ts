@@ -5,23 +5,22 @@ import type { MapData, Point } from "../net/types";
 import { Panel } from "../panels/panel";
 import type { Stop } from "../state/signal";
 import { controls } from "../style/controls";
+import { Choosing } from "./choosing";
 import { PointerGestures, type Mode } from "./gestures";
 import { drawScale, HeatMap } from "./heat";
 import { Contacts, type ContactsMessage, type LayersMessage } from "./layers";
 import { type MapOptions, readOptions } from "./options";
 import { Painter } from "./painter";
-import { boxOf, isWithin, nearest, type Pixel } from "./picking";
+import { boxOf, type Pixel } from "./picking";
+import { pressed } from "./mapkeys";
 import { mapStyle } from "./mapstyle";
 import { legend, toolbar } from "./toolbar";
 import { MapView } from "./views";
 
 const KEY = "esplanade-console-map";
-const CLICK_PX = 14;
 const HEAT_MS = 10_000;
-const PAN_PX = 60;
 /** The legend lies over this part of the map. */
 const LEGEND_PX = 30;
-const ZOOM = 1.3;
 const FOLLOW_PX_PER_M = 18;
 
 class MapPanel extends Panel {
@@ -29,6 +28,11 @@ class MapPanel extends Panel {
 
   private readonly view = new MapView();
   private readonly contacts = new Contacts();
+  private readonly choosing = new Choosing(
+    () => this.app,
+    this.view,
+    () => this.painter,
+  );
   private options: MapOptions = readOptions(localStorage.getItem(KEY));
   private mode: Mode = "pan";
   private heat: HeatMap | null = null;
@@ -85,17 +89,17 @@ class MapPanel extends Panel {
         this.view.zoom(factor, x, y);
       },
       click: (at, adds) => {
-        this.clicked(at, adds);
+        this.choosing.click(at, adds);
       },
       twice: () => this.app.state.picking.value?.end(),
       drawing: (ring) => {
         if (this.painter) this.painter.ring = ring;
       },
       region: (ring, adds) => {
-        this.chooseWithin(ring, adds);
+        this.choosing.within(ring, adds);
       },
       hover: (at) => {
-        this.hover(at);
+        canvas.title = this.choosing.nameAt(at);
       },
     });
     new ResizeObserver(() => {
@@ -278,91 +282,25 @@ class MapPanel extends Panel {
     this.requestUpdate();
   }
 
-  private clicked(at: Pixel, adds: boolean): void {
-    const world = this.view.toWorld(...at);
-    const picking = this.app.state.picking.value;
-    if (picking) {
-      const floor = world ? (this.painter?.map?.storeys[world.storey]?.z_m ?? 0) : 0;
-      if (world) picking.take([world.x, world.y, floor]);
-      return;
-    }
-    const key = this.keyAt(at, CLICK_PX);
-    const { chosen } = this.app.state;
-    if (key === null) {
-      if (!adds) this.app.choose(null);
-    } else if (!adds) {
-      this.app.choose(key);
-    } else {
-      const without = chosen.value.filter((other) => other !== key);
-      this.app.choose(without.length < chosen.value.length ? without : [...chosen.value, key]);
-    }
-  }
-
-  private keyAt(at: Pixel, withinPx: number): string | null {
-    const drawn = this.painter?.drawn ?? [];
-    const index = nearest(
-      drawn.map(({ px, py }) => [px, py]),
-      at,
-      withinPx,
-    );
-    return index === null ? null : (drawn[index]?.avatar.key ?? null);
-  }
-
-  private chooseWithin(ring: readonly Pixel[], adds: boolean): void {
-    const drawn = this.painter?.drawn ?? [];
-    const within = drawn
-      .filter(({ px, py }) => isWithin([px, py], ring))
-      .map(({ avatar }) => avatar.key);
-    const before = adds ? this.app.state.chosen.value : [];
-    this.app.choose([...new Set([...before, ...within])]);
-  }
-
-  private hover(at: Pixel | null): void {
-    const key = at && this.keyAt(at, CLICK_PX);
-    this.canvas.title = key ? (this.app.avatars.get(key)?.name ?? "") : "";
-  }
-
   private readonly key = (event: KeyboardEvent): void => {
-    const { view } = this;
-    const middle: Pixel = [view.width / 2, view.height / 2];
-    const moves: Record<string, () => void> = {
-      ArrowLeft: () => {
-        view.panPx(PAN_PX, 0);
-      },
-      ArrowRight: () => {
-        view.panPx(-PAN_PX, 0);
-      },
-      ArrowUp: () => {
-        view.panPx(0, PAN_PX);
-      },
-      ArrowDown: () => {
-        view.panPx(0, -PAN_PX);
-      },
-      "+": () => {
-        view.zoom(ZOOM);
-      },
-      "-": () => {
-        view.zoom(1 / ZOOM);
-      },
-      "0": () => {
+    pressed(event, this.view, {
+      fit: () => {
         this.fit();
       },
-      Enter: () => {
-        if (this.app.state.picking.value) this.clicked(middle, false);
-        else this.app.choose(this.keyAt(middle, Number.POSITIVE_INFINITY));
+      choose: () => {
+        const { view } = this;
+        const middle: Pixel = [view.width / 2, view.height / 2];
+        if (this.app.state.picking.value) this.choosing.click(middle, false);
+        else this.app.choose(this.choosing.keyAt(middle, Number.POSITIVE_INFINITY));
       },
-      a: () => {
-        if (event.ctrlKey) {
-          this.chooseWithin(boxOf([0, 0], [view.width, view.height]), false);
-        }
+      chooseAll: () => {
+        const { view } = this;
+        this.choosing.within(boxOf([0, 0], [view.width, view.height]), false);
       },
-    };
-    const move = moves[event.key];
-    if (!move || event.altKey || (event.ctrlKey && event.key !== "a")) return;
-    if (event.key.startsWith("Arrow")) this.app.state.following.value = false;
-    event.preventDefault();
-    event.stopPropagation();
-    move();
+      moved: () => {
+        this.app.state.following.value = false;
+      },
+    });
   };
 }
 

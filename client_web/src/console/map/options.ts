@@ -3,7 +3,7 @@
 export interface MapOptions {
   trailS: 0 | 1 | 10 | 60;
   tags: "none" | "name" | "group" | "reason";
-  heat: "none" | "density" | "speed" | "waiting" | "contacts";
+  heat: "none" | "density" | "speed" | "waiting" | "contacts" | "risk";
   heatS: 60 | 600 | 3600;
   ways: boolean;
   goals: boolean;
@@ -43,6 +43,7 @@ export const CHOICES = {
     ["speed", "speed"],
     ["waiting", "waiting"],
     ["contacts", "contacts"],
+    ["risk", "risk"],
   ],
   heatS: [
     [60, "1 min"],

@@ -59,13 +59,13 @@ export class Painter {
     if (options.heat !== "none") this.heat.draw(pen, view);
     this.drawOverlays(pen);
     drawDoors(pen, view, map, this.doors, scheme);
-    if (options.places) drawPlaces(pen, view, map, scheme);
+    const names = options.places ? drawPlaces(pen, view, map, scheme) : [];
     this.trails(pen, drawnS, options, chosen);
     if (this.layers) drawLayers(pen, view, this.layers, scheme);
     if (options.contacts) this.contacts.draw(pen, view, nowS, scheme);
     this.drawn = placed(app.avatars.byId.values(), view, drawnS);
     drawPeople(pen, view, this.drawn, chosen, scheme);
-    drawTags(pen, this.drawn, chosen, options.tags, scheme);
+    drawTags(pen, this.drawn, chosen, options.tags, scheme, names);
     this.drawRing(pen);
     this.tookMs += 0.1 * (performance.now() - beganMs - this.tookMs);
   }
@@ -128,11 +128,11 @@ export class Painter {
     drawMarks(pen, view, points, colour);
   }
 
-  private picture(raster: Raster): Picture {
+  private picture(raster: Raster & { most?: number }): Picture {
     const known = this.pictures.get(raster);
     if (known) return known;
     const values = valuesOf(raster);
-    const made = pictureOf(raster, values, fullValue(values));
+    const made = pictureOf(raster, values, raster.most ?? fullValue(values));
     this.pictures.set(raster, made);
     return made;
   }

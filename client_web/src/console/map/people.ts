@@ -3,6 +3,7 @@
 import { reasonColour, reasonName, reasonText } from "../state/reasons";
 import type { Scheme } from "../state/scheme";
 import { type Avatar, type Place, placeAt } from "./avatars";
+import { type Box, spots } from "./labels";
 import type { MapOptions } from "./options";
 import type { MapView } from "./views";
 
@@ -96,21 +97,28 @@ export function drawTags(
   chosen: ReadonlySet<string>,
   tags: MapOptions["tags"],
   scheme: Scheme,
+  places: readonly Box[],
 ): void {
   if (tags === "none") return;
-  const told =
-    drawn.length <= MOST_TAGS ? drawn : drawn.filter((one) => chosen.has(one.avatar.key));
+  // Whoever is chosen gets room first.
+  const first = drawn.filter((one) => chosen.has(one.avatar.key));
+  const rest = drawn.length <= MOST_TAGS ? drawn.filter((one) => !first.includes(one)) : [];
   pen.font = "11px system-ui, sans-serif";
   pen.textAlign = "left";
   pen.lineWidth = 3;
   pen.lineJoin = "round";
   pen.strokeStyle = scheme.colour("map-ground");
   pen.fillStyle = scheme.colour("ink");
-  for (const { avatar, px, py } of told.slice(0, MOST_TAGS)) {
-    const text = tagOf(avatar, tags);
-    if (text === "") continue;
-    pen.strokeText(text, px + 8, py - 6);
-    pen.fillText(text, px + 8, py - 6);
+  const told = [...first, ...rest]
+    .slice(0, MOST_TAGS)
+    .map(({ avatar, px, py }) => ({ text: tagOf(avatar, tags), x: px, y: py }))
+    .filter(({ text }) => text !== "");
+  const wishes = told.map(({ text, x, y }) => ({ x, y, width: pen.measureText(text).width }));
+  for (const [index, spot] of spots(wishes, places).entries()) {
+    const text = told[index]?.text;
+    if (!spot || text === undefined) continue;
+    pen.strokeText(text, spot.x, spot.y);
+    pen.fillText(text, spot.x, spot.y);
   }
 }
 

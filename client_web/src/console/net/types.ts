@@ -173,29 +173,46 @@ export interface WhySpan {
   seconds: number;
 }
 
-/** The parts of the cost of a path, in seconds of walking. */
+/** The parts of the cost of a path, in seconds of walking; null for what has no end. */
 export interface Cost {
-  time: number;
-  risk: number;
-  turn: number;
-  wall: number;
-  hurry: number;
-  keep_right: number;
-  total: number;
+  time: number | null;
+  risk: number | null;
+  others: number | null;
+  turn: number | null;
+  wall: number | null;
+  hurry: number | null;
+  keep_right: number | null;
+  total: number | null;
 }
 
 export type PathPoint = readonly [x: number, y: number, z: number, t_s: number];
 
-/** How the last path of an actor was searched for. */
+/** A path, and what it was thought to cost. */
+export interface PricedPath {
+  path: readonly PathPoint[];
+  cost: Cost;
+  mean_risk: number;
+  legal: boolean;
+}
+
+/** The last decision of an actor, made once more. */
 export interface Trace {
+  actor: string;
   tick: number;
+  /** Whether it came out the very same. */
+  exact: boolean;
   status: string;
   expansions: number;
   budget: number;
   /** x, y, z, seconds ahead, the node before, cost, and when it was expanded (-1: never). */
   nodes: readonly (readonly [number, number, number, number, number, number, number])[];
+  left_out: number;
   path: readonly PathPoint[];
-  cost?: Cost | null;
+  cost: Cost;
+  previous: PricedPath | null;
+  searched: PricedPath | null;
+  perturbed: PricedPath | null;
+  why: { code: string; text: string; arguments: Readonly<Record<string, number | null>> };
   risk: readonly (Raster & { t_s: number })[];
-  why?: string;
+  blocker: Blocker | null;
 }

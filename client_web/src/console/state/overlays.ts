@@ -21,5 +21,6 @@ export interface Segments {
 export interface Overlay {
   lines: readonly Line[];
   segments?: readonly Segments[];
-  raster?: Raster & { z_m: number };
+  /** `most` is the value that has the full colour, if it is not that of the raster. */
+  raster?: Raster & { z_m: number; most?: number };
 }

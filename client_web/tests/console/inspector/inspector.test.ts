@@ -1,8 +1,10 @@
 import { describe, expect, it } from "vitest";
 import { compare, valueText } from "../../../src/console/inspector/compare";
+import { barPart, secondsOf } from "../../../src/console/inspector/costs";
+import { comparedPaths } from "../../../src/console/inspector/searchpart";
 import { countNodes, segmentsOf, traceOverlay } from "../../../src/console/inspector/tree";
 import { piecesOf, shares, spanText, stopsOf } from "../../../src/console/inspector/why";
-import type { Trace, WhySpan } from "../../../src/console/net/types";
+import type { Cost, PricedPath, Trace, WhySpan } from "../../../src/console/net/types";
 import { reasonColour, REASONS, reasonText } from "../../../src/console/state/reasons";
 
 const span = (from: number, to: number, reason: string): WhySpan => ({
@@ -39,8 +41,21 @@ describe("reasons", () => {
   });
 });
 
+const cost = (time: number, risk: number): Cost => ({
+  time,
+  risk,
+  others: 0,
+  turn: 0,
+  wall: 0,
+  hurry: 0,
+  keep_right: 0,
+  total: time + risk,
+});
+const priced = (of: Cost): PricedPath => ({ path: [], cost: of, mean_risk: 0, legal: true });
 const TRACE: Trace = {
+  actor: "main/actor-1",
   tick: 5,
+  exact: true,
   status: "found",
   expansions: 2,
   budget: 70,
@@ -49,21 +64,60 @@ const TRACE: Trace = {
     [1, 0, 1, 0.5, 0, 1, 1],
     [2, 0, 1, 1, 1, 2, -1],
   ],
-  path: [],
-  risk: [{ t_s: 0, width: 1, height: 1, cell_m: 1, origin_m: [0, 0], values: "" }],
+  left_out: 3,
+  path: [
+    [0, 0, 1, 0],
+    [2, 0, 1, 1],
+  ],
+  cost: cost(4, 1),
+  previous: priced(cost(4, 2)),
+  searched: priced(cost(4, 1)),
+  perturbed: priced(cost(5, 0.5)),
+  why: { code: "search", text: "the search found a path", arguments: {} },
+  // The float 0.5, little-endian.
+  risk: [{ t_s: 0, width: 1, height: 1, cell_m: 1, origin_m: [0, 0], values: "AAAAPw==" }],
+  blocker: null,
 };
+const COLOURS = { taken: "blue", before: "grey" };
 
 describe("search tree", () => {
   it("has a line to each node from the one before, by when it was expanded", () => {
-    expect(countNodes(TRACE)).toEqual({ expanded: 2, open: 1 });
-    const segments = segmentsOf(TRACE);
+    expect(countNodes(TRACE)).toEqual({ expanded: 2, open: 4 });
+    const segments = segmentsOf(TRACE, "order");
     expect(segments.flatMap(({ pairs }) => pairs)).toHaveLength(2);
     expect(new Set(segments.map(({ colour }) => colour)).size).toBe(2);
   });
 
-  it("shows a slice of the risk at the height of the search", () => {
-    expect(traceOverlay(TRACE, 0).raster?.z_m).toBe(1);
-    expect(traceOverlay(TRACE, null).raster).toBeUndefined();
+  it("has other colours by time ahead, for nodes left open too", () => {
+    const colours = segmentsOf(TRACE, "time").map(({ colour }) => colour);
+    expect(colours).toHaveLength(2);
+    expect(colours.every((colour) => colour.startsWith("hsl"))).toBe(true);
+  });
+
+  it("shows a slice of the risk at the height of the search, in colours of all slices", () => {
+    const overlay = traceOverlay(TRACE, { slice: 0, by: "order" }, COLOURS);
+    expect(overlay.raster?.z_m).toBe(1);
+    expect(overlay.raster?.most).toBe(0.5);
+    expect(traceOverlay(TRACE, { slice: 7, by: "order" }, COLOURS).raster).toBeUndefined();
+  });
+
+  it("draws the path taken, and the one before dashed", () => {
+    const { lines } = traceOverlay(TRACE, { slice: 0, by: "order" }, COLOURS);
+    expect(lines.map(({ colour, dashed }) => [colour, dashed])).toEqual([
+      ["grey", true],
+      ["blue", false],
+    ]);
+  });
+});
+
+describe("costs", () => {
+  it("stand beside each other, each path but once", () => {
+    const columns = comparedPaths(TRACE);
+    expect(columns.map(({ title }) => title)).toEqual(["taken", "before", "bent"]);
+    expect(barPart(5, columns)).toBe(1);
+    expect(barPart(1, columns)).toBe(0.2);
+    expect(barPart(null, columns)).toBe(0);
+    expect(secondsOf(null)).toBe("∞");
   });
 });
 

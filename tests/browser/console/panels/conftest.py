@@ -41,6 +41,8 @@ async def server(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[Runn
         scene=scene,
         log_level="warning",
         seed=7,
+        keep_chat=True,
+        resume_seconds=PATIENCE_S,
     )
     async with running(settings) as started:
         for name, role in OPERATORS.items():

@@ -25,11 +25,16 @@ export function newActors(): NewActors {
   return { count: 1, name: "", tags: "", preset: "", near: null, behaviour };
 }
 
+/** Whether it is one actor, without the values of a preset, which waves alone are given. */
+function isSingle({ count, preset }: NewActors): boolean {
+  return count === 1 && preset === "";
+}
+
 /** The command for a form: a single actor has a name and a place of its own, a wave has not. */
 export function commandFor(form: NewActors, behaviour: JsonObject): Command {
   const tags = form.tags.split(/[\s,]+/).filter(Boolean);
   const near = form.near ?? undefined;
-  if (form.count === 1 && form.preset === "") {
+  if (isSingle(form)) {
     const actor: Record<string, unknown> = { behaviour, tags };
     if (form.name.trim() !== "") actor["name"] = form.name.trim();
     if (near) actor["place"] = near;
@@ -79,7 +84,7 @@ export function newActorsForm(
           }}
         />
       </label>
-      ${form.count === 1 ? text("name", "Name", "as others see it") : nothing}
+      ${isSingle(form) ? text("name", "Name", "as others see it") : nothing}
       ${text("tags", "Groups", "tags, between blanks")}
       <label class="field">
         Preset

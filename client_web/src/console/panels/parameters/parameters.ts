@@ -1,15 +1,18 @@
 /** The form of parameters: made from the schema, edited as a draft, applied in one tick. */
 
-import { css, html, nothing, type TemplateResult } from "lit";
+import { html, nothing, type TemplateResult } from "lit";
 import type { AppContext } from "../../context";
-import { byGroup, fromSlider, labelOf, outOfRange, parsed, shown } from "../../models/fields";
+import { byGroup, fromSlider, labelOf, parsed } from "../../models/fields";
 import type { NumberField } from "../../models/fields";
 import { ParameterWork } from "../../models/parameterwork";
-import { groupsOf, scopeName, shortId } from "../../models/scopes";
+import { scopeName } from "../../models/scopes";
 import { RefusedError } from "../../net/api";
 import type { LiveMessage } from "../../net/live";
 import { CommandingPanel } from "../commanding";
-import { manner, type Manner, mannerForm } from "./manner";
+import { type Acts, foot } from "./foot";
+import { formStyle } from "./formstyle";
+import { head } from "./head";
+import { manner, type Manner } from "./manner";
 import { row, rowStyle, type RowEvents } from "./row";
 
 /** Values are asked for anew this often while the live interface is away. */
@@ -32,7 +35,7 @@ function workOf(app: AppContext): ParameterWork {
 }
 
 class ParametersPanel extends CommandingPanel {
-  static override styles = [...CommandingPanel.styles, rowStyle, style()];
+  static override styles = [...CommandingPanel.styles, rowStyle, formStyle];
   private work: ParameterWork | null = null;
   private typing: { name: string; text: string } | null = null;
   private dragged: string | null = null;
@@ -86,7 +89,19 @@ class ParametersPanel extends CommandingPanel {
       return html`<p class="soft">The schema is on its way.</p>`;
     const fields = work.fields.filter((field) => this.fits(field));
     return html`<div class="form" @keydown=${this.pressed}>
-      ${this.head(work)}
+      ${head(work, {
+        chosen: this.app.state.chosen.value,
+        sought: this.sought,
+        explained: this.explained,
+        seek: (words) => {
+          this.sought = words;
+          this.requestUpdate();
+        },
+        explain: (on) => {
+          this.explained = on;
+          this.requestUpdate();
+        },
+      })}
       <div class="fields">
         ${[...byGroup(fields)].map(
           ([group, members]) =>
@@ -97,80 +112,30 @@ class ParametersPanel extends CommandingPanel {
         )}
         ${fields.length === 0 ? html`<p class="soft">No parameter is called that.</p>` : nothing}
       </div>
-      ${this.foot(work)}
+      ${foot(work, this.acts(work))}
     </div>`;
   }
 
-  private head(work: ParameterWork): TemplateResult {
-    const groups = new Set(
-      work.actors.flatMap((actor) => groupsOf(actor).map((name) => `group:${name}`)),
-    );
-    for (const scope of Object.keys(work.answer?.scopes ?? {})) {
-      if (scope.startsWith("group:")) groups.add(scope);
-    }
-    if (work.scope.startsWith("group:")) groups.add(work.scope);
-    const edited = new Set(work.edited);
-    const option = (scope: string): TemplateResult =>
-      html`<option value=${scope} ?selected=${scope === work.scope}>
-        ${scopeName(scope, work.actors)}${edited.has(scope) ? " •" : ""}
-      </option>`;
-    const actors = work.actors.map((actor) => `actor:${actor.id}`);
-    const chosen = this.app.state.chosen.value.find((id) => actors.includes(`actor:${id}`));
-    return html`<div class="row head">
-      <label class="field grow">
-        Scope
-        <select
-          name="scope"
-          @change=${(event: Event) => {
-            work.choose((event.currentTarget as HTMLSelectElement).value);
-          }}
-        >
-          ${option("world")}
-          <optgroup label="Groups">${[...groups].sort().map(option)}</optgroup>
-          <optgroup label="Actors">
-            ${
-              actors.includes(work.scope) || !work.scope.startsWith("actor:")
-                ? nothing
-                : option(work.scope)
-            }
-            ${actors.map(option)}
-          </optgroup>
-        </select>
-      </label>
-      <label class="field grow">
-        Find
-        <input
-          type="search"
-          .value=${this.sought}
-          @input=${(event: Event) => {
-            this.sought = (event.currentTarget as HTMLInputElement).value;
-            this.requestUpdate();
-          }}
-        />
-      </label>
-      ${
-        chosen !== undefined && work.scope !== `actor:${chosen}`
-          ? html`<button
-              @click=${() => {
-                work.choose(`actor:${chosen}`);
-              }}
-            >
-              Tune ${shortId(chosen)}
-            </button>`
-          : nothing
-      }
-      <label>
-        <input
-          type="checkbox"
-          .checked=${this.explained}
-          @change=${() => {
-            this.explained = !this.explained;
-            this.requestUpdate();
-          }}
-        />
-        explain
-      </label>
-    </div>`;
+  private acts(work: ParameterWork): Acts {
+    return {
+      button: (text, needs, press, look) => this.button(text, needs, press, look),
+      apply: () => this.apply(),
+      undo: () => this.undo(),
+      redo: () => this.redo(),
+      liveDrag: this.liveDrag,
+      dragLive: (on) => {
+        this.liveDrag = on;
+        this.requestUpdate();
+      },
+      how: this.how,
+      figures: this.figures,
+      change: (how) => {
+        this.how = how;
+        work.manner = how.command;
+        work.touched();
+        this.requestUpdate();
+      },
+    };
   }
 
   private row(work: ParameterWork, field: NumberField): TemplateResult {
@@ -246,92 +211,6 @@ class ParametersPanel extends CommandingPanel {
       },
       clearShadows: () => void this.attempt(work.clearShadows(name)),
     };
-  }
-
-  private foot(work: ParameterWork): TemplateResult {
-    const { draft } = work;
-    const count = draft.names.length;
-    const wrong = draft.names.find((name) => {
-      const field = work.fields.find((one) => one.name === name);
-      const edit = draft.edit(name);
-      return field && typeof edit === "number" && outOfRange(field, edit) !== null;
-    });
-    const blocked = count === 0 ? "There is nothing to apply." : null;
-    return html`<div class="foot">
-      <p class="state" role="status">
-        ${
-          count === 0
-            ? "No draft."
-            : html`<b>${count} ${count === 1 ? "edit" : "edits"}</b> for
-                ${scopeName(work.scope, work.actors)}; ${priceText(work, wrong !== undefined)}`
-        }
-        ${work.edited
-          .filter((scope) => scope !== work.scope)
-          .map(
-            (scope) =>
-              html` <button
-                class="plain"
-                @click=${() => {
-                  work.choose(scope);
-                }}
-              >
-                and a draft for ${scopeName(scope, work.actors)}
-              </button>`,
-          )}
-      </p>
-      ${work.faults.map((fault) => html`<p class="fault" role="alert">${fault.text}</p>`)}
-      <div class="row">
-        <label class="grow">
-          <span class="visually-hidden">Why (kept in the audit)</span>
-          <input
-            class="note"
-            maxlength="500"
-            placeholder="Why? (kept in the audit)"
-            .value=${work.note}
-            @input=${(event: Event) => {
-              work.note = (event.currentTarget as HTMLInputElement).value;
-            }}
-          />
-        </label>
-        ${this.button("Apply", "set_parameters", () => this.apply(), {
-          ...{ main: true, blocked, keys: "Control+Enter" },
-        })}
-      </div>
-      <div class="row">
-        ${this.button(
-          "Discard",
-          "watch",
-          () => {
-            draft.discard();
-            work.touched();
-          },
-          { blocked },
-        )}
-        ${this.button(draft.canUndo ? "Undo edit" : "Undo", "set_parameters", () => this.undo(), {
-          ...{ keys: "Control+Z", label: draft.canUndo ? "Undo edit" : "Undo my latest change" },
-        })}
-        ${this.button(draft.canRedo ? "Redo edit" : "Redo", "set_parameters", () => this.redo(), {
-          ...{ keys: "Control+Shift+Z", label: draft.canRedo ? "Redo edit" : "Redo what I undid" },
-        })}
-        <label title="Send while a slider is dragged, at most ten times a second">
-          <input
-            type="checkbox"
-            .checked=${this.liveDrag}
-            @change=${() => {
-              this.liveDrag = !this.liveDrag;
-              this.requestUpdate();
-            }}
-          />
-          live drag
-        </label>
-      </div>
-      ${mannerForm(this.how, this.figures, (how) => {
-        this.how = how;
-        work.manner = how.command;
-        work.touched();
-        this.requestUpdate();
-      })}
-    </div>`;
   }
 
   private readonly pressed = (event: KeyboardEvent): void => {
@@ -419,82 +298,8 @@ function told(work: ParameterWork): { scope: string; values: Record<string, unkn
   return work.draft.isEmpty ? null : { scope: work.scope, values: work.draft.values };
 }
 
-function priceText(work: ParameterWork, wrong: boolean): string {
-  const { price, prepareSeconds, isFlying } = work.draft;
-  if (isFlying) return "being applied …";
-  if (wrong || work.faults.length > 0) return "it cannot be applied.";
-  if (price === "tick") return "takes effect at once.";
-  if (price === "prepared") {
-    if (prepareSeconds === null) return "needs a moment of preparation.";
-    return `needs ${shown(Number(prepareSeconds.toPrecision(2)))} s of preparation.`;
-  }
-  return work.draft.names.some((name) => work.draft.fault(name) !== null)
-    ? "it cannot be applied."
-    : "being checked …";
-}
-
 function appliedText(tick: number | null): string {
   return tick === null ? "Applied." : `Applied in tick ${tick}.`;
-}
-
-function style(): ReturnType<typeof css> {
-  return css`
-    :host {
-      display: block;
-      container-type: inline-size;
-    }
-    .columns {
-      display: grid;
-      grid-template-columns: repeat(auto-fill, minmax(min(100%, 250px), 1fr));
-      gap: 4px 12px;
-    }
-    .head {
-      margin-bottom: 8px;
-    }
-    .head select,
-    .head input[type="search"] {
-      width: 100%;
-      min-width: 0;
-    }
-    fieldset {
-      padding: 2px 4px 4px;
-      border: 0;
-      border-top: 1px solid var(--line);
-      border-radius: 0;
-    }
-    .foot {
-      position: sticky;
-      bottom: -8px;
-      z-index: 1;
-      margin: 0 -8px -8px;
-      padding: 6px 8px 8px;
-      background: var(--paper);
-      border-top: 1px solid var(--line);
-    }
-    .foot .row {
-      flex-wrap: nowrap;
-      gap: 4px;
-    }
-    .foot button {
-      padding: 2px 7px;
-      white-space: nowrap;
-    }
-    .foot label {
-      white-space: nowrap;
-    }
-    .foot details {
-      margin: 0;
-    }
-    .foot p {
-      margin: 0 0 4px;
-    }
-    .foot .note {
-      width: 100%;
-    }
-    .state {
-      min-height: 1.4em;
-    }
-  `;
 }
 
 customElements.define("esp-parameters", ParametersPanel);

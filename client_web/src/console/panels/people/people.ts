@@ -35,6 +35,9 @@ class PeoplePanel extends CommandingPanel {
       tr[aria-selected="true"] td {
         background: var(--accent-wash);
       }
+      td {
+        white-space: nowrap;
+      }
       textarea {
         width: 100%;
       }

@@ -1,7 +1,6 @@
 /** Figures of the world over time: chosen ones, each with a line for every change. */
 
-import uPlotStyle from "uplot/dist/uPlot.min.css?inline";
-import { css, html, nothing, type TemplateResult, unsafeCSS } from "lit";
+import { html, nothing, type TemplateResult } from "lit";
 import { summary } from "../../models/facts";
 import { labelOf, shown } from "../../models/fields";
 import { shortId } from "../../models/scopes";
@@ -10,7 +9,8 @@ import { clock } from "../../models/times";
 import type { LiveMessage } from "../../net/live";
 import type { ChangeRow } from "../changes";
 import { CommandingPanel } from "../commanding";
-import { Chart, type ChartLook } from "./chart";
+import { Charts } from "./charts";
+import { seriesStyle } from "./seriesstyle";
 
 interface SeriesName {
   name: string;
@@ -31,50 +31,21 @@ interface ActorNews extends LiveMessage {
 const KEPT = "esplanade-console-series";
 const USUAL = ["people", "contacts", "waiting_s", "tick_p99_ms"];
 const MOST = 12;
-const HEIGHT = 104;
 
 class SeriesPanel extends CommandingPanel {
-  static override styles = [
-    ...CommandingPanel.styles,
-    unsafeCSS(uPlotStyle),
-    css`
-      :host {
-        display: block;
-      }
-      .charts {
-        display: grid;
-        grid-template-columns: repeat(auto-fill, minmax(min(100%, 340px), 1fr));
-        gap: 8px 14px;
-        margin-top: 8px;
-      }
-      figure {
-        margin: 0;
-        min-width: 0;
-      }
-      figcaption {
-        display: flex;
-        justify-content: space-between;
-        gap: 8px;
-        font-size: 0.93em;
-      }
-      .choice {
-        display: grid;
-        grid-template-columns: repeat(auto-fill, minmax(min(100%, 220px), 1fr));
-        max-height: 200px;
-        overflow: auto;
-      }
-      .told {
-        min-height: 1.4em;
-      }
-    `,
-  ];
+  static override styles = [...CommandingPanel.styles, ...seriesStyle];
   private names: readonly SeriesName[] = [];
   private chosen: string[] = USUAL;
   private step = 0;
   private window = new SeriesWindow(STEPS[0].stepS, STEPS[0].spanS);
-  private readonly charts = new Map<string, Chart>();
+  private readonly charts = new Charts(this, {
+    data: (name) => this.window.data([name]),
+    marks: () => this.window.marks,
+    hover: (us) => {
+      this.app.state.hovered.value = us;
+    },
+  });
   private readonly pinned = new Map<string, () => void>();
-  private looked: ChartLook | null = null;
 
   protected override begin(): void {
     const { live, state } = this.app;
@@ -94,21 +65,17 @@ class SeriesPanel extends CommandingPanel {
     });
     this.watch(state.chosen);
     this.watch(state.hovered, (us) => {
-      for (const chart of this.charts.values()) {
-        chart.point(us === null ? null : us / 1e6);
-        break; // the others follow it
-      }
+      this.charts.point(us);
       this.requestUpdate();
     });
     const scheme = matchMedia("(prefers-color-scheme: dark)");
     const anew = (): void => {
-      this.looked = null;
-      this.clear();
+      this.charts.clear();
       this.requestUpdate();
     };
     scheme.addEventListener("change", anew);
     const sizes = new ResizeObserver(() => {
-      this.resize();
+      this.charts.resize();
     });
     sizes.observe(this);
     this.atEnd(() => {
@@ -116,7 +83,7 @@ class SeriesPanel extends CommandingPanel {
       sizes.disconnect();
       for (const stop of this.pinned.values()) stop();
       this.pinned.clear();
-      this.clear();
+      this.charts.clear();
     });
   }
 
@@ -173,30 +140,7 @@ class SeriesPanel extends CommandingPanel {
   }
 
   protected override updated(): void {
-    const look = (this.looked ??= this.look());
-    for (const figure of this.renderRoot.querySelectorAll<HTMLElement>("figure[data-series]")) {
-      const name = figure.dataset["series"] ?? "";
-      const at = figure.querySelector<HTMLElement>(".plot");
-      if (!at || at.childElementCount > 0) continue;
-      this.charts.get(name)?.destroy();
-      const chart = new Chart(at, Math.max(200, figure.clientWidth), {
-        title: name,
-        unit: "",
-        look,
-        height: HEIGHT,
-        hover: (atS) => {
-          this.app.state.hovered.value = atS === null ? null : Math.round(atS * 1e6);
-        },
-        marks: () => this.window.marks,
-      });
-      this.charts.set(name, chart);
-      this.fill(name, chart);
-    }
-    for (const [name, chart] of this.charts) {
-      if (this.chosen.includes(name)) continue;
-      chart.destroy();
-      this.charts.delete(name);
-    }
+    this.charts.update(this.chosen);
   }
 
   private choice(one: SeriesName): TemplateResult {
@@ -221,9 +165,9 @@ class SeriesPanel extends CommandingPanel {
   /** What is under the pointer: the moment, and whose changes were made about then. */
   private told(): TemplateResult | string {
     const us = this.app.state.hovered.value;
-    if (us === null) return `${this.window.marks.length} changes in this window`;
-    const [chart] = this.charts.values();
-    const marks = this.window.near(us / 1e6, 4 * (chart?.secondsPerPixel ?? 1));
+    const many = this.window.marks.length;
+    if (us === null) return `${many} ${many === 1 ? "change" : "changes"} in this window`;
+    const marks = this.window.near(us / 1e6, 4 * this.charts.secondsPerPixel);
     return html`<b>${clock(us)}</b> ${marks.map(
         (mark) => html`<span class="chip">${mark.account ?? "server"}</span> ${mark.text} `,
       )}`;
@@ -285,31 +229,8 @@ class SeriesPanel extends CommandingPanel {
 
   private draw(): void {
     if (document.hidden) return;
-    for (const [name, chart] of this.charts) this.fill(name, chart);
+    this.charts.draw();
     this.requestUpdate();
-  }
-
-  private fill(name: string, chart: Chart): void {
-    const [times = [], values = []] = this.window.data([name]);
-    chart.show(times, values);
-  }
-
-  private resize(): void {
-    for (const [name, chart] of this.charts) {
-      const figure = this.renderRoot.querySelector(`figure[data-series="${CSS.escape(name)}"]`);
-      if (figure) chart.resize(figure.clientWidth, HEIGHT);
-    }
-  }
-
-  private look(): ChartLook {
-    const style = getComputedStyle(this);
-    const of = (name: string): string => style.getPropertyValue(name).trim();
-    return { line: of("--accent"), ink: of("--soft-ink"), grid: of("--line"), mark: of("--warn") };
-  }
-
-  private clear(): void {
-    for (const chart of this.charts.values()) chart.destroy();
-    this.charts.clear();
   }
 }
 

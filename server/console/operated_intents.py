@@ -31,15 +31,22 @@ from esplanade.server.console.refusals import RefusedError
 from esplanade.server.console.schedules import SCHEDULE, Schedule, due_of
 from esplanade.server.console.state import OperatedState, parameters_of, scope_of
 
-KEPT: Final = (ApplyPreset, SavePreset, DeletePreset, SetGroup, ScheduleCommands, CancelSchedule)
-"""The commands that `kept_facts` understands."""
+OPERATED: Final = (
+    ApplyPreset,
+    SavePreset,
+    DeletePreset,
+    SetGroup,
+    ScheduleCommands,
+    CancelSchedule,
+)
+"""The commands that `operated_facts` understands."""
 _NOT_LATER: Final = (ScheduleCommands, CancelSchedule, Revert)
 
 
-def kept_facts(
+def operated_facts(
     command: Command, by: Identity, state: OperatedState, pending: Facts, now_us: int
 ) -> Facts:
-    """Return the facts that a command of `KEPT` wants; `pending` are those of commands before it.
+    """Return the facts that a command of `OPERATED` wants; `pending` are those before it.
 
     Raises
     ------

@@ -16,7 +16,7 @@ SCHEDULES: Final = "schedules"
 GUARDS: Final = "guards"
 
 
-class KeptRow(NamedTuple):
+class OperatedRow(NamedTuple):
     """A row: the part that it belongs to, its name there, and what is kept; None takes it away."""
 
     part: str
@@ -24,20 +24,22 @@ class KeptRow(NamedTuple):
     body: Mapping[str, Any] | None
 
 
-def rows_of(facts: Facts, state: OperatedState) -> list[KeptRow]:
+def rows_of(facts: Facts, state: OperatedState) -> list[OperatedRow]:
     """The rows that are others since facts were taken into the state."""
     rows = []
     for subject in facts:
         kind, _, name = subject.partition(":")
         if kind == "preset":
-            rows.append(KeptRow(PRESETS, name, state.presets.save(name)))
+            rows.append(OperatedRow(PRESETS, name, state.presets.save(name)))
         elif kind == "schedule":
             schedule = state.schedules.get(name)
-            rows.append(KeptRow(SCHEDULES, name, None if schedule is None else schedule.plain()))
+            rows.append(
+                OperatedRow(SCHEDULES, name, None if schedule is None else schedule.plain())
+            )
     return rows
 
 
-def write_rows(connection: Connection, zone: str, rows: list[KeptRow]) -> None:
+def write_rows(connection: Connection, zone: str, rows: list[OperatedRow]) -> None:
     """Write rows within a write of the store, in place of those of the same names."""
     for part, name, body in rows:
         key = {"zone": zone, "part": part, "name": name}
@@ -46,7 +48,7 @@ def write_rows(connection: Connection, zone: str, rows: list[KeptRow]) -> None:
             connection.execute(insert(OPERATED).values(**key, body=json.dumps(body)))
 
 
-async def read_rows(store: Store) -> list[KeptRow]:
+async def read_rows(store: Store) -> list[OperatedRow]:
     """All rows.
 
     Raises
@@ -60,4 +62,4 @@ async def read_rows(store: Store) -> list[KeptRow]:
         .order_by(OPERATED.c.part, OPERATED.c.name)
     )
     found = await store.read(lambda connection: connection.execute(query).all())
-    return [KeptRow(part, name, json.loads(body)) for part, name, body in found]
+    return [OperatedRow(part, name, json.loads(body)) for part, name, body in found]

@@ -19,7 +19,7 @@ PAUSE_S: Final = 0.5
 log = structlog.get_logger(__name__)
 
 
-class Lasting:
+class Persistence:
     """Sees between ticks to what the store has of a zone. The event loop never waits for it."""
 
     def __init__(

@@ -13,7 +13,8 @@ from esplanade.protocol.commands import Command, CommandFault, Facts, SetParamet
 from esplanade.server.accounts.identity import Identity
 from esplanade.server.console.changes import Change
 from esplanade.server.console.intents import checked_values
-from esplanade.server.console.records import Planned, Records
+from esplanade.server.console.planned import Planned
+from esplanade.server.console.records import Records
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.console.state import OperatedState, each, scope_of
 
@@ -33,7 +34,7 @@ log = structlog.get_logger(__name__)
 
 
 @dataclass
-class Lasting:
+class Ongoing:
     """A change that goes on."""
 
     by: Identity
@@ -53,13 +54,13 @@ class Dragged(NamedTuple):
     found: dict[str, Any]
 
 
-class LastingChanges:
+class OngoingChanges:
     """The changes that go on. Each has two rows in the audit: when it begins, and when it ends."""
 
     def __init__(self, console: "Console", records: Records) -> None:
         self._console = console
         self._records = records
-        self._streams: dict[tuple[str | None, str], Lasting] = {}
+        self._streams: dict[tuple[str | None, str], Ongoing] = {}
         self._ramps: dict[int, asyncio.Task[None]] = {}
         self._rows: set[asyncio.Task[None]] = set()
 
@@ -70,7 +71,7 @@ class LastingChanges:
 
     # --- streams ----------------------------------------------------------------------------------
 
-    def stream(self, by: Identity, command: SetParameters) -> Lasting | None:
+    def stream(self, by: Identity, command: SetParameters) -> Ongoing | None:
         """The stream that a dragged value goes on with; None if it begins one."""
         found = self._streams.get((by.account, command.scope))
         if found is None:
@@ -111,19 +112,19 @@ class LastingChanges:
         command, console = commands[0], self._console
         if len(commands) > 1 or not isinstance(command, SetParameters):
             return None
-        lasting = self.stream(by, command) if command.stream and not command.dry_run else None
-        if lasting is None:
+        ongoing = self.stream(by, command) if command.stream and not command.dry_run else None
+        if ongoing is None:
             return None
         try:
             facts: Facts = {command.scope: checked_values(command.values, "values")}
             console.changes.check_revision(command.if_revision, facts, console.state)
             before = console.state.now(facts)
-            lasting.tick, price = await console.go_on(lasting.change, facts)
+            ongoing.tick, price = await console.go_on(ongoing.change, facts)
         except RefusedError as error:
             raise error.within(0) from None
-        lasting.steps += 1
+        ongoing.steps += 1
         self._await_end((by.account, command.scope))
-        found = {"price": price, "number": lasting.change.number, "tick": lasting.tick}
+        found = {"price": price, "number": ongoing.change.number, "tick": ongoing.tick}
         return Dragged(Planned(command, before, facts), found)
 
     def begin_stream(self, by: Identity, planned: Planned, change: Change, tick: int) -> None:
@@ -131,23 +132,23 @@ class LastingChanges:
         assert isinstance(planned.command, SetParameters)  # noqa: S101
         key = by.account, planned.command.scope
         self._end_stream(key)
-        self._streams[key] = Lasting(by, planned, change, tick)
+        self._streams[key] = Ongoing(by, planned, change, tick)
         self._await_end(key)
 
     def _await_end(self, key: tuple[str | None, str]) -> None:
-        lasting = self._streams[key]
-        if lasting.ending is not None:
-            lasting.ending.cancel()
+        ongoing = self._streams[key]
+        if ongoing.ending is not None:
+            ongoing.ending.cancel()
         loop = asyncio.get_running_loop()
-        lasting.ending = loop.call_later(STREAM_GAP_S, self._end_stream, key)
+        ongoing.ending = loop.call_later(STREAM_GAP_S, self._end_stream, key)
 
     def _end_stream(self, key: tuple[str | None, str]) -> None:
-        lasting = self._streams.pop(key, None)
-        if lasting is None:
+        ongoing = self._streams.pop(key, None)
+        if ongoing is None:
             return
-        if lasting.ending is not None:
-            lasting.ending.cancel()
-        row = asyncio.get_running_loop().create_task(self._ended(lasting))
+        if ongoing.ending is not None:
+            ongoing.ending.cancel()
+        row = asyncio.get_running_loop().create_task(self._ended(ongoing))
         self._rows.add(row)
         row.add_done_callback(self._rows.discard)
 
@@ -155,53 +156,53 @@ class LastingChanges:
 
     def begin_ramp(self, by: Identity, planned: Planned, change: Change, tick: int) -> None:
         """Let values go to those that are planned, from those that hold now."""
-        lasting = Lasting(by, planned, change, tick)
-        task = asyncio.get_running_loop().create_task(self._ramp(lasting, tick))
+        ongoing = Ongoing(by, planned, change, tick)
+        task = asyncio.get_running_loop().create_task(self._ramp(ongoing, tick))
         self._ramps[change.number] = task
         task.add_done_callback(lambda _: self._ramps.pop(change.number, None))
 
-    async def _ramp(self, lasting: Lasting, begun: int) -> None:
-        console, command = self._console, lasting.planned.command
+    async def _ramp(self, ongoing: Ongoing, begun: int) -> None:
+        console, command = self._console, ongoing.planned.command
         assert isinstance(command, SetParameters)  # noqa: S101
         assert command.over_s is not None  # noqa: S101
         tick_s = console.zone.tick_s
         ticks = max(1, round(command.over_s / tick_s))
         period = max(1, round(RAMP_STEP_S / tick_s))
-        first = start_of(lasting.planned.after, console.state)
+        first = start_of(ongoing.planned.after, console.state)
         due = begun
         part = 0.0
         try:
-            while part < 1.0 and not lasting.faults:
+            while part < 1.0 and not ongoing.faults:
                 due = min(due + period, begun + ticks)
                 part = min(1.0, (await console.after_tick(due) - begun) / ticks)
-                values = _between(first, lasting.planned.after, part)
-                if not await self._further(lasting, values):
+                values = _between(first, ongoing.planned.after, part)
+                if not await self._further(ongoing, values):
                     break
         except RefusedError as error:
-            lasting.faults = error.faults
+            ongoing.faults = error.faults
         finally:
-            await self._ended(lasting)
+            await self._ended(ongoing)
 
-    async def _further(self, lasting: Lasting, facts: Facts) -> bool:
+    async def _further(self, ongoing: Ongoing, facts: Facts) -> bool:
         """Let a ramp go further; False if somebody has changed or taken back what it does."""
         console = self._console
         async with console.turn:
-            if not console.changes.can_revert(lasting.change, console.state):
+            if not console.changes.can_revert(ongoing.change, console.state):
                 return False
-            lasting.tick, _ = await console.go_on(lasting.change, facts)
-            lasting.steps += 1
+            ongoing.tick, _ = await console.go_on(ongoing.change, facts)
+            ongoing.steps += 1
             return True
 
-    async def _ended(self, lasting: Lasting) -> None:
+    async def _ended(self, ongoing: Ongoing) -> None:
         """A change goes on no more: write down what became of it."""
-        change = lasting.change
-        more = {"before": change.before, "after": change.after, "steps": lasting.steps}
+        change = ongoing.change
+        more = {"before": change.before, "after": change.after, "steps": ongoing.steps}
         await self._records.outcomes(
-            lasting.by,
-            [lasting.planned],
+            ongoing.by,
+            [ongoing.planned],
             [change.number],
-            lasting.tick,
-            lasting.faults,
+            ongoing.tick,
+            ongoing.faults,
             more=more,
         )
         self._console.tell_change(change)
@@ -221,7 +222,7 @@ def is_ramp(command: Command) -> bool:
     return isinstance(command, SetParameters) and command.over_s is not None
 
 
-def lasts(command: Command) -> bool:
+def goes_on(command: Command) -> bool:
     """Whether a change goes on after its first tick."""
     return isinstance(command, SetParameters) and (command.stream or command.over_s is not None)
 

@@ -1,7 +1,7 @@
 """Changes that go on: dragged values, and ramps."""
 
 from esplanade.server.audit.log import Filter
-from esplanade.server.console import lasting
+from esplanade.server.console import ongoing
 from esplanade.server.store.sql_store import SqlStore
 from tests.server.console.consoles import Desk, desk
 from tests.server.populated import Populated
@@ -35,7 +35,7 @@ async def test_what_is_dragged_is_one_change_with_the_first_and_last_value(
         assert at.value("main/a1", "risk_weight") == 9.5
         (answer,) = await at.send(DRAG)
         assert answer.command not in numbers
-        await at.console.lasting.close()
+        await at.console.ongoing.close()
         rows = await _rows(at)
         assert [outcome for outcome, _ in rows] == ["", "", "done", "done"] or (
             [outcome for outcome, _ in rows] == ["", "done", "", "done"]
@@ -59,7 +59,7 @@ async def test_a_ramp_goes_there_evenly(world: Populated, memory: SqlStore) -> N
     async with desk(world, memory) as at:
         (answer,) = await at.send(RAMP)
         assert answer.after == {"world": {"risk_weight": 20.0}}
-        await at.until(lambda: at.console.lasting.under_way == 0)
+        await at.until(lambda: at.console.ongoing.under_way == 0)
         assert at.value("main/a1", "risk_weight") == 20.0
         steps = [
             what["after"]["world"]["risk_weight"] for kind, what in at.told if kind == "change"
@@ -81,7 +81,7 @@ async def test_a_ramp_ends_where_it_is_taken_back_or_somebody_else_sets_the_valu
             await at.until(lambda: at.value("main/a1", "risk_weight") != 9.5)
             await at.send(ending)
             found = at.value("main/a1", "risk_weight")
-            await at.until(lambda: at.console.lasting.under_way == 0)
+            await at.until(lambda: at.console.ongoing.under_way == 0)
             assert at.value("main/a1", "risk_weight") == found
         assert found == 2.0
 
@@ -92,7 +92,7 @@ async def test_what_cannot_go_evenly_is_refused(world: Populated, memory: SqlSto
         assert body.faults[0].code == "not_ramped"
         order = await at.refused({**RAMP, "values": {"speed_mps": 3.0}})
         assert order.faults[0].code == "values"
-        assert at.console.lasting.under_way == 0
-        await at.send({**RAMP, "values": {"max_expansions": 90}, "over_s": lasting.RAMP_STEP_S})
-        await at.until(lambda: at.console.lasting.under_way == 0)
+        assert at.console.ongoing.under_way == 0
+        await at.send({**RAMP, "values": {"max_expansions": 90}, "over_s": ongoing.RAMP_STEP_S})
+        await at.until(lambda: at.console.ongoing.under_way == 0)
         assert at.value("main/a1", "max_expansions") == 90

@@ -1,4 +1,4 @@
-"""The past of a world: what a start finds of the time before it, as far as it can be used."""
+"""The recovery of a world: what a start finds in the store, and the world goes on from."""
 
 from dataclasses import dataclass, field
 from functools import partial
@@ -25,7 +25,7 @@ log = structlog.get_logger(__name__)
 
 
 @dataclass(frozen=True)
-class Past:
+class Recovery:
     """What a world goes on from; empty for a new one."""
 
     scene: SceneKey
@@ -45,7 +45,7 @@ class Past:
         return [Returning(seat.avatar, seat.name, seat.place) for seat, _ in self.left.waiting]
 
 
-async def read_past(kept: Kept, settings: ServerSettings, loaded: LoadedScene) -> Past:
+async def read_recovery(kept: Kept, settings: ServerSettings, loaded: LoadedScene) -> Recovery:
     """Read what the store has of the time before this start.
 
     Raises
@@ -58,7 +58,7 @@ async def read_past(kept: Kept, settings: ServerSettings, loaded: LoadedScene) -
     described = loaded.scene.model_dump_json(exclude={"mesh"})
     scene = SceneKey.of(loaded.scene.name, described, loaded.triangles)
     if kept.store.location.in_memory:
-        return Past(scene, Parts())
+        return Recovery(scene, Parts())
     found = await restored(kept.store, scene, fresh=settings.fresh)
     parts = found.parts or {}
     if found.parts is not None and not {"zone", "console", "seats"} <= parts.keys():
@@ -82,10 +82,10 @@ async def read_past(kept: Kept, settings: ServerSettings, loaded: LoadedScene) -
     )
     skipped = round(SKIPPED_S * settings.tick_rate)
     tick = 0 if found.parts is None else max(found.tick, tail.tick) + skipped
-    return Past(scene, Parts(found.parts), found.ids, parts.get("zone"), tick, tail, left)
+    return Recovery(scene, Parts(found.parts), found.ids, parts.get("zone"), tick, tail, left)
 
 
-async def tell_the_lost(past: Past, kept: Kept) -> None:
+async def tell_the_lost(recovery: Recovery, kept: Kept) -> None:
     """Write into the audit which commands never happened.
 
     Raises
@@ -93,7 +93,7 @@ async def tell_the_lost(past: Past, kept: Kept) -> None:
     StoreError
         It could not be written.
     """
-    entries = [not_done(row) for row in past.tail.lost]
+    entries = [not_done(row) for row in recovery.tail.lost]
     if entries:
         log.warning("commands were under way and are not done", commands=len(entries))
         await kept.store.write(

@@ -1,0 +1,152 @@
+"""What a decision was made of, for those who look at it between two ticks, on bare arrays."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.planning.agents._decide_kernels import make_task
+from esplanade.planning.agents._perturb_kernels import path_cost, slice_risk
+from esplanade.planning.agents._reservation_kernels import conflict
+from esplanade.planning.agents._task_kernels import (
+    SUB,
+    Task,
+    World,
+    metres_left,
+    risk_price,
+    time_cost,
+    wall_cost,
+    way_left,
+)
+from esplanade.planning.agents._tick_kernels import Zone
+from esplanade.planning.compiled.handle import Handle
+from esplanade.planning.compiled.jit import kernel
+from esplanade.planning.grid._grid_kernels import clearance_at, floor_of, follow, length
+from esplanade.planning.people._prediction_kernels import Prediction
+from esplanade.planning.people._risk_kernels import RiskArrays, index_people, risk_at
+from esplanade.planning.routes._potential_kernels import PotentialValues, potential_at
+
+TIME, RISK, OTHERS, TURN, WALL, HURRY, KEEP_RIGHT, TOTAL, MEAN_RISK, LEGAL = range(10)
+"""Columns of what `price_paths` fills in; seconds, but for mean risk and whether it is legal."""
+COLUMNS = 10
+
+
+@kernel
+def price_paths(
+    zone: Handle[Zone],
+    a: int,
+    tick_s: float,
+    paths: NDArray[np.float64],
+    prices: NDArray[np.float64],
+) -> None:
+    """Fill `prices` (N, 10) with the parts that costs of paths (N, K, 3) are made of.
+
+    `paths` holds x and y, and gets the heights of the floor. The total is that of `path_cost`. The
+    zone's agents must be as they were before the tick; nothing of them is changed.
+    """
+    z = zone.value
+    agents = z.agents
+    left_m = agents.left_m[a]
+    behind_s = agents.behind_s[a]
+    contested = z.world.reservations.contested[a]
+    tolerance_m = agents.parameters[a]["goal_tolerance_m"]
+    task = make_task(z.potentials, agents, a, tolerance_m, tick_s, contested)
+    agents.left_m[a] = left_m
+    agents.behind_s[a] = behind_s
+    slot = agents.potential_rows[a]
+    potential = z.potentials[slot] if slot >= 0 else z.no_potential
+    path = np.empty((paths.shape[1], 2))
+    for n in range(len(paths)):
+        path[:, 0] = paths[n, :, 0]
+        path[:, 1] = paths[n, :, 1]
+        total, mean_risk, legal = path_cost(z.world, potential, task, path)
+        prices[n] = 0.0
+        _price(z.world, potential, task, path, paths[n], prices[n])
+        prices[n, TOTAL] = total
+        prices[n, MEAN_RISK] = mean_risk
+        prices[n, LEGAL] = legal
+
+
+@kernel
+def _price(
+    world: World,
+    potential: PotentialValues,
+    task: Task,
+    path: NDArray[np.float64],
+    places: NDArray[np.float64],
+    out: NDArray[np.float64],
+) -> None:
+    """The parts of `path_cost`, which this follows line by line, and the heights of a path."""
+    grid = world.grid
+    ds = world.step_s / SUB
+    cell = task.cell
+    vx = task.vx
+    vy = task.vy
+    left_m = 0.0
+    bare_m = 0.0
+    places[0, 2] = floor_of(grid, cell)
+    for k in range(len(path) - 1):
+        ax, ay = path[k]
+        bx, by = path[k + 1]
+        ux = (bx - ax) / ds
+        uy = (by - ay) / ds
+        speed = length(bx - ax, by - ay) / ds
+        feet_m = floor_of(grid, cell)
+        cell = follow(grid, cell, bx, by)
+        places[k + 1, 2] = floor_of(grid, cell) if cell >= 0 else feet_m
+        left_m = metres_left(potential, task, cell, bx, by)
+        bare_m = left_m if task.hold else potential_at(potential, cell, bx, by)
+        price = risk_price(task, (k // SUB) * world.step_s) * ds
+        seconds = time_cost(task, left_m, speed, ds)
+        hurried = 0.0
+        if not (task.hold or (speed < 0.2 and left_m <= task.goal_tolerance_m)):
+            hurried = seconds - ds
+        out[TIME] += seconds - hurried
+        out[HURRY] += hurried
+        out[RISK] += price * slice_risk(world, task, k + 1, cell, ax, ay, bx, by)
+        _, soft = conflict(world.reservations, task.me, feet_m, k, ax, ay, bx, by)
+        out[OTHERS] += price * soft
+        out[TURN] += task.turn_weight * length(ux - vx, uy - vy)
+        out[WALL] += wall_cost(task, clearance_at(grid, task.body, cell, bx, by), ds)
+        vx = ux
+        vy = uy
+    speed = length(vx, vy)
+    bare = way_left(task, bare_m, speed)
+    out[TIME] += bare
+    if np.isfinite(bare):
+        out[KEEP_RIGHT] = way_left(task, left_m, speed) - bare
+
+
+@kernel
+def risk_slices(
+    zone: Handle[Zone],
+    prediction: Prediction,
+    risk: RiskArrays,
+    a: int,
+    every: int,
+    cells: NDArray[np.int64],
+    places: NDArray[np.float64],
+    out: NDArray[np.float64],
+) -> None:
+    """Fill `out` (S, N) with the risk for agent a of standing at places (N, 2), in cells (N,).
+
+    Slice s is that of `s * every` of the prediction. `risk` has room for all people; it is filled
+    anew, since the tick left out those whom no agent could come near.
+    """
+    z = zone.value
+    around = (
+        places[:, 0].min(),
+        places[:, 1].min(),
+        places[:, 0].max(),
+        places[:, 1].max(),
+    )
+    first: int = np.int64(0)  # type: ignore[assignment]
+    index_people(prediction, z.last_wider, around, first, every, risk)
+    weight = z.agents.parameters[a]["closing_weight"]
+    contact = z.agents.contacts[a]
+    for s in range(len(out)):
+        for n in range(len(places)):
+            x, y = places[n]
+            out[s, n] = 0.0
+            if cells[n] >= 0:
+                out[s, n] = risk_at(
+                    z.world.grid, risk, contact, s * every, cells[n], x, y, 0.0, 0.0, weight
+                )

@@ -1,0 +1,105 @@
+"""What is kept of commands that the world has carried out: facts, rows, changes, guards."""
+
+import copy
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from esplanade.protocol.commands import ApplyPreset, Facts, Mark, SetParameters
+from esplanade.server.accounts.identity import Identity
+from esplanade.server.accounts.rights import as_text
+from esplanade.server.console.changes import Change
+from esplanade.server.console.facts import together
+from esplanade.server.console.guards import Guard
+from esplanade.server.console.moderation_intents import MODERATING, REVERTIBLE
+from esplanade.server.console.ongoing import goes_on, is_ramp
+from esplanade.server.console.operated_rows import rows_of
+from esplanade.server.console.planned import Planned
+from esplanade.server.console.records import Records
+from esplanade.server.console.scheduler import guard_of, guard_row
+from esplanade.server.console.state import PACE, STEPPED
+from esplanade.server.store.store import StoreError
+
+if TYPE_CHECKING:
+    from esplanade.server.console.console import Console
+
+
+class Settling:
+    """Remembers what the world has carried out, and writes down that it has."""
+
+    def __init__(self, console: "Console", records: Records, clock_us: Callable[[], int]) -> None:
+        self._console = console
+        self._records = records
+        self._clock_us = clock_us
+
+    async def settle(
+        self,
+        by: Identity,
+        planned: list[Planned],
+        numbers: list[int],
+        tick: int | None,
+        facts: Facts,
+    ) -> None:
+        """Let facts that the world has made true be so in the state, in the audit and for undo.
+
+        Raises
+        ------
+        StoreError
+            Presets or schedules cannot be written; they are as they were.
+        """
+        state, numbered = self._console.state, list(zip(planned, numbers, strict=True))
+        stored = {s: f for s, f in facts.items() if s.startswith(("preset:", "schedule:"))}
+        state.take(stored)
+        guards = self._guards(by, numbered)
+        rows = [*rows_of(stored, state), *map(guard_row, guards)]
+        done = [(one, number) for one, number in numbered if not goes_on(one.command)]
+        ended, of_ended = [one for one, _ in done], [number for _, number in done]
+        try:
+            await self._records.outcomes(by, ended, of_ended, tick, [], rows=rows)
+        except StoreError:
+            before = together([one.before for one in reversed(planned)])
+            state.take({subject: before[subject] for subject in stored})
+            raise
+        state.take({s: f for s, f in facts.items() if s not in stored})
+        self._console.settled = numbers[-1]
+        for one, number in numbered:
+            if _is_change(one):
+                self._remember(by, one, number, tick)
+        for guard in guards:
+            self._console.scheduler.guards.add(guard)
+
+    def _remember(self, by: Identity, one: Planned, number: int, tick: int | None) -> None:
+        """Remember a change, so that it can be taken back, and let it go on if it does."""
+        console, ramps = self._console, is_ramp(one.command)
+        change = Change(
+            number,
+            by.account,
+            one.command.op,
+            copy.deepcopy(one.before),
+            copy.deepcopy(one.before if ramps else one.after),
+            one.reverts,
+            at_us=self._clock_us(),
+            tick=tick,
+            note=one.command.text if isinstance(one.command, Mark) else one.command.note,
+        )
+        console.changes.add(change)
+        if ramps:
+            console.ongoing.begin_ramp(by, one, change, tick or console.zone.tick)
+        elif goes_on(one.command):
+            console.ongoing.begin_stream(by, one, change, tick or console.zone.tick)
+        console.tell_change(change)
+
+    def _guards(self, by: Identity, numbered: list[tuple[Planned, int]]) -> list[Guard]:
+        """The guards of commands; they watch once their changes are remembered."""
+        rights, now = as_text(by.rights), self._clock_us()
+        return [
+            guard_of(command.guard, [number], by.account, rights, now)
+            for command, number in ((one.command, number) for one, number in numbered)
+            if isinstance(command, SetParameters | ApplyPreset) and command.guard is not None
+        ]
+
+
+def _is_change(one: Planned) -> bool:
+    """Whether a command is a change: not one that has passed once it is carried out."""
+    if isinstance(one.command, MODERATING) and not isinstance(one.command, REVERTIBLE):
+        return False
+    return STEPPED not in one.after.get(PACE, {})

@@ -1,0 +1,77 @@
+"""What people want, until the next tick: movements, doors, plans to watch, comings and goings."""
+
+from collections.abc import Sequence
+
+from esplanade.server.metrics import Metrics
+from esplanade.server.world.inputs import (
+    Attach,
+    Detach,
+    Input,
+    Leave,
+    MoveDoor,
+    Movement,
+    Stand,
+    Watch,
+)
+
+
+class PendingInputs:
+    """Inputs that wait for the next tick: at most one movement for each person, the latest.
+
+    The number of people and that of doors bound all of it.
+    """
+
+    def __init__(self, metrics: Metrics) -> None:
+        self._metrics = metrics
+        self._comings: list[Attach | Detach | Leave | Stand] = []
+        self._movements: dict[int, Movement] = {}
+        self._doors: dict[str, MoveDoor] = {}
+        self._watches: dict[int, Watch] = {}
+        metrics.gauge(
+            "movements_waiting",
+            "Movements that wait for the next tick",
+            lambda: len(self._movements),
+        )
+
+    def come(self, *comings: Attach | Detach | Leave | Stand) -> None:
+        """Let the zone know that somebody comes, goes or stands; in this order."""
+        self._comings += comings
+
+    def move(self, movement: Movement) -> None:
+        """Keep a movement; it takes the place of an earlier one."""
+        if movement.id in self._movements:
+            self._metrics.traffic.movements_superseded += 1
+        self._movements[movement.id] = movement
+
+    def move_door(self, wish: MoveDoor) -> None:
+        """Keep a wish for a door; the latest wins."""
+        self._doors[wish.name] = wish
+
+    def watch(self, wish: Watch) -> None:
+        """Keep which actor somebody watches; the latest wins."""
+        self._watches[wish.id] = wish
+
+    def stand(self, avatar_id: int) -> None:
+        """Let an avatar stand; a movement that waits is void."""
+        self._movements.pop(avatar_id, None)
+        self.come(Stand(avatar_id))
+
+    def forget(self, avatar_id: int) -> None:
+        """Forget what somebody wants whose connection has ended."""
+        self._movements.pop(avatar_id, None)
+        self._watches.pop(avatar_id, None)
+
+    def drain(self, lines: Sequence[Input], joins: Sequence[Input], *, still: bool) -> list[Input]:
+        """Return everything for the next tick, with the lines of chat and those who join.
+
+        For a `still` tick, in which nobody moves, movements wait for the next one.
+        """
+        # A line is said before its speaker goes.
+        inputs: list[Input] = [*lines, *self._comings, *joins]
+        if not still:
+            inputs.extend(self._movements.values())
+            self._movements = {}
+        inputs.extend(self._doors.values())
+        inputs.extend(self._watches.values())
+        self._comings, self._doors, self._watches = [], {}, {}
+        return inputs

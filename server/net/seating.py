@@ -1,0 +1,297 @@
+"""Seats people: who waits at the door, who is in, who comes back, and who goes."""
+
+import asyncio
+from collections.abc import Callable
+from typing import Any, Final
+
+import structlog
+
+from esplanade.protocol import ByeCode, CloseCode, ErrorCode, ProtocolError
+from esplanade.protocol.messages import Bye, Error, Hello
+from esplanade.server.checkpoint.returning import Left
+from esplanade.server.checkpoint.rows import KeptSeat
+from esplanade.server.checkpoint.seat_keeper import SeatKeeper
+from esplanade.server.metrics import Metrics
+from esplanade.server.net import frames
+from esplanade.server.net.names import Names, ReservedNameError
+from esplanade.server.net.pending_inputs import PendingInputs
+from esplanade.server.net.seats import Seat, Seats
+from esplanade.server.net.session import Session
+from esplanade.server.net.welcomes import Welcomes
+from esplanade.server.settings import ServerSettings
+from esplanade.server.world.audience import Audience
+from esplanade.server.world.frame import Frame
+from esplanade.server.world.inputs import Attach, Detach, Join, Leave
+from esplanade.server.world.zone import Zone
+
+MAX_JOINS_PER_TICK: Final = 16
+"""Each join costs every neighbour an enter message, so a crowd comes in over some ticks."""
+NAMELESS: Final = "Guest"
+"""The name of somebody who comes back with one that nobody may bear any more."""
+
+log = structlog.get_logger(__name__)
+
+
+class Seating:
+    """Gives people seats in a zone, and takes them away. With a `keeper`, nobody is welcomed
+    before their seat is in the store."""
+
+    def __init__(
+        self,
+        world: Zone,
+        audience: Audience,
+        settings: ServerSettings,
+        metrics: Metrics,
+        welcomes: Welcomes,
+        pending: PendingInputs,
+        keeper: SeatKeeper | None,
+        *,
+        greet: Callable[[Session, bool], None],
+        leaving: Callable[[Session], None],
+        forget: Callable[[int], None],
+    ) -> None:
+        """`greet` is told of each who is welcomed, and whether they came back; `leaving` of a
+        session whose connection ends, and `forget` of the avatar that it has no more."""
+        self.sessions: dict[int, Session] = {}
+        """Sessions that have been welcomed, by their avatar's id."""
+        self.seats: Seats[Session] = Seats()
+        self._world = world
+        self._audience = audience
+        self._settings = settings
+        self._metrics = metrics
+        self._welcomes = welcomes
+        self._pending = pending
+        self._keeper = keeper
+        self._greet = greet
+        self._leaving = leaving
+        self._forget = forget
+        self._names = Names(world.actor_names)
+        self._next_ticket = 1
+        self._joining: dict[int, tuple[Session, Hello]] = {}
+        self._asked: set[int] = set()
+        """Tickets of those who wait to join and have been sent to the zone."""
+        metrics.gauge("clients", "People connected", lambda: len(self.sessions))
+        metrics.gauge(
+            "clients_away", "Avatars that wait for a lost person", lambda: self.seats.vacant
+        )
+        metrics.gauge("joining", "People who wait to join", lambda: len(self._joining))
+
+    # --- coming -------------------------------------------------------------------------------
+
+    def admit(self, session: Session, hello: Hello) -> None:
+        """Let a newcomer wait to join, or give a person who comes back their own avatar.
+
+        Raises
+        ------
+        ProtocolError
+            The world is full, or the name is one that nobody may bear.
+        """
+        seat = self.seats.find(hello.resume) if hello.resume else None
+        if seat is not None:
+            self._resume(seat, session, hello.resume or "")
+            return
+        if len(self.seats) + len(self._joining) >= self._settings.max_clients:
+            self._make_room()
+        try:
+            session.name = self._names.take(hello.name)
+        except ReservedNameError as error:
+            raise ProtocolError(
+                ErrorCode.NAME_RESERVED, str(error), CloseCode.NAME_RESERVED
+            ) from None
+        session.ticket = self._next_ticket
+        self._joining[session.ticket] = session, hello
+        self._next_ticket += 1
+
+    def is_at_the_door(self, session: Session) -> bool:
+        """Whether somebody waits to join."""
+        return session.ticket in self._joining
+
+    def joins(self) -> list[Join]:
+        """Inputs by which a few of those at the door come in."""
+        found = []
+        at_the_door = [ticket for ticket in self._joining if ticket not in self._asked]
+        for ticket in at_the_door[: min(MAX_JOINS_PER_TICK, self._world.state.ids_left)]:
+            session, hello = self._joining[ticket]
+            anywhere = session.is_operator or self._settings.crowd is not None
+            found.append(Join(ticket, session.name, hello.at, anywhere))
+            self._asked.add(ticket)
+        return found
+
+    def welcome(self, frame: Frame) -> None:
+        """Welcome the people whom the tick has let in, before anything else is sent to them."""
+        for ticket, avatar_id in frame.joined:
+            self._asked.discard(ticket)
+            if ticket not in self._joining:
+                # The person went while the zone made the avatar.
+                self._pending.come(Leave(avatar_id))
+                continue
+            session, _ = self._joining.pop(ticket)
+            session.token = self.seats.issue(avatar_id, session.name, session.address, session)
+            self.seats.walks_in(avatar_id, session.operator)
+            session.avatar_id = avatar_id
+            self._keep_new(session, avatar_id)
+        for ticket, avatar_id in frame.attached:
+            seat = self.seats.of(avatar_id)
+            # Somebody else may have come back to the avatar since; the later one has it.
+            if seat is not None and seat.occupant is not None and seat.occupant.ticket == ticket:
+                self._bind(seat.occupant, avatar_id, resumed=seat.occupant.resumes)
+
+    def confirm(self, session: Session) -> None:
+        """Note that a client that came back has its new token, so that the old one is void."""
+        session.unconfirmed = False
+        seat = None if session.avatar_id is None else self.seats.of(session.avatar_id)
+        if seat is not None and seat.occupant is session:
+            self.seats.confirm(seat)
+            if self._keeper is not None:
+                self._keeper.confirm(seat.avatar_id, seat.address, tuple(seat.digests))
+
+    def _resume(self, seat: Seat[Session], session: Session, token: str) -> None:
+        before = self.seats.occupy(seat, session, session.address)
+        if before is not None:
+            self._unbind(seat)
+            text = "somebody came in with your resume token"
+            farewell = frames.message(Bye(reason=ByeCode.REPLACED, text=text))
+            before.dismiss(farewell, CloseCode.REPLACED, ByeCode.REPLACED.value)
+        session.avatar_id, session.name = seat.avatar_id, seat.name
+        self.seats.walks_in(seat.avatar_id, session.operator)
+        session.operator = session.operator or seat.operator
+        session.token = self.seats.renew(seat, token)
+        session.ticket = self._next_ticket
+        self._next_ticket += 1
+        session.resumes = True
+        self._pending.come(Detach(seat.avatar_id))
+        if self._keeper is None:
+            self._pending.come(Attach(seat.avatar_id, session.ticket))
+            return
+        digests = tuple(seat.digests)
+        self._when_kept(self._keeper.change(seat.avatar_id, seat.address, digests), session)
+
+    def _make_room(self) -> None:
+        """Take a vacant seat away, so that a newcomer finds room.
+
+        Raises
+        ------
+        ProtocolError
+            None is vacant.
+        """
+        seat = self.seats.yielding()
+        if seat is None:
+            raise ProtocolError(
+                ErrorCode.SERVER_FULL,
+                f"there is room for {self._settings.max_clients} people, all taken",
+                CloseCode.SERVER_FULL,
+            )
+        self._metrics.seats_yielded.inc()
+        self._remove(seat)
+        log.info("vacant seat yielded", id=seat.avatar_id, name=seat.name, address=seat.address)
+
+    def _bind(self, session: Session, avatar_id: int, resumed: bool) -> None:
+        self.sessions[avatar_id] = session
+        if not session.wants_steps:
+            self._audience.send_no_steps(avatar_id)
+        session.outbox.welcome(self._welcomes.frame(session, avatar_id, resumed))
+        session.unconfirmed = resumed
+        self._greet(session, resumed)
+        if session.fault_at_welcome is not None:
+            session.tell(session.fault_at_welcome)
+        self._metrics.joins.labels("resumed" if resumed else "new").inc()
+        log.info("person here", id=avatar_id, name=session.name, resumed=resumed)
+
+    # --- going --------------------------------------------------------------------------------
+
+    def depart(self, session: Session, comes_back: bool, now_s: float) -> None:
+        """Let go of a session that has ended; its avatar waits if the person may come back."""
+        if self._joining.pop(session.ticket, None) is not None:
+            self._names.give_back(session.name)
+        if session.avatar_id is None:
+            return
+        seat = self.seats.of(session.avatar_id)
+        if seat is None or seat.occupant is not session:
+            return
+        self._leaving(session)
+        self._unbind(seat)
+        if comes_back and self._settings.resume_seconds > 0.0:
+            self.seats.vacate(seat, now_s)
+            self._pending.come(Detach(seat.avatar_id))
+        else:
+            self._remove(seat)
+        log.info("person gone", id=seat.avatar_id, name=seat.name, may_come_back=comes_back)
+
+    def end_waiting(self, now_s: float) -> None:
+        """Take the avatars away that have waited for their person for too long."""
+        for seat in self.seats.vacant_since(now_s - self._settings.resume_seconds):
+            self._remove(seat)
+
+    def everyone(self) -> list[Session]:
+        """All who are in, and those at the door."""
+        return [*self.seats.occupants(), *(session for session, _ in self._joining.values())]
+
+    def give_up(self, session: Session) -> None:
+        """Give up the seat of a session: whoever had it comes back as somebody new."""
+        seat = None if session.avatar_id is None else self.seats.of(session.avatar_id)
+        if seat is not None and seat.occupant is session:
+            self._leaving(session)
+            self._unbind(seat)
+            self._remove(seat)
+
+    def _unbind(self, seat: Seat[Session]) -> None:
+        self.sessions.pop(seat.avatar_id, None)
+        self._pending.forget(seat.avatar_id)
+        self._forget(seat.avatar_id)
+
+    def _remove(self, seat: Seat[Session]) -> None:
+        self.seats.remove(seat)
+        self._names.give_back(seat.name)
+        self._pending.come(Leave(seat.avatar_id))
+        if self._keeper is not None:
+            self._keeper.remove(seat.avatar_id)
+
+    # --- the store ----------------------------------------------------------------------------
+
+    def save_seats(self) -> dict[str, Any]:
+        """The seats there are, and for how long each has waited; their rows say whose they are."""
+        now = asyncio.get_running_loop().time()
+        return {"next_id": self._world.state.next_id, "vacant_s": self.seats.vacant_s(now)}
+
+    def restore(self, left: Left) -> None:
+        """Let people come back to seats from before a restart; the world has their avatars."""
+        now = asyncio.get_running_loop().time()
+        for kept, waited_s in left.waiting:
+            try:
+                name = self._names.take(kept.name)
+            except ReservedNameError:
+                name = self._names.take(NAMELESS)
+            digests = list(kept.digests)
+            seat: Seat[Session] = Seat(kept.avatar, name, kept.address, None, digests)
+            self.seats.restore(seat, now - waited_s)
+        if self._keeper is not None:
+            for avatar_id in left.gone:
+                self._keeper.remove(avatar_id)
+
+    def _keep_new(self, session: Session, avatar_id: int) -> None:
+        """Write the seat of a newcomer, who is welcomed once it is committed."""
+        seat = self.seats.of(avatar_id)
+        if self._keeper is None or seat is None:
+            self._bind(session, avatar_id, resumed=False)
+            return
+        place, digests = self._world.where(avatar_id), tuple(seat.digests)
+        kept = KeptSeat(avatar_id, seat.name, seat.address, digests, place)
+        self._when_kept(self._keeper.add(kept), session)
+
+    def _when_kept(self, done: "asyncio.Future[bool]", session: Session) -> None:
+        done.add_done_callback(lambda done: self._let_in(session, is_kept=done.result()))
+
+    def _let_in(self, session: Session, *, is_kept: bool) -> None:
+        """Let somebody look whose seat is in the store now, or end the session if it is not."""
+        seat = None if session.avatar_id is None else self.seats.of(session.avatar_id)
+        if seat is None or seat.occupant is not session:
+            return
+        if is_kept:
+            self._pending.come(Detach(seat.avatar_id), Attach(seat.avatar_id, session.ticket))
+            return
+        text = "your seat cannot be kept just now; come again"
+        self._unbind(seat)
+        self._remove(seat)
+        self._metrics.errors.labels(ErrorCode.SERVER_FULL.value).inc()
+        farewell = frames.message(Error(error=ErrorCode.SERVER_FULL, text=text))
+        session.dismiss(farewell, CloseCode.SERVER_FULL, ErrorCode.SERVER_FULL.value)

@@ -1,0 +1,113 @@
+"""What people's inputs do to a zone, and what its frame tells of that."""
+
+from collections.abc import Collection
+
+from esplanade.planning import LayeredGrid
+from esplanade.server.world.frame import Line, Tickets
+from esplanade.server.world.inputs import (
+    Attach,
+    Detach,
+    Follow,
+    Join,
+    Leave,
+    OfPerson,
+    Say,
+    Stand,
+    Steer,
+    Watch,
+)
+from esplanade.server.world.people import People
+from esplanade.server.world.rules import Rules
+from esplanade.server.world.spawning import Spawning
+from esplanade.server.world.state import ACTOR, PERSON, State
+
+
+class PersonInputs:
+    """Takes inputs of people, one after the other, and gathers what is new by them in a tick."""
+
+    def __init__(
+        self,
+        state: State,
+        people: People,
+        spawning: Spawning,
+        grid: LayeredGrid,
+        rules: Rules,
+    ) -> None:
+        self._state = state
+        self._people = people
+        self._spawning = spawning
+        self._grid = grid
+        self._rules = rules
+        self._watched: dict[int, int] = {}
+        self.begin_frame()
+
+    def begin_frame(self) -> None:
+        """Begin a tick, in which nothing is new yet."""
+        self.joined: Tickets = []
+        self.attached: Tickets = []
+        self.detached: list[int] = []
+        self.left: list[int] = []
+        self.acks: dict[int, int] = {}
+        self.chat: list[Line] = []
+
+    @property
+    def watched(self) -> Collection[int]:
+        """The avatars of the actors whose plans somebody wants to see."""
+        return self._watched.values()
+
+    def join(self, join: Join) -> None:
+        """Give a newcomer an avatar.
+
+        Raises
+        ------
+        NoRoomError
+            There is no place left to stand.
+        """
+        place = self._spawning.place(join.at, join.anywhere)
+        layer = self._grid.layer_at(place[:2], place[2])
+        slot = self._state.add(PERSON, join.name, place, layer, self._rules.person_radius_m)
+        self._people.stop(slot)
+        self.joined.append((join.ticket, int(self._state.ids[slot])))
+
+    def take(self, item: OfPerson, slot: int) -> None:
+        """Take in what a person who is in that slot wants."""
+        match item:
+            case Steer():
+                self._people.steer(slot, item)
+                self.acks[item.id] = item.seq
+            case Follow():
+                self._people.follow(slot, item)
+                self.acks[item.id] = item.seq
+            case Stand():
+                self._people.stop(slot)
+            case Attach():
+                self.attached.append((item.ticket, item.id))
+            case Detach():
+                self._people.stop(slot)
+                self._look_no_more(item.id)
+                self.detached.append(item.id)
+            case Leave():
+                self._people.stop(slot)
+                self._look_no_more(item.id)
+                self.left.append(item.id)
+                self._state.remove(item.id)
+            case Say():
+                self.chat.append(Line(item.id, item.text))
+            case Watch():
+                self._watch(item)
+
+    def gone(self, avatars: list[int]) -> None:
+        """Actors' avatars have left the world: nobody watches them any more."""
+        self.left += avatars
+        gone = set(avatars)
+        self._watched = {who: one for who, one in self._watched.items() if one not in gone}
+
+    def _watch(self, item: Watch) -> None:
+        self._watched.pop(item.id, None)
+        actor, state = item.actor_id, self._state
+        if actor is not None and actor in state and state.kinds[state.slot(actor)] == ACTOR:
+            self._watched[item.id] = actor
+
+    def _look_no_more(self, avatar_id: int) -> None:
+        self._watched.pop(avatar_id, None)
+        self.attached = [(ticket, one) for ticket, one in self.attached if one != avatar_id]
