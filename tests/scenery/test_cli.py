@@ -1,6 +1,7 @@
 """The command: its output, files, exit codes and usage errors."""
 
 import json
+import re
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -45,7 +46,7 @@ def test_check_says_what_is_wrong_and_where(
     path = write(tmp_path, {**LOFT, "polygons": polygons})
     assert run("check", path) == exit_codes.FAILED
     shown = capsys.readouterr()
-    assert shown.err == f"{path}: polygons.3.height_m: must be > 0, got -1\n"
+    assert re.fullmatch(rf"{path}:1:\d+: polygons.3.height_m: must be > 0, got -1\n", shown.err)
     assert shown.out == ""
     assert run("check", path, "--json") == exit_codes.FAILED
     faults = json.loads(capsys.readouterr().out)["faults"]
