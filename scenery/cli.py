@@ -98,6 +98,8 @@ def import_(options: Namespace) -> int:
         f"{len(made.mesh.triangles)} triangles of {made.mesh.kind}", highlight=False, soft_wrap=True
     )
     mesh_report.show_passed(written, made.mesh.passed)
+    for line in made.mesh.told:
+        written.print(line, highlight=False, markup=False, soft_wrap=True)
     _tell(made.scene, made.grid, options.out)
     return exit_codes.OK
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from esplanade.planning.scene.bounded_reading import read_bounded
 from esplanade.planning.scene.formats.faces import Triangles, cut
 from esplanade.planning.scene.formats.gltf import read_gltf
+from esplanade.planning.scene.formats.ifc import read_ifc
 from esplanade.planning.scene.formats.obj import read_obj
 from esplanade.planning.scene.formats.off import HEADERS, read_off
 from esplanade.planning.scene.formats.ply import read_ply
@@ -37,6 +38,7 @@ _FORMATS: Final[dict[str, Callable[[Path, bytes], Triangles]]] = {
     "STL": lambda _, data: read_stl(data),
     "3MF": lambda _, data: read_3mf(data),
     "glTF": read_gltf,
+    "IFC": read_ifc,
 }
 _SUFFIXES: Final = {
     ".obj": "OBJ",
@@ -44,10 +46,11 @@ _SUFFIXES: Final = {
     ".ply": "PLY",
     ".stl": "STL",
     ".3mf": "3MF",
+    ".ifc": "IFC",
     ".gltf": "glTF",
     ".glb": "glTF",
 }
-_UP: Final[dict[str, Up]] = {"STL": "z", "3MF": "z"}
+_UP: Final[dict[str, Up]] = {"STL": "z", "3MF": "z", "IFC": "z"}
 """The axis that is up where the format says so or its programs agree; y in all others."""
 
 
@@ -62,6 +65,8 @@ class Mesh:
     """What the file holds beside them, with its count."""
     offset_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """What was taken from every corner: x, y, z of the file's own origin."""
+    told: tuple[str, ...] = ()
+    """What else the file says about itself, such as the names of its storeys."""
 
 
 def read_triangles(path: str | Path, up: Up = "y") -> NDArray[np.float64]:
@@ -116,7 +121,7 @@ def read_mesh(
             "possible. Move it nearer (`esplanade scene import --recentre`)"
         )
     x, y, z = offset.tolist()
-    return Mesh(corners, kind, found.passed, (x, y, z))
+    return Mesh(corners, kind, found.passed, (x, y, z), found.told)
 
 
 def _check_extent(name: str, extent: NDArray[np.float64], up: str) -> None:
@@ -159,6 +164,8 @@ def _format_of(path: Path, data: bytes) -> str:
         return "glTF"
     if start.startswith((b"ply\n", b"ply\r")):
         return "PLY"
+    if start.startswith(b"ISO-10303-21"):
+        return "IFC"
     if data.startswith(b"PK\x03\x04"):
         return "3MF"
     if start.split(None, 1)[:1] in [[header.encode()] for header in HEADERS]:

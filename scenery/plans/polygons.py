@@ -10,6 +10,7 @@ from esplanade.planning.scene.formats.text import decoded
 from esplanade.scenery.plans.storey import Storey, library
 
 METRES_A_DEGREE: Final = 111_319.49
+_WRONG: Final = (AttributeError, KeyError, TypeError, IndexError, ValueError)
 _MOST_DEGREES: Final = 0.02
 """Plans that measure less and lie within the degrees of the earth are degrees, as GeoJSON says."""
 
@@ -65,7 +66,7 @@ def read_geojson(data: bytes, name: str) -> Storey:
             own = feature.get("geometry", feature) if "type" in feature else None
             if own is not None:
                 read.append((geometry_of(own), feature.get("properties") or {}))
-        except (AttributeError, KeyError, TypeError, IndexError, ValueError) as error:
+        except (*_WRONG, shapely.errors.ShapelyError) as error:
             raise ValueError(f"features.{number}: it is no geometry: {error}") from None
     box = shapely.total_bounds([geometry for geometry, _ in read])
     x0, y0, x1, y1 = box.tolist()

@@ -40,10 +40,10 @@ def scene_of_plan(
     x1, y1 = (scale * max(box[k] for box in boxes) for k in (2, 3))
     moved = (round(0.5 * (x0 + x1)), round(0.5 * (y0 + y1))) if recentre else (0, 0)
     bounds = (
-        math.floor(x0 - moved[0] - 1e-6),
-        math.floor(y0 - moved[1] - 1e-6),
-        math.ceil(x1 - moved[0] + 1e-6),
-        math.ceil(y1 - moved[1] + 1e-6),
+        math.floor(x0 - moved[0] + 1e-6),
+        math.floor(y0 - moved[1] + 1e-6),
+        math.ceil(x1 - moved[0] - 1e-6),
+        math.ceil(y1 - moved[1] - 1e-6),
     )
     parts: dict[str, list[Any]] = {"polygons": [], "walls": [], "doors": [], "places": []}
     for number, storey in enumerate(storeys):

@@ -40,6 +40,8 @@ class Triangles:
     points: _Floats
     """(T, 3, 3)."""
     passed: Counter[str] = field(default_factory=Counter)
+    told: tuple[str, ...] = ()
+    """What else the file says about itself, such as the names of its storeys."""
 
 
 def cut(faces: Faces) -> Triangles:
