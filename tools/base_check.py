@@ -107,6 +107,7 @@ def gltf(extensions: dict[str, object]) -> str:
     return json.dumps(
         {
             "asset": {"version": "2.0"},
+            "extensionsRequired": list(extensions),
             "scenes": [{"nodes": [0]}],
             "nodes": [{"mesh": 0}],
             "meshes": [{"primitives": [primitive]}],

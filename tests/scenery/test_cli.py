@@ -9,6 +9,7 @@ import pytest
 
 from esplanade.cli import main
 from esplanade.commandline import exit_codes
+from esplanade.planning.scene.scene_file import read_scene
 from tests.scenery.worlds import LOFT, write, write_building
 
 needs_matplotlib = pytest.mark.skipif(find_spec("matplotlib") is None, reason="no matplotlib")
@@ -128,6 +129,20 @@ def test_the_help_of_the_whole_names_all_options(capsys: pytest.CaptureFixture[s
 
 def test_a_command_is_needed(capsys: pytest.CaptureFixture[str]) -> None:
     assert "COMMAND" in refused(capsys)
+
+
+def test_schema_tells_scenes_from_others(tmp_path: Path) -> None:
+    validator_for = pytest.importorskip("jsonschema_rs").validator_for
+    out = tmp_path / "scene.schema.json"
+    assert run("schema", "--out", out) == exit_codes.OK
+    schema = json.loads(out.read_text())
+    assert "metres" in schema["$defs"]["Polygon"]["properties"]["points"]["description"]
+    judge = validator_for(schema)
+    named = {"$schema": out.name, **LOFT}
+    assert judge.is_valid(named)
+    assert not judge.is_valid({**named, "colour": "red"})
+    assert not judge.is_valid({**named, "walls": [{"start": [0, 0]}]})
+    assert read_scene(write(tmp_path, named)) == read_scene(write(tmp_path, named))
 
 
 def test_import_makes_a_scene_that_check_accepts(

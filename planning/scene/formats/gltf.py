@@ -128,7 +128,7 @@ def _vertices_and_corners(
     accessors: Accessors, primitive: Any, weights: Any
 ) -> tuple[_Floats, _Ints]:
     packed = primitive.get("extensions", {}).get(DRACO)
-    if packed is not None:
+    if packed is not None and not accessors.has_plain(primitive, DRACO):
         data, _ = accessors.view(packed.get("bufferView"))
         vertices, triangles = unpacked_draco(bytes(data))
         return vertices, triangles.reshape(-1)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.scene.formats.gltf_container import MAX_BYTES, Container
-from esplanade.planning.scene.formats.gltf_extensions import MESHOPT
+from esplanade.planning.scene.formats.gltf_extensions import MESHOPT, requires
 from esplanade.planning.scene.formats.unpacking import unpacked_meshopt
 
 _COMPONENTS: Final[dict[Any, np.dtype[Any]]] = {
@@ -32,6 +32,15 @@ class Accessors:
     def count(self, index: Any) -> int:
         """The elements of an accessor as the file tells them."""
         return _whole(self._container.part("accessors", index).get("count"), "count")
+
+    def has_plain(self, primitive: Any, extension: str) -> bool:
+        """Whether the positions of a packed primitive are there unpacked as well."""
+        place = primitive.get("attributes", {}).get("POSITION")
+        return (
+            not requires(self._container.content, extension)
+            and place is not None
+            and "bufferView" in self._container.part("accessors", place)
+        )
 
     def values(self, index: Any, width: int) -> NDArray[np.float64]:
         """An accessor as float64 (N, width), normalised where it is said to be."""
@@ -103,13 +112,20 @@ class Accessors:
         described = self._container.part("bufferViews", index)
         if index not in self._views:
             extensions = described.get("extensions", {})
-            packed = next((extensions[name] for name in MESHOPT if name in extensions), None)
-            if packed is None:
+            name = next((name for name in MESHOPT if name in extensions), "")
+            packed = extensions.get(name)
+            if packed is None or self._is_plain(described, name):
                 self._views[index] = self._span(described), _stride(described)
             else:
                 data = unpacked_meshopt(bytes(self._span(packed)), packed)
                 self._views[index] = memoryview(data), _stride(described)
         return self._views[index]
+
+    def _is_plain(self, described: Any, extension: str) -> bool:
+        """Whether the bytes of a packed view are there unpacked as well."""
+        buffer = self._container.part("buffers", described.get("buffer"))
+        marked = any(name in buffer.get("extensions", {}) for name in MESHOPT)
+        return not requires(self._container.content, extension) and not marked
 
     def _span(self, described: Any) -> memoryview:
         data = memoryview(self._container.buffer(described.get("buffer")))

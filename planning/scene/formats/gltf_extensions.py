@@ -19,10 +19,10 @@ READ: Final = frozenset((INSTANCING, DRACO, *MESHOPT, QUANTISED))
 _APPEARANCE: Final = re.compile(
     r"(KHR|EXT|MSFT|ADOBE|ASOBO|NV|GODOT|VRMC?|GOOGLE|WEB3D|GRIFFEL|OMI|MOZ|CESIUM|AGI)_"
     r"(materials?|texture|lights?|xmp|audio|sky|environment|image|emitter)[a-z0-9]*(_\w+)?$"
-    r"|(KHR|EXT)_(techniques|animation)\w*$",
+    r"|(KHR|EXT)_(techniques|animation|physics)\w*$|OMI_\w+$|KHR_implicit_shapes$",
     re.IGNORECASE,
 )
-"""Materials, textures, lights, sounds and data about the file, whoever made the extension."""
+"""Materials, textures, lights, sounds, bodies of physics and data about the file, of any maker."""
 _HARMLESS: Final = frozenset(
     (
         "EXT_mesh_features",
@@ -76,6 +76,11 @@ def check_extensions(content: dict[str, Any]) -> tuple[str, ...]:
             "save it without"
         )
     return others
+
+
+def requires(content: dict[str, Any], name: str) -> bool:
+    """Whether a file can be read with this extension only; else it has what stands in its place."""
+    return name in _names(content, "extensionsRequired")
 
 
 def _known(name: str) -> bool:

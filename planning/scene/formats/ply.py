@@ -77,6 +77,8 @@ def _header(text: str) -> tuple[str, list[_Element]]:
                 order = _ORDERS[name]
             case ["element", name, length] if length.isdecimal():
                 elements.append(_Element(name, int(length), []))
+            case ["property", *_] if not elements:
+                raise ValueError(f"line {number}: a property of no element")
             case ["property", "list", count, kind, name] if {count, kind} <= _TYPES.keys():
                 elements[-1].properties.append(_Property(name, _TYPES[kind], _TYPES[count]))
             case ["property", kind, name] if kind in _TYPES:

@@ -88,7 +88,7 @@ def test_buffers_that_are_no_files_are_refused(tmp_path: Path, uri: str) -> None
 
 
 @pytest.mark.parametrize(
-    "name", ["KHR_texture_transform", "KHR_materials_unlit", "EXT_texture_webp", "MSFT_lod"]
+    "name", ["KHR_texture_transform", "KHR_materials_unlit", "OMI_physics_shape", "MSFT_lod"]
 )
 @pytest.mark.parametrize("key", ["extensionsUsed", "extensionsRequired"])
 def test_extensions_of_looks_are_passed_over(tmp_path: Path, name: str, key: str) -> None:
@@ -234,12 +234,26 @@ def test_meshopt_is_unpacked_by_its_library(tmp_path: Path) -> None:
     assert area(made.read(tmp_path).points) == pytest.approx(100.0)
 
 
+def test_what_is_only_packed_beside_plain_arrays_needs_no_library(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "DracoPy", None)
+    monkeypatch.setitem(sys.modules, "meshoptimizer", None)
+    made = Made()
+    packed = made.add_view(b"not needed")
+    made.primitive["extensions"] = {"KHR_draco_mesh_compression": {"bufferView": packed}}
+    made.content["bufferViews"][0]["extensions"] = {"EXT_meshopt_compression": {"buffer": 0}}
+    made.content["extensionsUsed"] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression"]
+    assert area(made.read(tmp_path).points) == pytest.approx(100.0)
+
+
 def test_without_its_library_a_packed_mesh_is_refused_by_name(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "DracoPy", None)
     made = Made()
     made.primitive["extensions"] = {"KHR_draco_mesh_compression": {"bufferView": 0}}
+    made.content["extensionsRequired"] = ["KHR_draco_mesh_compression"]
     with pytest.raises(ValueError, match=r"KHR_draco.* needs DracoPy: pip install .*\[meshes\]"):
         made.read(tmp_path)
 
