@@ -27,7 +27,7 @@ __all__ = ["MAX_FILE_BYTES", "Mesh", "MeshError", "Up", "read_mesh", "read_trian
 
 Up = Literal["y", "z"]
 
-MAX_FILE_BYTES: Final = 512 * 2**20
+MAX_FILE_BYTES: Final = 384 * 2**20
 FURTHEST_M: Final = 1e6
 """Greatest coordinate, as in scene files: beyond, positions would no longer be exact."""
 
@@ -145,6 +145,8 @@ def _read(path: Path) -> tuple[str, Triangles]:
     try:
         if not path.is_file():
             raise MeshError(f"{path.name}: there is no such file")
+        if path.stat().st_size > MAX_FILE_BYTES:
+            raise MeshError(f"{path.name}: it has more than {MAX_FILE_BYTES // 2**20} MiB")
         data = read_bounded(path, MAX_FILE_BYTES)
     except OSError as error:
         raise MeshError(f"{path.name}: it cannot be read: {error.strerror or error}") from None

@@ -26,6 +26,9 @@ def decoded(data: bytes, strict: bool = False) -> str:
         The file is not text.
     """
     encoding = _encoding(data)
+    # Looked at first, since a large file of bytes would take long to decode.
+    if encoding == "utf-8" and b"\0" in data[:_LOOKED_AT]:
+        raise ValueError("it is no text, but bytes")
     try:
         text = data.decode(encoding)
     except UnicodeDecodeError as error:

@@ -199,3 +199,11 @@ def test_an_object_shown_many_times_is_read_as_the_library_places_it(tmp_path: P
     assert len(ours) == len(placed)
     for row in placed[::7]:
         assert np.abs(ours - row).max(axis=1).min() < 1e-4
+
+
+def test_a_file_beyond_the_bound_is_not_read(tmp_path: Path) -> None:
+    path = tmp_path / "huge.obj"
+    with path.open("wb") as file:
+        file.truncate(2**40)
+    with pytest.raises(MeshError, match=r"huge.obj: it has more than 384 MiB"):
+        read_mesh(path)
