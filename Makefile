@@ -17,7 +17,7 @@ BENCHMARKS ?= $(patsubst benchmarks/%.py,%,$(wildcard benchmarks/[a-z]*.py))
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help serve test test-boundscheck test-nojit fuzz-files test-lowest test-pythons
+.PHONY: help serve test test-boundscheck test-nojit fuzz-files test-lowest test-pythons test-base
 .PHONY: check release-check audit bench chaos format lock client clean
 
 help:  ## show what there is to do
@@ -52,6 +52,9 @@ test-lowest: $(VENV)/.test  ## run tests with the oldest releases that pyproject
 
 test-pythons: $(VENV)/.test  ## run an installed wheel on every Python that there is
 	$(RUN) -m tools.pythons
+
+test-base: $(VENV)/.test  ## run an installed wheel without any extra: every command and reader
+	$(RUN) -m tools.base
 
 audit: $(VENV)/.test  ## ask for known faults of what uv.lock names
 	$(RUN) -m tools.audit

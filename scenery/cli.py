@@ -9,15 +9,19 @@ from esplanade.commandline import exit_codes
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.output import console, made_folder
 from esplanade.commandline.progress import progress
-from esplanade.planning import Scene
+from esplanade.planning import LayeredGrid, Scene
 from esplanade.planning.ground.surfaces import GroundError
 from esplanade.planning.scene.mesh_file import MeshError
 from esplanade.planning.scene.scene_file import SceneError, read_scene
-from esplanade.scenery import inventory, pictures
+from esplanade.scenery import inventory, mesh_report, pictures
 from esplanade.scenery.bodies import made_body
 from esplanade.scenery.download import local_file
-from esplanade.scenery.importing import import_mesh
+from esplanade.scenery.importing import NAME_LENGTH, import_mesh, with_places
 from esplanade.scenery.layer_maps import layer_maps
+from esplanade.scenery.plans.reading import is_plan, read_plan
+from esplanade.scenery.plans.scene_of_plan import scene_of_plan
+from esplanade.scenery.scene_text import scene_text
+from esplanade.scenery.turning import write_turned
 
 
 def check(options: Namespace) -> int:
@@ -26,7 +30,7 @@ def check(options: Namespace) -> int:
         scene = _read(options.scene)
     except SceneError as error:
         if options.json:
-            print(json.dumps({"faults": error.faults}, indent=1))
+            print(json.dumps({"faults": error.faults, "places": error.spots}, indent=1))
         return exit_codes.FAILED if options.json else _refuse(error)
     try:
         found = inventory.take_inventory(scene, options.cell)
@@ -65,15 +69,19 @@ def render(options: Namespace) -> int:
 
 
 def import_(options: Namespace) -> int:
-    """Make a scene of a mesh."""
+    """Make a scene of a mesh or of plans."""
+    if all(is_plan(Path(name)) for name in options.mesh):
+        return _import_plans(options)
+    if len(options.mesh) > 1:
+        raise UsageError("FILE: one mesh is made into a scene; several files are plans of storeys")
     with progress(share=True) as shown:
         task = shown.add_task("", total=1.0)
 
         def tell(doing: str, share: float) -> None:
             shown.update(task, description=doing, completed=share)
 
-        with local_file(options.mesh, tell) as mesh:
-            scene = import_mesh(
+        with local_file(options.mesh[0], tell) as mesh:
+            made = import_mesh(
                 mesh,
                 options.out,
                 options.up,
@@ -83,11 +91,88 @@ def import_(options: Namespace) -> int:
                 options.spawn,
                 options.places,
                 tell,
+                options.recentre,
             )
-    print(
-        f"{options.out}: {len(scene.places)} places; run it: esplanade serve --scene {options.out}"
+    written = console()
+    written.print(
+        f"{len(made.mesh.triangles)} triangles of {made.mesh.kind}", highlight=False, soft_wrap=True
     )
+    mesh_report.show_passed(written, made.mesh.passed)
+    for line in made.mesh.told:
+        written.print(line, highlight=False, markup=False, soft_wrap=True)
+    _tell(made.scene, made.grid, options.out)
     return exit_codes.OK
+
+
+def _import_plans(options: Namespace) -> int:
+    storeys = [read_plan(Path(name), options.layer) for name in options.mesh]
+    name = options.name or storeys[0].name
+    try:
+        scene = scene_of_plan(storeys, name, options.scale, options.recentre)
+    except ValueError as error:
+        raise UsageError(f"{options.mesh[0]}: {error}") from None
+    scene, grid = with_places(scene, options.cell, options.spawn, options.places)
+    try:
+        options.out.write_text(scene_text(scene), encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"--out: {error}") from None
+    shown = console()
+    for storey in storeys:
+        for remark in storey.remarks:
+            shown.print(f"{storey.name}: {remark}", highlight=False, markup=False, soft_wrap=True)
+    parts = f"{len(scene.polygons)} polygons, {len(scene.walls)} walls, {len(scene.doors)} doors"
+    shown.print(parts, highlight=False)
+    _tell(scene, grid, options.out)
+    return exit_codes.OK
+
+
+def turn(options: Namespace) -> int:
+    """Write a scene turned about the vertical."""
+    try:
+        scene = _read(options.scene)
+    except SceneError as error:
+        return _refuse(error)
+    if options.name:
+        scene = scene.model_copy(update={"name": options.name[:NAME_LENGTH]})
+    made = write_turned(scene, options.degrees, options.out)
+    x0, y0, x1, y1 = made.bounds
+    print(f"{options.out}: turned by {options.degrees:g} degrees, {x1 - x0:g} m x {y1 - y0:g} m")
+    return exit_codes.OK
+
+
+def schema(options: Namespace) -> int:
+    """Write the JSON Schema of scenes."""
+    made = {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **Scene.model_json_schema(),
+    }
+    try:
+        options.out.write_text(json.dumps(made, indent=1, ensure_ascii=False) + "\n", "utf-8")
+    except OSError as error:
+        raise UsageError(f"--out: {error}") from None
+    print(f'{options.out}: name it in a scene as "$schema": "{options.out.name}"')
+    return exit_codes.OK
+
+
+def _tell(scene: Scene, grid: LayeredGrid, out: Path) -> None:
+    """Say what was made, with a picture of it where matplotlib is installed."""
+    shown = console()
+    if any(scene.origin_m):
+        x, y, z = scene.origin_m
+        shown.print(f"moved by {-x:g}, {-y:g}, {-z:g} m to the origin", highlight=False)
+    mesh_report.show_floors(shown, grid)
+    try:
+        pictures.require_matplotlib()
+    except UsageError:
+        print("no picture: it needs matplotlib (pip install 'esplanade[scene]')")
+    else:
+        picture = out.with_suffix(".png")
+        try:
+            pictures.draw_heights(grid, scene.name, picture)
+        except OSError as error:
+            raise UsageError(f"{picture}: cannot be written: {error.strerror or error}") from None
+        print(f"{picture}: a picture of it")
+    print(f"{out}: {len(scene.places)} places; run it: esplanade serve --scene {out}")
 
 
 def _read(path: Path) -> Scene:

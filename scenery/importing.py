@@ -1,11 +1,11 @@
 """Import of a mesh as a scene: floors are derived, a spawn is chosen, and places are spread."""
 
-import json
 import math
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ from esplanade.commandline.errors import UsageError
 from esplanade.planning import LayeredGrid, Scene
 from esplanade.planning.routes.storey_heights import storeys_of
 from esplanade.planning.scene.bodies import Body
-from esplanade.planning.scene.mesh_file import MeshError
+from esplanade.planning.scene.mesh_file import Mesh, MeshError, Up, read_mesh
 from esplanade.planning.scene.scene import Bounds, Place, Spawn
 from esplanade.planning.traversal.stability import Stability
 from esplanade.planning.traversal.traversability import Traversability
@@ -22,38 +22,49 @@ from esplanade.planning.traversal.wavefront import UNREACHED, metres, spread_wav
 from esplanade.scenery.meshes import as_glb
 from esplanade.scenery.place_names import PlaceNamer
 from esplanade.scenery.reach import cell_near, centres, largest_region
+from esplanade.scenery.scene_text import scene_text
 from esplanade.scenery.values import Point
 
 _SPAWN_RADIUS_M = 1.0
-_NAME_LENGTH = 64
+NAME_LENGTH = 64
+
+
+class Imported(NamedTuple):
+    """A scene made of a mesh, with what it was made of."""
+
+    scene: Scene
+    grid: LayeredGrid
+    mesh: Mesh
 
 
 def import_mesh(
     source: Path,
     target: Path,
-    up: str,
+    up: Up | None,
     metres_a_unit: float,
     cell_m: float,
     name: str | None,
     spawn: Point | None,
     places: int,
     report: Callable[[str, float], None],
-) -> Scene:
+    recentre: bool = False,
+) -> Imported:
     """Make a scene of a mesh, and write both: the scene, and the mesh beside it as GLB.
 
     The scene contains no floors, since they are derived from the mesh whenever it is read.
 
     Parameters
     ----------
-    source : the mesh, in any form that trimesh reads
+    source : the mesh, in any form that `read_mesh` reads
     target : the scene file to write
-    up : the axis of the mesh that is up, `y` or `z`
+    up : the axis of the mesh that is up, `y` or `z`; None takes what is usual for its form
     metres_a_unit : the length of the unit of the mesh, metres
     cell_m : the size of the cells that the mesh is examined with
     name : the name of the scene; None takes that of the mesh
     spawn : where people enter; None chooses a point amid the largest region
     places : the greatest number of places to make
     report : is called with the current activity and the fraction of the whole that is done
+    recentre : moves the middle of the mesh to the origin, and keeps in the scene by how much
 
     Raises
     ------
@@ -61,13 +72,14 @@ def import_mesh(
         The mesh cannot be used, nobody can stand at the spawn, or a file cannot be written.
     """
     kept = target.with_suffix(".glb")
-    if kept.resolve() == source.resolve() and (up != "y" or metres_a_unit != 1.0):
+    if kept.resolve() == source.resolve() and (up == "z" or metres_a_unit != 1.0 or recentre):
         raise UsageError(f"--out: {kept.name} would be written over the mesh itself")
     report(f"reading {source.name}", 0.0)
     try:
-        mesh = as_glb(source, up, metres_a_unit)
+        read = read_mesh(source, up, metres_a_unit, recentre)
     except MeshError as error:
-        raise UsageError(str(error)) from None
+        raise UsageError(f"{error}; check --up and --scale") from None
+    mesh = as_glb({"mesh": read.triangles})
     # The floors must be those of the GLB file that is kept, which may differ from the original.
     with TemporaryDirectory() as folder:
         copy = Path(folder) / kept.name
@@ -77,25 +89,51 @@ def import_mesh(
                 copy, cell_m, "y", lambda activity, share: report(activity, _overall(share))
             )
         except MeshError as error:
-            raise UsageError(f"{error}; check --up and --scale") from None
+            words = str(error).replace(kept.name, source.name)
+            raise UsageError(f"{words}; check --up and --scale") from None
     report("choosing places", _overall(1.0))
     traversability = grid.traversability.of(Body.adult())
     start = _spawn_cell(traversability, spawn)
     x, y, z = _rounded(traversability, start)
     scene = Scene(
-        name=(name or source.stem)[:_NAME_LENGTH],
+        name=(name or source.stem)[:NAME_LENGTH],
         bounds=_whole_metres(grid.bounds),
         mesh=Path(kept.name),
         spawns=(Spawn(position=(x, y), z_m=z, radius_m=_SPAWN_RADIUS_M),),
         places=tuple(_places(traversability, start, _namer(grid, traversability, start), places)),
+        origin_m=read.offset_m,
     )
     report(f"writing {target.name}", 0.95)
     try:
         kept.write_bytes(mesh)
-        target.write_text(_scene_text(scene))
+        target.write_text(scene_text(scene), encoding="utf-8")
     except OSError as error:
         raise UsageError(f"--out: {error}") from None
-    return scene
+    return Imported(scene, grid, read)
+
+
+def with_places(
+    scene: Scene, cell_m: float, spawn: Point | None, places: int
+) -> tuple[Scene, LayeredGrid]:
+    """A scene with a spawn, and with places spread over it where it has none; and its grid.
+
+    Raises
+    ------
+    UsageError
+        Nobody can stand at the spawn.
+    """
+    grid = LayeredGrid.from_scene(scene, cell_m)
+    traversability = grid.traversability.of(Body.adult())
+    start = _spawn_cell(traversability, spawn)
+    x, y, z = _rounded(traversability, start)
+    spread = _places(traversability, start, _namer(grid, traversability, start), places)
+    made = scene.model_copy(
+        update={
+            "spawns": (Spawn(position=(x, y), z_m=z, radius_m=_SPAWN_RADIUS_M),),
+            "places": scene.places or tuple(spread),
+        }
+    )
+    return made, grid
 
 
 def _overall(share_of_floors: float) -> float:
@@ -118,7 +156,7 @@ def _spawn_cell(traversability: Traversability, spawn: Point | None) -> int:
         return cell
     region = largest_region(traversability) & (traversability.classes == Stability.STABLE)
     if not region.any():
-        raise UsageError("an adult can stand nowhere in this mesh; is --up or --scale right?")
+        raise UsageError("an adult can stand nowhere in it; is --up or --scale right?")
     cells = np.flatnonzero(region)
     points = centres(traversability)[cells]
     return int(cells[np.linalg.norm(points - points.mean(axis=0), axis=1).argmin()])
@@ -158,19 +196,6 @@ def _path_lengths(traversability: Traversability, cell: int) -> NDArray[np.float
     lengths = metres(traversability, left)
     lengths[(left == UNREACHED) | (traversability.classes != Stability.STABLE)] = -1.0
     return lengths
-
-
-def _scene_text(scene: Scene) -> str:
-    """The text of the scene file, with one line for each part so that it is easy to edit."""
-    fields = scene.model_dump(mode="json", exclude_defaults=True)
-    lines = []
-    for key, value in fields.items():
-        text = json.dumps(value, ensure_ascii=False)
-        if value and isinstance(value, list) and isinstance(value[0], dict):
-            parts = ",\n".join(f"    {json.dumps(part, ensure_ascii=False)}" for part in value)
-            text = f"[\n{parts}\n  ]"
-        lines.append(f"  {json.dumps(key)}: {text}")
-    return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
 def _rounded(traversability: Traversability, cell: int) -> Point:

@@ -17,6 +17,8 @@ examples:
   esplanade scene render my.json --from gate --to 12,3,3.5 --out pictures
   esplanade scene import house.obj --up y --out house.json
   esplanade scene import https://example.org/hall.glb --out hall.json
+  esplanade scene turn scenes/gallery.json --degrees 30 --out turned.json
+  esplanade scene export my.json --out my.wkt
 
 bodies: adult, child, or a preset with other measures in metres, such as
 child,height=1.1 or radius=0.3,height=1.9,step=0.4,leg=0.9,edge=24 (an adult otherwise;
@@ -28,10 +30,17 @@ cannot be read or written
 
 
 def parser() -> Parser:
-    """The three commands; the help of the whole shows how each is called."""
+    """The commands; the help of the whole shows how each is called."""
     made = Parser("esplanade scene", description=DESCRIPTION)
     commands = made.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    parts = [_check(commands), _render(commands), _import(commands)]
+    parts = [
+        _check(commands),
+        _render(commands),
+        _import(commands),
+        _export(commands),
+        _turn(commands),
+        _schema(commands),
+    ]
     usages = "".join(part.format_usage().replace("usage: ", "  ") for part in parts)
     made.epilog = f"usage of each:\n{usages}\n{EPILOG}"
     return made
@@ -86,12 +95,23 @@ def _import(commands: "SubParsers[Parser]") -> Parser:
     made = commands.add_parser(
         "import",
         run="esplanade.scenery.cli:import_",
-        help="make a scene of a mesh: OBJ, glTF, GLB",
-        description="Make a scene of a mesh. The mesh is kept beside it as SCENE.glb, which the "
-        "scene\nnames: keep the two together.",
+        help="make a scene of a mesh or of plans",
+        description="Make a scene of a mesh or of plans. A mesh is kept beside it as SCENE.glb, "
+        "which the\nscene names: keep the two together.",
     )
     made.add_argument(
-        "mesh", metavar="MESH", help="OBJ, glTF or GLB: a file, or an address of the web"
+        "mesh",
+        metavar="FILE",
+        nargs="+",
+        help="a mesh (OBJ, glTF, GLB, PLY, STL, OFF, 3MF, IFC), a file or an address of the web; "
+        "or plans, one for each storey (WKT, GeoJSON, JuPedSim, ROS map, DXF)",
+    )
+    made.add_argument(
+        "--layer",
+        metavar="NAME",
+        action="append",
+        default=[],
+        help="a layer of a DXF whose lines are walls; may be repeated [default: all]",
     )
     made.add_argument(
         "--out",
@@ -101,7 +121,14 @@ def _import(commands: "SubParsers[Parser]") -> Parser:
         help="the scene to write",
     )
     made.add_argument(
-        "--up", choices=("y", "z"), default="y", help="the mesh's axis that is up [default: y]"
+        "--up",
+        choices=("y", "z"),
+        help="the mesh's axis that is up [default: z for STL and 3MF, y for others]",
+    )
+    made.add_argument(
+        "--recentre",
+        action="store_true",
+        help="move the middle of the mesh to the origin; the scene keeps by how much",
     )
     made.add_argument(
         "--scale",
@@ -125,6 +152,76 @@ def _import(commands: "SubParsers[Parser]") -> Parser:
         help="places to spread over what can be reached [default: 8]",
     )
     _add_cell(made)
+    return made
+
+
+def _export(commands: "SubParsers[Parser]") -> Parser:
+    made = commands.add_parser(
+        "export",
+        run="esplanade.scenery.exports.cli:export",
+        help="write a scene for other programs: glTF, WKT, ROS map, PNG, SVG",
+        description="Write a scene for other programs. The suffix of --out says in which form: "
+        ".glb (a node\nfor each layer, walls, doors), .wkt (the ground of each storey), .yaml "
+        "(a ROS map of each\nstorey, with its image), .png or .svg (a plan of each storey, to "
+        "scale).",
+    )
+    made.add_argument("scene", metavar="FILE", type=InputFile(), help="scene, a JSON file")
+    made.add_argument(
+        "--out",
+        metavar="FILE",
+        type=OutputFile(),
+        required=True,
+        help="the file to write; storeys above the first have their number in its name",
+    )
+    made.add_argument(
+        "--metres-per-cm",
+        metavar="M",
+        type=Number(0.01, 100.0),
+        default=1.0,
+        help="scale of a plan: metres in one centimetre of paper [default: 1, which is 1:100]",
+    )
+    _add_cell(made)
+    return made
+
+
+def _turn(commands: "SubParsers[Parser]") -> Parser:
+    made = commands.add_parser(
+        "turn",
+        run="esplanade.scenery.cli:turn",
+        help="write a scene turned about the vertical",
+        description="Write a scene turned to the left about the middle of its bounds, with all its "
+        "parts and\nits mesh. What can be walked stays as it was.",
+    )
+    made.add_argument("scene", metavar="FILE", type=InputFile(), help="scene, a JSON file")
+    made.add_argument(
+        "--degrees", metavar="D", type=Number(-360.0, 360.0), required=True, help="the angle"
+    )
+    made.add_argument(
+        "--out",
+        metavar="SCENE.json",
+        type=OutputFile(".json"),
+        required=True,
+        help="the scene to write",
+    )
+    made.add_argument("--name", metavar="TEXT", help="name of the scene [default: as it was]")
+    return made
+
+
+def _schema(commands: "SubParsers[Parser]") -> Parser:
+    made = commands.add_parser(
+        "schema",
+        run="esplanade.scenery.cli:schema",
+        help="write the JSON Schema of scenes, for editors",
+        description='Write the JSON Schema of scenes. A scene that names it as "$schema" is '
+        "completed and\nchecked by editors while it is written.",
+    )
+    made.add_argument(
+        "--out",
+        metavar="SCHEMA.json",
+        type=OutputFile(".json"),
+        required=True,
+        help="the schema to write",
+    )
     return made
 
 

@@ -11,12 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.commandline.errors import UsageError
+from esplanade.planning import LayeredGrid
 
 Floats = NDArray[np.float64]
 
 _LONGER_SIDE_IN: Final = 9.0
 _LEGEND_IN: Final = 2.3
 _MARGIN_IN: Final = 0.45
+_MOST_LAYERS: Final = 12
+"""Most layers beside each other in one picture."""
 _DOTS_AN_INCH: Final = 110
 _NOTHING: Final = "white"
 _WALL: Final = "#202020"
@@ -103,6 +106,35 @@ def draw_layer(layer: LayerMap, folder: Path) -> list[Path]:
         _draw(layer, caption, paint, path)
         made.append(path)
     return made
+
+
+def draw_heights(grid: LayeredGrid, title: str, path: Path) -> None:
+    """Draw the heights of the floors of all layers beside each other, in one picture."""
+    x0, y0, x1, y1 = grid.bounds
+    arrays = grid.layered
+    known = np.isfinite(arrays.floors)
+    numbers = np.unique(arrays.places["layer"][known])[:_MOST_LAYERS].tolist()
+    side = _LONGER_SIDE_IN / max(x1 - x0, y1 - y0)
+    width, height = max(2.0, (x1 - x0) * side), max(2.0, (y1 - y0) * side)
+    size = (width + 0.8) * len(numbers) + 1.0, height + 1.0
+    figure = require_matplotlib()(figsize=size, dpi=_DOTS_AN_INCH * min(1.0, 60.0 / size[0]))
+    low, high = float(arrays.floors[known].min()), float(arrays.floors[known].max())
+    image = None
+    all_axes = figure.subplots(1, len(numbers), squeeze=False)[0]
+    for axes, number in zip(all_axes, numbers, strict=True):
+        own = known & (arrays.places["layer"] == number)
+        columns, rows = arrays.places["column"][own], arrays.places["row"][own]
+        dense = np.full((rows.max() + 1, columns.max() + 1), np.nan)
+        dense[rows, columns] = arrays.floors[own]
+        extent = (x0, x0 + dense.shape[1] * grid.cell_m, y0, y0 + dense.shape[0] * grid.cell_m)
+        image = axes.imshow(
+            dense, origin="lower", extent=extent, vmin=low, vmax=max(high, low + 0.1)
+        )
+        axes.set(xlim=(x0, x1), ylim=(y0, y1))
+        axes.set_title(f"{title}, layer {number}" if number == numbers[0] else f"layer {number}")
+        axes.tick_params(labelsize=7)
+    figure.colorbar(image, ax=list(all_axes), label="height of the floor, m", shrink=0.7)
+    figure.savefig(path)
 
 
 def _draw(

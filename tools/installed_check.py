@@ -28,7 +28,17 @@ READY_LIMIT_S: Final = 900.0
 """A server compiles before it is ready: some minutes, where the machine is busy."""
 WALK_LIMIT_S: Final = 20.0
 NOT_IMPORTED: Final = {"esplanade.__main__"}
-EXTRAS: Final = {"jupedsim", "matplotlib", "PIL", "shapely"}
+EXTRAS: Final = {
+    "DracoPy",
+    "ezdxf",
+    "ifcopenshell",
+    "jupedsim",
+    "matplotlib",
+    "meshoptimizer",
+    "PIL",
+    "shapely",
+    "yaml",
+}
 """Packages that a plain install does not bring."""
 
 

@@ -92,7 +92,7 @@ class LayeredGrid(PlaceLookup):
     def from_mesh(
         cls, path: str | Path, cell_m: float = 0.25, up: Up = "y", progress: Progress = no_progress
     ) -> Self:
-        """Derive the grid of a building from an OBJ, glTF or any other file that trimesh reads.
+        """Derive the grid of a building from an OBJ, glTF or any other file of `read_mesh`.
 
         Parameters
         ----------

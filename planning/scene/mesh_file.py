@@ -1,34 +1,93 @@
-"""Reading meshes: OBJ, glTF and all other formats of trimesh, checked before anything uses them."""
+"""Reading meshes: the format is found by content, and every file is checked before it is used."""
 
 from __future__ import annotations
 
-import io
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.files.text import read_text
-from esplanade.planning.scene.gltf_check import MAX_FILE_BYTES, check_gltf
+from esplanade.planning.scene.bounded_reading import read_bounded
+from esplanade.planning.scene.formats.faces import Triangles, cut
+from esplanade.planning.scene.formats.gltf import read_gltf
+from esplanade.planning.scene.formats.ifc import read_ifc
+from esplanade.planning.scene.formats.obj import read_obj
+from esplanade.planning.scene.formats.off import HEADERS, read_off
+from esplanade.planning.scene.formats.ply import read_ply
+from esplanade.planning.scene.formats.stl import read_stl
+from esplanade.planning.scene.formats.threemf import read_3mf
+from esplanade.planning.scene.mesh_error import MeshError
 from esplanade.planning.scene.scene import MAX_EXTENT_M
+
+__all__ = ["MAX_FILE_BYTES", "Mesh", "MeshError", "Up", "read_mesh", "read_triangles"]
 
 Up = Literal["y", "z"]
 
-FURTHEST_M = 1e6
+MAX_FILE_BYTES: Final = 384 * 2**20
+FURTHEST_M: Final = 1e6
 """Greatest coordinate, as in scene files: beyond, positions would no longer be exact."""
 
+_FORMATS: Final[dict[str, Callable[[Path, bytes], Triangles]]] = {
+    "OBJ": lambda _, data: cut(read_obj(data)),
+    "OFF": lambda _, data: cut(read_off(data)),
+    "PLY": lambda _, data: cut(read_ply(data)),
+    "STL": lambda _, data: read_stl(data),
+    "3MF": lambda _, data: read_3mf(data),
+    "glTF": read_gltf,
+    "IFC": read_ifc,
+}
+_SUFFIXES: Final = {
+    ".obj": "OBJ",
+    ".off": "OFF",
+    ".ply": "PLY",
+    ".stl": "STL",
+    ".3mf": "3MF",
+    ".ifc": "IFC",
+    ".gltf": "glTF",
+    ".glb": "glTF",
+}
+_UP: Final[dict[str, Up]] = {"STL": "z", "3MF": "z", "IFC": "z"}
+"""The axis that is up where the format says so or its programs agree; y in all others."""
 
-class MeshError(ValueError):
-    """A file that holds no mesh to walk on; says what is wrong with it."""
+
+@dataclass(frozen=True)
+class Mesh:
+    """The triangles of a file, and what was passed over."""
+
+    triangles: NDArray[np.float64]
+    """(T, 3, 3), metres, x east, y north, z up."""
+    kind: str
+    passed: Counter[str] = field(default_factory=Counter)
+    """What the file holds beside them, with its count."""
+    offset_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """What was taken from every corner: x, y, z of the file's own origin."""
+    told: tuple[str, ...] = ()
+    """What else the file says about itself, such as the names of its storeys."""
 
 
 def read_triangles(path: str | Path, up: Up = "y") -> NDArray[np.float64]:
-    """The triangles of a file, float64 (T, 3, 3), metres, x east, y north, z up.
+    """The triangles of a file, float64 (T, 3, 3), metres, x east, y north, z up; see `read_mesh`.
 
-    All objects of the file are taken, each where its transform puts it. With `up` = "y", as in
-    glTF and most OBJ files, what the file calls (x, y, z) becomes (x, -z, y).
+    Raises
+    ------
+    MeshError
+        The file holds no mesh to walk on.
+    """
+    return read_mesh(path, up).triangles
+
+
+def read_mesh(
+    path: str | Path, up: Up | None = None, metres_a_unit: float = 1.0, recentre: bool = False
+) -> Mesh:
+    """The triangles of a file, each where its transform puts it, checked.
+
+    With `up` = "y", as in glTF and most OBJ files, what the file calls (x, y, z) becomes (x, -z,
+    y); None takes what is usual for the format. With `recentre` the middle of the mesh on the
+    map and its lowest corner become the origin, to whole metres.
 
     Raises
     ------
@@ -36,109 +95,89 @@ def read_triangles(path: str | Path, up: Up = "y") -> NDArray[np.float64]:
         The file cannot be read, holds no triangles, has corners that are not finite or indices
         out of range, measures more than a scene may, or lies too far from its origin.
     """
-    name = Path(path).name
-    if up not in ("y", "z"):
-        raise MeshError(f"{name}: up must be 'y' or 'z', got {up!r}")
-    corners = _load(Path(path))
-    if not len(corners):
-        raise MeshError(f"{name}: it holds no triangles")
-    wrong = np.flatnonzero(~np.isfinite(corners).all(axis=(1, 2)))
+    path = Path(path)
+    if up not in ("y", "z", None):
+        raise MeshError(f"{path.name}: up must be 'y' or 'z', got {up!r}")
+    kind, found = _read(path)
+    if not len(found.points):
+        told = "".join(f"; it has {count} {what}" for what, count in found.passed.items())
+        raise MeshError(f"{path.name}: it holds no triangles{told}")
+    wrong = np.flatnonzero(~np.isfinite(found.points).all(axis=(1, 2)))
     if len(wrong):
-        raise MeshError(f"{name}: triangle {wrong[0]} has a corner that is not finite")
+        raise MeshError(f"{path.name}: triangle {wrong[0]} has a corner that is not finite")
+    corners = found.points
+    up = up or _UP.get(kind, "y")
     if up == "y":
         corners = np.stack([corners[..., 0], -corners[..., 2], corners[..., 1]], axis=-1)
+    corners = np.ascontiguousarray(corners * metres_a_unit)
     extent = np.ptp(corners.reshape(-1, 3), axis=0)
+    _check_extent(path.name, extent, up)
+    offset = _middle(corners) if recentre else np.zeros(3)
+    corners -= offset
+    furthest = np.abs(corners).max()
+    if furthest > FURTHEST_M:
+        raise MeshError(
+            f"{path.name}: it lies {furthest:.6g} m from its origin; {FURTHEST_M:g} m are "
+            "possible. Move it nearer (`esplanade scene import --recentre`)"
+        )
+    x, y, z = offset.tolist()
+    return Mesh(corners, kind, found.passed, (x, y, z), found.told)
+
+
+def _check_extent(name: str, extent: NDArray[np.float64], up: str) -> None:
     if extent.max() > MAX_EXTENT_M:
         x, y, z = extent
         raise MeshError(
             f"{name}: it measures {x:.6g} x {y:.6g} m and is {z:.6g} m high; a side may measure "
             f"{MAX_EXTENT_M:g} m. Is its unit the metre?"
         )
-    if np.abs(corners).max() > FURTHEST_M:
-        raise MeshError(
-            f"{name}: it lies {np.abs(corners).max():.6g} m from its origin; {FURTHEST_M:g} m are "
-            "possible. Move it nearer"
-        )
     if not (extent[:2] > 0.0).all():
         raise MeshError(f"{name}: it has no extent on the ground; is {up!r} really up?")
-    return np.ascontiguousarray(corners)
 
 
-def open_mesh(path: Path, *, materials: bool = False) -> Any:
-    """A file as trimesh reads it, a scene of all its objects.
+def _middle(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    points = corners.reshape(-1, 3)
+    low, high = points.min(axis=0), points.max(axis=0)
+    return np.round([*(0.5 * (low + high))[:2], low[2]])
 
-    Raises
-    ------
-    MeshError
-        The file cannot be read, or holds nothing.
-    """
-    import trimesh  # noqa: PLC0415  (takes a while to import, and few need it)
 
-    if not path.is_file():
-        raise MeshError(f"{path.name}: there is no such file")
-    if path.stat().st_size > MAX_FILE_BYTES:
-        raise MeshError(f"{path.name}: it has more than {MAX_FILE_BYTES // 2**20} MiB")
+def _read(path: Path) -> tuple[str, Triangles]:
     try:
-        check_gltf(path)
-        source: Path | io.StringIO = path
-        beside: dict[str, Any] = {}
-        if path.suffix.lower() == ".obj":
-            # Names and comments may be in any encoding; all that counts is ASCII.
-            source = io.StringIO(read_text(path, MAX_FILE_BYTES, eight_bit=True))
-            beside = {"file_type": "obj", "resolver": trimesh.resolvers.FilePathResolver(str(path))}
-        scene = trimesh.load_scene(source, process=False, skip_materials=not materials, **beside)
-    # Readers of a dozen formats raise many kinds of errors on broken bytes.
-    except Exception as error:
-        raise _unreadable(path, error) from error
-    if not scene.geometry:
-        raise MeshError(f"{path.name}: it holds no triangles")
-    return scene
-
-
-def _load(path: Path) -> NDArray[np.float64]:
-    scene = open_mesh(path)
+        if not path.is_file():
+            raise MeshError(f"{path.name}: there is no such file")
+        if path.stat().st_size > MAX_FILE_BYTES:
+            raise MeshError(f"{path.name}: it has more than {MAX_FILE_BYTES // 2**20} MiB")
+        data = read_bounded(path, MAX_FILE_BYTES)
+    except OSError as error:
+        raise MeshError(f"{path.name}: it cannot be read: {error.strerror or error}") from None
+    kind = _format_of(path, data)
     try:
-        corners = list(_placed(scene))
+        return kind, _FORMATS[kind](path, data)
+    # Broken bytes take readers to places that nobody thought of.
     except Exception as error:
-        raise _unreadable(path, error) from error
-    return np.concatenate([np.empty((0, 3, 3)), *corners])
+        words = str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"
+        raise MeshError(f"{path.name}: it is no {kind} that can be read: {words}") from error
 
 
-def _placed(scene: Any) -> Iterator[NDArray[np.float64]]:
-    """The triangles of every object of a scene, each where its transform puts it.
-
-    The library's own `Scene.dump` copies each object with colours and caches, which takes three
-    quarters of the time where a file shows one object thousands of times.
-    """
-    from trimesh import transformations  # noqa: PLC0415
-
-    local = {
-        name: _corners(np.asarray(part.vertices), np.asarray(part.faces))
-        for name, part in scene.geometry.items()
-        if hasattr(part, "faces")
-    }
-    for node in scene.graph.nodes_geometry:
-        transform, name = scene.graph[node]
-        if name not in local:
-            continue
-        corners = local[name]
-        points = transformations.transform_points(corners.reshape(-1, 3), transform)
-        # A mirror image would show its inner side.
-        mirrored = len(points) and transformations.flips_winding(transform)  # type: ignore[no-untyped-call]
-        triangles = points.reshape(corners.shape)
-        yield triangles[:, ::-1] if mirrored else triangles
-
-
-def _unreadable(path: Path, error: Exception) -> MeshError:
-    return MeshError(f"{path.name}: it is not a mesh that can be read: {error}")
-
-
-def _corners(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> NDArray[np.float64]:
-    if not len(faces):
-        return np.empty((0, 3, 3))
-    if faces.ndim != 2 or faces.shape[1] != 3:
-        raise ValueError("a face has fewer than three corners")
-    if faces.min() < 0 or faces.max() >= len(vertices):
-        raise ValueError(f"a face names a corner that is not there, of {len(vertices)}")
-    corners: NDArray[np.float64] = vertices[faces]
-    return corners
+def _format_of(path: Path, data: bytes) -> str:
+    """The format by how the file begins, else by its suffix."""
+    start = data[:256].lstrip(b"\xef\xbb\xbf \t\r\n")
+    if data.startswith(b"glTF") or (start.startswith(b"{") and b'"asset"' in data):
+        return "glTF"
+    if start.startswith((b"ply\n", b"ply\r")):
+        return "PLY"
+    if start.startswith(b"ISO-10303-21"):
+        return "IFC"
+    if data.startswith(b"PK\x03\x04"):
+        return "3MF"
+    if start.split(None, 1)[:1] in [[header.encode()] for header in HEADERS]:
+        return "OFF"
+    if b"<COLLADA" in data[:4096]:
+        raise MeshError(f"{path.name}: Collada is not read; save it as glTF")
+    kind = _SUFFIXES.get(path.suffix.lower())
+    if kind is None:
+        known = ", ".join(sorted(suffix[1:] for suffix in _SUFFIXES))
+        raise MeshError(
+            f"{path.name}: {path.suffix or 'a file without suffix'} is not read; there are {known}"
+        )
+    return kind

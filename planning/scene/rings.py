@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 Point = tuple[float, float]
 _Floats = NDArray[np.float64]
 
+SAME_CORNER_M: Final = 1e-9
+"""Corners nearer to each other are one."""
 _FEW_CORNERS: Final = 8
 """Up to so many, edges are compared one by one."""
 
@@ -16,6 +18,21 @@ def twice_area(points: tuple[Point, ...]) -> float:
     """Twice the area within the ring, positive where it turns left."""
     ring = zip(points, points[1:] + points[:1], strict=True)
     return sum(x0 * y1 - x1 * y0 for (x0, y0), (x1, y1) in ring)
+
+
+def distinct_corners(points: tuple[Point, ...]) -> list[int]:
+    """Indices of the corners that do not repeat the one before; the last is before the first."""
+    places: list[int] = []
+    for place, point in enumerate(points):
+        if not places or _apart(point, points[places[-1]]):
+            places.append(place)
+    while len(places) > 1 and not _apart(points[places[-1]], points[places[0]]):
+        places.pop()
+    return places
+
+
+def _apart(a: Point, b: Point) -> bool:
+    return abs(a[0] - b[0]) > SAME_CORNER_M or abs(a[1] - b[1]) > SAME_CORNER_M
 
 
 def _crossing_edges_of_few(points: tuple[Point, ...]) -> tuple[int, int] | None:

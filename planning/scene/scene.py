@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Annotated, Literal, Self
 
@@ -17,7 +17,7 @@ from pydantic import (
     model_validator,
 )
 
-from esplanade.planning.scene.rings import crossing_edges, twice_area
+from esplanade.planning.scene.rings import crossing_edges, distinct_corners, twice_area
 
 MAX_EXTENT_M = 650.0
 """Longest side of a scene. Positions on the wire are 16-bit centimetres."""
@@ -34,6 +34,11 @@ MAX_SPOTS = 2_000
 
 Metres = Annotated[float, Field(allow_inf_nan=False, ge=-1e6, le=1e6)]
 Point = tuple[Metres, Metres]
+Origin = tuple[
+    Annotated[float, Field(allow_inf_nan=False, ge=-1e9, le=1e9)],
+    Annotated[float, Field(allow_inf_nan=False, ge=-1e9, le=1e9)],
+    Annotated[float, Field(allow_inf_nan=False, ge=-1e9, le=1e9)],
+]
 Bounds = tuple[Metres, Metres, Metres, Metres]
 
 
@@ -60,13 +65,16 @@ RequiredName = Annotated[
 
 
 def _simple_ring(points: tuple[Point, ...]) -> tuple[Point, ...]:
-    if abs(twice_area(points)) < 1e-6:
+    """The ring without points that repeat the one before, as where a file closes it."""
+    places = distinct_corners(points)
+    ring = tuple(points[place] for place in places)
+    if len(ring) < 3 or abs(twice_area(ring)) < 1e-6:
         raise ValueError("the polygon has no area")
-    crossing = crossing_edges(points)
+    crossing = crossing_edges(ring)
     if crossing:
-        i, j = crossing
+        i, j = (places[edge] for edge in crossing)
         raise ValueError(f"the polygon crosses itself: edge {i} meets edge {j}")
-    return points
+    return ring
 
 
 Ring = Annotated[
@@ -75,7 +83,7 @@ Ring = Annotated[
 
 
 class _Part(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
 
 class _Line(_Part):
@@ -231,25 +239,44 @@ class Scene(_Part):
     mesh: Path | None = None
     """A building in metres, y up, whose floors take the place of the ground and of all parts. In a
     file it is named relative to the file."""
+    origin_m: Annotated[Origin, Field(exclude=True)] = (0.0, 0.0, 0.0)
+    """x, y, z of the scene's origin in the axes of the file that it was made of: x to the east, z
+    up. Nobody but its author needs it."""
+    schema_address: Annotated[str, Field(alias="$schema", max_length=1024, exclude=True)] = ""
+    """The JSON Schema by which editors complete the file and mark faults."""
 
     @model_validator(mode="after")
     def _fits_together(self) -> Self:
+        faults = (*self._wrong_bounds(), *self._outside(), *self._wrong_mesh(), *self._same_names())
+        if faults:
+            raise ValueError("\n".join(faults))
+        return self
+
+    def _wrong_bounds(self) -> Iterator[str]:
         x0, y0, x1, y1 = self.bounds
         if not (x0 < x1 and y0 < y1):
-            raise ValueError(f"bounds: x0 < x1 and y0 < y1 must hold, got {self.bounds}")
-        if max(x1 - x0, y1 - y0) > MAX_EXTENT_M:
-            raise ValueError(f"bounds: a side may measure {MAX_EXTENT_M:g} m, got {self.bounds}")
+            yield f"bounds: x0 < x1 and y0 < y1 must hold, got {self.bounds}"
+        elif max(x1 - x0, y1 - y0) > MAX_EXTENT_M:
+            yield f"bounds: a side may measure {MAX_EXTENT_M:g} m, got {self.bounds}"
+
+    def _outside(self) -> Iterator[str]:
+        x0, y0, x1, y1 = self.bounds
+        if not (x0 < x1 and y0 < y1):
+            return
         for group, points in (
             ("spawns", [spawn.position for spawn in self.spawns]),
             ("places", [place.position for place in self.places]),
         ):
             for i, (x, y) in enumerate(points):
                 if not (x0 <= x <= x1 and y0 <= y <= y1):
-                    raise ValueError(f"{group}.{i}: ({x:g}, {y:g}) lies outside the bounds")
-        if self.mesh is not None:
-            for group in ("polygons", "walls", "stairs", "doors"):
-                if getattr(self, group):
-                    raise ValueError(f"{group}: a scene of a mesh has none")
+                    yield f"{group}.{i}: ({x:g}, {y:g}) lies outside the bounds"
+
+    def _wrong_mesh(self) -> Iterator[str]:
+        for group in ("polygons", "walls", "stairs", "doors"):
+            if self.mesh is not None and getattr(self, group):
+                yield f"{group}: a scene of a mesh has none"
+
+    def _same_names(self) -> Iterator[str]:
         for group, names in (
             ("doors", [door.name for door in self.doors]),
             ("places", [place.name for place in self.places]),
@@ -257,9 +284,8 @@ class Scene(_Part):
             known: set[str] = set()
             for i, name in enumerate(names):
                 if name in known:
-                    raise ValueError(f"{group}.{i}: the name {name!r} is taken")
+                    yield f"{group}.{i}: the name {name!r} is taken"
                 known.add(name)
-        return self
 
     @model_validator(mode="after")
     def _has_bounded_parts(self) -> Self:

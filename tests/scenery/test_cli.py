@@ -1,6 +1,7 @@
 """The command: its output, files, exit codes and usage errors."""
 
 import json
+import re
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import pytest
 
 from esplanade.cli import main
 from esplanade.commandline import exit_codes
+from esplanade.planning.scene.scene_file import read_scene
 from tests.scenery.worlds import LOFT, write, write_building
 
 needs_matplotlib = pytest.mark.skipif(find_spec("matplotlib") is None, reason="no matplotlib")
@@ -45,7 +47,7 @@ def test_check_says_what_is_wrong_and_where(
     path = write(tmp_path, {**LOFT, "polygons": polygons})
     assert run("check", path) == exit_codes.FAILED
     shown = capsys.readouterr()
-    assert shown.err == f"{path}: polygons.3.height_m: must be > 0, got -1\n"
+    assert re.fullmatch(rf"{path}:1:\d+: polygons.3.height_m: must be > 0, got -1\n", shown.err)
     assert shown.out == ""
     assert run("check", path, "--json") == exit_codes.FAILED
     faults = json.loads(capsys.readouterr().out)["faults"]
@@ -127,6 +129,20 @@ def test_the_help_of_the_whole_names_all_options(capsys: pytest.CaptureFixture[s
 
 def test_a_command_is_needed(capsys: pytest.CaptureFixture[str]) -> None:
     assert "COMMAND" in refused(capsys)
+
+
+def test_schema_tells_scenes_from_others(tmp_path: Path) -> None:
+    validator_for = pytest.importorskip("jsonschema_rs").validator_for
+    out = tmp_path / "scene.schema.json"
+    assert run("schema", "--out", out) == exit_codes.OK
+    schema = json.loads(out.read_text())
+    assert "metres" in schema["$defs"]["Polygon"]["properties"]["points"]["description"]
+    judge = validator_for(schema)
+    named = {"$schema": out.name, **LOFT}
+    assert judge.is_valid(named)
+    assert not judge.is_valid({**named, "colour": "red"})
+    assert not judge.is_valid({**named, "walls": [{"start": [0, 0]}]})
+    assert read_scene(write(tmp_path, named)) == read_scene(write(tmp_path, named))
 
 
 def test_import_makes_a_scene_that_check_accepts(

@@ -30,7 +30,7 @@ def make(source: Path, target: Path, reports: Told | None = None, **changes: Any
             (activity, share)
         ),
     }
-    return import_mesh(source, target, **{**options, **changes})
+    return import_mesh(source, target, **{**options, **changes}).scene
 
 
 def test_a_mesh_becomes_a_world_of_two_floors(tmp_path: Path) -> None:
@@ -116,6 +116,25 @@ def test_names_in_a_mesh_may_be_in_any_encoding(tmp_path: Path) -> None:
 def test_a_mesh_that_is_not_there_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"none\.obj"):
         make(tmp_path / "none.obj", tmp_path / "house.json")
+
+
+def test_a_mesh_far_away_is_moved_and_the_scene_says_by_how_much(tmp_path: Path) -> None:
+    source = tmp_path / "utm.obj"
+    lines = []
+    for line in write_building(tmp_path).read_text().splitlines():
+        if line.startswith("v "):
+            x, y, z = map(float, line.split()[1:])
+            line = f"v {x + 411_000.5} {y + 90.0} {z - 5_650_000.0}"  # noqa: PLW2901
+        lines.append(line)
+    source.write_text("\n".join(lines))
+    target = tmp_path / "utm.json"
+    with pytest.raises(UsageError, match=r"utm\.obj: it lies .*--recentre"):
+        make(source, target)
+    made = make(source, target, recentre=True)
+    assert made.origin_m == (411_006.0, 5_650_004.0, 90.0)
+    read = read_scene(target)
+    assert read.origin_m == made.origin_m
+    assert read.places == made.places
 
 
 def test_a_mesh_is_not_written_over_by_another_form_of_it(tmp_path: Path) -> None:

@@ -22,7 +22,12 @@ def write(folder: Path, **parts: Any) -> Path:
 def faults(path: Path) -> list[str]:
     with pytest.raises(SceneError) as caught:
         read_scene(path)
-    assert str(caught.value).splitlines() == [f"{path}: {fault}" for fault in caught.value.faults]
+    error = caught.value
+    lines = [
+        f"{path}:{spot[0]}:{spot[1]}: {fault}" if spot else f"{path}: {fault}"
+        for fault, spot in zip(error.faults, error.spots, strict=True)
+    ]
+    assert str(error).splitlines() == lines
     return list(caught.value.faults)
 
 
@@ -66,6 +71,69 @@ def test_a_fault_is_told_with_its_place(tmp_path: Path, parts: Any, fault: str) 
 def test_all_faults_are_told_at_once(tmp_path: Path) -> None:
     path = write(tmp_path, colour="red", polygons=[{"points": TRIANGLE, "height_m": 0}])
     assert len(faults(path)) == 2
+
+
+def test_faults_of_parts_and_of_how_they_fit_are_told_together(tmp_path: Path) -> None:
+    path = tmp_path / "scene.json"
+    path.write_text(
+        """{
+  "bounds": [0, 0, 20, 10],
+  "walls": [{"start": [1, 1]}],
+  "spawns": [
+    {"position": [1, "a"]},
+    {"position": [50, 1]}
+  ],
+  "places": [
+    {"name": "gate", "position": [1, 1]},
+    {"name": "gate", "position": [2, 99]}
+  ]
+}"""
+    )
+    with pytest.raises(SceneError) as caught:
+        read_scene(path)
+    assert str(caught.value).splitlines() == [
+        f"{path}:3:13: walls.0.end: is missing",
+        f"{path}:5:22: spawns.0.position.1: must be a number, got 'a'",
+        f"{path}:6:5: spawns.1: (50, 1) lies outside the bounds",
+        f"{path}:10:5: places.1: (2, 99) lies outside the bounds",
+        f"{path}:10:5: places.1: the name 'gate' is taken",
+    ]
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-16-le"])
+def test_a_scene_is_read_in_any_unicode(tmp_path: Path, encoding: str) -> None:
+    path = tmp_path / "scene.json"
+    path.write_text('{"name": "Öde", "bounds": [0, 0, 20, 10]}', encoding=encoding)
+    assert read_scene(path).name == "Öde"
+
+
+def test_a_scene_that_is_no_unicode_is_refused_with_the_line(tmp_path: Path) -> None:
+    path = tmp_path / "scene.json"
+    path.write_bytes(b'{"bounds": [0, 0, 20, 10],\n"name": "caf\xe9"}')
+    assert faults(path)[0].startswith("line 2 is no UTF-8")
+
+
+RING = [[2, 2], [6, 2], [6, 6], [2, 6]]
+
+
+@pytest.mark.parametrize(
+    "points",
+    [
+        [*RING, RING[0]],
+        [*RING, RING[0], RING[0]],
+        [RING[0], *RING],
+        [RING[0], RING[1], RING[1], RING[1], *RING[2:], RING[0]],
+        [*RING, [2 + 1e-12, 2]],
+    ],
+)
+def test_a_ring_that_repeats_points_is_a_ring(tmp_path: Path, points: Any) -> None:
+    path = write(tmp_path, polygons=[{"points": points, "height_m": 1.0}])
+    assert read_scene(path).polygons[0].points == tuple(map(tuple, RING))
+
+
+def test_a_ring_of_one_point_is_none(tmp_path: Path) -> None:
+    path = write(tmp_path, polygons=[{"points": [[1, 1]] * 5, "height_m": 1.0}])
+    assert faults(path) == ["polygons.0.points: the polygon has no area"]
 
 
 def test_what_is_no_json_is_told_with_its_line(tmp_path: Path) -> None:

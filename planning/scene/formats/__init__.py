@@ -1,0 +1,1 @@
+"""Readers of mesh files, one file for each format, and what they have in common."""

@@ -1,0 +1,70 @@
+"""One storey of a plan: where one can walk, and the walls, doors and points drawn in it."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass, field
+from importlib import import_module
+from typing import Any
+
+from esplanade.commandline.errors import UsageError
+
+Point = tuple[float, float]
+Line = tuple[Point, Point]
+
+
+@dataclass
+class Storey:
+    """What a plan shows of one storey, in metres."""
+
+    name: str
+    walkable: Any = None
+    """A polygon or several of shapely; None where the plan only draws walls on open ground."""
+    walls: list[Line] = field(default_factory=list)
+    doors: list[tuple[str, Line]] = field(default_factory=list)
+    points: list[tuple[str, Point]] = field(default_factory=list)
+    remarks: list[str] = field(default_factory=list)
+    """What was taken for granted or passed over, one sentence each."""
+
+    def add_path(self, points: list[Point]) -> None:
+        """Add the walls of a line of many points."""
+        self.walls += [(a, b) for a, b in itertools.pairwise(points) if _apart(a, b)]
+
+    def bounds(self) -> tuple[float, float, float, float]:
+        """x0, y0, x1, y1 of everything in it.
+
+        Raises
+        ------
+        ValueError
+            There is nothing.
+        """
+        ends = [point for wall in self.walls for point in wall]
+        ends += [point for _, door in self.doors for point in door]
+        ends += [point for _, point in self.points]
+        if self.walkable is not None and not self.walkable.is_empty:
+            x0, y0, x1, y1 = self.walkable.bounds
+            ends += [(x0, y0), (x1, y1)]
+        if not ends:
+            raise ValueError("it draws nothing that can be read")
+        xs, ys = zip(*ends, strict=True)
+        return min(xs), min(ys), max(xs), max(ys)
+
+
+def _apart(a: Point, b: Point) -> bool:
+    return abs(a[0] - b[0]) > 1e-6 or abs(a[1] - b[1]) > 1e-6
+
+
+def library(name: str, wanted_for: str) -> Any:
+    """A library of the extra `plans`.
+
+    Raises
+    ------
+    UsageError
+        It is not installed.
+    """
+    try:
+        return import_module(name)
+    except ImportError:
+        raise UsageError(
+            f"{wanted_for} need {name.partition('.')[0]}: pip install 'esplanade[plans]'"
+        ) from None

