@@ -10,6 +10,7 @@ from esplanade.planning.compiled.jit import inlined
 from esplanade.planning.grid._grid_kernels import GridArrays, clearance_at, length
 from esplanade.planning.people._risk_kernels import RiskArrays
 from esplanade.planning.routes._potential_kernels import PotentialValues, potential_at
+from esplanade.planning.traversal._anchor_kernels import SLACK_M
 
 SUB = 2
 """Slices of the risk field in one step: a move is looked at half-way and at its end."""
@@ -151,4 +152,4 @@ def wall_cost(task: Task, clearance: float, seconds: float) -> float:
 def needed_clearance(world: World, task: Task) -> float:
     """The radius, or less for an agent that starts closer to a wall, so that it can come out."""
     here = clearance_at(world.grid, task.body, task.cell, task.x, task.y)
-    return min(task.radius_m, max(0.0, here)) - 1e-6
+    return min(task.radius_m - SLACK_M, max(0.0, here)) - 1e-6

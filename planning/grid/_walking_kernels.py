@@ -8,15 +8,20 @@ from numpy.typing import NDArray
 from esplanade.planning.compiled.handle import Handle
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.grid._grid_kernels import GridArrays, corners, follow, surface_at
-from esplanade.planning.ground._barrier_kernels import point_barrier_distance
+from esplanade.planning.ground._barrier_kernels import (
+    TOLERANCE_M,
+    Measures,
+    height_to_climb,
+    point_barrier_distance,
+)
 from esplanade.planning.ground._geometry_kernels import (
     BarrierIndex,
     Placement,
     point_segment_distance,
     slide,
-    stops,
 )
 from esplanade.planning.ground.layered import TILE
+from esplanade.planning.traversal._anchor_kernels import LOW_ROOM_M
 
 
 class GroundArrays(NamedTuple):
@@ -121,26 +126,24 @@ def walk_many(
 def lower_to_barriers(
     grid: GridArrays,
     index: BarrierIndex,
-    height_m: float,
-    step_on_m: float,
+    body: Measures,
     reach: float,
     box: tuple[float, float, float, float],
     field: NDArray[np.float32],
 ) -> None:
     """Lower a field (N,), preset to `reach`, to the distances of cells from barriers, in metres.
 
-    Barriers that do not stop the body are ignored. Only cells whose centres lie in `box`
-    (x0, y0, x1, y1) are lowered.
+    Barriers that do not stop the body are ignored, low ones count as further away (`room_at`). Only
+    cells whose centres lie in `box` (x0, y0, x1, y1) are lowered.
     """
     layered, barriers = grid.layered, index.barriers
     pages, cell_m = layered.pages, layered.cell_m
     tile_m = TILE * cell_m
     x0, y0, x1, y1 = box
-    body = height_m, step_on_m
     highest = np.full(len(layered.level_headroom), reach, dtype=np.float32)
     for s in range(len(barriers)):
         barrier = barriers[s]
-        if step_on_m >= barrier["climb_m"]:
+        if body.step_on_m >= barrier["climb_m"]:
             continue
         ax, ay, bx, by = barrier["x0"], barrier["y0"], barrier["x1"], barrier["y1"]
         i0 = max(0, int((max(x0, min(ax, bx) - reach) - layered.x0) / cell_m) - 1)
@@ -167,7 +170,7 @@ def lower_to_barriers(
 def _lower_tile(
     grid: GridArrays,
     barrier: np.void,
-    body: tuple[float, float],
+    body: Measures,
     page: int,
     rows: tuple[int, int],
     columns: tuple[int, int],
@@ -175,12 +178,17 @@ def _lower_tile(
 ) -> None:
     """`lower_to_barriers` for one barrier and some cells of one tile."""
     layered = grid.layered
-    height_m, step_on_m = body
+    low_m = max(0.0, body.radius_m - LOW_ROOM_M)
     for j in range(rows[0], rows[1]):
         for i in range(columns[0], columns[1]):
             cell = page + (j % TILE) * TILE + i % TILE
             floor = 0.0 if grid.flat else float(layered.floors[cell])
-            if stops(barrier, Placement(floor, floor, height_m, step_on_m)):
-                x = layered.x0 + (i + 0.5) * layered.cell_m
-                y = layered.y0 + (j + 0.5) * layered.cell_m
-                field[cell] = min(field[cell], point_barrier_distance(barrier, x, y))
+            climb = height_to_climb(barrier, floor, floor, body.height_m)
+            if climb <= body.step_on_m + TOLERANCE_M:
+                continue
+            x = layered.x0 + (i + 0.5) * layered.cell_m
+            y = layered.y0 + (j + 0.5) * layered.cell_m
+            d = point_barrier_distance(barrier, x, y)
+            if climb <= body.leg_length_m + TOLERANCE_M:
+                d += low_m
+            field[cell] = min(field[cell], d)

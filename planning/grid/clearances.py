@@ -15,6 +15,7 @@ from esplanade.planning.grid._walking_kernels import lower_to_barriers
 from esplanade.planning.ground._geometry_kernels import BarrierIndex
 from esplanade.planning.ground.layered import TILE, LayeredArrays
 from esplanade.planning.scene.bodies import Body
+from esplanade.planning.traversal.reachability import measures_of
 
 CLEARANCE_CAP_M = 3.0
 """Greatest clearance that is kept: anything further away makes no difference."""
@@ -22,6 +23,7 @@ Box = tuple[float, float, float, float]
 """x0, y0, x1, y1 in metres."""
 
 _BODY_STEP_M = 0.05
+_RADIUS_STEP_M = 0.01
 _ALMOST = 1e-9
 _ROUNDING_M = 1e-4
 
@@ -29,11 +31,12 @@ _ROUNDING_M = 1e-4
 def kind_of(body: Body) -> Body:
     """The kind of a body: it is nowhere where the body is not, and shared by bodies much alike.
 
-    Radius and height are rounded up to 5 cm, the steps that it takes down to 5 cm; M is ignored.
+    The radius is rounded up to 1 cm, the height up to 5 cm, the steps that it takes down to 5 cm; M
+    is ignored.
     """
     return replace(
         body,
-        radius_m=_rounded(body.radius_m, math.ceil, -_ALMOST),
+        radius_m=_rounded(body.radius_m, math.ceil, -_ALMOST, _RADIUS_STEP_M),
         height_m=_rounded(body.height_m, math.ceil, -_ALMOST),
         step_on_m=_rounded(body.step_on_m, math.floor, _ALMOST),
         leg_length_m=_rounded(body.leg_length_m, math.floor, _ALMOST),
@@ -41,8 +44,10 @@ def kind_of(body: Body) -> Body:
     )
 
 
-def _rounded(metres: float, to_whole: Callable[[float], int], slack: float) -> float:
-    return round(to_whole(metres / _BODY_STEP_M + slack) * _BODY_STEP_M, 9)
+def _rounded(
+    metres: float, to_whole: Callable[[float], int], slack: float, step_m: float = _BODY_STEP_M
+) -> float:
+    return round(to_whole(metres / step_m + slack) * step_m, 9)
 
 
 def write_clearance(
@@ -59,7 +64,7 @@ def write_clearance(
     too low.
     """
     out[cells] = CLEARANCE_CAP_M
-    lower_to_barriers(arrays, index, body.height_m, body.step_on_m, CLEARANCE_CAP_M, box, out)
+    lower_to_barriers(arrays, index, measures_of(body), CLEARANCE_CAP_M, box, out)
     room_m = arrays.layered.ceilings[cells] - arrays.layered.floors[cells]
     out[cells[~(room_m >= body.height_m - _ROUNDING_M)]] *= -1.0
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from copy import copy
 from pathlib import Path
 from typing import Self
@@ -14,7 +15,7 @@ from esplanade.planning.compiled.handle import Handle, make_handle
 from esplanade.planning.grid import _free_place_kernels as free_places
 from esplanade.planning.grid import _grid_kernels as kernels
 from esplanade.planning.grid import _walking_kernels as walking
-from esplanade.planning.grid._grid_kernels import GridArrays
+from esplanade.planning.grid._grid_kernels import GridArrays, KindArrays
 from esplanade.planning.grid._walking_kernels import GroundArrays
 from esplanade.planning.grid.barrier_buckets import index_barriers
 from esplanade.planning.grid.bodies_change import BodiesChange
@@ -28,6 +29,7 @@ from esplanade.planning.grid.clearances import (
     write_clearance,
 )
 from esplanade.planning.grid.door_change import DoorChange
+from esplanade.planning.grid.kinds import kind_arrays
 from esplanade.planning.grid.lookup import PlaceLookup
 from esplanade.planning.ground._geometry_kernels import Placement
 from esplanade.planning.ground.barriers import Barriers
@@ -40,6 +42,7 @@ from esplanade.planning.scene.mesh_file import Up
 from esplanade.planning.scene.scene import Scene
 from esplanade.planning.traversal.cache import TraversabilityCache
 from esplanade.planning.traversal.stability import Stability
+from esplanade.planning.traversal.traversability import Traversability
 
 ADULT = Body.adult()
 _EDGES = (Stability.UNSTABLE, Stability.UP_STAIR, Stability.DOWN_STAIR)
@@ -64,6 +67,7 @@ class LayeredGrid(PlaceLookup):
             np.zeros((0, cells), dtype=np.float32),
             np.zeros((0, cells), dtype=np.bool_),
             flat,
+            kind_arrays(floors.barriers, cells, []),
         )
         self.traversability = TraversabilityCache(floors)
         self.index = index_barriers(floors.barriers, self.bounds)
@@ -128,11 +132,12 @@ class LayeredGrid(PlaceLookup):
             everywhere = np.arange(len(a.layered.floors))
             field = np.empty(len(everywhere), dtype=np.float32)
             write_clearance(a, self.index, body, self.bounds, everywhere, field)
+            self._rows.add(body, row)
             self.arrays = a._replace(
                 clearance=with_row(a.clearance, row, field),
                 edges=with_row(a.edges, row, self._edges(body, everywhere)),
+                kinds=self._kinds(self.barriers, self.traversability.of),
             )
-            self._rows.add(body, row)
         return row
 
     def claim(self, body: Body) -> int:
@@ -171,10 +176,8 @@ class LayeredGrid(PlaceLookup):
 
     def bodies_change(self, fork: LayeredGrid) -> BodiesChange:
         """Return what a fork has learnt of new bodies, to be applied if this is unchanged."""
-        known = {}
-        if not self.arrays.flat:
-            new = [kind for kind in fork._rows if kind not in self._rows]
-            known = {kind: fork.traversability.known(kind) for kind in new}
+        new = [kind for kind in fork._rows if kind not in self._rows]
+        known = {kind: fork.traversability.known(kind) for kind in new}
         return BodiesChange(fork._forked, fork.arrays, fork._rows.all(), known)
 
     def apply_bodies(self, change: BodiesChange) -> bool:
@@ -188,6 +191,12 @@ class LayeredGrid(PlaceLookup):
         self.traversability.keep(change.known)
         self.arrays = change.arrays
         return True
+
+    def _kinds(self, barriers: Barriers, of: Callable[[Body], Traversability]) -> KindArrays:
+        """Where each known kind of body fits, row by row."""
+        bodies = {row: body for body, row in self._rows.all().items()}
+        found = [of(bodies[row]) for row in range(len(bodies))]
+        return kind_arrays(barriers, len(self.layered.floors), found)
 
     def _edges(self, body: Body, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Whether a body is on an edge in each of some cells, bool (K,)."""
@@ -253,10 +262,11 @@ class LayeredGrid(PlaceLookup):
         known = {}
         for body, row in bodies.items():
             write_clearance(base, index, body, box, near, clearance[row])
+            known[body] = self.traversability.prepare(body, barriers)
             if not base.flat:
-                known[body] = self.traversability.prepare(body, barriers)
                 edges[row, near] = np.isin(known[body].traversability.classes[near], _EDGES)
-        arrays = base._replace(clearance=clearance, edges=edges)
+        kinds = self._kinds(self.barriers, lambda body: known[body].traversability)
+        arrays = base._replace(clearance=clearance, edges=edges, kinds=kinds)
         return DoorChange(name, is_open, base, arrays, known)
 
     def apply_door(self, change: DoorChange) -> None:
@@ -317,7 +327,7 @@ class LayeredGrid(PlaceLookup):
         clearance_m: float,
         body: Body = ADULT,
     ) -> tuple[float, float] | None:
-        """The position itself when free, else the centre of the nearest free cell on its level.
+        """The position itself when free, else the anchor of the nearest free cell on its level.
 
         Within a metre, cells on this side of walls are preferred. Cells whose floors differ from
         `height` by less than half the body's height are on its level; without a free cell on that
@@ -335,10 +345,10 @@ class LayeredGrid(PlaceLookup):
             if free_here and floor - height < within_m:
                 return x, y
             cell = free_places.nearest_free_cell(
-                ground, row, clearance_m, self.centres, placement, x, y, float(height), within_m
+                ground, row, clearance_m, placement, x, y, float(height), within_m
             )
             if cell >= 0:
-                x, y = self.centres[cell].tolist()
+                x, y = self.arrays.kinds.anchors[row, cell].tolist()
                 return x, y
         return None
 

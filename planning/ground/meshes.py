@@ -16,7 +16,7 @@ from esplanade.planning.ground._gap_kernels import (
     insert_gaps,
 )
 from esplanade.planning.ground._geometry_kernels import BARRIER
-from esplanade.planning.ground._ledge_kernels import FACE, Sides
+from esplanade.planning.ground._ledge_kernels import FACE, Faces
 from esplanade.planning.ground._mesh_kernels import (
     grow_regions,
     hits_of_triangles,
@@ -112,8 +112,8 @@ def barriers_of_triangles(
     for field in ("x0", "y0", "x1", "y1", "bottom_m", "top_m"):
         steep[field] = faces[field]
     steep["climb_m"] = math.inf
-    sides = Sides(surfaces.solids, starts, faces)
-    return np.concatenate([steep, ledges(arrays, sides), lintels(arrays)])
+    around = Faces(starts, faces)
+    return np.concatenate([steep, ledges(arrays, around), lintels(arrays)])
 
 
 def _faces(

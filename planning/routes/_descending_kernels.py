@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import kernel
-from esplanade.planning.grid._grid_kernels import floor_of, length
+from esplanade.planning.grid._grid_kernels import fits_at_anchor, floor_of, length
 from esplanade.planning.grid._walking_kernels import GroundArrays, walk
 from esplanade.planning.ground._geometry_kernels import Placement, crosses_any
 from esplanade.planning.routes._potential_kernels import PotentialValues, direction_at
@@ -19,7 +19,6 @@ def cells_to_begin_at(
     ground: GroundArrays,
     body: int,
     radius: float,
-    centres: NDArray[np.float64],
     placement: Placement,
     cell: int,
     x: float,
@@ -31,8 +30,8 @@ def cells_to_begin_at(
     that no barrier hides from the point.
     """
     grid = ground.grid
-    clear = grid.clearance[body]
-    if clear[cell] >= radius:
+    anchors = grid.kinds.anchors[body]
+    if fits_at_anchor(grid, body, cell, radius):
         return np.full(1, cell, dtype=np.int64)
     side = 2 * _RINGS + 1
     seen = np.empty(side * side, dtype=np.int64)
@@ -57,8 +56,8 @@ def cells_to_begin_at(
                     continue
                 seen[end] = other
                 end += 1
-                cx, cy = centres[other, 0], centres[other, 1]
-                if clear[other] >= radius and not crosses_any(
+                cx, cy = anchors[other, 0], anchors[other, 1]
+                if fits_at_anchor(grid, body, other, radius) and not crosses_any(
                     ground.barriers, placement, x, y, cx, cy
                 ):
                     found[count] = other

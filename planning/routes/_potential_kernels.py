@@ -48,25 +48,6 @@ def direction_at(
     return (wx - x) / leg, (wy - y) / leg, leg
 
 
-@inlined
-def _passable_neighbour(
-    grid: GridArrays, body: int, step_on_m: float, radius: float, cell: int, direction: int
-) -> int:
-    """The neighbour in a direction, if a disc may pass to it without cutting a corner; else -1."""
-    clear = grid.clearance[body]
-    other = grid.layered.links[cell, direction]
-    if other < 0 or clear[other] < radius:
-        return -1
-    if abs(grid.layered.floors[other] - grid.layered.floors[cell]) > step_on_m:
-        return -1
-    if direction & 1:
-        one = grid.layered.links[cell, direction - 1]
-        two = grid.layered.links[cell, (direction + 1) & 7]
-        if one < 0 or two < 0 or min(clear[one], clear[two]) < radius:
-            return -1
-    return int(other)
-
-
 @kernel
 def begin_wave(
     goal_cell: int,
@@ -96,10 +77,8 @@ def begin_wave(
 def grow_wave(
     grid: GridArrays,
     body: int,
-    step_on_m: float,
     radius: float,
     longest_sight: float,
-    centres: NDArray[np.float64],
     potential: PotentialValues,
     settled: NDArray[np.uint8],
     keys: NDArray[np.float64],
@@ -111,22 +90,23 @@ def grow_wave(
 ) -> bool:
     """Let a wave spread on; returns whether it has gone as far as it is wanted, or is over.
 
-    The wave spreads from cell to cell over the links, never cutting a corner. A cell that sees its
+    The wave spreads from anchor to anchor over the steps of a kind of body. A cell that sees its
     neighbour's waypoint within `longest_sight` metres takes that waypoint over, else the neighbour
     itself is its waypoint; at zero sight this is NF1. Lines of sight are tested once a cell, when
-    it leaves the heap. `keys` and `items` hold 8 entries a cell plus one; `centres` (N, 2).
+    it leaves the heap. `keys` and `items` hold 8 entries a cell plus one.
 
     It is wanted up to `margin` metres further than the nearest of the cells `targets` (K,); without
     any it spreads over all cells. At most `most` cells are settled in one call. Wherever a wave is
     stopped, the cells that it has settled are as they will be when it is over.
     """
+    anchors, steps, links = grid.kinds.anchors[body], grid.kinds.steps[body], grid.layered.links
     size = state[0]
     reached = state[1]
     until = np.inf
     for k in range(len(targets)):
         target = targets[k]
         if settled[target]:
-            there = potential_at(potential, target, centres[target, 0], centres[target, 1])
+            there = potential_at(potential, target, anchors[target, 0], anchors[target, 1])
             until = min(until, there + margin)
     last = reached + most
     while size > 0:
@@ -136,18 +116,18 @@ def grow_wave(
         size = heap_pop(keys, items, size)
         if settled[cell]:
             continue
-        x = centres[cell, 0]
-        y = centres[cell, 1]
+        x = anchors[cell, 0]
+        y = anchors[cell, 1]
         own = potential[cell]
         seen = longest_sight == 0.0 or line_is_clear(grid, body, cell, x, y, own[1], own[2], radius)
         if reached > 0 and not seen:
             own[0] = np.inf
             for direction in range(8):
-                other = _passable_neighbour(grid, body, step_on_m, radius, cell, direction)
-                if other < 0 or not settled[other]:
+                other = links[cell, direction]
+                if not steps[cell] >> direction & 1 or not settled[other]:
                     continue
-                cx = centres[other, 0]
-                cy = centres[other, 1]
+                cx = anchors[other, 0]
+                cy = anchors[other, 1]
                 left = potential_at(potential, other, cx, cy)
                 if left + length(cx - x, cy - y) < own[0] + length(own[1] - x, own[2] - y):
                     own[0] = left
@@ -161,11 +141,11 @@ def grow_wave(
             if targets[k] == cell:
                 until = min(until, potential_at(potential, cell, x, y) + margin)
         for direction in range(8):
-            other = _passable_neighbour(grid, body, step_on_m, radius, cell, direction)
-            if other < 0 or settled[other]:
+            other = links[cell, direction]
+            if not steps[cell] >> direction & 1 or settled[other]:
                 continue
-            cx = centres[other, 0]
-            cy = centres[other, 1]
+            cx = anchors[other, 0]
+            cy = anchors[other, 1]
             left = own[0]
             wx = own[1]
             wy = own[2]
@@ -188,7 +168,7 @@ def grow_wave(
 def extend_into_obstacles(
     grid: GridArrays,
     step_on_m: float,
-    centres: NDArray[np.float64],
+    anchors: NDArray[np.float32],
     potential: PotentialValues,
     settled: NDArray[np.uint8],
 ) -> None:
@@ -201,8 +181,8 @@ def extend_into_obstacles(
         for cell in range(len(settled)):
             if settled[cell] or grid.layered.floors[cell] != grid.layered.floors[cell]:
                 continue
-            x = centres[cell, 0]
-            y = centres[cell, 1]
+            x = anchors[cell, 0]
+            y = anchors[cell, 1]
             best = np.inf
             for direction in range(8):
                 other = grid.layered.links[cell, direction]
@@ -210,8 +190,8 @@ def extend_into_obstacles(
                     continue
                 if abs(grid.layered.floors[other] - grid.layered.floors[cell]) > step_on_m:
                     continue
-                cx = centres[other, 0]
-                cy = centres[other, 1]
+                cx = anchors[other, 0]
+                cy = anchors[other, 1]
                 way = length(cx - x, cy - y)
                 left = potential_at(potential, other, cx, cy) + 2.0 * way
                 if left + way < best:

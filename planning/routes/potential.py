@@ -61,7 +61,7 @@ class Potential:
         self.reached_cells = front.reached_cells
         if wave is Wave.SIGHT:
             kernels.extend_into_obstacles(
-                front.arrays, self.body.step_on_m, grid.centres, self.values, front.settled
+                front.arrays, self.body.step_on_m, front.anchors, self.values, front.settled
             )
 
     def distance(self, positions: ArrayLike, heights: ArrayLike) -> NDArray[np.float64]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import OrderedDict
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -35,6 +36,11 @@ _BYTES_KEPT: Final = 64 * 2**20
 _BYTES_A_CELL: Final = 16
 
 
+def walker(radius_m: float) -> Body:
+    """The body of a person of this radius."""
+    return replace(Body.adult(), radius_m=radius_m)
+
+
 class SharedWaves:
     """The wave fronts of the goals that routes were last sought to, by the cell of the goal.
 
@@ -55,7 +61,7 @@ class SharedWaves:
         key = cell, radius_m
         wave = self._waves.get(key)
         if wave is None or wave.arrays is not self.grid.arrays:
-            wave = WaveFront(self.grid, goal, cell, radius_m, Wave.SIGHT, Body.adult())
+            wave = WaveFront(self.grid, goal, cell, radius_m, Wave.SIGHT, walker(radius_m))
             self._waves[key] = wave
         self._waves.move_to_end(key)
         if len(self._waves) > self._kept:
@@ -75,7 +81,7 @@ class RouteSearch:
         self.route: Route | None = None
         self._waves = waves
         self._grid = waves.grid
-        self._body = Body.adult()
+        self._body = walker(clearance_m)
         self._clearance_m = clearance_m
         self._start = start
         self._goal = goal
@@ -100,7 +106,7 @@ class RouteSearch:
         """Find a free goal and try the straight line; a wave if the search goes on."""
         grid, clearance_m = self._grid, self._clearance_m
         x, y, z = self._goal
-        free = grid.nearest_free((x, y), z, clearance_m)
+        free = grid.nearest_free((x, y), z, clearance_m, self._body)
         if free is None:
             return None
         goal = self._goal = (*free, grid.floor_at(free, z))
@@ -115,7 +121,6 @@ class RouteSearch:
             self._ground(),
             grid.row_of(self._body),
             clearance_m,
-            grid.centres,
             self._placement(),
             self._cell,
             *self._start[:2],
@@ -126,17 +131,18 @@ class RouteSearch:
 
     def _descend(self, wave: WaveFront) -> Route | None:
         """The route down a wave that has reached the start, None where it never does."""
-        grid, start = self._grid, self._start[:2]
-        centres, values = grid.centres[self._targets], wave.values[self._targets]
-        left_m = values[:, 0] + np.hypot(*(values[:, 1:] - centres).T)
+        start = self._start[:2]
+        anchors = wave.anchors[self._targets].astype(np.float64)
+        values = wave.values[self._targets]
+        left_m = values[:, 0] + np.hypot(*(values[:, 1:] - anchors).T)
         left_m[wave.settled[self._targets] == 0] = np.inf
-        left_m += np.hypot(*(centres - start).T)
+        left_m += np.hypot(*(anchors - start).T)
         nearest = int(left_m.argmin())
         if not math.isfinite(left_m[nearest]):
             return None
         corners = np.empty((int(2.0 * left_m[nearest] / STEP_M) + 10, 3))
         end = (*wave.goal, self._goal[2])
-        x, y = centres[nearest].tolist()
+        x, y = anchors[nearest].tolist()
         count = kernels.descend(
             self._ground(),
             self._body.height_m,

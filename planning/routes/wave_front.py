@@ -55,8 +55,10 @@ class WaveFront:
         """(N,): 1 where a cell's values are final."""
         self._heap = np.empty(8 * cells + 1), np.empty(8 * cells + 1, dtype=np.int64)
         self._state = np.zeros(2, dtype=np.int64)
-        self._ground = self.arrays, row, body.step_on_m, radius_m, wave.value, grid.centres
-        x, y = goal if wave is Wave.SIGHT else grid.centres[cell].tolist()
+        self.anchors: NDArray[np.float32] = self.arrays.kinds.anchors[row]
+        """(N, 2): the points of the cells that the wave leads over, metres."""
+        self._ground = self.arrays, row, radius_m, wave.value
+        x, y = goal if wave is Wave.SIGHT else self.anchors[cell].tolist()
         kernels.begin_wave(cell, x, y, self.values, self.settled, *self._heap, self._state)
 
     @property

@@ -14,9 +14,14 @@ from esplanade.planning.ground.barriers import Barriers
 from esplanade.planning.ground.floors import Floors
 from esplanade.planning.ground.layered import TILE, LayeredArrays
 from esplanade.planning.scene.bodies import MOST_BODIES, Body
-from esplanade.planning.traversal._reachability_kernels import TileBox
-from esplanade.planning.traversal.reachability import measures_of, near_barriers, reachable_steps
+from esplanade.planning.traversal.reachability import (
+    anchors_of,
+    measures_of,
+    near_barriers,
+    reachable_steps,
+)
 from esplanade.planning.traversal.stability import classify
+from esplanade.planning.traversal.tiles import TileBox
 from esplanade.planning.traversal.traversability import Traversability
 from esplanade.planning.traversal.wavefront import number_regions
 
@@ -27,12 +32,14 @@ _KEPT = 2 * MOST_BODIES
 def find_traversability(arrays: LayeredArrays, barriers: Barriers, body: Body) -> Traversability:
     """Derive where a body may go on some floors. Cost O(cells)."""
     near = near_barriers(arrays, barriers, body)
+    anchors = anchors_of(arrays, near, body)
     return Traversability(
         arrays,
         near,
         measures_of(body),
-        reachable_steps(arrays, near, body),
-        classify(arrays, near, body),
+        anchors,
+        reachable_steps(arrays, near, body, anchors),
+        classify(arrays, near, body, anchors),
         int(body.edge_cells),
     )
 
@@ -55,9 +62,12 @@ def renew_traversability(
         min(int(tiles_y), math.floor((y1 + reach - arrays.y0) / tile_m) + 1),
         min(int(tiles_x), math.floor((x1 + reach - arrays.x0) / tile_m) + 1),
     )
+    near = traversability.near
+    anchors = anchors_of(arrays, near, body, traversability.anchors.copy(), box)
     return traversability._replace(
-        steps=reachable_steps(arrays, traversability.near, body, traversability.steps.copy(), box),
-        classes=classify(arrays, traversability.near, body, traversability.classes.copy(), box),
+        anchors=anchors,
+        steps=reachable_steps(arrays, near, body, anchors, traversability.steps.copy(), box),
+        classes=classify(arrays, near, body, anchors, traversability.classes.copy(), box),
     )
 
 

@@ -15,6 +15,9 @@ class Traversability(NamedTuple):
     arrays: LayeredArrays
     near: NearBarriers
     body: Measures
+    anchors: NDArray[np.float32]
+    """(N, 2): the point of each cell that paths go through, metres: the centre if the body fits
+    there, else where it has most room."""
     steps: NDArray[np.uint8]
     """(N,): the links that the body may follow; bit d stands for link d."""
     classes: NDArray[np.uint8]
