@@ -223,6 +223,7 @@ def resolve(
                 index,
                 agents.parameters[a]["height_m"],
                 agents.parameters[a]["step_on_m"],
+                agents.parameters[a]["leg_length_m"],
                 agents.cells[a],
                 x,
                 y,

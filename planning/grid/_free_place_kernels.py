@@ -3,7 +3,7 @@
 import numpy as np
 
 from esplanade.planning.compiled.jit import kernel
-from esplanade.planning.grid._grid_kernels import fits_at_anchor
+from esplanade.planning.grid._grid_kernels import anchor_at, fits_at_anchor
 from esplanade.planning.grid._walking_kernels import GroundArrays
 from esplanade.planning.ground._geometry_kernels import Placement, crosses_any
 
@@ -28,7 +28,7 @@ def nearest_free_cell(
     body at the place. What a floor is higher or lower counts as distance.
     """
     grid = ground.grid
-    floors, clear, anchors = grid.layered.floors, grid.clearance[body], grid.kinds.anchors[body]
+    floors, clear = grid.layered.floors, grid.clearance[body]
     most_m = clearance - 0.7072 * grid.layered.cell_m
     near = np.empty(64, dtype=np.int64)
     aways = np.empty(64, dtype=np.float64)
@@ -41,7 +41,8 @@ def nearest_free_cell(
             continue
         if clear[cell] < clearance and not fits_at_anchor(grid, body, cell, clearance):
             continue
-        away = np.hypot(anchors[cell, 0] - x, anchors[cell, 1] - y) + apart
+        ax, ay = anchor_at(grid, body, cell)
+        away = np.hypot(ax - x, ay - y) + apart
         if away < least:
             least = away
             best = cell
@@ -58,7 +59,8 @@ def nearest_free_cell(
             if aways[k] < aways[nearest]:
                 nearest = k
         cell = near[nearest]
-        if not crosses_any(ground.barriers, placement, x, y, anchors[cell, 0], anchors[cell, 1]):
+        ax, ay = anchor_at(grid, body, cell)
+        if not crosses_any(ground.barriers, placement, x, y, ax, ay):
             return int(cell)
         aways[nearest] = np.inf
     return best

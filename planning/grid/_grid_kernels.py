@@ -15,9 +15,9 @@ from esplanade.planning.ground._barrier_kernels import (
     height_to_climb,
     point_barrier_distance,
 )
-from esplanade.planning.ground._geometry_kernels import crosses
+from esplanade.planning.ground._geometry_kernels import LOW_ROOM_M, crosses
 from esplanade.planning.ground.layered import TILE, LayeredArrays, cell_index
-from esplanade.planning.traversal._anchor_kernels import LOW_ROOM_M, SLACK_M
+from esplanade.planning.traversal._anchor_kernels import SLACK_M, anchor_of
 
 _HALF_DIAGONAL = 0.7072
 """Of a cell, in cells."""
@@ -28,12 +28,13 @@ FOLLOW_M = 1.0
 class KindArrays(NamedTuple):
     """Where bodies of B kinds fit and can go from cell to cell, exactly."""
 
-    anchors: NDArray[np.float32]
-    """(B, N, 2): `Traversability.anchors` of each kind, metres."""
+    offsets: NDArray[np.int8]
+    """(B, N, 2): `Traversability.offsets` of each kind; `anchor_at` has the points."""
     steps: NDArray[np.uint8]
     """(B, N): `Traversability.steps` of each kind."""
     first: NDArray[np.int32]
-    """(B, N): the first entry of each cell's list of barriers, -1 without any."""
+    """(B, N): the first entry of each cell's list of barriers, among those of the kind of body; -1
+    without any."""
     entries: NDArray[np.void]
     """(E,) of `LISTED`."""
     barriers: NDArray[np.void]
@@ -49,9 +50,11 @@ MEASURES = np.dtype(
         ("step_on_m", "f8"),
         ("leg_length_m", "f8"),
         ("reach_m", "f8"),
+        ("entries", "i8"),
     ]
 )
-"""Measures of a kind of body, and how far from a cell's centre the barriers in its list pass."""
+"""Measures of a kind of body, how far from a cell's centre the barriers in its list pass, and where
+the entries of its lists begin."""
 
 
 class GridArrays(NamedTuple):
@@ -223,18 +226,26 @@ def clearance_at(grid: GridArrays, body: int, cell: int, x: float, y: float) -> 
     c = grid.clearance[body]
     own = c[cell]
     half_m = _HALF_DIAGONAL * grid.layered.cell_m
-    exact_m = grid.kinds.measures[body]["reach_m"] - half_m
-    if 0.0 <= own < exact_m + half_m:
+    least = own - half_m
+    if 0.0 <= own < grid.kinds.measures[body]["radius_m"] + half_m:
+        exact_m = grid.kinds.measures[body]["reach_m"] - half_m
         exact = _exact_clearance(grid, body, cell, x, y, own < half_m)
         if exact < exact_m:
             return exact
+        least = exact_m
     beside, over, across, u, v = corners(grid, cell, x, y)
     lower = (1.0 - u) * own + u * c[beside]
     upper = (1.0 - u) * c[over] + u * c[across]
     room = float((1.0 - v) * lower + v * upper)
     if own < 0.0:  # the centre is inside an obstacle: nobody fits in half a cell around it
         return min(room, half_m)
-    return max(room, exact_m) if own < exact_m + half_m else room
+    return max(room, least)
+
+
+@inlined
+def anchor_at(grid: GridArrays, body: int, cell: int) -> tuple[float, float]:
+    """The point of a cell that paths of a kind of body go through, metres."""
+    return anchor_of(grid.layered, grid.kinds.offsets[body], cell)
 
 
 @inlined
@@ -249,13 +260,14 @@ def _exact_clearance(
     kinds = grid.kinds
     m = kinds.measures[body]
     floor = floor_of(grid, cell)
-    ax, ay = kinds.anchors[body, cell]
+    ax, ay = anchor_at(grid, body, cell)
     best = np.inf
     behind = False
     entry = kinds.first[body, cell]
     while entry >= 0:
-        barrier = kinds.barriers[kinds.entries[entry]["barrier"]]
-        entry = kinds.entries[entry]["next"]
+        listed = kinds.entries[m["entries"] + entry]
+        barrier = kinds.barriers[listed["barrier"]]
+        entry = listed["next"]
         climb = height_to_climb(barrier, floor, floor, m["height_m"])
         if climb <= m["step_on_m"] + TOLERANCE_M:
             continue
@@ -271,7 +283,7 @@ def _exact_clearance(
 @inlined
 def fits_at_anchor(grid: GridArrays, body: int, cell: int, radius: float) -> bool:
     """Whether a disc fits at the anchor of a cell."""
-    x, y = grid.kinds.anchors[body, cell]
+    x, y = anchor_at(grid, body, cell)
     return clearance_at(grid, body, cell, x, y) >= radius - SLACK_M
 
 

@@ -15,13 +15,13 @@ from esplanade.planning.ground._barrier_kernels import (
     point_barrier_distance,
 )
 from esplanade.planning.ground._geometry_kernels import (
+    LOW_ROOM_M,
     BarrierIndex,
     Placement,
     point_segment_distance,
     slide,
 )
 from esplanade.planning.ground.layered import TILE
-from esplanade.planning.traversal._anchor_kernels import LOW_ROOM_M
 
 
 class GroundArrays(NamedTuple):
@@ -58,6 +58,7 @@ def walk(
     index: BarrierIndex,
     height_m: float,
     step_on_m: float,
+    leg_length_m: float,
     cell: int,
     x: float,
     y: float,
@@ -73,13 +74,14 @@ def walk(
     """
     bounds = (grid.layered.x0, grid.layered.y0, grid.layered.x1, grid.layered.y1)
     if grid.flat:
-        placement = Placement(0.0, 0.0, height_m, step_on_m)
+        placement = Placement(0.0, 0.0, height_m, step_on_m, leg_length_m)
         nx, ny = slide(index, placement, bounds, x, y, dx, dy, clearance)
         return follow(grid, cell, nx, ny), nx, ny
     pieces = max(1, int(np.ceil(np.hypot(dx, dy) / (0.8 * grid.layered.cell_m))))
     for _ in range(pieces):
         support = _support(grid, cell, x, y, step_on_m)
-        placement = Placement(float(grid.layered.floors[cell]), support, height_m, step_on_m)
+        floor = float(grid.layered.floors[cell])
+        placement = Placement(floor, support, height_m, step_on_m, leg_length_m)
         nx, ny = slide(index, placement, bounds, x, y, dx / pieces, dy / pieces, clearance)
         other = follow(grid, cell, nx, ny)
         if (
@@ -99,6 +101,7 @@ def walk_many(
     index: BarrierIndex,
     height_m: float,
     step_on_m: float,
+    leg_length_m: float,
     cells: NDArray[np.int64],
     positions: NDArray[np.float64],
     displacements: NDArray[np.float64],
@@ -113,6 +116,7 @@ def walk_many(
             index,
             height_m,
             step_on_m,
+            leg_length_m,
             cells[n],
             positions[n, 0],
             positions[n, 1],

@@ -78,24 +78,21 @@ def with_row(rows: NDArray[Any], row: int, values: NDArray[Any]) -> NDArray[Any]
     return written
 
 
-def centres_of(layered: LayeredArrays) -> NDArray[np.float64]:
-    """Centres of the cells, float64 (N, 2), metres."""
-    places = layered.places
+def centres_of(layered: LayeredArrays, places: NDArray[np.void]) -> NDArray[np.float64]:
+    """Centres of cells at some places (K,), float64 (K, 2), metres."""
     centres = np.empty((len(places), 2))
     centres[:, 0] = (places["column"] + 0.5) * layered.cell_m + layered.x0
     centres[:, 1] = (places["row"] + 0.5) * layered.cell_m + layered.y0
     return centres
 
 
-def cells_within(
-    layered: LayeredArrays, centres: NDArray[np.float64], box: Box
-) -> NDArray[np.int64]:
+def cells_within(layered: LayeredArrays, box: Box) -> NDArray[np.int64]:
     """The cells, holes included, whose centres lie in a box, int64 (K,)."""
     tile_m = TILE * layered.cell_m
     i0, i1 = (max(0, int((x - layered.x0) // tile_m)) for x in box[::2])
     j0, j1 = (max(0, int((y - layered.y0) // tile_m)) for y in box[1::2])
     pages = layered.pages[:, j0 : j1 + 1, i0 : i1 + 1]
     cells = (pages[pages >= 0].astype(np.int64)[:, None] + np.arange(TILE**2)).ravel()
-    near = centres[cells]
+    near = centres_of(layered, layered.places[cells])
     within: NDArray[np.int64] = cells[((near >= box[:2]) & (near <= box[2:])).all(axis=1)]
     return within

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from copy import copy
+from dataclasses import replace
 from pathlib import Path
 from typing import Self
 
@@ -23,13 +24,12 @@ from esplanade.planning.grid.body_rows import BodyRows
 from esplanade.planning.grid.clearances import (
     CLEARANCE_CAP_M,
     cells_within,
-    centres_of,
     kind_of,
     with_row,
     write_clearance,
 )
 from esplanade.planning.grid.door_change import DoorChange
-from esplanade.planning.grid.kinds import kind_arrays
+from esplanade.planning.grid.kinds import kind_arrays, moved, shared_with
 from esplanade.planning.grid.lookup import PlaceLookup
 from esplanade.planning.ground._geometry_kernels import Placement
 from esplanade.planning.ground.barriers import Barriers
@@ -40,9 +40,8 @@ from esplanade.planning.scene.bodies import Body
 from esplanade.planning.scene.doors import Doors
 from esplanade.planning.scene.mesh_file import Up
 from esplanade.planning.scene.scene import Scene
-from esplanade.planning.traversal.cache import TraversabilityCache
+from esplanade.planning.traversal.cache import KnownTraversability, TraversabilityCache
 from esplanade.planning.traversal.stability import Stability
-from esplanade.planning.traversal.traversability import Traversability
 
 ADULT = Body.adult()
 _EDGES = (Stability.UNSTABLE, Stability.UP_STAIR, Stability.DOWN_STAIR)
@@ -53,7 +52,7 @@ class LayeredGrid(PlaceLookup):
 
     Places are given by x, y and a height, in metres: the standing surface nearest in height is
     meant. A disc of radius r may stand where the clearance of its kind of body is at least r; that
-    set is the complement of its C-obstacles. Memory is some 60 bytes a cell, and 5 more for each
+    set is the complement of its C-obstacles. Memory is some 52 bytes a cell, and 13 more for each
     kind of body.
     """
 
@@ -71,7 +70,6 @@ class LayeredGrid(PlaceLookup):
         )
         self.traversability = TraversabilityCache(floors)
         self.index = index_barriers(floors.barriers, self.bounds)
-        self.centres = centres_of(layered)
         self._held = self.arrays, make_handle(GroundArrays(self.arrays, self.index))
         self._rows = BodyRows()
         self._forked = self.arrays
@@ -127,7 +125,10 @@ class LayeredGrid(PlaceLookup):
         body = kind_of(body)
         row = self._rows.get(body)
         if row is None:
+            before = set(self._rows)
             row = self._rows.free_row(body)
+            for forgotten in before.difference(self._rows):
+                self.traversability.forget(forgotten)
             a = self.arrays
             everywhere = np.arange(len(a.layered.floors))
             field = np.empty(len(everywhere), dtype=np.float32)
@@ -136,7 +137,7 @@ class LayeredGrid(PlaceLookup):
             self.arrays = a._replace(
                 clearance=with_row(a.clearance, row, field),
                 edges=with_row(a.edges, row, self._edges(body, everywhere)),
-                kinds=self._kinds(self.barriers, self.traversability.of),
+                kinds=self._derive_kinds(),
             )
         return row
 
@@ -176,8 +177,7 @@ class LayeredGrid(PlaceLookup):
 
     def bodies_change(self, fork: LayeredGrid) -> BodiesChange:
         """Return what a fork has learnt of new bodies, to be applied if this is unchanged."""
-        new = [kind for kind in fork._rows if kind not in self._rows]
-        known = {kind: fork.traversability.known(kind) for kind in new}
+        known = {kind: fork.traversability.known(kind) for kind in fork._rows}
         return BodiesChange(fork._forked, fork.arrays, fork._rows.all(), known)
 
     def apply_bodies(self, change: BodiesChange) -> bool:
@@ -192,11 +192,25 @@ class LayeredGrid(PlaceLookup):
         self.arrays = change.arrays
         return True
 
-    def _kinds(self, barriers: Barriers, of: Callable[[Body], Traversability]) -> KindArrays:
-        """Where each known kind of body fits, row by row."""
+    def _derive_kinds(self) -> KindArrays:
+        """Where each known kind of body fits, row by row; traversabilities share the arrays."""
+        known = self._by_row(self.traversability.known)
+        found = [one.traversability for one in known]
+        kinds = kind_arrays(self.barriers, len(self.layered.floors), found)
+        self._share(kinds, known)
+        return kinds
+
+    def _by_row(self, of: Callable[[Body], KnownTraversability]) -> list[KnownTraversability]:
+        """The traversabilities of all known kinds of body, in the order of their rows."""
         bodies = {row: body for body, row in self._rows.all().items()}
-        found = [of(bodies[row]) for row in range(len(bodies))]
-        return kind_arrays(barriers, len(self.layered.floors), found)
+        return [of(bodies[row]) for row in range(len(bodies))]
+
+    def _share(self, kinds: KindArrays, known: Sequence[KnownTraversability]) -> None:
+        """Keep traversabilities, row by row, with the arrays of kinds of body."""
+        for body, row in self._rows.all().items():
+            one = known[row]
+            shared = shared_with(kinds, row, one.traversability)
+            self.traversability.keep({body: replace(one, traversability=shared)})
 
     def _edges(self, body: Body, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Whether a body is on an edge in each of some cells, bool (K,)."""
@@ -257,7 +271,7 @@ class LayeredGrid(PlaceLookup):
         index = self.index._replace(barriers=barriers)
         reach = CLEARANCE_CAP_M
         box = (x0 - reach, y0 - reach, x1 + reach, y1 + reach)
-        near = cells_within(self.layered, self.centres, box)
+        near = cells_within(self.layered, box)
         clearance, edges = base.clearance.copy(), base.edges.copy()
         known = {}
         for body, row in bodies.items():
@@ -265,7 +279,10 @@ class LayeredGrid(PlaceLookup):
             known[body] = self.traversability.prepare(body, barriers)
             if not base.flat:
                 edges[row, near] = np.isin(known[body].traversability.classes[near], _EDGES)
-        kinds = self._kinds(self.barriers, lambda body: known[body].traversability)
+        kinds = moved(base.kinds, [one.traversability for one in self._by_row(known.__getitem__)])
+        for body, row in bodies.items():
+            shared = shared_with(kinds, row, known[body].traversability)
+            known[body] = replace(known[body], traversability=shared)
         arrays = base._replace(clearance=clearance, edges=edges, kinds=kinds)
         return DoorChange(name, is_open, base, arrays, known)
 
@@ -339,7 +356,7 @@ class LayeredGrid(PlaceLookup):
         row = self.row_of(body)
         free_here = self.is_free([position], [height], clearance_m, body)[0]
         floor = self.floor_at(position, height)
-        placement = Placement(floor, floor, body.height_m, body.step_on_m)
+        placement = Placement(floor, floor, body.height_m, body.step_on_m, body.leg_length_m)
         ground = GroundArrays(self.arrays, self.index)
         for within_m in (level_m, math.inf):
             if free_here and floor - height < within_m:
@@ -348,8 +365,7 @@ class LayeredGrid(PlaceLookup):
                 ground, row, clearance_m, placement, x, y, float(height), within_m
             )
             if cell >= 0:
-                x, y = self.arrays.kinds.anchors[row, cell].tolist()
-                return x, y
+                return kernels.anchor_at(self.arrays, row, cell)
         return None
 
     def walk(
@@ -390,6 +406,7 @@ class LayeredGrid(PlaceLookup):
             self.index,
             body.height_m,
             body.step_on_m,
+            body.leg_length_m,
             cells,
             out,
             moves,

@@ -17,19 +17,31 @@ def kind_arrays(barriers: Barriers, cells: int, found: Sequence[Traversability])
 
     `barriers` (S,) are those that the lists of the traversabilities refer to.
     """
-    anchors = np.empty((len(found), cells, 2), dtype=np.float32)
+    offsets = np.empty((len(found), cells, 2), dtype=np.int8)
     steps = np.empty((len(found), cells), dtype=np.uint8)
     first = np.empty((len(found), cells), dtype=np.int32)
     measures = np.empty(len(found), dtype=MEASURES)
     entries = np.empty(sum(len(one.near.entries) for one in found), dtype=LISTED)
     used = 0
     for row, one in enumerate(found):
-        anchors[row], steps[row] = one.anchors, one.steps
-        measures[row] = (*one.body, one.near.reach_m)
-        heads, listed = one.near.first, one.near.entries
-        first[row] = np.where(heads < 0, -1, heads + used)
-        own = entries[used : used + len(listed)]
-        own["barrier"] = listed["barrier"]
-        own["next"] = np.where(listed["next"] < 0, -1, listed["next"] + used)
-        used += len(listed)
-    return KindArrays(anchors, steps, first, entries, barriers, measures)
+        offsets[row], steps[row], first[row] = one.offsets, one.steps, one.near.first
+        measures[row] = (*one.body, one.near.reach_m, used)
+        entries[used : used + len(one.near.entries)] = one.near.entries
+        used += len(one.near.entries)
+    return KindArrays(offsets, steps, first, entries, barriers, measures)
+
+
+def shared_with(kinds: KindArrays, row: int, one: Traversability) -> Traversability:
+    """A traversability that is the same, with its arrays in a row of those of kinds of body."""
+    begin = int(kinds.measures["entries"][row])
+    entries = kinds.entries[begin : begin + len(one.near.entries)]
+    near = one.near._replace(first=kinds.first[row], entries=entries)
+    return one._replace(offsets=kinds.offsets[row], steps=kinds.steps[row], near=near)
+
+
+def moved(kinds: KindArrays, found: Sequence[Traversability]) -> KindArrays:
+    """The arrays of kinds of body once a door has moved, row by row."""
+    offsets, steps = np.empty_like(kinds.offsets), np.empty_like(kinds.steps)
+    for row, one in enumerate(found):
+        offsets[row], steps[row] = one.offsets, one.steps
+    return kinds._replace(offsets=offsets, steps=steps)

@@ -9,7 +9,14 @@ from numpy.typing import NDArray
 
 from esplanade.planning.compiled._heap_kernels import heap_pop, heap_push
 from esplanade.planning.compiled.jit import inlined, kernel
-from esplanade.planning.grid._grid_kernels import GridArrays, follow, length, line_is_clear
+from esplanade.planning.grid._grid_kernels import (
+    GridArrays,
+    anchor_at,
+    follow,
+    length,
+    line_is_clear,
+)
+from esplanade.planning.traversal._anchor_kernels import SLACK_M
 
 PotentialValues = NDArray[np.float32]
 """(N, 3): metres from the waypoint to the goal, waypoint x, waypoint y; inf where no path leads."""
@@ -99,15 +106,16 @@ def grow_wave(
     any it spreads over all cells. At most `most` cells are settled in one call. Wherever a wave is
     stopped, the cells that it has settled are as they will be when it is over.
     """
-    anchors, steps, links = grid.kinds.anchors[body], grid.kinds.steps[body], grid.layered.links
+    steps, links = grid.kinds.steps[body], grid.layered.links
+    enough = radius - SLACK_M
     size = state[0]
     reached = state[1]
     until = np.inf
     for k in range(len(targets)):
         target = targets[k]
         if settled[target]:
-            there = potential_at(potential, target, anchors[target, 0], anchors[target, 1])
-            until = min(until, there + margin)
+            tx, ty = anchor_at(grid, body, target)
+            until = min(until, potential_at(potential, target, tx, ty) + margin)
     last = reached + most
     while size > 0:
         if keys[0] > until or reached >= last:
@@ -116,18 +124,16 @@ def grow_wave(
         size = heap_pop(keys, items, size)
         if settled[cell]:
             continue
-        x = anchors[cell, 0]
-        y = anchors[cell, 1]
+        x, y = anchor_at(grid, body, cell)
         own = potential[cell]
-        seen = longest_sight == 0.0 or line_is_clear(grid, body, cell, x, y, own[1], own[2], radius)
+        seen = longest_sight == 0.0 or line_is_clear(grid, body, cell, x, y, own[1], own[2], enough)
         if reached > 0 and not seen:
             own[0] = np.inf
             for direction in range(8):
                 other = links[cell, direction]
                 if not steps[cell] >> direction & 1 or not settled[other]:
                     continue
-                cx = anchors[other, 0]
-                cy = anchors[other, 1]
+                cx, cy = anchor_at(grid, body, other)
                 left = potential_at(potential, other, cx, cy)
                 if left + length(cx - x, cy - y) < own[0] + length(own[1] - x, own[2] - y):
                     own[0] = left
@@ -142,10 +148,17 @@ def grow_wave(
                 until = min(until, potential_at(potential, cell, x, y) + margin)
         for direction in range(8):
             other = links[cell, direction]
-            if not steps[cell] >> direction & 1 or settled[other]:
+            if other < 0 or settled[other]:
                 continue
-            cx = anchors[other, 0]
-            cy = anchors[other, 1]
+            cx, cy = anchor_at(grid, body, other)
+            if not steps[cell] >> direction & 1 and not (
+                reached == 1
+                and longest_sight > 0.0
+                and abs(grid.layered.floors[other] - grid.layered.floors[cell])
+                <= grid.kinds.measures[body]["step_on_m"]
+                and line_is_clear(grid, body, other, cx, cy, own[1], own[2], enough)
+            ):
+                continue  # a goal may be where the body fits, in a cell whose anchor is elsewhere
             left = own[0]
             wx = own[1]
             wy = own[2]
@@ -167,8 +180,7 @@ def grow_wave(
 @kernel
 def extend_into_obstacles(
     grid: GridArrays,
-    step_on_m: float,
-    anchors: NDArray[np.float32],
+    body: int,
     potential: PotentialValues,
     settled: NDArray[np.uint8],
 ) -> None:
@@ -177,12 +189,12 @@ def extend_into_obstacles(
     An agent closer to a wall than its radius then still finds the path. Distances over such cells
     count threefold.
     """
+    step_on_m = grid.kinds.measures[body]["step_on_m"]
     for ring in range(1, 4):
         for cell in range(len(settled)):
             if settled[cell] or grid.layered.floors[cell] != grid.layered.floors[cell]:
                 continue
-            x = anchors[cell, 0]
-            y = anchors[cell, 1]
+            x, y = anchor_at(grid, body, cell)
             best = np.inf
             for direction in range(8):
                 other = grid.layered.links[cell, direction]
@@ -190,8 +202,7 @@ def extend_into_obstacles(
                     continue
                 if abs(grid.layered.floors[other] - grid.layered.floors[cell]) > step_on_m:
                     continue
-                cx = anchors[other, 0]
-                cy = anchors[other, 1]
+                cx, cy = anchor_at(grid, body, other)
                 way = length(cx - x, cy - y)
                 left = potential_at(potential, other, cx, cy) + 2.0 * way
                 if left + way < best:

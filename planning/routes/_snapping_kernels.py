@@ -9,6 +9,7 @@ from esplanade.planning.ground._geometry_kernels import crosses
 from esplanade.planning.ground.layered import cell_index, cell_near
 from esplanade.planning.routes._straightening_kernels import is_clear
 from esplanade.planning.scene.heights import SAME_SURFACE_M
+from esplanade.planning.traversal._anchor_kernels import anchor_of
 from esplanade.planning.traversal._stability_kernels import FORBIDDEN
 from esplanade.planning.traversal.traversability import Traversability
 
@@ -41,7 +42,7 @@ def snap(
     floor, highest = z, SAME_SURFACE_M
     if own >= 0:
         floor, highest = float(arrays.floors[own]), body.step_on_m + TOLERANCE_M
-        cx, cy = traversability.anchors[own]
+        cx, cy = anchor_of(arrays, traversability.offsets, own)
         if classes[own] != FORBIDDEN and is_clear(traversability, own, x, y, cx, cy):
             return own, x, y
     best, found, found_x, found_y = np.inf, -1, x, y
@@ -61,7 +62,7 @@ def snap(
                 cx = arrays.x0 + (ii + 0.5) * arrays.cell_m
                 cy = arrays.y0 + (jj + 0.5) * arrays.cell_m
                 qx, qy = min(max(x, cx - half), cx + half), min(max(y, cy - half), cy + half)
-                anchor_x, anchor_y = traversability.anchors[cell]
+                anchor_x, anchor_y = anchor_of(arrays, traversability.offsets, cell)
                 if not is_clear(traversability, cell, qx, qy, anchor_x, anchor_y):
                     qx, qy = anchor_x, anchor_y
                 aside = np.hypot(qx - x, qy - y)

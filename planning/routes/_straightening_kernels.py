@@ -7,7 +7,11 @@ from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.ground.layered import LayeredArrays
-from esplanade.planning.traversal._anchor_kernels import bend_between, is_way_clear
+from esplanade.planning.traversal._anchor_kernels import (
+    anchor_of,
+    bend_between,
+    is_way_clear,
+)
 from esplanade.planning.traversal._stability_kernels import FORBIDDEN, STABLE
 from esplanade.planning.traversal.traversability import Traversability
 
@@ -157,7 +161,7 @@ def over_anchors(
                 traversability.arrays,
                 traversability.near,
                 traversability.body,
-                traversability.anchors,
+                traversability.offsets,
                 cells[k - 1],
                 cells[k],
             )
@@ -167,8 +171,8 @@ def over_anchors(
                 out.cells[used] = cells[k - 1] if own else cells[k]
                 out.counts[used] = counts[k - 1] if own else counts[k]
                 used += 1
-        out.xy[used, 0] = traversability.anchors[cells[k], 0]
-        out.xy[used, 1] = traversability.anchors[cells[k], 1]
+        x, y = anchor_of(traversability.arrays, traversability.offsets, cells[k])
+        out.xy[used] = (x, y)
         out.cells[used] = cells[k]
         out.counts[used] = counts[k]
         used += 1

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.planning.grid.clearances import kind_of
 from esplanade.planning.grid.grid import LayeredGrid
 from esplanade.planning.routes._snapping_kernels import snap
 from esplanade.planning.routes.stable_bfp import stable_bfp
@@ -86,7 +87,7 @@ def find_path(
         it is moved by half a metre at most, and through a wall only if it fits nowhere on this
         side, as inside a hollow wall.
     body : Body
-        An adult if not given.
+        An adult if not given. The path is that of its kind (`kind_of`), as live actors walk it.
 
     Returns
     -------
@@ -100,6 +101,7 @@ def find_path(
     """
     body = Body.adult() if body is None else body
     start, goal = _checked("start", start, grid), _checked("goal", goal, grid)
+    body = replace(kind_of(body), edge_cells=body.edge_cells)
     traversability = grid.traversability.of(body)
     first, last = find_endpoint(traversability, start), find_endpoint(traversability, goal)
     if first is None:

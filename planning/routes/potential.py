@@ -47,7 +47,7 @@ class Potential:
         self.height = height
         self.radius_m = radius_m
         self.body = body or Body.adult()
-        grid.row_of(self.body)
+        row = grid.row_of(self.body)
         if not grid.is_free([goal], [height], radius_m, self.body)[0]:
             free = grid.nearest_free(goal, height, radius_m, self.body)
             goal = free if free and math.dist(goal, free) <= _MOVED_M else goal
@@ -60,9 +60,7 @@ class Potential:
         self.values: NDArray[np.float32] = front.values
         self.reached_cells = front.reached_cells
         if wave is Wave.SIGHT:
-            kernels.extend_into_obstacles(
-                front.arrays, self.body.step_on_m, front.anchors, self.values, front.settled
-            )
+            kernels.extend_into_obstacles(front.arrays, row, self.values, front.settled)
 
     def distance(self, positions: ArrayLike, heights: ArrayLike) -> NDArray[np.float64]:
         """Metres to the goal, float64 (N,), inf where no path leads, for (N, 2) and (N,)."""

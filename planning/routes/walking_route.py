@@ -132,7 +132,7 @@ class RouteSearch:
     def _descend(self, wave: WaveFront) -> Route | None:
         """The route down a wave that has reached the start, None where it never does."""
         start = self._start[:2]
-        anchors = wave.anchors[self._targets].astype(np.float64)
+        anchors = wave.anchors(self._targets)
         values = wave.values[self._targets]
         left_m = values[:, 0] + np.hypot(*(values[:, 1:] - anchors).T)
         left_m[wave.settled[self._targets] == 0] = np.inf
@@ -147,6 +147,7 @@ class RouteSearch:
             self._ground(),
             self._body.height_m,
             self._body.step_on_m,
+            self._body.leg_length_m,
             self._clearance_m,
             wave.values,
             wave.settled,
@@ -176,7 +177,8 @@ class RouteSearch:
 
     def _placement(self) -> Placement:
         floor = float(self._grid.layered.floors[self._cell])
-        return Placement(floor, floor, self._body.height_m, self._body.step_on_m)
+        body = self._body
+        return Placement(floor, floor, body.height_m, body.step_on_m, body.leg_length_m)
 
 
 def leads_straight(grid: LayeredGrid, start: Point, goal: Point, clearance_m: float) -> bool:

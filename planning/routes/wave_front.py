@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.planning.grid._grid_kernels import anchor_at
 from esplanade.planning.grid.grid import LayeredGrid
 from esplanade.planning.routes import _potential_kernels as kernels
 from esplanade.planning.scene.bodies import Body
@@ -55,11 +56,15 @@ class WaveFront:
         """(N,): 1 where a cell's values are final."""
         self._heap = np.empty(8 * cells + 1), np.empty(8 * cells + 1, dtype=np.int64)
         self._state = np.zeros(2, dtype=np.int64)
-        self.anchors: NDArray[np.float32] = self.arrays.kinds.anchors[row]
-        """(N, 2): the points of the cells that the wave leads over, metres."""
         self._ground = self.arrays, row, radius_m, wave.value
-        x, y = goal if wave is Wave.SIGHT else self.anchors[cell].tolist()
+        x, y = goal if wave is Wave.SIGHT else anchor_at(self.arrays, row, cell)
         kernels.begin_wave(cell, x, y, self.values, self.settled, *self._heap, self._state)
+
+    def anchors(self, cells: NDArray[np.int64]) -> NDArray[np.float64]:
+        """The points of some cells (K,) that the wave leads over, float64 (K, 2), metres."""
+        row = self._ground[1]
+        found = [anchor_at(self.arrays, row, cell) for cell in cells.tolist()]
+        return np.array(found, dtype=np.float64).reshape(-1, 2)
 
     @property
     def reached_cells(self) -> int:

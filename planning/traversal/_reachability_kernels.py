@@ -6,26 +6,8 @@ from numpy.typing import NDArray
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.ground._barrier_kernels import TOLERANCE_M, Measures, NearBarriers
 from esplanade.planning.ground.layered import TILE, LayeredArrays
-from esplanade.planning.traversal._anchor_kernels import bend_between
-from esplanade.planning.traversal.tiles import TileBox
-
-
-@inlined
-def _unbarred_bits(
-    arrays: LayeredArrays,
-    near: NearBarriers,
-    body: Measures,
-    anchors: NDArray[np.float32],
-    cell: int,
-    bits: int,
-) -> int:
-    """Those steps of a cell, of those in `bits`, on which the body keeps clear of barriers."""
-    for d in range(8):
-        if bits >> d & 1:
-            other = arrays.links[cell, d]
-            if bend_between(arrays, near, body, anchors, cell, other)[0] == 0:
-                bits &= ~(1 << d)
-    return bits
+from esplanade.planning.traversal._anchor_kernels import leads_on
+from esplanade.planning.traversal.tiles import CellBox
 
 
 @kernel
@@ -33,34 +15,77 @@ def step_bits(
     arrays: LayeredArrays,
     near: NearBarriers,
     body: Measures,
-    anchors: NDArray[np.float32],
-    box: TileBox,
+    offsets: NDArray[np.int8],
+    rooms: NDArray[np.float32],
+    box: CellBox,
     out: NDArray[np.uint8],
 ) -> None:
-    """Write the links that a body may follow from each cell of some tiles, into `out` (N,).
+    """Write the links that a body may follow from each cell of a box, into `out` (N,).
 
-    Bit d stands for link d.
+    Bit d stands for link d. `offsets` and `rooms` are those of `place_anchors`, for the cells of
+    the box and those next to them. Steps lead both ways: those E to NW are looked into, the others
+    are taken over from the neighbours that they lead to.
     """
+    is_quiet = np.zeros(len(arrays.level_headroom), dtype=np.bool_)
+    for opposite in (False, True):
+        for layer in range(arrays.pages.shape[0]):
+            for tj in range(box.first_row // TILE, (box.end_row - 1) // TILE + 1):
+                for ti in range(box.first_column // TILE, (box.end_column - 1) // TILE + 1):
+                    page = arrays.pages[layer, tj, ti]
+                    if page < 0:
+                        continue
+                    tile = page // (TILE * TILE)
+                    is_open = _is_open(arrays, body, page, tj, ti)
+                    j0, j1 = max(box.first_row, tj * TILE), min(box.end_row, (tj + 1) * TILE)
+                    i0, i1 = max(box.first_column, ti * TILE), min(box.end_column, (ti + 1) * TILE)
+                    if not opposite and is_open:
+                        is_quiet[tile] = (near.first[page : page + TILE * TILE] < 0).all()
+                    for j in range(j0 - tj * TILE, j1 - tj * TILE):
+                        for i in range(i0 - ti * TILE, i1 - ti * TILE):
+                            cell = page + j * TILE + i
+                            if is_quiet[tile] and 0 < j < TILE - 1 and 0 < i < TILE - 1:
+                                out[cell] = 255
+                            elif opposite:
+                                out[cell] |= _opposite_bits(arrays, out, cell)
+                            else:
+                                bits = 15 if is_open else _bits_by_heights(arrays, body, cell)
+                                for d in range(4):
+                                    if bits >> d & 1 and not leads_on(
+                                        arrays,
+                                        near,
+                                        body,
+                                        offsets,
+                                        rooms,
+                                        cell,
+                                        arrays.links[cell, d],
+                                    ):
+                                        bits &= ~(1 << d)
+                                out[cell] = bits
+
+
+@inlined
+def _is_open(arrays: LayeredArrays, body: Measures, page: int, tj: int, ti: int) -> bool:
+    """Whether heights bar no link of any cell of a tile."""
     tiles_y, tiles_x = arrays.pages.shape[1:]
-    for layer in range(arrays.pages.shape[0]):
-        for tj in range(box.first_row, box.end_row):
-            for ti in range(box.first_column, box.end_column):
-                page = arrays.pages[layer, tj, ti]
-                if page < 0:
-                    continue
-                is_inner = 0 < tj < tiles_y - 1 and 0 < ti < tiles_x - 1
-                headroom = arrays.level_headroom[page // (TILE * TILE)]
-                is_open = is_inner and headroom >= body.height_m - TOLERANCE_M
-                for cell in range(page, page + TILE * TILE):
-                    bits = 255 if is_open else _bits_by_heights(arrays, body, cell)
-                    if bits:
-                        bits = _unbarred_bits(arrays, near, body, anchors, cell, bits)
-                    out[cell] = bits
+    is_inner = 0 < tj < tiles_y - 1 and 0 < ti < tiles_x - 1
+    headroom = arrays.level_headroom[page // (TILE * TILE)]
+    return bool(is_inner and headroom >= body.height_m - TOLERANCE_M)
+
+
+@inlined
+def _opposite_bits(arrays: LayeredArrays, steps: NDArray[np.uint8], cell: int) -> int:
+    """The links W to SE of a cell whose opposites may be followed."""
+    bits = 0
+    for d in range(4, 8):
+        other = arrays.links[cell, d]
+        if other >= 0 and steps[other] >> (d - 4) & 1:
+            bits |= 1 << d
+    return bits
 
 
 @inlined
 def _bits_by_heights(arrays: LayeredArrays, body: Measures, cell: int) -> int:
-    """The links that floors and ceilings allow a body to follow, without regard to barriers."""
+    """Of the links E to NW, those that floors and ceilings allow a body to follow."""
     floor = arrays.floors[cell]
     if np.isnan(floor):
         return 0
@@ -68,7 +93,7 @@ def _bits_by_heights(arrays: LayeredArrays, body: Measures, cell: int) -> int:
     step = np.float32(body.step_on_m + TOLERANCE_M)
     room = np.float32(body.height_m - TOLERANCE_M)
     bits = 0
-    for d in range(8):
+    for d in range(4):
         other = arrays.links[cell, d]
         if other < 0:
             continue

@@ -12,7 +12,7 @@ from esplanade.planning.ground._barrier_kernels import (
     point_barrier_distance,
 )
 from esplanade.planning.ground.layered import LINK_ROOM_M, TILE, LayeredArrays, cell_index
-from esplanade.planning.traversal._anchor_kernels import SLACK_M
+from esplanade.planning.traversal._anchor_kernels import SLACK_M, anchor_of
 from esplanade.planning.traversal.tiles import TileBox
 
 FORBIDDEN, STABLE, UNSTABLE, UP_STAIR, DOWN_STAIR = range(5)
@@ -30,14 +30,15 @@ def classify(
     arrays: LayeredArrays,
     near: NearBarriers,
     body: Measures,
-    anchors: NDArray[np.float32],
+    anchors: NDArray[np.int8],
     offsets: NDArray[np.void],
     box: TileBox,
     out: NDArray[np.uint8],
 ) -> None:
     """Write the class of each cell of some tiles into `out` (N,).
 
-    `offsets` (K,) of `OFFSET` lead from a cell to the others that the body's disc touches.
+    `anchors` (N, 2) are `Traversability.offsets`; `offsets` (K,) of `OFFSET` lead from a cell to
+    the others that the body's disc touches.
     """
     reach = 0
     for k in range(len(offsets)):
@@ -184,14 +185,14 @@ def _class_by_barriers(
     arrays: LayeredArrays,
     near: NearBarriers,
     body: Measures,
-    anchors: NDArray[np.float32],
+    anchors: NDArray[np.int8],
     cell: int,
     by_heights: int,
 ) -> int:
     """The class of a cell when barriers within the body's radius are taken into account too."""
     found = by_heights
     floor = float(arrays.floors[cell])
-    x, y = float(anchors[cell, 0]), float(anchors[cell, 1])
+    x, y = anchor_of(arrays, anchors, cell)
     entry = near.first[cell]
     while entry >= 0:
         barrier = near.barriers[near.entries[entry]["barrier"]]

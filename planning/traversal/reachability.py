@@ -15,8 +15,8 @@ from esplanade.planning.ground.barriers import Barriers
 from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.scene.bodies import Body
 from esplanade.planning.traversal import _reachability_kernels as kernels
-from esplanade.planning.traversal._anchor_kernels import place_anchors
-from esplanade.planning.traversal.tiles import TileBox, all_tiles
+from esplanade.planning.traversal._anchor_kernels import PARTS, place_anchors
+from esplanade.planning.traversal.tiles import CellBox, all_cells
 
 _REACH_CELLS = 1.1
 """Anchors are pushed, and links lead, no further than this many cells from a centre."""
@@ -41,37 +41,44 @@ def near_barriers(arrays: LayeredArrays, barriers: Barriers, body: Body) -> Near
     return NearBarriers(barriers, first, entries, reach)
 
 
-def anchors_of(
-    arrays: LayeredArrays,
-    near: NearBarriers,
-    body: Body,
-    out: NDArray[np.float32] | None = None,
-    box: TileBox | None = None,
-) -> NDArray[np.float32]:
-    """The anchor of each cell, float32 (N, 2), metres: where the body has room in it.
-
-    With `box`, only those tiles of `out` are written again. Cost O(cells + barriers near cells).
-    """
-    anchors = np.zeros((len(arrays.floors), 2), dtype=np.float32) if out is None else out
-    place_anchors(arrays, near, measures_of(body), box or all_tiles(arrays), anchors)
-    return anchors
-
-
 def reachable_steps(
     arrays: LayeredArrays,
     near: NearBarriers,
     body: Body,
-    anchors: NDArray[np.float32],
-    out: NDArray[np.uint8] | None = None,
-    box: TileBox | None = None,
-) -> NDArray[np.uint8]:
-    """The links that a body may follow, uint8 (N,): bit d of a cell is its link d.
+    out: tuple[NDArray[np.uint8], NDArray[np.int8]] | None = None,
+    box: CellBox | None = None,
+) -> tuple[NDArray[np.uint8], NDArray[np.int8]]:
+    """The links that a body may follow, uint8 (N,), and where it has room in cells, int8 (N, 2).
 
-    With `box`, only those tiles of `out` are written again. Cost O(cells).
+    Bit d of the former stands for link d; the latter is as `Traversability.offsets`. With `box`,
+    only those cells of `out` are written again. Cost O(cells + barriers near cells).
     """
-    steps = np.zeros(len(arrays.floors), dtype=np.uint8) if out is None else out
-    kernels.step_bits(arrays, near, measures_of(body), anchors, box or all_tiles(arrays), steps)
-    return steps
+    cells = len(arrays.floors)
+    steps, offsets = out or (np.zeros(cells, dtype=np.uint8), np.zeros((cells, 2), dtype=np.int8))
+    whole = all_cells(arrays)
+    box = box or whole
+    beside = CellBox(
+        max(0, box.first_row - 1),
+        max(0, box.first_column - 1),
+        min(whole.end_row, box.end_row + 1),
+        min(whole.end_column, box.end_column + 1),
+    )
+    rooms = np.empty(cells, dtype=np.float32)
+    measures = measures_of(body)
+    place_anchors(arrays, near, measures, beside, offsets, rooms)
+    kernels.step_bits(arrays, near, measures, offsets, rooms, box, steps)
+    return steps, offsets
+
+
+def anchors_of(arrays: LayeredArrays, offsets: NDArray[np.int8]) -> NDArray[np.float64]:
+    """The points of cells that paths go through, float64 (N, 2), metres, from their offsets."""
+    places = arrays.places
+    anchors = np.empty((len(places), 2))
+    for axis, (name, origin) in enumerate((("column", arrays.x0), ("row", arrays.y0))):
+        anchors[:, axis] = places[name] + 0.5 + offsets[:, axis] / PARTS
+        anchors[:, axis] *= arrays.cell_m
+        anchors[:, axis] += origin
+    return anchors
 
 
 def reachable_from(

@@ -47,7 +47,7 @@ def classify(
     arrays: LayeredArrays,
     near: NearBarriers,
     body: Body,
-    anchors: NDArray[np.float32],
+    anchors: NDArray[np.int8],
     out: NDArray[np.uint8] | None = None,
     box: TileBox | None = None,
 ) -> NDArray[np.uint8]:

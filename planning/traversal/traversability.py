@@ -15,9 +15,9 @@ class Traversability(NamedTuple):
     arrays: LayeredArrays
     near: NearBarriers
     body: Measures
-    anchors: NDArray[np.float32]
-    """(N, 2): the point of each cell that paths go through, metres: the centre if the body fits
-    there, else where it has most room."""
+    offsets: NDArray[np.int8]
+    """(N, 2): how far the point of each cell that paths go through lies off the centre, in 1/254 of
+    a cell: 0 if the body fits at the centre, else where it has room; `anchor_of` has the point."""
     steps: NDArray[np.uint8]
     """(N,): the links that the body may follow; bit d stands for link d."""
     classes: NDArray[np.uint8]
