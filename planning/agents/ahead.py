@@ -44,7 +44,7 @@ def _ground() -> tuple[GridArrays, BarrierIndex]:
         _array(3, np.int32), floats, floats, links, _array(1, PLACE), floats, *box, 0.25, 1, 1
     )
     kinds = KindArrays(
-        _array(3, np.int8),
+        _array(2, np.int8),
         _array(2, np.uint8),
         _array(2, np.int32),
         _array(1, LISTED),
@@ -91,7 +91,7 @@ def zone() -> kernels.Zone:
     return kernels.Zone(
         World(grid, _risk(), _reservations(), 0.4, 0.25),
         barriers,
-        _array(3, np.int8),
+        _array(2, np.int8),
         _array(2, np.float32),
         compass_moves(),
         AgentTable(1).agents,

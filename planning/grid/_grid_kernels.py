@@ -17,7 +17,7 @@ from esplanade.planning.ground._barrier_kernels import (
 )
 from esplanade.planning.ground._geometry_kernels import LOW_ROOM_M, crosses
 from esplanade.planning.ground.layered import TILE, LayeredArrays, cell_index
-from esplanade.planning.traversal._anchor_kernels import SLACK_M, anchor_of
+from esplanade.planning.traversal._anchor_kernels import PARTS, SLACK_M
 
 _HALF_DIAGONAL = 0.7072
 """Of a cell, in cells."""
@@ -29,7 +29,8 @@ class KindArrays(NamedTuple):
     """Where bodies of B kinds fit and can go from cell to cell, exactly."""
 
     offsets: NDArray[np.int8]
-    """(B, N, 2): `Traversability.offsets` of each kind; `anchor_at` has the points."""
+    """(E, 2): `Traversability.offsets` of each kind, one after the other as `entries` are;
+    `anchor_at` has the points."""
     steps: NDArray[np.uint8]
     """(B, N): `Traversability.steps` of each kind."""
     first: NDArray[np.int32]
@@ -229,7 +230,8 @@ def clearance_at(grid: GridArrays, body: int, cell: int, x: float, y: float) -> 
     least = own - half_m
     if 0.0 <= own < grid.kinds.measures[body]["radius_m"] + half_m:
         exact_m = grid.kinds.measures[body]["reach_m"] - half_m
-        exact = _exact_clearance(grid, body, cell, x, y, own < half_m)
+        low_m = max(0.0, grid.kinds.measures[body]["radius_m"] - LOW_ROOM_M)
+        exact = _exact_clearance(grid, body, cell, x, y, own < half_m + low_m)
         if exact < exact_m:
             return exact
         least = exact_m
@@ -239,13 +241,21 @@ def clearance_at(grid: GridArrays, body: int, cell: int, x: float, y: float) -> 
     room = float((1.0 - v) * lower + v * upper)
     if own < 0.0:  # the centre is inside an obstacle: nobody fits in half a cell around it
         return min(room, half_m)
-    return max(room, least)
+    return float(max(room, least))
 
 
 @inlined
 def anchor_at(grid: GridArrays, body: int, cell: int) -> tuple[float, float]:
     """The point of a cell that paths of a kind of body go through, metres."""
-    return anchor_of(grid.layered, grid.kinds.offsets[body], cell)
+    layered, kinds = grid.layered, grid.kinds
+    u = layered.places[cell]["column"] + 0.5
+    v = layered.places[cell]["row"] + 0.5
+    entry = kinds.first[body, cell]
+    if entry >= 0:  # `anchor_of` without slices of arrays
+        entry += kinds.measures[body]["entries"]
+        u += kinds.offsets[entry, 0] / PARTS
+        v += kinds.offsets[entry, 1] / PARTS
+    return layered.x0 + u * layered.cell_m, layered.y0 + v * layered.cell_m
 
 
 @inlined
@@ -309,10 +319,14 @@ def line_is_clear(
         u = s / way if way > 0.0 else 0.0
         x = ax + u * (bx - ax)
         y = ay + u * (by - ay)
-        cell = follow(grid, cell, x, y)
-        room = clearance_at(grid, body, cell, x, y) - radius
+        there = follow(grid, cell, x, y)
+        room = clearance_at(grid, body, there, x, y) - radius
         if room < 0.0:
             return False
+        rise = abs(floor_of(grid, there) - floor_of(grid, cell))
+        if rise > grid.kinds.measures[body]["step_on_m"] + TOLERANCE_M:
+            return False
+        cell = there
         if s >= way:
             return True
         step = max(room, shortest) if grid.flat else min(max(room, shortest), grid.layered.cell_m)

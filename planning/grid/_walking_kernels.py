@@ -23,6 +23,9 @@ from esplanade.planning.ground._geometry_kernels import (
 )
 from esplanade.planning.ground.layered import TILE
 
+_SHORTEST_M = 0.05
+"""Where the floor ahead is too high or low, shorter pieces than this are not tried."""
+
 
 class GroundArrays(NamedTuple):
     """The grid of a zone, and the barriers that stop bodies on it."""
@@ -77,18 +80,25 @@ def walk(
         placement = Placement(0.0, 0.0, height_m, step_on_m, leg_length_m)
         nx, ny = slide(index, placement, bounds, x, y, dx, dy, clearance)
         return follow(grid, cell, nx, ny), nx, ny
-    pieces = max(1, int(np.ceil(np.hypot(dx, dy) / (0.8 * grid.layered.cell_m))))
-    for _ in range(pieces):
+    way_m = np.hypot(dx, dy)
+    part = 1.0 / max(1, int(np.ceil(way_m / (0.8 * grid.layered.cell_m))))
+    done = 0.0
+    while done < 1.0 - 1e-9:
+        part = min(part, 1.0 - done)
         support = _support(grid, cell, x, y, step_on_m)
         floor = float(grid.layered.floors[cell])
         placement = Placement(floor, support, height_m, step_on_m, leg_length_m)
-        nx, ny = slide(index, placement, bounds, x, y, dx / pieces, dy / pieces, clearance)
+        nx, ny = slide(index, placement, bounds, x, y, part * dx, part * dy, clearance)
         other = follow(grid, cell, nx, ny)
         if (
             other < 0
             or abs(grid.layered.floors[other] - grid.layered.floors[cell]) > step_on_m + 1e-4
         ):
+            if part * way_m > _SHORTEST_M:
+                part *= 0.5  # two treads at once are too high, one after the other they are not
+                continue
             break
+        done += part
         cell = other
         x = nx
         y = ny

@@ -17,16 +17,17 @@ def kind_arrays(barriers: Barriers, cells: int, found: Sequence[Traversability])
 
     `barriers` (S,) are those that the lists of the traversabilities refer to.
     """
-    offsets = np.empty((len(found), cells, 2), dtype=np.int8)
     steps = np.empty((len(found), cells), dtype=np.uint8)
     first = np.empty((len(found), cells), dtype=np.int32)
     measures = np.empty(len(found), dtype=MEASURES)
     entries = np.empty(sum(len(one.near.entries) for one in found), dtype=LISTED)
+    offsets = np.empty((len(entries), 2), dtype=np.int8)
     used = 0
     for row, one in enumerate(found):
-        offsets[row], steps[row], first[row] = one.offsets, one.steps, one.near.first
+        steps[row], first[row] = one.steps, one.near.first
         measures[row] = (*one.body, one.near.reach_m, used)
         entries[used : used + len(one.near.entries)] = one.near.entries
+        offsets[used : used + len(one.offsets)] = one.offsets
         used += len(one.near.entries)
     return KindArrays(offsets, steps, first, entries, barriers, measures)
 
@@ -34,14 +35,16 @@ def kind_arrays(barriers: Barriers, cells: int, found: Sequence[Traversability])
 def shared_with(kinds: KindArrays, row: int, one: Traversability) -> Traversability:
     """A traversability that is the same, with its arrays in a row of those of kinds of body."""
     begin = int(kinds.measures["entries"][row])
-    entries = kinds.entries[begin : begin + len(one.near.entries)]
-    near = one.near._replace(first=kinds.first[row], entries=entries)
-    return one._replace(offsets=kinds.offsets[row], steps=kinds.steps[row], near=near)
+    end = begin + len(one.near.entries)
+    near = one.near._replace(first=kinds.first[row], entries=kinds.entries[begin:end])
+    return one._replace(offsets=kinds.offsets[begin:end], steps=kinds.steps[row], near=near)
 
 
 def moved(kinds: KindArrays, found: Sequence[Traversability]) -> KindArrays:
     """The arrays of kinds of body once a door has moved, row by row."""
     offsets, steps = np.empty_like(kinds.offsets), np.empty_like(kinds.steps)
     for row, one in enumerate(found):
-        offsets[row], steps[row] = one.offsets, one.steps
+        steps[row] = one.steps
+        begin = int(kinds.measures["entries"][row])
+        offsets[begin : begin + len(one.offsets)] = one.offsets
     return kinds._replace(offsets=offsets, steps=steps)

@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
 
-LOW_ROOM_M = 0.05
+LOW_ROOM_M = 0.13
 """Distance that the centre of a body keeps from what it does not step over, but could put a leg
-over: its disc may reach beyond."""
+over: its disc may reach beyond. Moves are looked at every 0.25 m at least, and jump over none."""
 
 BARRIER = np.dtype(
     [

@@ -42,7 +42,7 @@ def snap(
     floor, highest = z, SAME_SURFACE_M
     if own >= 0:
         floor, highest = float(arrays.floors[own]), body.step_on_m + TOLERANCE_M
-        cx, cy = anchor_of(arrays, traversability.offsets, own)
+        cx, cy = anchor_of(arrays, traversability.near.first, traversability.offsets, own)
         if classes[own] != FORBIDDEN and is_clear(traversability, own, x, y, cx, cy):
             return own, x, y
     best, found, found_x, found_y = np.inf, -1, x, y
@@ -62,7 +62,9 @@ def snap(
                 cx = arrays.x0 + (ii + 0.5) * arrays.cell_m
                 cy = arrays.y0 + (jj + 0.5) * arrays.cell_m
                 qx, qy = min(max(x, cx - half), cx + half), min(max(y, cy - half), cy + half)
-                anchor_x, anchor_y = anchor_of(arrays, traversability.offsets, cell)
+                anchor_x, anchor_y = anchor_of(
+                    arrays, traversability.near.first, traversability.offsets, cell
+                )
                 if not is_clear(traversability, cell, qx, qy, anchor_x, anchor_y):
                     qx, qy = anchor_x, anchor_y
                 aside = np.hypot(qx - x, qy - y)

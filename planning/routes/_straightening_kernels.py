@@ -171,7 +171,8 @@ def over_anchors(
                 out.cells[used] = cells[k - 1] if own else cells[k]
                 out.counts[used] = counts[k - 1] if own else counts[k]
                 used += 1
-        x, y = anchor_of(traversability.arrays, traversability.offsets, cells[k])
+        first, offsets = traversability.near.first, traversability.offsets
+        x, y = anchor_of(traversability.arrays, first, offsets, cells[k])
         out.xy[used] = (x, y)
         out.cells[used] = cells[k]
         out.counts[used] = counts[k]

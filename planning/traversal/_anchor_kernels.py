@@ -44,10 +44,16 @@ CLEAR, BARRED, BLOCKED = range(3)
 
 
 @inlined
-def anchor_of(arrays: LayeredArrays, offsets: NDArray[np.int8], cell: int) -> tuple[float, float]:
-    """The point of a cell that paths go through, metres."""
-    u = arrays.places[cell]["column"] + 0.5 + offsets[cell, 0] / PARTS
-    v = arrays.places[cell]["row"] + 0.5 + offsets[cell, 1] / PARTS
+def anchor_of(
+    arrays: LayeredArrays, first: NDArray[np.int32], offsets: NDArray[np.int8], cell: int
+) -> tuple[float, float]:
+    """The point of a cell that paths go through, metres; `first` (N,) is that of `NearBarriers`."""
+    u = arrays.places[cell]["column"] + 0.5
+    v = arrays.places[cell]["row"] + 0.5
+    entry = first[cell]
+    if entry >= 0:
+        u += offsets[entry, 0] / PARTS
+        v += offsets[entry, 1] / PARTS
     return arrays.x0 + u * arrays.cell_m, arrays.y0 + v * arrays.cell_m
 
 
@@ -137,7 +143,9 @@ def place_anchors(
     offsets: NDArray[np.int8],
     rooms: NDArray[np.float32],
 ) -> None:
-    """Write where the anchors of some cells are: offsets from their centres (N, 2).
+    """Write where the anchors of some cells are: offsets from their centres (E, 2).
+
+    The offset of a cell is in the row of the first entry of its list; a cell without has none.
 
     `rooms` (N,) is the distance from an anchor to the nearest barrier, as `room_at` has it, as far
     as the list of its cell tells. Where the body fits nowhere in a cell, the anchor is the centre.
@@ -155,11 +163,12 @@ def place_anchors(
                     first = max(box.first_column, ti * TILE)
                     for i in range(first, min(box.end_column, (ti + 1) * TILE)):
                         cell = page + (j - tj * TILE) * TILE + i - ti * TILE
-                        offsets[cell, 0] = 0
-                        offsets[cell, 1] = 0
                         rooms[cell] = reach
-                        if near.first[cell] < 0 or np.isnan(arrays.floors[cell]):
+                        entry = near.first[cell]
+                        if entry < 0:
                             continue
+                        offsets[entry, 0] = 0
+                        offsets[entry, 1] = 0
                         floor = float(arrays.floors[cell])
                         x = arrays.x0 + (i + 0.5) * arrays.cell_m
                         y = arrays.y0 + (j + 0.5) * arrays.cell_m
@@ -175,8 +184,8 @@ def place_anchors(
                         px, py = x + u * part_m, y + v * part_m
                         there = room_at(near, body, cell, floor, px, py)[0]
                         if there >= enough and there > room:
-                            offsets[cell, 0] = u
-                            offsets[cell, 1] = v
+                            offsets[entry, 0] = u
+                            offsets[entry, 1] = v
                             rooms[cell] = min(there, near.reach_m - np.hypot(px - x, py - y))
 
 
@@ -261,8 +270,8 @@ def bend_between(
     first, second = min(one, two), max(one, two)
     a, b = float(arrays.floors[first]), float(arrays.floors[second])
     lowest, highest = min(a, b), max(a, b)
-    ax, ay = anchor_of(arrays, offsets, first)
-    bx, by = anchor_of(arrays, offsets, second)
+    ax, ay = anchor_of(arrays, near.first, offsets, first)
+    bx, by = anchor_of(arrays, near.first, offsets, second)
     aside = max(arrays.cell_m, 0.5 * np.hypot(bx - ax, by - ay))
     found = way_through(near, body, first, lowest, highest, ax, ay, bx, by, aside)
     if found != BLOCKED:
@@ -306,8 +315,8 @@ def leads_on(
         return False
     both = rooms[one] + rooms[two] - 2.0 * enough
     if both > arrays.cell_m and abs(arrays.floors[one] - arrays.floors[two]) < _LEVEL_M:
-        ax, ay = anchor_of(arrays, offsets, one)
-        bx, by = anchor_of(arrays, offsets, two)
+        ax, ay = anchor_of(arrays, near.first, offsets, one)
+        bx, by = anchor_of(arrays, near.first, offsets, two)
         if both >= np.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay)):
             return True
     return bend_between(arrays, near, body, offsets, one, two)[0] > 0

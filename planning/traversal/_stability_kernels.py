@@ -37,7 +37,7 @@ def classify(
 ) -> None:
     """Write the class of each cell of some tiles into `out` (N,).
 
-    `anchors` (N, 2) are `Traversability.offsets`; `offsets` (K,) of `OFFSET` lead from a cell to
+    `anchors` (E, 2) are `Traversability.offsets`; `offsets` (K,) of `OFFSET` lead from a cell to
     the others that the body's disc touches.
     """
     reach = 0
@@ -192,7 +192,7 @@ def _class_by_barriers(
     """The class of a cell when barriers within the body's radius are taken into account too."""
     found = by_heights
     floor = float(arrays.floors[cell])
-    x, y = anchor_of(arrays, anchors, cell)
+    x, y = anchor_of(arrays, near.first, anchors, cell)
     entry = near.first[cell]
     while entry >= 0:
         barrier = near.barriers[near.entries[entry]["barrier"]]

@@ -15,7 +15,7 @@ from esplanade.planning.ground.barriers import Barriers
 from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.scene.bodies import Body
 from esplanade.planning.traversal import _reachability_kernels as kernels
-from esplanade.planning.traversal._anchor_kernels import PARTS, place_anchors
+from esplanade.planning.traversal._anchor_kernels import place_anchors
 from esplanade.planning.traversal.tiles import CellBox, all_cells
 
 _REACH_CELLS = 1.1
@@ -48,13 +48,16 @@ def reachable_steps(
     out: tuple[NDArray[np.uint8], NDArray[np.int8]] | None = None,
     box: CellBox | None = None,
 ) -> tuple[NDArray[np.uint8], NDArray[np.int8]]:
-    """The links that a body may follow, uint8 (N,), and where it has room in cells, int8 (N, 2).
+    """The links that a body may follow, uint8 (N,), and where it has room in cells, int8 (E, 2).
 
     Bit d of the former stands for link d; the latter is as `Traversability.offsets`. With `box`,
     only those cells of `out` are written again. Cost O(cells + barriers near cells).
     """
     cells = len(arrays.floors)
-    steps, offsets = out or (np.zeros(cells, dtype=np.uint8), np.zeros((cells, 2), dtype=np.int8))
+    steps, offsets = out or (
+        np.zeros(cells, dtype=np.uint8),
+        np.zeros((len(near.entries), 2), dtype=np.int8),
+    )
     whole = all_cells(arrays)
     box = box or whole
     beside = CellBox(
@@ -68,17 +71,6 @@ def reachable_steps(
     place_anchors(arrays, near, measures, beside, offsets, rooms)
     kernels.step_bits(arrays, near, measures, offsets, rooms, box, steps)
     return steps, offsets
-
-
-def anchors_of(arrays: LayeredArrays, offsets: NDArray[np.int8]) -> NDArray[np.float64]:
-    """The points of cells that paths go through, float64 (N, 2), metres, from their offsets."""
-    places = arrays.places
-    anchors = np.empty((len(places), 2))
-    for axis, (name, origin) in enumerate((("column", arrays.x0), ("row", arrays.y0))):
-        anchors[:, axis] = places[name] + 0.5 + offsets[:, axis] / PARTS
-        anchors[:, axis] *= arrays.cell_m
-        anchors[:, axis] += origin
-    return anchors
 
 
 def reachable_from(

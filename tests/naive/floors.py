@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from esplanade.planning import Body
 from esplanade.planning.ground.layered import LayeredArrays
-from esplanade.planning.traversal._anchor_kernels import bend_between
+from esplanade.planning.traversal._anchor_kernels import anchor_of, bend_between
 from esplanade.planning.traversal.cache import find_traversability
 from esplanade.planning.traversal.stability import Stability
 from esplanade.planning.traversal.traversability import Traversability
@@ -30,7 +30,7 @@ HAIR = 1e-4
 FLAT_SLOPE = 0.35
 LINK_ROOM_M = 0.5
 SLACK_M = 0.007
-LOW_ROOM_M = 0.05
+LOW_ROOM_M = 0.13
 
 
 def line_of(barrier: Barrier) -> tuple[Point, Point]:
@@ -68,9 +68,8 @@ class Floors:
 
     def anchor(self, cell: int) -> Point:
         """The point of a cell that paths go through."""
-        across, up = (self.feet.offsets[cell] / 254 * self.arrays.cell_m).tolist()
-        x, y = self.centre(cell)
-        return x + across, y + up
+        feet = self.feet
+        return anchor_of(feet.arrays, feet.near.first, feet.offsets, cell)
 
     def height_to_climb(self, barrier: Barrier, *floors: float) -> float:
         """Height that the body has to climb to get past a barrier."""

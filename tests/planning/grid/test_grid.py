@@ -8,9 +8,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from esplanade.planning import Body, LayeredGrid, Polygon, Scene, Wall
-from esplanade.planning.grid._grid_kernels import clearance_many, line_is_clear
+from esplanade.planning.grid._grid_kernels import anchor_at, clearance_many, line_is_clear
 from esplanade.planning.ground._geometry_kernels import Placement, crosses_any
-from esplanade.planning.traversal.reachability import anchors_of
 from tests.naive.floors import SLACK_M
 from tests.naive.geometry import point_segment_distance, segment_distance
 from tests.naive.waves import clearance_field
@@ -131,8 +130,8 @@ def test_bodies_have_clearances_of_their_own() -> None:
     adult, child = Body.adult(), Body.child()
     under, beside = [(4.125, 4.125)], [(5.625, 4.125)]
     assert not grid.is_free([(3.125, 4.125)], [0.0], 0.25, adult)[0]
-    # A child could put a leg over the step, so that its disc may reach beyond all but 5 cm.
-    beyond = child.radius_m - 0.05
+    # A child could put a leg over the step, so that its disc may reach beyond all but 13 cm.
+    beyond = child.radius_m - 0.13
     assert grid.clearance(under, [0.0], child)[0] == pytest.approx(1.875 + beyond, abs=1e-5)
     assert grid.clearance(beside, [0.0], child)[0] == pytest.approx(0.375 + beyond, abs=1e-5)
     assert grid.clearance(beside, [0.0], adult)[0] == pytest.approx(0.625, abs=1e-5)
@@ -168,7 +167,7 @@ def plain_nearest_free(grid, position, height, clearance_m, body):
     """`LayeredGrid.nearest_free` over whole arrays, cell by cell in order of distance."""
     row = grid.row_of(body)
     floors = grid.layered.floors
-    anchors = anchors_of(grid.layered, grid.arrays.kinds.offsets[row])
+    anchors = np.array([anchor_at(grid.arrays, row, cell) for cell in range(len(floors))])
     clear, at_anchor = grid.arrays.clearance[row], np.empty(len(floors))
     clearance_many(grid.arrays, row, np.arange(len(floors)), anchors, at_anchor)
     fits = np.isfinite(floors) & ((clear >= clearance_m) | (at_anchor >= clearance_m - SLACK_M))

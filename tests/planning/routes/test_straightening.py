@@ -32,23 +32,25 @@ def found_line(feet, start, goal):
         feet,
         path.cells,
         path.counts,
-        anchor_of(feet.arrays, feet.offsets, start),
-        anchor_of(feet.arrays, feet.offsets, goal),
+        anchor(feet, start),
+        anchor(feet, goal),
     )
 
 
 def traced(feet, a, b):
     """The straight way between two cells, or None if it is not legal."""
     line = Line(
-        np.array(
-            [anchor_of(feet.arrays, feet.offsets, a), anchor_of(feet.arrays, feet.offsets, b)]
-        ),
+        np.array([anchor(feet, a), anchor(feet, b)]),
         np.array([a, b], dtype=np.int32),
         np.zeros(2, dtype=np.int32),
     )
     out = Line(np.zeros((99, 2)), np.zeros(99, dtype=np.int32), np.zeros(99, dtype=np.int32))
     used = trace(feet, line, 0, 1, 0, out, 0)
     return None if used < 0 else (out.xy[:used], out.cells[:used], out.counts[:used])
+
+
+def anchor(feet, cell):
+    return anchor_of(feet.arrays, feet.near.first, feet.offsets, cell)
 
 
 @given(cluttered(), bodies, st.integers(0, 10**6))
@@ -85,8 +87,8 @@ def test_a_straight_way_crosses_the_cells_that_lie_under_it(grid, body, pick) ->
             continue
         xy, cells, counts = found
         p, q = (
-            np.array(anchor_of(feet.arrays, feet.offsets, a)),
-            np.array(anchor_of(feet.arrays, feet.offsets, b)),
+            np.array(anchor(feet, a)),
+            np.array(anchor(feet, b)),
         )
         samples = p + np.linspace(0.0, 1.0, 4001)[:, None] * (q - p)
         crossed = {(int(y / 0.25), int(x / 0.25)) for x, y in samples if x % 0.25 and y % 0.25}
@@ -114,10 +116,10 @@ def test_around_a_block_the_way_is_within_three_percent_of_the_shortest() -> Non
     start, goal = (feet.arrays.places.tolist().index(p) for p in ((0, 4, 4), (0, 4, 27)))
     line = straighten(feet, found_line(feet, start, goal))
     corners = [
-        anchor_of(feet.arrays, feet.offsets, start),
+        anchor(feet, start),
         (2.75, 5.25),
         (5.25, 5.25),
-        anchor_of(feet.arrays, feet.offsets, goal),
+        anchor(feet, goal),
     ]
     assert length(corners) * 0.98 < length(line.xy) < length(corners) * 1.03
 
