@@ -16,7 +16,6 @@ from esplanade.planning.ground._ledge_kernels import (
     append_barrier,
     ledge_heights,
 )
-from esplanade.planning.ground._mesh_kernels import UP
 from esplanade.planning.ground._solid_ledge_kernels import bucket_at
 from esplanade.planning.ground._surface_kernels import LEAST_HEADROOM_M, Raster
 from esplanade.planning.ground._triangle_kernels import (
@@ -38,7 +37,7 @@ _OWN_M = 0.05
 """A surface this near in height to a rim is the one that the rim bounds."""
 _CHUNK_M = 1.0
 """Long rims are treated in pieces of this length."""
-_LEAST_M = 0.02
+_LEAST_M = 0.25
 """Pieces shorter than this are not divided further."""
 _FLOOR_NEAR_M = 0.6
 """A rim without a cell's floor this near in height concerns nobody."""
@@ -51,7 +50,6 @@ _LOOKS_M = np.array([1e-3, 0.01, 0.03, 0.06, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.
 @kernel
 def _drop(
     buckets: TriangleBuckets,
-    near: NDArray[np.int32],
     own: float,
     x: float,
     y: float,
@@ -68,9 +66,7 @@ def _drop(
     for look in _LOOKS_M:
         if look > reach + 1e-9:
             break
-        count = surfaces_at(
-            buckets.triangles, buckets.kinds, near, x + look * nx, y + look * ny, column
-        )
+        count = surfaces_at(buckets, x + look * nx, y + look * ny, column)
         lower = -np.inf
         higher = False
         for s in range(count):
@@ -97,37 +93,43 @@ def _drop(
 @kernel
 def _near_rim(
     buckets: TriangleBuckets,
-    box: tuple[float, float, float, float],
-    low: float,
-    high: float,
+    line: tuple[float, float, float, float],
+    normal: tuple[float, float],
+    heights: tuple[float, float],
     seen: NDArray[np.int32],
     stamp: int,
     near: NDArray[np.int32],
 ) -> int:
-    """List the triangles in a box (x0, y0, x1, y1) that matter between two heights; their number.
+    """List the triangles with rims beside a line that matter between two heights; their number.
 
     If there is not enough room in `near`, the result is its length plus one.
     """
+    px, py, qx, qy = line
+    ox, oy = SLIT_M * normal[0], SLIT_M * normal[1]
+    x0, x1 = min(px, qx, px + ox, qx + ox) - 2e-3, max(px, qx, px + ox, qx + ox) + 2e-3
+    y0, y1 = min(py, qy, py + oy, qy + oy) - 2e-3, max(py, qy, py + oy, qy + oy) + 2e-3
     place = (buckets.x0, buckets.y0, buckets.bucket_m, buckets.nx, buckets.ny)
-    i0, j0 = bucket_at(place, box[0], box[1])
-    i1, j1 = bucket_at(place, box[2], box[3])
+    i0, j0 = bucket_at(place, x0, y0)
+    i1, j1 = bucket_at(place, x1, y1)
     count = 0
     for j in range(j0, j1 + 1):
         for i in range(i0, i1 + 1):
             bucket = j * buckets.nx + i
             for e in range(buckets.starts[bucket], buckets.starts[bucket + 1]):
                 t = buckets.members[e]
-                if seen[t] == stamp:
+                if buckets.rims[t] == 0 or seen[t] == stamp:
                     continue
                 seen[t] = stamp
-                (ax, ay, az), (bx, by, bz), (cx, cy, cz) = buckets.triangles[t]
+                ax, ay, az = buckets.triangles[t, 0]
+                bx, by, bz = buckets.triangles[t, 1]
+                cx, cy, cz = buckets.triangles[t, 2]
                 if (
-                    max(az, bz, cz) < low
-                    or min(az, bz, cz) > high
-                    or max(ax, bx, cx) < box[0]
-                    or min(ax, bx, cx) > box[2]
-                    or max(ay, by, cy) < box[1]
-                    or min(ay, by, cy) > box[3]
+                    max(az, bz, cz) < heights[0]
+                    or min(az, bz, cz) > heights[1]
+                    or max(ax, bx, cx) < x0
+                    or min(ax, bx, cx) > x1
+                    or max(ay, by, cy) < y0
+                    or min(ay, by, cy) > y1
                 ):
                     continue
                 if count == len(near):
@@ -146,7 +148,7 @@ def _cuts(
     heights: tuple[float, float],
     normal: tuple[float, float],
 ) -> NDArray[np.float64]:
-    """Distances along a line at which rims of other triangles meet it or end beyond it, in order.
+    """Shares of a line at which rims of other triangles meet it or end beyond it, from 0 to 1.
 
     `heights` are the lowest and highest that matter.
     """
@@ -158,7 +160,7 @@ def _cuts(
     cuts[0], cuts[1] = 0.0, length
     count = 2
     for t in near:
-        if buckets.rims[t] == 0 or t == own:
+        if t == own:
             continue
         for k in range(3):
             if not (buckets.rims[t] >> k) & 1:
@@ -186,7 +188,14 @@ def _cuts(
                 if 0.0 < along < length:
                     cuts[count] = along
                     count += 1
-    return np.sort(cuts[:count])
+    cuts = np.sort(cuts[:count])
+    kept = 1
+    for k in range(1, count):
+        if cuts[k] - cuts[kept - 1] >= 2.0 * _BESIDE_M:
+            cuts[kept] = cuts[k]
+            kept += 1
+    cuts[kept - 1 if kept > 1 else 1] = length
+    return cuts[: max(2, kept)] / length
 
 
 @inlined
@@ -211,69 +220,69 @@ def _has_floor_near(
 
 
 @kernel
+def _bounded(
+    buckets: TriangleBuckets,
+    x: float,
+    y: float,
+    z: float,
+    normal: tuple[float, float],
+    column: Column,
+) -> tuple[float, float, float]:
+    """Drop beyond a rim at (x, y, z), with floor and ceiling of the surface that it bounds.
+
+    The drop is `_NONE` where nobody can stand beside the rim.
+    """
+    nx, ny = normal
+    for s in range(surfaces_at(buckets, x - _BESIDE_M * nx, y - _BESIDE_M * ny, column)):
+        if abs(column.floors[s] - z) < _OWN_M:
+            floor, ceiling = float(column.floors[s]), float(column.ceilings[s])
+            return _drop(buckets, floor, x, y, nx, ny, column), floor, ceiling
+    return _NONE, z, np.inf
+
+
+@kernel
 def _add_ledges(
     buckets: TriangleBuckets,
-    near: NDArray[np.int32],
     line: tuple[float, float, float, float],
     heights: tuple[float, float],
     normal: tuple[float, float],
     column: Column,
+    stack: NDArray[np.float64],
     out: NDArray[np.void],
     count: int,
 ) -> int:
     """Append the ledges of a piece of a rim; returns the new number of barriers.
 
-    `heights` are those of its ends. It is halved until what lies beyond it is the same throughout.
+    `heights` are those of its ends. A long piece is halved until what lies beyond it is the same
+    throughout.
     """
-    stack = np.empty((32, 2))
     stack[0, 0], stack[0, 1] = 0.0, 1.0
     size = 1
     ax, ay, bx, by = line
     az, bz = heights
-    nx, ny = normal
     length = np.hypot(bx - ax, by - ay)
     while size > 0:
         size -= 1
         u, v = stack[size]
         m = 0.5 * (u + v)
-        long = (v - u) * length
-        drops = np.empty(3)
-        own, ceiling = np.nan, np.inf
-        for k in range(3):
-            # The middle comes first: most pieces need no more.
-            share = m if k == 0 else (u + 0.1 * (v - u) if k == 1 else v - 0.1 * (v - u))
-            x, y, z = ax + share * (bx - ax), ay + share * (by - ay), az + share * (bz - az)
-            found = surfaces_at(
-                buckets.triangles,
-                buckets.kinds,
-                near,
-                x - _BESIDE_M * nx,
-                y - _BESIDE_M * ny,
-                column,
-            )
-            drops[k] = _NONE
-            for s in range(found):
-                if abs(column.floors[s] - z) < _OWN_M:
-                    if k == 0:
-                        own, ceiling = float(column.floors[s]), float(column.ceilings[s])
-                    drops[k] = _drop(buckets, near, column.floors[s], x, y, nx, ny, column)
+        drop, own, ceiling = _bounded(
+            buckets, ax + m * (bx - ax), ay + m * (by - ay), az + m * (bz - az), normal, column
+        )
+        divided = abs(bz - az) * (v - u) > PIECE_RISE_M
+        if (v - u) * length > _LEAST_M and not divided:
+            for share in (u + 0.1 * (v - u), v - 0.1 * (v - u)):
+                x, y, z = ax + share * (bx - ax), ay + share * (by - ay), az + share * (bz - az)
+                other = _bounded(buckets, x, y, z, normal, column)[0]
+                if other != drop and (min(other, drop) < 0.0 or abs(other - drop) > PIECE_RISE_M):
+                    divided = True
                     break
-            if long < _LEAST_M:
-                drops[1], drops[2] = drops[0], drops[0]
-                break
-        low, high = drops.min(), drops.max()
-        differs = low < high and not (low > 0.0 and high - low <= PIECE_RISE_M)
-        if long >= 2.0 * _LEAST_M and size + 2 < len(stack) and (
-            differs or abs(bz - az) * (v - u) > PIECE_RISE_M
-        ):
+        if divided and size + 2 <= len(stack):
             stack[size, 0], stack[size, 1] = m, v
             stack[size + 1, 0], stack[size + 1, 1] = u, m
             size += 2
-            continue
-        if drops[0] == _NONE or np.isnan(own):
-            continue
-        piece = (ax + u * (bx - ax), ay + u * (by - ay), ax + v * (bx - ax), ay + v * (by - ay))
-        count = append_barrier(out, count, piece, ledge_heights(own, ceiling, drops[0]))
+        elif drop != _NONE:
+            piece = (ax + u * (bx - ax), ay + u * (by - ay), ax + v * (bx - ax), ay + v * (by - ay))
+            count = append_barrier(out, count, piece, ledge_heights(own, ceiling, drop))
     return count
 
 
@@ -294,10 +303,12 @@ def ledges_of_rims(
     seen = np.full(len(buckets.kinds), -1, dtype=np.int32)
     near = np.empty(256, dtype=np.int32)
     column = new_column()
+    stack = np.empty((32, 2))
+    whole = np.array([0.0, 1.0])
     stamp = 0
     x1, y1 = raster.x0 + raster.nx * raster.cell_m, raster.y0 + raster.ny * raster.cell_m
     for t in range(len(buckets.kinds)):
-        if buckets.rims[t] == 0 or buckets.kinds[t] != UP:
+        if buckets.rims[t] == 0:
             continue
         for k in range(3):
             if not (buckets.rims[t] >> k) & 1:
@@ -307,47 +318,31 @@ def ledges_of_rims(
             length = np.hypot(bx - ax, by - ay)
             if length < _BESIDE_M:
                 continue
-            nx, ny = (by - ay) / length, -(bx - ax) / length
+            normal = (by - ay) / length, -(bx - ax) / length
             chunks = int(np.ceil(length / _CHUNK_M))
             for chunk in range(chunks):
                 u, v = chunk / chunks, (chunk + 1) / chunks
                 px, py, pz = ax + u * (bx - ax), ay + u * (by - ay), az + u * (bz - az)
                 qx, qy, qz = ax + v * (bx - ax), ay + v * (by - ay), az + v * (bz - az)
                 mx, my = 0.5 * (px + qx), 0.5 * (py + qy)
-                ox, oy = mx + _BESIDE_M * nx, my + _BESIDE_M * ny
+                ox, oy = mx + _BESIDE_M * normal[0], my + _BESIDE_M * normal[1]
                 if not (raster.x0 < ox < x1 and raster.y0 < oy < y1):
                     continue
-                if chunks == 1 and not _has_floor_near(
-                    raster, starts, floors, mx, my, 0.5 * (pz + qz)
-                ):
+                if not _has_floor_near(raster, starts, floors, mx, my, 0.5 * (pz + qz)):
                     continue
-                low, high = min(pz, qz), max(pz, qz)
-                box = (
-                    min(px, qx, px + SLIT_M * nx, qx + SLIT_M * nx) - 2.0 * _BESIDE_M,
-                    min(py, qy, py + SLIT_M * ny, qy + SLIT_M * ny) - 2.0 * _BESIDE_M,
-                    max(px, qx, px + SLIT_M * nx, qx + SLIT_M * nx) + 2.0 * _BESIDE_M,
-                    max(py, qy, py + SLIT_M * ny, qy + SLIT_M * ny) + 2.0 * _BESIDE_M,
-                )
-                while True:
-                    stamp += 1
-                    found = _near_rim(
-                        buckets, box, low - LINK_M - 0.1, high + 30.0, seen, stamp, near
-                    )
-                    if found <= len(near):
-                        break
-                    near = np.empty(2 * len(near), dtype=np.int32)
-                here = near[:found]
-                matters = (low - LINK_M - 0.1, high + LEAST_HEADROOM_M)
-                cuts = _cuts(buckets, here, t, (px, py, qx, qy), matters, (nx, ny))
-                part = cuts[len(cuts) - 1]
-                last = 0.0
-                for cut in cuts[1:]:
-                    if cut - last < _BESIDE_M and cut < part:
-                        continue
-                    s, e = last / part, cut / part
-                    last = cut
-                    if (e - s) * part < 1e-4:
-                        continue
+                cuts = whole
+                if length > _LEAST_M and not (buckets.rims[t] >> k) & 8:
+                    line = (px, py, qx, qy)
+                    matters = (min(pz, qz) - LINK_M - 0.1, max(pz, qz) + LEAST_HEADROOM_M)
+                    while True:
+                        stamp += 1
+                        found = _near_rim(buckets, line, normal, matters, seen, stamp, near)
+                        if found <= len(near):
+                            break
+                        near = np.empty(2 * len(near), dtype=np.int32)
+                    cuts = _cuts(buckets, near[:found], t, line, matters, normal)
+                for cut in range(len(cuts) - 1):
+                    s, e = cuts[cut], cuts[cut + 1]
                     piece = (
                         px + s * (qx - px),
                         py + s * (qy - py),
@@ -355,5 +350,5 @@ def ledges_of_rims(
                         py + e * (qy - py),
                     )
                     ends = (pz + s * (qz - pz), pz + e * (qz - pz))
-                    count = _add_ledges(buckets, here, piece, ends, (nx, ny), column, out, count)
+                    count = _add_ledges(buckets, piece, ends, normal, column, stack, out, count)
     return count

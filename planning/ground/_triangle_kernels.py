@@ -30,7 +30,7 @@ class TriangleBuckets(NamedTuple):
     """(T,): `DOWN`, `UP`, `STEEP` or `SIDEWAYS`."""
     rims: NDArray[np.uint8]
     """(T,): the edges of a triangle that carries that no other such triangle shares; bit k stands
-    for the edge from corner k."""
+    for the edge from corner k, bit k + 3 tells that a triangle that is too steep goes on there."""
     starts: NDArray[np.int64]
     members: NDArray[np.int32]
     x0: float
@@ -104,21 +104,21 @@ def _edge_key(one: int, two: int) -> int:
 
 @kernel
 def find_rims(
-    triangles: NDArray[np.float64], kinds: NDArray[np.uint8], kind: int, rims: NDArray[np.uint8]
+    triangles: NDArray[np.float64], kinds: NDArray[np.uint8], rims: NDArray[np.uint8]
 ) -> None:
-    """Write which edges of triangles (T, 3, 3) of a kind no other one of that kind shares."""
-    carrying = 0
+    """Write `TriangleBuckets.rims` of triangles (T, 3, 3)."""
+    count = 0
     for t in range(len(triangles)):
-        carrying += kinds[t] == kind
+        rims[t] = 0
+        count += kinds[t] == UP or kinds[t] == STEEP
     size = 16
-    while size < 6 * carrying:
+    while size < 6 * count:
         size *= 2
     table = np.zeros(size, dtype=np.int64)
+    steep = np.zeros(size, dtype=np.bool_)
     for search in (False, True):
         for t in range(len(triangles)):
-            if not search:
-                rims[t] = 0
-            if kinds[t] != kind:
+            if not (kinds[t] == UP or (kinds[t] == STEEP and not search)):
                 continue
             a = _corner_hash(triangles[t, 0, 0], triangles[t, 0, 1], triangles[t, 0, 2])
             b = _corner_hash(triangles[t, 1, 0], triangles[t, 1, 1], triangles[t, 1, 2])
@@ -132,8 +132,11 @@ def find_rims(
                 if search:
                     if table[at] == 0:
                         rims[t] |= 1 << k
-                else:
+                    elif steep[at]:
+                        rims[t] |= 9 << k
+                elif kinds[t] == UP or table[at] == 0:
                     table[at] = key
+                    steep[at] = kinds[t] == STEEP
 
 
 @inlined
@@ -189,19 +192,18 @@ def list_triangles(
                 count[b] += 1
 
 
-@kernel
-def surfaces_at(
-    triangles: NDArray[np.float64],
-    kinds: NDArray[np.uint8],
-    near: NDArray[np.int32],
-    x: float,
-    y: float,
-    column: Column,
-) -> int:
-    """Find the standing surfaces at a point among the triangles `near`; returns their number."""
+@inlined
+def surfaces_at(buckets: TriangleBuckets, x: float, y: float, column: Column) -> int:
+    """Find the standing surfaces at a point, and write them into `column`; returns their number."""
+    place = (buckets.x0, buckets.y0, buckets.bucket_m, buckets.nx, buckets.ny)
+    i, j = bucket_at(place, x, y)
+    bucket = j * buckets.nx + i
     hits = 0
-    for t in near:
-        (ax, ay, az), (bx, by, bz), (cx, cy, cz) = triangles[t]
+    for e in range(buckets.starts[bucket], buckets.starts[bucket + 1]):
+        t = buckets.members[e]
+        ax, ay, az = buckets.triangles[t, 0]
+        bx, by, bz = buckets.triangles[t, 1]
+        cx, cy, cz = buckets.triangles[t, 2]
         ux, uy, vx, vy = bx - ax, by - ay, cx - ax, cy - ay
         up = ux * vy - uy * vx
         px, py = x - ax, y - ay
@@ -210,8 +212,10 @@ def surfaces_at(
         if b < -1e-9 or c < -1e-9 or b + c > 1.0 + 1e-9 or hits == _MOST_HITS:
             continue
         column.heights[hits] = az + b * (bz - az) + c * (cz - az)
-        column.kinds[hits] = kinds[t]
+        column.kinds[hits] = buckets.kinds[t]
         hits += 1
+    if hits == 0:
+        return 0
     column.starts[1] = hits
     return surfaces_of_hits(
         column.starts, column.heights, column.kinds, column.floors, column.ceilings, column.tops

@@ -18,7 +18,6 @@ from esplanade.planning.ground._gap_kernels import (
 from esplanade.planning.ground._geometry_kernels import BARRIER
 from esplanade.planning.ground._ledge_kernels import FACE
 from esplanade.planning.ground._mesh_kernels import (
-    UP,
     grow_regions,
     hits_of_triangles,
     join_faces,
@@ -43,7 +42,7 @@ Progress = Callable[[str, float], None]
 
 _BATCH = 4096
 _MOST_ROOM = 2**18
-_WIDEST_BUCKET_M = 1.0
+_WIDEST_BUCKET_M = 0.5
 _LEAST_BUCKET_M = 0.1
 
 
@@ -127,7 +126,8 @@ def barriers_of_triangles(
         steep[field] = faces[field]
     steep["climb_m"] = math.inf
     buckets = _buckets(triangles, surfaces.bounds)
-    ledges = filled(BARRIER, ledges_of_rims, buckets, surfaces.raster, tops, surfaces.floors)
+    place = surfaces.raster, tops, surfaces.floors
+    ledges = filled(BARRIER, ledges_of_rims, buckets, *place, room=_MOST_ROOM)
     return np.concatenate([steep, ledges, lintels(arrays)])
 
 
@@ -138,9 +138,9 @@ def _buckets(
     kinds = np.empty(len(triangles), dtype=np.uint8)
     kinds_of(triangles, kinds)
     rims = np.zeros(len(triangles), dtype=np.uint8)
-    find_rims(triangles, kinds, UP, rims)
+    find_rims(triangles, kinds, rims)
     x0, y0, x1, y1 = bounds
-    bucket_m = min(_WIDEST_BUCKET_M, max(_LEAST_BUCKET_M, math.sqrt((x1 - x0) * (y1 - y0) * 4.0 / len(triangles))))
+    bucket_m = min(_WIDEST_BUCKET_M, max(_LEAST_BUCKET_M, math.sqrt((x1 - x0) * (y1 - y0) / len(triangles))))
     while True:
         nx = max(1, math.ceil((x1 - x0) / bucket_m))
         ny = max(1, math.ceil((y1 - y0) / bucket_m))
