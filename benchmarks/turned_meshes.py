@@ -1,10 +1,10 @@
-"""Ways on meshes that are turned about the vertical: ours, and those of a navigation mesh of Recast.
+"""Ways on meshes that are turned about the vertical: ours, and those of Recast.
 
     python -m benchmarks.turned_meshes                       three hundred pairs on every mesh
     python -m benchmarks.turned_meshes --mesh house.obj --angles 0 27 45
 
 What can be walked must not depend on how a building lies in the grid. Pairs of points are drawn on
-the mesh as it is, where one of the planners can stand, and turned along with it. For every angle
+the mesh as it is, where the body fits as we see it, and turned along with it. For every angle
 the table says how many of the ways of the unturned mesh are found, how many are lost and won, and
 how much longer or shorter they become at most. Recast has cells of 0.05 m.
 """
@@ -18,10 +18,9 @@ from typing import Final
 
 import numpy as np
 import trimesh
-from benchmarks._comparison import random_pairs
 from benchmarks._detour import Detour, NavMeshSettings, missing
 from benchmarks._esplanade import Esplanade
-from benchmarks._pairs import SHORTEST_M, Answer, Floats
+from benchmarks._pairs import SHORTEST_M, Answer, Floats, ground_points, pairs_of
 from benchmarks.meshes import BODIES, standing_meshes
 from rich import box
 from rich.console import Console
@@ -32,6 +31,9 @@ from esplanade.planning.scene.mesh_file import read_triangles
 
 ANGLES_DEG: Final = (0.0, 9.0, 18.0, 27.0, 36.0, 45.0, 54.0, 63.0, 72.0, 81.0, 90.0)
 RECAST_CELL_M: Final = 0.05
+CANDIDATES: Final = 6
+MOVED_M: Final = 0.05
+"""An end that is moved further is none at which the body fits."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -65,19 +67,18 @@ def parser() -> argparse.ArgumentParser:
     return parser
 
 
-def measure(
-    console: Console, path: Path, options: argparse.Namespace, with_recast: bool
-) -> None:
+def measure(console: Console, path: Path, options: argparse.Namespace, with_recast: bool) -> None:
     """Print the table of one mesh."""
     body = BODIES[options.body]
     triangles = read_triangles(path, options.up)
     table = Table(title=path.stem, box=box.SIMPLE, padding=(0, 0, 0, 1))
     for title in ("degrees", "found", "lost", "won", "shortest", "longest"):
-        table.add_column(title, justify="right")
-    for title in ("Recast: found", "lost", "won", "shortest", "longest") if with_recast else ():
-        table.add_column(title, justify="right")
+        table.add_column(title, justify="right", no_wrap=True)
+    for title in ("theirs", "lost", "won", "shortest", "longest") if with_recast else ():
+        table.add_column(title, justify="right", no_wrap=True)
     with TemporaryDirectory() as folder:
-        pairs = drawn_pairs(triangles, Path(folder), options, with_recast)
+        ours = ours_on(triangles, Path(folder), options.cell, body)
+        pairs = drawn_pairs(triangles, ours, options.pairs, options.seed)
         first: list[list[Answer]] = []
         for angle in options.angles:
             turned, ends = turn(triangles, angle), turn(pairs, angle)
@@ -93,16 +94,14 @@ def measure(
     console.print(table)
 
 
-def drawn_pairs(
-    triangles: Floats, folder: Path, options: argparse.Namespace, with_recast: bool
-) -> Floats:
-    """Random pairs of points (N, 2, 3) where one of the planners can stand."""
-    body = BODIES[options.body]
-    ours = ours_on(triangles, folder, options.cell, body)
-    if not with_recast:
-        return random_pairs(triangles, (ours, ours), options.pairs, options.seed)
-    with Detour(triangles, recast_settings(body)) as theirs:
-        return random_pairs(triangles, (ours, theirs), options.pairs, options.seed)
+def drawn_pairs(triangles: Floats, ours: Esplanade, count: int, seed: int) -> Floats:
+    """Random pairs of points (N, 2, 3) on the ground at which the body fits without being moved."""
+    random = np.random.default_rng(seed)
+    points = ground_points(triangles, CANDIDATES * count, random)
+    found = ours.find_paths(np.stack([points, points], axis=1))
+    ends = np.array([answer.points[0] if answer.found else (np.inf,) * 3 for answer in found])
+    fits = np.linalg.norm(ends - points, axis=1) < MOVED_M
+    return pairs_of(points, fits, count, random)
 
 
 def recast_settings(body: Body) -> NavMeshSettings:
@@ -139,12 +138,15 @@ def row(before: list[Answer], after: list[Answer]) -> tuple[str, ...]:
 def list_changes(
     console: Console, angle: float, pairs: Floats, before: list[Answer], after: list[Answer]
 ) -> None:
-    """Print every pair that is lost or won."""
+    """Print every pair that is lost or won, or whose length changes by more than 5 %."""
     for number, (a, b) in enumerate(zip(before, after, strict=True)):
         if a.found != b.found:
             word = "won" if b.found else "lost"
             start, goal = (np.round(end, 2).tolist() for end in pairs[number])
             console.print(f"{angle:g}: {word} {number} {start} to {goal} {b.stands}")
+        elif a.found and a.length_m >= SHORTEST_M and abs(b.length_m / a.length_m - 1.0) > 0.05:
+            lengths = f"{a.length_m:.2f} m becomes {b.length_m:.2f} m"
+            console.print(f"{angle:g}: {number} {pairs[number].round(2).tolist()}, {lengths}")
 
 
 if __name__ == "__main__":

@@ -195,7 +195,8 @@ def _cuts(
             cuts[kept] = cuts[k]
             kept += 1
     cuts[kept - 1 if kept > 1 else 1] = length
-    return cuts[: max(2, kept)] / length
+    shares: NDArray[np.float64] = cuts[: max(2, kept)] / length
+    return shares
 
 
 @inlined
@@ -227,17 +228,17 @@ def _bounded(
     z: float,
     normal: tuple[float, float],
     column: Column,
-) -> tuple[float, float, float]:
-    """Drop beyond a rim at (x, y, z), with floor and ceiling of the surface that it bounds.
+) -> tuple[float, float]:
+    """Drop beyond a rim at (x, y, z), and the ceiling over the surface that it bounds.
 
     The drop is `_NONE` where nobody can stand beside the rim.
     """
     nx, ny = normal
     for s in range(surfaces_at(buckets, x - _BESIDE_M * nx, y - _BESIDE_M * ny, column)):
         if abs(column.floors[s] - z) < _OWN_M:
-            floor, ceiling = float(column.floors[s]), float(column.ceilings[s])
-            return _drop(buckets, floor, x, y, nx, ny, column), floor, ceiling
-    return _NONE, z, np.inf
+            ceiling = float(column.ceilings[s])
+            return _drop(buckets, z, x, y, nx, ny, column), ceiling
+    return _NONE, np.inf
 
 
 @kernel
@@ -265,14 +266,14 @@ def _add_ledges(
         size -= 1
         u, v = stack[size]
         m = 0.5 * (u + v)
-        drop, own, ceiling = _bounded(
-            buckets, ax + m * (bx - ax), ay + m * (by - ay), az + m * (bz - az), normal, column
-        )
+        x, y, z = ax + m * (bx - ax), ay + m * (by - ay), az + m * (bz - az)
+        drop, ceiling = _bounded(buckets, x, y, z, normal, column)
         divided = abs(bz - az) * (v - u) > PIECE_RISE_M
         if (v - u) * length > _LEAST_M and not divided:
             for share in (u + 0.1 * (v - u), v - 0.1 * (v - u)):
-                x, y, z = ax + share * (bx - ax), ay + share * (by - ay), az + share * (bz - az)
-                other = _bounded(buckets, x, y, z, normal, column)[0]
+                x, y = ax + share * (bx - ax), ay + share * (by - ay)
+                height = az + share * (bz - az)
+                other = _bounded(buckets, x, y, height, normal, column)[0]
                 if other != drop and (min(other, drop) < 0.0 or abs(other - drop) > PIECE_RISE_M):
                     divided = True
                     break
@@ -282,7 +283,7 @@ def _add_ledges(
             size += 2
         elif drop != _NONE:
             piece = (ax + u * (bx - ax), ay + u * (by - ay), ax + v * (bx - ax), ay + v * (by - ay))
-            count = append_barrier(out, count, piece, ledge_heights(own, ceiling, drop))
+            count = append_barrier(out, count, piece, ledge_heights(z, ceiling, drop))
     return count
 
 

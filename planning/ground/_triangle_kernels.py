@@ -91,7 +91,7 @@ def _corner_hash(x: float, y: float, z: float) -> int:
     h = (h ^ (h >> np.int64(31))) + np.int64(np.floor(z / _EQUAL_M + 0.5)) * np.int64(
         4768777513237032717
     )
-    return h ^ (h >> np.int64(30))
+    return int(h ^ (h >> np.int64(30)))
 
 
 @inlined
@@ -99,7 +99,7 @@ def _edge_key(one: int, two: int) -> int:
     """A number for the edge from one corner to another; its reverse has another one."""
     h = one * np.int64(5871781006564002453) + two * np.int64(2862933555777941757)
     h ^= h >> np.int64(28)
-    return h if h != 0 else np.int64(1)
+    return int(h) if h != 0 else 1
 
 
 @kernel

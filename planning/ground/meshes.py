@@ -140,7 +140,9 @@ def _buckets(
     rims = np.zeros(len(triangles), dtype=np.uint8)
     find_rims(triangles, kinds, rims)
     x0, y0, x1, y1 = bounds
-    bucket_m = min(_WIDEST_BUCKET_M, max(_LEAST_BUCKET_M, math.sqrt((x1 - x0) * (y1 - y0) / len(triangles))))
+    bucket_m = min(
+        _WIDEST_BUCKET_M, max(_LEAST_BUCKET_M, math.sqrt((x1 - x0) * (y1 - y0) / len(triangles)))
+    )
     while True:
         nx = max(1, math.ceil((x1 - x0) / bucket_m))
         ny = max(1, math.ceil((y1 - y0) / bucket_m))
