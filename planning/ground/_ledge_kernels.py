@@ -1,14 +1,10 @@
-"""Barriers on bare arrays: outlines of solids, and ledges of meshes between neighbouring cells."""
-
-from typing import NamedTuple
+"""Barriers on bare arrays: outlines of solids, and lintels of meshes between neighbouring cells."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
-from esplanade.planning.ground._geometry_kernels import segments_cross
 from esplanade.planning.ground._surface_kernels import (
-    LEAST_HEADROOM_M,
     SolidArrays,
     top_at,
 )
@@ -50,15 +46,6 @@ FACE = np.dtype(
 )
 """A piece of a steep face of a mesh within one column of the grid, seen from above as a segment
 from (x0, y0) to (x1, y1), in metres."""
-
-
-class Faces(NamedTuple):
-    """The steep faces of a mesh, which may stand beside floors (CSR)."""
-
-    starts: NDArray[np.int64]
-    """(columns + 1,): where the faces of each column begin."""
-    faces: NDArray[np.void]
-    """(R,) of `FACE`, column by column."""
 
 
 @kernel
@@ -115,29 +102,7 @@ def _common_edge(
 
 
 @inlined
-def _face_between(
-    faces: Faces, arrays: LayeredArrays, cell: int, d: int, low: float, high: float
-) -> bool:
-    """Whether one face between a cell and its neighbour reaches from `low` or less to `high`."""
-    j, i = arrays.places[cell]["row"], arrays.places[cell]["column"]
-    x = arrays.x0 + (i + 0.5) * arrays.cell_m
-    y = arrays.y0 + (j + 0.5) * arrays.cell_m
-    xx, yy = x + LINK_COLUMNS[d] * arrays.cell_m, y + LINK_ROWS[d] * arrays.cell_m
-    own = j * arrays.nx + i
-    for c in (own, own + LINK_ROWS[d] * arrays.nx + LINK_COLUMNS[d]):
-        for f in range(faces.starts[c], faces.starts[c + 1]):
-            face = faces.faces[f]
-            if (
-                face["bottom_m"] < low
-                and face["top_m"] > high
-                and segments_cross(x, y, xx, yy, face["x0"], face["y0"], face["x1"], face["y1"])
-            ):
-                return True
-    return False
-
-
-@inlined
-def _append(
+def append_barrier(
     out: NDArray[np.void],
     count: int,
     line: tuple[float, float, float, float],
@@ -169,49 +134,12 @@ def _append(
 
 
 @inlined
-def _has_no_ledge(arrays: LayeredArrays, cell: int, d: int) -> bool:
-    """Whether a side of a cell has no ledge of its own.
-
-    That is so on level ground, and towards W and S, where the neighbour writes the ledge.
-    """
-    other = arrays.links[cell, d]
-    return bool(
-        other >= 0 and (d >= 4 or abs(arrays.floors[other] - arrays.floors[cell]) < LEAST_STEP_M)
-    )
-
-
-@inlined
-def _ceiling(arrays: LayeredArrays, cell: int, d: int, floor: float) -> float:
-    """Height of the ceiling over a ledge: that of the cell or neighbour with the higher floor."""
-    higher = cell
-    if abs(arrays.floors[cell] - floor) > _SAME_M:
-        higher = arrays.links[cell, d]
-    return float(arrays.ceilings[higher])
-
-
-@inlined
 def ledge_heights(floor: float, ceiling: float, climb: float) -> tuple[float, float, float]:
     """The heights of a ledge's barrier (bottom, top, climb), for its upper floor.
 
     It ends at the ceiling, since above it would concern nobody.
     """
     return floor - _BELOW_M, min(floor + _ABOVE_M, ceiling), climb
-
-
-@inlined
-def _ledge(arrays: LayeredArrays, faces: Faces, cell: int, d: int) -> tuple[bool, float, float]:
-    """Whether a side of a cell that is not level has a ledge, its upper floor, and its climb."""
-    j = arrays.places[cell]["row"] + LINK_ROWS[d]
-    i = arrays.places[cell]["column"] + LINK_COLUMNS[d]
-    floor = float(arrays.floors[cell])
-    other = arrays.links[cell, d]
-    if other >= 0:
-        neighbour = float(arrays.floors[other])
-        return True, max(floor, neighbour), abs(floor - neighbour)
-    if not (0 <= j < arrays.ny and 0 <= i < arrays.nx):
-        return False, 0.0, 0.0
-    stopped = _face_between(faces, arrays, cell, d, floor + LEAST_HEADROOM_M, floor + LINK_M)
-    return not stopped, floor, np.inf
 
 
 @kernel
@@ -245,41 +173,11 @@ def _cells_along(
 
 
 @kernel
-def ledges_towards(arrays: LayeredArrays, faces: Faces, d: int, out: NDArray[np.void]) -> int:
-    """Write the ledges of every cell towards its neighbour E (d = 0), N (2), W (4) or S (6).
-
-    Linked cells have a ledge if their floors differ, with the difference as its climb, except for
-    slopes up to 45 degrees. A cell whose neighbour is not linked has a ledge that nobody passes,
-    unless a face stops everybody there. `out` is (S,) of `BARRIER`. Returns the number
-    of ledges; those beyond the room in `out` are not written.
-    """
-    count = 0
-    cells = np.empty(max(arrays.ny, arrays.nx), dtype=np.int32)
-    for layer in range(arrays.pages.shape[0]):
-        for line in range(arrays.nx if d in (0, 4) else arrays.ny):
-            for cell in cells[: _cells_along(arrays, layer, line, d, 0.0, cells)]:
-                if _has_no_ledge(arrays, cell, d):
-                    continue
-                found, floor, climb = _ledge(arrays, faces, cell, d)
-                if not found:
-                    continue
-                edge = _common_edge(
-                    arrays, arrays.places[cell]["row"], arrays.places[cell]["column"], d
-                )
-                slope = climb <= 1.001 * arrays.cell_m
-                middle = floor - 0.5 * climb
-                if not slope or _face_between(faces, arrays, cell, d, middle, middle):
-                    ceiling = _ceiling(arrays, cell, d, floor)
-                    count = _append(out, count, edge, ledge_heights(floor, ceiling, climb))
-    return count
-
-
-@kernel
 def lintels_between(arrays: LayeredArrays, d: int, out: NDArray[np.void]) -> int:
     """Write barriers where ceilings change height between linked cells, low enough to hinder.
 
     Cells are compared with their neighbours to the east (d = 0) or north (d = 2); `out` and the
-    result are those of `ledges_towards`. Only meshes need lintels, since the exact outlines of
+    result are those of `outlines`. Only meshes need lintels, since the exact outlines of
     polygons are known.
     """
     count = 0
@@ -297,5 +195,5 @@ def lintels_between(arrays: LayeredArrays, d: int, out: NDArray[np.void]) -> int
                     edge = _common_edge(
                         arrays, arrays.places[cell]["row"], arrays.places[cell]["column"], d
                     )
-                    count = _append(out, count, edge, (low, low + _LINTEL_M, np.inf))
+                    count = append_barrier(out, count, edge, (low, low + _LINTEL_M, np.inf))
     return count

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from esplanade.planning.ground._geometry_kernels import BARRIER
 from esplanade.planning.ground._ledge_kernels import (
-    Faces,
-    ledges_towards,
     lintels_between,
     outlines,
 )
@@ -28,7 +26,6 @@ from esplanade.planning.scene.scene import Door, Scene, Wall
 Barriers = NDArray[np.void]
 """(S,) of `BARRIER`, whose docstring says which bodies a barrier stops."""
 
-_SIDES = (0, 2, 4, 6)
 _BUCKET_M = 1.0
 
 
@@ -58,11 +55,6 @@ def _buckets(solids: SolidArrays, bounds: tuple[float, float, float, float]) -> 
     members = np.empty(starts[-1], dtype=np.int64)
     list_solids(solids, place, starts, members)
     return SolidBuckets(starts, members, *place)
-
-
-def ledges(arrays: LayeredArrays, faces: Faces) -> Barriers:
-    """Barriers where the floors of a mesh end or change their height, (S,)."""
-    return np.concatenate([filled(BARRIER, ledges_towards, arrays, faces, d) for d in _SIDES])
 
 
 def lintels(arrays: LayeredArrays) -> Barriers:
