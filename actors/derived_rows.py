@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 
 from esplanade.actors.parameter_records import measures
 from esplanade.actors.parameters import body_of
-from esplanade.actors.potential_pool import Goal, GoalKey, PotentialPool, goal_key
+from esplanade.actors.potential_pool import Goal, GoalKey, PotentialPool, goal_key, kind_for_ways
 from esplanade.planning import AgentTable, Body, LayeredGrid
-from esplanade.planning.grid.clearances import kind_of
 from esplanade.planning.people.risk import RiskField
 
 
@@ -111,9 +110,15 @@ class DerivedRows:
             self._go_by(table, row, slot)
 
     def of_new_kind(self, before: NDArray[np.void], after: NDArray[np.void]) -> NDArray[np.int64]:
-        """Tell for each of N actors whether other parameters make it another kind of body."""
-        other = np.flatnonzero((measures(before) != measures(after)).any(axis=1))
-        kinds = ((kind_of(body_of(before[k])), kind_of(body_of(after[k]))) for k in other)
+        """Tell for each of N actors whether other parameters let it go other ways.
+
+        They do if they make it another kind of body, or bound its cells on edges otherwise where
+        that bound can forbid a way.
+        """
+        edges = before["edge_cells"] != after["edge_cells"]
+        other = np.flatnonzero(edges | (measures(before) != measures(after)).any(axis=1))
+        pairs = ((body_of(before[k]), body_of(after[k])) for k in other)
+        kinds = ((kind_for_ways(self._grid, a), kind_for_ways(self._grid, b)) for a, b in pairs)
         new = [k for k, (old, now) in zip(other.tolist(), kinds, strict=True) if old != now]
         return np.array(new, dtype=np.int64)
 

@@ -266,6 +266,7 @@ class Navigator:
         agents.cells[row] = cell
         agents.heights[row] = self._floor(cell)
         agents.layers[row] = self._layer(cell)
+        agents.on_edges[row] = 0
 
     def set_back(self, actor_id: Hashable) -> None:
         """Let an actor forget the path that it follows: it is somewhere else now."""

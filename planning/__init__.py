@@ -14,6 +14,7 @@ from esplanade.planning.people.prediction import PredictionModel, TrackHistory
 from esplanade.planning.people.risk import RiskField, RiskModel
 from esplanade.planning.people.spread import GAUSSIAN, PEOPLE, Spread
 from esplanade.planning.routes.find_path import LayeredPath, PathStatus, find_path
+from esplanade.planning.routes.moved_ends import MovedEnd, MoveReason
 from esplanade.planning.routes.potential import Potential
 from esplanade.planning.routes.wave_front import Wave
 from esplanade.planning.scene.bodies import Body
@@ -33,6 +34,8 @@ __all__ = [
     "LayeredGrid",
     "LayeredPath",
     "PathStatus",
+    "MoveReason",
+    "MovedEnd",
     "Place",
     "PlanModel",
     "Polygon",

@@ -9,8 +9,10 @@ from esplanade.planning.agents._reservation_kernels import meetings, others_near
 from esplanade.planning.agents._task_kernels import (
     SUB,
     WALL_COST_M,
+    TOO_MANY,
     Task,
     World,
+    count_edges,
     metres_left,
     needed_clearance,
     on_ramp,
@@ -21,7 +23,7 @@ from esplanade.planning.agents._task_kernels import (
 )
 from esplanade.planning.compiled._heap_kernels import heap_pop, heap_push
 from esplanade.planning.compiled.jit import inlined
-from esplanade.planning.grid._grid_kernels import GridArrays, clearance_at, follow, length
+from esplanade.planning.grid._grid_kernels import clearance_at, follow, length
 from esplanade.planning.people._risk_kernels import people_near, risk_among
 from esplanade.planning.routes._potential_kernels import PotentialValues, direction_at
 
@@ -115,12 +117,6 @@ def depth_bonus(excess: float, steps: int) -> float:
 
 
 @inlined
-def _cells_between(grid: GridArrays, ax: float, ay: float, bx: float, by: float) -> int:
-    """Number of cells from a to b, along rows or columns."""
-    return int(max(abs(bx - ax), abs(by - ay)) / grid.layered.cell_m + 0.5)
-
-
-@inlined
 def _slot(workspace: Workspace, key: int) -> int:
     """Row of the table for a key, existing or new; -1 if the table is full."""
     size = len(workspace.table_key)
@@ -180,7 +176,7 @@ def search(
     node[0]["vy"] = task.vy
     node[0]["cost_s"] = 0.0
     workspace.node_cell[0] = task.cell
-    workspace.node_edge[0] = 0
+    workspace.node_edge[0] = task.on_edges
     workspace.node_parent[0] = -1
     workspace.node_step[0] = 0
     speed = length(task.vx, task.vy)
@@ -277,11 +273,9 @@ def search(
             )
             if not cost + left < room_s or end < 0:
                 continue
-            edge = 0
-            if not grid.flat and grid.edges[task.body, end]:
-                edge = workspace.node_edge[n] + _cells_between(grid, x, y, ex, ey)
-                if edge >= task.edge_cells:
-                    continue
+            edge = count_edges(grid, potential, task, cell, end, workspace.node_edge[n])
+            if edge == TOO_MANY:
+                continue
             slot = _slot(workspace, (step + 1) * cells + end)
             if slot < 0:
                 continue

@@ -9,11 +9,13 @@ from esplanade.planning.agents._reservation_kernels import Reservations
 from esplanade.planning.compiled.jit import inlined
 from esplanade.planning.grid._grid_kernels import GridArrays, clearance_at, length
 from esplanade.planning.people._risk_kernels import RiskArrays
-from esplanade.planning.routes._potential_kernels import PotentialValues, potential_at
+from esplanade.planning.routes._potential_kernels import EDGES, PotentialValues, potential_at
 from esplanade.planning.traversal._anchor_kernels import SLACK_M
 
 SUB = 2
 """Slices of the risk field in one step: a move is looked at half-way and at its end."""
+TOO_MANY = 2**30
+"""More cells on edges in a row than any body bears."""
 WALL_COST_M = 0.15
 """A wall nearer to the body than this has a cost."""
 
@@ -47,8 +49,11 @@ class Task(NamedTuple):
     wall_weight: float
     hurry_weight: float
     max_expansions: int
+    on_edges: int
+    """Cells on edges that it has come over in a row."""
     edge_cells: int
-    """M of Huang & Li, the bound on cells in a row at steps and edges."""
+    """M of Huang & Li, the bound on cells on edges in a row; somewhat more for an actor that has
+    been held up on them."""
     lane: Lane
     """The lane to keep to on the path."""
     hold: bool
@@ -104,6 +109,32 @@ def metres_left(potential: PotentialValues, task: Task, cell: int, x: float, y: 
         return length(x - task.goal_x, y - task.goal_y)
     left_m = potential_at(potential, cell, x, y)
     return left_m + off_lane_m(task.lane, x, y) if task.lane.weight > 0.0 else left_m
+
+
+@inlined
+def cells_apart(grid: GridArrays, a: int, b: int) -> int:
+    """Steps from one cell to another, over rows, columns or diagonals."""
+    places = grid.layered.places
+    rows = abs(places[a]["row"] - places[b]["row"])
+    columns = abs(places[a]["column"] - places[b]["column"])
+    return int(max(rows, columns))
+
+
+@inlined
+def count_edges(
+    grid: GridArrays, potential: PotentialValues, task: Task, before: int, cell: int, count: int
+) -> int:
+    """Cells on edges in a row when the agent has come to a cell from another with some count.
+
+    It is `TOO_MANY` where they and those that lie ahead are not fewer than M. Where M forbids
+    nothing the potential does not count, nor does an agent that stays around.
+    """
+    if grid.flat or cell < 0 or not grid.edges[task.body, cell]:
+        return 0
+    if cell != before:
+        count = 1 if count == 0 else count + cells_apart(grid, before, cell)
+    ahead = int(potential[cell, EDGES]) if not task.hold else 0
+    return count if ahead == 0 or count + ahead - 1 < task.edge_cells else TOO_MANY
 
 
 @inlined

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from esplanade.planning.agents._passage_kernels import PASSAGE
 from esplanade.planning.agents.agents import PARAMETERS, WAITING, Agents
 
-VERSION: Final = 2
+VERSION: Final = 3
 """Version of the data that `AgentTable.save` gives; `load` takes no other."""
 FORMAT: Final = "esplanade.agents"
 
@@ -268,6 +268,7 @@ def _no_agents(instants: int) -> Agents:
         headings=np.zeros(0),
         heights=np.zeros(0),
         layers=np.zeros(0, dtype=np.int64),
+        on_edges=np.zeros(0, dtype=np.int64),
         reasons=np.zeros(0, dtype=np.int64),
         planned=np.zeros((0, instants, 3)),
     )

@@ -33,7 +33,7 @@ _BEYOND_M: Final = 1.0
 """A wave goes so much further than the start, for whoever walks beside its cells."""
 _WAVES_KEPT: Final = 16
 _BYTES_KEPT: Final = 64 * 2**20
-_BYTES_A_CELL: Final = 16
+_BYTES_A_CELL: Final = 20
 
 
 def walker(radius_m: float) -> Body:
@@ -110,7 +110,7 @@ class RouteSearch:
         if free is None:
             return None
         goal = self._goal = (*free, grid.floor_at(free, z))
-        if self._straight(self._start, goal):
+        if not grid.bounds_edges(self._body) and self._straight(self._start, goal):
             self.route = (goal,)
             return None
         self._cell = grid.cell_at(self._start[:2], self._start[2])
