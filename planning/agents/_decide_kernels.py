@@ -23,6 +23,7 @@ from esplanade.planning.agents.agents import (
     Decisions,
 )
 from esplanade.planning.compiled.jit import kernel
+from esplanade.planning.grid._grid_kernels import clearance_at
 from esplanade.planning.people._prediction_kernels import Prediction
 from esplanade.planning.routes._potential_kernels import EDGES, potential_at
 
@@ -91,9 +92,11 @@ def make_task(
         gy = y
     keeps_right = contested and left > AFTER_M
     on_edges = agents.on_edges[a]
-    most_edges = int(p["edge_cells"])
-    if not hold and cell >= 0 and on_edges + potentials[slot, cell, EDGES] > most_edges:
-        most_edges = on_edges + int(potentials[slot, cell, EDGES]) + DODGE_CELLS
+    most_edges = p["edge_cells"]
+    if not hold and cell >= 0:
+        ahead = float(potentials[slot, cell, EDGES])
+        if on_edges + ahead - 0.5 >= most_edges:
+            most_edges = on_edges + ahead + DODGE_CELLS
     return Task(
         a,
         agents.bodies[a],
@@ -193,6 +196,8 @@ def decide(
         out.wishes[a, 1] = wy
         away = metres_left(potential, task, task.cell, task.x, task.y)
         lost = slot >= 0 and not np.isfinite(potential_at(potential, task.cell, task.x, task.y))
+        if status == NO_PATH and not lost:  # inside something no path leads out of
+            lost = clearance_at(world.grid, task.body, task.cell, task.x, task.y) < 0.0
         if len(agents.passages) > OPPOSED:
             see_passage(world.grid, potential, agents, a, slot >= 0 and not task.hold, tick_s)
         out.reasons[a] = _reason(

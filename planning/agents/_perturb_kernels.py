@@ -35,6 +35,7 @@ OFFSETS = 3
 """Candidates m' on either side of the middle."""
 OFFSET_M = 0.2
 """Distance between candidates, metres."""
+_MOST_EDGES = 1e9
 LEAST_RISK = 1e-3
 """A bend has to lower the mean risk of a stretch by so much."""
 
@@ -104,14 +105,17 @@ def _edges_at(
     grid: GridArrays,
     potential: PotentialValues,
     task: Task,
+    path: NDArray[np.float64],
     cells: NDArray[np.int64],
     slice_: int,
-) -> int:
-    """Cells on edges in a row at a slice of a path that is in `cells` (K,)."""
+) -> float:
+    """The way on edges, in cells, at a slice of a path that is in `cells` (K,)."""
     edges = task.on_edges
     if not grid.flat:
         for k in range(slice_):
-            edges = count_edges(grid, potential, task, cells[k], cells[k + 1], edges)
+            dx = path[k + 1, 0] - path[k, 0]
+            dy = path[k + 1, 1] - path[k, 1]
+            edges = count_edges(grid, potential, task, cells[k], cells[k + 1], dx, dy, edges)
             if edges == TOO_MANY:
                 return TOO_MANY
     return edges
@@ -124,16 +128,16 @@ def stretch_edges(
     task: Task,
     need: float,
     cell: int,
-    edges: int,
+    edges: float,
     path: NDArray[np.float64],
     first: int,
     last: int,
-) -> int:
-    """Cells on edges in a row at the end of a stretch of a path; `TOO_MANY` if it is not legal.
+) -> float:
+    """The way on edges, in cells, at the end of a stretch of a path; `TOO_MANY` if it is illegal.
 
     It is legal if it keeps clear of walls and of certain obstacles, keeps the limits of speed and
     of cells on edges, and the goal can be reached from all of it. The path is in `cell` at slice
-    first, after so many `edges` in a row.
+    first, after a way on edges of `edges` cells.
     """
     grid = world.grid
     ds = world.step_s / SUB
@@ -149,7 +153,7 @@ def stretch_edges(
         room = clearance_at(grid, task.body, cell, bx, by)
         if not _may_go(task, need, moved, room, potential_at(potential, cell, bx, by), ds):
             return TOO_MANY
-        edges = count_edges(grid, potential, task, before, cell, edges)
+        edges = count_edges(grid, potential, task, before, cell, bx - ax, by - ay, edges)
         if edges == TOO_MANY:
             return TOO_MANY
         if conflict(world.reservations, task.me, feet_m, k, ax, ay, bx, by)[0]:
@@ -189,7 +193,7 @@ def path_cost(
         left_m = metres_left(potential, task, cell, bx, by)
         r = slice_risk(world, task, k + 1, cell, ax, ay, bx, by)
         room = clearance_at(grid, task.body, cell, bx, by)
-        edges = count_edges(grid, potential, task, before, cell, edges)
+        edges = count_edges(grid, potential, task, before, cell, bx - ax, by - ay, edges)
         blocked, soft = conflict(world.reservations, task.me, feet_m, k, ax, ay, bx, by)
         if blocked or edges == TOO_MANY or not _may_go(task, need, moved, room, left_m, ds):
             legal = False
@@ -263,8 +267,8 @@ def perturb_path(
     if chord < 1e-6:
         return False
     middle = (first + last) // 2
-    edges = _edges_at(world.grid, potential, task, cells, first)
-    most_edges = _edges_at(world.grid, potential, task, cells, last)
+    edges = _edges_at(world.grid, potential, task, path, cells, first)
+    most_edges = _edges_at(world.grid, potential, task, path, cells, last)
     for n in range(2 * OFFSETS):
         offset = OFFSET_M * (n // 2 + 1) * (1.0 if n % 2 == 0 else -1.0)
         mx = path[first, 0] + 0.5 * cx - offset * cy / chord
@@ -272,10 +276,8 @@ def perturb_path(
         _bend(path, trial, first, middle, last, mx, my)
         if (
             risks_along(world, task, begin, trial, first, last, total - least, trial_risks)
-            and stretch_edges(
-                world, potential, task, need, begin, edges, trial, first, last
-            )
-            <= min(most_edges, TOO_MANY - 1)
+            and stretch_edges(world, potential, task, need, begin, edges, trial, first, last)
+            <= min(most_edges + 1.0, _MOST_EDGES)
         ):
             risks[first + 1 : last + 1] = trial_risks[first + 1 : last + 1]
             path[first : last + 1] = trial[first : last + 1]

@@ -79,8 +79,8 @@ class Workspace(NamedTuple):
     node_state: NDArray[np.void]
     """(N,) of `NODE`."""
     node_cell: NDArray[np.int64]
-    node_edge: NDArray[np.int64]
-    """Number of cells in a row at steps and edges."""
+    node_edge: NDArray[np.float64]
+    """The way on edges since stable ground, in cells."""
     node_parent: NDArray[np.int64]
     node_step: NDArray[np.int64]
     heap_keys: NDArray[np.float64]
@@ -273,7 +273,9 @@ def search(
             )
             if not cost + left < room_s or end < 0:
                 continue
-            edge = count_edges(grid, potential, task, cell, end, workspace.node_edge[n])
+            edge = count_edges(
+                grid, potential, task, cell, end, ex - x, ey - y, workspace.node_edge[n]
+            )
             if edge == TOO_MANY:
                 continue
             slot = _slot(workspace, (step + 1) * cells + end)

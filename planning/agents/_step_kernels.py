@@ -8,11 +8,11 @@ from esplanade.planning.agents._task_kernels import (
     Task,
     World,
     advance,
-    cells_apart,
+    further_on_edges,
     needed_clearance,
 )
 from esplanade.planning.agents.agents import GIVING_WAY, WAITING, Agents, Decisions
-from esplanade.planning.compiled.jit import inlined, kernel
+from esplanade.planning.compiled.jit import kernel
 from esplanade.planning.grid._grid_kernels import GridArrays, clearance_at, floor_of, follow
 from esplanade.planning.grid._walking_kernels import walk
 from esplanade.planning.ground._geometry_kernels import BarrierIndex, closest_approach
@@ -247,16 +247,6 @@ def resolve(
                 break
 
 
-@inlined
-def _count_edges(grid: GridArrays, agents: Agents, a: int, cell: int) -> None:
-    """Note how many cells on edges in a row an agent has come over, before it is in a cell."""
-    before = agents.cells[a]
-    if grid.flat or cell < 0 or not grid.edges[agents.bodies[a], cell]:
-        agents.on_edges[a] = 0
-    elif cell != before and before >= 0:
-        agents.on_edges[a] += cells_apart(grid, before, cell)
-
-
 @kernel
 def settle(
     grid: GridArrays,
@@ -272,8 +262,16 @@ def settle(
         vy = (positions[a, 1] - agents.positions[a, 1]) / tick_s
         agents.velocities[a, 0] = vx
         agents.velocities[a, 1] = vy
+        agents.on_edges[a] = further_on_edges(
+            grid,
+            agents.bodies[a],
+            agents.cells[a],
+            cells[a],
+            positions[a, 0] - agents.positions[a, 0],
+            positions[a, 1] - agents.positions[a, 1],
+            agents.on_edges[a],
+        )
         agents.positions[a] = positions[a]
-        _count_edges(grid, agents, a, cells[a])
         agents.cells[a] = cells[a]
         if decisions.renewed[a]:
             agents.followed[a] = decisions.paths[a]

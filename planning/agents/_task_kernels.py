@@ -14,7 +14,7 @@ from esplanade.planning.traversal._anchor_kernels import SLACK_M
 
 SUB = 2
 """Slices of the risk field in one step: a move is looked at half-way and at its end."""
-TOO_MANY = 2**30
+TOO_MANY = np.inf
 """More cells on edges in a row than any body bears."""
 WALL_COST_M = 0.15
 """A wall nearer to the body than this has a cost."""
@@ -49,9 +49,9 @@ class Task(NamedTuple):
     wall_weight: float
     hurry_weight: float
     max_expansions: int
-    on_edges: int
-    """Cells on edges that it has come over in a row."""
-    edge_cells: int
+    on_edges: float
+    """The way that it has come on edges since it left stable ground, in cells."""
+    edge_cells: float
     """M of Huang & Li, the bound on cells on edges in a row; somewhat more for an actor that has
     been held up on them."""
     lane: Lane
@@ -112,29 +112,45 @@ def metres_left(potential: PotentialValues, task: Task, cell: int, x: float, y: 
 
 
 @inlined
-def cells_apart(grid: GridArrays, a: int, b: int) -> int:
-    """Steps from one cell to another, over rows, columns or diagonals."""
-    places = grid.layered.places
-    rows = abs(places[a]["row"] - places[b]["row"])
-    columns = abs(places[a]["column"] - places[b]["column"])
-    return int(max(rows, columns))
+def further_on_edges(
+    grid: GridArrays, body: int, before: int, cell: int, dx: float, dy: float, count: float
+) -> float:
+    """The way on edges, in cells, after going by (dx, dy) from a cell to another.
+
+    It is measured along rows or columns: a diagonal step is one cell, too. An agent that comes from
+    stable ground has come half of that way on edges.
+    """
+    if grid.flat or cell < 0 or not grid.edges[body, cell]:
+        return 0.0
+    way = max(abs(dx), abs(dy)) / grid.layered.cell_m
+    if count == 0.0 and before >= 0 and not grid.edges[body, before]:
+        way *= 0.5
+    return float(count + way)
 
 
 @inlined
 def count_edges(
-    grid: GridArrays, potential: PotentialValues, task: Task, before: int, cell: int, count: int
-) -> int:
-    """Cells on edges in a row when the agent has come to a cell from another with some count.
+    grid: GridArrays,
+    potential: PotentialValues,
+    task: Task,
+    before: int,
+    cell: int,
+    dx: float,
+    dy: float,
+    count: float,
+) -> float:
+    """`further_on_edges` of a task's agent; `TOO_MANY` where M forbids it.
 
-    It is `TOO_MANY` where they and those that lie ahead are not fewer than M. Where M forbids
-    nothing the potential does not count, nor does an agent that stays around.
+    That is where the cells come over and those that lie ahead are not fewer than M; half of the
+    cell that the agent is in counts to either. Where M forbids nothing the potential does not
+    count, nor does an agent that stays around.
     """
-    if grid.flat or cell < 0 or not grid.edges[task.body, cell]:
-        return 0
-    if cell != before:
-        count = 1 if count == 0 else count + cells_apart(grid, before, cell)
-    ahead = int(potential[cell, EDGES]) if not task.hold else 0
-    return count if ahead == 0 or count + ahead - 1 < task.edge_cells else TOO_MANY
+    count = further_on_edges(grid, task.body, before, cell, dx, dy, count)
+    if count > 0.0 and not task.hold:
+        ahead = float(potential[cell, EDGES])
+        if ahead > 0.0 and count + ahead - 0.5 >= task.edge_cells:
+            return TOO_MANY
+    return count
 
 
 @inlined
