@@ -19,7 +19,7 @@ Goal = tuple[float, float, float]
 GoalKey = tuple[float, float, float, Body]
 """x, y, height and kind of body, of `kind_for_ways`."""
 _IDLE_KEPT = 32
-_NO_BOUND = LIMITS["edge_cells"][1]
+_NO_BOUND = int(LIMITS["edge_cells"][1])
 """For bodies whose M forbids nothing, where that of others may."""
 _SLACK_M = 0.02
 """A goal may lie closer to a wall than the radius by this."""

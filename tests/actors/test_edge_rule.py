@@ -97,5 +97,7 @@ def test_an_actor_inside_a_solid_comes_out_or_says_that_no_path_leads_out() -> N
     solid = Polygon(points=((8, 8), (14, 8), (14, 14), (8, 14)), height_m=3, kind="wall")
     scene = Scene(bounds=(0, 0, 20, 20), polygons=(solid,))
     for inside in ((11.0, 11.0), (8.2, 11.0), (13.9, 13.9)):
-        reason, _, _, _ = walk(LayeredGrid.from_scene(scene), (*inside, 0.0), (3.0, 3.0, 0.0), 64, 40.0)
+        reason, _, _, _ = walk(
+            LayeredGrid.from_scene(scene), (*inside, 0.0), (3.0, 3.0, 0.0), 64, 40.0
+        )
         assert reason in (Reason.NO_PATH, Reason.ARRIVED)

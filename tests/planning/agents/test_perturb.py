@@ -174,7 +174,6 @@ def test_bending_again_settles() -> None:
 )
 def test_what_is_illegal(spoil, why) -> None:
     ground = ground_of(task((1.0, 4.0), (7.0, 4.0)), walls=[((2.0, 3.7), (6.0, 3.7))])
-    world, potential = kernel_view(ground)
     path = path_between((1.0, 4.0), (7.0, 4.0))
     assert is_legal(ground, path)
     spoil(path)

@@ -31,9 +31,7 @@ def flight(steps: int, width: float = 1.6, angle: float = 0.0) -> tuple[Scene, P
     low, high = middle - 0.5 * width, middle + 0.5 * width
     solids = [
         Polygon(
-            points=turned(
-                [(x, low), (end, low), (end, high), (x, high)], angle, about
-            ),
+            points=turned([(x, low), (end, low), (end, high), (x, high)], angle, about),
             height_m=riser * (k + 1),
         )
         for k, x in ((k, start + k * tread) for k in range(steps))
