@@ -9,8 +9,8 @@ from typing import cast
 
 import pytest
 
-from esplanade.protocol import ErrorCode, ProtocolError
 from esplanade.planning import MovedEnd
+from esplanade.protocol import ErrorCode, ProtocolError
 from esplanade.protocol.messages import WalkTo
 from esplanade.server.net.fair_queue import Asker
 from esplanade.server.net.route_requests import RouteRequests
