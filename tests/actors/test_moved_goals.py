@@ -4,7 +4,15 @@ import pytest
 
 from esplanade.actors import ActorParameters, Navigator, Population, Reason
 from esplanade.actors.behaviour_spec import BEHAVIOUR_SPEC
-from esplanade.planning import MoveReason, PathStatus, PlanModel, Polygon, Scene, find_path
+from esplanade.planning import (
+    LayeredGrid,
+    MoveReason,
+    PathStatus,
+    PlanModel,
+    Polygon,
+    Scene,
+    find_path,
+)
 
 SOLID = Polygon(points=((4, 4), (8, 4), (8, 8), (4, 8)), height_m=3, kind="wall")
 SCENE = Scene(bounds=(0, 0, 12, 12), polygons=(SOLID,))
@@ -48,7 +56,7 @@ def test_a_strict_goal_is_refused() -> None:
 
 
 def test_a_population_explains_where_a_goal_was_moved() -> None:
-    population = Population(SCENE, tick_s=0.1, plan=PlanModel(threads=1))
+    population = Population(LayeredGrid.from_scene(SCENE), SCENE, tick_s=0.1)
     for name, strict in (("lax", False), ("strict", True)):
         spec = {"kind": "go_to", "target": [5.5, 6.0, 0.0], "strict": strict}
         behaviour = BEHAVIOUR_SPEC.validate_python(spec).make()
