@@ -150,7 +150,7 @@ class RouteSearch:
         start = self._start[:2]
         anchors = wave.anchors[self._targets].astype(np.float64)
         values = wave.values[self._targets]
-        left_m = values[:, 0] + np.hypot(*(values[:, 1:] - anchors).T)
+        left_m = values[:, 0] + np.hypot(*(values[:, 1:3] - anchors).T)
         left_m[wave.settled[self._targets] == 0] = np.inf
         left_m += np.hypot(*(anchors - start).T)
         nearest = int(left_m.argmin())
