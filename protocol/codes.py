@@ -85,11 +85,18 @@ class ErrorCode(StrEnum):
     FLOODING = "flooding"
     SERVER_FULL = "server_full"
     NO_PATH = "no_path"
+    GOAL_MOVED = "goal_moved"
     FORBIDDEN = "forbidden"
     NAME_RESERVED = "name_reserved"
     KEY_UNREAD = "key_unread"
     LEASE_ENDED = "lease_ended"
     MUTED = "muted"
+
+
+class NoticeCode(StrEnum):
+    """Machine-readable name inside a `notice` that is about something in particular."""
+
+    GOAL_MOVED = "goal_moved"
 
 
 class CloseCode(IntEnum):

@@ -1,5 +1,7 @@
 """Errors in messages on the wire."""
 
+from collections.abc import Mapping
+
 from esplanade.protocol.codes import CloseCode, ErrorCode
 
 
@@ -9,8 +11,16 @@ class ProtocolError(ValueError):
     `close` is None where the fault does not end the connection.
     """
 
-    def __init__(self, code: ErrorCode, text: str, close: CloseCode | None) -> None:
+    def __init__(
+        self,
+        code: ErrorCode,
+        text: str,
+        close: CloseCode | None,
+        args: Mapping[str, str | float] | None = None,
+    ) -> None:
         super().__init__(text)
         self.code = code
         self.text = text
         self.close = close
+        self.arguments = None if args is None else dict(args)
+        """What the fault is about, by name, where a program can use it."""

@@ -17,6 +17,7 @@ from esplanade.protocol.codes import (
     ClientCode,
     ErrorCode,
     Kind,
+    NoticeCode,
     Reason,
     ServerCode,
 )
@@ -36,6 +37,15 @@ Line = Annotated[
     StringConstraints(strip_whitespace=True, min_length=1, max_length=MAX_CHAT_CHARS),
     AfterValidator(plain_line),
 ]
+
+
+Arguments = dict[str, str | float]
+"""What a notice or a fault is about, by name."""
+
+
+def _is_unset(value: object) -> bool:
+    """Whether an optional field has no value; it is left out then, as before there was such."""
+    return not value
 
 
 class FromClient(BaseModel):
@@ -92,6 +102,8 @@ class WalkTo(FromClient):
     x: Metres
     y: Metres
     z: Metres = 0.0
+    strict: Annotated[bool, Field(exclude_if=_is_unset)] = False
+    """Whether to be refused rather than led to another place where the point cannot be stood on."""
 
 
 class ChatLine(FromClient):
@@ -221,6 +233,11 @@ class Notice(FromServer):
 
     code = ServerCode.NOTICE
     text: str
+    about: Annotated[
+        NoticeCode | str | None, Field(union_mode="left_to_right", exclude_if=_is_unset)
+    ] = None
+    """For programs; None for a sentence that is about nothing in particular."""
+    args: Annotated[Arguments | None, Field(exclude_if=_is_unset)] = None
 
 
 class Error(FromServer):
@@ -229,6 +246,7 @@ class Error(FromServer):
     code = ServerCode.ERROR
     error: Annotated[ErrorCode | str, Field(union_mode="left_to_right")]
     text: str
+    args: Annotated[Arguments | None, Field(exclude_if=_is_unset)] = None
 
 
 class Bye(FromServer):

@@ -41,6 +41,7 @@ from esplanade.planning.scene.doors import Doors
 from esplanade.planning.scene.mesh_file import Up
 from esplanade.planning.scene.scene import Scene
 from esplanade.planning.traversal.cache import KnownTraversability, TraversabilityCache
+from esplanade.planning.traversal.edge_runs import EdgeRuns
 from esplanade.planning.traversal.stability import Stability
 
 ADULT = Body.adult()
@@ -69,6 +70,7 @@ class LayeredGrid(PlaceLookup):
             kind_arrays(floors.barriers, cells, []),
         )
         self.traversability = TraversabilityCache(floors)
+        self._edge_runs = EdgeRuns(floors)
         self.index = index_barriers(floors.barriers, self.bounds)
         self._held = self.arrays, make_handle(GroundArrays(self.arrays, self.index))
         self._rows = BodyRows()
@@ -217,6 +219,15 @@ class LayeredGrid(PlaceLookup):
         if self.arrays.flat:
             return np.zeros(len(cells), dtype=np.bool_)
         return np.isin(self.traversability.of(body).classes[cells], _EDGES)
+
+    def bounds_edges(self, body: Body) -> bool:
+        """Whether a body's bound on cells on edges in a row can forbid any way here.
+
+        Cost O(cells) at the first call for a kind of body.
+        """
+        if self.arrays.flat:
+            return False
+        return self._edge_runs.longest(kind_of(body), self.traversability) >= body.edge_cells
 
     @property
     def ground(self) -> Handle[GroundArrays]:

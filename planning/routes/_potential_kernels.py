@@ -1,6 +1,6 @@
 """Wave fronts that lead to a goal, on bare arrays.
 
-Both kinds fill the same array: for each cell a *waypoint* and its distance to the goal, so that the
+All kinds fill the same array: for each cell a *waypoint* and its distance to the goal, so that the
 potential anywhere in the cell is that distance plus the distance to the waypoint.
 """
 
@@ -19,7 +19,10 @@ from esplanade.planning.grid._grid_kernels import (
 from esplanade.planning.traversal._anchor_kernels import SLACK_M
 
 PotentialValues = NDArray[np.float32]
-"""(N, 3): metres from the waypoint to the goal, waypoint x, waypoint y; inf where no path leads."""
+"""(N, 4): metres from the waypoint to the goal, waypoint x, waypoint y, and the number of cells on
+edges in a row from the cell on, 0 where they are not counted; inf where no path leads."""
+EDGES = 3
+"""The column of that number."""
 
 
 @inlined
@@ -41,14 +44,14 @@ def direction_at(
     """
     if cell < 0:
         return 0.0, 0.0, 0.0
-    left, wx, wy = potential[cell]
+    left, wx, wy, _ = potential[cell]
     if not np.isfinite(left):
         return 0.0, 0.0, 0.0
     leg = length(wx - x, wy - y)
     if leg < 0.25 * grid.layered.cell_m and left > 0.0:
         there = follow(grid, cell, wx, wy)
         if there >= 0:
-            left, wx, wy = potential[there]
+            left, wx, wy, _ = potential[there]
             leg = length(wx - x, wy - y)
     if leg < 1e-4:  # waypoints are rounded to float32
         return 0.0, 0.0, 0.0
@@ -187,7 +190,7 @@ def extend_into_obstacles(
     """Lead out of cells that are not free but lie next to reached ones, three rings deep.
 
     An agent closer to a wall than its radius then still finds the path. Distances over such cells
-    count threefold.
+    count threefold. Cells that are settled beyond these rings are left as they are.
     """
     step_on_m = grid.kinds.measures[body]["step_on_m"]
     for ring in range(1, 4):

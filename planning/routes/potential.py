@@ -18,6 +18,7 @@ from esplanade.planning.routes import _potential_kernels as kernels
 from esplanade.planning.routes.wave_front import NO_TARGETS, Wave, WaveFront
 from esplanade.planning.scene.bodies import Body
 
+_LEFT_ALONE = 255
 _MOVED_M = 0.5
 """Greatest distance that a goal is moved to where the disc fits."""
 
@@ -60,6 +61,10 @@ class Potential:
         self.values: NDArray[np.float32] = front.values
         self.reached_cells = front.reached_cells
         if wave is Wave.SIGHT:
+            if grid.bounds_edges(self.body):
+                # No way leads over edges that are too wide, least of all one past obstacles.
+                on_edge = grid.arrays.edges[row]
+                front.settled[on_edge & (front.settled == 0)] = _LEFT_ALONE
             kernels.extend_into_obstacles(front.arrays, row, self.values, front.settled)
 
     def distance(self, positions: ArrayLike, heights: ArrayLike) -> NDArray[np.float64]:

@@ -14,6 +14,7 @@ from esplanade.planning.grid._walking_kernels import GroundArrays
 from esplanade.planning.grid.grid import LayeredGrid
 from esplanade.planning.ground._geometry_kernels import Placement
 from esplanade.planning.routes import _descending_kernels as kernels
+from esplanade.planning.routes.moved_ends import MovedEnd, moved_end
 from esplanade.planning.routes.wave_front import Wave, WaveFront
 from esplanade.planning.scene.bodies import Body
 from esplanade.planning.scene.heights import SAME_SURFACE_M
@@ -33,7 +34,7 @@ _BEYOND_M: Final = 1.0
 """A wave goes so much further than the start, for whoever walks beside its cells."""
 _WAVES_KEPT: Final = 16
 _BYTES_KEPT: Final = 64 * 2**20
-_BYTES_A_CELL: Final = 16
+_BYTES_A_CELL: Final = 20
 
 
 def walker(radius_m: float) -> Body:
@@ -72,13 +73,25 @@ class SharedWaves:
 class RouteSearch:
     """A search for a shortest route to the free place nearest to a goal, for an adult.
 
-    Call `advance` until it returns true; then `route` is the route, None where there is none. It
+    Call `advance` until it returns true; then `route` is the route, None where there is none, or
+    where the goal is not free itself and the search is strict. It
     runs in any thread, one search at a time for the same `waves`, and holds no interpreter lock but
     for some 0.1 ms a piece.
     """
 
-    def __init__(self, waves: SharedWaves, start: Point, goal: Point, clearance_m: float) -> None:
+    def __init__(
+        self,
+        waves: SharedWaves,
+        start: Point,
+        goal: Point,
+        clearance_m: float,
+        *,
+        strict: bool = False,
+    ) -> None:
         self.route: Route | None = None
+        self.moved: MovedEnd | None = None
+        """How the goal was moved, if by more than 0.25 m."""
+        self._strict = strict
         self._waves = waves
         self._grid = waves.grid
         self._body = walker(clearance_m)
@@ -110,7 +123,10 @@ class RouteSearch:
         if free is None:
             return None
         goal = self._goal = (*free, grid.floor_at(free, z))
-        if self._straight(self._start, goal):
+        self.moved = moved_end(grid, self._body, (x, y, z), goal)
+        if self._strict and self.moved is not None:
+            return None
+        if not grid.bounds_edges(self._body) and self._straight(self._start, goal):
             self.route = (goal,)
             return None
         self._cell = grid.cell_at(self._start[:2], self._start[2])
@@ -134,7 +150,7 @@ class RouteSearch:
         start = self._start[:2]
         anchors = wave.anchors(self._targets)
         values = wave.values[self._targets]
-        left_m = values[:, 0] + np.hypot(*(values[:, 1:] - anchors).T)
+        left_m = values[:, 0] + np.hypot(*(values[:, 1:3] - anchors).T)
         left_m[wave.settled[self._targets] == 0] = np.inf
         left_m += np.hypot(*(anchors - start).T)
         nearest = int(left_m.argmin())

@@ -149,7 +149,9 @@ class Session:
     def tell(self, fault: ProtocolError) -> None:
         """Tell the client of a fault in something that it sent."""
         self._metrics.errors.labels(fault.code.value).inc()
-        self.outbox.post(frames.message(Error(error=fault.code, text=fault.text)))
+        self.outbox.post(
+            frames.message(Error(error=fault.code, text=fault.text, args=fault.arguments))
+        )
 
     def refuse_line(self, why: str, text: str) -> None:
         """Tell the client that nobody hears its line of chat, and note that."""

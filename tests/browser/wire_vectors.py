@@ -23,7 +23,7 @@ from esplanade.protocol import (
     encode_snapshot,
     encode_steps,
 )
-from esplanade.protocol.codes import MAX_CHAT_CHARS, MAX_NAME_CHARS
+from esplanade.protocol.codes import MAX_CHAT_CHARS, MAX_NAME_CHARS, NoticeCode
 from esplanade.protocol.messages import (
     Blocker,
     Bye,
@@ -64,6 +64,7 @@ FROM_CLIENT: Final[tuple[FromClient, ...]] = (
     Hello(name="Zoë ✿", version=VERSION, resume="token", at=None, operator="key"),
     Move(seq=1, direction=-2.5, speed=1.6),
     WalkTo(seq=4294967295, x=-3.25, y=40.5, z=3.5),
+    WalkTo(seq=5, x=-3.25, y=40.5, z=3.5, strict=True),
     ChatLine(text="Good morning!"),
     Ping(nonce=70000),
     Watch(id=17),
@@ -115,6 +116,11 @@ FROM_SERVER: Final[tuple[FromServer, ...]] = (
     Leave(tick=1202, ids=[8, 9]),
     Chat(id=7, name="Ann", text="Hé!"),
     Notice(text="Welcome"),
+    Notice(
+        text="There is no floor at that place; you walk to the nearest one, 1.5 m from it.",
+        about=NoticeCode.GOAL_MOVED,
+        args={"seq": 5, "moved": 1.5, "why": "no_ground", "x": -3.25, "y": 39.0, "z": 3.5},
+    ),
     Error(error=ErrorCode.NO_PATH, text="no way leads there"),
     Bye(reason=ByeCode.SHUTDOWN, text="the server is shutting down"),
     Pong(nonce=70000, server_time=61.25),

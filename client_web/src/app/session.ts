@@ -24,6 +24,8 @@ import { Walking } from "./walking";
 const PANELS_MS = 200;
 const TOUCH_MS = 5000;
 const LONGEST_FRAME_S = 0.25;
+/** After these errors the avatar does not walk where its person wanted it to. */
+const CALLED_OFF: ReadonlySet<string> = new Set(["no_path", "goal_moved", "lease_ended"]);
 
 export class Session {
   world: World | null = null;
@@ -177,10 +179,11 @@ export class Session {
         this.people.census(message.people, message.actors);
         break;
       case "error":
-        if (message.error === "no_path" || message.error === "lease_ended") this.walking.callOff();
+        if (CALLED_OFF.has(message.error)) this.walking.callOff();
         this.chat.note(`The server says: ${message.text}.`);
         break;
       case "notice":
+        if (message.about === "goal_moved") this.walking.goalMoved(message.args ?? {});
         this.chat.note(message.text);
         break;
       case "doors":

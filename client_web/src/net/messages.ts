@@ -11,11 +11,14 @@ export type Place = [x: number, y: number, z: number];
 export type ClientMessage =
   | { type: "hello"; name: string; resume: string | null; operator: string | null }
   | { type: "move"; seq: number; direction: number; speed: number }
-  | { type: "walk_to"; seq: number; x: number; y: number; z: number }
+  | { type: "walk_to"; seq: number; x: number; y: number; z: number; strict?: boolean }
   | { type: "chat"; text: string }
   | { type: "ping"; nonce: number }
   | { type: "watch"; id: number | null }
   | { type: "set_door"; name: string; open: boolean };
+
+/** What a notice or a fault is about, by name. */
+export type Arguments = Record<string, string | number>;
 
 /** Whether each door stands open, by name. */
 export type Doors = Record<string, boolean>;
@@ -188,8 +191,8 @@ export type ServerMessage =
   | ChatMessage
   | { type: "enter"; tick: number; entities: EntityInfo[] }
   | { type: "leave"; tick: number; ids: number[] }
-  | { type: "notice"; text: string }
-  | { type: "error"; error: string; text: string }
+  | { type: "notice"; text: string; about?: string; args?: Arguments }
+  | { type: "error"; error: string; text: string; args?: Arguments }
   | { type: "bye"; reason: string; text: string }
   | { type: "pong"; nonce: number; server_time: number }
   | { type: "census"; people: number; actors: number }
