@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from esplanade.planning import Body, Door, LayeredGrid, Polygon, Potential, Ramp, Scene, find_path
+from esplanade.planning.grid.clearances import centres_of
 from esplanade.planning.scene.bodies import MOST_BODIES
 from tests.naive.geometry import point_segment_distance
 from tests.planning.storeys import SLAB_FROM, STAIRS_FROM, box, grid_of, storeyed
@@ -327,9 +328,8 @@ def test_what_a_door_changes_is_what_is_derived_anew(floor_m) -> None:
             assert np.array_equal(grid.arrays.edges[row], other.arrays.edges[anew])
         changed = (grid.arrays.clearance != before).any(axis=0)
         assert changed.any() != is_open
-        away = np.hypot(
-            grid.centres[:, 0] - 12.0, grid.centres[:, 1] - np.clip(grid.centres[:, 1], 5.0, 6.5)
-        )
+        centres = centres_of(grid.layered, grid.layered.places)
+        away = np.hypot(centres[:, 0] - 12.0, centres[:, 1] - np.clip(centres[:, 1], 5.0, 6.5))
         assert not changed[away > 3.0].any()
         near_in_height = np.abs(np.nan_to_num(grid.layered.floors) - floor_m) < 2.4
         assert not changed[~near_in_height].any()
