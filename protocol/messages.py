@@ -44,10 +44,6 @@ Line = Annotated[
 ]
 
 
-Arguments = dict[str, str | float]
-"""What a notice or a fault is about, by name."""
-
-
 def _is_unset(value: object) -> bool:
     """Whether an optional field has no value; it is left out then, as before there was such."""
     return not value
