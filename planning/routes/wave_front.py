@@ -35,8 +35,8 @@ class WaveFront:
 
     It stays on the grid as it was when the wave began: a door that moves later changes nothing.
     Where the body's bound on cells on edges in a row can bind (`LayeredGrid.bounds_edges`), they
-    are counted, and the wave spreads at once. Memory is 17 bytes a cell, and 16 for each entry of the
-    heap.
+    are counted, and the wave spreads at once. Memory is 17 bytes a cell, and 16 for each entry of
+    the heap.
     """
 
     def __init__(
