@@ -92,7 +92,7 @@ def zone() -> kernels.Zone:
     return kernels.Zone(
         World(grid, _risk(), _reservations(), 0.4, 0.25),
         barriers,
-        _array(2, np.int8),
+        _array(3, np.float32),
         _array(2, np.float32),
         compass_moves(),
         AgentTable(1).agents,

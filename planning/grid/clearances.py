@@ -24,6 +24,9 @@ Box = tuple[float, float, float, float]
 
 _BODY_STEP_M = 0.05
 _RADIUS_STEP_M = 0.01
+_FINE_STEP_M = 0.01
+_LOW_STEP_M = 0.1
+"""Wheels that step over a few centimetres get up ramps, whose cells rise by that much."""
 _ALMOST = 1e-9
 _ROUNDING_M = 1e-4
 
@@ -31,17 +34,22 @@ _ROUNDING_M = 1e-4
 def kind_of(body: Body) -> Body:
     """The kind of a body: it is nowhere where the body is not, and shared by bodies much alike.
 
-    The radius is rounded up to 1 cm, the height up to 5 cm, the steps that it takes down to 5 cm; M
-    is ignored.
+    The radius is rounded up to 1 cm, the height up to 5 cm, the steps that it takes down to 5 cm, or
+    to 1 cm below 10 cm; M is ignored.
     """
     return replace(
         body,
         radius_m=_rounded(body.radius_m, math.ceil, -_ALMOST, _RADIUS_STEP_M),
         height_m=_rounded(body.height_m, math.ceil, -_ALMOST),
-        step_on_m=_rounded(body.step_on_m, math.floor, _ALMOST),
-        leg_length_m=_rounded(body.leg_length_m, math.floor, _ALMOST),
+        step_on_m=_rounded_step(body.step_on_m),
+        leg_length_m=_rounded_step(body.leg_length_m),
         edge_cells=Body.edge_cells,
     )
+
+
+def _rounded_step(metres: float) -> float:
+    fine = metres < _LOW_STEP_M
+    return _rounded(metres, math.floor, _ALMOST, _FINE_STEP_M if fine else _BODY_STEP_M)
 
 
 def _rounded(

@@ -16,7 +16,7 @@ from esplanade.planning.ground._geometry_kernels import Placement
 from esplanade.planning.routes import _descending_kernels as kernels
 from esplanade.planning.routes.moved_ends import MovedEnd, moved_end
 from esplanade.planning.routes.wave_front import Wave, WaveFront
-from esplanade.planning.scene.bodies import Body
+from esplanade.planning.scene.bodies import LIMITS, Body
 from esplanade.planning.scene.heights import SAME_SURFACE_M
 
 Point = tuple[float, float, float]
@@ -39,7 +39,7 @@ _BYTES_A_CELL: Final = 20
 
 def walker(radius_m: float) -> Body:
     """The body of a person of this radius."""
-    return replace(Body.adult(), radius_m=radius_m)
+    return replace(Body.adult(), radius_m=max(LIMITS["radius_m"][0], radius_m))
 
 
 class SharedWaves:
