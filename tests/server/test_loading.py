@@ -35,10 +35,13 @@ def test_without_a_scene_there_is_one_that_comes_along() -> None:
 @pytest.mark.parametrize(
     ("text", "fault"),
     [
-        ("{", "is no JSON"),
-        ('{"bounds": [0, 0, 1, "x"]}', "bounds.3: "),
-        ('{"bounds": [0, 0, 1, 1], "walls": [{"start": [0, 0], "end": [0, 0]}]}', "walls.0: the"),
-        ('{"bounds": [5, 0, 1, 1]}', "bounds: x0 < x1"),
+        ("{", ": is no JSON"),
+        ('{"bounds": [0, 0, 1, "x"]}', ":1:22: bounds.3: "),
+        (
+            '{"bounds": [0, 0, 1, 1], "walls": [{"start": [0, 0], "end": [0, 0]}]}',
+            ":1:36: walls.0: the",
+        ),
+        ('{"bounds": [5, 0, 1, 1]}', ":1:12: bounds: x0 < x1"),
     ],
 )
 def test_faults_in_a_scene_are_named_with_file_and_place(
@@ -48,7 +51,7 @@ def test_faults_in_a_scene_are_named_with_file_and_place(
     path.write_text(text)
     with pytest.raises(LoadingError) as caught:
         load_scene(ServerSettings(scene=path))
-    assert str(caught.value).startswith(f"{path}: {fault}")
+    assert str(caught.value).startswith(f"{path}{fault}")
 
 
 def test_a_crowd_gets_ground_that_fits_and_speed_enough(crowd_file: Path) -> None:

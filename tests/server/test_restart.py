@@ -14,8 +14,8 @@ import structlog
 from esplanade.protocol import VERSION
 from esplanade.protocol.commands import COMMAND, Answer
 from esplanade.protocol.messages import Hello
-from esplanade.server import app as app_module
 from esplanade.server import keeping as keeping_module
+from esplanade.server import resuming as resuming_module
 from esplanade.server.accounts.identity import Identity
 from esplanade.server.accounts.rights import Right
 from esplanade.server.app import Running
@@ -317,7 +317,7 @@ async def test_the_metrics_tell_of_checkpoints(serving: Serving, tmp_path: Path)
 async def test_the_start_says_what_goes_on(
     serving: Serving, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for module in (app_module, keeping_module):
+    for module in (resuming_module, keeping_module):
         monkeypatch.setattr(module, "log", structlog.get_logger(module.__name__))
     async with serving(data=tmp_path / "world"):
         pass

@@ -129,6 +129,7 @@ def actor_message(tick: int, channel: str) -> dict[str, Any]:
     """What the live interface tells of one actor."""
     path = [[10.0 + s, 10.0 + math.sin(s), 0.0, 0.5 * s] for s in range(12)]
     parts = {"time": 6.1, "risk": 1.4, "turn": 0.3, "wall": 0.2, "hurry": 0.0, "keep_right": 0.1}
+    parts["others"] = 0.2
     return {
         "channel": channel,
         "tick": tick,
@@ -215,18 +216,29 @@ def _trace(tick: int) -> dict[str, Any]:
         nodes.append([*node, index * 0.1, index if index < 120 else -1])
     message = actor_message(tick, "")
     return {
+        "actor": "main/actor-1",
         "tick": tick,
+        "exact": True,
         "status": "found",
         "expansions": 120,
         "budget": 400,
         "nodes": nodes,
+        "left_out": 0,
+        "previous": None,
+        "searched": None,
+        "perturbed": None,
+        "blocker": None,
         "path": message["path"],
         "cost": message["cost"],
         "risk": [
             {"t_s": round(0.4 * i, 1), **_raster(40, 40, (4.0, 4.0), 0.3, phase=0.4 * i)}
             for i in range(10)
         ],
-        "why": "it found a path within its budget",
+        "why": {
+            "code": "search",
+            "text": "the search found a better path",
+            "arguments": {},
+        },
     }
 
 
