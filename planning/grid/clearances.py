@@ -34,8 +34,8 @@ _ROUNDING_M = 1e-4
 def kind_of(body: Body) -> Body:
     """The kind of a body: it is nowhere where the body is not, and shared by bodies much alike.
 
-    The radius is rounded up to 1 cm, the height up to 5 cm, the steps that it takes down to 5 cm, or
-    to 1 cm below 10 cm; M is ignored.
+    The radius is rounded up to 1 cm, the height up to 5 cm, the steps that it takes down to 5 cm,
+    or to 1 cm below 10 cm; M is ignored.
     """
     return replace(
         body,
