@@ -1,4 +1,4 @@
-"""What behaviours have in mind, and the chance of each actor, as bytes that are made once."""
+"""The memory of behaviours and the chance of each actor, as bytes that are made once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is told of an actor's decision: the search, the paths that were compared, their costs."""
+"""The account of an actor's decision: the search, the paths that were compared, their costs."""
 
 from __future__ import annotations
 

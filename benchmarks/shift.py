@@ -115,7 +115,7 @@ async def _look(private: int, token: str, seconds: float) -> dict[str, float]:
 
 
 def _ticks(private: int, token: str, since: float) -> dict[str, Any]:
-    """What the server has noted of its ticks, second by second."""
+    """The server's own figures about its ticks, second by second."""
     path = "/api/v1/series?names=tick_p50_ms,tick_p99_ms,people&step_s=1"
     bearer = {"Authorization": f"Bearer {token}"}
     told = json.loads(_get(private, f"{path}&from_us={since * 1e6:.0f}", bearer))
@@ -142,7 +142,7 @@ async def _ready(private: int) -> None:
 
 
 def _get(private: int, path: str, headers: Mapping[str, str] | None = None) -> bytes:
-    """What the private port answers; OSError if it refuses."""
+    """The answer of the private port; OSError if it refuses."""
     connection = http.client.HTTPConnection("127.0.0.1", private, timeout=60)
     try:
         connection.request("GET", path, headers=dict(headers or {}))

@@ -4,5 +4,5 @@ from esplanade.protocol.messages import Admission
 
 
 def admission(token: str | None) -> Admission | None:
-    """What a bot shows that has a token, or nothing."""
+    """The admission of a bot that has a token; None for others."""
     return Admission(way="bot", secret=token) if token else None

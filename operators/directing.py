@@ -1,4 +1,4 @@
-"""What a script does with actors, doors and people."""
+"""Commands of a script on actors, doors and people."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any

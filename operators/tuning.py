@@ -1,4 +1,4 @@
-"""What a script does with parameters, presets, groups and schedules."""
+"""Commands of a script on parameters, presets, groups and schedules."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any

@@ -257,7 +257,7 @@ REPORTS: Final = Table(
     Column("state", String(16), nullable=False),
     Column("settled_by", String(64)),
 )
-"""What people report to moderators."""
+"""Reports of people to moderators."""
 
 CHAT_RULES: Final = Table(
     "chat_rules",

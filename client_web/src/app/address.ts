@@ -8,7 +8,7 @@ export interface AddressWish {
   operator: string | null;
   /** A place to look at and to be asked to walk to. */
   at: Place | null;
-  /** What lets this person in: an operator's pass or an invitation. */
+  /** The operator's pass or the invitation that lets this person in. */
   admission: Admission | null;
   /** The part that may stay in the address: everything that is not secret. */
   rest: string;

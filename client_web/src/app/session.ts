@@ -53,7 +53,7 @@ export class Session {
   private readonly planSwitch: Panel;
   /** The operator key; null for people without one. */
   private readonly operator: string | null;
-  /** What lets this person in; null for those who came by an ordinary link. */
+  /** The pass or invitation of this person; null for those who came by an ordinary link. */
   private admission: Admission | null;
   /** A place that a link names; null once the view was turned to it. */
   private linked: Place | null;

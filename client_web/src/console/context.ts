@@ -1,4 +1,4 @@
-/** What every panel is given. */
+/** The context that every panel is given. */
 
 import type { Avatars } from "./map/avatars";
 import type { Api } from "./net/api";

@@ -1,4 +1,4 @@
-"""What the staged server answers."""
+"""Answers of the staged server."""
 
 import base64
 import math

@@ -7,7 +7,7 @@ export interface Row {
   key: string;
   name: string;
   kind: "actor" | "person";
-  /** What it does, or the groups that it is in. */
+  /** The behaviour of an actor, or the groups that it is in. */
   detail: string;
   reason: number;
 }
@@ -42,7 +42,7 @@ export function windowOf(
   return { from: Math.min(from, to), to };
 }
 
-/** What is chosen after a row is chosen with keys held: Shift a range, Ctrl one more or less. */
+/** The choice after a row is chosen with keys held: Shift a range, Ctrl one more or less. */
 export function choiceAfter(
   rows: readonly Pick<Row, "key">[],
   chosen: readonly string[],

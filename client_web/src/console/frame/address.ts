@@ -1,4 +1,4 @@
-/** What the address of the page says of it: a link shows the same to whoever may log in. */
+/** The state of the page in its address: a link shows the same to whoever may log in. */
 
 import type { AppContext } from "../context";
 import { areaOf, type Layout, writeLayout } from "../layout/layout";

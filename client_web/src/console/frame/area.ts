@@ -6,7 +6,7 @@ import { AREAS } from "../layout/layout";
 import { rove } from "../state/roving";
 import { controls } from "../style/controls";
 
-/** What the operator wants of a panel. */
+/** The wishes of the operator about a panel. */
 export type AreaWish =
   { wish: "show" | "shut"; panel: string } | { wish: "move"; panel: string; to: Area };
 

@@ -1,4 +1,4 @@
-/** What the map shows. */
+/** The contents of the map. */
 
 export interface MapOptions {
   trailS: 0 | 1 | 10 | 60;

@@ -131,7 +131,7 @@ function select(bar: Toolbar, name: keyof typeof CHOICES, label: string): Templa
   >`;
 }
 
-/** What the colours stand for. */
+/** The meanings of the colours. */
 export function legend(
   options: MapOptions,
   heatMost: number | null,

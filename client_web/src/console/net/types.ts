@@ -74,7 +74,7 @@ export interface Actors {
   actors: readonly Actor[];
 }
 
-/** Who or what holds an actor. */
+/** The person or thing that holds an actor. */
 export interface Blocker {
   kind: string;
   id: number | string | null;
