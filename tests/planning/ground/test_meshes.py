@@ -214,13 +214,13 @@ def test_progress_is_told(tmp_path) -> None:
         ("absent.obj", None, "absent.obj: there is no such file"),
         ("empty.obj", "", "empty.obj: it"),
         ("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "points.obj: it"),
-        ("range.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 9\n", "range.obj: it is not a mesh"),
+        ("range.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 9\n", "range.obj: .* line 4: .* corner 9"),
         ("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 0 1\nf 1 2 3\n", "nan.obj: triangle 0 has a corner"),
         ("huge.obj", "v 0 0 0\nv 9e5 0 0\nv 0 0 1\nf 1 2 3\n", "it measures 900000 x 1 m .* unit"),
         ("wall.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "wall.obj: it has no extent"),
         ("under.obj", "v 0 0 0\nv 4 0 0\nv 0 0 4\nf 1 2 3\n", "under.obj: nobody can stand"),
-        ("text.glb", "no mesh at all", "text.glb: it is not a mesh that can be read"),
-        ("text.xyz9", "no mesh at all", "text.xyz9: it is not a mesh that can be read"),
+        ("text.glb", "no mesh at all", "text.glb: it is no glTF that can be read"),
+        ("text.xyz9", "no mesh at all", "text.xyz9: .xyz9 is not read; there are"),
     ],
 )
 def test_faults_of_files_are_named(tmp_path, name, text, message) -> None:
