@@ -106,6 +106,9 @@ class Behaviour(ABC):
         remembered = (getattr(self, name) for name, kind in self.memory.items() if kind is PLACE)
         return [place for place in remembered if place is not None]
 
+    strict: bool = False
+    """Whether goals where the actor's body does not fit are refused rather than moved."""
+
     @property
     def points_at(self) -> Goal | None:
         """The place that the actor shows to people since the last update, None for none."""
@@ -133,8 +136,9 @@ class GoTo(Behaviour):
 
     name = "go_to"
 
-    def __init__(self, target: Target) -> None:
+    def __init__(self, target: Target, *, strict: bool = False) -> None:
         self._target = target
+        self.strict = strict
 
     def targets(self) -> Sequence[Target]:
         """The one target."""
@@ -204,7 +208,10 @@ class Patrol(Behaviour):
     name = "patrol"
     memory: ClassVar[Memory] = {"_next": NUMBER, "_rest_until": PERHAPS_MOMENT}
 
-    def __init__(self, stops: Sequence[Target], pause_s: float = 2.0) -> None:
+    def __init__(
+        self, stops: Sequence[Target], pause_s: float = 2.0, *, strict: bool = False
+    ) -> None:
+        self.strict = strict
         if not stops:
             raise ValueError("a patrol needs at least one stop")
         self._stops = tuple(stops)
@@ -275,7 +282,10 @@ class Guide(Behaviour):
         lag_m: float = 6.0,
         join_after_s: float = 2.0,
         patience_s: float = 15.0,
+        *,
+        strict: bool = False,
     ) -> None:
+        self.strict = strict
         if not tour:
             raise ValueError("a tour needs at least one stop")
         if not 0.0 < join_m < lag_m:

@@ -28,6 +28,12 @@ Targets = Annotated[list[Target], Field(min_length=1, max_length=64)]
 Seconds = Annotated[float, Field(ge=0.0, le=3600.0, allow_inf_nan=False)]
 
 
+Strict = Annotated[
+    bool,
+    Field(description="Whether a goal where the body does not fit is refused rather than moved."),
+]
+
+
 class _Spec(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -46,9 +52,10 @@ class GoToSpec(_Spec):
 
     kind: Literal["go_to"] = "go_to"
     target: Target
+    strict: Strict = False
 
     def make(self) -> Behaviour:
-        return GoTo(self.target)
+        return GoTo(self.target, strict=self.strict)
 
 
 class WanderSpec(_Spec):
@@ -74,9 +81,10 @@ class PatrolSpec(_Spec):
     kind: Literal["patrol"] = "patrol"
     stops: Targets
     pause_s: Seconds = 2.0
+    strict: Strict = False
 
     def make(self) -> Behaviour:
-        return Patrol(self.stops, self.pause_s)
+        return Patrol(self.stops, self.pause_s, strict=self.strict)
 
 
 class GuideSpec(_Spec):
@@ -93,6 +101,7 @@ class GuideSpec(_Spec):
     ] = 6.0
     join_after_s: Seconds = 2.0
     patience_s: Seconds = 15.0
+    strict: Strict = False
 
     @model_validator(mode="after")
     def _joins_before_it_lags(self) -> GuideSpec:
@@ -102,7 +111,13 @@ class GuideSpec(_Spec):
 
     def make(self) -> Behaviour:
         return Guide(
-            self.tour, self.pause_s, self.join_m, self.lag_m, self.join_after_s, self.patience_s
+            self.tour,
+            self.pause_s,
+            self.join_m,
+            self.lag_m,
+            self.join_after_s,
+            self.patience_s,
+            strict=self.strict,
         )
 
 

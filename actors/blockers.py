@@ -55,7 +55,7 @@ def find_blocker(
     here = np.array([*agents.positions[row], agents.heights[row]])
     ahead = None
     if slot >= 0 and cell >= 0:
-        waypoint = navigator.potentials.arrays[slot, cell, 1:].astype(np.float64)
+        waypoint = navigator.potentials.arrays[slot, cell, 1:3].astype(np.float64)
         ahead = waypoint - here[:2] if np.isfinite(waypoint).all() else None
     radius_m = float(agents.parameters["radius_m"][row])
     known = people if isinstance(people, ObservedPeople) else None

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from esplanade.actors.parameter_records import measures
 from esplanade.actors.parameters import body_of
-from esplanade.actors.potential_pool import Goal, GoalKey, PotentialPool, goal_key
+from esplanade.actors.potential_pool import Goal, GoalKey, PotentialPool, goal_key, kind_for_ways
 from esplanade.planning import AgentTable, Body, LayeredGrid
-from esplanade.planning.grid.clearances import kind_of
 from esplanade.planning.people.risk import RiskField
+from esplanade.planning.routes.moved_ends import moved_end
 
 
 class DerivedRows:
@@ -95,7 +95,10 @@ class DerivedRows:
         try:
             for row, body in zip(rows[new].tolist(), bodies, strict=True):
                 target = table.wanted(row)
-                keys.append(None if target is None else goal_key(self._grid, target, body))
+                key = None if target is None else goal_key(self._grid, target, body)
+                if target is not None:
+                    key = self._allowed(table, row, key, body, target)
+                keys.append(key)
                 slots.append(-1 if keys[-1] is None else self._potentials.take(keys[-1], prepared))
         except Exception:
             for slot in slots:
@@ -111,20 +114,39 @@ class DerivedRows:
             self._go_by(table, row, slot)
 
     def of_new_kind(self, before: NDArray[np.void], after: NDArray[np.void]) -> NDArray[np.int64]:
-        """Tell for each of N actors whether other parameters make it another kind of body."""
-        other = np.flatnonzero((measures(before) != measures(after)).any(axis=1))
-        kinds = ((kind_of(body_of(before[k])), kind_of(body_of(after[k]))) for k in other)
+        """Tell for each of N actors whether other parameters let it go other ways.
+
+        They do if they make it another kind of body, or bound its cells on edges otherwise where
+        that bound can forbid a way.
+        """
+        edges = before["edge_cells"] != after["edge_cells"]
+        other = np.flatnonzero(edges | (measures(before) != measures(after)).any(axis=1))
+        pairs = ((body_of(before[k]), body_of(after[k])) for k in other)
+        kinds = ((kind_for_ways(self._grid, a), kind_for_ways(self._grid, b)) for a, b in pairs)
         new = [k for k, (old, now) in zip(other.tolist(), kinds, strict=True) if old != now]
         return np.array(new, dtype=np.int64)
 
     def _potential(self, table: AgentTable, row: int, target: Goal) -> int:
-        """The potential of an actor's goal, -1 where none can be; its `goals` are moved out of
-        walls."""
-        key = goal_key(self._grid, target, body_of(table.agents.parameters[row]))
-        if key is None:
-            return -1
-        table.agents.goals[row] = key[:2]
-        return self._potentials.take(key)
+        """The potential of an actor's goal, -1 where none can be."""
+        body = body_of(table.agents.parameters[row])
+        key = self._allowed(table, row, goal_key(self._grid, target, body), body, target)
+        return -1 if key is None else self._potentials.take(key)
+
+    def _allowed(
+        self, table: AgentTable, row: int, key: GoalKey | None, body: Body, target: Goal
+    ) -> GoalKey | None:
+        """Move an actor's goal to where it fits, and note how far and why.
+
+        It is None where the goal may not be moved, as the actor is strict.
+        """
+        trips = table.trips
+        moved = None
+        if key is not None:
+            table.agents.goals[row] = key[:2]
+            moved = moved_end(self._grid, body, target, (key[0], key[1], target[2]))
+        trips.moved_m[row] = 0.0 if moved is None else moved.distance_m
+        trips.moved_why[row] = 0 if moved is None else moved.reason
+        return None if trips.strict[row] and moved is not None else key
 
     def _go_by(self, table: AgentTable, row: int, slot: int) -> None:
         """Let an actor go by a potential that was taken for it, and begin anew."""

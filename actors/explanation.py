@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from esplanade.actors.behaviour import BehaviourName, Goal
 from esplanade.actors.blockers import Blocker
 from esplanade.actors.state import Reason
+from esplanade.planning import MovedEnd
 
 
 @dataclass(frozen=True)
@@ -27,3 +28,5 @@ class Explanation:
     """For how long the reason has been that, seconds."""
     blocker: Blocker | None = None
     """The blocker of the actor, as far as that can be told."""
+    moved: MovedEnd | None = None
+    """How the goal was moved to where the body fits; refused if the goal is strict."""

@@ -24,6 +24,8 @@ from esplanade.planning import (
     Batch,
     Body,
     LayeredGrid,
+    MovedEnd,
+    MoveReason,
     PlanModel,
     Prediction,
     PredictionModel,
@@ -165,18 +167,38 @@ class Navigator:
         """Take an actor out; KeyError when there is none of that id."""
         self.remove_actors([actor_id])
 
-    def set_goal(self, actor_id: Hashable, goal: Point | None, *, z_m: float = 0.0) -> None:
-        """Send an actor somewhere, or let it stand (None). A goal inside a wall is moved out."""
+    def set_goal(
+        self, actor_id: Hashable, goal: Point | None, *, z_m: float = 0.0, strict: bool = False
+    ) -> None:
+        """Send an actor somewhere, or let it stand (None).
+
+        A goal where its body does not fit is moved to the nearest place where it does; `moved`
+        tells by how much and why. If it is `strict`, the actor stays instead, with no path.
+        """
         row = self.table.row(actor_id)
+        self.table.trips.strict[row] = strict
         target: Goal | None = None
         if goal is not None:
             self.check_place(goal, z_m)
             target = float(goal[0]), float(goal[1]), float(z_m)
         self._rows.head_for(self.table, row, target)
         trips = self.table.trips
+        if target is None:
+            trips.moved_m[row], trips.moved_why[row] = 0.0, 0
         trips.wanted[row] = np.nan if target is None else target
         trips.arrived[row] = False
         trips.no_path_s[row] = 0.0
+
+    def moved(self, actor_id: Hashable) -> MovedEnd | None:
+        """How an actor's goal was moved, or would be if it is strict; None if by at most 0.25 m."""
+        row = self.table.row(actor_id)
+        agents, trips, target = self.table.agents, self.table.trips, self.table.wanted(row)
+        if target is None or not trips.moved_why[row]:
+            return None
+        x, y = agents.goals[row].tolist()
+        place = x, y, self.grid.floor_at((x, y), target[2])
+        why = MoveReason(int(trips.moved_why[row]))
+        return MovedEnd(float(trips.moved_m[row]), why, target, place)
 
     def prepare_goals(
         self, goals: Iterable[tuple[Point, float]], parameters: ActorParameters
@@ -275,6 +297,7 @@ class Navigator:
         agents.cells[row] = cell
         agents.heights[row] = self._floor(cell)
         agents.layers[row] = self._layer(cell)
+        agents.on_edges[row] = 0
 
     def set_back(self, actor_id: Hashable) -> None:
         """Let an actor forget the path that it follows: it is somewhere else now."""
@@ -368,8 +391,13 @@ class Navigator:
             self._wait_for_potentials()
 
     def _wait_for_potentials(self) -> None:
-        """Those whose way is still being found stand and wait; it is not that there is none."""
-        agents = self.table.agents
+        """Those whose way is still being found stand and wait; it is not that there is none.
+
+        For those whose strict goal would have to be moved there is none.
+        """
+        agents, trips = self.table.agents, self.table.trips
+        refused = trips.strict & (trips.moved_why > 0) & (agents.potential_rows < 0)
+        agents.reasons[refused & (agents.reasons == Reason.WAITING)] = Reason.NO_PATH
         waiting = self.potentials.provisional(agents.potential_rows)
         waiting &= agents.reasons == Reason.NO_PATH
         agents.reasons[waiting] = Reason.WAITING

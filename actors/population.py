@@ -397,6 +397,7 @@ class Population:
                 actor_id,
                 None if goal is None else goal[:2],
                 z_m=0.0 if goal is None else goal[2],
+                strict=behaviour.strict,
             )
         trips.arrived_when_asked[row] = arrived
         trips.ask_at_s[row] = behaviour.ask_at_s
@@ -482,6 +483,7 @@ class Population:
             near,
             float(self.table.trips.reason_s[row]),
             find_blocker(self.navigator, actor_id, self._people),
+            self.navigator.moved(actor_id),
         )
 
     def blocker(self, actor_id: Hashable) -> Blocker | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -12,12 +12,15 @@ from numpy.typing import NDArray
 
 from esplanade.planning import Body, LayeredGrid, Potential
 from esplanade.planning.grid.clearances import kind_of
+from esplanade.planning.scene.bodies import LIMITS
 
 Goal = tuple[float, float, float]
 """x, y and height, metres."""
 GoalKey = tuple[float, float, float, Body]
-"""x, y, height and kind of body."""
+"""x, y, height and kind of body, of `kind_for_ways`."""
 _IDLE_KEPT = 32
+_NO_BOUND = int(LIMITS["edge_cells"][1])
+"""For bodies whose M forbids nothing, where that of others may."""
 _SLACK_M = 0.02
 """A goal may lie closer to a wall than the radius by this."""
 
@@ -36,7 +39,7 @@ class PotentialPool:
     """One row a goal and kind of body in a single array that kernels index.
 
     Rows nobody uses are kept for the next who goes there and reused, oldest first, when more
-    than 32 lie idle. Memory: 12 bytes a cell and goal.
+    than 32 lie idle. Memory: 16 bytes a cell and goal.
     """
 
     def __init__(self, grid: LayeredGrid) -> None:
@@ -45,7 +48,7 @@ class PotentialPool:
         """Whether nobody waits for a goal that is new: its row is provisional until `renew`."""
         self._provisional: set[int] = set()
         self.arrays: NDArray[np.float32] = np.empty(
-            (0, len(grid.layered.floors), 3), dtype=np.float32
+            (0, len(grid.layered.floors), 4), dtype=np.float32
         )
         self._slots: dict[GoalKey, int] = {}
         self._keys: list[GoalKey | None] = []
@@ -237,8 +240,17 @@ def potential_of(grid: LayeredGrid, key: GoalKey) -> NDArray[np.float32]:
     return Potential(grid, (x, y), z_m, kind.radius_m, body=kind).values
 
 
+def kind_for_ways(grid: LayeredGrid, body: Body) -> Body:
+    """The kind of a body, with its own M only where M can forbid a way: else ways are shared."""
+    kind = kind_of(body)
+    own = replace(kind, edge_cells=body.edge_cells)
+    if grid.bounds_edges(own):
+        return own
+    return replace(kind, edge_cells=_NO_BOUND) if grid.bounds_edges(kind) else kind
+
+
 def goal_key(grid: LayeredGrid, goal: Goal, body: Body) -> GoalKey | None:
     """The goal of a body, moved to where its kind of body fits; None where it fits nowhere."""
-    kind = kind_of(body)
+    kind = kind_for_ways(grid, body)
     free = grid.nearest_free(goal[:2], goal[2], kind.radius_m - _SLACK_M, kind)
     return None if free is None else (*free, goal[2], kind)

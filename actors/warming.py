@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from esplanade.actors.navigator import Navigator
-from esplanade.planning import Polygon, Potential, Scene
+from esplanade.planning import Body, Polygon, Potential, Scene
 
 
 def warm_up(tick_s: float, ready_to_plan: Callable[[], None]) -> None:
@@ -26,6 +26,7 @@ def warm_up(tick_s: float, ready_to_plan: Callable[[], None]) -> None:
     potential = Potential(navigator.grid, (5.0, 1.0), 0, 0.25)
     potential.direction([(1.0, 1.0)], [0])
     potential.distance([(1.0, 1.0)], [0])
+    Potential(navigator.grid, (5.0, 1.0), 0, 0.25, body=Body(edge_cells=2))
     navigator.observe({"p": (3.0, 5.05)})
     navigator.tick()
     navigator.tracing.wanted = True

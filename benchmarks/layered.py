@@ -98,7 +98,8 @@ def measure(side: int, layers: int, runs: int) -> tuple[int, list[float]]:
     maps_ms, (arrays, barriers) = best_ms(height_maps, runs)
     reach_ms, near = best_ms(lambda: near_barriers(arrays, barriers, body), runs)
     steps_ms, _ = best_ms(lambda: reachable_steps(arrays, near, body), runs)
-    classes_ms, _ = best_ms(lambda: classify(arrays, near, body), runs)
+    _, offsets = reachable_steps(arrays, near, body)
+    classes_ms, _ = best_ms(lambda: classify(arrays, near, body, offsets), runs)
     traversability = find_traversability(arrays, barriers, body)
     search_ms, _ = best_ms(lambda: search(traversability, side, layers), runs)
     return len(arrays.floors), [maps_ms, reach_ms + steps_ms, classes_ms, search_ms]

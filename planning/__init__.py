@@ -14,6 +14,7 @@ from esplanade.planning.people.prediction import PredictionModel, TrackHistory
 from esplanade.planning.people.risk import RiskField, RiskModel
 from esplanade.planning.people.spread import GAUSSIAN, PEOPLE, Spread
 from esplanade.planning.routes.find_path import LayeredPath, PathStatus, find_path
+from esplanade.planning.routes.moved_ends import MovedEnd, MoveReason
 from esplanade.planning.routes.potential import Potential
 from esplanade.planning.routes.wave_front import Wave
 from esplanade.planning.scene.bodies import Body
@@ -32,6 +33,8 @@ __all__ = [
     "Door",
     "LayeredGrid",
     "LayeredPath",
+    "MoveReason",
+    "MovedEnd",
     "PathStatus",
     "Place",
     "PlanModel",

@@ -91,6 +91,7 @@ class ErrorCode(StrEnum):
     FLOODING = "flooding"
     SERVER_FULL = "server_full"
     NO_PATH = "no_path"
+    GOAL_MOVED = "goal_moved"
     FORBIDDEN = "forbidden"
     NAME_RESERVED = "name_reserved"
     KEY_UNREAD = "key_unread"
@@ -153,3 +154,4 @@ class NoticeCode(StrEnum):
     PAUSED = "paused"
     RESUMED = "resumed"
     PACE = "pace"
+    GOAL_MOVED = "goal_moved"

@@ -44,6 +44,11 @@ Line = Annotated[
 ]
 
 
+def _is_unset(value: object) -> bool:
+    """Whether an optional field has no value; it is left out then, as before there was such."""
+    return not value
+
+
 class FromClient(BaseModel):
     """Base of what a client sends: strict, frozen, nothing unknown."""
 
@@ -108,6 +113,8 @@ class WalkTo(FromClient):
     x: Metres
     y: Metres
     z: Metres = 0.0
+    strict: Annotated[bool, Field(exclude_if=_is_unset)] = False
+    """Whether to be refused rather than led to another place where the point cannot be stood on."""
 
 
 class ChatLine(FromClient):

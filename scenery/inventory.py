@@ -112,6 +112,9 @@ def show(console: Console, found: Inventory) -> None:
             f"{reach.reached:.1%} of that{missed}",
             soft_wrap=True,
         )
+    for name, reach in found.reach.items():
+        for place, how in reach.places_moved.items():
+            console.print(f"place {place!r} of {name}: {how}", soft_wrap=True, highlight=False)
 
 
 def _common(groups: Iterable[tuple[str, ...]]) -> tuple[str, ...]:

@@ -1,6 +1,6 @@
 """Reachability of a scene: the cells and places that a body reaches from the spawns."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +9,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from esplanade.planning import LayeredGrid, Scene
-from esplanade.planning.routes.find_path import PathStatus, find_path
+from esplanade.planning.routes.find_path import LayeredPath, PathStatus, find_path
 from esplanade.planning.scene.bodies import Body
 from esplanade.planning.scene.heights import SAME_SURFACE_M
 from esplanade.planning.traversal.stability import Stability
@@ -33,6 +33,8 @@ class Reach:
     """The names of the places that it does not reach."""
     spawns_blocked: tuple[str, ...]
     """The spawns at which it cannot stand, such as `spawns.0`."""
+    places_moved: Mapping[str, str]
+    """The places that it reaches only nearby, as it does not fit there: how far, and why."""
 
 
 def reach_of(grid: LayeredGrid, scene: Scene, body: Body) -> Reach:
@@ -47,11 +49,13 @@ def reach_of(grid: LayeredGrid, scene: Scene, body: Body) -> Reach:
     if not seeds and reached.any():
         seeds = (int(reached.argmax()),)
     starts = centres(traversability)[[seed for seed in seeds if seed >= 0]]
-    missed = [
-        place.name
-        for place in scene.places
-        if not any(_has_path(grid, start, (*place.position, place.z_m), body) for start in starts)
-    ]
+    missed, moved = [], {}
+    for place in scene.places:
+        path = _path_from_any(grid, starts, (*place.position, place.z_m), body)
+        if path is None:
+            missed.append(place.name)
+        elif path.goal_moved is not None:
+            moved[place.name] = str(path.goal_moved)
     blocked = [f"spawns.{i}" for i, seed in enumerate(seeds) if seed < 0]
     floor = int(np.isfinite(grid.layered.floors).sum())
     return Reach(
@@ -59,6 +63,7 @@ def reach_of(grid: LayeredGrid, scene: Scene, body: Body) -> Reach:
         float(reached.sum() / max(1, stands.sum())),
         tuple(missed),
         tuple(blocked),
+        moved,
     )
 
 
@@ -81,9 +86,15 @@ def reached_cells(traversability: Traversability, seeds: Sequence[int]) -> NDArr
     return reached
 
 
-def _has_path(grid: LayeredGrid, start: NDArray[np.float64], goal: Point, body: Body) -> bool:
-    x, y, z = (float(value) for value in start)
-    return find_path(grid, (x, y, z), goal, body=body).status is PathStatus.FOUND
+def _path_from_any(
+    grid: LayeredGrid, starts: NDArray[np.float64], goal: Point, body: Body
+) -> LayeredPath | None:
+    """A path from the first of some places (K, 3) from which one leads to a goal."""
+    for x, y, z in starts.tolist():
+        path = find_path(grid, (x, y, z), goal, body=body)
+        if path.status is PathStatus.FOUND:
+            return path
+    return None
 
 
 def centres(traversability: Traversability) -> NDArray[np.float64]:

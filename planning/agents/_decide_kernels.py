@@ -23,11 +23,15 @@ from esplanade.planning.agents.agents import (
     Decisions,
 )
 from esplanade.planning.compiled.jit import kernel
+from esplanade.planning.grid._grid_kernels import clearance_at
 from esplanade.planning.people._prediction_kernels import Prediction
-from esplanade.planning.routes._potential_kernels import potential_at
+from esplanade.planning.routes._potential_kernels import EDGES, potential_at
 
 MOST_BEHIND_S = 5.0
 """More lost time than this is not made up."""
+DODGE_CELLS = 3
+"""An actor that others have made go to and fro on edges, so that it has used up M, may still go on
+to where its way leaves them, and so many cells out of somebody's way."""
 EASE_S = 0.5
 """An agent that is behind by less than this makes it up more slowly."""
 
@@ -87,6 +91,12 @@ def make_task(
         gx = x
         gy = y
     keeps_right = contested and left > AFTER_M
+    on_edges = agents.on_edges[a]
+    most_edges = p["edge_cells"]
+    if not hold and cell >= 0:
+        ahead = float(potentials[slot, cell, EDGES])
+        if on_edges + ahead - 0.5 >= most_edges:
+            most_edges = on_edges + ahead + DODGE_CELLS
     return Task(
         a,
         agents.bodies[a],
@@ -111,7 +121,8 @@ def make_task(
         p["wall_weight"],
         p["hurry_weight"],
         int(p["max_expansions"]),
-        int(p["edge_cells"]),
+        on_edges,
+        most_edges,
         lane_of(agents.passages[a], p["keep_right_weight"] if keeps_right else 0.0),
         hold,
     )
@@ -185,6 +196,8 @@ def decide(
         out.wishes[a, 1] = wy
         away = metres_left(potential, task, task.cell, task.x, task.y)
         lost = slot >= 0 and not np.isfinite(potential_at(potential, task.cell, task.x, task.y))
+        if status == NO_PATH and not lost:  # inside something no path leads out of
+            lost = clearance_at(world.grid, task.body, task.cell, task.x, task.y) < 0.0
         if len(agents.passages) > OPPOSED:
             see_passage(world.grid, potential, agents, a, slot >= 0 and not task.hold, tick_s)
         out.reasons[a] = _reason(
@@ -231,10 +244,10 @@ def _reason(
     step_s: float,
 ) -> int:
     """Why the actor does what it does; `lost` tells that no path leads to its goal."""
-    if dodged:
-        return GIVING_WAY
     if lost:
         return BLOCKED
+    if dodged:
+        return GIVING_WAY
     if agents.potential_rows[task.me] < 0:
         return WAITING
     if task.hold:

@@ -6,8 +6,10 @@ from numpy.typing import NDArray
 from esplanade.planning.agents._reservation_kernels import conflict
 from esplanade.planning.agents._task_kernels import (
     SUB,
+    TOO_MANY,
     Task,
     World,
+    count_edges,
     metres_left,
     needed_clearance,
     risk_price,
@@ -33,6 +35,7 @@ OFFSETS = 3
 """Candidates m' on either side of the middle."""
 OFFSET_M = 0.2
 """Distance between candidates, metres."""
+_MOST_EDGES = 1e9
 LEAST_RISK = 1e-3
 """A bend has to lower the mean risk of a stretch by so much."""
 
@@ -98,34 +101,46 @@ def _may_go(task: Task, need: float, moved: float, room: float, left_m: float, d
 
 
 @inlined
-def _on_edges(grid: GridArrays, task: Task, cell: int, edge_m: float, moved: float) -> float:
-    """Metres in a row at steps and edges, a slice on; inf if they are too many."""
-    if grid.flat or cell < 0 or not grid.edges[task.body, cell]:
-        return 0.0
-    edge_m += moved
-    return edge_m if edge_m < task.edge_cells * grid.layered.cell_m else np.inf
+def _edges_at(
+    grid: GridArrays,
+    potential: PotentialValues,
+    task: Task,
+    path: NDArray[np.float64],
+    cells: NDArray[np.int64],
+    slice_: int,
+) -> float:
+    """The way on edges, in cells, at a slice of a path that is in `cells` (K,)."""
+    edges = task.on_edges
+    if not grid.flat:
+        for k in range(slice_):
+            dx = path[k + 1, 0] - path[k, 0]
+            dy = path[k + 1, 1] - path[k, 1]
+            edges = count_edges(grid, potential, task, cells[k], cells[k + 1], dx, dy, edges)
+            if edges == TOO_MANY:
+                return TOO_MANY
+    return edges
 
 
 @kernel
-def stretch_is_legal(
+def stretch_edges(
     world: World,
     potential: PotentialValues,
     task: Task,
     need: float,
     cell: int,
+    edges: float,
     path: NDArray[np.float64],
     first: int,
     last: int,
-) -> bool:
-    """Whether a stretch of a path is legal.
+) -> float:
+    """The way on edges, in cells, at the end of a stretch of a path; `TOO_MANY` if it is illegal.
 
     It is legal if it keeps clear of walls and of certain obstacles, keeps the limits of speed and
-    of cells at steps and edges, and the goal can be reached from all of it. The path is in `cell`
-    at slice first.
+    of cells on edges, and the goal can be reached from all of it. The path is in `cell` at slice
+    first, after a way on edges of `edges` cells.
     """
     grid = world.grid
     ds = world.step_s / SUB
-    edge_m = 0.0
     for k in range(first, last):
         ax = path[k, 0]
         ay = path[k, 1]
@@ -133,16 +148,17 @@ def stretch_is_legal(
         by = path[k + 1, 1]
         moved = length(bx - ax, by - ay)
         feet_m = floor_of(grid, cell)
+        before = cell
         cell = follow(grid, cell, bx, by)
         room = clearance_at(grid, task.body, cell, bx, by)
         if not _may_go(task, need, moved, room, potential_at(potential, cell, bx, by), ds):
-            return False
-        edge_m = _on_edges(grid, task, cell, edge_m, moved)
-        if edge_m == np.inf:
-            return False
+            return TOO_MANY
+        edges = count_edges(grid, potential, task, before, cell, bx - ax, by - ay, edges)
+        if edges == TOO_MANY:
+            return TOO_MANY
         if conflict(world.reservations, task.me, feet_m, k, ax, ay, bx, by)[0]:
-            return False
-    return True
+            return TOO_MANY
+    return edges
 
 
 @kernel
@@ -150,7 +166,7 @@ def path_cost(
     world: World, potential: PotentialValues, task: Task, path: NDArray[np.float64]
 ) -> tuple[float, float, bool]:
     """Cost of a whole path as the search counts it (its length and time among it), mean risk, and
-    whether it is legal: `stretch_is_legal` of all of it."""
+    whether it is legal: all of it as `stretch_edges` of a stretch."""
     grid = world.grid
     need = needed_clearance(world, task)
     ds = world.step_s / SUB
@@ -161,7 +177,7 @@ def path_cost(
     cost = 0.0
     risk = 0.0
     left_m = 0.0
-    edge_m = 0.0
+    edges = task.on_edges
     legal = True
     for k in range(slices):
         ax = path[k, 0]
@@ -172,13 +188,14 @@ def path_cost(
         ux = (bx - ax) / ds
         uy = (by - ay) / ds
         feet_m = floor_of(grid, cell)
+        before = cell
         cell = follow(grid, cell, bx, by)
         left_m = metres_left(potential, task, cell, bx, by)
         r = slice_risk(world, task, k + 1, cell, ax, ay, bx, by)
         room = clearance_at(grid, task.body, cell, bx, by)
-        edge_m = _on_edges(grid, task, cell, edge_m, moved)
+        edges = count_edges(grid, potential, task, before, cell, bx - ax, by - ay, edges)
         blocked, soft = conflict(world.reservations, task.me, feet_m, k, ax, ay, bx, by)
-        if blocked or edge_m == np.inf or not _may_go(task, need, moved, room, left_m, ds):
+        if blocked or edges == TOO_MANY or not _may_go(task, need, moved, room, left_m, ds):
             legal = False
         risk += r
         cost += (
@@ -250,6 +267,8 @@ def perturb_path(
     if chord < 1e-6:
         return False
     middle = (first + last) // 2
+    edges = _edges_at(world.grid, potential, task, path, cells, first)
+    most_edges = _edges_at(world.grid, potential, task, path, cells, last)
     for n in range(2 * OFFSETS):
         offset = OFFSET_M * (n // 2 + 1) * (1.0 if n % 2 == 0 else -1.0)
         mx = path[first, 0] + 0.5 * cx - offset * cy / chord
@@ -257,7 +276,9 @@ def perturb_path(
         _bend(path, trial, first, middle, last, mx, my)
         if risks_along(
             world, task, begin, trial, first, last, total - least, trial_risks
-        ) and stretch_is_legal(world, potential, task, need, begin, trial, first, last):
+        ) and stretch_edges(world, potential, task, need, begin, edges, trial, first, last) <= min(
+            most_edges + 1.0, _MOST_EDGES
+        ):
             risks[first + 1 : last + 1] = trial_risks[first + 1 : last + 1]
             path[first : last + 1] = trial[first : last + 1]
             follow_path(world.grid, path, cells, first, last)

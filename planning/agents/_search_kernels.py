@@ -8,9 +8,11 @@ from numpy.typing import NDArray
 from esplanade.planning.agents._reservation_kernels import meetings, others_near
 from esplanade.planning.agents._task_kernels import (
     SUB,
+    TOO_MANY,
     WALL_COST_M,
     Task,
     World,
+    count_edges,
     metres_left,
     needed_clearance,
     on_ramp,
@@ -21,7 +23,7 @@ from esplanade.planning.agents._task_kernels import (
 )
 from esplanade.planning.compiled._heap_kernels import heap_pop, heap_push
 from esplanade.planning.compiled.jit import inlined
-from esplanade.planning.grid._grid_kernels import GridArrays, clearance_at, follow, length
+from esplanade.planning.grid._grid_kernels import clearance_at, follow, length
 from esplanade.planning.people._risk_kernels import people_near, risk_among
 from esplanade.planning.routes._potential_kernels import PotentialValues, direction_at
 
@@ -77,8 +79,8 @@ class Workspace(NamedTuple):
     node_state: NDArray[np.void]
     """(N,) of `NODE`."""
     node_cell: NDArray[np.int64]
-    node_edge: NDArray[np.int64]
-    """Number of cells in a row at steps and edges."""
+    node_edge: NDArray[np.float64]
+    """The way on edges since stable ground, in cells."""
     node_parent: NDArray[np.int64]
     node_step: NDArray[np.int64]
     node_order: NDArray[np.int64]
@@ -116,12 +118,6 @@ def depth_bonus(excess: float, steps: int) -> float:
     if excess < np.inf:
         return max(DEPTH_BONUS_S, LIKELY_PART * excess / steps)
     return DEPTH_BONUS_S
-
-
-@inlined
-def _cells_between(grid: GridArrays, ax: float, ay: float, bx: float, by: float) -> int:
-    """Number of cells from a to b, along rows or columns."""
-    return int(max(abs(bx - ax), abs(by - ay)) / grid.layered.cell_m + 0.5)
 
 
 @inlined
@@ -184,7 +180,7 @@ def search(
     node[0]["vy"] = task.vy
     node[0]["cost_s"] = 0.0
     workspace.node_cell[0] = task.cell
-    workspace.node_edge[0] = 0
+    workspace.node_edge[0] = task.on_edges
     workspace.node_parent[0] = -1
     workspace.node_step[0] = 0
     workspace.ends[:] = 0
@@ -283,11 +279,11 @@ def search(
             )
             if not cost + left < room_s or end < 0:
                 continue
-            edge = 0
-            if not grid.flat and grid.edges[task.body, end]:
-                edge = workspace.node_edge[n] + _cells_between(grid, x, y, ex, ey)
-                if edge >= task.edge_cells:
-                    continue
+            edge = count_edges(
+                grid, potential, task, cell, end, ex - x, ey - y, workspace.node_edge[n]
+            )
+            if edge == TOO_MANY:
+                continue
             slot = _slot(workspace, (step + 1) * cells + end)
             if slot < 0:
                 continue

@@ -4,10 +4,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.agents._reservation_kernels import buckets_within
-from esplanade.planning.agents._task_kernels import Task, World, advance, needed_clearance
+from esplanade.planning.agents._task_kernels import (
+    Task,
+    World,
+    advance,
+    further_on_edges,
+    needed_clearance,
+)
 from esplanade.planning.agents.agents import GIVING_WAY, WAITING, Agents, Decisions
 from esplanade.planning.compiled.jit import kernel
-from esplanade.planning.grid._grid_kernels import clearance_at, floor_of, follow
+from esplanade.planning.grid._grid_kernels import GridArrays, clearance_at, floor_of, follow
 from esplanade.planning.grid._walking_kernels import walk
 from esplanade.planning.ground._geometry_kernels import BarrierIndex, closest_approach
 from esplanade.planning.people._prediction_kernels import Prediction
@@ -154,7 +160,8 @@ def last_check(
     """The wish itself if it touches nobody soon, else the evasion that leaves most room.
 
     Evasions are stopping and sixteen directions at two speeds; the third value tells whether they
-    were tried. Costs O(people) once and O(people near) for each evasion.
+    were tried because of people, not only of walls. Costs O(people) once and O(people near) for
+    each evasion.
     """
     listed = np.empty(len(prediction.means), dtype=np.int64)
     near = listed[: _people_near(world, prediction, task, listed)]
@@ -181,7 +188,7 @@ def last_check(
             best = score
             bx = vx
             by = vy
-    return bx, by, True
+    return bx, by, len(near) > 0
 
 
 @kernel
@@ -223,6 +230,7 @@ def resolve(
                 index,
                 agents.parameters[a]["height_m"],
                 agents.parameters[a]["step_on_m"],
+                agents.parameters[a]["leg_length_m"],
                 agents.cells[a],
                 x,
                 y,
@@ -242,6 +250,7 @@ def resolve(
 
 @kernel
 def settle(
+    grid: GridArrays,
     agents: Agents,
     decisions: Decisions,
     positions: NDArray[np.float64],
@@ -254,6 +263,15 @@ def settle(
         vy = (positions[a, 1] - agents.positions[a, 1]) / tick_s
         agents.velocities[a, 0] = vx
         agents.velocities[a, 1] = vy
+        agents.on_edges[a] = further_on_edges(
+            grid,
+            agents.bodies[a],
+            agents.cells[a],
+            cells[a],
+            positions[a, 0] - agents.positions[a, 0],
+            positions[a, 1] - agents.positions[a, 1],
+            agents.on_edges[a],
+        )
         agents.positions[a] = positions[a]
         agents.cells[a] = cells[a]
         if decisions.renewed[a]:

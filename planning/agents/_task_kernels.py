@@ -9,10 +9,13 @@ from esplanade.planning.agents._reservation_kernels import Reservations
 from esplanade.planning.compiled.jit import inlined
 from esplanade.planning.grid._grid_kernels import GridArrays, clearance_at, length
 from esplanade.planning.people._risk_kernels import RiskArrays
-from esplanade.planning.routes._potential_kernels import PotentialValues, potential_at
+from esplanade.planning.routes._potential_kernels import EDGES, PotentialValues, potential_at
+from esplanade.planning.traversal._anchor_kernels import SLACK_M
 
 SUB = 2
 """Slices of the risk field in one step: a move is looked at half-way and at its end."""
+TOO_MANY = np.inf
+"""More cells on edges in a row than any body bears."""
 WALL_COST_M = 0.15
 """A wall nearer to the body than this has a cost."""
 
@@ -46,8 +49,11 @@ class Task(NamedTuple):
     wall_weight: float
     hurry_weight: float
     max_expansions: int
-    edge_cells: int
-    """M of Huang & Li, the bound on cells in a row at steps and edges."""
+    on_edges: float
+    """The way that it has come on edges since it left stable ground, in cells."""
+    edge_cells: float
+    """M of Huang & Li, the bound on cells on edges in a row; somewhat more for an actor that has
+    been held up on them."""
     lane: Lane
     """The lane to keep to on the path."""
     hold: bool
@@ -106,6 +112,48 @@ def metres_left(potential: PotentialValues, task: Task, cell: int, x: float, y: 
 
 
 @inlined
+def further_on_edges(
+    grid: GridArrays, body: int, before: int, cell: int, dx: float, dy: float, count: float
+) -> float:
+    """The way on edges, in cells, after going by (dx, dy) from a cell to another.
+
+    It is measured along rows or columns: a diagonal step is one cell, too. An agent that comes from
+    stable ground has come half of that way on edges.
+    """
+    if grid.flat or cell < 0 or not grid.edges[body, cell]:
+        return 0.0
+    way = max(abs(dx), abs(dy)) / grid.layered.cell_m
+    if count == 0.0 and before >= 0 and not grid.edges[body, before]:
+        way *= 0.5
+    return float(count + way)
+
+
+@inlined
+def count_edges(
+    grid: GridArrays,
+    potential: PotentialValues,
+    task: Task,
+    before: int,
+    cell: int,
+    dx: float,
+    dy: float,
+    count: float,
+) -> float:
+    """`further_on_edges` of a task's agent; `TOO_MANY` where M forbids it.
+
+    That is where the cells come over and those that lie ahead are not fewer than M; half of the
+    cell that the agent is in counts to either. Where M forbids nothing the potential does not
+    count, nor does an agent that stays around.
+    """
+    count = further_on_edges(grid, task.body, before, cell, dx, dy, count)
+    if count > 0.0 and not task.hold:
+        ahead = float(potential[cell, EDGES])
+        if ahead > 0.0 and count + ahead - 0.5 >= task.edge_cells:
+            return TOO_MANY
+    return count
+
+
+@inlined
 def time_cost(task: Task, left_m: float, speed: float, seconds: float) -> float:
     """Seconds that a stretch is worth: its time, more when faster than preferred, none while
     standing at the goal."""
@@ -151,4 +199,4 @@ def wall_cost(task: Task, clearance: float, seconds: float) -> float:
 def needed_clearance(world: World, task: Task) -> float:
     """The radius, or less for an agent that starts closer to a wall, so that it can come out."""
     here = clearance_at(world.grid, task.body, task.cell, task.x, task.y)
-    return min(task.radius_m, max(0.0, here)) - 1e-6
+    return min(task.radius_m - SLACK_M, max(0.0, here)) - 1e-6

@@ -141,7 +141,7 @@ def settle_all(zone: Handle[Zone], tick_s: float) -> None:
     """Take the tick over into the agents' own state: where they are, why, and their plans."""
     z = zone.value
     agents = z.agents
-    settle(agents, z.decisions, z.positions, z.cells, tick_s)
+    settle(z.world.grid, agents, z.decisions, z.positions, z.cells, tick_s)
     agents.reasons[:] = z.decisions.reasons
     agents.planned[:, :, :2] = z.decisions.paths
     agents.planned[:, :, 2] = 0.0

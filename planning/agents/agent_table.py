@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from esplanade.planning.agents._passage_kernels import PASSAGE
 from esplanade.planning.agents.agents import PARAMETERS, WAITING, Agents
 
-VERSION: Final = 2
+VERSION: Final = 3
 """Version of the data that `AgentTable.save` gives; `load` takes no other."""
 FORMAT: Final = "esplanade.agents"
 
@@ -30,6 +30,9 @@ class Trips(NamedTuple):
     the place that the agent shows to people, nan for none. Its behaviour is asked again at
     `ask_at_s` (A,) s, and when `arrived` is no longer what it was when last asked,
     `arrived_when_asked` (A,). For `reason_s` (A,) s its reason has been what it is now.
+    The goal was moved by `moved_m` (A,) m to where the body fits, for the reason `moved_why` (A,),
+    a `MoveReason`, if by more than 0.25 m; both are 0 otherwise. An agent that is `strict` (A,)
+    does not go to a goal that would have to be moved so.
     """
 
     wanted: NDArray[np.float64]
@@ -39,6 +42,9 @@ class Trips(NamedTuple):
     ask_at_s: NDArray[np.float64]
     arrived_when_asked: NDArray[np.bool_]
     reason_s: NDArray[np.float64]
+    moved_m: NDArray[np.float64]
+    moved_why: NDArray[np.int64]
+    strict: NDArray[np.bool_]
 
 
 _DERIVED: Final = ("bodies", "contacts", "potential_rows", "ranks")
@@ -268,6 +274,7 @@ def _no_agents(instants: int) -> Agents:
         headings=np.zeros(0),
         heights=np.zeros(0),
         layers=np.zeros(0, dtype=np.int64),
+        on_edges=np.zeros(0),
         reasons=np.zeros(0, dtype=np.int64),
         planned=np.zeros((0, instants, 3)),
     )
@@ -282,4 +289,7 @@ def _no_trips() -> Trips:
         ask_at_s=np.zeros(0),
         arrived_when_asked=np.zeros(0, dtype=np.bool_),
         reason_s=np.zeros(0),
+        moved_m=np.zeros(0),
+        moved_why=np.zeros(0, dtype=np.int64),
+        strict=np.zeros(0, dtype=np.bool_),
     )

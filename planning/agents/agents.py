@@ -50,7 +50,8 @@ class Agents(NamedTuple):
 
     Their places: `positions` (A, 2) m, `velocities` (A, 2) m/s, `headings` (A,) rad from +x,
     `cells` (A,) that they stand in, -1 where nobody can stand, `heights` (A,) m of the floor there
-    and `layers` (A,) of it; `reasons` (A,) codes of why they do what they do.
+    and `layers` (A,) of it; `on_edges` (A,) is the way that they have come on edges since they left
+    stable ground or were put there, in cells; `reasons` (A,) codes of why they do what they do.
 
     Their paths: `goals` (A, 2) m; `potential_rows` (A,) of the pool, -1 without a goal; `planned`
     (A, K, 3) m is the plan of the latest tick, from that tick's beginning, with heights. `known`
@@ -79,6 +80,7 @@ class Agents(NamedTuple):
     headings: NDArray[np.float64]
     heights: NDArray[np.float64]
     layers: NDArray[np.int64]
+    on_edges: NDArray[np.float64]
     reasons: NDArray[np.int64]
     planned: NDArray[np.float64]
 

@@ -20,7 +20,8 @@ from esplanade.planning.agents.agents import Decisions
 from esplanade.planning.agents.search import compass_moves, make_workspace
 from esplanade.planning.compiled.handle import hold_for
 from esplanade.planning.compiled.jit import compile_for
-from esplanade.planning.grid._grid_kernels import GridArrays
+from esplanade.planning.grid._grid_kernels import MEASURES, GridArrays, KindArrays
+from esplanade.planning.ground._barrier_kernels import LISTED
 from esplanade.planning.ground._geometry_kernels import BARRIER, BarrierIndex
 from esplanade.planning.ground.layered import PLACE, LayeredArrays
 from esplanade.planning.people._prediction_kernels import Prediction
@@ -43,7 +44,15 @@ def _ground() -> tuple[GridArrays, BarrierIndex]:
     layered = LayeredArrays(
         _array(3, np.int32), floats, floats, links, _array(1, PLACE), floats, *box, 0.25, 1, 1
     )
-    grid = GridArrays(layered, _array(2, np.float32), _array(2, np.bool_), False)
+    kinds = KindArrays(
+        _array(2, np.int8),
+        _array(2, np.uint8),
+        _array(2, np.int32),
+        _array(1, LISTED),
+        _array(1, BARRIER),
+        _array(1, MEASURES),
+    )
+    grid = GridArrays(layered, _array(2, np.float32), _array(2, np.bool_), False, kinds)
     return grid, BarrierIndex(_array(1, BARRIER), integers, integers, 0.0, 0.0, 1.0, 1.0, 1, 1)
 
 

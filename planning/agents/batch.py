@@ -74,7 +74,7 @@ class Batch:
         self.field = RiskField(grid, risk, plan.slices, spread)
         self._moves = compass_moves()
         self._branching = len(self._moves.speeds) + 1
-        self._no_potential = np.full((len(grid.layered.floors), 3), np.inf, dtype=np.float32)
+        self._no_potential = np.full((len(grid.layered.floors), 4), np.inf, dtype=np.float32)
         self._pool = ThreadPoolExecutor(plan.threads, thread_name_prefix="planning")
         self._made_of: tuple[object, ...] = (None,)
         self._zone: Zone

@@ -84,7 +84,7 @@ def make_workspace(max_expansions: int, branching: int) -> Workspace:
     return Workspace(
         np.zeros(nodes, dtype=kernels.NODE),
         np.zeros(nodes, dtype=np.int64),
-        np.zeros(nodes, dtype=np.int64),
+        np.zeros(nodes),
         np.zeros(nodes, dtype=np.int64),
         np.zeros(nodes, dtype=np.int64),
         np.zeros(nodes, dtype=np.int64),

@@ -1,9 +1,9 @@
 """The free cell nearest to a place, on bare arrays."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import kernel
+from esplanade.planning.grid._grid_kernels import anchor_at, fits_at_anchor
 from esplanade.planning.grid._walking_kernels import GroundArrays
 from esplanade.planning.ground._geometry_kernels import Placement, crosses_any
 
@@ -16,7 +16,6 @@ def nearest_free_cell(
     ground: GroundArrays,
     body: int,
     clearance: float,
-    centres: NDArray[np.float64],
     placement: Placement,
     x: float,
     y: float,
@@ -26,9 +25,11 @@ def nearest_free_cell(
     """The free cell nearest to a place; -1 if none is.
 
     Only floors that differ from `z` by less than `within` metres count. `placement` is that of a
-    body at the place; `centres` (N, 2). What a floor is higher or lower counts as distance.
+    body at the place. What a floor is higher or lower counts as distance.
     """
-    floors, clear = ground.grid.layered.floors, ground.grid.clearance[body]
+    grid = ground.grid
+    floors, clear = grid.layered.floors, grid.clearance[body]
+    most_m = clearance - 0.7072 * grid.layered.cell_m
     near = np.empty(64, dtype=np.int64)
     aways = np.empty(64, dtype=np.float64)
     count = 0
@@ -36,9 +37,12 @@ def nearest_free_cell(
     least = np.inf
     for cell in range(len(floors)):
         apart = abs(floors[cell] - np.float32(z))
-        if not (clear[cell] >= np.float32(clearance) and apart < np.float32(within)):
+        if not (clear[cell] >= most_m and apart < np.float32(within)):
             continue
-        away = np.hypot(centres[cell, 0] - x, centres[cell, 1] - y) + apart
+        if clear[cell] < clearance and not fits_at_anchor(grid, body, cell, clearance):
+            continue
+        ax, ay = anchor_at(grid, body, cell)
+        away = np.hypot(ax - x, ay - y) + apart
         if away < least:
             least = away
             best = cell
@@ -55,7 +59,8 @@ def nearest_free_cell(
             if aways[k] < aways[nearest]:
                 nearest = k
         cell = near[nearest]
-        if not crosses_any(ground.barriers, placement, x, y, centres[cell, 0], centres[cell, 1]):
+        ax, ay = anchor_at(grid, body, cell)
+        if not crosses_any(ground.barriers, placement, x, y, ax, ay):
             return int(cell)
         aways[nearest] = np.inf
     return best

@@ -10,10 +10,52 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
+from esplanade.planning.ground._barrier_kernels import (
+    TOLERANCE_M,
+    height_to_climb,
+    point_barrier_distance,
+)
+from esplanade.planning.ground._geometry_kernels import LOW_ROOM_M, crosses
 from esplanade.planning.ground.layered import TILE, LayeredArrays, cell_index
+from esplanade.planning.traversal._anchor_kernels import PARTS, SLACK_M
 
+_HALF_DIAGONAL = 0.7072
+"""Of a cell, in cells."""
 FOLLOW_M = 1.0
 """`follow` goes to no surface further away in height than this, from one point to the next."""
+
+
+class KindArrays(NamedTuple):
+    """Where bodies of B kinds fit and can go from cell to cell, exactly."""
+
+    offsets: NDArray[np.int8]
+    """(E, 2): `Traversability.offsets` of each kind, one after the other as `entries` are;
+    `anchor_at` has the points."""
+    steps: NDArray[np.uint8]
+    """(B, N): `Traversability.steps` of each kind."""
+    first: NDArray[np.int32]
+    """(B, N): the first entry of each cell's list of barriers, among those of the kind of body; -1
+    without any."""
+    entries: NDArray[np.void]
+    """(E,) of `LISTED`."""
+    barriers: NDArray[np.void]
+    """(S,) of `BARRIER`."""
+    measures: NDArray[np.void]
+    """(B,) of `MEASURES`."""
+
+
+MEASURES = np.dtype(
+    [
+        ("radius_m", "f8"),
+        ("height_m", "f8"),
+        ("step_on_m", "f8"),
+        ("leg_length_m", "f8"),
+        ("reach_m", "f8"),
+        ("entries", "i8"),
+    ]
+)
+"""Measures of a kind of body, how far from a cell's centre the barriers in its list pass, and where
+the entries of its lists begin."""
 
 
 class GridArrays(NamedTuple):
@@ -28,6 +70,7 @@ class GridArrays(NamedTuple):
     flat: bool
     """Whether there is only one layer, all of it at height 0, so that heights can be ignored. Cells
     inside obstacles then count as ground, with negative clearance."""
+    kinds: KindArrays
 
 
 @inlined
@@ -174,14 +217,84 @@ def corners(grid: GridArrays, cell: int, x: float, y: float) -> tuple[int, int, 
 
 @inlined
 def clearance_at(grid: GridArrays, body: int, cell: int, x: float, y: float) -> float:
-    """Clearance of a body at a point, interpolated between cells, metres; -inf without a cell."""
+    """Clearance of a body at a point, metres; -inf without a cell.
+
+    Near barriers, where it decides whether a body of that kind fits, it is exact; elsewhere it is
+    interpolated between cells.
+    """
     if cell < 0:
         return -np.inf
-    beside, over, across, u, v = corners(grid, cell, x, y)
     c = grid.clearance[body]
-    lower = (1.0 - u) * c[cell] + u * c[beside]
+    own = c[cell]
+    half_m = _HALF_DIAGONAL * grid.layered.cell_m
+    least = own - half_m
+    if 0.0 <= own < grid.kinds.measures[body]["radius_m"] + half_m:
+        exact_m = grid.kinds.measures[body]["reach_m"] - half_m
+        low_m = max(0.0, grid.kinds.measures[body]["radius_m"] - LOW_ROOM_M)
+        exact = _exact_clearance(grid, body, cell, x, y, own < half_m + low_m)
+        if exact < exact_m:
+            return exact
+        least = exact_m
+    beside, over, across, u, v = corners(grid, cell, x, y)
+    lower = (1.0 - u) * own + u * c[beside]
     upper = (1.0 - u) * c[over] + u * c[across]
-    return float((1.0 - v) * lower + v * upper)
+    room = float((1.0 - v) * lower + v * upper)
+    if own < 0.0:  # the centre is inside an obstacle: nobody fits in half a cell around it
+        return min(room, half_m)
+    return float(max(room, least))
+
+
+@inlined
+def anchor_at(grid: GridArrays, body: int, cell: int) -> tuple[float, float]:
+    """The point of a cell that paths of a kind of body go through, metres."""
+    layered, kinds = grid.layered, grid.kinds
+    u = layered.places[cell]["column"] + 0.5
+    v = layered.places[cell]["row"] + 0.5
+    entry = kinds.first[body, cell]
+    if entry >= 0:  # `anchor_of` without slices of arrays
+        entry += kinds.measures[body]["entries"]
+        u += kinds.offsets[entry, 0] / PARTS
+        v += kinds.offsets[entry, 1] / PARTS
+    return layered.x0 + u * layered.cell_m, layered.y0 + v * layered.cell_m
+
+
+@inlined
+def _exact_clearance(
+    grid: GridArrays, body: int, cell: int, x: float, y: float, divided: bool
+) -> float:
+    """Distance from a point to the nearest barrier in the list of its cell; inf without any.
+
+    Low obstacles count as further away (`room_at`). If the cell is divided by a barrier, the
+    distance is negative on the side where the body does not fit.
+    """
+    kinds = grid.kinds
+    m = kinds.measures[body]
+    floor = floor_of(grid, cell)
+    ax, ay = anchor_at(grid, body, cell)
+    best = np.inf
+    behind = False
+    entry = kinds.first[body, cell]
+    while entry >= 0:
+        listed = kinds.entries[m["entries"] + entry]
+        barrier = kinds.barriers[listed["barrier"]]
+        entry = listed["next"]
+        climb = height_to_climb(barrier, floor, floor, m["height_m"])
+        if climb <= m["step_on_m"] + TOLERANCE_M:
+            continue
+        d = point_barrier_distance(barrier, x, y)
+        if climb <= m["leg_length_m"] + TOLERANCE_M:
+            d += max(0.0, m["radius_m"] - LOW_ROOM_M)
+        best = min(best, d)
+        if divided and not behind:
+            behind = crosses(barrier, ax, ay, x, y)
+    return -best if behind else best
+
+
+@inlined
+def fits_at_anchor(grid: GridArrays, body: int, cell: int, radius: float) -> bool:
+    """Whether a disc fits at the anchor of a cell."""
+    x, y = anchor_at(grid, body, cell)
+    return clearance_at(grid, body, cell, x, y) >= radius - SLACK_M
 
 
 @kernel
@@ -206,10 +319,14 @@ def line_is_clear(
         u = s / way if way > 0.0 else 0.0
         x = ax + u * (bx - ax)
         y = ay + u * (by - ay)
-        cell = follow(grid, cell, x, y)
-        room = clearance_at(grid, body, cell, x, y) - radius
+        there = follow(grid, cell, x, y)
+        room = clearance_at(grid, body, there, x, y) - radius
         if room < 0.0:
             return False
+        rise = abs(floor_of(grid, there) - floor_of(grid, cell))
+        if rise > grid.kinds.measures[body]["step_on_m"] + TOLERANCE_M:
+            return False
+        cell = there
         if s >= way:
             return True
         step = max(room, shortest) if grid.flat else min(max(room, shortest), grid.layered.cell_m)

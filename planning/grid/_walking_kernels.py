@@ -8,15 +8,23 @@ from numpy.typing import NDArray
 from esplanade.planning.compiled.handle import Handle
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.grid._grid_kernels import GridArrays, corners, follow, surface_at
-from esplanade.planning.ground._barrier_kernels import point_barrier_distance
+from esplanade.planning.ground._barrier_kernels import (
+    TOLERANCE_M,
+    Measures,
+    height_to_climb,
+    point_barrier_distance,
+)
 from esplanade.planning.ground._geometry_kernels import (
+    LOW_ROOM_M,
     BarrierIndex,
     Placement,
     point_segment_distance,
     slide,
-    stops,
 )
 from esplanade.planning.ground.layered import TILE
+
+_SHORTEST_M = 0.05
+"""Where the floor ahead is too high or low, shorter pieces than this are not tried."""
 
 
 class GroundArrays(NamedTuple):
@@ -53,6 +61,7 @@ def walk(
     index: BarrierIndex,
     height_m: float,
     step_on_m: float,
+    leg_length_m: float,
     cell: int,
     x: float,
     y: float,
@@ -68,20 +77,28 @@ def walk(
     """
     bounds = (grid.layered.x0, grid.layered.y0, grid.layered.x1, grid.layered.y1)
     if grid.flat:
-        placement = Placement(0.0, 0.0, height_m, step_on_m)
+        placement = Placement(0.0, 0.0, height_m, step_on_m, leg_length_m)
         nx, ny = slide(index, placement, bounds, x, y, dx, dy, clearance)
         return follow(grid, cell, nx, ny), nx, ny
-    pieces = max(1, int(np.ceil(np.hypot(dx, dy) / (0.8 * grid.layered.cell_m))))
-    for _ in range(pieces):
+    way_m = np.hypot(dx, dy)
+    part = 1.0 / max(1, int(np.ceil(way_m / (0.8 * grid.layered.cell_m))))
+    done = 0.0
+    while done < 1.0 - 1e-9:
+        part = min(part, 1.0 - done)
         support = _support(grid, cell, x, y, step_on_m)
-        placement = Placement(float(grid.layered.floors[cell]), support, height_m, step_on_m)
-        nx, ny = slide(index, placement, bounds, x, y, dx / pieces, dy / pieces, clearance)
+        floor = float(grid.layered.floors[cell])
+        placement = Placement(floor, support, height_m, step_on_m, leg_length_m)
+        nx, ny = slide(index, placement, bounds, x, y, part * dx, part * dy, clearance)
         other = follow(grid, cell, nx, ny)
         if (
             other < 0
             or abs(grid.layered.floors[other] - grid.layered.floors[cell]) > step_on_m + 1e-4
         ):
+            if part * way_m > _SHORTEST_M:
+                part *= 0.5  # two treads at once are too high, one after the other they are not
+                continue
             break
+        done += part
         cell = other
         x = nx
         y = ny
@@ -94,6 +111,7 @@ def walk_many(
     index: BarrierIndex,
     height_m: float,
     step_on_m: float,
+    leg_length_m: float,
     cells: NDArray[np.int64],
     positions: NDArray[np.float64],
     displacements: NDArray[np.float64],
@@ -108,6 +126,7 @@ def walk_many(
             index,
             height_m,
             step_on_m,
+            leg_length_m,
             cells[n],
             positions[n, 0],
             positions[n, 1],
@@ -121,26 +140,24 @@ def walk_many(
 def lower_to_barriers(
     grid: GridArrays,
     index: BarrierIndex,
-    height_m: float,
-    step_on_m: float,
+    body: Measures,
     reach: float,
     box: tuple[float, float, float, float],
     field: NDArray[np.float32],
 ) -> None:
     """Lower a field (N,), preset to `reach`, to the distances of cells from barriers, in metres.
 
-    Barriers that do not stop the body are ignored. Only cells whose centres lie in `box`
-    (x0, y0, x1, y1) are lowered.
+    Barriers that do not stop the body are ignored, low ones count as further away (`room_at`). Only
+    cells whose centres lie in `box` (x0, y0, x1, y1) are lowered.
     """
     layered, barriers = grid.layered, index.barriers
     pages, cell_m = layered.pages, layered.cell_m
     tile_m = TILE * cell_m
     x0, y0, x1, y1 = box
-    body = height_m, step_on_m
     highest = np.full(len(layered.level_headroom), reach, dtype=np.float32)
     for s in range(len(barriers)):
         barrier = barriers[s]
-        if step_on_m >= barrier["climb_m"]:
+        if body.step_on_m >= barrier["climb_m"]:
             continue
         ax, ay, bx, by = barrier["x0"], barrier["y0"], barrier["x1"], barrier["y1"]
         i0 = max(0, int((max(x0, min(ax, bx) - reach) - layered.x0) / cell_m) - 1)
@@ -167,7 +184,7 @@ def lower_to_barriers(
 def _lower_tile(
     grid: GridArrays,
     barrier: np.void,
-    body: tuple[float, float],
+    body: Measures,
     page: int,
     rows: tuple[int, int],
     columns: tuple[int, int],
@@ -175,12 +192,17 @@ def _lower_tile(
 ) -> None:
     """`lower_to_barriers` for one barrier and some cells of one tile."""
     layered = grid.layered
-    height_m, step_on_m = body
+    low_m = max(0.0, body.radius_m - LOW_ROOM_M)
     for j in range(rows[0], rows[1]):
         for i in range(columns[0], columns[1]):
             cell = page + (j % TILE) * TILE + i % TILE
             floor = 0.0 if grid.flat else float(layered.floors[cell])
-            if stops(barrier, Placement(floor, floor, height_m, step_on_m)):
-                x = layered.x0 + (i + 0.5) * layered.cell_m
-                y = layered.y0 + (j + 0.5) * layered.cell_m
-                field[cell] = min(field[cell], point_barrier_distance(barrier, x, y))
+            climb = height_to_climb(barrier, floor, floor, body.height_m)
+            if climb <= body.step_on_m + TOLERANCE_M:
+                continue
+            x = layered.x0 + (i + 0.5) * layered.cell_m
+            y = layered.y0 + (j + 0.5) * layered.cell_m
+            d = point_barrier_distance(barrier, x, y)
+            if climb <= body.leg_length_m + TOLERANCE_M:
+                d += low_m
+            field[cell] = min(field[cell], d)

@@ -20,4 +20,4 @@ class BodiesChange:
     rows: Mapping[Body, int]
     """Rows of all kinds of body in these arrays."""
     known: Mapping[Body, KnownTraversability]
-    """Of the kinds that are new."""
+    """Of all these kinds."""

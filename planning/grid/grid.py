@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from copy import copy
+from dataclasses import replace
 from pathlib import Path
 from typing import Self
 
@@ -14,7 +16,7 @@ from esplanade.planning.compiled.handle import Handle, make_handle
 from esplanade.planning.grid import _free_place_kernels as free_places
 from esplanade.planning.grid import _grid_kernels as kernels
 from esplanade.planning.grid import _walking_kernels as walking
-from esplanade.planning.grid._grid_kernels import GridArrays
+from esplanade.planning.grid._grid_kernels import GridArrays, KindArrays
 from esplanade.planning.grid._walking_kernels import GroundArrays
 from esplanade.planning.grid.barrier_buckets import index_barriers
 from esplanade.planning.grid.bodies_change import BodiesChange
@@ -22,12 +24,12 @@ from esplanade.planning.grid.body_rows import BodyRows
 from esplanade.planning.grid.clearances import (
     CLEARANCE_CAP_M,
     cells_within,
-    centres_of,
     kind_of,
     with_row,
     write_clearance,
 )
 from esplanade.planning.grid.door_change import DoorChange
+from esplanade.planning.grid.kinds import kind_arrays, moved, shared_with
 from esplanade.planning.grid.lookup import PlaceLookup
 from esplanade.planning.ground._geometry_kernels import Placement
 from esplanade.planning.ground.barriers import Barriers
@@ -38,7 +40,8 @@ from esplanade.planning.scene.bodies import Body
 from esplanade.planning.scene.doors import Doors
 from esplanade.planning.scene.mesh_file import Up
 from esplanade.planning.scene.scene import Scene
-from esplanade.planning.traversal.cache import TraversabilityCache
+from esplanade.planning.traversal.cache import KnownTraversability, TraversabilityCache
+from esplanade.planning.traversal.edge_runs import EdgeRuns
 from esplanade.planning.traversal.stability import Stability
 
 ADULT = Body.adult()
@@ -50,7 +53,7 @@ class LayeredGrid(PlaceLookup):
 
     Places are given by x, y and a height, in metres: the standing surface nearest in height is
     meant. A disc of radius r may stand where the clearance of its kind of body is at least r; that
-    set is the complement of its C-obstacles. Memory is some 60 bytes a cell, and 5 more for each
+    set is the complement of its C-obstacles. Memory is some 52 bytes a cell, and 13 more for each
     kind of body.
     """
 
@@ -64,10 +67,11 @@ class LayeredGrid(PlaceLookup):
             np.zeros((0, cells), dtype=np.float32),
             np.zeros((0, cells), dtype=np.bool_),
             flat,
+            kind_arrays(floors.barriers, cells, []),
         )
         self.traversability = TraversabilityCache(floors)
+        self._edge_runs = EdgeRuns(floors)
         self.index = index_barriers(floors.barriers, self.bounds)
-        self.centres = centres_of(layered)
         self._held = self.arrays, make_handle(GroundArrays(self.arrays, self.index))
         self._rows = BodyRows()
         self._forked = self.arrays
@@ -123,16 +127,20 @@ class LayeredGrid(PlaceLookup):
         body = kind_of(body)
         row = self._rows.get(body)
         if row is None:
+            before = set(self._rows)
             row = self._rows.free_row(body)
+            for forgotten in before.difference(self._rows):
+                self.traversability.forget(forgotten)
             a = self.arrays
             everywhere = np.arange(len(a.layered.floors))
             field = np.empty(len(everywhere), dtype=np.float32)
             write_clearance(a, self.index, body, self.bounds, everywhere, field)
+            self._rows.add(body, row)
             self.arrays = a._replace(
                 clearance=with_row(a.clearance, row, field),
                 edges=with_row(a.edges, row, self._edges(body, everywhere)),
+                kinds=self._derive_kinds(),
             )
-            self._rows.add(body, row)
         return row
 
     def claim(self, body: Body) -> int:
@@ -171,10 +179,7 @@ class LayeredGrid(PlaceLookup):
 
     def bodies_change(self, fork: LayeredGrid) -> BodiesChange:
         """Return what a fork has learnt of new bodies, to be applied if this is unchanged."""
-        known = {}
-        if not self.arrays.flat:
-            new = [kind for kind in fork._rows if kind not in self._rows]
-            known = {kind: fork.traversability.known(kind) for kind in new}
+        known = {kind: fork.traversability.known(kind) for kind in fork._rows}
         return BodiesChange(fork._forked, fork.arrays, fork._rows.all(), known)
 
     def apply_bodies(self, change: BodiesChange) -> bool:
@@ -189,11 +194,40 @@ class LayeredGrid(PlaceLookup):
         self.arrays = change.arrays
         return True
 
+    def _derive_kinds(self) -> KindArrays:
+        """Where each known kind of body fits, row by row; traversabilities share the arrays."""
+        known = self._by_row(self.traversability.known)
+        found = [one.traversability for one in known]
+        kinds = kind_arrays(self.barriers, len(self.layered.floors), found)
+        self._share(kinds, known)
+        return kinds
+
+    def _by_row(self, of: Callable[[Body], KnownTraversability]) -> list[KnownTraversability]:
+        """The traversabilities of all known kinds of body, in the order of their rows."""
+        bodies = {row: body for body, row in self._rows.all().items()}
+        return [of(bodies[row]) for row in range(len(bodies))]
+
+    def _share(self, kinds: KindArrays, known: Sequence[KnownTraversability]) -> None:
+        """Keep traversabilities, row by row, with the arrays of kinds of body."""
+        for body, row in self._rows.all().items():
+            one = known[row]
+            shared = shared_with(kinds, row, one.traversability)
+            self.traversability.keep({body: replace(one, traversability=shared)})
+
     def _edges(self, body: Body, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Whether a body is on an edge in each of some cells, bool (K,)."""
         if self.arrays.flat:
             return np.zeros(len(cells), dtype=np.bool_)
         return np.isin(self.traversability.of(body).classes[cells], _EDGES)
+
+    def bounds_edges(self, body: Body) -> bool:
+        """Whether a body's bound on cells on edges in a row can forbid any way here.
+
+        Cost O(cells) at the first call for a kind of body.
+        """
+        if self.arrays.flat:
+            return False
+        return self._edge_runs.longest(kind_of(body), self.traversability) >= body.edge_cells
 
     @property
     def ground(self) -> Handle[GroundArrays]:
@@ -248,15 +282,19 @@ class LayeredGrid(PlaceLookup):
         index = self.index._replace(barriers=barriers)
         reach = CLEARANCE_CAP_M
         box = (x0 - reach, y0 - reach, x1 + reach, y1 + reach)
-        near = cells_within(self.layered, self.centres, box)
+        near = cells_within(self.layered, box)
         clearance, edges = base.clearance.copy(), base.edges.copy()
         known = {}
         for body, row in bodies.items():
             write_clearance(base, index, body, box, near, clearance[row])
+            known[body] = self.traversability.prepare(body, barriers)
             if not base.flat:
-                known[body] = self.traversability.prepare(body, barriers)
                 edges[row, near] = np.isin(known[body].traversability.classes[near], _EDGES)
-        arrays = base._replace(clearance=clearance, edges=edges)
+        kinds = moved(base.kinds, [one.traversability for one in self._by_row(known.__getitem__)])
+        for body, row in bodies.items():
+            shared = shared_with(kinds, row, known[body].traversability)
+            known[body] = replace(known[body], traversability=shared)
+        arrays = base._replace(clearance=clearance, edges=edges, kinds=kinds)
         return DoorChange(name, is_open, base, arrays, known)
 
     def apply_door(self, change: DoorChange) -> None:
@@ -317,7 +355,7 @@ class LayeredGrid(PlaceLookup):
         clearance_m: float,
         body: Body = ADULT,
     ) -> tuple[float, float] | None:
-        """The position itself when free, else the centre of the nearest free cell on its level.
+        """The position itself when free, else the anchor of the nearest free cell on its level.
 
         Within a metre, cells on this side of walls are preferred. Cells whose floors differ from
         `height` by less than half the body's height are on its level; without a free cell on that
@@ -329,17 +367,16 @@ class LayeredGrid(PlaceLookup):
         row = self.row_of(body)
         free_here = self.is_free([position], [height], clearance_m, body)[0]
         floor = self.floor_at(position, height)
-        placement = Placement(floor, floor, body.height_m, body.step_on_m)
+        placement = Placement(floor, floor, body.height_m, body.step_on_m, body.leg_length_m)
         ground = GroundArrays(self.arrays, self.index)
         for within_m in (level_m, math.inf):
             if free_here and floor - height < within_m:
                 return x, y
             cell = free_places.nearest_free_cell(
-                ground, row, clearance_m, self.centres, placement, x, y, float(height), within_m
+                ground, row, clearance_m, placement, x, y, float(height), within_m
             )
             if cell >= 0:
-                x, y = self.centres[cell].tolist()
-                return x, y
+                return kernels.anchor_at(self.arrays, row, cell)
         return None
 
     def walk(
@@ -380,6 +417,7 @@ class LayeredGrid(PlaceLookup):
             self.index,
             body.height_m,
             body.step_on_m,
+            body.leg_length_m,
             cells,
             out,
             moves,

@@ -1,16 +1,11 @@
-"""Ledges on bare arrays: barriers where floors end or change height between neighbouring cells."""
-
-from typing import NamedTuple
+"""Barriers on bare arrays: outlines of solids, and lintels of meshes between neighbouring cells."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
-from esplanade.planning.ground._geometry_kernels import segments_cross
 from esplanade.planning.ground._surface_kernels import (
-    LEAST_HEADROOM_M,
     SolidArrays,
-    SolidColumns,
     top_at,
 )
 from esplanade.planning.ground.layered import (
@@ -24,7 +19,7 @@ from esplanade.planning.ground.layered import (
 
 LEAST_STEP_M = 0.1
 """Floors that differ by less count as level, since everybody steps that high."""
-_PIECE_RISE_M = 0.25
+PIECE_RISE_M = 0.25
 """The side of a ramp is cut into pieces whose tops rise by no more than this."""
 _BELOW_M = 0.05
 """The barrier of a ledge begins this far below its upper floor."""
@@ -53,16 +48,6 @@ FACE = np.dtype(
 from (x0, y0) to (x1, y1), in metres."""
 
 
-class Sides(NamedTuple):
-    """The solids of a scene and the steep faces of a mesh, which may stand beside floors."""
-
-    solids: SolidColumns
-    face_starts: NDArray[np.int64]
-    """(columns + 1,): where the faces of each column begin (CSR)."""
-    faces: NDArray[np.void]
-    """(R,) of `FACE`, column by column."""
-
-
 @kernel
 def outlines(solids: SolidArrays, out: NDArray[np.void]) -> int:
     """Write the sides of solids, up to their tops, as barriers into `out`, (S,) of `BARRIER`.
@@ -79,19 +64,19 @@ def outlines(solids: SolidArrays, out: NDArray[np.void]) -> int:
             ax, ay = solids.points[a]
             ux, uy = solids.points[b, 0] - ax, solids.points[b, 1] - ay
             rise = abs(top_at(solids, k, ax + ux, ay + uy) - top_at(solids, k, ax, ay))
-            pieces = max(1, int(np.ceil(rise / _PIECE_RISE_M - 1e-9)))
+            pieces = max(1, int(np.ceil(rise / PIECE_RISE_M - 1e-9)))
             for piece in range(pieces):
                 u, v = piece / pieces, (piece + 1) / pieces
                 px, py, qx, qy = ax + u * ux, ay + u * uy, ax + v * ux, ay + v * uy
                 top = max(least, top_at(solids, k, px, py), top_at(solids, k, qx, qy))
                 if count < len(out):
-                    _write(out[count], (px, py, qx, qy), (solids.bottoms[k], top, np.inf))
+                    write_barrier(out[count], (px, py, qx, qy), (solids.bottoms[k], top, np.inf))
                 count += 1
     return count
 
 
 @inlined
-def _write(
+def write_barrier(
     barrier: np.void,
     line: tuple[float, float, float, float],
     heights: tuple[float, float, float],
@@ -117,78 +102,7 @@ def _common_edge(
 
 
 @inlined
-def _solid_stops(columns: SolidColumns, c: int, x: float, y: float, floor: float) -> bool:
-    """Whether the side of a solid in a column stops everybody on the floor beside it."""
-    s = columns.solids
-    for m in range(columns.starts[c], columns.starts[c + 1]):
-        k = columns.members[m]
-        top = top_at(s, k, x, y) + (0.0 if s.standable[k] else LINK_M)
-        if s.bottoms[k] < floor + LEAST_HEADROOM_M and top > floor + LINK_M:
-            return True
-    return False
-
-
-@inlined
-def _face_between(
-    sides: Sides, arrays: LayeredArrays, cell: int, d: int, low: float, high: float
-) -> bool:
-    """Whether one face between a cell and its neighbour reaches from `low` or less to `high`."""
-    j, i = arrays.places[cell]["row"], arrays.places[cell]["column"]
-    x = arrays.x0 + (i + 0.5) * arrays.cell_m
-    y = arrays.y0 + (j + 0.5) * arrays.cell_m
-    xx, yy = x + LINK_COLUMNS[d] * arrays.cell_m, y + LINK_ROWS[d] * arrays.cell_m
-    own = j * arrays.nx + i
-    for c in (own, own + LINK_ROWS[d] * arrays.nx + LINK_COLUMNS[d]):
-        for f in range(sides.face_starts[c], sides.face_starts[c + 1]):
-            face = sides.faces[f]
-            if (
-                face["bottom_m"] < low
-                and face["top_m"] > high
-                and segments_cross(x, y, xx, yy, face["x0"], face["y0"], face["x1"], face["y1"])
-            ):
-                return True
-    return False
-
-
-@inlined
-def _carrier(columns: SolidColumns, c: int, x: float, y: float, floor: float) -> int:
-    """The solid whose top is a floor; -1 if the floor is the ground."""
-    for m in range(columns.starts[c], columns.starts[c + 1]):
-        k = columns.members[m]
-        if columns.solids.standable[k] and abs(top_at(columns.solids, k, x, y) - floor) < _SAME_M:
-            return int(k)
-    return -1
-
-
-@inlined
-def _outline_between(
-    solids: SolidArrays, k: int, axis: int, line: tuple[float, float, float, float]
-) -> tuple[bool, tuple[float, float, float, float]]:
-    """The place where the outline of a solid passes between two cells that differ along an axis.
-
-    `line` is their common edge x0, y0, x1, y1. It is returned unchanged, with False, where no
-    outline passes within half a cell of it.
-    """
-    across = 1 - axis
-    low, high = line[across], line[across + 2]
-    middle, half = 0.5 * (low + high), 0.5 * (high - low)
-    ring = solids.points[solids.starts[k] : solids.starts[k + 1]]
-    p = ring[len(ring) - 1]
-    for q in ring:
-        if (p[across] > middle) != (q[across] > middle):
-            slope = (q[axis] - p[axis]) / (q[across] - p[across])
-            if abs(p[axis] + (middle - p[across]) * slope - line[axis]) <= half + _SAME_M:
-                u = max(min(p[across], q[across]), low)
-                v = min(max(p[across], q[across]), high)
-                a = p[axis] + (u - p[across]) * slope
-                b = p[axis] + (v - p[across]) * slope
-                return True, ((a, u, b, v) if axis == 0 else (u, a, v, b))
-        p = q
-    return False, line
-
-
-@inlined
-def _append(
+def append_barrier(
     out: NDArray[np.void],
     count: int,
     line: tuple[float, float, float, float],
@@ -196,8 +110,8 @@ def _append(
 ) -> int:
     """Append a barrier, or lengthen the last one if it goes straight on; returns the new count.
 
-    `line` and `heights` are those of `_write`. Barriers beyond the room in `out` are counted, not
-    written.
+    `line` and `heights` are those of `write_barrier`. Barriers beyond the room in `out` are
+    counted, not written.
     """
     x0, y0, x1, y1 = line
     bottom, top, climb = heights
@@ -215,71 +129,17 @@ def _append(
             last["x1"], last["y1"] = x1, y1
             return count
     if count < len(out):
-        _write(out[count], line, heights)
+        write_barrier(out[count], line, heights)
     return count + 1
 
 
 @inlined
-def _has_no_ledge(arrays: LayeredArrays, cell: int, d: int) -> bool:
-    """Whether a side of a cell has no ledge of its own.
+def ledge_heights(floor: float, ceiling: float, climb: float) -> tuple[float, float, float]:
+    """The heights of a ledge's barrier (bottom, top, climb), for its upper floor.
 
-    That is so on level ground, and towards W and S, where the neighbour writes the ledge.
+    It ends at the ceiling, since above it would concern nobody.
     """
-    other = arrays.links[cell, d]
-    return bool(
-        other >= 0 and (d >= 4 or abs(arrays.floors[other] - arrays.floors[cell]) < LEAST_STEP_M)
-    )
-
-
-@inlined
-def _ceiling(arrays: LayeredArrays, cell: int, d: int, floor: float) -> float:
-    """Height of the ceiling over a ledge: that of the cell or neighbour with the higher floor."""
-    higher = cell
-    if abs(arrays.floors[cell] - floor) > _SAME_M:
-        higher = arrays.links[cell, d]
-    return float(arrays.ceilings[higher])
-
-
-@inlined
-def _ledge(arrays: LayeredArrays, sides: Sides, cell: int, d: int) -> tuple[bool, float, float]:
-    """Whether a side of a cell that is not level has a ledge, its upper floor, and its climb."""
-    j = arrays.places[cell]["row"] + LINK_ROWS[d]
-    i = arrays.places[cell]["column"] + LINK_COLUMNS[d]
-    floor = float(arrays.floors[cell])
-    other = arrays.links[cell, d]
-    if other >= 0:
-        neighbour = float(arrays.floors[other])
-        return True, max(floor, neighbour), abs(floor - neighbour)
-    if not (0 <= j < arrays.ny and 0 <= i < arrays.nx):
-        return False, 0.0, 0.0
-    x = arrays.x0 + (i + 0.5) * arrays.cell_m
-    y = arrays.y0 + (j + 0.5) * arrays.cell_m
-    stopped = _solid_stops(sides.solids, j * arrays.nx + i, x, y, floor) or _face_between(
-        sides, arrays, cell, d, floor + LEAST_HEADROOM_M, floor + LINK_M
-    )
-    return not stopped, floor, np.inf
-
-
-@inlined
-def _ledge_line(
-    arrays: LayeredArrays, sides: Sides, cell: int, d: int, floor: float
-) -> tuple[bool, tuple[float, float, float, float]]:
-    """The line of a ledge: the outline of the solid that carries the floor (True), if one does.
-
-    Otherwise it is the common edge of the two cells (False).
-    """
-    axis = 0 if d in (0, 4) else 1
-    j, i = arrays.places[cell]["row"], arrays.places[cell]["column"]
-    if abs(arrays.floors[cell] - floor) > _SAME_M:
-        j += LINK_ROWS[d]
-        i += LINK_COLUMNS[d]
-    x = arrays.x0 + (i + 0.5) * arrays.cell_m
-    y = arrays.y0 + (j + 0.5) * arrays.cell_m
-    line = _common_edge(arrays, arrays.places[cell]["row"], arrays.places[cell]["column"], d)
-    k = _carrier(sides.solids, j * arrays.nx + i, x, y, floor)
-    if k < 0:
-        return False, line
-    return _outline_between(sides.solids.solids, k, axis, line)
+    return floor - _BELOW_M, min(floor + _ABOVE_M, ceiling), climb
 
 
 @kernel
@@ -313,40 +173,11 @@ def _cells_along(
 
 
 @kernel
-def ledges_towards(arrays: LayeredArrays, sides: Sides, d: int, out: NDArray[np.void]) -> int:
-    """Write the ledges of every cell towards its neighbour E (d = 0), N (2), W (4) or S (6).
-
-    Linked cells have a ledge if their floors differ, with the difference as its climb, except for
-    slopes up to 45 degrees. A cell whose neighbour is not linked has a ledge that nobody passes,
-    unless a solid or a face stops everybody there. `out` is (S,) of `BARRIER`. Returns the number
-    of ledges; those beyond the room in `out` are not written.
-    """
-    count = 0
-    cells = np.empty(max(arrays.ny, arrays.nx), dtype=np.int32)
-    for layer in range(arrays.pages.shape[0]):
-        for line in range(arrays.nx if d in (0, 4) else arrays.ny):
-            for cell in cells[: _cells_along(arrays, layer, line, d, 0.0, cells)]:
-                if _has_no_ledge(arrays, cell, d):
-                    continue
-                found, floor, climb = _ledge(arrays, sides, cell, d)
-                if not found:
-                    continue
-                exact, edge = _ledge_line(arrays, sides, cell, d, floor)
-                slope = climb <= 1.001 * arrays.cell_m and not exact
-                middle = floor - 0.5 * climb
-                if not slope or _face_between(sides, arrays, cell, d, middle, middle):
-                    # A barrier above the ceiling would concern nobody.
-                    top = min(floor + _ABOVE_M, _ceiling(arrays, cell, d, floor))
-                    count = _append(out, count, edge, (floor - _BELOW_M, top, climb))
-    return count
-
-
-@kernel
 def lintels_between(arrays: LayeredArrays, d: int, out: NDArray[np.void]) -> int:
     """Write barriers where ceilings change height between linked cells, low enough to hinder.
 
     Cells are compared with their neighbours to the east (d = 0) or north (d = 2); `out` and the
-    result are those of `ledges_towards`. Only meshes need lintels, since the exact outlines of
+    result are those of `outlines`. Only meshes need lintels, since the exact outlines of
     polygons are known.
     """
     count = 0
@@ -364,5 +195,5 @@ def lintels_between(arrays: LayeredArrays, d: int, out: NDArray[np.void]) -> int
                     edge = _common_edge(
                         arrays, arrays.places[cell]["row"], arrays.places[cell]["column"], d
                     )
-                    count = _append(out, count, edge, (low, low + _LINTEL_M, np.inf))
+                    count = append_barrier(out, count, edge, (low, low + _LINTEL_M, np.inf))
     return count

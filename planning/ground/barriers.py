@@ -10,12 +10,15 @@ from numpy.typing import NDArray
 
 from esplanade.planning.ground._geometry_kernels import BARRIER
 from esplanade.planning.ground._ledge_kernels import (
-    FACE,
-    Sides,
-    ledges_towards,
     lintels_between,
     outlines,
 )
+from esplanade.planning.ground._solid_ledge_kernels import (
+    SolidBuckets,
+    ledges_of_solids,
+    list_solids,
+)
+from esplanade.planning.ground._surface_kernels import SolidArrays
 from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.ground.surfaces import Surfaces
 from esplanade.planning.scene.scene import Door, Scene, Wall
@@ -23,27 +26,35 @@ from esplanade.planning.scene.scene import Door, Scene, Wall
 Barriers = NDArray[np.void]
 """(S,) of `BARRIER`, whose docstring says which bodies a barrier stops."""
 
-_SIDES = (0, 2, 4, 6)
+_BUCKET_M = 1.0
 
 
 def barriers_of_scene(scene: Scene, surfaces: Surfaces, arrays: LayeredArrays) -> Barriers:
     """Barriers of a scene of polygons, doors first, (S,). Cost O(cells + outlines)."""
-    columns = surfaces.solids
-    no_faces = np.empty(0, dtype=FACE)
-    sides = Sides(columns, np.zeros(len(columns.starts), dtype=np.int64), no_faces)
+    solids = surfaces.solids.solids
     strips = [*map(_door_barrier, scene.doors), *map(_wall_barrier, scene.walls)]
+    bounds = arrays.x0, arrays.y0, arrays.x1, arrays.y1
     return np.concatenate(
         [
             np.array(strips, dtype=BARRIER),
-            filled(BARRIER, outlines, columns.solids),
-            ledges(arrays, sides),
+            filled(BARRIER, outlines, solids),
+            filled(BARRIER, ledges_of_solids, solids, _buckets(solids, bounds), bounds),
         ]
     )
 
 
-def ledges(arrays: LayeredArrays, sides: Sides) -> Barriers:
-    """Barriers where floors end or change their height, (S,)."""
-    return np.concatenate([filled(BARRIER, ledges_towards, arrays, sides, d) for d in _SIDES])
+def _buckets(solids: SolidArrays, bounds: tuple[float, float, float, float]) -> SolidBuckets:
+    """The solids, listed by buckets."""
+    x0, y0, x1, y1 = bounds
+    nx = max(1, math.ceil((x1 - x0) / _BUCKET_M))
+    ny = max(1, math.ceil((y1 - y0) / _BUCKET_M))
+    place = (x0, y0, _BUCKET_M, nx, ny)
+    starts = np.zeros(nx * ny + 1, dtype=np.int64)
+    list_solids(solids, place, starts, np.empty(0, dtype=np.int64))
+    np.cumsum(starts, out=starts)
+    members = np.empty(starts[-1], dtype=np.int64)
+    list_solids(solids, place, starts, members)
+    return SolidBuckets(starts, members, *place)
 
 
 def lintels(arrays: LayeredArrays) -> Barriers:

@@ -16,7 +16,7 @@ from esplanade.planning.ground._gap_kernels import (
     insert_gaps,
 )
 from esplanade.planning.ground._geometry_kernels import BARRIER
-from esplanade.planning.ground._ledge_kernels import FACE, Sides
+from esplanade.planning.ground._ledge_kernels import FACE
 from esplanade.planning.ground._mesh_kernels import (
     grow_regions,
     hits_of_triangles,
@@ -24,8 +24,15 @@ from esplanade.planning.ground._mesh_kernels import (
     steep_faces,
     surfaces_of_hits,
 )
+from esplanade.planning.ground._rim_kernels import ledges_of_rims
 from esplanade.planning.ground._surface_kernels import TOP, Raster, SolidArrays, SolidColumns
-from esplanade.planning.ground.barriers import Barriers, filled, ledges, lintels
+from esplanade.planning.ground._triangle_kernels import (
+    TriangleBuckets,
+    find_rims,
+    kinds_of,
+    list_triangles,
+)
+from esplanade.planning.ground.barriers import Barriers, filled, lintels
 from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.ground.surfaces import MAX_LAYERS, Surfaces, linked, raster_of
 from esplanade.planning.scene.mesh_file import MeshError
@@ -35,6 +42,8 @@ Progress = Callable[[str, float], None]
 
 _BATCH = 4096
 _MOST_ROOM = 2**18
+_WIDEST_BUCKET_M = 0.5
+_LEAST_BUCKET_M = 0.1
 
 
 def no_progress(_doing: str, _share: float) -> None:
@@ -107,23 +116,53 @@ def barriers_of_triangles(
     triangles: NDArray[np.float64], surfaces: Surfaces, arrays: LayeredArrays
 ) -> Barriers:
     """Barriers on triangles (T, 3, 3): faces too steep to stand on, ledges and lintels, (S,)."""
-    starts, faces = _faces(triangles, surfaces)
-    steep = np.empty(len(faces), dtype=BARRIER)
-    for field in ("x0", "y0", "x1", "y1", "bottom_m", "top_m"):
-        steep[field] = faces[field]
-    steep["climb_m"] = math.inf
-    sides = Sides(surfaces.solids, starts, faces)
-    return np.concatenate([steep, ledges(arrays, sides), lintels(arrays)])
-
-
-def _faces(
-    triangles: NDArray[np.float64], surfaces: Surfaces
-) -> tuple[NDArray[np.int64], NDArray[np.void]]:
-    """Pieces of steep faces (R,) of `FACE`, listed by column (CSR)."""
     columns = surfaces.ny * surfaces.nx
     numbers = surfaces.rows.astype(np.int64) * surfaces.nx + surfaces.columns
     tops = np.zeros(columns + 1, dtype=np.int32)
     np.cumsum(np.bincount(numbers, minlength=columns), out=tops[1:])
+    faces = _faces(triangles, surfaces, tops)
+    steep = np.empty(len(faces), dtype=BARRIER)
+    for field in ("x0", "y0", "x1", "y1", "bottom_m", "top_m"):
+        steep[field] = faces[field]
+    steep["climb_m"] = math.inf
+    buckets = _buckets(triangles, surfaces.bounds)
+    place = surfaces.raster, tops, surfaces.floors
+    ledges = filled(BARRIER, ledges_of_rims, buckets, *place, room=_MOST_ROOM)
+    return np.concatenate([steep, ledges, lintels(arrays)])
+
+
+def _buckets(
+    triangles: NDArray[np.float64], bounds: tuple[float, float, float, float]
+) -> TriangleBuckets:
+    """The triangles with their rims, listed by buckets: small ones if there are many triangles."""
+    kinds = np.empty(len(triangles), dtype=np.uint8)
+    kinds_of(triangles, kinds)
+    rims = np.zeros(len(triangles), dtype=np.uint8)
+    find_rims(triangles, kinds, rims)
+    x0, y0, x1, y1 = bounds
+    bucket_m = min(
+        _WIDEST_BUCKET_M, max(_LEAST_BUCKET_M, math.sqrt((x1 - x0) * (y1 - y0) / len(triangles)))
+    )
+    while True:
+        nx = max(1, math.ceil((x1 - x0) / bucket_m))
+        ny = max(1, math.ceil((y1 - y0) / bucket_m))
+        place = (x0, y0, bucket_m, nx, ny)
+        starts = np.zeros(nx * ny + 1, dtype=np.int64)
+        list_triangles(triangles, kinds, place, starts, np.empty(0, dtype=np.int32))
+        np.cumsum(starts, out=starts)
+        if starts[-1] <= 8 * len(triangles) + _MOST_ROOM:
+            break
+        bucket_m *= 2.0
+    members = np.empty(starts[-1], dtype=np.int32)
+    list_triangles(triangles, kinds, place, starts, members)
+    return TriangleBuckets(triangles, kinds, rims, starts, members, *place)
+
+
+def _faces(
+    triangles: NDArray[np.float64], surfaces: Surfaces, tops: NDArray[np.int32]
+) -> NDArray[np.void]:
+    """Pieces of steep faces (R,) of `FACE`."""
+    columns = surfaces.ny * surfaces.nx
     room = min(8 * len(triangles), _MOST_ROOM)
     faces = filled(FACE, steep_faces, surfaces.raster, triangles, tops, surfaces.floors, room=room)
     faces = faces[np.argsort(faces["column"], kind="stable")]
@@ -131,9 +170,7 @@ def _faces(
     np.cumsum(np.bincount(faces["column"], minlength=columns), out=starts[1:])
     kept = np.empty(len(faces), dtype=np.bool_)
     join_faces(starts, faces, kept)
-    faces = faces[kept]
-    np.cumsum(np.bincount(faces["column"], minlength=columns), out=starts[1:])
-    return starts, faces
+    return faces[kept]
 
 
 def _no_solids(columns: int) -> SolidColumns:

@@ -13,6 +13,7 @@ from esplanade.planning.ground._geometry_kernels import Placement, in_bounds, ne
 
 PERSON_HEIGHT_M = 1.8
 PERSON_STEP_ON_M = 0.6
+PERSON_LEG_LENGTH_M = 0.9
 """All people are taken to be adults."""
 LIFT_M = 1.0
 """A person who is suddenly this much higher or lower was put there: the past does not count."""
@@ -173,7 +174,7 @@ def extrapolate(
     """
     grid, index = ground.value
     bounds = (grid.layered.x0, grid.layered.y0, grid.layered.x1, grid.layered.y1)
-    person = Placement(0.0, 0.0, PERSON_HEIGHT_M, PERSON_STEP_ON_M)
+    person = Placement(0.0, 0.0, PERSON_HEIGHT_M, PERSON_STEP_ON_M, PERSON_LEG_LENGTH_M)
     people, slices = prediction.sigmas.shape
     for p in range(people):
         x = places[p, 0]
@@ -192,7 +193,7 @@ def extrapolate(
                 nx = x
                 ny = y
                 if grid.flat and free_m <= step_m:
-                    near_m = nearest_barrier(index, person, x, y)[0]
+                    near_m = nearest_barrier(index, person, wall_clearance, x, y)[0]
                     free_m = min(near_m, index.reach_m) - wall_clearance
                 if grid.flat and free_m > step_m and in_bounds(bounds, x + dx, y + dy):
                     nx = x + dx  # nothing can be met in this slice
@@ -204,6 +205,7 @@ def extrapolate(
                         index,
                         PERSON_HEIGHT_M,
                         PERSON_STEP_ON_M,
+                        PERSON_LEG_LENGTH_M,
                         cell,
                         x,
                         y,

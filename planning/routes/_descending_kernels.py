@@ -4,7 +4,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import kernel
-from esplanade.planning.grid._grid_kernels import floor_of, length
+from esplanade.planning.grid._grid_kernels import (
+    anchor_at,
+    fits_at_anchor,
+    floor_of,
+    length,
+)
 from esplanade.planning.grid._walking_kernels import GroundArrays, walk
 from esplanade.planning.ground._geometry_kernels import Placement, crosses_any
 from esplanade.planning.routes._potential_kernels import PotentialValues, direction_at
@@ -19,7 +24,6 @@ def cells_to_begin_at(
     ground: GroundArrays,
     body: int,
     radius: float,
-    centres: NDArray[np.float64],
     placement: Placement,
     cell: int,
     x: float,
@@ -31,8 +35,10 @@ def cells_to_begin_at(
     that no barrier hides from the point.
     """
     grid = ground.grid
-    clear = grid.clearance[body]
-    if clear[cell] >= radius:
+    cx, cy = anchor_at(grid, body, cell)
+    if fits_at_anchor(grid, body, cell, radius) and not crosses_any(
+        ground.barriers, placement, x, y, cx, cy
+    ):
         return np.full(1, cell, dtype=np.int64)
     side = 2 * _RINGS + 1
     seen = np.empty(side * side, dtype=np.int64)
@@ -57,8 +63,8 @@ def cells_to_begin_at(
                     continue
                 seen[end] = other
                 end += 1
-                cx, cy = centres[other, 0], centres[other, 1]
-                if clear[other] >= radius and not crosses_any(
+                cx, cy = anchor_at(grid, body, other)
+                if fits_at_anchor(grid, body, other, radius) and not crosses_any(
                     ground.barriers, placement, x, y, cx, cy
                 ):
                     found[count] = other
@@ -74,6 +80,7 @@ def descend(
     ground: GroundArrays,
     height_m: float,
     step_on_m: float,
+    leg_length_m: float,
     clearance: float,
     potential: PotentialValues,
     settled: NDArray[np.uint8],
@@ -126,6 +133,7 @@ def descend(
             ground.barriers,
             height_m,
             step_on_m,
+            leg_length_m,
             cell,
             x,
             y,

@@ -1,6 +1,6 @@
 """Wave fronts that lead to a goal, on bare arrays.
 
-Both kinds fill the same array: for each cell a *waypoint* and its distance to the goal, so that the
+All kinds fill the same array: for each cell a *waypoint* and its distance to the goal, so that the
 potential anywhere in the cell is that distance plus the distance to the waypoint.
 """
 
@@ -9,10 +9,20 @@ from numpy.typing import NDArray
 
 from esplanade.planning.compiled._heap_kernels import heap_pop, heap_push
 from esplanade.planning.compiled.jit import inlined, kernel
-from esplanade.planning.grid._grid_kernels import GridArrays, follow, length, line_is_clear
+from esplanade.planning.grid._grid_kernels import (
+    GridArrays,
+    anchor_at,
+    follow,
+    length,
+    line_is_clear,
+)
+from esplanade.planning.traversal._anchor_kernels import SLACK_M
 
 PotentialValues = NDArray[np.float32]
-"""(N, 3): metres from the waypoint to the goal, waypoint x, waypoint y; inf where no path leads."""
+"""(N, 4): metres from the waypoint to the goal, waypoint x, waypoint y, and the number of cells on
+edges in a row from the cell on, 0 where they are not counted; inf where no path leads."""
+EDGES = 3
+"""The column of that number."""
 
 
 @inlined
@@ -34,37 +44,18 @@ def direction_at(
     """
     if cell < 0:
         return 0.0, 0.0, 0.0
-    left, wx, wy = potential[cell]
+    left, wx, wy, _ = potential[cell]
     if not np.isfinite(left):
         return 0.0, 0.0, 0.0
     leg = length(wx - x, wy - y)
     if leg < 0.25 * grid.layered.cell_m and left > 0.0:
         there = follow(grid, cell, wx, wy)
         if there >= 0:
-            left, wx, wy = potential[there]
+            left, wx, wy, _ = potential[there]
             leg = length(wx - x, wy - y)
     if leg < 1e-4:  # waypoints are rounded to float32
         return 0.0, 0.0, 0.0
     return (wx - x) / leg, (wy - y) / leg, leg
-
-
-@inlined
-def _passable_neighbour(
-    grid: GridArrays, body: int, step_on_m: float, radius: float, cell: int, direction: int
-) -> int:
-    """The neighbour in a direction, if a disc may pass to it without cutting a corner; else -1."""
-    clear = grid.clearance[body]
-    other = grid.layered.links[cell, direction]
-    if other < 0 or clear[other] < radius:
-        return -1
-    if abs(grid.layered.floors[other] - grid.layered.floors[cell]) > step_on_m:
-        return -1
-    if direction & 1:
-        one = grid.layered.links[cell, direction - 1]
-        two = grid.layered.links[cell, (direction + 1) & 7]
-        if one < 0 or two < 0 or min(clear[one], clear[two]) < radius:
-            return -1
-    return int(other)
 
 
 @kernel
@@ -96,10 +87,8 @@ def begin_wave(
 def grow_wave(
     grid: GridArrays,
     body: int,
-    step_on_m: float,
     radius: float,
     longest_sight: float,
-    centres: NDArray[np.float64],
     potential: PotentialValues,
     settled: NDArray[np.uint8],
     keys: NDArray[np.float64],
@@ -111,23 +100,25 @@ def grow_wave(
 ) -> bool:
     """Let a wave spread on; returns whether it has gone as far as it is wanted, or is over.
 
-    The wave spreads from cell to cell over the links, never cutting a corner. A cell that sees its
+    The wave spreads from anchor to anchor over the steps of a kind of body. A cell that sees its
     neighbour's waypoint within `longest_sight` metres takes that waypoint over, else the neighbour
     itself is its waypoint; at zero sight this is NF1. Lines of sight are tested once a cell, when
-    it leaves the heap. `keys` and `items` hold 8 entries a cell plus one; `centres` (N, 2).
+    it leaves the heap. `keys` and `items` hold 8 entries a cell plus one.
 
     It is wanted up to `margin` metres further than the nearest of the cells `targets` (K,); without
     any it spreads over all cells. At most `most` cells are settled in one call. Wherever a wave is
     stopped, the cells that it has settled are as they will be when it is over.
     """
+    steps, links = grid.kinds.steps[body], grid.layered.links
+    enough = radius - SLACK_M
     size = state[0]
     reached = state[1]
     until = np.inf
     for k in range(len(targets)):
         target = targets[k]
         if settled[target]:
-            there = potential_at(potential, target, centres[target, 0], centres[target, 1])
-            until = min(until, there + margin)
+            tx, ty = anchor_at(grid, body, target)
+            until = min(until, potential_at(potential, target, tx, ty) + margin)
     last = reached + most
     while size > 0:
         if keys[0] > until or reached >= last:
@@ -136,18 +127,16 @@ def grow_wave(
         size = heap_pop(keys, items, size)
         if settled[cell]:
             continue
-        x = centres[cell, 0]
-        y = centres[cell, 1]
+        x, y = anchor_at(grid, body, cell)
         own = potential[cell]
-        seen = longest_sight == 0.0 or line_is_clear(grid, body, cell, x, y, own[1], own[2], radius)
+        seen = longest_sight == 0.0 or line_is_clear(grid, body, cell, x, y, own[1], own[2], enough)
         if reached > 0 and not seen:
             own[0] = np.inf
             for direction in range(8):
-                other = _passable_neighbour(grid, body, step_on_m, radius, cell, direction)
-                if other < 0 or not settled[other]:
+                other = links[cell, direction]
+                if not steps[cell] >> direction & 1 or not settled[other]:
                     continue
-                cx = centres[other, 0]
-                cy = centres[other, 1]
+                cx, cy = anchor_at(grid, body, other)
                 left = potential_at(potential, other, cx, cy)
                 if left + length(cx - x, cy - y) < own[0] + length(own[1] - x, own[2] - y):
                     own[0] = left
@@ -161,11 +150,18 @@ def grow_wave(
             if targets[k] == cell:
                 until = min(until, potential_at(potential, cell, x, y) + margin)
         for direction in range(8):
-            other = _passable_neighbour(grid, body, step_on_m, radius, cell, direction)
+            other = links[cell, direction]
             if other < 0 or settled[other]:
                 continue
-            cx = centres[other, 0]
-            cy = centres[other, 1]
+            cx, cy = anchor_at(grid, body, other)
+            if not steps[cell] >> direction & 1 and not (
+                reached == 1
+                and longest_sight > 0.0
+                and abs(grid.layered.floors[other] - grid.layered.floors[cell])
+                <= grid.kinds.measures[body]["step_on_m"]
+                and line_is_clear(grid, body, other, cx, cy, own[1], own[2], enough)
+            ):
+                continue  # a goal may be where the body fits, in a cell whose anchor is elsewhere
             left = own[0]
             wx = own[1]
             wy = own[2]
@@ -187,22 +183,21 @@ def grow_wave(
 @kernel
 def extend_into_obstacles(
     grid: GridArrays,
-    step_on_m: float,
-    centres: NDArray[np.float64],
+    body: int,
     potential: PotentialValues,
     settled: NDArray[np.uint8],
 ) -> None:
     """Lead out of cells that are not free but lie next to reached ones, three rings deep.
 
     An agent closer to a wall than its radius then still finds the path. Distances over such cells
-    count threefold.
+    count threefold. Cells that are settled beyond these rings are left as they are.
     """
+    step_on_m = grid.kinds.measures[body]["step_on_m"]
     for ring in range(1, 4):
         for cell in range(len(settled)):
             if settled[cell] or grid.layered.floors[cell] != grid.layered.floors[cell]:
                 continue
-            x = centres[cell, 0]
-            y = centres[cell, 1]
+            x, y = anchor_at(grid, body, cell)
             best = np.inf
             for direction in range(8):
                 other = grid.layered.links[cell, direction]
@@ -210,8 +205,7 @@ def extend_into_obstacles(
                     continue
                 if abs(grid.layered.floors[other] - grid.layered.floors[cell]) > step_on_m:
                     continue
-                cx = centres[other, 0]
-                cy = centres[other, 1]
+                cx, cy = anchor_at(grid, body, other)
                 way = length(cx - x, cy - y)
                 left = potential_at(potential, other, cx, cy) + 2.0 * way
                 if left + way < best:

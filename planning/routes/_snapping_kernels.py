@@ -9,6 +9,7 @@ from esplanade.planning.ground._geometry_kernels import crosses
 from esplanade.planning.ground.layered import cell_index, cell_near
 from esplanade.planning.routes._straightening_kernels import is_clear
 from esplanade.planning.scene.heights import SAME_SURFACE_M
+from esplanade.planning.traversal._anchor_kernels import anchor_of
 from esplanade.planning.traversal._stability_kernels import FORBIDDEN
 from esplanade.planning.traversal.traversability import Traversability
 
@@ -30,7 +31,7 @@ def snap(
     """The cell and place where a body can stand that is nearest to (x, y, z); cell -1 if none.
 
     It is the point itself if the body fits there, else the nearest place within `SNAP_M`: in a
-    cell that is not Forbidden by `classes` (N,), at its side next to the point or in its centre.
+    cell that is not Forbidden by `classes` (N,), at its side next to the point or at its anchor.
     If there is a floor at the point, the place must lie within one straight step of it, which may
     lead through walls only with `through`; otherwise it may lie anywhere.
     """
@@ -41,8 +42,7 @@ def snap(
     floor, highest = z, SAME_SURFACE_M
     if own >= 0:
         floor, highest = float(arrays.floors[own]), body.step_on_m + TOLERANCE_M
-        cx = arrays.x0 + (arrays.places[own]["column"] + 0.5) * arrays.cell_m
-        cy = arrays.y0 + (arrays.places[own]["row"] + 0.5) * arrays.cell_m
+        cx, cy = anchor_of(arrays, traversability.near.first, traversability.offsets, own)
         if classes[own] != FORBIDDEN and is_clear(traversability, own, x, y, cx, cy):
             return own, x, y
     best, found, found_x, found_y = np.inf, -1, x, y
@@ -62,8 +62,11 @@ def snap(
                 cx = arrays.x0 + (ii + 0.5) * arrays.cell_m
                 cy = arrays.y0 + (jj + 0.5) * arrays.cell_m
                 qx, qy = min(max(x, cx - half), cx + half), min(max(y, cy - half), cy + half)
-                if not is_clear(traversability, cell, qx, qy, cx, cy):
-                    qx, qy = cx, cy
+                anchor_x, anchor_y = anchor_of(
+                    arrays, traversability.near.first, traversability.offsets, cell
+                )
+                if not is_clear(traversability, cell, qx, qy, anchor_x, anchor_y):
+                    qx, qy = anchor_x, anchor_y
                 aside = np.hypot(qx - x, qy - y)
                 away = np.hypot(aside, rise)
                 if away >= best or aside > SNAP_M:

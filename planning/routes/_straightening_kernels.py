@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
-from esplanade.planning.ground._barrier_kernels import (
-    TOLERANCE_M,
-    height_to_climb,
-    segment_barrier_distance,
+from esplanade.planning.ground.layered import LayeredArrays
+from esplanade.planning.traversal._anchor_kernels import (
+    anchor_of,
+    bend_between,
+    is_way_clear,
 )
-from esplanade.planning.ground._geometry_kernels import crosses
 from esplanade.planning.traversal._stability_kernels import FORBIDDEN, STABLE
 from esplanade.planning.traversal.traversability import Traversability
 
@@ -33,24 +33,10 @@ class Line(NamedTuple):
 def is_clear(
     traversability: Traversability, cell: int, ax: float, ay: float, bx: float, by: float
 ) -> bool:
-    """Whether a body keeps its radius from barriers on the segment ab within one cell."""
-    near, body = traversability.near, traversability.body
+    """Whether a body keeps clear of barriers on the segment ab within one cell."""
     floor = float(traversability.arrays.floors[cell])
-    entry = near.first[cell]
-    while entry >= 0:
-        barrier = near.barriers[near.entries[entry]["barrier"]]
-        entry = near.entries[entry]["next"]
-        step = height_to_climb(barrier, floor, floor, body.height_m)
-        if step <= body.step_on_m + TOLERANCE_M:
-            continue
-        if crosses(barrier, ax, ay, bx, by):
-            return False
-        if (
-            step > body.leg_length_m + TOLERANCE_M
-            and segment_barrier_distance(barrier, ax, ay, bx, by) < body.radius_m - TOLERANCE_M
-        ):
-            return False
-    return True
+    near, body = traversability.near, traversability.body
+    return is_way_clear(near, body, cell, floor, floor, ax, ay, bx, by)
 
 
 @inlined
@@ -161,6 +147,47 @@ def straighten(traversability: Traversability, line: Line, out: Line) -> int:
             used = trace(traversability, line, anchor, good, count, out, used)
         anchor = good
     return used
+
+
+@kernel
+def over_anchors(
+    traversability: Traversability, cells: NDArray[np.int32], counts: NDArray[np.int32], out: Line
+) -> int:
+    """Write the line over the anchors of cells (K,), and where links bend; its number of points."""
+    used = 0
+    for k in range(len(cells)):
+        if k > 0:
+            kind, x, y = bend_between(
+                traversability.arrays,
+                traversability.near,
+                traversability.body,
+                traversability.offsets,
+                cells[k - 1],
+                cells[k],
+            )
+            if kind == 2:
+                own = _has_inside(traversability.arrays, cells[k - 1], x, y)
+                out.xy[used] = (x, y)
+                out.cells[used] = cells[k - 1] if own else cells[k]
+                out.counts[used] = counts[k - 1] if own else counts[k]
+                used += 1
+        first, offsets = traversability.near.first, traversability.offsets
+        x, y = anchor_of(traversability.arrays, first, offsets, cells[k])
+        out.xy[used] = (x, y)
+        out.cells[used] = cells[k]
+        out.counts[used] = counts[k]
+        used += 1
+    return used
+
+
+@inlined
+def _has_inside(arrays: LayeredArrays, cell: int, x: float, y: float) -> bool:
+    """Whether a point lies in a cell, seen from above."""
+    j, i = arrays.places[cell]["row"], arrays.places[cell]["column"]
+    return bool(
+        0.0 <= x - arrays.x0 - i * arrays.cell_m <= arrays.cell_m
+        and 0.0 <= y - arrays.y0 - j * arrays.cell_m <= arrays.cell_m
+    )
 
 
 @kernel

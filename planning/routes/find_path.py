@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.planning.grid.clearances import kind_of
 from esplanade.planning.grid.grid import LayeredGrid
 from esplanade.planning.routes._snapping_kernels import snap
+from esplanade.planning.routes.moved_ends import MovedEnd, moved_end
 from esplanade.planning.routes.stable_bfp import stable_bfp
 from esplanade.planning.routes.straightening import headings, line_of_cells, straighten
 from esplanade.planning.scene.bodies import Body
@@ -32,9 +34,9 @@ class PathStatus(IntEnum):
     NO_WAY = 1
     """The body fits at start and goal, but no legal path leads from one to the other."""
     START_BLOCKED = 2
-    """The body fits nowhere within half a metre of the start."""
+    """The body fits nowhere within half a metre of the start, or not there with `strict`."""
     GOAL_BLOCKED = 3
-    """The body fits nowhere within half a metre of the goal."""
+    """The body fits nowhere within half a metre of the goal, or not there with `strict`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +52,10 @@ class LayeredPath:
     """(N,): headings of the body, radians from east toward north."""
     expansions: int = 0
     """Number of states that the search looked at."""
+    start_moved: MovedEnd | None = None
+    """How the start was moved, if by more than 0.25 m; with `strict`, how it would have been."""
+    goal_moved: MovedEnd | None = None
+    """The same of the goal."""
 
     @property
     def length_m(self) -> float:
@@ -75,7 +81,12 @@ def _checked(name: str, point: Point3, grid: LayeredGrid) -> Point3:
 
 
 def find_path(
-    grid: LayeredGrid, start: Point3, goal: Point3, body: Body | None = None
+    grid: LayeredGrid,
+    start: Point3,
+    goal: Point3,
+    body: Body | None = None,
+    *,
+    strict: bool = False,
 ) -> LayeredPath:
     """The shortest path that a body may walk from one point to another, on any floors.
 
@@ -86,7 +97,9 @@ def find_path(
         it is moved by half a metre at most, and through a wall only if it fits nowhere on this
         side, as inside a hollow wall.
     body : Body
-        An adult if not given.
+        An adult if not given. The path is that of its kind (`kind_of`), as live actors walk it.
+    strict : bool
+        There is no path if the start or the goal has to be moved by more than 0.25 m.
 
     Returns
     -------
@@ -100,6 +113,7 @@ def find_path(
     """
     body = Body.adult() if body is None else body
     start, goal = _checked("start", start, grid), _checked("goal", goal, grid)
+    body = replace(kind_of(body), edge_cells=body.edge_cells)
     traversability = grid.traversability.of(body)
     first, last = find_endpoint(traversability, start), find_endpoint(traversability, goal)
     if first is None:
@@ -114,7 +128,17 @@ def find_path(
         last = _moved(traversability, goal, last, regions == regions[first.cell]) or last
     if regions[first.cell] != regions[last.cell]:
         return _no_path(PathStatus.NO_WAY)
-    return find_route(traversability, first, last)
+    started, ended = _how_moved(grid, body, start, first), _how_moved(grid, body, goal, last)
+    if strict and (started or ended):
+        blocked = PathStatus.START_BLOCKED if started else PathStatus.GOAL_BLOCKED
+        return replace(_no_path(blocked), start_moved=started, goal_moved=ended)
+    path = find_route(traversability, first, last)
+    return replace(path, start_moved=started, goal_moved=ended)
+
+
+def _how_moved(grid: LayeredGrid, body: Body, asked: Point3, end: Endpoint) -> MovedEnd | None:
+    floor_m = float(grid.layered.floors[end.cell])
+    return moved_end(grid, body, asked, (end.x, end.y, floor_m))
 
 
 class Endpoint(NamedTuple):

@@ -18,6 +18,7 @@ from esplanade.planning.routes import _potential_kernels as kernels
 from esplanade.planning.routes.wave_front import NO_TARGETS, Wave, WaveFront
 from esplanade.planning.scene.bodies import Body
 
+_LEFT_ALONE = 255
 _MOVED_M = 0.5
 """Greatest distance that a goal is moved to where the disc fits."""
 
@@ -47,7 +48,7 @@ class Potential:
         self.height = height
         self.radius_m = radius_m
         self.body = body or Body.adult()
-        grid.row_of(self.body)
+        row = grid.row_of(self.body)
         if not grid.is_free([goal], [height], radius_m, self.body)[0]:
             free = grid.nearest_free(goal, height, radius_m, self.body)
             goal = free if free and math.dist(goal, free) <= _MOVED_M else goal
@@ -60,9 +61,11 @@ class Potential:
         self.values: NDArray[np.float32] = front.values
         self.reached_cells = front.reached_cells
         if wave is Wave.SIGHT:
-            kernels.extend_into_obstacles(
-                front.arrays, self.body.step_on_m, grid.centres, self.values, front.settled
-            )
+            if grid.bounds_edges(self.body):
+                # No way leads over edges that are too wide, least of all one past obstacles.
+                on_edge = grid.arrays.edges[row]
+                front.settled[on_edge & (front.settled == 0)] = _LEFT_ALONE
+            kernels.extend_into_obstacles(front.arrays, row, self.values, front.settled)
 
     def distance(self, positions: ArrayLike, heights: ArrayLike) -> NDArray[np.float64]:
         """Metres to the goal, float64 (N,), inf where no path leads, for (N, 2) and (N,)."""

@@ -17,17 +17,18 @@ def line_of_cells(
     start: tuple[float, float],
     goal: tuple[float, float],
 ) -> Line:
-    """The line over the centres of cells (K,), from a start in the first to a goal in the last.
+    """The line over the anchors of cells (K,), from a start in the first to a goal in the last.
 
     `counts` (K,) are those of the cells; `start` and `goal` are x, y in metres.
     """
-    arrays = traversability.arrays
-    around = np.concatenate([cells[:1], cells, cells[-1:]])
-    xy = np.empty((len(around), 2))
-    xy[:, 0] = arrays.x0 + (arrays.places[around]["column"] + 0.5) * arrays.cell_m
-    xy[:, 1] = arrays.y0 + (arrays.places[around]["row"] + 0.5) * arrays.cell_m
-    xy[0], xy[-1] = start, goal
-    return Line(xy, around, np.concatenate([counts[:1], counts, counts[-1:]]))
+    room = 2 * len(cells)
+    line = Line(np.empty((room, 2)), np.empty(room, dtype=np.int32), np.empty(room, dtype=np.int32))
+    used = kernels.over_anchors(traversability, cells, counts, line)
+    return Line(
+        np.concatenate([[start], line.xy[:used], [goal]]),
+        np.concatenate([cells[:1], line.cells[:used], cells[-1:]]),
+        np.concatenate([counts[:1], line.counts[:used], counts[-1:]]),
+    )
 
 
 def straighten(traversability: Traversability, line: Line) -> Line:

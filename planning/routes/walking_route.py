@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import OrderedDict
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -13,8 +14,9 @@ from esplanade.planning.grid._walking_kernels import GroundArrays
 from esplanade.planning.grid.grid import LayeredGrid
 from esplanade.planning.ground._geometry_kernels import Placement
 from esplanade.planning.routes import _descending_kernels as kernels
+from esplanade.planning.routes.moved_ends import MovedEnd, moved_end
 from esplanade.planning.routes.wave_front import Wave, WaveFront
-from esplanade.planning.scene.bodies import Body
+from esplanade.planning.scene.bodies import LIMITS, Body
 from esplanade.planning.scene.heights import SAME_SURFACE_M
 
 Point = tuple[float, float, float]
@@ -32,7 +34,12 @@ _BEYOND_M: Final = 1.0
 """A wave goes so much further than the start, for whoever walks beside its cells."""
 _WAVES_KEPT: Final = 16
 _BYTES_KEPT: Final = 64 * 2**20
-_BYTES_A_CELL: Final = 16
+_BYTES_A_CELL: Final = 20
+
+
+def walker(radius_m: float) -> Body:
+    """The body of a person of this radius."""
+    return replace(Body.adult(), radius_m=max(LIMITS["radius_m"][0], radius_m))
 
 
 class SharedWaves:
@@ -55,7 +62,7 @@ class SharedWaves:
         key = cell, radius_m
         wave = self._waves.get(key)
         if wave is None or wave.arrays is not self.grid.arrays:
-            wave = WaveFront(self.grid, goal, cell, radius_m, Wave.SIGHT, Body.adult())
+            wave = WaveFront(self.grid, goal, cell, radius_m, Wave.SIGHT, walker(radius_m))
             self._waves[key] = wave
         self._waves.move_to_end(key)
         if len(self._waves) > self._kept:
@@ -66,16 +73,28 @@ class SharedWaves:
 class RouteSearch:
     """A search for a shortest route to the free place nearest to a goal, for an adult.
 
-    Call `advance` until it returns true; then `route` is the route, None where there is none. It
+    Call `advance` until it returns true; then `route` is the route, None where there is none, or
+    where the goal is not free itself and the search is strict. It
     runs in any thread, one search at a time for the same `waves`, and holds no interpreter lock but
     for some 0.1 ms a piece.
     """
 
-    def __init__(self, waves: SharedWaves, start: Point, goal: Point, clearance_m: float) -> None:
+    def __init__(
+        self,
+        waves: SharedWaves,
+        start: Point,
+        goal: Point,
+        clearance_m: float,
+        *,
+        strict: bool = False,
+    ) -> None:
         self.route: Route | None = None
+        self.moved: MovedEnd | None = None
+        """How the goal was moved, if by more than 0.25 m."""
+        self._strict = strict
         self._waves = waves
         self._grid = waves.grid
-        self._body = Body.adult()
+        self._body = walker(clearance_m)
         self._clearance_m = clearance_m
         self._start = start
         self._goal = goal
@@ -100,11 +119,14 @@ class RouteSearch:
         """Find a free goal and try the straight line; a wave if the search goes on."""
         grid, clearance_m = self._grid, self._clearance_m
         x, y, z = self._goal
-        free = grid.nearest_free((x, y), z, clearance_m)
+        free = grid.nearest_free((x, y), z, clearance_m, self._body)
         if free is None:
             return None
         goal = self._goal = (*free, grid.floor_at(free, z))
-        if self._straight(self._start, goal):
+        self.moved = moved_end(grid, self._body, (x, y, z), goal)
+        if self._strict and self.moved is not None:
+            return None
+        if not grid.bounds_edges(self._body) and self._straight(self._start, goal):
             self.route = (goal,)
             return None
         self._cell = grid.cell_at(self._start[:2], self._start[2])
@@ -115,7 +137,6 @@ class RouteSearch:
             self._ground(),
             grid.row_of(self._body),
             clearance_m,
-            grid.centres,
             self._placement(),
             self._cell,
             *self._start[:2],
@@ -126,21 +147,23 @@ class RouteSearch:
 
     def _descend(self, wave: WaveFront) -> Route | None:
         """The route down a wave that has reached the start, None where it never does."""
-        grid, start = self._grid, self._start[:2]
-        centres, values = grid.centres[self._targets], wave.values[self._targets]
-        left_m = values[:, 0] + np.hypot(*(values[:, 1:] - centres).T)
+        start = self._start[:2]
+        anchors = wave.anchors(self._targets)
+        values = wave.values[self._targets]
+        left_m = values[:, 0] + np.hypot(*(values[:, 1:3] - anchors).T)
         left_m[wave.settled[self._targets] == 0] = np.inf
-        left_m += np.hypot(*(centres - start).T)
+        left_m += np.hypot(*(anchors - start).T)
         nearest = int(left_m.argmin())
         if not math.isfinite(left_m[nearest]):
             return None
         corners = np.empty((int(2.0 * left_m[nearest] / STEP_M) + 10, 3))
         end = (*wave.goal, self._goal[2])
-        x, y = centres[nearest].tolist()
+        x, y = anchors[nearest].tolist()
         count = kernels.descend(
             self._ground(),
             self._body.height_m,
             self._body.step_on_m,
+            self._body.leg_length_m,
             self._clearance_m,
             wave.values,
             wave.settled,
@@ -170,7 +193,8 @@ class RouteSearch:
 
     def _placement(self) -> Placement:
         floor = float(self._grid.layered.floors[self._cell])
-        return Placement(floor, floor, self._body.height_m, self._body.step_on_m)
+        body = self._body
+        return Placement(floor, floor, body.height_m, body.step_on_m, body.leg_length_m)
 
 
 def leads_straight(grid: LayeredGrid, start: Point, goal: Point, clearance_m: float) -> bool:

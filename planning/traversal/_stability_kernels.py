@@ -12,7 +12,8 @@ from esplanade.planning.ground._barrier_kernels import (
     point_barrier_distance,
 )
 from esplanade.planning.ground.layered import LINK_ROOM_M, TILE, LayeredArrays, cell_index
-from esplanade.planning.traversal._reachability_kernels import TileBox
+from esplanade.planning.traversal._anchor_kernels import SLACK_M, anchor_of
+from esplanade.planning.traversal.tiles import TileBox
 
 FORBIDDEN, STABLE, UNSTABLE, UP_STAIR, DOWN_STAIR = range(5)
 
@@ -29,13 +30,15 @@ def classify(
     arrays: LayeredArrays,
     near: NearBarriers,
     body: Measures,
+    anchors: NDArray[np.int8],
     offsets: NDArray[np.void],
     box: TileBox,
     out: NDArray[np.uint8],
 ) -> None:
     """Write the class of each cell of some tiles into `out` (N,).
 
-    `offsets` (K,) of `OFFSET` lead from a cell to the others that the body's disc touches.
+    `anchors` (E, 2) are `Traversability.offsets`; `offsets` (K,) of `OFFSET` lead from a cell to
+    the others that the body's disc touches.
     """
     reach = 0
     for k in range(len(offsets)):
@@ -66,7 +69,7 @@ def classify(
                         )
                 for cell in range(page, page + TILE * TILE):
                     if near.first[cell] >= 0 and out[cell] != FORBIDDEN:
-                        out[cell] = _class_by_barriers(arrays, near, body, cell, out[cell])
+                        out[cell] = _class_by_barriers(arrays, near, body, anchors, cell, out[cell])
 
 
 @inlined
@@ -144,7 +147,7 @@ def _class_by_heights(
         elif min(ceilings[b, a], ceilings[v, u]) - max(other, floor) < LINK_ROOM_M:
             is_obstacle = True  # a floor above or below another, such as that under a ramp
         elif min(ceilings[b, a], ceilings[v, u]) - max(other, floor) < room:
-            return FORBIDDEN
+            continue  # what is too low for the head is a barrier
         elif difference > edges[k]:
             is_edge = True
     if not is_obstacle:
@@ -155,7 +158,8 @@ def _class_by_heights(
     for other_layer in range(layer - 1, -1, -1):
         if _is_within_leg(arrays, other_layer, j, i, floor, leg, offsets):
             return DOWN_STAIR
-    return FORBIDDEN
+    # Whether the obstacle is within the body's radius is for the barrier around it to say.
+    return UNSTABLE if is_edge else STABLE
 
 
 @inlined
@@ -178,13 +182,17 @@ def _is_within_leg(
 
 @inlined
 def _class_by_barriers(
-    arrays: LayeredArrays, near: NearBarriers, body: Measures, cell: int, by_heights: int
+    arrays: LayeredArrays,
+    near: NearBarriers,
+    body: Measures,
+    anchors: NDArray[np.int8],
+    cell: int,
+    by_heights: int,
 ) -> int:
     """The class of a cell when barriers within the body's radius are taken into account too."""
     found = by_heights
     floor = float(arrays.floors[cell])
-    x = arrays.x0 + (arrays.places[cell]["column"] + 0.5) * arrays.cell_m
-    y = arrays.y0 + (arrays.places[cell]["row"] + 0.5) * arrays.cell_m
+    x, y = anchor_of(arrays, near.first, anchors, cell)
     entry = near.first[cell]
     while entry >= 0:
         barrier = near.barriers[near.entries[entry]["barrier"]]
@@ -192,7 +200,7 @@ def _class_by_barriers(
         step = height_to_climb(barrier, floor, floor, body.height_m)
         if step <= RAMP_SLOPE * arrays.cell_m + TOLERANCE_M:
             continue
-        if point_barrier_distance(barrier, x, y) >= body.radius_m - TOLERANCE_M:
+        if point_barrier_distance(barrier, x, y) >= body.radius_m - SLACK_M:
             continue
         if step > body.leg_length_m + TOLERANCE_M:
             return FORBIDDEN

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -12,11 +11,15 @@ from numpy.typing import NDArray
 
 from esplanade.planning.ground.barriers import Barriers
 from esplanade.planning.ground.floors import Floors
-from esplanade.planning.ground.layered import TILE, LayeredArrays
+from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.scene.bodies import MOST_BODIES, Body
-from esplanade.planning.traversal._reachability_kernels import TileBox
-from esplanade.planning.traversal.reachability import measures_of, near_barriers, reachable_steps
+from esplanade.planning.traversal.reachability import (
+    measures_of,
+    near_barriers,
+    reachable_steps,
+)
 from esplanade.planning.traversal.stability import classify
+from esplanade.planning.traversal.tiles import cells_around, tiles_of
 from esplanade.planning.traversal.traversability import Traversability
 from esplanade.planning.traversal.wavefront import number_regions
 
@@ -27,12 +30,14 @@ _KEPT = 2 * MOST_BODIES
 def find_traversability(arrays: LayeredArrays, barriers: Barriers, body: Body) -> Traversability:
     """Derive where a body may go on some floors. Cost O(cells)."""
     near = near_barriers(arrays, barriers, body)
+    steps, offsets = reachable_steps(arrays, near, body)
     return Traversability(
         arrays,
         near,
         measures_of(body),
-        reachable_steps(arrays, near, body),
-        classify(arrays, near, body),
+        offsets,
+        steps,
+        classify(arrays, near, body, offsets),
         int(body.edge_cells),
     )
 
@@ -45,20 +50,14 @@ def renew_traversability(
     It is meant for doors, whose rows among the barriers have changed in place. The traversability
     that is given stays as it is for other threads.
     """
-    arrays, reach = traversability.arrays, traversability.near.reach_m
-    tile_m = TILE * arrays.cell_m
-    x0, y0, x1, y1 = around
-    tiles_y, tiles_x = arrays.pages.shape[1:]
-    box = TileBox(
-        max(0, math.floor((y0 - reach - arrays.y0) / tile_m)),
-        max(0, math.floor((x0 - reach - arrays.x0) / tile_m)),
-        min(int(tiles_y), math.floor((y1 + reach - arrays.y0) / tile_m) + 1),
-        min(int(tiles_x), math.floor((x1 + reach - arrays.x0) / tile_m) + 1),
-    )
-    return traversability._replace(
-        steps=reachable_steps(arrays, traversability.near, body, traversability.steps.copy(), box),
-        classes=classify(arrays, traversability.near, body, traversability.classes.copy(), box),
-    )
+    arrays, near = traversability.arrays, traversability.near
+    # The other cell of a link is within two cells.
+    box = cells_around(arrays, around, near.reach_m + 2.0 * arrays.cell_m)
+    own = traversability.steps.copy(), traversability.offsets.copy()
+    steps, offsets = reachable_steps(arrays, near, body, own, box)
+    tiles = tiles_of(cells_around(arrays, around, near.reach_m))
+    classes = classify(arrays, near, body, offsets, traversability.classes.copy(), tiles)
+    return traversability._replace(offsets=offsets, steps=steps, classes=classes)
 
 
 @dataclass
@@ -73,7 +72,8 @@ class KnownTraversability:
 class TraversabilityCache:
     """The traversability of one zone for each of the bodies that were asked for last.
 
-    It is derived at the first call, and again around doors that have opened or closed since.
+    It is derived at the first call, and again around doors that have opened or closed since. Bodies
+    that differ in M alone share it.
     """
 
     def __init__(self, floors: Floors) -> None:
@@ -82,7 +82,10 @@ class TraversabilityCache:
 
     def of(self, body: Body) -> Traversability:
         """The traversability of the zone for a body."""
-        return self._up_to_date(body).traversability
+        found = self._up_to_date(body).traversability
+        if body.edge_cells == Body.edge_cells:
+            return found
+        return found._replace(edge_cells=int(body.edge_cells))
 
     def regions_of(self, body: Body) -> NDArray[np.int32]:
         """`number_regions` of the traversability for a body, kept as long as that."""
@@ -101,6 +104,10 @@ class TraversabilityCache:
         """Return what is kept for a body; it is derived if need be."""
         return self._up_to_date(body)
 
+    def forget(self, body: Body) -> None:
+        """Keep nothing for a body any more."""
+        self._known.pop(body, None)
+
     def prepare(self, body: Body, barriers: Barriers) -> KnownTraversability:
         """Derive the traversability for a body if the barriers of the zone were these.
 
@@ -117,6 +124,7 @@ class TraversabilityCache:
             self._keep(body, known)
 
     def _up_to_date(self, body: Body) -> KnownTraversability:
+        body = replace(body, edge_cells=Body.edge_cells)
         known = self._derived(body, self._known.get(body), self._floors.barriers)
         self._keep(body, known)
         return known

@@ -7,8 +7,6 @@ while the obstacles of the paper are cells.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,7 +15,11 @@ from esplanade.planning.ground.barriers import Barriers
 from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.scene.bodies import Body
 from esplanade.planning.traversal import _reachability_kernels as kernels
-from esplanade.planning.traversal._reachability_kernels import TileBox
+from esplanade.planning.traversal._anchor_kernels import place_anchors
+from esplanade.planning.traversal.tiles import CellBox, all_cells
+
+_REACH_CELLS = 1.1
+"""Anchors are pushed, and links lead, no further than this many cells from a centre."""
 
 
 def measures_of(body: Body) -> Measures:
@@ -27,19 +29,13 @@ def measures_of(body: Body) -> Measures:
     )
 
 
-def all_tiles(arrays: LayeredArrays) -> TileBox:
-    """The box of all tiles."""
-    return TileBox(0, 0, int(arrays.pages.shape[1]), int(arrays.pages.shape[2]))
-
-
 def near_barriers(arrays: LayeredArrays, barriers: Barriers, body: Body) -> NearBarriers:
     """The barriers of each cell that a body in it could touch, or cross on a step out of it.
 
     Cost O(barriers x cells near one). `barriers` (S,) are shared, not copied: a door that opens or
     closes changes its row in place, with a climb of 0 while it is open.
     """
-    half_diagonal = math.sqrt(0.5) * arrays.cell_m + 1e-3
-    reach = max(body.radius_m + half_diagonal, 2.0 * half_diagonal)
+    reach = body.radius_m + _REACH_CELLS * arrays.cell_m
     first = np.full(len(arrays.floors), -1, dtype=np.int32)
     entries = list_barriers(arrays, barriers, measures_of(body), reach, first)
     return NearBarriers(barriers, first, entries, reach)
@@ -49,16 +45,32 @@ def reachable_steps(
     arrays: LayeredArrays,
     near: NearBarriers,
     body: Body,
-    out: NDArray[np.uint8] | None = None,
-    box: TileBox | None = None,
-) -> NDArray[np.uint8]:
-    """The links that a body may follow, uint8 (N,): bit d of a cell is its link d.
+    out: tuple[NDArray[np.uint8], NDArray[np.int8]] | None = None,
+    box: CellBox | None = None,
+) -> tuple[NDArray[np.uint8], NDArray[np.int8]]:
+    """The links that a body may follow, uint8 (N,), and where it has room in cells, int8 (E, 2).
 
-    With `box`, only those tiles of `out` are written again. Cost O(cells).
+    Bit d of the former stands for link d; the latter is as `Traversability.offsets`. With `box`,
+    only those cells of `out` are written again. Cost O(cells + barriers near cells).
     """
-    steps = np.zeros(len(arrays.floors), dtype=np.uint8) if out is None else out
-    kernels.step_bits(arrays, near, measures_of(body), box or all_tiles(arrays), steps)
-    return steps
+    cells = len(arrays.floors)
+    steps, offsets = out or (
+        np.zeros(cells, dtype=np.uint8),
+        np.zeros((len(near.entries), 2), dtype=np.int8),
+    )
+    whole = all_cells(arrays)
+    box = box or whole
+    beside = CellBox(
+        max(0, box.first_row - 1),
+        max(0, box.first_column - 1),
+        min(whole.end_row, box.end_row + 1),
+        min(whole.end_column, box.end_column + 1),
+    )
+    rooms = np.empty(cells, dtype=np.float32)
+    measures = measures_of(body)
+    place_anchors(arrays, near, measures, beside, offsets, rooms)
+    kernels.step_bits(arrays, near, measures, offsets, rooms, box, steps)
+    return steps, offsets
 
 
 def reachable_from(

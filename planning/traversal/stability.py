@@ -12,8 +12,8 @@ from esplanade.planning.ground._barrier_kernels import NearBarriers
 from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.scene.bodies import Body
 from esplanade.planning.traversal import _stability_kernels as kernels
-from esplanade.planning.traversal._reachability_kernels import TileBox
-from esplanade.planning.traversal.reachability import all_tiles, measures_of
+from esplanade.planning.traversal.reachability import measures_of
+from esplanade.planning.traversal.tiles import TileBox, all_tiles
 
 
 class Stability(IntEnum):
@@ -47,6 +47,7 @@ def classify(
     arrays: LayeredArrays,
     near: NearBarriers,
     body: Body,
+    anchors: NDArray[np.int8],
     out: NDArray[np.uint8] | None = None,
     box: TileBox | None = None,
 ) -> NDArray[np.uint8]:
@@ -71,6 +72,7 @@ def classify(
         arrays,
         near,
         measures_of(body),
+        anchors,
         touched_cells(body.radius_m, arrays.cell_m),
         box or all_tiles(arrays),
         classes,

@@ -15,6 +15,10 @@ class Traversability(NamedTuple):
     arrays: LayeredArrays
     near: NearBarriers
     body: Measures
+    offsets: NDArray[np.int8]
+    """(E, 2), in the row of the first entry of a cell's list of barriers: how far the point of the
+    cell that paths go through lies off the centre, in 1/254 of a cell: 0 if the body fits at the
+    centre, else where it has room; `anchor_of` has the point."""
     steps: NDArray[np.uint8]
     """(N,): the links that the body may follow; bit d stands for link d."""
     classes: NDArray[np.uint8]

@@ -75,6 +75,16 @@ def actor(console: Console, name: str) -> dict[str, Any]:
         why = console.zone.explain(found["avatar"])
         found["since_s"] = why.since_s
         found["goal"] = None if why.goal is None else list(why.goal)
+        found["goal_moved"] = (
+            None
+            if why.moved is None
+            else {
+                "by_m": round(why.moved.distance_m, 3),
+                "why": why.moved.reason.name.lower(),
+                "text": str(why.moved),
+                "place": [round(value, 3) for value in why.moved.place],
+            }
+        )
         held = why.blocker
         found["blocker"] = (
             None if held is None else {"kind": held.kind, "id": held.id, "away_m": held.away_m}

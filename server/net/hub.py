@@ -6,6 +6,7 @@ from typing import Any
 
 import structlog
 
+from esplanade.planning import MovedEnd
 from esplanade.protocol import ByeCode, CloseCode, ErrorCode, ProtocolError
 from esplanade.protocol.messages import (
     Bye,
@@ -29,6 +30,7 @@ from esplanade.server.net.ground_work import DOOR_PAUSE_S
 from esplanade.server.net.leases import ANSWER_S, PING_S, Leases
 from esplanade.server.net.lines import MOST_MUTED
 from esplanade.server.net.moderation import PeopleModeration
+from esplanade.server.net.moved_goals import notice_of, refusal_of
 from esplanade.server.net.operator_keys import SERVICE, OperatorKeys, TooManyKeysError
 from esplanade.server.net.pace_notices import PaceNotices
 from esplanade.server.net.pending_inputs import PendingInputs
@@ -234,8 +236,13 @@ class Hub:
         except ProtocolError as refusal:
             session.tell(refusal)
 
-    def route_found(self, avatar_id: int, wish: WalkTo, route: Route | None) -> None:
-        """Send a person along the route that was found, or tell them that there is none."""
+    def route_found(
+        self, avatar_id: int, wish: WalkTo, route: Route | None, moved: MovedEnd | None
+    ) -> None:
+        """Send a person along the route that was found, or tell them that there is none.
+
+        They are also told where it leads instead, if nobody can stand where they wanted to go.
+        """
         session = self.sessions.get(avatar_id)
         if session is None:
             return
@@ -243,6 +250,10 @@ class Hub:
             self._walk_outs.route_found(avatar_id, route)
         elif route is not None:
             self._want(Follow(avatar_id, wish.seq, route))
+            if moved is not None:
+                session.outbox.post(frames.message(notice_of(wish, moved)))
+        elif moved is not None and wish.strict:
+            session.tell(refusal_of(wish, moved))
         else:
             text = f"no way leads to ({wish.x:.2f}, {wish.y:.2f}, {wish.z:.2f})"
             session.tell(ProtocolError(ErrorCode.NO_PATH, text, None))

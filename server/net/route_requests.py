@@ -10,6 +10,7 @@ from typing import Final, NamedTuple
 
 import structlog
 
+from esplanade.planning import MovedEnd
 from esplanade.protocol import ErrorCode, ProtocolError
 from esplanade.protocol.messages import WalkTo
 from esplanade.server.net.fair_queue import Asker, FairQueue
@@ -25,8 +26,9 @@ ALL_SEARCHES: Final = Share(0.5, 0.1)
 
 log = structlog.get_logger(__name__)
 
-Found = Callable[[int, WalkTo, Route | None], None]
-"""It is called with the avatar's id, its wish, and the route; None where there is no route."""
+Found = Callable[[int, WalkTo, Route | None, MovedEnd | None], None]
+"""It is called with the avatar's id, its wish, the route, None where there is none, and how the
+goal was moved."""
 
 
 class _Job(NamedTuple):
@@ -109,10 +111,11 @@ class RouteRequests:
             return None
         asker, wish = turn
         try:
-            search = self._world.route_search(asker.avatar_id, (wish.x, wish.y, wish.z))
+            goal = wish.x, wish.y, wish.z
+            search = self._world.route_search(asker.avatar_id, goal, strict=wish.strict)
         except Exception:
             log.exception("no route found because of a fault", id=asker.avatar_id)
-            self._answer(asker.avatar_id, wish, None, found)
+            self._answer(asker.avatar_id, wish, None, None, found)
             return asker.address
         job = _Job(asker, wish, search)
         if not await self._piece(job, found):
@@ -151,18 +154,25 @@ class RouteRequests:
         self.search_s += seconds
         self._budget.spend(job.asker, seconds, loop.time())
         if over:
-            self._answer(avatar_id, job.wish, route, found)
+            self._answer(avatar_id, job.wish, route, job.search.moved, found)
         now = loop.time()
         self._time.spend(now, now - start)
         if (rest_s := self._time.debt_s(now)) > 0.0:
             await asyncio.sleep(rest_s)
         return over or self._latest.get(avatar_id) is not job.wish
 
-    def _answer(self, avatar_id: int, wish: WalkTo, route: Route | None, found: Found) -> None:
+    def _answer(
+        self,
+        avatar_id: int,
+        wish: WalkTo,
+        route: Route | None,
+        moved: MovedEnd | None,
+        found: Found,
+    ) -> None:
         # While the route was sought, the person may have changed their mind.
         if self._latest.get(avatar_id) is wish:
             del self._latest[avatar_id]
-            found(avatar_id, wish, route)
+            found(avatar_id, wish, route, moved)
 
 
 def _timed(work: Callable[[], bool]) -> tuple[bool, float]:

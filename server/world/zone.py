@@ -276,9 +276,10 @@ class Zone:
         """People and actors in the world."""
         return len(self.state.of_kind(PERSON)), len(self.state.of_kind(ACTOR))
 
-    def route_search(self, avatar_id: int, goal: Point) -> RouteSearch:
+    def route_search(self, avatar_id: int, goal: Point, *, strict: bool = False) -> RouteSearch:
         """A search for a way from where that avatar is now; heavy, and meant for another thread."""
-        return RouteSearch(self._waves, self.where(avatar_id), goal, self.rules.person_clearance_m)
+        clearance_m = self.rules.person_clearance_m
+        return RouteSearch(self._waves, self.where(avatar_id), goal, clearance_m, strict=strict)
 
     def outdated_potential(self) -> Callable[[], RenewedPotential] | None:
         """Derives the next potential that is out of date, if any; heavy, safe in any thread.

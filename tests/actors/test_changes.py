@@ -104,7 +104,7 @@ def test_a_change_to_one_kind_of_body_too_many_leaves_no_trace() -> None:
 def test_bodies_that_are_almost_alike_share_their_potentials() -> None:
     population = populated()
     slots = population.table.agents.potential_rows.copy()
-    population.set_many(["a"], {"radius_m": 0.22, "edge_cells": 20, "leg_length_m": 0.93})
+    population.set_many(["a"], {"radius_m": 0.248, "edge_cells": 20, "leg_length_m": 0.93})
     assert np.array_equal(population.table.agents.potential_rows, slots)
     population.set_many(["a"], {"radius_m": 0.27})
     assert population.table.agents.potential_rows[0] != slots[0]

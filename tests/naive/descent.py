@@ -31,9 +31,9 @@ def descend(
         if math.dist(here, goal[:2]) <= step_m and abs(height - goal[2]) < 1.0:
             return corners
         if wave.settled[cell]:
-            left_m, *place = wave.values[cell].tolist()
+            left_m, *place = wave.values[cell, :3].tolist()
             if math.dist(here, place) < 0.25 * grid.cell_m and left_m > 0.0:
-                place = wave.values[int(grid.on_ground([place], [height])[1][0])][1:].tolist()
+                place = wave.values[int(grid.on_ground([place], [height])[1][0]), 1:3].tolist()
             waypoint = np.array(place)
         leg = waypoint - here
         length_m = math.hypot(*leg)

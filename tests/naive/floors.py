@@ -1,17 +1,26 @@
-"""The cells that a body may go to, the long way: every cell against all others and barriers."""
+"""The cells that a body may go to, the long way: every cell against all others and barriers.
+
+Where a body stands in a cell, its anchor, is taken as given, and so is the bend of a step that is
+not straight. Whether they are any good is looked into here, with all barriers there are.
+"""
 
 from __future__ import annotations
 
 import math
 from collections import deque
 from collections.abc import Iterator
+from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning import Body
 from esplanade.planning.ground.layered import LayeredArrays
+from esplanade.planning.traversal._anchor_kernels import anchor_of, bend_between
+from esplanade.planning.traversal.cache import find_traversability
 from esplanade.planning.traversal.stability import Stability
+from esplanade.planning.traversal.traversability import Traversability
 from tests.naive.geometry import Point, point_segment_distance, segment_distance
 from tests.naive.waves import dijkstra
 
@@ -20,6 +29,8 @@ COMPASS = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))
 HAIR = 1e-4
 FLAT_SLOPE = 0.35
 LINK_ROOM_M = 0.5
+SLACK_M = 0.007
+LOW_ROOM_M = 0.13
 
 
 def line_of(barrier: Barrier) -> tuple[Point, Point]:
@@ -50,6 +61,16 @@ class Floors:
         a = self.arrays
         return a.x0 + (i + 0.5) * a.cell_m, a.y0 + (j + 0.5) * a.cell_m
 
+    @cached_property
+    def feet(self) -> Traversability:
+        """What the kernels find, of which anchors and bends are taken as given."""
+        return find_traversability(self.arrays, self.barriers, self.body)
+
+    def anchor(self, cell: int) -> Point:
+        """The point of a cell that paths go through."""
+        feet = self.feet
+        return anchor_of(feet.arrays, feet.near.first, feet.offsets, cell)
+
     def height_to_climb(self, barrier: Barrier, *floors: float) -> float:
         """Height that the body has to climb to get past a barrier."""
         if barrier["bottom_m"] >= max(floors) + self.body.height_m - HAIR:
@@ -69,20 +90,38 @@ class Floors:
             return False
         if min(self.ceiling(a), self.ceiling(b)) - high < self.body.height_m - HAIR:
             return False
-        return not any(self._bars(barrier, a, b) for barrier in self.barriers)
+        fits = all(self.keeps_clear((self.anchor(c),) * 2, self.floor(c)) for c in (a, b))
+        return fits and len(self.way_between(a, b)) > 0
 
-    def _bars(self, barrier: Barrier, a: int, b: int) -> bool:
-        step = self.height_to_climb(barrier, self.floor(a), self.floor(b))
-        if step <= self.body.step_on_m + HAIR:
-            return False
-        way = self.centre(a), self.centre(b)
-        line = line_of(barrier)
-        touched = self.body.radius_m - HAIR
-        away = segment_distance(*way, *line)
-        ends = min(point_segment_distance(p, *line) for p in way)
-        return away < 1e-9 or (
-            step > self.body.leg_length_m + HAIR and away < touched and ends >= touched
+    def way_between(self, a: int, b: int) -> tuple[Point, ...]:
+        """The points of a step between two cells, one bend included; none if barriers bar it."""
+        straight = self.anchor(a), self.anchor(b)
+        if self.keeps_clear(straight, self.floor(a), self.floor(b)):
+            return straight
+        feet = self.feet
+        found, x, y = bend_between(feet.arrays, feet.near, feet.body, feet.offsets, a, b)
+        bent = straight[0], (x, y), straight[1]
+        keeps_clear = found == 2 and self.keeps_clear(bent, self.floor(a), self.floor(b))
+        return bent if keeps_clear else ()
+
+    def keeps_clear(self, way: tuple[Point, ...], *floors: float) -> bool:
+        """Whether a body on its way over some floors keeps its distance from all barriers."""
+        return all(
+            segment_distance(p, q, *line_of(barrier)) >= self.distance_from(barrier, *floors)
+            for barrier in self.barriers
+            for p, q in pairwise(way)
         )
+
+    def distance_from(self, barrier: Barrier, *floors: float) -> float:
+        """What the centre of the body has to keep from a barrier, which it may never cross."""
+        if self.height_to_climb(barrier, *floors) <= self.body.step_on_m + HAIR:
+            return -math.inf
+        step = self.height_to_climb(barrier, max(floors))
+        if step > self.body.leg_length_m + HAIR:
+            return self.body.radius_m - SLACK_M
+        if step > self.body.step_on_m + HAIR:
+            return min(self.body.radius_m, LOW_ROOM_M) - SLACK_M
+        return 1e-9
 
     def steps(self) -> dict[int, dict[int, int]]:
         """For each cell where each of its links leads that the body may follow."""
@@ -113,7 +152,7 @@ class Floors:
         found = by_heights
         for barrier in self.barriers:
             line = line_of(barrier)
-            if point_segment_distance(self.centre(cell), *line) >= self.body.radius_m - HAIR:
+            if point_segment_distance(self.anchor(cell), *line) >= self.body.radius_m - SLACK_M:
                 continue
             step = self.height_to_climb(barrier, floor)
             if 0.0 < barrier["climb_m"] <= self.body.step_on_m:
@@ -141,8 +180,6 @@ class Floors:
                 other is None or abs(self.floor(other) - floor) > leg or room(other) < LINK_ROOM_M
             )
 
-        if any(not blocks(other) and room(other) < height for other, _ in own):
-            return Stability.FORBIDDEN
         if any(blocks(other) for other, _ in own):
             for layers, found in (
                 (range(layer + 1, len(self.arrays.pages)), Stability.UP_STAIR),
@@ -151,9 +188,10 @@ class Floors:
                 others = [self.cells.get((m, j, i)) for m in layers for j, i, _ in around]
                 if any(o is not None and abs(self.floor(o) - floor) <= leg for o in others):
                     return found
-            return Stability.FORBIDDEN
         if any(
-            other is not None and abs(self.floor(other) - floor) > FLAT_SLOPE * away + HAIR
+            not blocks(other)
+            and room(other) >= height
+            and abs(self.floor(other) - floor) > FLAT_SLOPE * away + HAIR
             for other, away in own
         ):
             return Stability.UNSTABLE

@@ -14,6 +14,7 @@ from esplanade.planning import LayeredGrid, Potential, RiskField, SearchStatus
 from esplanade.planning.agents._reservation_kernels import Reservations
 from esplanade.planning.agents._search_kernels import Moves
 from esplanade.planning.agents._task_kernels import Task, advance, risk_price, time_cost, wall_cost
+from tests.naive.floors import SLACK_M
 from tests.naive.geometry import Point
 from tests.naive.reservations import conflict
 
@@ -40,7 +41,8 @@ class Ground:
         return float(self.grid.clearance([p], [0.0])[0])
 
     def needed(self) -> float:
-        return min(self.task.radius_m, max(0.0, self.clearance((self.task.x, self.task.y)))) - 1e-6
+        here = max(0.0, self.clearance((self.task.x, self.task.y)))
+        return min(self.task.radius_m - SLACK_M, here) - 1e-6
 
     def metres_left(self, p: Point) -> float:
         if self.task.hold:

@@ -163,7 +163,8 @@ def task(
         wall_weight=0.3,
         hurry_weight=2.0,
         max_expansions=400,
-        edge_cells=24,
+        on_edges=0.0,
+        edge_cells=24.0,
         lane=Lane(0.0, 0.0, 1.0, 0.0, 0.0, 0.0),
         hold=False,
     )._replace(**changes)

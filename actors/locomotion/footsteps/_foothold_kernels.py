@@ -44,8 +44,8 @@ _OPENING_RAD = 1.6
 _CLOSING_RAD = 1.0
 """The greatest angle by which a foot is turned inwards against the other one."""
 
-_PLACES = 5
-_AHEAD, _HALFWAY, _UNDER, _FAR_UNDER = 0, 1, 2, 3
+_PLACES = 6
+_AHEAD, _HALFWAY, _UNDER, _FAR_UNDER, _PART_UNDER = 0, 1, 2, 3, 4
 """Places that are tried one after the other; the last one is beside the standing foot."""
 
 
@@ -105,7 +105,8 @@ def choose_foothold(
     The body is on the course `ahead` (AHEAD, 3), `facing` somewhere; the whole step takes `step_s`
     seconds, of which `left_s` are left. A foot lands half a step ahead of where the body will be,
     on its own side. If there is no ground it lands halfway to the place under the body, or under
-    it, or beside the standing foot.
+    it, or on the way there from the standing foot, or beside that. So feet follow a body that runs
+    up stairs faster than they can climb.
     """
     x, y = along(ahead, left_s, 0), along(ahead, left_s, 1)
     z = along(ahead, left_s, 2)
@@ -142,6 +143,9 @@ def choose_foothold(
             to_z = 0.5 * (landing[Z] + z)
         elif place <= _FAR_UNDER:
             to_x, to_y, to_z = under_x, under_y, z
+        elif place == _PART_UNDER:
+            to_x, to_y = 0.5 * (standing[0] + under_x), 0.5 * (standing[1] + under_y)
+            to_z = 0.5 * (standing[Z] + z)
         landing[0], landing[1] = clamped_foot(to_x, to_y, standing, middle, side, leg_m)
         landing[Z] = to_z
         found = settle_foot(ground, covering, landing, FOOT * leg_m)

@@ -286,12 +286,17 @@ def courses_are_finite(headings: Floats, ahead: Floats) -> bool:
 
 @kernel
 def find_lost(steps: Steps, slots: Ints, ahead: Floats, jump_m: float) -> Ints:
-    """Rows (L,) of those of N walkers whose body is so far from its feet along any axis."""
+    """Rows (L,) of those of N walkers whose body is so far from both its feet along any axis.
+
+    While a body runs, the foot that it stands on is left far behind at the end of a step.
+    """
     lost = np.empty(len(slots), np.int64)
     count = 0
     for i in range(len(slots)):
         for d in range(3):
-            if abs(ahead[i, 0, d] - steps.standing[slots[i], d]) > jump_m:
+            from_standing = abs(ahead[i, 0, d] - steps.standing[slots[i], d])
+            from_landing = abs(ahead[i, 0, d] - steps.landing[slots[i], d])
+            if min(from_standing, from_landing) > jump_m:
                 lost[count] = i
                 count += 1
                 break

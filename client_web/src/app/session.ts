@@ -30,6 +30,8 @@ import { Walking } from "./walking";
 const PANELS_MS = 200;
 const TOUCH_MS = 5000;
 const LONGEST_FRAME_S = 0.25;
+/** After these errors the avatar does not walk where its person wanted it to. */
+const CALLED_OFF: ReadonlySet<string> = new Set(["no_path", "goal_moved", "lease_ended"]);
 
 export class Session {
   world: World | null = null;
@@ -228,11 +230,12 @@ export class Session {
       case "error":
         if (message.error === "password_needed") this.join.askPassword();
         if (message.error === "admission_refused") this.admission = null;
-        if (message.error === "no_path" || message.error === "lease_ended") this.walking.callOff();
+        if (CALLED_OFF.has(message.error)) this.walking.callOff();
         this.chat.note(faultOf(message));
         this.person.tell(faultOf(message));
         break;
       case "notice":
+        if (message.notice === "goal_moved") this.walking.goalMoved(message.arguments);
         if (!this.pace.show(message)) this.notice(message);
         break;
       case "hide":

@@ -1,6 +1,6 @@
 /** The person's will: keys, stick and clicks become messages to the server and predictions here. */
 
-import type { ClientMessage } from "../net/messages";
+import type { Arguments, ClientMessage } from "../net/messages";
 import { Joystick } from "../input/joystick";
 import { listenToKeys, WalkKeys } from "../input/keyboard";
 import { headingOf, Steering } from "../input/steering";
@@ -70,6 +70,13 @@ export class Walking {
   /** The server knows no way to where the walk was to lead. */
   callOff(): void {
     this.setTarget(null);
+  }
+
+  /** Nobody can stand where the newest walk was to lead: it leads to another place. */
+  goalMoved({ seq, x, y, z }: Arguments): void {
+    if (this.target === null || seq !== this.seq) return;
+    if (typeof x !== "number" || typeof y !== "number" || typeof z !== "number") return;
+    this.setTarget({ x, y, z });
   }
 
   /** The speed at which the keys turn the camera, radians a second. */

@@ -17,7 +17,7 @@ export type ClientMessage =
       admission: Admission | null;
     }
   | { type: "move"; seq: number; direction: number; speed: number }
-  | { type: "walk_to"; seq: number; x: number; y: number; z: number }
+  | { type: "walk_to"; seq: number; x: number; y: number; z: number; strict?: boolean }
   | { type: "chat"; text: string }
   | { type: "ping"; nonce: number }
   | { type: "watch"; id: number | null }

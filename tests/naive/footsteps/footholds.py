@@ -87,7 +87,8 @@ def choose_footholds(
     Notes
     -----
     A foot lands half a step ahead of where the body will be, on its own side. If there is no ground
-    it lands halfway to the place under the body, or under it, or beside the standing foot.
+    it lands halfway to the place under the body, or under it, or on the way there from the standing
+    foot, or beside that.
     """
     there = course.at(left_s)
     velocity = course.velocity(left_s)
@@ -123,12 +124,14 @@ def choose_footholds(
     found &= np.abs(landing[:, Z] - standing[:, Z]) <= climb_m
     if not found.all():
         halfway, beside = 0.5 * (landing[:, PLACE] + under), standing[:, PLACE].copy()
-        for places in (halfway, under, beside):
+        partway = 0.5 * (standing[:, PLACE] + under)
+        for places in (halfway, under, partway, beside):
             places[:, :2] = clamped_foot(places[:, :2], standing, middle, side, leg_m)
         for places, limit_m in (
             (halfway, climb_m),
             (under, climb_m),
             (under, far_m),
+            (partway, far_m),
             (beside, far_m),
         ):
             found = _try_places(landing, places, found, standing[:, Z], limit_m, foot_m, ground)

@@ -120,8 +120,11 @@ class Walkers:
             self._shift(tick, slots[shifting], course.ahead[shifting, 0, :2])
 
     def _stand_where_lost(self, tick: int, slots: Ints, course: Course) -> None:
-        away = course.ahead[:, 0] - self.steps.standing[slots, PLACE]
-        lost = np.flatnonzero((np.abs(away) > JUMP_M).any(axis=1))
+        standing, landing = (
+            np.abs(course.ahead[:, 0] - feet[slots, PLACE])
+            for feet in (self.steps.standing, self.steps.landing)
+        )
+        lost = np.flatnonzero((np.minimum(standing, landing) > JUMP_M).any(axis=1))
         if len(lost):
             self._stand(tick, slots[lost], course.take(lost))
             self.lost += len(lost)

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from esplanade.planning.agents import _perturb_kernels as kernels
-from esplanade.planning.agents._task_kernels import needed_clearance
+from esplanade.planning.agents._task_kernels import TOO_MANY, needed_clearance
 from tests.naive import search as naive
 from tests.planning.agents.test_search import ground_of, people
 from tests.planning.worlds import holds, lines, open_grid, reserved, task, world_of
@@ -67,10 +67,7 @@ def test_a_cost_tells_whether_the_whole_path_is_legal(
     others = reserved(open_grid(8.0), paths, (0.25, 0.25), (1, 0))
     ground = ground_of(task(start, goal), walls=walls, others=others)
     world, potential = kernel_view(ground)
-    need = needed_clearance(world, ground.task)
-    legal = kernels.stretch_is_legal(
-        world, potential, ground.task, need, ground.task.cell, paths[0], 0, 24
-    )
+    legal = is_legal(ground, paths[0])
     assert kernels.path_cost(world, potential, ground.task, paths[0])[2] == legal
 
 
@@ -87,6 +84,15 @@ def test_perturbation_is_its_twin(start, goal, crowd) -> None:
     assert ours == pytest.approx(theirs, abs=1e-9)
 
 
+def is_legal(ground, path):
+    world, potential = kernel_view(ground)
+    need = needed_clearance(world, ground.task)
+    edges = kernels.stretch_edges(
+        world, potential, ground.task, need, ground.task.cell, 0.0, path, 0, 24
+    )
+    return bool(edges < TOO_MANY)
+
+
 def bent(crowd, path=None, walls=(), others=None, question=None):
     question = question or task((1.0, 4.0), (7.0, 4.0))
     ground = ground_of(question, walls=walls, people=crowd, others=others)
@@ -95,10 +101,7 @@ def bent(crowd, path=None, walls=(), others=None, question=None):
     before = mean_risk(world, ground.task, path)
     bends = kernels.update_path(world, potential, ground.task, path, *room(path))
     after = mean_risk(world, ground.task, path)
-    need = needed_clearance(world, ground.task)
-    legal = kernels.stretch_is_legal(
-        world, potential, ground.task, need, ground.task.cell, path, 0, 24
-    )
+    legal = is_legal(ground, path)
     return path, bends, before, after, legal
 
 
@@ -171,13 +174,7 @@ def test_bending_again_settles() -> None:
 )
 def test_what_is_illegal(spoil, why) -> None:
     ground = ground_of(task((1.0, 4.0), (7.0, 4.0)), walls=[((2.0, 3.7), (6.0, 3.7))])
-    world, potential = kernel_view(ground)
     path = path_between((1.0, 4.0), (7.0, 4.0))
-    need = needed_clearance(world, ground.task)
-    assert kernels.stretch_is_legal(
-        world, potential, ground.task, need, ground.task.cell, path, 0, 24
-    )
+    assert is_legal(ground, path)
     spoil(path)
-    assert not kernels.stretch_is_legal(
-        world, potential, ground.task, need, ground.task.cell, path, 0, 24
-    ), why
+    assert not is_legal(ground, path), why

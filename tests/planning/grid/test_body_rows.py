@@ -22,8 +22,8 @@ def nth(k: int) -> Body:
 
 
 def test_every_measure_is_rounded_to_where_less_fits() -> None:
-    kind = kind_of(Body(0.22, 1.73, 0.58, 0.93, edge_cells=7))
-    assert kind == Body(0.25, 1.75, 0.55, 0.9)
+    kind = kind_of(Body(0.217, 1.73, 0.58, 0.93, edge_cells=7))
+    assert kind == Body(0.22, 1.75, 0.55, 0.9)
     assert kind_of(kind) == kind
     assert kind_of(Body.adult()) == Body.adult()
 

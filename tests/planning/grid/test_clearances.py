@@ -8,6 +8,7 @@ import pytest
 from esplanade.planning import Body, LayeredGrid, Wall
 from esplanade.planning.grid.clearances import (
     cells_within,
+    centres_of,
     kind_of,
     write_clearance,
 )
@@ -31,9 +32,9 @@ def test_a_kind_is_no_thinner_and_no_shorter_than_its_bodies() -> None:
 )
 def test_cells_within_a_box_are_those_with_their_centre_in_it(box) -> None:
     grid = LayeredGrid.from_scene(storeyed())
-    x, y = grid.centres.T
+    x, y = centres_of(grid.layered, grid.layered.places).T
     inside = (x >= box[0]) & (x <= box[2]) & (y >= box[1]) & (y <= box[3])
-    found = cells_within(grid.layered, grid.centres, box)
+    found = cells_within(grid.layered, box)
     assert sorted(found.tolist()) == np.flatnonzero(inside).tolist()
 
 
@@ -42,14 +43,14 @@ def test_clearance_is_the_distance_to_what_stops_in_a_box_as_over_all() -> None:
     grid = grid_of(8.0, walls=[Wall(start=a, end=b) for a, b in walls])
     expected = [
         min(3.0, *(point_segment_distance(centre, a, b) for a, b in walls))
-        for centre in grid.centres.tolist()
+        for centre in centres_of(grid.layered, grid.layered.places).tolist()
     ]
     out = np.empty(len(expected), dtype=np.float32)
     everywhere = np.arange(len(expected))
     write_clearance(grid.arrays, grid.index, ADULT, grid.bounds, everywhere, out)
     assert out == pytest.approx(expected, abs=1e-5)
     box = (1.0, 1.0, 6.0, 5.0)
-    cells = cells_within(grid.layered, grid.centres, box)
+    cells = cells_within(grid.layered, box)
     out[cells] = -7.0
     write_clearance(grid.arrays, grid.index, ADULT, box, cells, out)
     assert out == pytest.approx(expected, abs=1e-5)

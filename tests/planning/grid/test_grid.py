@@ -8,8 +8,9 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from esplanade.planning import Body, LayeredGrid, Polygon, Scene, Wall
-from esplanade.planning.grid._grid_kernels import line_is_clear
+from esplanade.planning.grid._grid_kernels import anchor_at, clearance_many, line_is_clear
 from esplanade.planning.ground._geometry_kernels import Placement, crosses_any
+from tests.naive.floors import SLACK_M
 from tests.naive.geometry import point_segment_distance, segment_distance
 from tests.naive.waves import clearance_field
 from tests.planning.worlds import UPPER_M, as_rows, holds, lines, open_grid, points, two_floors
@@ -129,8 +130,10 @@ def test_bodies_have_clearances_of_their_own() -> None:
     adult, child = Body.adult(), Body.child()
     under, beside = [(4.125, 4.125)], [(5.625, 4.125)]
     assert not grid.is_free([(3.125, 4.125)], [0.0], 0.25, adult)[0]
-    assert grid.clearance(under, [0.0], child)[0] == pytest.approx(1.875, abs=1e-5)
-    assert grid.clearance(beside, [0.0], child)[0] == pytest.approx(0.375, abs=1e-5)
+    # A child could put a leg over the step, so that its disc may reach beyond all but 13 cm.
+    beyond = child.radius_m - 0.13
+    assert grid.clearance(under, [0.0], child)[0] == pytest.approx(1.875 + beyond, abs=1e-5)
+    assert grid.clearance(beside, [0.0], child)[0] == pytest.approx(0.375 + beyond, abs=1e-5)
     assert grid.clearance(beside, [0.0], adult)[0] == pytest.approx(0.625, abs=1e-5)
     assert grid.row_of(child) == grid.row_of(Body.child()) != grid.row_of(adult)
 
@@ -162,24 +165,28 @@ def test_positions_and_heights_are_checked() -> None:
 
 def plain_nearest_free(grid, position, height, clearance_m, body):
     """`LayeredGrid.nearest_free` over whole arrays, cell by cell in order of distance."""
-    floors, centres = grid.layered.floors, grid.centres
-    clear = grid.arrays.clearance[grid.row_of(body)]
+    row = grid.row_of(body)
+    floors = grid.layered.floors
+    anchors = np.array([anchor_at(grid.arrays, row, cell) for cell in range(len(floors))])
+    clear, at_anchor = grid.arrays.clearance[row], np.empty(len(floors))
+    clearance_many(grid.arrays, row, np.arange(len(floors)), anchors, at_anchor)
+    fits = np.isfinite(floors) & ((clear >= clearance_m) | (at_anchor >= clearance_m - SLACK_M))
     floor = grid.floor_at(position, height)
     free_here = grid.is_free([position], [height], clearance_m, body)[0]
     apart = np.abs(floors - height)
     for near_m in (0.5 * body.height_m, math.inf):
         if free_here and floor - height < near_m:
             return position
-        cells = np.flatnonzero((clear >= clearance_m) & (apart < near_m))
+        cells = np.flatnonzero(fits & (apart < near_m))
         if not len(cells):
             continue
-        away = np.hypot(*(centres[cells] - position).T) + apart[cells]
-        placement = Placement(floor, floor, body.height_m, body.step_on_m)
+        away = np.hypot(*(anchors[cells] - position).T) + apart[cells]
+        placement = Placement(floor, floor, body.height_m, body.step_on_m, body.leg_length_m)
         for k in np.argsort(away, kind="stable"):
-            x, y = centres[cells[k]].tolist()
+            x, y = anchors[cells[k]].tolist()
             if away[k] < 1.0 and not crosses_any(grid.index, placement, *position, x, y):
                 return x, y
-        x, y = centres[cells[away.argmin()]].tolist()
+        x, y = anchors[cells[away.argmin()]].tolist()
         return x, y
     return None
 

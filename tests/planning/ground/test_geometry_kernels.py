@@ -46,8 +46,8 @@ def test_closest_approach(relative, change) -> None:
 @holds(60, 15)
 def test_the_index_finds_the_nearest_barrier_within_its_reach(walls, p) -> None:
     grid = open_grid(6.0, walls)
-    placement = kernels.Placement(0.0, 0.0, 1.8, 0.6)
-    found = kernels.nearest_barrier(grid.index, placement, *p)[0]
+    placement = kernels.Placement(0.0, 0.0, 1.8, 0.6, 0.9)
+    found = kernels.nearest_barrier(grid.index, placement, 0.25, *p)[0]
     nearest = min([math.inf, *(naive.point_segment_distance(p, *wall) for wall in walls)])
     if nearest <= grid.index.reach_m:
         assert found == pytest.approx(nearest, abs=1e-9)
@@ -167,7 +167,7 @@ def test_which_barriers_stop_which_bodies(barrier, climb, placement) -> None:
     edge = min(abs(bottom + height - floor - step), abs(bottom - floor - tall))
     assume(edge > 1e-9 or placement == (0.0, 1.8, 0.6))
     free = steps_over or passes_under or steps_down
-    assert kernels.stops(row[0], kernels.Placement(floor, floor, tall, step)) == (not free)
+    assert kernels.stops(row[0], kernels.Placement(floor, floor, tall, step, step)) == (not free)
 
 
 def test_steps_count_from_the_support_and_heads_from_the_floor() -> None:
@@ -176,5 +176,5 @@ def test_steps_count_from_the_support_and_heads_from_the_floor() -> None:
         dtype=kernels.BARRIER,
     )
     for support, stopped in ((0.0, True), (0.1, False)):
-        assert kernels.stops(low, kernels.Placement(0.0, support, 1.8, 0.3)) == stopped
-    assert not kernels.stops(high, kernels.Placement(0.0, 0.1, 1.8, 0.3))
+        assert kernels.stops(low, kernels.Placement(0.0, support, 1.8, 0.3, 0.6)) == stopped
+    assert not kernels.stops(high, kernels.Placement(0.0, 0.1, 1.8, 0.3, 0.6))

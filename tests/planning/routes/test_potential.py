@@ -7,11 +7,13 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from esplanade.planning import Polygon, Potential, Wave
+from esplanade.planning import Body, Polygon, Potential, Wave
 from esplanade.planning.routes._potential_kernels import direction_at, potential_at
 from tests.naive import waves as naive
-from tests.planning.worlds import as_rows, holds, lines, open_grid, points
+from tests.naive.floors import Floors
+from tests.planning.worlds import holds, lines, open_grid, points
 
+ADULT = Body.adult()
 RADIUS_M = 0.25
 CELL_M = 0.25
 ROOM = [
@@ -33,14 +35,20 @@ def centres(grid):
 @holds(15, 6)
 def test_nf1_is_the_shortest_way_over_cells(walls, goal) -> None:
     grid = open_grid(6.0, walls)
-    free = as_rows(grid, grid.arrays.clearance[0]) >= RADIUS_M
-    assume(free[goal])
-    place = ((goal[1] + 0.5) * CELL_M, (goal[0] + 0.5) * CELL_M)
+    floors = Floors(grid.layered, grid.barriers, ADULT)
+    cell = floors.cells[0, goal[0], goal[1]]
+    place = floors.anchor(cell)
+    assume(grid.is_free([place], [0], RADIUS_M)[0])
     potential = Potential(grid, place, 0, RADIUS_M, Wave.NF1)
-    found = potential.distance(*centres(grid)).reshape(free.shape)
-    expected = naive.nf1(free, goal, CELL_M)
-    assert found == pytest.approx(expected, abs=1e-4)
-    assert potential.reached_cells == np.isfinite(expected).sum()
+    ways = {
+        a: {b: math.dist(floors.anchor(a), floors.anchor(b)) for b in others.values()}
+        for a, others in floors.steps().items()
+    }
+    expected = naive.dijkstra(ways, cell)
+    for other in floors.cells.values():
+        found = potential_at(potential.values, other, *floors.anchor(other))
+        assert found == pytest.approx(expected.get(other, math.inf), abs=1e-4)
+    assert potential.reached_cells == len(expected)
 
 
 @given(lines(1.0, 7.0, 2), points(0.5, 7.5), points(0.5, 7.5))
@@ -124,7 +132,8 @@ def test_a_way_leads_to_a_goal_that_is_free_in_a_cell_whose_centre_is_not() -> N
     grid = open_grid(8.0, [((1.0, 4.15), (7.0, 4.15))])
     goal = (4.0, 4.41)
     assert grid.is_free([goal], [0], RADIUS_M)[0]
-    centre = grid.centres[grid.on_ground([goal], [0])[1][0]]
+    i, j = (int(v / CELL_M) for v in goal)
+    centre = (i + 0.5) * CELL_M, (j + 0.5) * CELL_M
     assert not grid.is_free([centre], [0], RADIUS_M)[0]
     found = Potential(grid, goal, 0, RADIUS_M).distance([(4.0, 7.0), (4.0, 1.0)], [0, 0])
     assert found[0] == pytest.approx(2.59, abs=0.05)

@@ -12,6 +12,7 @@ from esplanade.planning import Body, LayeredPath, PathStatus
 from esplanade.planning.routes._straightening_kernels import Line, trace
 from esplanade.planning.routes.stable_bfp import stable_bfp
 from esplanade.planning.routes.straightening import headings, line_of_cells, straighten
+from esplanade.planning.traversal._anchor_kernels import anchor_of
 from esplanade.planning.traversal.stability import Stability
 from esplanade.planning.traversal.wavefront import spread_wave
 from tests.planning.storeys import bodies, box, cluttered, grid_of, traversability, walk_through
@@ -22,29 +23,34 @@ def length(xy) -> float:
     return sum(math.dist(p, q) for p, q in pairwise(xy))
 
 
-def centre(feet, cell):
-    _, j, i = feet.arrays.places[cell].tolist()
-    return (i + 0.5) * feet.arrays.cell_m, (j + 0.5) * feet.arrays.cell_m
-
-
 def found_line(feet, start, goal):
     """The way over cells between two, or None."""
     path = stable_bfp(feet, spread_wave(feet, goal), start, goal)
     if not len(path.cells):
         return None
-    return line_of_cells(feet, path.cells, path.counts, centre(feet, start), centre(feet, goal))
+    return line_of_cells(
+        feet,
+        path.cells,
+        path.counts,
+        anchor(feet, start),
+        anchor(feet, goal),
+    )
 
 
 def traced(feet, a, b):
     """The straight way between two cells, or None if it is not legal."""
     line = Line(
-        np.array([centre(feet, a), centre(feet, b)]),
+        np.array([anchor(feet, a), anchor(feet, b)]),
         np.array([a, b], dtype=np.int32),
         np.zeros(2, dtype=np.int32),
     )
     out = Line(np.zeros((99, 2)), np.zeros(99, dtype=np.int32), np.zeros(99, dtype=np.int32))
     used = trace(feet, line, 0, 1, 0, out, 0)
     return None if used < 0 else (out.xy[:used], out.cells[:used], out.counts[:used])
+
+
+def anchor(feet, cell):
+    return anchor_of(feet.arrays, feet.near.first, feet.offsets, cell)
 
 
 @given(cluttered(), bodies, st.integers(0, 10**6))
@@ -80,7 +86,10 @@ def test_a_straight_way_crosses_the_cells_that_lie_under_it(grid, body, pick) ->
         if found is None:
             continue
         xy, cells, counts = found
-        p, q = np.array(centre(feet, a)), np.array(centre(feet, b))
+        p, q = (
+            np.array(anchor(feet, a)),
+            np.array(anchor(feet, b)),
+        )
         samples = p + np.linspace(0.0, 1.0, 4001)[:, None] * (q - p)
         crossed = {(int(y / 0.25), int(x / 0.25)) for x, y in samples if x % 0.25 and y % 0.25}
         places = [place[1:] for place in feet.arrays.places[[a, *cells]].tolist()]
@@ -106,7 +115,12 @@ def test_around_a_block_the_way_is_within_three_percent_of_the_shortest() -> Non
     feet = traversability(grid_of(8.0, block), Body.adult())
     start, goal = (feet.arrays.places.tolist().index(p) for p in ((0, 4, 4), (0, 4, 27)))
     line = straighten(feet, found_line(feet, start, goal))
-    corners = [centre(feet, start), (2.75, 5.25), (5.25, 5.25), centre(feet, goal)]
+    corners = [
+        anchor(feet, start),
+        (2.75, 5.25),
+        (5.25, 5.25),
+        anchor(feet, goal),
+    ]
     assert length(corners) * 0.98 < length(line.xy) < length(corners) * 1.03
 
 

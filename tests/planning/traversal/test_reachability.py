@@ -4,28 +4,25 @@ import numpy as np
 from hypothesis import given
 
 from esplanade.planning import Body, Wall
-from esplanade.planning.traversal.reachability import near_barriers, reachable_from, reachable_steps
+from esplanade.planning.traversal.reachability import reachable_from
 from tests.naive.floors import Floors
-from tests.planning.storeys import bodies, box, cluttered, grid_of
+from tests.planning.storeys import bodies, box, cluttered, grid_of, traversability
 from tests.planning.worlds import holds
-
-
-def steps_of(grid, body):
-    near = near_barriers(grid.layered, grid.barriers, body)
-    return reachable_steps(grid.layered, near, body)
 
 
 def reached(grid, body, layer, j, i):
     """Rows and columns, on any layer, that a body gets to from a cell."""
     floors = Floors(grid.layered, grid.barriers, body)
-    cells = reachable_from(grid.layered, steps_of(grid, body), floors.cells[layer, j, i])
+    cells = reachable_from(
+        grid.layered, traversability(grid, body).steps, floors.cells[layer, j, i]
+    )
     return {tuple(place) for place in grid.layered.places[cells].tolist()}
 
 
 @given(cluttered(), bodies)
 @holds(40, 5)
 def test_steps_are_those_of_the_long_way(grid, body) -> None:
-    found = steps_of(grid, body)
+    found = traversability(grid, body).steps
     expected = np.zeros_like(found)
     for cell, ways in Floors(grid.layered, grid.barriers, body).steps().items():
         for d in ways:
@@ -36,7 +33,7 @@ def test_steps_are_those_of_the_long_way(grid, body) -> None:
 @given(cluttered(), bodies)
 @holds(40, 5)
 def test_steps_lead_both_ways(grid, body) -> None:
-    found, links = steps_of(grid, body), grid.layered.links
+    found, links = traversability(grid, body).steps, grid.layered.links
     for d in range(8):
         cells = np.flatnonzero(found >> d & 1)
         assert (found[links[cells, d]] >> (d + 4) % 8 & 1).all()

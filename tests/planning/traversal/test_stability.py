@@ -1,5 +1,6 @@
 """The five classes, against the long way and in scenes where they can be told."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -65,7 +66,9 @@ def test_beside_a_step_one_is_unstable_and_beside_a_block_forbidden() -> None:
 def test_leg_length_tells_an_edge_from_an_obstacle() -> None:
     grid = grid_of(4.0, [box(2.0, 0.0, 4.0, 4.0, 0.75)])
     assert class_at(grid, Body.adult(), 1.8, 2.0) == Stability.UNSTABLE
-    assert class_at(grid, Body.child(), 1.8, 2.0) == Stability.FORBIDDEN
+    broad = dataclasses.replace(Body.child(), radius_m=0.3)
+    assert class_at(grid, broad, 1.8, 2.0) == Stability.FORBIDDEN
+    assert class_at(grid, Body.child(), 1.8, 2.0) == Stability.STABLE, "it fits into the cell"
 
 
 def test_where_stairs_meet_the_floor_above_the_way_is_up_and_down() -> None:

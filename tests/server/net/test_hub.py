@@ -10,8 +10,9 @@ from pathlib import Path
 import pytest
 
 from esplanade.actors import Population
-from esplanade.planning import Door, Wall
+from esplanade.planning import Door, Polygon, Wall
 from esplanade.protocol import VERSION, ByeCode, CloseCode, ErrorCode
+from esplanade.protocol.codes import NoticeCode
 from esplanade.protocol.messages import (
     Bye,
     Chat,
@@ -19,6 +20,7 @@ from esplanade.protocol.messages import (
     Doors,
     Error,
     Hello,
+    Notice,
     SetDoor,
     Snapshot,
     WalkTo,
@@ -82,6 +84,31 @@ async def test_walk_to_goes_straight_and_around(serving: Serving) -> None:
         await client.send(WalkTo(seq=2, x=12.0, y=5.0))
         await client.wait_for(lambda: math.dist(client.position, (12.0, 5.0)) < 0.02)
         assert client.ack == 2
+
+
+async def test_a_person_is_told_where_a_walk_into_a_solid_leads(
+    serving: Serving, tmp_path: Path
+) -> None:
+    solid = Polygon(points=((10, 4), (13, 4), (13, 7), (10, 7)), height_m=3.0, kind="wall")
+    scene = tmp_path / "solid.json"
+    scene.write_text(ROOM.model_copy(update={"polygons": (solid,)}).model_dump_json())
+    async with (
+        serving(scene=scene, person_max_speed_mps=50.0, person_walk_speed_mps=40.0) as server,
+        joined(server.port, at=(5.0, 5.0, 0)) as client,
+    ):
+        await client.send(WalkTo(seq=1, x=11.2, y=5.5, strict=True))
+        error = await client.until(Error)
+        assert error.error is ErrorCode.GOAL_MOVED
+        assert error.arguments["why"] == "inside_wall"
+        await client.send(WalkTo(seq=2, x=11.2, y=5.5))
+        notice = await client.until(Notice)
+        assert notice.notice is NoticeCode.GOAL_MOVED
+        x, y = float(notice.arguments["x"]), float(notice.arguments["y"])
+        moved = float(notice.arguments["moved"])
+        assert moved == pytest.approx(math.dist((x, y), (11.2, 5.5)), abs=0.01)
+        assert moved > 1.2
+        assert f"{moved:.1f} m" in notice.text
+        await client.wait_for(lambda: math.dist(client.position, (x, y)) < 0.05)
 
 
 async def test_where_no_way_leads_a_person_is_told_and_stays(

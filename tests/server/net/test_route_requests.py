@@ -9,6 +9,7 @@ from typing import cast
 
 import pytest
 
+from esplanade.planning import MovedEnd
 from esplanade.protocol import ErrorCode, ProtocolError
 from esplanade.protocol.messages import WalkTo
 from esplanade.server.net.fair_queue import Asker
@@ -26,6 +27,7 @@ class ScriptedSearch:
 
     def __init__(self, world: "ScriptedWorld", avatar_id: int, goal: Point) -> None:
         self.route: Route | None = None
+        self.moved: MovedEnd | None = None
         self._world = world
         self._avatar_id = avatar_id
         self._goal = goal
@@ -47,7 +49,7 @@ class ScriptedWorld:
         self.pieces: list[int] = []
         """The avatar whose search each piece belonged to."""
 
-    def route_search(self, avatar_id: int, goal: Point) -> ScriptedSearch:
+    def route_search(self, avatar_id: int, goal: Point, *, strict: bool = False) -> ScriptedSearch:
         return ScriptedSearch(self, avatar_id, goal)
 
 
@@ -63,7 +65,9 @@ class Asking:
     def ask(self, address: str, avatar_id: int, pieces: int = 1, x: float = 1.0) -> None:
         self.requests.ask(Asker(address, avatar_id), WalkTo(seq=avatar_id, x=x, y=float(pieces)))
 
-    def found(self, avatar_id: int, wish: WalkTo, route: Route | None) -> None:
+    def found(
+        self, avatar_id: int, wish: WalkTo, route: Route | None, moved: MovedEnd | None
+    ) -> None:
         self.answers.append((avatar_id, wish.seq, route))
         self._changed.set()
 

@@ -1,3 +1,4 @@
+import math
 from itertools import pairwise
 
 import numpy as np
@@ -184,16 +185,22 @@ def test_drawn_bodies_stay_near_people_at_a_keyboard() -> None:
     check_planted(parade)
 
 
-def test_feet_are_put_on_treads() -> None:
-    stairs = Stairs(start=(2.0, 0.0), end=(5.0, 0.0), width_m=3.0, top_m=1.75, steps=10)
-    scene = Scene(name="stairs", bounds=(-2.0, -4.0, 12.0, 4.0), stairs=(stairs,))
+@pytest.mark.parametrize("degrees", [0.0, 30.0, 45.0, 77.0])
+def test_feet_are_put_on_treads(degrees: float) -> None:
+    angle = math.radians(degrees)
+    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    start, end = ((float(x), float(y)) for x, y in ((2.0, 0.0), (5.0, 0.0)) @ turn.T)
+    stairs = Stairs(start=start, end=end, width_m=3.0, top_m=1.75, steps=10)
+    scene = Scene(name="stairs", bounds=(-12.0, -12.0, 12.0, 12.0), stairs=(stairs,))
     parade = Parade(6, scene)
     across = np.linspace(-1.0, 1.0, 6)
     x = np.arange(110) * 0.9 * TICK_S
     way = np.zeros((6, 110, 3))
     way[..., 0], way[..., 1] = x, across[:, None]
+    way[..., :2] = way[..., :2] @ turn.T
     way[..., 2] = 0.175 * np.clip(np.ceil((x - 2.0) / 0.3), 0.0, 10.0)
     parade.positions = way[:, 0].copy()
+    parade.headings[:] = angle
     parade.stand()
     parade.follow(way)
     foot_m = parade.sizes.foot_m
@@ -201,10 +208,11 @@ def test_feet_are_put_on_treads() -> None:
     for begun in parade.begun:
         landing = begun.steps.landing
         assert np.abs(landing[:, 2] - begun.steps.standing[:, 2]).max() < 0.176, "tread by tread"
-        ends = [landing[:, 0], landing[:, 0] + 0.85 * foot_m[begun.slots] * np.cos(landing[:, 3])]
-        inside = (ends[0] > 2.0) & (ends[1] < 4.99)
-        for end in ends:
-            tread = np.floor((end[inside] - 2.0) / 0.3) + 1.0
+        heel = (landing[:, :2] @ turn)[:, 0]
+        toe = heel + 0.85 * foot_m[begun.slots] * np.cos(landing[:, 3] - angle)
+        inside = (heel > 2.0) & (toe < 4.99)
+        for along in (heel, toe):
+            tread = np.floor((along[inside] - 2.0) / 0.3) + 1.0
             np.testing.assert_allclose(landing[inside, 2], 0.175 * tread, atol=MM)
         on_stairs += int(inside.sum())
     assert on_stairs > 40

@@ -1,0 +1,322 @@
+"""Anchors on bare arrays: the point of each cell where a body has room, on or off the centre.
+
+Whether a body gets through a door, up a flight or along a corridor must not depend on where the
+centres of cells lie. Where the body does not fit at a centre, the anchor is pushed away from the
+nearest barrier until the body fits, or until another barrier is as near: between two barriers that
+is the middle of the passage. Links lead from anchor to anchor, straight or with one bend that is
+found in the same way.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.planning.compiled.jit import inlined, kernel
+from esplanade.planning.ground._barrier_kernels import (
+    TOLERANCE_M,
+    Measures,
+    NearBarriers,
+    height_to_climb,
+    segment_barrier_distance,
+)
+from esplanade.planning.ground._geometry_kernels import LOW_ROOM_M, crosses, nearest_on_segment
+from esplanade.planning.ground.layered import TILE, LayeredArrays
+from esplanade.planning.traversal.tiles import CellBox
+
+SLACK_M = 0.007
+"""A body fits where it has this much less room than its radius: links between anchors are checked
+exactly, and what they lose by being straight is won back."""
+PARTS = 254
+"""Offsets of anchors are in this part of a cell, so that they fit into a byte."""
+_MOST_PARTS = 126
+_HALF_DIAGONAL = 0.7072
+"""Of a cell, in cells."""
+_AIM_M = 0.02
+"""A push aims at this much more room than the radius."""
+_PUSHES = 12
+_HALVINGS = 10
+_ALONG_M = 0.03
+"""Length of a move along the middle between two barriers."""
+_LEVEL_M = 1e-4
+"""Floors that differ by less see the same barriers."""
+
+CLEAR, BARRED, BLOCKED = range(3)
+"""A way is clear, too near a barrier or past the end of one, or blocked by a long barrier."""
+
+
+@inlined
+def anchor_of(
+    arrays: LayeredArrays, first: NDArray[np.int32], offsets: NDArray[np.int8], cell: int
+) -> tuple[float, float]:
+    """The point of a cell that paths go through, metres; `first` (N,) is that of `NearBarriers`."""
+    u = arrays.places[cell]["column"] + 0.5
+    v = arrays.places[cell]["row"] + 0.5
+    entry = first[cell]
+    if entry >= 0:
+        u += offsets[entry, 0] / PARTS
+        v += offsets[entry, 1] / PARTS
+    return arrays.x0 + u * arrays.cell_m, arrays.y0 + v * arrays.cell_m
+
+
+@inlined
+def room_at(
+    near: NearBarriers, body: Measures, cell: int, floor: float, x: float, y: float
+) -> tuple[float, float, float]:
+    """Distance from a point to the nearest barrier in the list of a cell, and its nearest point.
+
+    Low obstacles, up to leg length, count as further away, so that the body's radius suffices as
+    distance from all. `floor` is the height that they are seen from.
+    """
+    best, bx, by = np.inf, x, y
+    entry = near.first[cell]
+    while entry >= 0:
+        barrier = near.barriers[near.entries[entry]["barrier"]]
+        entry = near.entries[entry]["next"]
+        climb = height_to_climb(barrier, floor, floor, body.height_m)
+        if climb <= body.step_on_m + TOLERANCE_M:
+            continue
+        d, qx, qy = nearest_on_segment(
+            x, y, barrier["x0"], barrier["y0"], barrier["x1"], barrier["y1"]
+        )
+        if climb <= body.leg_length_m + TOLERANCE_M:
+            d += max(0.0, body.radius_m - LOW_ROOM_M)
+        if d < best:
+            best, bx, by = d, qx, qy
+    return best, bx, by
+
+
+@kernel
+def pushed(
+    near: NearBarriers, body: Measures, cell: int, floor: float, x: float, y: float
+) -> tuple[float, float, float]:
+    """A point with more room than a given one, reached without crossing a barrier, and its room."""
+    want = body.radius_m + _AIM_M
+    best, best_x, best_y = -1.0, x, y
+    for _ in range(_PUSHES):
+        d, qx, qy = room_at(near, body, cell, floor, x, y)
+        if d > best:
+            best, best_x, best_y = d, x, y
+        apart = np.hypot(x - qx, y - qy)
+        if d >= want or apart < 1e-6:
+            break
+        ux, uy = (x - qx) / apart, (y - qy) / apart
+        low, high = 0.0, want - d
+        if room_at(near, body, cell, floor, x + high * ux, y + high * uy)[0] >= want - 1e-6:
+            x += high * ux
+            y += high * uy
+            continue
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (low + high)
+            there = room_at(near, body, cell, floor, x + middle * ux, y + middle * uy)[0]
+            if there >= d + middle - 1e-6:
+                low = middle
+            else:
+                high = middle
+        x += low * ux
+        y += low * uy
+        if low < 2e-3:
+            # Two barriers are as near as each other: only the way between them is left.
+            d, qx, qy = room_at(near, body, cell, floor, x, y)
+            other, ox, oy = room_at(near, body, cell, floor, x + 3e-3 * ux, y + 3e-3 * uy)
+            one, two = np.hypot(x - qx, y - qy), np.hypot(x - ox, y - oy)
+            if one < 1e-6 or two < 1e-6 or other < 1e-6:
+                break
+            vx = (x - qx) / one + (x - ox) / two
+            vy = (y - qy) / one + (y - oy) / two
+            length = np.hypot(vx, vy)
+            if length < 0.05:
+                break
+            along = min(_ALONG_M, want - d) / length
+            x += along * vx
+            y += along * vy
+    d = room_at(near, body, cell, floor, x, y)[0]
+    if d > best:
+        best, best_x, best_y = d, x, y
+    return best_x, best_y, best
+
+
+@kernel
+def place_anchors(
+    arrays: LayeredArrays,
+    near: NearBarriers,
+    body: Measures,
+    box: CellBox,
+    offsets: NDArray[np.int8],
+    rooms: NDArray[np.float32],
+) -> None:
+    """Write where the anchors of some cells are: offsets from their centres (E, 2).
+
+    The offset of a cell is in the row of the first entry of its list; a cell without has none.
+
+    `rooms` (N,) is the distance from an anchor to the nearest barrier, as `room_at` has it, as far
+    as the list of its cell tells. Where the body fits nowhere in a cell, the anchor is the centre.
+    """
+    part_m = arrays.cell_m / PARTS
+    reach = np.float32(near.reach_m)
+    enough = body.radius_m - SLACK_M
+    for layer in range(arrays.pages.shape[0]):
+        for tj in range(box.first_row // TILE, (box.end_row - 1) // TILE + 1):
+            for ti in range(box.first_column // TILE, (box.end_column - 1) // TILE + 1):
+                page = arrays.pages[layer, tj, ti]
+                if page < 0:
+                    continue
+                for j in range(max(box.first_row, tj * TILE), min(box.end_row, (tj + 1) * TILE)):
+                    first = max(box.first_column, ti * TILE)
+                    for i in range(first, min(box.end_column, (ti + 1) * TILE)):
+                        cell = page + (j - tj * TILE) * TILE + i - ti * TILE
+                        rooms[cell] = reach
+                        entry = near.first[cell]
+                        if entry < 0:
+                            continue
+                        offsets[entry, 0] = 0
+                        offsets[entry, 1] = 0
+                        floor = float(arrays.floors[cell])
+                        x = arrays.x0 + (i + 0.5) * arrays.cell_m
+                        y = arrays.y0 + (j + 0.5) * arrays.cell_m
+                        room = room_at(near, body, cell, floor, x, y)[0]
+                        rooms[cell] = min(room, near.reach_m)
+                        if not enough - _HALF_DIAGONAL * arrays.cell_m <= room < body.radius_m:
+                            continue
+                        px, py, _ = pushed(near, body, cell, floor, x, y)
+                        u = int(np.round((px - x) / part_m))
+                        v = int(np.round((py - y) / part_m))
+                        if max(abs(u), abs(v)) > _MOST_PARTS:
+                            continue  # that is the neighbour's place
+                        px, py = x + u * part_m, y + v * part_m
+                        there = room_at(near, body, cell, floor, px, py)[0]
+                        if there >= enough and there > room:
+                            offsets[entry, 0] = u
+                            offsets[entry, 1] = v
+                            rooms[cell] = min(there, near.reach_m - np.hypot(px - x, py - y))
+
+
+@inlined
+def way_through(
+    near: NearBarriers,
+    body: Measures,
+    cell: int,
+    lowest: float,
+    highest: float,
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+    aside: float,
+) -> int:
+    """Whether a body can go straight from a to b, as far as the list of one cell tells.
+
+    Barriers may not be crossed, seen from the `lowest` floor, and distance is kept from what is an
+    obstacle even from the `highest` one: the other end of the way sees to its own. BLOCKED means
+    that a barrier is crossed whose ends are further than `aside` from the middle.
+    """
+    length = np.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay))
+    found = CLEAR
+    entry = near.first[cell]
+    while entry >= 0:
+        barrier = near.barriers[near.entries[entry]["barrier"]]
+        entry = near.entries[entry]["next"]
+        if height_to_climb(barrier, lowest, highest, body.height_m) <= body.step_on_m + TOLERANCE_M:
+            continue
+        climb = height_to_climb(barrier, highest, highest, body.height_m)
+        need = 0.0
+        if climb > body.leg_length_m + TOLERANCE_M:
+            need = body.radius_m - SLACK_M
+        elif climb > body.step_on_m + TOLERANCE_M:
+            need = min(body.radius_m, LOW_ROOM_M) - SLACK_M
+        x0, y0, x1, y1 = barrier["x0"], barrier["y0"], barrier["x1"], barrier["y1"]
+        if nearest_on_segment(ax, ay, x0, y0, x1, y1)[0] > need + length:
+            continue
+        if crosses(barrier, ax, ay, bx, by):
+            mx, my = 0.5 * (ax + bx), 0.5 * (ay + by)
+            if min(np.hypot(x0 - mx, y0 - my), np.hypot(x1 - mx, y1 - my)) > aside:
+                return BLOCKED
+            found = BARRED
+        elif segment_barrier_distance(barrier, ax, ay, bx, by) < need:
+            found = BARRED
+    return found
+
+
+@inlined
+def is_way_clear(
+    near: NearBarriers,
+    body: Measures,
+    cell: int,
+    lowest: float,
+    highest: float,
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+) -> bool:
+    """Whether a body can go straight from a to b, as far as the list of one cell tells."""
+    return bool(way_through(near, body, cell, lowest, highest, ax, ay, bx, by, 0.0) == CLEAR)
+
+
+@kernel
+def bend_between(
+    arrays: LayeredArrays,
+    near: NearBarriers,
+    body: Measures,
+    offsets: NDArray[np.int8],
+    one: int,
+    two: int,
+) -> tuple[int, float, float]:
+    """Whether and how a body gets from the anchor of a cell to that of a neighbour.
+
+    0: it does not; 1: straight; 2: by way of the point that is returned too. The result is the same
+    in both directions.
+    """
+    if near.first[one] < 0 and near.first[two] < 0:
+        return 1, 0.0, 0.0
+    first, second = min(one, two), max(one, two)
+    a, b = float(arrays.floors[first]), float(arrays.floors[second])
+    lowest, highest = min(a, b), max(a, b)
+    ax, ay = anchor_of(arrays, near.first, offsets, first)
+    bx, by = anchor_of(arrays, near.first, offsets, second)
+    aside = max(arrays.cell_m, 0.5 * np.hypot(bx - ax, by - ay))
+    found = way_through(near, body, first, lowest, highest, ax, ay, bx, by, aside)
+    if found != BLOCKED:
+        found = max(found, way_through(near, body, second, lowest, highest, ax, ay, bx, by, aside))
+    if found == CLEAR:
+        return 1, 0.0, 0.0
+    if found == BLOCKED:
+        return 0, 0.0, 0.0
+    mx, my = 0.5 * (ax + bx), 0.5 * (ay + by)
+    px, py, room = pushed(near, body, first, highest, mx, my)
+    if room < body.radius_m - SLACK_M or np.hypot(px - mx, py - my) > arrays.cell_m:
+        return 0, 0.0, 0.0
+    for cell in (first, second):
+        if not (
+            is_way_clear(near, body, cell, lowest, highest, ax, ay, px, py)
+            and is_way_clear(near, body, cell, lowest, highest, px, py, bx, by)
+        ):
+            return 0, 0.0, 0.0
+    return 2, px, py
+
+
+@inlined
+def leads_on(
+    arrays: LayeredArrays,
+    near: NearBarriers,
+    body: Measures,
+    offsets: NDArray[np.int8],
+    rooms: NDArray[np.float32],
+    one: int,
+    two: int,
+) -> bool:
+    """Whether a body gets from the anchor of a cell to that of a neighbour; cheap in the open.
+
+    Nowhere between two points does a body have less room than half of what it has at both, less
+    the way between them.
+    """
+    if near.first[one] < 0 and near.first[two] < 0:
+        return True
+    enough = body.radius_m - SLACK_M
+    if min(rooms[one], rooms[two]) < enough:
+        return False
+    both = rooms[one] + rooms[two] - 2.0 * enough
+    if both > arrays.cell_m and abs(arrays.floors[one] - arrays.floors[two]) < _LEVEL_M:
+        ax, ay = anchor_of(arrays, near.first, offsets, one)
+        bx, by = anchor_of(arrays, near.first, offsets, two)
+        if both >= np.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay)):
+            return True
+    return bend_between(arrays, near, body, offsets, one, two)[0] > 0
