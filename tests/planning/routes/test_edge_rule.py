@@ -5,10 +5,11 @@ from functools import cache
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from esplanade.planning import Body, LayeredGrid, PathStatus, Polygon, Potential, Scene, find_path
+from tests.planning.worlds import holds
 
 Point = tuple[float, float]
 
@@ -85,7 +86,7 @@ def agrees(grid: LayeredGrid, goal: Point, z_m: float, starts: list[Point], body
     return wrong
 
 
-@settings(max_examples=25, deadline=None)
+@holds(25, 1)
 @given(
     steps=st.sampled_from([12, 24, 36]),
     width=st.sampled_from([1.2, 1.6]),
