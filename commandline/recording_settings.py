@@ -65,7 +65,7 @@ def add_strict(parser: Parser) -> None:
 
 
 class Told(Protocol):
-    """What is told of a recording that was read."""
+    """The remarks on a recording that was read."""
 
     @property
     def line(self) -> str: ...

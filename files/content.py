@@ -35,7 +35,7 @@ def read_content(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
 
 
 def unpacked(content: bytes, most_bytes: int) -> bytes:
-    """What one or several members of gzip hold together.
+    """The content of one or several members of gzip.
 
     Raises
     ------

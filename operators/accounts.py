@@ -8,7 +8,7 @@ Ask = Callable[..., Awaitable[Any]]
 
 
 class Accounts:
-    """What an operator with the right for accounts may do with those of others.
+    """The accounts of others, for an operator who has the right to change them.
 
     Each method raises `RefusedError` where the server refuses.
     """

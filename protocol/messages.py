@@ -68,7 +68,7 @@ class FromServer(BaseModel):
 
 
 class Admission(BaseModel):
-    """What lets a client in: to a closed world, with an operator's rights, or at a bot's rate."""
+    """The pass of a client: to a closed world, with an operator's rights, or at a bot's rate."""
 
     model_config = ConfigDict(strict=True, frozen=True, extra="forbid")
     way: Literal["invitation", "password", "pass", "bot"]

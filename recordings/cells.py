@@ -135,7 +135,7 @@ def _value(path: Path, line: int, role: str, cell: str) -> float:
 
 
 def _people(names: list[str]) -> tuple[list[str], Whole]:
-    """Whose each line is; where all names are numbers, 1 and 1.0 are the same person."""
+    """The person of each line; where all names are numbers, 1 and 1.0 are the same person."""
     try:
         marks = np.array([float(name) for name in names])
     except ValueError:

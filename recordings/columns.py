@@ -60,7 +60,7 @@ class Columns(NamedTuple):
 
     @property
     def missing(self) -> list[str]:
-        """What no column was found for."""
+        """The names of those for which no column was found."""
         found = self.places
         lacking = [] if "time" in found or "frame" in found else ["time or frame"]
         return lacking + [role for role in ("id", "x", "y") if role not in found]

@@ -29,7 +29,7 @@ class Dialect(NamedTuple):
 
     @property
     def cells(self) -> Callable[[str], list[str]]:
-        """What divides a line into cells, without quotes and white space around them."""
+        """The cells of a line, without quotes and white space around them."""
         if self.delimiter is None:
             return _by_space
         return lambda text: _by(text, str(self.delimiter))

@@ -24,7 +24,7 @@ _PLAIN: Final = frozenset(("time", "frame", "id", "x", "y"))
 
 
 class _Head(NamedTuple):
-    """What the first lines of a large table say."""
+    """The layout of a large table, as its first lines say it."""
 
     delimiter: str
     header: list[str]
@@ -134,7 +134,7 @@ def _blocks(
 def _first_fault(
     path: Path, read: int, delimiter: str, header: list[str], places: dict[str, int]
 ) -> tuple[str, int] | None:
-    """What is wrong, and in which line, looked for from the line after those that were read."""
+    """The first fault with its line, looked for from the line after those that were read."""
     count = len(header)
     with path.open(encoding="utf-8", errors="replace") as file:
         for number, text in enumerate(file, start=1):

@@ -1,4 +1,4 @@
-"""What a recording says of itself in one line, and what of it cannot be meant."""
+"""The figures of a recording in one line, and those of them that cannot be meant."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -108,7 +108,7 @@ def warnings_of(
     unit_known: bool,
     rate_known: bool,
 ) -> tuple[str, ...]:
-    """What is not as recordings of people are."""
+    """The figures that are not as recordings of people have them."""
     found = []
     if not np.isnan(median_mps) and not WALKING_MPS[0] <= median_mps <= WALKING_MPS[1]:
         told = advice(median_mps, fps, unit_known=unit_known, rate_known=rate_known)

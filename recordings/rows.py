@@ -18,7 +18,7 @@ EXACT_WHOLE: Final = 2.0**53
 
 
 class Given(NamedTuple):
-    """What the reader of a file says about it, because the file does not, or says it wrongly.
+    """Statements about a file by the one who reads it, where the file has none or wrong ones.
 
     `fps` is the number of frame numbers in a second, `unit` the name of a unit of length, `scale`
     the metres in one unit of the file. With `strict`, glitches are refused.

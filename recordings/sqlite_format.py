@@ -60,7 +60,7 @@ def _read(path: Path, connection: sqlite3.Connection) -> Rows:
     parts = [np.empty((0, 4))]
     count = 0
     while piece := cursor.fetchmany(_PIECE):
-        # What a damaged index counts says nothing, so that rows are counted as they come.
+        # A damaged index may count wrongly, so that rows are counted as they come.
         for row, values in enumerate(piece, start=count + 1):
             if not all(isinstance(value, int | float) for value in values):
                 fault = f"{values!s:.80} is no sample, expected numbers for frame, id, x and y"

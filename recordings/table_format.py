@@ -28,7 +28,7 @@ _CITR: Final = ["frame", "id", "x", "y", "type"]
 
 
 class Said(NamedTuple):
-    """What comments say of the numbers: frames a second, and the unit of length."""
+    """Frames a second and the unit of length, as comments say them."""
 
     fps: float | None = None
     unit: str | None = None
@@ -178,7 +178,7 @@ def _is_person(cell: str) -> bool:
 
 
 def _kinds(dialect: Dialect, lines: Sequence[Line], columns: Columns) -> dict[str, int]:
-    """What is not a person, and how often, where a column says who is one."""
+    """The kinds that are no people, with their counts, where a column tells kinds."""
     place = columns.places.get("kind")
     if place is None:
         return {}

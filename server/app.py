@@ -58,7 +58,7 @@ class Running:
 
     @property
     def live(self) -> Live:
-        """What operators see of the world, which is there for as long as that runs."""
+        """The world as operators see it, there for as long as it runs."""
         if self.gate.live is None:
             raise RuntimeError("the world has ended")
         return self.gate.live
@@ -93,7 +93,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         A port cannot be had, or too few open files are allowed.
     """
     warn_of_crowding(settings)
-    # What the machine cannot give is said now, not after a minute of building the world.
+    # A lack of the machine is told now, not after a minute of building the world.
     places = places_for_people(connections_wanted(settings))
     tls = _tls(settings)
     loaded, presets = with_roster(load_scene(settings), settings), shipped_presets(settings)

@@ -72,7 +72,7 @@ class Asset:
 
 @dataclass(frozen=True)
 class Found:
-    """What a client is answered with who asks for an asset."""
+    """The answer to a client who asks for an asset."""
 
     status: HTTPStatus
     body: bytes

@@ -26,7 +26,7 @@ log = structlog.get_logger(__name__)
 
 @dataclass(frozen=True)
 class Recovery:
-    """What a world goes on from; empty for a new one."""
+    """The state that a world goes on from; empty for a new one."""
 
     scene: SceneKey
     parts: Parts

@@ -1,4 +1,4 @@
-"""What the metrics tell of a world, of searches for routes, and of operators' commands."""
+"""The metrics of a world, of searches for routes, and of operators' commands."""
 
 from esplanade.actors import Population
 from esplanade.server.console.console import Console

@@ -15,7 +15,7 @@ from tools.environments import ROOT, StepError, build_wheel, install, make_envir
 
 def main() -> int:
     """Check a base install; exit code 1 where it fails."""
-    # What is served has tests of its own, and takes longest to build.
+    # Serving has tests of its own, and takes longest to build.
     os.environ["ESPLANADE_SKIP_CLIENT"] = "1"
     with tempfile.TemporaryDirectory(prefix="esplanade-base-") as name:
         folder = Path(name)

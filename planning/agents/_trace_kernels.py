@@ -1,4 +1,4 @@
-"""What a decision was made of, for those who look at it between two ticks, on bare arrays."""
+"""The parts of a decision, for those who look at it between two ticks, on bare arrays."""
 
 import numpy as np
 from numpy.typing import NDArray

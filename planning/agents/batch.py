@@ -209,7 +209,7 @@ class Batch:
 
     @property
     def zone(self) -> Zone:
-        """What the last tick was made of, and its decisions; for those who look between ticks."""
+        """The inputs and decisions of the last tick, for those who look between ticks."""
         return self._zone
 
     @property

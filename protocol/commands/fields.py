@@ -56,7 +56,7 @@ Place = Annotated[str, Field(min_length=1, max_length=64, pattern=NO_NUL)]
 
 
 class BaseCommand(BaseModel):
-    """What every command has."""
+    """The fields of every command."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
     private: ClassVar[frozenset[str]] = frozenset()

@@ -32,7 +32,7 @@ def read_jupedsim(data: bytes, name: str) -> Storey:
 
 
 class _Reader:
-    """What has been read up to an element."""
+    """The parts of a geometry that have been read up to an element."""
 
     def __init__(self, name: str) -> None:
         self.storey = Storey(name)

@@ -15,7 +15,7 @@ Line = tuple[Point, Point]
 
 @dataclass
 class Storey:
-    """What a plan shows of one storey, in metres."""
+    """One storey as a plan shows it, in metres."""
 
     name: str
     walkable: Any = None

@@ -40,7 +40,7 @@ class Parts:
             with_faults_told(name, load, self.restored[name])
 
     def save(self) -> dict[str, Any]:
-        """What all parts save at this moment, by their names."""
+        """The states of all parts at this moment, by their names."""
         return {name: save() for name, save in self._savers.items()}
 
 

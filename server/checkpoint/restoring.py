@@ -21,7 +21,7 @@ from esplanade.server.store.sql_store import SqlStore
 
 @dataclass(frozen=True)
 class Restored:
-    """What outlived the process: nothing where the world is new."""
+    """The state that outlived the process, empty where the world is new."""
 
     ids: Block
     """Numbers for avatars that no avatar ever had."""

@@ -53,7 +53,7 @@ class NewAccount(Body):
 
 
 class ChangedAccount(Body):
-    """What is to be otherwise of an account."""
+    """Changes to an account."""
 
     role: Word | None = None
     password: Password | None = None

@@ -33,7 +33,7 @@ class ChainFault(BaseModel):
 
 
 class Verified(BaseModel):
-    """What was found in the chains of all writers; with no fault all of it is as it was written."""
+    """The faults in the chains of all writers; with none all of it is as it was written."""
 
     chains: list[ChainFacts]
     faults: list[ChainFault]

@@ -21,7 +21,7 @@ NOT_DONE: Final = "not_done"
 
 @dataclass(frozen=True)
 class Tail:
-    """What the audit says of commands on a world that goes on."""
+    """The commands on a world that goes on, as the audit has them."""
 
     changes: list[Change] = field(default_factory=list)
     """Those that were made, the oldest first."""
@@ -40,7 +40,7 @@ class Tail:
 
 
 def read_tail(rows: Sequence[Row], settled: int) -> Tail:
-    """What rows of the server's own chain say, in their order.
+    """The commands in rows of the server's own chain, in their order.
 
     Of commands up to `settled` the checkpoint has what they did. Of later ones, those are redone of
     which the audit knows that they were done; all others never happened.

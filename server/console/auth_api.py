@@ -57,7 +57,7 @@ class OtherPassword(Body):
 
 
 class Me(BaseModel):
-    """Who asks, and what they may do."""
+    """The caller, and the rights of the caller."""
 
     account: str | None
     role: str
@@ -89,7 +89,7 @@ async def first(request: Request, body: First, response: Response) -> Me:
 
 @router.get("/me")
 async def me(request: Request) -> Me:
-    """Who asks; without token and session, whether there is an account at all yet."""
+    """The caller; without token and session, whether there is an account at all yet."""
     gate = gate_of(request)
     try:
         return _told(await gate.callers.identity(request))

@@ -92,7 +92,7 @@ class Brakes:
 
 
 def _stream_of(commands: Sequence[Command]) -> tuple[object, ...] | None:
-    """What a dragged slider changes; None for other commands."""
+    """The parameters that a dragged slider changes; None for other commands."""
     command = commands[0]
     if len(commands) > 1 or command.dry_run or not getattr(command, "stream", False):
         return None

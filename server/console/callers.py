@@ -1,4 +1,4 @@
-"""Whoever asks on the private port: by a script's token, or by the cookie of a session."""
+"""Callers on the private port, known by a script's token or by the cookie of a session."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

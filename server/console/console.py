@@ -265,7 +265,7 @@ class Console:
     # --- restarts -------------------------------------------------------------------------------
 
     def save(self) -> dict[str, Any]:
-        """What is set, and which commands are in it; call it between two ticks."""
+        """All that is set, and which commands are in it; call it between two ticks."""
         return {"begun": self.begun, "settled": self.settled, "state": self.state.save()}
 
     def load(self, saved: Mapping[str, Any]) -> None:

@@ -62,7 +62,7 @@ class Groups:
 
     @classmethod
     def load(cls, data: Mapping[str, Any]) -> "Groups":
-        """What was saved."""
+        """The groups as they were saved."""
         return cls(data["actors"])
 
 

@@ -1,4 +1,4 @@
-"""Whoever wants to know of changes: they are told on the zone's loop, as plain data."""
+"""Listeners to changes: they are told on the zone's loop, as plain data."""
 
 from collections.abc import Callable
 from typing import Any
@@ -44,7 +44,7 @@ class Listeners:
 
 
 def _about(subject: str, field: str) -> str:
-    """What is to be asked for anew when a fact is another."""
+    """The things to be asked for anew when a fact is another."""
     if field.startswith(GROUP):
         return "groups"
     return {"preset": "presets", "schedule": "schedules"}.get(subject.partition(":")[0], "")

@@ -13,7 +13,7 @@ class Known(Protocol):
 
     @property
     def name(self) -> str:
-        """What others see them called."""
+        """The name that others see."""
 
     @property
     def wished(self) -> str:
@@ -67,7 +67,7 @@ class Moderation(Protocol):
         """People on a storey, in a polygon, or around a centre; all of them without."""
 
     def details(self, person: int) -> dict[str, Any]:
-        """What operators are shown of a person in the world beside the place and the name."""
+        """The facts of a person in the world that operators are shown beside place and name."""
 
     def muted_s(self, person: int) -> float:
         """For how many seconds nobody hears a person yet."""

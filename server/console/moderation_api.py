@@ -104,7 +104,7 @@ def rules_of_chat(console: Console) -> dict[str, Any]:
 async def get_reports(
     request: Request, state: Annotated[str | None, Query(pattern="^(open|done)$")] = None
 ) -> dict[str, Any]:
-    """What people report, the newest first; it needs the right *moderate*."""
+    """The reports of people, the newest first; it needs the right *moderate*."""
     return await _asked(request, lambda console: reports(console, state=state))
 
 

@@ -9,7 +9,7 @@ from starlette.responses import RedirectResponse
 
 
 class Found(Protocol):
-    """What a client is answered with who asks for a file."""
+    """The answer to a client who asks for a file."""
 
     @property
     def status(self) -> int:

@@ -117,7 +117,7 @@ class Presets:
         return {f"preset:{name}": {PRESET: None}}
 
     def fact(self, name: str) -> dict[str, Any] | None:
-        """What is saved and holds under a name, as plain data."""
+        """The preset that holds under a name, as plain data."""
         head = self._heads.get(name)
         return None if head is None else self._saved[name][head].plain()
 
@@ -135,7 +135,7 @@ class Presets:
                 del versions[oldest]
 
     def save(self, name: str) -> dict[str, Any] | None:
-        """What was saved under a name, with its versions, as plain data; None if nothing was."""
+        """The preset saved under a name, with its versions, as plain data; None if none was."""
         if name not in self._saved:
             return None
         return {

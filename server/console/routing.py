@@ -1,4 +1,4 @@
-"""What the routers of the private port share: who asks, which rights they have, and refusals."""
+"""The shared parts of the routers of the private port: callers, their rights, and refusals."""
 
 from collections.abc import Callable, Coroutine
 from http import HTTPStatus

@@ -269,7 +269,7 @@ def guard_of(
 
 
 def guard_row(guard: Guard) -> OperatedRow:
-    """What is kept of a guard."""
+    """The state of a guard that is kept."""
     return OperatedRow(GUARDS, guard.id, guard.plain())
 
 

@@ -55,7 +55,7 @@ class Schedule:
         return asdict(self)
 
     def definition(self) -> dict[str, Any]:
-        """What is to be done and when, without what has come of it."""
+        """The commands of a schedule and their times, without what has come of them."""
         return {name: getattr(self, name) for name in _DEFINITION}
 
 
@@ -88,7 +88,7 @@ class Schedules:
         return f"s{self._made + 1 + taken}"
 
     def fact(self, name: str) -> dict[str, Any] | None:
-        """What is still to be done, as plain data."""
+        """The part that is still to be done, as plain data."""
         found = self._schedules.get(name)
         return found.definition() if found is not None and found.state in OPEN else None
 

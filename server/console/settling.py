@@ -1,4 +1,4 @@
-"""What is kept of commands that the world has carried out: facts, rows, changes, guards."""
+"""The traces of commands that the world has carried out: facts, rows, changes, guards."""
 
 import copy
 from collections.abc import Callable

@@ -102,7 +102,7 @@ class OperatedState:
         self.overrides = with_facts(self.overrides, facts)
 
     def save(self) -> dict[str, Any]:
-        """What is set, as plain data."""
+        """All that is set, as plain data."""
         return {
             "overrides": [
                 [scope.level, scope.name, dict(values)]

@@ -22,7 +22,7 @@ class _Second(NamedTuple):
 
 
 class History:
-    """What all actors did, so that one can be looked up once it turns out to matter."""
+    """The recent past of all actors, so that one can be looked up once it turns out to matter."""
 
     def __init__(self, feed: MapFeed) -> None:
         self._feed = feed

@@ -21,7 +21,7 @@ SIGMAS: Final = 2.0
 
 
 class Layers(NamedTuple):
-    """What actors are about to do, at a tick."""
+    """The plans of actors at a tick."""
 
     ids: tuple[Hashable, ...]
     ways: Floats

@@ -166,6 +166,6 @@ async def beating(live_of: Callable[[], Live | None]) -> None:
         try:
             live.beat()
         except Exception:
-            # What operators see may lack something then; the world is not touched by it.
+            # The view of operators may lack something then; the world is not touched by it.
             log.exception("live views failed")
             live.tap.begin_anew()

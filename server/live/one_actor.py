@@ -16,7 +16,7 @@ from esplanade.server.world.zone import Zone
 
 
 class Seen(NamedTuple):
-    """What a zone tells of an actor."""
+    """The facts that a zone tells of an actor."""
 
     why: Explanation
     decided: Decided | None

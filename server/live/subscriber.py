@@ -23,7 +23,7 @@ EARLY: Final = 0.8
 
 
 class Subscriber:
-    """What one console wants and has not been sent yet. It belongs to the private port's thread."""
+    """The wishes of one console, and what it was not sent yet, on the private port's thread."""
 
     def __init__(self, *, names: bool) -> None:
         self.names = names

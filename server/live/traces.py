@@ -36,7 +36,7 @@ class Traced:
 
 
 class TooManyError(Exception):
-    """So many requests wait already that no more are taken."""
+    """The queue of requests is full."""
 
 
 class Traces:

@@ -40,7 +40,7 @@ class Report:
 
 
 class InboxFullError(Exception):
-    """So many reports wait that no more are taken."""
+    """The inbox of reports is full."""
 
 
 class Inbox:

@@ -67,7 +67,7 @@ class DoorCommands:
     async def _move(self, session: Session, wish: SetDoor) -> ProtocolError | None:
         before = session.operator
         try:
-            # Whoever said the key has no account that could be looked up.
+            # A person who said the key has no account that could be looked up.
             by = before if before is SERVICE else before and await self._again(before)
             if by is None or Right.DOORS not in by.rights:
                 session.operator = by

@@ -33,7 +33,7 @@ log = structlog.get_logger(__name__)
 
 @dataclass(eq=False)
 class Admitted:
-    """What somebody was let in by. `end` it with their connection."""
+    """The admission of a connection. `end` it with the connection."""
 
     operator: Identity | None = None
     """The operator who walks in."""

@@ -108,7 +108,7 @@ class PeopleModeration:
         return found
 
     def details(self, person: int) -> dict[str, Any]:
-        """What operators are shown of a connected person beside the place and the name."""
+        """The facts of a connected person that operators are shown beside place and name."""
         session = self._sessions[person]
         return {
             "since_us": session.since_us,

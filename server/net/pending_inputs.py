@@ -1,4 +1,4 @@
-"""What people want, until the next tick: movements, doors, plans to watch, comings and goings."""
+"""Inputs of people until the next tick: movements, doors, plans to watch, comings and goings."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""What makes a world outlast its process: checkpoints, seats, and ids that are given away once."""
+"""Parts by which a world outlasts its process: checkpoints, seats, ids that are given away once."""
 
 import asyncio
 from typing import Final

@@ -42,7 +42,7 @@ def check(
 
 
 def fault_in(command: ActorCommand, population: Population, most_actors: int) -> Fault | None:
-    """What is wrong with a command, as `check` finds it; None if nothing is."""
+    """The fault of a command, as `check` finds it; None if there is none."""
     try:
         check(command, population, most_actors)
     except Exception as error:  # noqa: BLE001 - whatever it is, it is told

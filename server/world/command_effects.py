@@ -1,4 +1,4 @@
-"""What commands on actors do: first to the actors, which can fail, then to what is seen of them."""
+"""Effects of commands on actors: first on actors, which can fail, then on what is seen of them."""
 
 from collections.abc import Callable, Hashable, Iterable, Sequence
 

@@ -96,7 +96,7 @@ class Pace:
             self._tell(now)
 
     def save(self) -> dict[str, Any]:
-        """What outlives the process."""
+        """The state that outlives the process."""
         return {"factor": self.state.factor, "paused": self.state.paused}
 
     def load(self, saved: Mapping[str, Any], now: float) -> None:

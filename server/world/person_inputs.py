@@ -1,4 +1,4 @@
-"""What people's inputs do to a zone, and what its frame tells of that."""
+"""The effects of people's inputs on a zone, and what its frame tells of them."""
 
 from collections.abc import Collection
 

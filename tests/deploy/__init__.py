@@ -1,1 +1,1 @@
-"""What is shipped to watch a world with other programs."""
+"""Files that are shipped to watch a world with other programs."""

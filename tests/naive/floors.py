@@ -63,7 +63,7 @@ class Floors:
 
     @cached_property
     def feet(self) -> Traversability:
-        """What the kernels find, of which anchors and bends are taken as given."""
+        """The ground as kernels find it; anchors and bends of it are taken as given."""
         return find_traversability(self.arrays, self.barriers, self.body)
 
     def anchor(self, cell: int) -> Point:
@@ -113,7 +113,7 @@ class Floors:
         )
 
     def distance_from(self, barrier: Barrier, *floors: float) -> float:
-        """What the centre of the body has to keep from a barrier, which it may never cross."""
+        """The distance of the body's centre from a barrier, which it may never cross."""
         if self.height_to_climb(barrier, *floors) <= self.body.step_on_m + HAIR:
             return -math.inf
         step = self.height_to_climb(barrier, max(floors))

@@ -20,7 +20,7 @@ Told = Callable[..., Coroutine[Any, Any, str]]
 
 @pytest.fixture
 def told(capsys: pytest.CaptureFixture[str]) -> Told:
-    """What `esplanade op` prints; its exit code is `code`, and faults are printed too."""
+    """The output of `esplanade op`; its exit code is `code`, and faults are printed too."""
 
     async def tell(*words: str, code: int = 0) -> str:
         try:

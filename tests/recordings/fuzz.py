@@ -105,7 +105,7 @@ def _mutate_cell(found: bytearray, chance: random.Random) -> None:
 
 
 def fault_of(crowd: Crowd) -> str | None:
-    """What is wrong with a crowd that was accepted."""
+    """The fault of a crowd that was accepted."""
     report = crowd.report
     if report is None or not crowd.tracks:
         return "nothing is told of it"

@@ -25,10 +25,10 @@ export type ClientMessage =
   | { type: "report"; id: number; line: number | null; text: string }
   | { type: "mute"; id: number; muted: boolean };
 
-/** What a sentence of the server is made of, by names. */
+/** The arguments of a sentence of the server, by names. */
 export type Arguments = Record<string, unknown>;
 
-/** What lets somebody into a closed world, or with an operator's rights. */
+/** The pass that lets somebody into a closed world, or with an operator's rights. */
 export interface Admission {
   way: "invitation" | "password" | "pass";
   secret: string;

@@ -1,4 +1,4 @@
-/** What the server states before it ends a connection, in words for the person. */
+/** The reason that the server states before it ends a connection, in words for the person. */
 
 import type { ServerMessage } from "./messages";
 

@@ -6,7 +6,7 @@ import { byId, element } from "./dom";
 import type { SaidLine } from "./person";
 
 const KEPT_LINES = 80;
-/** So many of the lines of one person can be chosen for a report. */
+/** The number of lines of one person that can be chosen for a report. */
 const OFFERED_LINES = 5;
 
 export class ChatPanel {

@@ -3,7 +3,7 @@
 import { byId } from "./dom";
 import { type Saying, spanOf } from "./sentences";
 
-/** What needs no answer goes by itself after this time. */
+/** A notice that needs no answer goes by itself after this time. */
 const SHOWN_MS = 20_000;
 const COUNT_MS = 1000;
 

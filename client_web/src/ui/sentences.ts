@@ -35,7 +35,7 @@ export function noticeOf({ notice, text, arguments: given }: Notice): Saying | n
   }
 }
 
-/** What a fault means, as far as this page has words of its own for it. */
+/** The meaning of a fault, as far as this page has words of its own for it. */
 export function faultOf({ error, text, arguments: given }: Fault): string {
   const seconds = numberOf(given, "seconds");
   switch (error) {

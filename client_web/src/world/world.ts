@@ -200,7 +200,7 @@ export class World {
     const timeS = this.playout.advance(serverNowS, passedS, rate);
     const ownS = this.ownPlayout.advance(serverNowS, passedS, rate);
     this.drawnS = timeS;
-    // What is drawn comes to rest a moment after the world does.
+    // The picture comes to rest a moment after the world does.
     const frameS = rate === 0 ? Math.min(passedS, timeS - before) : passedS * rate;
     this.prediction?.advance(passedS * rate, passedS);
     for (const avatar of this.avatars_.values()) {

@@ -84,7 +84,7 @@ class _Model:
 
 
 def read_3mf(data: bytes) -> Triangles:
-    """What a 3MF file builds, in metres, z up.
+    """The triangles that a 3MF file builds, in metres, z up.
 
     Raises
     ------

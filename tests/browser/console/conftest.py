@@ -51,7 +51,7 @@ class Visit:
         await self.page.wait_for_selector("canvas.map[data-ms]")
 
     async def findings(self) -> list[str]:
-        """What axe finds in the page as it is now."""
+        """The findings of axe in the page as it is now."""
         await self.page.evaluate(AXE.read_text())
         found = await self.page.evaluate("axe.run(document, {resultTypes: ['violations']})")
         return [
@@ -80,7 +80,7 @@ async def visit(profile: BrowserContext, stage: tuple[str, Stage]) -> AsyncItera
 
 @pytest.fixture
 def server(stage: tuple[str, Stage]) -> Stage:
-    """What may be changed of the server."""
+    """The parts of the server that a test may change."""
     return stage[1]
 
 

@@ -37,7 +37,7 @@ COOKIE: Final = "esplanade_session"
 
 
 class Stage:
-    """What a test may change of the server while the page is open."""
+    """The parts of the server that a test may change while the page is open."""
 
     def __init__(self, actors: int, people: int) -> None:
         self.actors, self.people = actors, people

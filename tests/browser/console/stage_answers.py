@@ -126,7 +126,7 @@ def contacts(tick: int) -> dict[str, Any]:
 
 
 def actor_message(tick: int, channel: str) -> dict[str, Any]:
-    """What the live interface tells of one actor."""
+    """The answer of the live interface about one actor."""
     path = [[10.0 + s, 10.0 + math.sin(s), 0.0, 0.5 * s] for s in range(12)]
     parts = {"time": 6.1, "risk": 1.4, "turn": 0.3, "wall": 0.2, "hurry": 0.0, "keep_right": 0.1}
     parts["others"] = 0.2

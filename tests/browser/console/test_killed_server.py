@@ -35,7 +35,7 @@ async def test_the_page_comes_back_by_itself(profile: BrowserContext, tmp_path: 
     with served(room, *data, "--private-port", f"{port}") as server:
         await page.wait_for_selector("text=live")
         await page.wait_for_selector("text=1 actors, 0 people")
-        # Who was logged in is so still, and what they do is done.
+        # The operator is still logged in, and commands are carried out.
         await page.click("esp-topbar summary:has-text('Panels')")
         await page.click("esp-topbar details button:has-text('World')")
         await page.fill("esp-world input", "the server is back")

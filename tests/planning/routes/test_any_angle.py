@@ -1,4 +1,4 @@
-"""What can be walked depends on geometry, not on where cells lie: an independent judge on the plan.
+"""Ways depend on geometry, not on where cells lie: an independent judge on the plan.
 
 The judge is shapely: what is left of the bounds without obstacles that are widened by the radius.
 Nothing is asked within 1.5 cm of the radius, where the answer may be either.

@@ -1,4 +1,4 @@
-"""What is written for other programs holds the same floors when it is read back."""
+"""Files for other programs hold the same floors when they are read back."""
 
 import subprocess
 from pathlib import Path

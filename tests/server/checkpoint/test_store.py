@@ -1,4 +1,4 @@
-"""What restarts need of the store, in SQLite and in PostgreSQL."""
+"""The store as restarts need it, in SQLite and in PostgreSQL."""
 
 import asyncio
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What operators have made is there when a server comes back."""
+"""The work of operators is there when a server comes back."""
 
 from pathlib import Path
 

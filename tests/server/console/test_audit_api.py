@@ -1,4 +1,4 @@
-"""Whoever may read the audit sees whether it is as it was written."""
+"""Readers of the audit see whether it is as it was written."""
 
 from tests.server.conftest import Serving
 from tests.server.console.browsers import codes, logged_in

@@ -1,4 +1,4 @@
-"""What a hostile page, name, header or cookie reaches on the private port: nothing."""
+"""A hostile page, name, header or cookie reaches nothing on the private port."""
 
 import asyncio
 import json

@@ -50,7 +50,7 @@ async def test_who_is_kicked_is_told_why_and_does_not_get_the_avatar_back(servin
         ]
         assert row.note == "third time"
         assert row.person
-        # What speaks of a person stands where it can be forgotten.
+        # Rows that speak of a person stand where they can be forgotten.
         assert row.detail == {"text": "No running."}
         assert "No running." not in str(row.body)
         async with joined(server.port) as other:

@@ -113,8 +113,8 @@ async def _refused(world: Populated, given_: list[dict[str, Any]], place: int) -
         with pytest.raises(RefusedError) as refused:
             await sending
         paths = [fault.path[:1] for fault in refused.value.faults]
-        # What the world finds wrong with all of it together has no place, and whoever comes in with
-        # values that do not go together is refused where it comes in.
+        # A fault that the world finds with all of it together has no place. An actor that comes in
+        # with values that do not go together is refused where it comes in.
         newcomers = [index for index, each in enumerate(given_) if each["op"] == "add_actors"]
         places = [[place], [], ["values"], *([index] for index in newcomers if index > place)]
         assert any(path in places for path in paths)

@@ -68,7 +68,7 @@ class Login extends LitElement {
     busy: { state: true },
   };
   declare session: Session;
-  /** Who was logged in before the session ended. */
+  /** The operator who was logged in before the session ended. */
   declare account: string;
   /** Whether the page is behind it, since a session has ended. */
   declare over: boolean;

@@ -1,4 +1,4 @@
-/** What paths cost, part by part, as bars beside each other. */
+/** The costs of paths, part by part, as bars beside each other. */
 
 import { html, nothing, type TemplateResult } from "lit";
 import type { Cost } from "../net/types";

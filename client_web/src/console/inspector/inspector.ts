@@ -14,7 +14,7 @@ import { blockerText, secondsText } from "./why";
 const OVERLAY = "inspector";
 const TRACE = "trace";
 const USUAL_TICK_S = 0.05;
-/** So many actors are watched at once, the first that are chosen. */
+/** The number of actors that are watched at once, the first that are chosen. */
 const MOST = 2;
 
 class InspectorPanel extends Panel {

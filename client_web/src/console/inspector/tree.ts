@@ -7,7 +7,7 @@ import type { Line, Overlay, Segments } from "../state/overlays";
 const SHADES = 10;
 const UNEXPANDED = "#8a8f96";
 
-/** What the colour of a line of the search tells. */
+/** The meaning of the colour of a line of the search. */
 export type ColourBy = "order" | "time";
 
 export interface TraceView {
@@ -26,7 +26,7 @@ export function countNodes({ nodes, left_out }: Trace): TreeCount {
   return { expanded, open: nodes.length - expanded + left_out };
 }
 
-/** What is drawn on the map; paths have the colours of those that are drawn live. */
+/** The parts that are drawn on the map; paths have the colours of those that are drawn live. */
 export function traceOverlay(
   trace: Trace,
   { slice, by }: TraceView,

@@ -1,4 +1,4 @@
-/** What is known of one actor that is looked at: asked of the server, and told by it. */
+/** The facts of one actor that is looked at: asked of the server, and told by it. */
 
 import type { AppContext } from "../context";
 import type { LiveMessage } from "../net/live";

@@ -36,7 +36,7 @@ export function stopsOf(spans: readonly WhySpan[], most: number): WhySpan[] {
     .reverse();
 }
 
-/** Who or what it is, and how far away. */
+/** The name of the blocker, and how far away it is. */
 export function blockerText({ kind, id, name, away_m }: Blocker): string {
   const who = name ?? (id === null ? "" : String(id));
   const what = kind === "actor" || kind === "person" ? who || kind : `${kind} ${who}`.trim();

@@ -1,4 +1,4 @@
-/** Who is chosen by a click on the map, or by a region that is drawn on it. */
+/** The choice of actors and people by a click on the map, or by a region drawn on it. */
 
 import type { AppContext } from "../context";
 import type { Painter } from "./painter";

@@ -57,7 +57,7 @@ class MapPanel extends Panel {
       if (world && this.painter) this.painter.doors = world.doors;
     });
     this.watch(app.live.phase, (phase) => {
-      // What changed while the line was cut is asked for anew.
+      // Changes while the line was cut are asked for anew.
       if (phase === "on") void this.load();
     });
     this.hear("contacts", {}, (message: ContactsMessage) => {

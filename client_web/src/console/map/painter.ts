@@ -86,7 +86,7 @@ export class Painter {
     drawTrails(pen, this.view, short, drawnS, SHORT_TRAIL_S, scheme.value);
   }
 
-  /** What never moves is drawn once for each view of it. */
+  /** Parts that never move are drawn once for each view of them. */
   private drawStill(pen: CanvasRenderingContext2D, ratio: number, map: MapData): void {
     const { view, still } = this;
     const { dark } = this.app.scheme.value;

@@ -100,7 +100,7 @@ export function drawTags(
   places: readonly Box[],
 ): void {
   if (tags === "none") return;
-  // Whoever is chosen gets room first.
+  // Those who are chosen get room first.
   const first = drawn.filter((one) => chosen.has(one.avatar.key));
   const rest = drawn.length <= MOST_TAGS ? drawn.filter((one) => !first.includes(one)) : [];
   pen.font = "11px system-ui, sans-serif";

@@ -1,4 +1,4 @@
-/** Who is chosen by a click, a box, or a line drawn around them, in pixels of the canvas. */
+/** Finding those under a click, in a box, or within a drawn line, in pixels of the canvas. */
 
 export type Pixel = readonly [number, number];
 

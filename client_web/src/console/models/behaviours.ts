@@ -53,7 +53,7 @@ export function specOf(kind: BehaviourKind, values: Readonly<Record<string, Json
   return spec;
 }
 
-/** What is still missing before the form can be sent; null if nothing is. */
+/** The field that is missing before the form can be sent; null if none is. */
 export function missing(
   kind: BehaviourKind,
   values: Readonly<Record<string, Json>>,

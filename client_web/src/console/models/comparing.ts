@@ -1,4 +1,4 @@
-/** What the panel of differences has in its columns; others may ask for a comparison. */
+/** The columns of the panel of differences; others may ask for a comparison. */
 
 import { Signal } from "../state/signal";
 

@@ -6,7 +6,7 @@ import type { Effective } from "./scopes";
 /** An edit: a value for the scope, or null to take its own value away. */
 export type Edit = number | null;
 
-/** What somebody else has set a field to while it was being edited here. */
+/** The value that somebody else has given a field while it was being edited here. */
 export interface Beside {
   readonly value: number;
   readonly by: string | null;
@@ -132,7 +132,7 @@ export class Draft {
     this.swap(this.future, this.past);
   }
 
-  /** What others have set stands: the edit goes. */
+  /** The value of others stands: the edit goes. */
   takeTheirs(name: string): void {
     this.drop(name);
   }

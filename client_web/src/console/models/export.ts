@@ -3,7 +3,7 @@
 export type Cell = string | number | boolean | null | undefined | object;
 export type Row = Readonly<Record<string, Cell>>;
 
-/** What a spreadsheet would compute; there it has an apostrophe before it. */
+/** The beginning of a text that a spreadsheet would compute; it gets an apostrophe before it. */
 const COMPUTED = /^[=+\-@\t\r]/;
 
 export function toCsv(rows: readonly Row[], columns: readonly string[]): string {

@@ -138,7 +138,7 @@ export function parsed(field: NumberField, typed: string): number | null {
   return field.integer && !Number.isInteger(value) ? null : value;
 }
 
-/** What is wrong with a value by the schema alone; null if nothing is. */
+/** The fault of a value by the schema alone; null if there is none. */
 export function outOfRange(field: NumberField, value: number): string | null {
   if (value < field.least) return `must not be below ${field.least} ${field.unit}`;
   if (value > field.most) return `must not be above ${field.most} ${field.unit}`;

@@ -1,4 +1,4 @@
-/** What the parameter form does with the server: it loads, checks, applies and streams drafts. */
+/** The talk of the parameter form with the server: it loads, checks, applies and streams drafts. */
 
 import type { Api } from "../net/api";
 import { RefusedError } from "../net/api";

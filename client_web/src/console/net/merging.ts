@@ -2,7 +2,7 @@
 
 export type Arguments = Readonly<Record<string, unknown>>;
 
-/** What to ask of a channel so that every listener gets at least what it asks for. */
+/** The request to a channel that gives every listener at least what it asks for. */
 export function merged(asked: readonly Arguments[]): Record<string, unknown> {
   const names = new Set(asked.flatMap((one) => Object.keys(one)));
   const found: Record<string, unknown> = {};

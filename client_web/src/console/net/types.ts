@@ -1,4 +1,4 @@
-/** What the interface for operators sends and is sent; a test holds it against the server's schema. */
+/** Messages of the interface for operators; a test holds them against the server's schema. */
 
 export const RIGHTS = [
   "watch",

@@ -178,7 +178,7 @@ export abstract class CommandingPanel extends Panel {
     this.hear("changes", {}, (message: ChangeMessage) => {
       if (about.test(message.change?.op ?? message.about ?? "")) call();
     });
-    // What was missed while the connection was away is asked for when it is back.
+    // Changes that were missed while the connection was away are asked for when it is back.
     this.watch(this.app.live.phase, (phase) => {
       if (phase === "on") call();
     });

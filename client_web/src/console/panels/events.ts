@@ -1,4 +1,4 @@
-/** What happens in the world, by kind and by who; a click looks at the place on the map. */
+/** Events of the world, by kind and by who; a click looks at the place on the map. */
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { chosenBy, EventList, type WorldEvent } from "../models/eventlist";

@@ -1,5 +1,5 @@
 /**
- * What the address of the page tells of its state, so that a link shows the same to somebody else.
+ * The state of the page in its address, so that a link shows the same to somebody else.
  *
  * It holds no secret: the token of a one-time link is taken out of the address at once.
  */

@@ -1,4 +1,4 @@
-/** What panels have drawn on the map: lines, marks and values of cells. */
+/** The drawings of panels on the map: lines, marks and values of cells. */
 
 import type { Point, Raster } from "../net/types";
 

@@ -3,7 +3,7 @@
 import type { Point } from "../net/types";
 
 export interface Picking {
-  /** What is asked for, in a sentence. */
+  /** The question, in a sentence. */
   readonly text: string;
   /** Places that are taken already, drawn as a line in their order. */
   readonly points: readonly Point[];

@@ -1,4 +1,4 @@
-/** Who is logged in, and what happens when a session ends. */
+/** The operator who is logged in, and what happens when a session ends. */
 
 import type { Api } from "../net/api";
 import { RefusedError } from "../net/api";

@@ -5,7 +5,7 @@ import type { Stop } from "./signal";
 export interface Shortcut {
   /** As in `KeyboardEvent.key`, after `Alt+` where that is held. */
   key: string;
-  /** What it does, for the sheet. */
+  /** Its effect, for the sheet. */
   text: string;
   call: () => void;
 }

@@ -1,4 +1,4 @@
-/** What the parts of the page know together. */
+/** The state that the parts of the page share. */
 
 import type { Me, World } from "../net/types";
 import type { Overlay } from "./overlays";
@@ -23,7 +23,7 @@ export class State {
   readonly draft = new Signal<Draft | null>(null);
   /** A place that the map shall show. */
   readonly lookAt = new Signal<readonly [number, number, number] | null>(null);
-  /** What a panel wants to be shown on the map; clicks there are its places meanwhile. */
+  /** The drawing that a panel wants on the map; clicks there are its places meanwhile. */
   readonly picking = new Signal<Picking | null>(null);
   readonly revision = new Signal(0);
   /** Drawn on the map, by the name of who drew it. */

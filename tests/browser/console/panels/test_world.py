@@ -1,4 +1,4 @@
-"""What directors and admins click on their page: time, waves, ways in, a password, the audit."""
+"""Clicks of directors and admins on their page: time, waves, ways in, a password, the audit."""
 
 import re
 from pathlib import Path

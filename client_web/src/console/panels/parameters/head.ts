@@ -5,7 +5,7 @@ import type { ParameterWork } from "../../models/parameterwork";
 import { groupsOf, scopeName, shortId } from "../../models/scopes";
 
 export interface Shown {
-  /** Who is chosen on the map. */
+  /** The actors that are chosen on the map. */
   chosen: readonly string[];
   /** The words that a parameter must have to be shown. */
   sought: string;

@@ -16,7 +16,7 @@ export function manner(): Manner {
   return { overS: "", figure: "", side: "above", limit: "", forS: "10", command: {} };
 }
 
-/** What the typed texts mean; what is no number yet means nothing. */
+/** The meaning of the typed texts; a text that is no number yet means nothing. */
 export function withCommand(given: Manner): Manner {
   const over = Number(given.overS);
   const limit = Number(given.limit);

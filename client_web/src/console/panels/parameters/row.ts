@@ -9,7 +9,7 @@ import { SLIDER_STEPS, shown, stepOf, toSlider } from "../../models/fields";
 export interface RowState {
   field: NumberField;
   value: number;
-  /** What stands in the box while somebody types in it. */
+  /** The text in the box while somebody types in it. */
   typed: string | null;
   edit: Edit | undefined;
   /** Where the value comes from, as people read it. */

@@ -162,7 +162,7 @@ class SeriesPanel extends CommandingPanel {
     </label>`;
   }
 
-  /** What is under the pointer: the moment, and whose changes were made about then. */
+  /** The moment under the pointer, and whose changes were made about then. */
   private told(): TemplateResult | string {
     const us = this.app.state.hovered.value;
     const many = this.window.marks.length;
