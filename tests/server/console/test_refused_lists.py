@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from esplanade.protocol.commands import COMMAND
@@ -83,7 +83,7 @@ def three() -> Iterator[Populated]:
     world.population.close()
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60, deadline=None, derandomize=True)
 @given(
     before=st.lists(st.sampled_from(RIGHT), max_size=3),
     wrong=st.sampled_from(WRONG),
@@ -95,6 +95,8 @@ def test_a_refused_list_leaves_no_trace(
     wrong: dict[str, Any],
     after: list[dict[str, Any]],
 ) -> None:
+    # One preset that is saved twice would be a second fault.
+    assume(sum(each["op"] == "save_preset" for each in (*before, *after)) <= 1)
     asyncio.run(_refused(three, [*before, wrong, *after], len(before)))
 
 
