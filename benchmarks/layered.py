@@ -130,8 +130,9 @@ def print_door(side: int, layers: int, runs: int) -> None:
     body = Body.adult()
     grid = LayeredGrid.from_scene(building(side, layers), CELL_M)
     traversability = find_traversability(grid.layered, grid.barriers, body)
-    around = grid.doors.set_open("gate", is_open=False)
-    door_ms, _ = best_ms(lambda: renew_traversability(traversability, body, around), runs)
+    grid.doors.set_open("gate", is_open=False)
+    row = grid.doors.rows["gate"]
+    door_ms, _ = best_ms(lambda: renew_traversability(traversability, body, row), runs)
     whole_ms, _ = best_ms(lambda: find_traversability(grid.layered, grid.barriers, body), runs)
     print(
         f"one door at {side}x{side}x{layers}: {door_ms:.3f} ms, "

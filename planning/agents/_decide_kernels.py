@@ -11,7 +11,13 @@ from esplanade.planning.agents._bottleneck_kernels import AFTER_M, OPPOSED, lane
 from esplanade.planning.agents._perturb_kernels import path_cost, update_path
 from esplanade.planning.agents._search_kernels import FOUND, NO_PATH, Moves, Workspace, search
 from esplanade.planning.agents._step_kernels import control_toward, last_check, limited
-from esplanade.planning.agents._task_kernels import SUB, Task, World, metres_left
+from esplanade.planning.agents._task_kernels import (
+    SUB,
+    Task,
+    World,
+    metres_left,
+    needed_clearance,
+)
 from esplanade.planning.agents.agents import (
     ARRIVED,
     BLOCKED,
@@ -23,9 +29,10 @@ from esplanade.planning.agents.agents import (
     Decisions,
 )
 from esplanade.planning.compiled.jit import kernel
-from esplanade.planning.grid._grid_kernels import clearance_at
+from esplanade.planning.grid._grid_kernels import anchor_at, clearance_at, length
+from esplanade.planning.grid._side_kernels import is_cut_off
 from esplanade.planning.people._prediction_kernels import Prediction
-from esplanade.planning.routes._potential_kernels import EDGES, potential_at
+from esplanade.planning.routes._potential_kernels import EDGES, potential_at, way_out
 
 MOST_BEHIND_S = 5.0
 """More lost time than this is not made up."""
@@ -163,6 +170,9 @@ def decide(
         task = make_task(potentials, agents, a, p["goal_tolerance_m"], tick_s, contested)
         slot = agents.potential_rows[a]
         potential = potentials[slot] if slot >= 0 else no_potential
+        if slot >= 0 and is_cut_off(world.grid, task.body, task.cell, task.x, task.y):
+            _lead_out(world, potential, prediction, agents, task, tick_s, out)
+            continue
         for m in range(len(moves.speeds)):
             part = moves.speeds[m]
             speeds[m] = task.max_speed_mps if part > 1.0 else part * task.speed_mps
@@ -190,7 +200,9 @@ def decide(
         path = out.paths[a]
         ux, uy = control_toward(task, path[SUB, 0], path[SUB, 1], world.step_s)
         contact = p["radius_m"] + (world.person_radius_m + p["person_room_m"])
-        ux, uy, dodged = last_check(world, prediction, task, contact, ux, uy)
+        ux, uy, dodged = last_check(
+            world, prediction, task, needed_clearance(world, task), contact, ux, uy
+        )
         wx, wy = limited(task, ux, uy, tick_s)
         out.wishes[a, 0] = wx
         out.wishes[a, 1] = wy
@@ -203,6 +215,52 @@ def decide(
         out.reasons[a] = _reason(
             agents, task, away, lost, path, status, switched, dodged, world.step_s
         )
+
+
+@kernel
+def _lead_out(
+    world: World,
+    potential: NDArray[np.float32],
+    prediction: Prediction,
+    agents: Agents,
+    task: Task,
+    tick_s: float,
+    out: Decisions,
+) -> None:
+    """Decide for an actor that a wall cuts off from its cell's anchor: go where it can plan again.
+
+    Its cell's potential and clearance are those of the other side of the wall. So it goes straight
+    to an anchor on its own side, if a way leads on from there; `walk` keeps it from the wall.
+    """
+    a = task.me
+    path = out.paths[a]
+    agents.left_m[a] = np.inf  # what it was said to be means nothing
+    ex = task.x
+    ey = task.y
+    cell, _ = way_out(world.grid, potential, task.body, task.radius_m, task.cell, task.x, task.y)
+    if cell >= 0:
+        ex, ey = anchor_at(world.grid, task.body, cell)
+    away = length(ex - task.x, ey - task.y)
+    slice_m = task.speed_mps * world.step_s / SUB
+    for k in range(len(path)):
+        part = min(1.0, k * slice_m / away) if away > 0.0 else 1.0
+        path[k, 0] = task.x + part * (ex - task.x)
+        path[k, 1] = task.y + part * (ey - task.y)
+    p = agents.parameters[a]
+    contact = p["radius_m"] + (world.person_radius_m + p["person_room_m"])
+    ux, uy = control_toward(task, path[SUB, 0], path[SUB, 1], world.step_s)
+    ux, uy, dodged = last_check(world, prediction, task, -np.inf, contact, ux, uy)
+    wx, wy = limited(task, ux, uy, tick_s)
+    out.wishes[a, 0] = wx
+    out.wishes[a, 1] = wy
+    out.statuses[a] = FOUND if cell >= 0 else NO_PATH
+    out.expansions[a] = 0
+    out.renewed[a] = True
+    out.reasons[a] = MOVING
+    if cell < 0:
+        out.reasons[a] = BLOCKED
+    elif dodged:
+        out.reasons[a] = GIVING_WAY
 
 
 @kernel

@@ -9,7 +9,6 @@ from esplanade.planning.agents._task_kernels import (
     World,
     advance,
     further_on_edges,
-    needed_clearance,
 )
 from esplanade.planning.agents.agents import GIVING_WAY, WAITING, Agents, Decisions
 from esplanade.planning.compiled.jit import kernel
@@ -153,19 +152,19 @@ def last_check(
     world: World,
     prediction: Prediction,
     task: Task,
+    need: float,
     contact_m: float,
     ux: float,
     uy: float,
 ) -> tuple[float, float, bool]:
     """The wish itself if it touches nobody soon, else the evasion that leaves most room.
 
-    Evasions are stopping and sixteen directions at two speeds; the third value tells whether they
-    were tried because of people, not only of walls. Costs O(people) once and O(people near) for
-    each evasion.
+    `need` is the distance that it keeps from walls. Evasions are stopping and sixteen directions at
+    two speeds; the third value tells whether they were tried because of people, not only of walls.
+    Costs O(people) once and O(people near) for each evasion.
     """
     listed = np.empty(len(prediction.means), dtype=np.int64)
     near = listed[: _people_near(world, prediction, task, listed)]
-    need = needed_clearance(world, task)
     gap = _gap(world, prediction, near, task, need, ux, uy)
     if gap >= contact_m:
         return ux, uy, False

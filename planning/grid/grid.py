@@ -29,7 +29,7 @@ from esplanade.planning.grid.clearances import (
     write_clearance,
 )
 from esplanade.planning.grid.door_change import DoorChange
-from esplanade.planning.grid.kinds import kind_arrays, moved, shared_with
+from esplanade.planning.grid.kinds import copied, kind_arrays, shared_with, steps_in
 from esplanade.planning.grid.lookup import PlaceLookup
 from esplanade.planning.ground._geometry_kernels import Placement
 from esplanade.planning.ground.barriers import Barriers
@@ -284,13 +284,12 @@ class LayeredGrid(PlaceLookup):
         box = (x0 - reach, y0 - reach, x1 + reach, y1 + reach)
         near = cells_within(self.layered, box)
         clearance, edges = base.clearance.copy(), base.edges.copy()
-        known = {}
+        kinds, known = copied(base.kinds), {}
         for body, row in bodies.items():
             write_clearance(base, index, body, box, near, clearance[row])
-            known[body] = self.traversability.prepare(body, barriers)
+            known[body] = self.traversability.prepare(body, barriers, steps_in(kinds, row))
             if not base.flat:
                 edges[row, near] = np.isin(known[body].traversability.classes[near], _EDGES)
-        kinds = moved(base.kinds, [one.traversability for one in self._by_row(known.__getitem__)])
         for body, row in bodies.items():
             shared = shared_with(kinds, row, known[body].traversability)
             known[body] = replace(known[body], traversability=shared)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from esplanade.planning.grid._grid_kernels import MEASURES, KindArrays
 from esplanade.planning.ground._barrier_kernels import LISTED
@@ -34,17 +35,20 @@ def kind_arrays(barriers: Barriers, cells: int, found: Sequence[Traversability])
 
 def shared_with(kinds: KindArrays, row: int, one: Traversability) -> Traversability:
     """A traversability that is the same, with its arrays in a row of those of kinds of body."""
+    steps, offsets = steps_in(kinds, row)
     begin = int(kinds.measures["entries"][row])
-    end = begin + len(one.near.entries)
-    near = one.near._replace(first=kinds.first[row], entries=kinds.entries[begin:end])
-    return one._replace(offsets=kinds.offsets[begin:end], steps=kinds.steps[row], near=near)
+    entries = kinds.entries[begin : begin + len(offsets)]
+    near = one.near._replace(first=kinds.first[row], entries=entries)
+    return one._replace(offsets=offsets, steps=steps, near=near)
 
 
-def moved(kinds: KindArrays, found: Sequence[Traversability]) -> KindArrays:
-    """The arrays of kinds of body once a door has moved, row by row."""
-    offsets, steps = np.empty_like(kinds.offsets), np.empty_like(kinds.steps)
-    for row, one in enumerate(found):
-        steps[row] = one.steps
-        begin = int(kinds.measures["entries"][row])
-        offsets[begin : begin + len(one.offsets)] = one.offsets
-    return kinds._replace(offsets=offsets, steps=steps)
+def copied(kinds: KindArrays) -> KindArrays:
+    """The same arrays of kinds of body, with copies of what changes when a door moves."""
+    return kinds._replace(offsets=kinds.offsets.copy(), steps=kinds.steps.copy())
+
+
+def steps_in(kinds: KindArrays, row: int) -> tuple[NDArray[np.uint8], NDArray[np.int8]]:
+    """The steps (N,) and offsets (E, 2) of one kind of body, as parts of the arrays of all."""
+    begins = kinds.measures["entries"]
+    end = int(begins[row + 1]) if row + 1 < len(begins) else len(kinds.entries)
+    return kinds.steps[row], kinds.offsets[int(begins[row]) : end]

@@ -4,80 +4,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import kernel
-from esplanade.planning.grid._grid_kernels import (
-    anchor_at,
-    fits_at_anchor,
-    floor_of,
-    length,
-)
+from esplanade.planning.grid._grid_kernels import floor_of, length
+from esplanade.planning.grid._side_kernels import is_cut_off
 from esplanade.planning.grid._walking_kernels import GroundArrays, walk
-from esplanade.planning.ground._geometry_kernels import Placement, crosses_any
 from esplanade.planning.routes._potential_kernels import PotentialValues, direction_at
 from esplanade.planning.scene.heights import SAME_SURFACE_M
-
-_RINGS = 3
-"""A body that stands where it does not fit finds a way out over at most so many cells."""
-
-
-@kernel
-def cells_to_begin_at(
-    ground: GroundArrays,
-    body: int,
-    radius: float,
-    placement: Placement,
-    cell: int,
-    x: float,
-    y: float,
-) -> NDArray[np.int64]:
-    """The cells where a route from a point may begin: its own if that is free, else free ones near.
-
-    These are the free cells of the nearest ring of neighbours, up to three rings away, that has any
-    that no barrier hides from the point.
-    """
-    grid = ground.grid
-    cx, cy = anchor_at(grid, body, cell)
-    if fits_at_anchor(grid, body, cell, radius) and not crosses_any(
-        ground.barriers, placement, x, y, cx, cy
-    ):
-        return np.full(1, cell, dtype=np.int64)
-    side = 2 * _RINGS + 1
-    seen = np.empty(side * side, dtype=np.int64)
-    seen[0] = cell
-    first, last = 0, 1
-    found = np.empty(side * side, dtype=np.int64)
-    count = 0
-    for _ in range(_RINGS):
-        end = last
-        for k in range(first, last):
-            for direction in range(8):
-                other = grid.layered.links[seen[k], direction]
-                if other < 0 or end == len(seen):
-                    continue
-                apart = abs(grid.layered.floors[other] - grid.layered.floors[seen[k]])
-                if apart > placement.step_on_m:
-                    continue
-                known = False
-                for j in range(end):
-                    known = known or seen[j] == other
-                if known:
-                    continue
-                seen[end] = other
-                end += 1
-                cx, cy = anchor_at(grid, body, other)
-                if fits_at_anchor(grid, body, other, radius) and not crosses_any(
-                    ground.barriers, placement, x, y, cx, cy
-                ):
-                    found[count] = other
-                    count += 1
-        if count:
-            break
-        first, last = last, end
-    return found[:count].copy()
 
 
 @kernel
 def descend(
     ground: GroundArrays,
+    body: int,
     height_m: float,
     step_on_m: float,
     leg_length_m: float,
@@ -95,9 +32,9 @@ def descend(
     """Walk from a start to the goal and write where the way turns into `corners` (K, 3).
 
     The body takes steps of `step` metres towards the waypoint of the cell that it is in; as long as
-    the wave has not settled that cell, towards the one that it had, at first `toward`. A change of
-    direction whose cosine is at least `turn_cos` is no corner. Returns the number of corners, -1 if
-    the goal is not reached in K steps.
+    the wave has not settled that cell, or the body is cut off from its anchor, towards the one that
+    it had, at first `toward`. A change of direction whose cosine is at least `turn_cos` is no
+    corner. Returns the number of corners, -1 if the goal is not reached in K steps.
     """
     grid = ground.grid
     x, y = start
@@ -110,7 +47,7 @@ def descend(
             and abs(floor_of(grid, cell) - goal[2]) < SAME_SURFACE_M
         ):
             return count
-        if settled[cell]:
+        if settled[cell] and not is_cut_off(grid, body, cell, x, y):
             dx, dy, leg = direction_at(grid, potential, cell, x, y)
             wx = x + leg * dx
             wy = y + leg * dy

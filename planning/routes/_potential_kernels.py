@@ -16,6 +16,7 @@ from esplanade.planning.grid._grid_kernels import (
     length,
     line_is_clear,
 )
+from esplanade.planning.grid._side_kernels import cells_to_begin_at, is_barred, is_cut_off
 from esplanade.planning.traversal._anchor_kernels import SLACK_M
 
 PotentialValues = NDArray[np.float32]
@@ -189,8 +190,9 @@ def extend_into_obstacles(
 ) -> None:
     """Lead out of cells that are not free but lie next to reached ones, three rings deep.
 
-    An agent closer to a wall than its radius then still finds the path. Distances over such cells
-    count threefold. Cells that are settled beyond these rings are left as they are.
+    An agent closer to a wall than its radius then still finds the path, on its side of the wall.
+    Distances over such cells count threefold. Cells that are settled beyond these rings are left as
+    they are.
     """
     step_on_m = grid.kinds.measures[body]["step_on_m"]
     for ring in range(1, 4):
@@ -208,7 +210,7 @@ def extend_into_obstacles(
                 cx, cy = anchor_at(grid, body, other)
                 way = length(cx - x, cy - y)
                 left = potential_at(potential, other, cx, cy) + 2.0 * way
-                if left + way < best:
+                if left + way < best and not is_barred(grid, body, cell, x, y, cx, cy):
                     best = left + way
                     potential[cell, 0] = left
                     potential[cell, 1] = cx
@@ -218,27 +220,75 @@ def extend_into_obstacles(
 
 
 @kernel
-def distances(
+def way_out(
+    grid: GridArrays,
     potential: PotentialValues,
+    body: int,
+    radius: float,
+    cell: int,
+    x: float,
+    y: float,
+) -> tuple[int, float]:
+    """The cell next to a point by whose anchor a way leads to the goal, and its length in metres.
+
+    It is for points that are cut off from the anchor of their own cell, whose potential is that of
+    the other side of a wall. Without any such cell it is -1, and the length inf.
+    """
+    best = -1
+    least = np.inf
+    for other in cells_to_begin_at(grid, body, radius, cell, x, y):
+        cx, cy = anchor_at(grid, body, other)
+        left = potential_at(potential, other, cx, cy) + length(cx - x, cy - y)
+        if left < least:
+            least = left
+            best = other
+    return best, least
+
+
+@kernel
+def distances(
+    grid: GridArrays,
+    potential: PotentialValues,
+    body: int,
+    radius: float,
     cells: NDArray[np.int64],
     positions: NDArray[np.float64],
     out: NDArray[np.float64],
 ) -> None:
-    """Fill `out` (N,) with `potential_at` of cells (N,) and positions (N, 2)."""
+    """Fill `out` (N,) with `potential_at` of cells (N,) and positions (N, 2), or by `way_out`."""
     for k in range(len(positions)):
-        out[k] = potential_at(potential, cells[k], positions[k, 0], positions[k, 1])
+        x, y = positions[k]
+        if is_cut_off(grid, body, cells[k], x, y):
+            out[k] = way_out(grid, potential, body, radius, cells[k], x, y)[1]
+        else:
+            out[k] = potential_at(potential, cells[k], x, y)
 
 
 @kernel
 def directions(
     grid: GridArrays,
     potential: PotentialValues,
+    body: int,
+    radius: float,
     cells: NDArray[np.int64],
     positions: NDArray[np.float64],
     out: NDArray[np.float64],
 ) -> None:
-    """Fill `out` (N, 2) with the vectors of `direction_at`, for cells (N,), positions (N, 2)."""
+    """Fill `out` (N, 2) with the vectors of `direction_at`, for cells (N,), positions (N, 2).
+
+    From points that are cut off from the anchors of their cells they are those of `way_out`.
+    """
     for k in range(len(positions)):
-        dx, dy, _ = direction_at(grid, potential, cells[k], positions[k, 0], positions[k, 1])
+        x, y = positions[k]
+        if is_cut_off(grid, body, cells[k], x, y):
+            out[k] = 0.0
+            other = way_out(grid, potential, body, radius, cells[k], x, y)[0]
+            if other >= 0:
+                cx, cy = anchor_at(grid, body, other)
+                way = length(cx - x, cy - y)
+                out[k, 0] = (cx - x) / way
+                out[k, 1] = (cy - y) / way
+            continue
+        dx, dy, _ = direction_at(grid, potential, cells[k], x, y)
         out[k, 0] = dx
         out[k, 1] = dy

@@ -6,13 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
+from esplanade.planning.ground._barrier_kernels import TOLERANCE_M
 from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.traversal._anchor_kernels import (
     anchor_of,
     bend_between,
     is_way_clear,
 )
-from esplanade.planning.traversal._stability_kernels import FORBIDDEN, STABLE
+from esplanade.planning.traversal._stability_kernels import STABLE
 from esplanade.planning.traversal.traversability import Traversability
 
 _CORNER_M = 1e-9
@@ -40,6 +41,33 @@ def is_clear(
 
 
 @inlined
+def _heights_allow(traversability: Traversability, cell: int, other: int) -> bool:
+    """Whether floors and ceilings let a body go from one cell to the next, whatever barriers do."""
+    arrays, body = traversability.arrays, traversability.body
+    a, b = arrays.floors[cell], arrays.floors[other]
+    room = min(arrays.ceilings[cell], arrays.ceilings[other]) - max(a, b)
+    return bool(abs(a - b) <= body.step_on_m + TOLERANCE_M and room >= body.height_m - TOLERANCE_M)
+
+
+@inlined
+def _is_clear_between(
+    traversability: Traversability,
+    cell: int,
+    other: int,
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+) -> bool:
+    """`is_clear` of a segment in `cell`, also where a ledge is seen from the floor of `other`."""
+    floors = traversability.arrays.floors
+    floor = float(floors[cell])
+    lowest = min(floor, float(floors[other]))
+    near, body = traversability.near, traversability.body
+    return is_way_clear(near, body, cell, lowest, floor, ax, ay, bx, by)
+
+
+@inlined
 def _until(a: float, b: float, cell: int, last: int, origin: float, cell_m: float) -> float:
     """The part of the coordinates from a to b at which they leave a row (or column) of cells."""
     if cell == last:
@@ -64,12 +92,13 @@ def trace(
     j, i = arrays.places[cell]["row"], arrays.places[cell]["column"]
     last_j, last_i = arrays.places[last]["row"], arrays.places[last]["column"]
     x, y, done = ax, ay, 0.0
+    before = cell
     while True:
         u = _until(ax, bx, i, last_i, arrays.x0, arrays.cell_m)
         v = _until(ay, by, j, last_j, arrays.y0, arrays.cell_m)
         part = min(1.0, max(done, min(u, v)))
         then_x, then_y = ax + part * (bx - ax), ay + part * (by - ay)
-        if not is_clear(traversability, cell, x, y, then_x, then_y):
+        if not _is_clear_between(traversability, cell, before, x, y, then_x, then_y):
             return -1
         if j == last_j and i == last_i:
             if cell != last:
@@ -83,15 +112,24 @@ def trace(
             out.cells[used] = cell
             out.counts[used] = count
             used += 1
-        x, y, done = then_x, then_y, part
         di = 0 if u > v + _CORNER_M else (1 if last_i > i else -1)
         dj = 0 if v > u + _CORNER_M else (1 if last_j > j else -1)
         d = _link_toward(dj, di)
+        other = arrays.links[cell, d]
+        if other < 0:
+            return -1
+        before = cell
         if not traversability.steps[cell] >> d & 1:
-            return -1
-        cell = arrays.links[cell, d]
-        if traversability.classes[cell] == FORBIDDEN:
-            return -1
+            # The anchors are barred from each other, but the way may lead beside them.
+            if not (
+                _heights_allow(traversability, cell, other)
+                and _is_clear_between(traversability, cell, other, x, y, then_x, then_y)
+            ):
+                return -1
+        else:
+            before = other
+        x, y, done = then_x, then_y, part
+        cell = other
         count = 0 if traversability.classes[cell] == STABLE else count + 1
         if count >= traversability.edge_cells:
             return -1
@@ -113,11 +151,17 @@ def _link_toward(dj: int, di: int) -> int:
 def straighten(traversability: Traversability, line: Line, out: Line) -> int:
     """Replace stretches of a line by straight ones as long as possible; the points in `out`.
 
-    A straight stretch is legal if the body may walk it and it ends with no higher count than
-    before, so that the rest of the line stays legal. Its greatest length is found by doubling,
-    then by halving.
+    A straight stretch is legal if the body may walk it and the cells on edges up to its end and
+    from there on are fewer than M together, so that the rest of the line stays legal. Its end is
+    sought by halving, from the far end of the line on.
     """
     n = len(line.cells)
+    ahead = np.zeros(n, dtype=np.int32)
+    for k in range(n - 2, -1, -1):
+        if line.cells[k + 1] == line.cells[k]:
+            ahead[k] = ahead[k + 1]
+        elif line.counts[k + 1] > 0:
+            ahead[k] = ahead[k + 1] + 1
     out.xy[0] = line.xy[0]
     out.cells[0] = line.cells[0]
     out.counts[0] = line.counts[0]
@@ -125,23 +169,21 @@ def straighten(traversability: Traversability, line: Line, out: Line) -> int:
     anchor = 0
     while anchor < n - 1:
         count = out.counts[used - 1]
-        good, bad, span = anchor, n, 1
+        good, bad, to = anchor, n, n - 1
         while bad - good > 1:
-            if bad == n and good < n - 1:
-                to = min(anchor + span, n - 1)
-                span *= 2
-            else:
-                to = (good + bad) // 2
             end = trace(traversability, line, anchor, to, count, out, used)
-            if end > 0 and out.counts[end - 1] <= line.counts[to]:
+            if end > 0 and out.counts[end - 1] + ahead[to] < traversability.edge_cells:
                 good = to
             else:
                 bad = to
+            to = (good + bad) // 2
         if good == anchor:
             good = anchor + 1
+            if line.cells[good] != line.cells[anchor]:
+                count = 0 if line.counts[good] == 0 else count + 1
             out.xy[used] = line.xy[good]
             out.cells[used] = line.cells[good]
-            out.counts[used] = line.counts[good]
+            out.counts[used] = count
             used += 1
         else:
             used = trace(traversability, line, anchor, good, count, out, used)

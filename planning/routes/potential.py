@@ -13,6 +13,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from esplanade.planning.grid._grid_kernels import GridArrays
 from esplanade.planning.grid.grid import LayeredGrid
 from esplanade.planning.routes import _potential_kernels as kernels
 from esplanade.planning.routes.wave_front import NO_TARGETS, Wave, WaveFront
@@ -71,12 +72,15 @@ class Potential:
         """Metres to the goal, float64 (N,), inf where no path leads, for (N, 2) and (N,)."""
         points, cells = self.grid.on_ground(positions, heights)
         out = np.empty(len(points))
-        kernels.distances(self.values, cells, points, out)
+        kernels.distances(*self._looked_up(), cells, points, out)
         return out
 
     def direction(self, positions: ArrayLike, heights: ArrayLike) -> NDArray[np.float64]:
         """Unit vectors down the potential, float64 (N, 2); zero at the goal or without a path."""
         points, cells = self.grid.on_ground(positions, heights)
         out = np.empty((len(points), 2))
-        kernels.directions(self.grid.arrays, self.values, cells, points, out)
+        kernels.directions(*self._looked_up(), cells, points, out)
         return out
+
+    def _looked_up(self) -> tuple[GridArrays, NDArray[np.float32], int, float]:
+        return self.grid.arrays, self.values, self.grid.row_of(self.body), self.radius_m

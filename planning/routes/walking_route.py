@@ -10,9 +10,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.planning.grid._side_kernels import cells_to_begin_at
 from esplanade.planning.grid._walking_kernels import GroundArrays
 from esplanade.planning.grid.grid import LayeredGrid
-from esplanade.planning.ground._geometry_kernels import Placement
 from esplanade.planning.routes import _descending_kernels as kernels
 from esplanade.planning.routes.moved_ends import MovedEnd, moved_end
 from esplanade.planning.routes.wave_front import Wave, WaveFront
@@ -133,13 +133,8 @@ class RouteSearch:
         goal_cell = grid.cell_at(goal[:2], goal[2])
         if self._cell < 0 or goal_cell < 0:
             return None
-        self._targets = kernels.cells_to_begin_at(
-            self._ground(),
-            grid.row_of(self._body),
-            clearance_m,
-            self._placement(),
-            self._cell,
-            *self._start[:2],
+        self._targets = cells_to_begin_at(
+            grid.arrays, grid.row_of(self._body), clearance_m, self._cell, *self._start[:2]
         )
         if not len(self._targets):
             return None
@@ -160,7 +155,8 @@ class RouteSearch:
         end = (*wave.goal, self._goal[2])
         x, y = anchors[nearest].tolist()
         count = kernels.descend(
-            self._ground(),
+            GroundArrays(self._grid.arrays, self._grid.index),
+            self._grid.row_of(self._body),
             self._body.height_m,
             self._body.step_on_m,
             self._body.leg_length_m,
@@ -187,14 +183,6 @@ class RouteSearch:
 
     def _straight(self, start: Point, goal: Point) -> bool:
         return leads_straight(self._grid, start, goal, self._clearance_m)
-
-    def _ground(self) -> GroundArrays:
-        return GroundArrays(self._grid.arrays, self._grid.index)
-
-    def _placement(self) -> Placement:
-        floor = float(self._grid.layered.floors[self._cell])
-        body = self._body
-        return Placement(floor, floor, body.height_m, body.step_on_m, body.leg_length_m)
 
 
 def leads_straight(grid: LayeredGrid, start: Point, goal: Point, clearance_m: float) -> bool:

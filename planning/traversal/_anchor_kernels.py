@@ -134,12 +134,30 @@ def pushed(
     return best_x, best_y, best
 
 
+ANY = -1
+"""Instead of the row of a barrier that has changed: everything is derived."""
+
+
+@inlined
+def is_listed(near: NearBarriers, cell: int, row: int) -> bool:
+    """Whether the list of a cell has a barrier, or any is meant."""
+    if row == ANY:
+        return True
+    entry = near.first[cell]
+    while entry >= 0:
+        if near.entries[entry]["barrier"] == row:
+            return True
+        entry = near.entries[entry]["next"]
+    return False
+
+
 @kernel
 def place_anchors(
     arrays: LayeredArrays,
     near: NearBarriers,
     body: Measures,
     box: CellBox,
+    row: int,
     offsets: NDArray[np.int8],
     rooms: NDArray[np.float32],
 ) -> None:
@@ -149,6 +167,7 @@ def place_anchors(
 
     `rooms` (N,) is the distance from an anchor to the nearest barrier, as `room_at` has it, as far
     as the list of its cell tells. Where the body fits nowhere in a cell, the anchor is the centre.
+    Anchors stay where they are in cells that do not list the barrier `row`, unless it is `ANY`.
     """
     part_m = arrays.cell_m / PARTS
     reach = np.float32(near.reach_m)
@@ -167,9 +186,15 @@ def place_anchors(
                         entry = near.first[cell]
                         if entry < 0:
                             continue
+                        floor = float(arrays.floors[cell])
+                        if not is_listed(near, cell, row):
+                            u, v = offsets[entry, 0] * part_m, offsets[entry, 1] * part_m
+                            ax, ay = anchor_of(arrays, near.first, offsets, cell)
+                            there = room_at(near, body, cell, floor, ax, ay)[0]
+                            rooms[cell] = min(there, near.reach_m - np.hypot(u, v))
+                            continue
                         offsets[entry, 0] = 0
                         offsets[entry, 1] = 0
-                        floor = float(arrays.floors[cell])
                         x = arrays.x0 + (i + 0.5) * arrays.cell_m
                         y = arrays.y0 + (j + 0.5) * arrays.cell_m
                         room = room_at(near, body, cell, floor, x, y)[0]

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.ground._barrier_kernels import TOLERANCE_M, Measures, NearBarriers
 from esplanade.planning.ground.layered import TILE, LayeredArrays
-from esplanade.planning.traversal._anchor_kernels import leads_on
+from esplanade.planning.traversal._anchor_kernels import is_listed, leads_on
 from esplanade.planning.traversal.tiles import CellBox
 
 
@@ -18,13 +18,15 @@ def step_bits(
     offsets: NDArray[np.int8],
     rooms: NDArray[np.float32],
     box: CellBox,
+    row: int,
     out: NDArray[np.uint8],
 ) -> None:
     """Write the links that a body may follow from each cell of a box, into `out` (N,).
 
     Bit d stands for link d. `offsets` and `rooms` are those of `place_anchors`, for the cells of
     the box and those next to them. Steps lead both ways: those E to NW are looked into, the others
-    are taken over from the neighbours that they lead to.
+    are taken over from the neighbours that they lead to. Links stay as they are between cells that
+    do not list the barrier `row`, unless it is `ANY`.
     """
     is_quiet = np.zeros(len(arrays.level_headroom), dtype=np.bool_)
     for opposite in (False, True):
@@ -49,16 +51,18 @@ def step_bits(
                                 out[cell] |= _opposite_bits(arrays, out, cell)
                             else:
                                 bits = 15 if is_open else _bits_by_heights(arrays, body, cell)
+                                own = is_listed(near, cell, row)
                                 for d in range(4):
-                                    if bits >> d & 1 and not leads_on(
-                                        arrays,
-                                        near,
-                                        body,
-                                        offsets,
-                                        rooms,
-                                        cell,
-                                        arrays.links[cell, d],
-                                    ):
+                                    if not bits >> d & 1:
+                                        continue
+                                    other = arrays.links[cell, d]
+                                    if own or is_listed(near, other, row):
+                                        leads = leads_on(
+                                            arrays, near, body, offsets, rooms, cell, other
+                                        )
+                                    else:
+                                        leads = out[cell] >> d & 1 > 0
+                                    if not leads:
                                         bits &= ~(1 << d)
                                 out[cell] = bits
 

@@ -17,6 +17,7 @@ from esplanade.planning.traversal.reachability import (
     measures_of,
     near_barriers,
     reachable_steps,
+    renew_steps,
 )
 from esplanade.planning.traversal.stability import classify
 from esplanade.planning.traversal.tiles import cells_around, tiles_of
@@ -25,6 +26,10 @@ from esplanade.planning.traversal.wavefront import number_regions
 
 _KEPT = 2 * MOST_BODIES
 """Number of bodies that are kept: those that a zone tells apart, each also as it measures."""
+
+
+Steps = tuple[NDArray[np.uint8], NDArray[np.int8]]
+"""The steps (N,) and offsets (E, 2) of a traversability."""
 
 
 def find_traversability(arrays: LayeredArrays, barriers: Barriers, body: Body) -> Traversability:
@@ -43,20 +48,21 @@ def find_traversability(arrays: LayeredArrays, barriers: Barriers, body: Body) -
 
 
 def renew_traversability(
-    traversability: Traversability, body: Body, around: tuple[float, float, float, float]
+    traversability: Traversability, body: Body, row: int, into: Steps | None = None
 ) -> Traversability:
-    """Derive again all that depends on barriers within `around` (x0, y0, x1, y1), metres.
+    """Derive again all that depends on one barrier, a door whose row has changed in place.
 
-    It is meant for doors, whose rows among the barriers have changed in place. The traversability
-    that is given stays as it is for other threads.
+    The traversability that is given stays as it is for other threads, and steps and offsets are
+    copied; or they are written to `into`, which holds the same.
     """
     arrays, near = traversability.arrays, traversability.near
-    # The other cell of a link is within two cells.
-    box = cells_around(arrays, around, near.reach_m + 2.0 * arrays.cell_m)
-    own = traversability.steps.copy(), traversability.offsets.copy()
-    steps, offsets = reachable_steps(arrays, near, body, own, box)
-    tiles = tiles_of(cells_around(arrays, around, near.reach_m))
-    classes = classify(arrays, near, body, offsets, traversability.classes.copy(), tiles)
+    x0, y0, x1, y1 = (float(near.barriers[end][row]) for end in ("x0", "y0", "x1", "y1"))
+    around = min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)
+    box = cells_around(arrays, around, near.reach_m)
+    own = into or (traversability.steps.copy(), traversability.offsets.copy())
+    renew_steps(arrays, near, body, row, box, own)
+    steps, offsets = own
+    classes = classify(arrays, near, body, offsets, traversability.classes.copy(), tiles_of(box))
     return traversability._replace(offsets=offsets, steps=steps, classes=classes)
 
 
@@ -108,13 +114,16 @@ class TraversabilityCache:
         """Keep nothing for a body any more."""
         self._known.pop(body, None)
 
-    def prepare(self, body: Body, barriers: Barriers) -> KnownTraversability:
+    def prepare(
+        self, body: Body, barriers: Barriers, into: Steps | None = None
+    ) -> KnownTraversability:
         """Derive the traversability for a body if the barriers of the zone were these.
 
         They are a copy (S,) of the zone's in which doors have moved. Nothing is kept; what is
-        returned becomes true for `keep` once the doors of the zone have moved as well.
+        returned becomes true for `keep` once the doors of the zone have moved as well. `into` is as
+        in `renew_traversability`.
         """
-        known = self._derived(body, self._known.get(body), barriers)
+        known = self._derived(body, self._known.get(body), barriers, into)
         shared = known.traversability.near._replace(barriers=self._floors.barriers)
         return replace(known, traversability=known.traversability._replace(near=shared))
 
@@ -130,7 +139,11 @@ class TraversabilityCache:
         return known
 
     def _derived(
-        self, body: Body, known: KnownTraversability | None, barriers: Barriers
+        self,
+        body: Body,
+        known: KnownTraversability | None,
+        barriers: Barriers,
+        into: Steps | None = None,
     ) -> KnownTraversability:
         """Return the kept arrays if they still hold, else derive them anew around moved doors."""
         floors = self._floors
@@ -138,15 +151,15 @@ class TraversabilityCache:
         climbs = doors["climb_m"].copy()
         if known is None:
             found = find_traversability(floors.layered, barriers, body)
+            if into is not None:
+                into[0][:], into[1][:] = found.steps, found.offsets
             return KnownTraversability(found, climbs)
         if np.array_equal(climbs, known.door_climbs):
             return known
         found = known.traversability
         found = found._replace(near=found.near._replace(barriers=barriers))
-        moved = doors[climbs != known.door_climbs]
-        for x0, y0, x1, y1 in moved[["x0", "y0", "x1", "y1"]].tolist():
-            around = min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)
-            found = renew_traversability(found, body, around)
+        for row in np.flatnonzero(climbs != known.door_climbs).tolist():
+            found = renew_traversability(found, body, row, into)
         return KnownTraversability(found, climbs)
 
     def _keep(self, body: Body, known: KnownTraversability) -> None:

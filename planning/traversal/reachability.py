@@ -15,8 +15,8 @@ from esplanade.planning.ground.barriers import Barriers
 from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.scene.bodies import Body
 from esplanade.planning.traversal import _reachability_kernels as kernels
-from esplanade.planning.traversal._anchor_kernels import place_anchors
-from esplanade.planning.traversal.tiles import CellBox, all_cells
+from esplanade.planning.traversal._anchor_kernels import ANY, place_anchors
+from esplanade.planning.traversal.tiles import CellBox, all_cells, wider
 
 _REACH_CELLS = 1.1
 """Anchors are pushed, and links lead, no further than this many cells from a centre."""
@@ -42,35 +42,41 @@ def near_barriers(arrays: LayeredArrays, barriers: Barriers, body: Body) -> Near
 
 
 def reachable_steps(
-    arrays: LayeredArrays,
-    near: NearBarriers,
-    body: Body,
-    out: tuple[NDArray[np.uint8], NDArray[np.int8]] | None = None,
-    box: CellBox | None = None,
+    arrays: LayeredArrays, near: NearBarriers, body: Body
 ) -> tuple[NDArray[np.uint8], NDArray[np.int8]]:
     """The links that a body may follow, uint8 (N,), and where it has room in cells, int8 (E, 2).
 
-    Bit d of the former stands for link d; the latter is as `Traversability.offsets`. With `box`,
-    only those cells of `out` are written again. Cost O(cells + barriers near cells).
+    Bit d of the former stands for link d; the latter is as `Traversability.offsets`. Cost O(cells +
+    barriers near cells).
     """
-    cells = len(arrays.floors)
-    steps, offsets = out or (
-        np.zeros(cells, dtype=np.uint8),
-        np.zeros((len(near.entries), 2), dtype=np.int8),
-    )
-    whole = all_cells(arrays)
-    box = box or whole
-    beside = CellBox(
-        max(0, box.first_row - 1),
-        max(0, box.first_column - 1),
-        min(whole.end_row, box.end_row + 1),
-        min(whole.end_column, box.end_column + 1),
-    )
+    cells, box = len(arrays.floors), all_cells(arrays)
+    steps = np.zeros(cells, dtype=np.uint8)
+    offsets = np.zeros((len(near.entries), 2), dtype=np.int8)
     rooms = np.empty(cells, dtype=np.float32)
     measures = measures_of(body)
-    place_anchors(arrays, near, measures, beside, offsets, rooms)
-    kernels.step_bits(arrays, near, measures, offsets, rooms, box, steps)
+    place_anchors(arrays, near, measures, box, ANY, offsets, rooms)
+    kernels.step_bits(arrays, near, measures, offsets, rooms, box, ANY, steps)
     return steps, offsets
+
+
+def renew_steps(
+    arrays: LayeredArrays,
+    near: NearBarriers,
+    body: Body,
+    row: int,
+    box: CellBox,
+    out: tuple[NDArray[np.uint8], NDArray[np.int8]],
+) -> None:
+    """Derive again, in place, what `reachable_steps` has returned, after one barrier has changed.
+
+    `row` is the barrier's; all cells that list it lie in `box`.
+    """
+    steps, offsets = out
+    rooms = np.empty(len(arrays.floors), dtype=np.float32)
+    measures = measures_of(body)
+    place_anchors(arrays, near, measures, wider(arrays, box, 1), row, offsets, rooms)
+    # Links between changed cells and others are written in either of the two.
+    kernels.step_bits(arrays, near, measures, offsets, rooms, wider(arrays, box, 1), row, steps)
 
 
 def reachable_from(

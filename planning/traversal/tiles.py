@@ -48,6 +48,17 @@ def cells_around(
     )
 
 
+def wider(arrays: LayeredArrays, box: CellBox, cells: int) -> CellBox:
+    """A box with so many more rows and columns on each side, as far as there are any."""
+    whole = all_cells(arrays)
+    return CellBox(
+        max(0, box.first_row - cells),
+        max(0, box.first_column - cells),
+        min(whole.end_row, box.end_row + cells),
+        min(whole.end_column, box.end_column + cells),
+    )
+
+
 def tiles_of(box: CellBox) -> TileBox:
     """The tiles that cells of a box are in."""
     return TileBox(

@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from esplanade.planning import LayeredGrid
+from esplanade.planning import Body, LayeredGrid
+from esplanade.planning.grid._side_kernels import is_cut_off
 from esplanade.planning.routes.wave_front import WaveFront
 
 Place = tuple[float, float, float]
@@ -30,7 +31,8 @@ def descend(
         cell = int(grid.on_ground([here], [height])[1][0])
         if math.dist(here, goal[:2]) <= step_m and abs(height - goal[2]) < 1.0:
             return corners
-        if wave.settled[cell]:
+        row = grid.row_of(Body.adult())
+        if wave.settled[cell] and not is_cut_off(grid.arrays, row, cell, *map(float, here)):
             left_m, *place = wave.values[cell, :3].tolist()
             if math.dist(here, place) < 0.25 * grid.cell_m and left_m > 0.0:
                 place = wave.values[int(grid.on_ground([place], [height])[1][0]), 1:3].tolist()

@@ -86,6 +86,7 @@ def test_the_compiled_walk_is_the_plain_one(walls, start, goal) -> None:
     toward = anchor_at(grid.arrays, grid.row_of(ADULT), cell)
     count = kernels.descend(
         GroundArrays(grid.arrays, grid.index),
+        grid.row_of(ADULT),
         ADULT.height_m,
         ADULT.step_on_m,
         ADULT.leg_length_m,
