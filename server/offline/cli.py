@@ -39,8 +39,6 @@ def run(options: Namespace) -> int:
                 world.write(options.out, options.hz)
             except WritingError as error:
                 raise UsageError(f"--out: {error}") from None
-            except ValueError as error:
-                raise UsageError(f"--hz: {error}") from None
             return _run(world, options)
 
 

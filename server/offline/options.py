@@ -12,6 +12,7 @@ from esplanade.commandline.recording_settings import (
     check_reading,
     misplaced,
 )
+from esplanade.server.trajectories.rates import ticks_between
 
 SUFFIXES: Final = (".csv", ".txt", ".sqlite", ".parquet")
 SECONDS: Final = 60.0
@@ -133,6 +134,10 @@ def check(options: Namespace) -> None:
         raise UsageError("--roster and --actors: give one of them, not both")
     if options.out.suffix.lower() not in SUFFIXES:
         raise UsageError(f"--out: {options.out.name} ends in none of {', '.join(SUFFIXES)}")
+    try:
+        ticks_between(options.tick_rate, options.hz)
+    except ValueError as error:
+        raise UsageError(f"--hz: {error}") from None
     try:
         check_reading(vars(options))
     except ValueError as error:

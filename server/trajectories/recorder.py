@@ -8,7 +8,8 @@ import numpy as np
 from esplanade.recordings.samples import Head
 from esplanade.server.trajectories.blocks import Block
 from esplanade.server.trajectories.provenance import Origin, provenance_of
-from esplanade.server.trajectories.sampling import Sampler, ticks_between
+from esplanade.server.trajectories.rates import ticks_between
+from esplanade.server.trajectories.sampling import Sampler
 from esplanade.server.trajectories.walkable import walkable_wkt
 from esplanade.server.world.frame import Frame
 from esplanade.server.world.inputs import Batch, Input, OneActorCommand

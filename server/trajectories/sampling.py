@@ -1,35 +1,10 @@
 """Samples of a zone: where everybody is after a tick, as rows of a table."""
 
-import math
-from typing import Final
-
 import numpy as np
 
 from esplanade.recordings.samples import SAMPLE, Samples
 from esplanade.server.world.state import ACTOR
 from esplanade.server.world.zone import Zone
-
-_SLACK: Final = 1e-6
-
-
-def ticks_between(tick_rate: float, hz: float | None) -> int:
-    """Ticks from one sample to the next; every tick without a rate.
-
-    Raises
-    ------
-    ValueError
-        Samples at this rate would lie between ticks.
-    """
-    if hz is None:
-        return 1
-    every = max(1, round(tick_rate / hz))
-    if not math.isclose(every * hz, tick_rate, rel_tol=_SLACK):
-        fitting = ", ".join(f"{tick_rate / n:.6g}" for n in (1, 2, 4, 5, 10, 20))
-        raise ValueError(
-            f"{hz:g} samples a second lie between the ticks, of which there are {tick_rate:g} a "
-            f"second; there can be {fitting} and so on"
-        )
-    return every
 
 
 class Sampler:

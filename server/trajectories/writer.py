@@ -4,6 +4,7 @@ Blocks wait in a bounded queue. Where the disk is full, or takes less than the w
 writing ends, for good: a file with gaps would be worse than one that ends early and says so.
 """
 
+import json
 import threading
 from collections import deque
 from collections.abc import Callable
@@ -14,7 +15,7 @@ from typing import Final, Literal
 
 import structlog
 
-from esplanade.recordings.samples import Head
+from esplanade.recordings.samples import Head, Note
 from esplanade.recordings.streams import Stream, open_stream
 from esplanade.recordings.writing import WritingError
 from esplanade.server.trajectories.blocks import Block, write_block
@@ -76,8 +77,9 @@ class TrajectoryWriter:
             if self.fault is not None or self._closing:
                 return
             if len(self._blocks) >= MOST_BLOCKS or self._bytes + block.size > MOST_BYTES:
-                text = f"{self._path.name} takes less than the world gives; it ends at tick "
-                fault = self._end(Ended("too_slow", f"{text}{self._blocks[0].tick}"))
+                first = self._blocks[0] if self._blocks else block
+                text = f"{self._path.name} takes less than the world gives; it ends before tick "
+                fault = self._end(Ended("too_slow", f"{text}{first.tick}"))
             else:
                 self._blocks.append(block)
                 self._bytes += block.size
@@ -127,14 +129,18 @@ class TrajectoryWriter:
                 self._ended(fault)
 
     def _write(self, stream: Stream) -> None:
-        flushed_s = monotonic()
+        flushed_s, last = monotonic(), None
         try:
             while (block := self._next()) is not None:
                 write_block(stream, block)
+                last = block
                 self.written += 1
                 if monotonic() - flushed_s >= FLUSH_S:
                     stream.flush()
                     flushed_s = monotonic()
+            if last is not None:
+                why = {} if self.fault is None else {"fault": self.fault.code}
+                stream.note(Note(last.frame, last.tick, "end", json.dumps(why)))
         finally:
             stream.close()
 
