@@ -1,5 +1,6 @@
 """`esplanade evaluate`: how actors, or predictions, do among recorded people."""
 
+import shlex
 from argparse import Namespace
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -16,8 +17,10 @@ from esplanade.evaluation.runner import TrialResult, ready_policy
 from esplanade.evaluation.score_cache import ScoreCacheError
 from esplanade.evaluation.settings import SettingError, read_changes
 from esplanade.evaluation.studies import command
+from esplanade.evaluation.trajectory_files import EpisodeFiles
 from esplanade.evaluation.trials import Source, plan_trials
 from esplanade.recordings import RecordingError
+from esplanade.recordings.writing import WritingError
 
 
 def run(options: Namespace) -> int:
@@ -31,7 +34,7 @@ def run(options: Namespace) -> int:
             _forecasts(options)
         elif _trips(options) and options.strict:
             return exit_codes.FAILED
-    except (SettingError, ScoreCacheError, RecordingError, PolicyError) as error:
+    except (SettingError, ScoreCacheError, RecordingError, PolicyError, WritingError) as error:
         raise UsageError(str(error)) from None
     return exit_codes.OK
 
@@ -47,7 +50,7 @@ def _trips(options: Namespace) -> bool:
     policies = list(dict.fromkeys(options.policy))
     trials = plan_trials(list(names), policies, rules, options.episodes, options.seed, settings)
     _check_numbers(options.plot_episodes, min(len(trial.episodes) for trial in trials))
-    results = walk(trials, options)
+    results = walk(trials, options, _files(options, names))
     rows = report.summaries(results, names)
     report.show(console(), rows)
     if options.json is not None:
@@ -57,6 +60,15 @@ def _trips(options: Namespace) -> bool:
     if options.plots is not None:
         _draw(options.plots, options.plot_episodes, results, names)
     return any(score.failed for result in results for score in result.scores)
+
+
+def _files(options: Namespace, names: Mapping[Source, str]) -> EpisodeFiles | None:
+    """The files of episodes, where they are wanted."""
+    if options.trajectories is None:
+        return None
+    command = shlex.join([*options.prog.split(), *options.words])
+    by_path = {source.path: name for source, name in names.items()}
+    return EpisodeFiles(options.trajectories, by_path, command)
 
 
 def _forecasts(options: Namespace) -> None:

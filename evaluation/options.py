@@ -16,6 +16,7 @@ from esplanade.commandline.readers import (
 from esplanade.commandline.recording_settings import add_reading, check_reading
 from esplanade.evaluation.setting_names import NAMES
 
+_TRAJECTORIES: Final = (".csv", ".txt", ".sqlite", ".parquet")
 POLICIES: Final = {
     "esplanade": "the project's own actor",
     "straight": "straight on, ignoring people",
@@ -148,6 +149,13 @@ def parser() -> Parser:
         help="cache scores there; episodes whose score is there are not run again",
     )
     results.add_argument(
+        "--trajectories",
+        metavar="FILE",
+        type=OutputFile(),
+        help="write where the robot and everybody was, .csv, .txt (for PedPy), .sqlite (JuPedSim) "
+        "or .parquet: a file for each episode, with recording, policy and number in its name",
+    )
+    results.add_argument(
         "--plots", metavar="FOLDER", type=Folder(), help="draw episodes there, as PNG"
     )
     results.add_argument(
@@ -198,6 +206,11 @@ def check(options: Namespace) -> None:
         They do not.
     """
     studies = options.sensitivity or options.tune
+    if options.trajectories is not None:
+        if studies or options.prediction or options.fit:
+            raise UsageError("--trajectories is for episodes that are walked once")
+        if options.trajectories.suffix.lower() not in _TRAJECTORIES:
+            raise UsageError(f"--trajectories: a file ends in one of {', '.join(_TRAJECTORIES)}")
     if options.vary and not studies:
         raise UsageError("--vary is for --sensitivity and --tune")
     if options.candidates is not None and not options.tune:
