@@ -3,7 +3,6 @@
 import shlex
 from argparse import Namespace
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 from esplanade.commandline import exit_codes
 from esplanade.commandline.errors import UsageError
@@ -58,7 +57,7 @@ def _trips(options: Namespace) -> bool:
         figures = report.figures(results, rows, names, {**told, **settings})
         write_json("--json", options.json, figures)
     if options.plots is not None:
-        _draw(options.plots, options.plot_episodes, results, names)
+        _draw(options, results, names)
     return any(score.failed for result in results for score in result.scores)
 
 
@@ -91,12 +90,8 @@ def _check_numbers(numbers: frozenset[int] | None, count: int) -> None:
         raise UsageError(f"--plot-episodes: {told}, but there are episodes 0 to {count - 1}")
 
 
-def _draw(
-    folder: Path,
-    numbers: frozenset[int] | None,
-    results: Sequence[TrialResult],
-    names: Mapping[Source, str],
-) -> None:
+def _draw(options: Namespace, results: Sequence[TrialResult], names: Mapping[Source, str]) -> None:
+    numbers: frozenset[int] | None = options.plot_episodes
     chosen = [
         (result.trial, score.number)
         for result in results
@@ -110,7 +105,7 @@ def _draw(
             stem = f"{name.replace('/', '_')}-{trial.policy}-{number:03d}"
             (episode,) = (e for e in trial.episodes if e.number == number)
             plotting.draw_episode(
-                folder / f"{stem}.png",
+                options.plots / f"{stem}.{options.picture or 'png'}",
                 f"{name}, {trial.policy}, episode {number}",
                 trial.source.environment(trial.rules.tick_s),
                 episode,

