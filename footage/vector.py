@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from importlib import import_module
-from itertools import groupby
+from itertools import count, groupby
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -45,11 +45,15 @@ def write_shapes(path: Path, size: Point, panels: Sequence[Panel]) -> None:
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set(xlim=(0.0, size[0]), ylim=(size[1], 0.0))
     axes.axis("off")
+    order = count(1)
     for corner, (width, height), background, shapes in panels:
         frame = patches.Rectangle(corner, width, height, color=_hex(background), linewidth=0)
         axes.add_patch(frame)
+        frame.set_zorder(0)
+        # Later shapes lie on earlier ones, whatever kind they are.
         for kind, alike in groupby(shapes, _kind):
-            _DRAWN[kind](axes, corner, list(alike), frame)
+            for made in _DRAWN[kind](axes, corner, list(alike)):
+                made.set(clip_path=frame, zorder=next(order))
     with import_module("matplotlib").rc_context({"svg.hashsalt": "esplanade"}):
         save(figure, path)
 
@@ -59,32 +63,29 @@ def _kind(shape: Shape) -> str:
     return "text" if shape.text else "line" if shape.width else "polygon"
 
 
-def _polygons(axes: Any, corner: Point, shapes: Sequence[Shape], frame: Any) -> None:
+def _polygons(axes: Any, corner: Point, shapes: Sequence[Shape]) -> Iterator[Any]:
     made = import_module("matplotlib.collections").PolyCollection(
         [_moved(shape, corner) for shape in shapes],
         facecolors=[_hex(shape.colour) for shape in shapes],
         linewidths=0,
     )
-    axes.add_collection(made, autolim=False)
-    made.set_clip_path(frame)
+    yield axes.add_collection(made, autolim=False)
 
 
-def _lines(axes: Any, corner: Point, shapes: Sequence[Shape], frame: Any) -> None:
+def _lines(axes: Any, corner: Point, shapes: Sequence[Shape]) -> Iterator[Any]:
     made = import_module("matplotlib.collections").LineCollection(
         [_moved(shape, corner) for shape in shapes],
         colors=[_hex(shape.colour) for shape in shapes],
         linewidths=[_points(shape.width) for shape in shapes],
     )
-    axes.add_collection(made, autolim=False)
-    made.set_clip_path(frame)
+    yield axes.add_collection(made, autolim=False)
 
 
-def _words(axes: Any, corner: Point, shapes: Sequence[Shape], frame: Any) -> None:
+def _words(axes: Any, corner: Point, shapes: Sequence[Shape]) -> Iterator[Any]:
     for shape in shapes:
         ((x, y),) = _moved(shape, corner)
         size = _points(shape.width)
-        made = axes.text(x, y, shape.text, color=_hex(shape.colour), va="top", fontsize=size)
-        made.set_clip_path(frame)
+        yield axes.text(x, y, shape.text, color=_hex(shape.colour), va="top", fontsize=size)
 
 
 _DRAWN: Final = {"polygon": _polygons, "line": _lines, "text": _words}
