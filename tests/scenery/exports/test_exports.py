@@ -30,11 +30,11 @@ def written(scene: Scene, out: Path) -> list[Path]:
 
 
 @st.composite
-def rooms(draw: st.DrawFn) -> Scene:
-    """A ground with solids anywhere on it."""
+def rooms(draw: st.DrawFn, least: int = 1) -> Scene:
+    """A ground with solids anywhere on it, of so many cells at least."""
     boxes = draw(
         st.lists(
-            st.tuples(*(st.integers(0, 36) for _ in range(2)), *(st.integers(1, 8),) * 2),
+            st.tuples(*(st.integers(0, 36) for _ in range(2)), *(st.integers(least, 8),) * 2),
             max_size=6,
         )
     )
@@ -62,6 +62,45 @@ def test_wkt_comes_back_with_the_same_floors(scene: Scene) -> None:
     assert storey.walkable.area == pytest.approx(areas(scene)[0])
     again = scene_of_plan([storey], "room")
     assert areas(again) == pytest.approx(areas(scene))
+
+
+def test_thin_walls_come_back_and_doors_are_told(tmp_path: Path) -> None:
+    walls = [{"start": [3, 0], "end": [3, 5]}, {"start": [3, 6], "end": [3, 12]}]
+    doors = [{"name": "gate", "start": [3, 5], "end": [3, 6]}]
+    scene = Scene.model_validate({"bounds": (0, 0, 12, 12), "walls": walls, "doors": doors})
+    (path,) = written(scene, tmp_path / "room.wkt")
+    text = path.read_text()
+    assert "# door gate: LINESTRING (3 5, 3 6)\n" in text
+    storey = read_wkt(text.encode(), "room")
+    assert storey.walls == [((3, 0), (3, 5)), ((3, 6), (3, 12))]
+    assert storey.walkable.area == pytest.approx(144)
+
+
+def test_what_stands_upstairs_is_not_on_the_ground() -> None:
+    rail = {"start": [8, 4], "end": [8, 8], "offset_m": 3.0, "height_m": 1.1}
+    gate = {"name": "gate", "start": [10, 4], "end": [11, 4], "offset_m": 3.0}
+    pillar = {"start": [9, 2], "end": [10, 2], "height_m": 2.5}
+    scene = loft(walls=[rail, pillar], doors=[gate])
+    ground, upstairs = layers_of(scene, LayeredGrid.from_scene(scene, CELL_M))
+    assert ground.walls == [((9, 2), (10, 2))]
+    assert upstairs.walls == [((8, 4), (8, 8))]
+    assert [name for name, _ in upstairs.doors] == ["gate"]
+    assert ground.doors == []
+    assert {name for name, _ in ground.places} == {"below", "den"}
+    assert {name for name, _ in upstairs.places} == {"loft"}
+
+
+@settings(max_examples=25, deadline=None)
+@given(rooms(least=2))
+def test_gltf_comes_back_with_the_same_floors(
+    tmp_path_factory: pytest.TempPathFactory, scene: Scene
+) -> None:
+    # A solid of a single cell leaves a hole in a mesh that is read as floor.
+    (path,) = written(scene, tmp_path_factory.mktemp("gltf") / "room.glb")
+    grid = LayeredGrid.from_mesh(path, CELL_M, "y")
+    known = np.isfinite(grid.layered.floors)
+    found = np.bincount(grid.layered.places["layer"][known]) * CELL_M**2
+    assert found.tolist() == pytest.approx(areas(scene))
 
 
 def test_gltf_comes_back_with_the_same_layers(tmp_path: Path) -> None:
