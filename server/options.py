@@ -27,7 +27,9 @@ _ROOT_PATH: Final = re.compile(r"(/(?!\.\.?(/|$))[A-Za-z0-9._~-]+)*/?")
 _SPEED: Final = Number(0.0, 100.0, above=True)
 _WORLD: Final = {
     "scene": Setting(
-        "scene to run, a JSON file; without one, the gallery that comes along", InputFile()
+        "scene to run, a JSON file, or a mesh or plan that one is made of (docs/files.md); without "
+        "one, the gallery that comes along",
+        InputFile(),
     ),
     "crowd": Setting(
         "fit the scene to this recorded crowd instead of --scene; docs/files.md lists the formats",

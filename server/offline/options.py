@@ -54,7 +54,8 @@ def parser() -> Parser:
         metavar="SCENE",
         nargs="?",
         type=InputFile(),
-        help="scene, a JSON file; without one the ground is fitted to --people",
+        help="scene, a JSON file, or a mesh or plan that one is made of; without one the ground is "
+        "fitted to --people",
     )
     made.add_argument(
         "--out", metavar="FILE", type=OutputFile(), required=True, help="file to write"

@@ -17,10 +17,8 @@ class Command(NamedTuple):
 
 
 COMMANDS: Final = {
-    "serve": Command("esplanade.server.options:parser", "run a world for people and actors"),
-    "run": Command(
-        "esplanade.server.offline.options:parser", "run a world without a server, into a file"
-    ),
+    "serve": Command("esplanade.options:serve", "run a world for people and actors"),
+    "run": Command("esplanade.options:run", "run a world without a server, into a file"),
     "bots": Command(
         "esplanade.bots.options:parser", "send people made of code: load, or a recorded crowd"
     ),
