@@ -6,12 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning import Scene
+from esplanade.planning.scene.mesh_file import read_triangles
 from esplanade.scenery.exports.layers import LayerCells
 from esplanade.scenery.exports.slopes import slopes_of
 from esplanade.scenery.meshes import as_glb
 
 Floats = NDArray[np.float64]
 _LEVEL = 1e-6
+_STEEPEST = 0.7071
 
 
 def scene_as_glb(scene: Scene, layers: Iterable[LayerCells]) -> bytes:
@@ -26,12 +28,21 @@ def scene_as_glb(scene: Scene, layers: Iterable[LayerCells]) -> bytes:
         for start, end in zip(solid.points, (*solid.points[1:], solid.points[0]), strict=True)
     ]
     parts["solids"] = _joined(sides)
-    parts["walls"] = _joined(
-        [_upright(wall.start, wall.end, wall.offset_m, wall.height_m) for wall in scene.walls]
-    )
+    walls = [_upright(wall.start, wall.end, wall.offset_m, wall.height_m) for wall in scene.walls]
+    if scene.mesh is not None:
+        walls.append(_steep(read_triangles(scene.mesh)))
+    parts["walls"] = _joined(walls)
     for door in scene.doors:
         parts[f"door {door.name}"] = _upright(door.start, door.end, door.offset_m, door.height_m)
     return as_glb(parts)
+
+
+def _steep(triangles: Floats) -> Floats:
+    """Those that are too steep to stand on."""
+    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    size = np.maximum(np.linalg.norm(normals, axis=1), 1e-12)
+    steep: Floats = triangles[np.abs(normals[:, 2]) < _STEEPEST * size]
+    return steep
 
 
 def _joined(parts: list[Floats]) -> Floats:

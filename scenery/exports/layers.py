@@ -8,6 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning import LayeredGrid, Scene
+from esplanade.planning.scene.bodies import Body
+from esplanade.scenery.exports.mesh_floors import grown_to_walls
+from esplanade.scenery.layer_maps import walls_on
+from esplanade.scenery.reach import reached_cells, spawn_cells
 
 Line = tuple[tuple[float, float], tuple[float, float]]
 _ABOVE_FLOOR_M = 0.6
@@ -50,23 +54,42 @@ class LayerCells(NamedTuple):
 
 
 def layers_of(scene: Scene, grid: LayeredGrid) -> list[LayerCells]:
-    """All layers, the ground first."""
+    """All layers, the ground first.
+
+    A mesh has no walls by name, and floors within what is solid: of it, floors are those that an
+    adult reaches from where people come in, and walls are what stops an adult.
+    """
     arrays = grid.layered
     places = arrays.places
     known = np.isfinite(arrays.floors)
     x0, y0, _, _ = grid.bounds
     shape = int(places["row"].max()) + 1, int(places["column"].max()) + 1
+    body, reached = None, None
+    if scene.mesh is not None:
+        body = Body()
+        traversability = grid.traversability.of(body)
+        reached = reached_cells(traversability, spawn_cells(traversability, scene))
     found = []
     for number in np.unique(places["layer"][known]).tolist():
         own = known & (places["layer"] == number)
         dense = np.full(shape, np.nan)
         dense[places["row"][own], places["column"][own]] = arrays.floors[own]
+        own_walls = np.empty((0, 4))
+        if body is not None and reached is not None:
+            own_walls = walls_on(dense, grid.traversability.of(body), body)
+            there = np.zeros(shape, dtype=np.bool_)
+            there[places["row"][own], places["column"][own]] = reached[own]
+            kept = grown_to_walls(there, dense, own_walls, (x0, y0), grid.cell_m)
+            if not kept.any():
+                continue
+            dense[~kept] = np.nan
         ground = _Ground(dense, (x0, y0), grid.cell_m)
         walls = [
             (wall.start, wall.end)
             for wall in scene.walls
             if ground.has((wall.start, wall.end), wall.offset_m, wall.height_m)
         ]
+        walls += [((ax, ay), (bx, by)) for ax, ay, bx, by in np.round(own_walls, 6).tolist()]
         doors = [
             (door.name, (door.start, door.end))
             for door in scene.doors

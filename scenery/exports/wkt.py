@@ -21,7 +21,10 @@ def layer_as_wkt(layer: LayerCells) -> str:
     ]
     area = shapely.simplify(shapely.union_all(boxes), 0.0)
     lines = [shapely.to_wkt(area, rounding_precision=6, trim=True)]
-    lines += [_line(wall) for wall in layer.walls]
+    if layer.walls:
+        walls = shapely.line_merge(shapely.union_all(shapely.linestrings(layer.walls)))
+        parts = shapely.get_parts(shapely.simplify(walls, 0.0))
+        lines += [shapely.to_wkt(wall, rounding_precision=6, trim=True) for wall in parts]
     lines += [f"# door {name}: {_line(door)}" for name, door in layer.doors]
     return "\n".join([*lines, ""])
 

@@ -1,5 +1,6 @@
 """What is written for other programs holds the same floors when it is read back."""
 
+import math
 import subprocess
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from esplanade.planning.scene.mesh_file import read_mesh
 from esplanade.scenery.exports.cli import write_layers
 from esplanade.scenery.exports.layers import layers_of
 from esplanade.scenery.exports.wkt import layer_as_wkt
+from esplanade.scenery.meshes import as_glb
 from esplanade.scenery.plans.polygons import read_wkt
 from esplanade.scenery.plans.scene_of_plan import scene_of_plan
 from tests.scenery.plans.test_plans import areas
@@ -88,6 +90,27 @@ def test_what_stands_upstairs_is_not_on_the_ground() -> None:
     assert ground.doors == []
     assert {name for name, _ in ground.places} == {"below", "den"}
     assert {name for name, _ in upstairs.places} == {"loft"}
+
+
+def test_what_is_solid_in_a_mesh_is_a_wall_in_plans(tmp_path: Path) -> None:
+    from esplanade.scenery.plans.reading import read_plan
+
+    scene = Scene.model_validate({"bounds": (0, 0, 12, 12), "walls": []})
+    boxes = {
+        "ground": trimesh.creation.box(bounds=[[0, 0, -0.2], [12, 12, 0]]).triangles,
+        "block": trimesh.creation.box(bounds=[[4, 4, 0], [6, 9, 2.5]]).triangles,
+    }
+    (tmp_path / "mesh.glb").write_bytes(as_glb(boxes))
+    scene = scene.model_copy(update={"mesh": tmp_path / "mesh.glb"})
+    wkt, *_ = written(scene, tmp_path / "plan.wkt")
+    storey = read_plan(wkt)
+    assert storey.walkable.area == pytest.approx(144 - 10)
+    assert sum(math.dist(*wall) for wall in storey.walls) == pytest.approx(14, abs=0.5)
+    ros = written(scene, tmp_path / "plan.yaml")
+    assert read_plan(ros[0]).walkable.area == pytest.approx(144 - 10, abs=14 * CELL_M)
+    (glb,) = list(written(scene, tmp_path / "plan.glb"))
+    walls = trimesh.load_scene(glb).geometry["walls"]
+    assert walls.area == pytest.approx(2.5 * 14 + 0.2 * 48)
 
 
 @settings(max_examples=25, deadline=None)
