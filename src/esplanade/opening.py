@@ -76,6 +76,11 @@ def _scene_of(path: Path) -> Path:
     return made
 
 
+def scenes_folder() -> Path:
+    """The folder of all scenes that were made so."""
+    return Path.home() / ".cache" / "esplanade" / "scenes"
+
+
 def _folder(path: Path) -> Path:
     """The folder of what is made of this very file by this very version."""
     from esplanade.commandline.provenance import sources_digest  # noqa: PLC0415
@@ -86,7 +91,7 @@ def _folder(path: Path) -> Path:
         raise UsageError(f"{path}: cannot be read: {error.strerror or error}") from None
     digest = hashlib.sha256(sources_digest().encode() + content).hexdigest()[:16]
     try:
-        folder = Path.home() / ".cache" / "esplanade" / "scenes" / digest
+        folder = scenes_folder() / digest
         folder.mkdir(parents=True, exist_ok=True)
     except (OSError, RuntimeError):
         folder = Path(tempfile.mkdtemp(prefix="esplanade-"))

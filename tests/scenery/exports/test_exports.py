@@ -1,6 +1,7 @@
 """What is written for other programs holds the same floors when it is read back."""
 
 import math
+import re
 import subprocess
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from esplanade.cli import main
 from esplanade.planning import LayeredGrid, Scene
 from esplanade.planning.scene.mesh_file import read_mesh
 from esplanade.scenery.exports.cli import write_layers
+from esplanade.scenery.exports.drawing import MARGIN_CM
 from esplanade.scenery.exports.layers import layers_of
 from esplanade.scenery.exports.wkt import layer_as_wkt
 from esplanade.scenery.meshes import as_glb
@@ -221,7 +223,9 @@ def test_the_command_writes_a_file_for_each_layer(
     assert files == [str(out), str(tmp_path / f"plan-1{suffix}")]
     if suffix == ".svg":
         # 12 m are 12 cm of paper; matplotlib writes points of a 72th of an inch.
-        assert f'width="{12 / 2.54 * 72:.6f}pt"'[:11] in out.read_text()
+        width = (12 + 2 * MARGIN_CM) / 2.54 * 72
+        (found,) = re.findall(r'<svg [^>]*width="([0-9.]+)pt"', out.read_text())
+        assert float(found) == pytest.approx(width, abs=0.01)
 
 
 def test_other_forms_are_refused(tmp_path: Path) -> None:
