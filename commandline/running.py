@@ -20,6 +20,7 @@ def run(parser: Parser, words: Sequence[str]) -> int:
         Help was asked for, or the options are wrong; what there is to say has been said.
     """
     options = parser.parse_args(words)
+    options.words = list(words)
     try:
         command: Callable[[Namespace], int] = imported(options.run)
         with interrupts.raised():

@@ -1,8 +1,8 @@
 """`esplanade evaluate`: how actors, or predictions, do among recorded people."""
 
+import shlex
 from argparse import Namespace
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 from esplanade.commandline import exit_codes
 from esplanade.commandline.errors import UsageError
@@ -16,8 +16,10 @@ from esplanade.evaluation.runner import TrialResult, ready_policy
 from esplanade.evaluation.score_cache import ScoreCacheError
 from esplanade.evaluation.settings import SettingError, read_changes
 from esplanade.evaluation.studies import command
+from esplanade.evaluation.trajectory_files import EpisodeFiles
 from esplanade.evaluation.trials import Source, plan_trials
 from esplanade.recordings import RecordingError
+from esplanade.recordings.writing import WritingError
 
 
 def run(options: Namespace) -> int:
@@ -31,7 +33,7 @@ def run(options: Namespace) -> int:
             _forecasts(options)
         elif _trips(options) and options.strict:
             return exit_codes.FAILED
-    except (SettingError, ScoreCacheError, RecordingError, PolicyError) as error:
+    except (SettingError, ScoreCacheError, RecordingError, PolicyError, WritingError) as error:
         raise UsageError(str(error)) from None
     return exit_codes.OK
 
@@ -47,7 +49,7 @@ def _trips(options: Namespace) -> bool:
     policies = list(dict.fromkeys(options.policy))
     trials = plan_trials(list(names), policies, rules, options.episodes, options.seed, settings)
     _check_numbers(options.plot_episodes, min(len(trial.episodes) for trial in trials))
-    results = walk(trials, options)
+    results = walk(trials, options, _files(options, names))
     rows = report.summaries(results, names)
     report.show(console(), rows)
     if options.json is not None:
@@ -55,8 +57,17 @@ def _trips(options: Namespace) -> bool:
         figures = report.figures(results, rows, names, {**told, **settings})
         write_json("--json", options.json, figures)
     if options.plots is not None:
-        _draw(options.plots, options.plot_episodes, results, names)
+        _draw(options, results, names)
     return any(score.failed for result in results for score in result.scores)
+
+
+def _files(options: Namespace, names: Mapping[Source, str]) -> EpisodeFiles | None:
+    """The files of episodes, where they are wanted."""
+    if options.trajectories is None:
+        return None
+    command = shlex.join([*options.prog.split(), *options.words])
+    by_path = {source.path: name for source, name in names.items()}
+    return EpisodeFiles(options.trajectories, by_path, command)
 
 
 def _forecasts(options: Namespace) -> None:
@@ -79,12 +90,8 @@ def _check_numbers(numbers: frozenset[int] | None, count: int) -> None:
         raise UsageError(f"--plot-episodes: {told}, but there are episodes 0 to {count - 1}")
 
 
-def _draw(
-    folder: Path,
-    numbers: frozenset[int] | None,
-    results: Sequence[TrialResult],
-    names: Mapping[Source, str],
-) -> None:
+def _draw(options: Namespace, results: Sequence[TrialResult], names: Mapping[Source, str]) -> None:
+    numbers: frozenset[int] | None = options.plot_episodes
     chosen = [
         (result.trial, score.number)
         for result in results
@@ -98,7 +105,7 @@ def _draw(
             stem = f"{name.replace('/', '_')}-{trial.policy}-{number:03d}"
             (episode,) = (e for e in trial.episodes if e.number == number)
             plotting.draw_episode(
-                folder / f"{stem}.png",
+                options.plots / f"{stem}.{options.picture or 'png'}",
                 f"{name}, {trial.policy}, episode {number}",
                 trial.source.environment(trial.rules.tick_s),
                 episode,

@@ -8,6 +8,7 @@ from esplanade.commandline.progress import progress
 from esplanade.commandline.recording_settings import tell_recording
 from esplanade.evaluation.runner import TrialResult, run_trials
 from esplanade.evaluation.score_cache import ScoreCache
+from esplanade.evaluation.trajectory_files import EpisodeFiles
 from esplanade.evaluation.trials import Source, Trial
 from esplanade.recordings import Given
 
@@ -30,7 +31,9 @@ def named_sources(options: Namespace) -> dict[Source, str]:
     return {s: str(s.path.with_suffix("")) if n in shared else n for s, n in names.items()}
 
 
-def walk(trials: Sequence[Trial], options: Namespace) -> list[TrialResult]:
+def walk(
+    trials: Sequence[Trial], options: Namespace, files: EpisodeFiles | None = None
+) -> list[TrialResult]:
     """Run all trials with a progress bar.
 
     Raises
@@ -47,7 +50,7 @@ def walk(trials: Sequence[Trial], options: Namespace) -> list[TrialResult]:
         )
         try:
             return run_trials(
-                trials, options.processes, lambda n: shown.advance(task, n), score_cache
+                trials, options.processes, lambda n: shown.advance(task, n), score_cache, files
             )
         except KeyboardInterrupt:
             if options.score_cache is not None:

@@ -5,6 +5,7 @@ from typing import Any, Final
 
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.parser import Parser, suggestion
+from esplanade.commandline.pictures import PICTURES
 from esplanade.commandline.readers import (
     SEED_LIMIT,
     Folder,
@@ -16,6 +17,7 @@ from esplanade.commandline.readers import (
 from esplanade.commandline.recording_settings import add_reading, check_reading
 from esplanade.evaluation.setting_names import NAMES
 
+_TRAJECTORIES: Final = (".csv", ".txt", ".sqlite", ".parquet")
 POLICIES: Final = {
     "esplanade": "the project's own actor",
     "straight": "straight on, ignoring people",
@@ -148,7 +150,17 @@ def parser() -> Parser:
         help="cache scores there; episodes whose score is there are not run again",
     )
     results.add_argument(
-        "--plots", metavar="FOLDER", type=Folder(), help="draw episodes there, as PNG"
+        "--trajectories",
+        metavar="FILE",
+        type=OutputFile(),
+        help="write where the robot and everybody was, .csv, .txt (for PedPy), .sqlite (JuPedSim) "
+        "or .parquet: a file for each episode, with recording, policy and number in its name",
+    )
+    results.add_argument("--plots", metavar="FOLDER", type=Folder(), help="draw episodes there")
+    results.add_argument(
+        "--picture",
+        choices=PICTURES,
+        help="form of the pictures [default: png, and svg of --sensitivity]",
     )
     results.add_argument(
         "--plot-episodes",
@@ -198,6 +210,11 @@ def check(options: Namespace) -> None:
         They do not.
     """
     studies = options.sensitivity or options.tune
+    if options.trajectories is not None:
+        if studies or options.prediction or options.fit:
+            raise UsageError("--trajectories is for episodes that are walked once")
+        if options.trajectories.suffix.lower() not in _TRAJECTORIES:
+            raise UsageError(f"--trajectories: a file ends in one of {', '.join(_TRAJECTORIES)}")
     if options.vary and not studies:
         raise UsageError("--vary is for --sensitivity and --tune")
     if options.candidates is not None and not options.tune:

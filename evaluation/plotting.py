@@ -8,6 +8,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.commandline.pictures import save
 from esplanade.evaluation.episodes import Episode
 from esplanade.evaluation.policies.policy import DebugInfo, Observation, Policy, PolicyError
 from esplanade.evaluation.rules import Rules
@@ -66,7 +67,7 @@ def draw_episode(
         _draw(axes, environment, episode, moments[tick], result.trajectory[: tick + 1], rules)
     figure.suptitle(f"{title}: {_outcome(result.score)}")
     figure.tight_layout()
-    figure.savefig(path)
+    save(figure, path)
     return result.score
 
 

@@ -12,6 +12,7 @@ from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.score_cache import ScoreCache
 from esplanade.evaluation.scores import Score
 from esplanade.evaluation.simulation import run_episode
+from esplanade.evaluation.trajectory_files import EpisodeFiles
 from esplanade.evaluation.trials import Source, Trial
 
 EPISODES_AT_ONCE: Final = 5
@@ -31,14 +32,16 @@ def run_trials(
     processes: int,
     report: Callable[[int], None],
     score_cache: ScoreCache | None = None,
+    files: EpisodeFiles | None = None,
 ) -> list[TrialResult]:
     """Run all trials; `report` is called with the number of episodes that have been added.
 
-    Episodes whose score is in the cache are not run again. Every new score is in the cache, even
-    after an interrupt: this then ends as soon as the episodes that are running have ended.
+    With `files`, all episodes are run and written. Without, those whose score is in the cache are
+    not run again. Every new score is in the cache, even after an interrupt: this then ends as soon
+    as the episodes that are running have ended.
     """
     score_cache = score_cache or ScoreCache()
-    found = [score_cache.find(trial) for trial in trials]
+    found = [score_cache.find(trial) if files is None else {} for trial in trials]
     known = sum(map(len, found))
     if known:
         report(known)
@@ -53,7 +56,7 @@ def run_trials(
         for index, trial in enumerate(trials)
         for part in _parts(trial, found[index].keys())
     ]
-    _run_parts(parts, processes, keep)
+    _run_parts(parts, processes, keep, files)
     return [
         TrialResult(trial, tuple(scores[episode.number] for episode in trial.episodes))
         for trial, scores in zip(trials, found, strict=True)
@@ -82,14 +85,15 @@ def _run_parts(
     parts: Sequence[tuple[int, Trial]],
     processes: int,
     keep: Callable[[int, Trial, Sequence[Score]], None],
+    files: EpisodeFiles | None,
 ) -> None:
     if processes == 1:
         for index, part in parts:
-            keep(index, part, _run(part))
+            keep(index, part, _run(part, files))
         return
     spawn = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(processes, spawn, _leave_interrupts_to_the_parent) as pool:
-        waiting = {pool.submit(_run, part): (index, part) for index, part in parts}
+        waiting = {pool.submit(_run, part, files): (index, part) for index, part in parts}
         try:
             for future in as_completed(waiting):
                 keep(*waiting.pop(future), future.result())
@@ -107,11 +111,17 @@ def _leave_interrupts_to_the_parent() -> None:
 _last: dict[tuple[Source, str, Rules, tuple[tuple[str, Any], ...]], Policy] = {}
 
 
-def _run(part: Trial) -> list[Score]:
+def _run(part: Trial, files: EpisodeFiles | None = None) -> list[Score]:
     """Run one chunk of episodes; the policy of the previous chunk is reused if it is the same."""
     key = (part.source, part.policy, part.rules, part.settings)
     if key not in _last:
         _last.clear()
         _last[key] = ready_policy(part)
     environment = part.source.environment(part.rules.tick_s)
-    return [run_episode(environment, e, _last[key], part.rules).score for e in part.episodes]
+    scores = []
+    for episode in part.episodes:
+        result = run_episode(environment, episode, _last[key], part.rules)
+        if files is not None:
+            files.write(part, episode, result.trajectory)
+        scores.append(result.score)
+    return scores

@@ -30,6 +30,7 @@ _SHOW_ONLY: Final = frozenset(
         "report",
         "score_cache",
         "studies",
+        "trajectory_files",
     }
 )
 """Modules and packages of `evaluation` that no score depends on."""

@@ -13,6 +13,8 @@ from esplanade.footage.options import WALKS
 
 def render(options: Namespace) -> int:
     """Draw walks: strips, trails and films."""
+    if options.picture != "png":
+        _part_that_needs("matplotlib", "esplanade.footage.vector")
     strips = _part_that_needs("PIL", "esplanade.footage.strips")
     films = _part_that_needs("PIL", "esplanade.footage.film")
     walks = _part_that_needs("PIL", "esplanade.footage.walks").walks()
@@ -25,7 +27,7 @@ def render(options: Namespace) -> int:
             frames = 0 if options.no_film else len(taken.times_s)
             shown.update(task, total=frames + 2)
             for kind, draw in (("strip", strips.draw_strip), ("trail", strips.draw_trail)):
-                files.append(folder / f"{name}-{kind}.png")
+                files.append(folder / f"{name}-{kind}.{options.picture}")
                 draw(taken, files[-1])
                 shown.advance(task)
             if not options.no_film:
@@ -54,7 +56,7 @@ def plots(options: Namespace) -> int:
     with progress() as shown:
         task = shown.add_task("drawing", total=len(drawn))
         for name, plot in drawn.items():
-            files.append(folder / f"walking-{name}.svg")
+            files.append(folder / f"walking-{name}.{options.picture}")
             plot(files[-1])
             shown.advance(task)
     print(*files, sep="\n")

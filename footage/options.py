@@ -4,6 +4,7 @@ from argparse import _SubParsersAction as SubParsers  # argparse names the type 
 from typing import Final
 
 from esplanade.commandline.parser import Parser
+from esplanade.commandline.pictures import add_picture
 from esplanade.commandline.readers import SEED_LIMIT, Folder, OutputFile, Whole
 
 WALKS: Final = ("flat", "curve", "stairs", "start-stop")
@@ -49,9 +50,10 @@ def _render(commands: "SubParsers[Parser]") -> Parser:
         run="esplanade.footage.cli:render",
         help="draw walks: strips, trails and films",
         description="Walk on level ground, round bends, up and down stairs, and with sudden stops "
-        "and\nstarts; draw each walk as PNG strips and a GIF.",
+        "and\nstarts; draw each walk as strips and a GIF.",
     )
     _add_folder(made)
+    add_picture(made)
     made.add_argument(
         "--walk",
         choices=(*WALKS, "all"),
@@ -95,9 +97,10 @@ def _plots(commands: "SubParsers[Parser]") -> Parser:
         "plots",
         run="esplanade.footage.cli:plots",
         help="draw the plots of docs/walking.md",
-        description="Draw the plots of docs/walking.md anew, as SVG.",
+        description="Draw the plots of docs/walking.md anew.",
     )
     _add_folder(made)
+    add_picture(made, "svg")
     return made
 
 

@@ -14,6 +14,7 @@ from esplanade.actors.locomotion.body.skeleton import FOOT
 from esplanade.footage.camera import Camera
 from esplanade.footage.figure import Part
 from esplanade.footage.film import FilmedFootprint
+from esplanade.footage.vector import Shape
 from esplanade.planning import Polygon, Scene
 from esplanade.planning.compiled.arrays import Floats
 
@@ -42,7 +43,7 @@ class Canvas:
 
     def __init__(self, camera: Camera) -> None:
         width, height = camera.size
-        self._size = camera.size
+        self.size = camera.size
         self._camera = Camera(
             camera.target,
             camera.azimuth_deg,
@@ -52,10 +53,12 @@ class Canvas:
         )
         self._image = Image.new("RGB", self._camera.size, SKY)
         self._draw = ImageDraw.Draw(self._image)
+        self.shapes: list[Shape] = []
+        """What was painted so far, in the order in which it was, in pixels of the camera."""
 
     def picture(self) -> Image.Image:
         """The picture painted so far, in the size of the camera."""
-        return self._image.resize(self._size, Image.Resampling.LANCZOS)
+        return self._image.resize(self.size, Image.Resampling.LANCZOS)
 
     def paint_scene(self, scene: Scene) -> None:
         """Paint the ground with a grid of half metres, and what stands on it."""
@@ -98,6 +101,7 @@ class Canvas:
         """Write text at a place in pixels from the upper left corner."""
         font = ImageFont.load_default(size * SMOOTHING)
         self._draw.text((at[0] * SMOOTHING, at[1] * SMOOTHING), text, fill=colour, font=font)
+        self.shapes.append(Shape([at], colour, size, text))
 
     def _paint_solid(self, solid: Polygon, towards: Floats) -> None:
         ring = list(solid.points)
@@ -121,22 +125,31 @@ class Canvas:
         centres = self._camera.pixels(part.centres)
         radii = part.radii_m * self._camera.scale
         outline = _hull(_balls(centres, radii + 1.1 * SMOOTHING))
-        self._draw.polygon(outline, fill=_mixed(part.colour, "#101418", 0.55))
-        self._draw.polygon(_hull(_balls(centres, radii)), fill=part.colour)
+        self._polygon(outline, _mixed(part.colour, "#101418", 0.55))
+        self._polygon(_hull(_balls(centres, radii)), part.colour)
         lit = centres + radii[:, None] * np.array([-0.22, -0.3])
-        self._draw.polygon(
-            _hull(_balls(lit, 0.45 * radii)), fill=_mixed(part.colour, "#ffffff", 0.16)
-        )
+        self._polygon(_hull(_balls(lit, 0.45 * radii)), _mixed(part.colour, "#ffffff", 0.16))
 
     def _fill(self, points: ArrayLike, colour: Colour, edge: str | None = None) -> None:
-        ring = [tuple(pixel) for pixel in self._camera.pixels(points).tolist()]
-        self._draw.polygon(ring, fill=colour)
+        ring = [(x, y) for x, y in self._camera.pixels(points).tolist()]
+        self._polygon(ring, colour)
         if edge is not None:
-            self._draw.line([*ring, ring[0]], fill=edge, width=SMOOTHING)
+            self._stroke([*ring, ring[0]], edge)
 
     def _line(self, points: Sequence[tuple[float, float, float]], colour: str) -> None:
-        ends = [tuple(pixel) for pixel in self._camera.pixels(points).tolist()]
-        self._draw.line(ends, fill=colour, width=SMOOTHING)
+        self._stroke([(x, y) for x, y in self._camera.pixels(points).tolist()], colour)
+
+    def _polygon(self, ring: Sequence[tuple[float, float]], colour: Colour) -> None:
+        self._draw.polygon(ring, fill=colour)
+        self.shapes.append(Shape(_shrunk(ring), colour))
+
+    def _stroke(self, points: Sequence[tuple[float, float]], colour: str) -> None:
+        self._draw.line(points, fill=colour, width=SMOOTHING)
+        self.shapes.append(Shape(_shrunk(points), colour, 1.0))
+
+
+def _shrunk(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    return [(x / SMOOTHING, y / SMOOTHING) for x, y in points]
 
 
 def _middle(solid: Polygon) -> Floats:

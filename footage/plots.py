@@ -19,6 +19,7 @@ from esplanade.actors.locomotion.reaching import two_stage
 from esplanade.actors.locomotion.reference import bezier, keyframes, paper_gait, rotations, table3
 from esplanade.actors.locomotion.reference.published_lengths import sl_noslide, sl_paper
 from esplanade.actors.locomotion.reference.step_phase import boundary_rates, step_phase
+from esplanade.commandline.pictures import save
 from esplanade.footage.film import film_walk
 from esplanade.footage.targets import SHARES, random_targets
 from esplanade.footage.walks import walks
@@ -54,7 +55,7 @@ def _figure(path: Path, columns: int, height_in: float = 2.5) -> Iterator[Any]:
     with mpl.rc_context(_STYLE):
         figure = Figure(figsize=(7.6, height_in), layout="constrained")
         yield figure.subplots(1, columns)
-        figure.savefig(path, metadata={"Date": None})
+        save(figure, path)
 
 
 def curves(path: Path) -> None:

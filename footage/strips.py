@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final
 
@@ -12,7 +12,8 @@ from PIL import Image
 from esplanade.footage.camera import Camera
 from esplanade.footage.figure import parts_of
 from esplanade.footage.film import Film
-from esplanade.footage.painting import Canvas
+from esplanade.footage.painting import SKY, Canvas
+from esplanade.footage.vector import Panel, write_shapes
 from esplanade.planning.compiled.arrays import Floats
 
 PANELS: Final = 9
@@ -39,14 +40,15 @@ def draw_strip(film: Film, path: Path) -> None:
     """Write pictures at even times, a row for each span of the walk; the camera goes along."""
     followed = _followed(film)
     spans = film.walk.spans_s
-    strip = Image.new("RGB", (_PANEL[0] * PANELS, _PANEL[1] * len(spans)))
+    size = _PANEL[0] * PANELS, _PANEL[1] * len(spans)
+    panels = []
     for row, span in enumerate(spans):
         for column, seconds in enumerate(np.linspace(*span, PANELS).tolist()):
             frame = int(np.argmin(np.abs(film.times_s - seconds)))
             canvas = _frame(film, frame, followed[frame], _PANEL, _PANEL_SCALE)
             canvas.write(f"{film.times_s[frame]:.2f} s", (9, _PANEL[1] - 22), 12)
-            strip.paste(canvas.picture(), (column * _PANEL[0], row * _PANEL[1]))
-    _save(strip, path)
+            panels.append(((column * _PANEL[0], row * _PANEL[1]), canvas))
+    _save(path, size, panels)
 
 
 def draw_trail(film: Film, path: Path) -> None:
@@ -71,7 +73,7 @@ def draw_trail(film: Film, path: Path) -> None:
     for k in np.argsort(nearness, kind="stable").tolist():
         canvas.paint_body(parts_of(poses, frames[k]))
     canvas.write(walk.caption, (14, 10), 16)
-    _save(canvas.picture(), path)
+    _save(path, canvas.size, [((0, 0), canvas)])
 
 
 def draw_film(film: Film, path: Path, advance: Callable[[], None]) -> None:
@@ -98,8 +100,20 @@ def draw_film(film: Film, path: Path, advance: Callable[[], None]) -> None:
     )
 
 
-def _save(picture: Image.Image, path: Path) -> None:
-    """Write a PNG with 256 colours: the loss cannot be seen, and files are a third as large."""
+def _save(
+    path: Path, size: tuple[int, int], panels: Sequence[tuple[tuple[int, int], Canvas]]
+) -> None:
+    """Write canvases at their corners: as shapes, or as a PNG of 256 colours.
+
+    The loss cannot be seen, and files are a third as large.
+    """
+    if path.suffix != ".png":
+        drawn = [Panel(corner, canvas.size, SKY, canvas.shapes) for corner, canvas in panels]
+        write_shapes(path, size, drawn)
+        return
+    picture = Image.new("RGB", size)
+    for corner, canvas in panels:
+        picture.paste(canvas.picture(), corner)
     palette = picture.quantize(256, _METHOD)
     picture.quantize(palette=palette, dither=Image.Dither.NONE).save(path, optimize=True)
 

@@ -15,6 +15,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from esplanade.recordings.crowd import Crowd, Floats
+from esplanade.recordings.jupedsim_tables import INSERT_FRAME, INSERT_SAMPLE, box, new_tables
 from esplanade.recordings.rows import Whole
 
 RESAMPLED_HZ: Final = 25.0
@@ -93,7 +94,8 @@ def _check_frames(path: Path, samples: Samples, rate: float) -> None:
         )
 
 
-def _told(provenance: Mapping[str, str]) -> Iterator[str]:
+def told(provenance: Mapping[str, str]) -> Iterator[str]:
+    """What a file comes from, as comments of one line each."""
     yield from (f"# {name}: {' '.join(text.split())}" for name, text in provenance.items())
 
 
@@ -102,7 +104,7 @@ def _write_csv(
 ) -> None:
     names = [_quoted(track.id) for track in crowd.tracks]
     with path.open("w", encoding="utf-8", newline="\n") as file:
-        file.writelines(f"{line}\n" for line in _told(provenance))
+        file.writelines(f"{line}\n" for line in told(provenance))
         file.write("t,id,x,y\n")
         rows = zip(*(column.tolist() for column in samples[1:]), strict=True)
         file.writelines(f"{t!r},{names[p - 1]},{x!r},{y!r}\n" for p, t, x, y in rows)
@@ -117,7 +119,7 @@ def _write_text(
 ) -> None:
     _check_frames(path, samples, rate)
     with path.open("w", encoding="utf-8", newline="\n") as file:
-        file.writelines(f"{line}\n" for line in _told(provenance))
+        file.writelines(f"{line}\n" for line in told(provenance))
         file.write(f"# framerate: {rate:.10g} fps\n# id frame x/m y/m z/m\n")
         rows = zip(*(column.tolist() for column in samples), strict=True)
         file.writelines(f"{p} {frame} {x!r} {y!r} 0\n" for frame, p, _, x, y in rows)
@@ -127,33 +129,14 @@ def _write_sqlite(
     path: Path, crowd: Crowd, samples: Samples, rate: float, provenance: Mapping[str, str]
 ) -> None:
     _check_frames(path, samples, rate)
-    path.unlink(missing_ok=True)
     x0, y0, x1, y1 = crowd.bounds
-    area = f"POLYGON (({x0 - 1} {y0 - 1}, {x1 + 1} {y0 - 1}, {x1 + 1} {y1 + 1}, {x0 - 1} {y1 + 1}, "
-    area += f"{x0 - 1} {y0 - 1}))"
-    known = {"version": "2", "fps": f"{rate:.10g}", "xmin": x0, "xmax": x1, "ymin": y0, "ymax": y1}
-    with closing(sqlite3.connect(path)) as connection, connection:
-        connection.executescript(
-            "CREATE TABLE trajectory_data (frame INTEGER NOT NULL, id INTEGER NOT NULL, "
-            "pos_x REAL NOT NULL, pos_y REAL NOT NULL, ori_x REAL NOT NULL, ori_y REAL NOT NULL);"
-            "CREATE TABLE metadata (key TEXT NOT NULL UNIQUE PRIMARY KEY, value TEXT NOT NULL);"
-            "CREATE TABLE geometry (hash INTEGER NOT NULL, wkt TEXT NOT NULL);"
-            "CREATE UNIQUE INDEX geometry_hash ON geometry(hash);"
-            "CREATE TABLE frame_data (frame INTEGER NOT NULL, geometry_hash INTEGER NOT NULL);"
-            "CREATE INDEX frame_id_idx ON trajectory_data(frame, id);"
-        )
-        told = {f"esplanade.{name}": text for name, text in provenance.items()}
-        connection.executemany(
-            "INSERT INTO metadata VALUES (?, ?)", [(k, str(v)) for k, v in (known | told).items()]
-        )
-        connection.execute("INSERT INTO geometry VALUES (1, ?)", (area,))
+    area = box((x0 - 1, y0 - 1, x1 + 1, y1 + 1))
+    with closing(new_tables(path, rate, crowd.bounds, area, provenance)) as connection, connection:
         rows = zip(*(column.tolist() for column in samples), strict=True)
         connection.executemany(
-            "INSERT INTO trajectory_data VALUES (?, ?, ?, ?, 1.0, 0.0)",
-            ((frame, p, x, y) for frame, p, _, x, y in rows),
+            INSERT_SAMPLE, ((frame, p, x, y, 1.0, 0.0) for frame, p, _, x, y in rows)
         )
-        frames = np.unique(samples.frame).tolist()
-        connection.executemany("INSERT INTO frame_data VALUES (?, 1)", ((f,) for f in frames))
+        connection.executemany(INSERT_FRAME, ((f,) for f in np.unique(samples.frame).tolist()))
 
 
 def _write_parquet(

@@ -62,7 +62,7 @@ def render(options: Namespace) -> int:
     with progress() as shown:
         task = shown.add_task("drawing", total=len(views))
         for view in views:
-            files += pictures.draw_layer(view, folder)
+            files += pictures.draw_layer(view, folder, options.picture)
             shown.advance(task)
     print(*files, sep="\n")
     return exit_codes.OK
@@ -100,7 +100,7 @@ def import_(options: Namespace) -> int:
     mesh_report.show_passed(written, made.mesh.passed)
     for line in made.mesh.told:
         written.print(line, highlight=False, markup=False, soft_wrap=True)
-    _tell(made.scene, made.grid, options.out)
+    _tell(made.scene, made.grid, options)
     return exit_codes.OK
 
 
@@ -122,7 +122,7 @@ def _import_plans(options: Namespace) -> int:
             shown.print(f"{storey.name}: {remark}", highlight=False, markup=False, soft_wrap=True)
     parts = f"{len(scene.polygons)} polygons, {len(scene.walls)} walls, {len(scene.doors)} doors"
     shown.print(parts, highlight=False)
-    _tell(scene, grid, options.out)
+    _tell(scene, grid, options)
     return exit_codes.OK
 
 
@@ -154,9 +154,9 @@ def schema(options: Namespace) -> int:
     return exit_codes.OK
 
 
-def _tell(scene: Scene, grid: LayeredGrid, out: Path) -> None:
+def _tell(scene: Scene, grid: LayeredGrid, options: Namespace) -> None:
     """Say what was made, with a picture of it where matplotlib is installed."""
-    shown = console()
+    shown, out = console(), options.out
     if any(scene.origin_m):
         x, y, z = scene.origin_m
         shown.print(f"moved by {-x:g}, {-y:g}, {-z:g} m to the origin", highlight=False)
@@ -166,7 +166,7 @@ def _tell(scene: Scene, grid: LayeredGrid, out: Path) -> None:
     except UsageError:
         print("no picture: it needs matplotlib (pip install 'esplanade[scene]')")
     else:
-        picture = out.with_suffix(".png")
+        picture = out.with_suffix(f".{options.picture}")
         try:
             pictures.draw_heights(grid, scene.name, picture)
         except OSError as error:

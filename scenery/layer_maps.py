@@ -60,7 +60,7 @@ def layer_maps(
             reachable=_dense(traversability, number, reached, False),
             classes=_dense(traversability, number, traversability.classes.astype(np.int8), -1),
             distance=_dense(traversability, number, distance, np.nan),
-            walls=_walls_on(
+            walls=walls_on(
                 _dense(traversability, number, traversability.arrays.floors, np.nan),
                 traversability,
                 body,
@@ -133,7 +133,7 @@ def _dense(
     return dense
 
 
-def _walls_on(floors: Floats, traversability: Traversability, body: Body) -> Floats:
+def walls_on(floors: Floats, traversability: Traversability, body: Body) -> Floats:
     """The barriers that stop a body that stands beside them on one layer.
 
     `floors` is (rows, columns), metres. The result is x0, y0, x1, y1, float64 (S, 4), metres.

@@ -4,6 +4,7 @@ from argparse import _SubParsersAction as SubParsers  # argparse names the type 
 from typing import Final
 
 from esplanade.commandline.parser import Parser
+from esplanade.commandline.pictures import add_picture
 from esplanade.commandline.readers import Folder, InputFile, Number, OutputFile, Whole
 from esplanade.scenery.values import body, point, where
 
@@ -65,13 +66,14 @@ def _render(commands: "SubParsers[Parser]") -> Parser:
         "render",
         run="esplanade.scenery.cli:render",
         help="draw every layer: heights, reachability, classes, a path",
-        description="Draw every layer of a scene as a body finds it, as PNG: heights, "
+        description="Draw every layer of a scene as a body finds it: heights, "
         "reachability,\nthe five classes, and potential and path between two points.",
     )
     made.add_argument("scene", metavar="FILE", type=InputFile(), help="scene, a JSON file")
     made.add_argument(
         "--out", metavar="DIR", type=Folder(), required=True, help="where the pictures go"
     )
+    add_picture(made)
     made.add_argument(
         "--body",
         metavar="BODY",
@@ -151,6 +153,7 @@ def _import(commands: "SubParsers[Parser]") -> Parser:
         default=8,
         help="places to spread over what can be reached [default: 8]",
     )
+    add_picture(made)
     _add_cell(made)
     return made
 
@@ -162,8 +165,8 @@ def _export(commands: "SubParsers[Parser]") -> Parser:
         help="write a scene for other programs: glTF, WKT, ROS map, PNG, SVG",
         description="Write a scene for other programs. The suffix of --out says in which form: "
         ".glb (a node\nfor each layer, walls, doors), .wkt (the ground of each storey), .yaml "
-        "(a ROS map of each\nstorey, with its image), .png or .svg (a plan of each storey, to "
-        "scale).",
+        "(a ROS map of each\nstorey, with its image), .png, .svg or .pdf (a plan of each storey, "
+        "to scale).",
     )
     made.add_argument("scene", metavar="FILE", type=InputFile(), help="scene, a JSON file")
     made.add_argument(

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.commandline.errors import UsageError
+from esplanade.commandline.pictures import save
 from esplanade.planning import LayeredGrid
 
 Floats = NDArray[np.float64]
@@ -98,11 +99,11 @@ def require_matplotlib() -> Any:
         ) from None
 
 
-def draw_layer(layer: LayerMap, folder: Path) -> list[Path]:
+def draw_layer(layer: LayerMap, folder: Path, form: str = "png") -> list[Path]:
     """Draw all pictures of a layer; returns their files, such as `layer-0-heights.png`."""
     made = []
     for name, (caption, paint) in _SUBJECTS.items():
-        path = folder / f"layer-{layer.number}-{name}.png"
+        path = folder / f"layer-{layer.number}-{name}.{form}"
         _draw(layer, caption, paint, path)
         made.append(path)
     return made
@@ -134,7 +135,7 @@ def draw_heights(grid: LayeredGrid, title: str, path: Path) -> None:
         axes.set_title(f"{title}, layer {number}" if number == numbers[0] else f"layer {number}")
         axes.tick_params(labelsize=7)
     figure.colorbar(image, ax=list(all_axes), label="height of the floor, m", shrink=0.7)
-    figure.savefig(path)
+    save(figure, path)
 
 
 def _draw(
@@ -158,7 +159,7 @@ def _draw(
     axes.tick_params(labelsize=7)
     title = f"{layer.title}, layer {layer.number}: {caption.format(path=layer.path_summary)}"
     axes.set_title(title, fontsize=10, loc="left", pad=14)
-    figure.savefig(path)
+    save(figure, path)
 
 
 def _paint_heights(layer: LayerMap, axes: Any) -> None:

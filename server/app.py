@@ -37,6 +37,7 @@ from esplanade.server.net.tls import Tls, renewed
 from esplanade.server.recovery import read_recovery
 from esplanade.server.resuming import persistence_of, resume
 from esplanade.server.settings import ServerSettings
+from esplanade.server.trajectories.keeping import trajectories_kept
 from esplanade.server.watching import watch_routes, watch_world
 from esplanade.server.world.audience import Audience
 from esplanade.server.world.zone import Zone
@@ -161,7 +162,12 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             world, ground_work, audience, link, hub, delivery, schedule, metrics, thread, console
         ).keeping(persistence)
         gate.live = live = live_view(world, storeys, console, hub, metrics, settings)
-        ticker.tap = live.tap
+        ticker.tap, ticker.trajectories = (
+            live.tap,
+            await stack.enter_async_context(
+                trajectories_kept(settings, loaded, world, metrics, live.bulletin)
+            ),
+        )
         await stack.enter_async_context(
             Listener(hub, assets, settings, metrics, places).listening(sockets, tls)
         )

@@ -13,18 +13,23 @@ from esplanade.commandline.readers import (
     Folder,
     InputFile,
     Number,
+    OutputFile,
     Text,
     Whole,
 )
 from esplanade.commandline.recording_settings import READING, check_reading, misplaced
 from esplanade.commandline.settings import Setting, Settings, settings_parser
+from esplanade.server.trajectories.rates import ticks_between
 
+_TRAJECTORIES: Final = (".csv", ".txt", ".sqlite", ".parquet")
 _PORT: Final = Whole(0, 65535)
 _ROOT_PATH: Final = re.compile(r"(/(?!\.\.?(/|$))[A-Za-z0-9._~-]+)*/?")
 _SPEED: Final = Number(0.0, 100.0, above=True)
 _WORLD: Final = {
     "scene": Setting(
-        "scene to run, a JSON file; without one, the gallery that comes along", InputFile()
+        "scene to run, a JSON file, or a mesh or plan that one is made of (docs/files.md); without "
+        "one, the gallery that comes along",
+        InputFile(),
     ),
     "crowd": Setting(
         "fit the scene to this recorded crowd instead of --scene; docs/files.md lists the formats",
@@ -117,6 +122,17 @@ _DATA: Final = {
         Whole(0, 3650),
         0,
         "days",
+    ),
+    "trajectories": Setting(
+        "file to write where everybody is: .csv, .txt (for PedPy), .sqlite (JuPedSim) or .parquet; "
+        "where it is there already, one with a number; names of people are not in it",
+        OutputFile(),
+    ),
+    "trajectories_hz": Setting(
+        "samples of trajectories, a part of the ticks; without it, every tick",
+        Number(0.01, 60.0),
+        None,
+        "per second",
     ),
 }
 _NETWORK: Final = {
@@ -310,6 +326,7 @@ def check(given: Mapping[str, Any]) -> None:
     if not given.get("crowd") and (name := misplaced(given)):
         raise ValueError(f"{name}: it says how a crowd is read, but none is given")
     check_reading(given)
+    _check_trajectories(given)
     if bool(given.get("tls_cert")) != bool(given.get("tls_key")):
         raise ValueError("tls_cert and tls_key: give both of them, or none")
     _check_ways_in(given)
@@ -327,6 +344,18 @@ def check(given: Mapping[str, Any]) -> None:
     slow_bytes = given.get("slow_bytes", _LIMITS["slow_bytes"].default)
     if given.get("drop_bytes", _LIMITS["drop_bytes"].default) <= slow_bytes:
         raise ValueError("drop_bytes: must be greater than slow_bytes")
+
+
+def _check_trajectories(given: Mapping[str, Any]) -> None:
+    path, hz = given.get("trajectories"), given.get("trajectories_hz")
+    if hz is not None and path is None:
+        raise ValueError("trajectories_hz: it belongs to --trajectories, but none is given")
+    if path is not None and path.suffix.lower() not in _TRAJECTORIES:
+        raise ValueError(f"trajectories: {path.name} ends in none of {', '.join(_TRAJECTORIES)}")
+    try:
+        ticks_between(given.get("tick_rate", _WORLD["tick_rate"].default), hz)
+    except ValueError as error:
+        raise ValueError(f"trajectories_hz: {error}") from None
 
 
 def is_loopback(host: str) -> bool:

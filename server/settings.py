@@ -54,6 +54,8 @@ class ServerSettings(BaseSettings):
     durable: bool = _field("durable")
     keep_chat: bool = _field("keep_chat")
     keep_chat_days: int = _field("keep_chat_days")
+    trajectories: Path | None = _field("trajectories")
+    trajectories_hz: float | None = _field("trajectories_hz")
 
     host: str = _field("host")
     port: int = _field("port")

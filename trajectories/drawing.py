@@ -6,6 +6,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from esplanade.commandline.pictures import save
 from esplanade.recordings import Crowd
 
 MOST_STEPS: Final = 200_000
@@ -57,7 +58,7 @@ def draw_crowd(path: Path, crowd: Crowd) -> None:
     if report is not None:
         figure.suptitle(report.line.replace("; ", "\n", 1).replace("$", r"\$"), fontsize=8)
     try:
-        figure.savefig(path, dpi=150)
+        save(figure, path, dpi=150)
     except OSError as error:
         raise DrawingError(f"{path} cannot be written: {error.strerror or error}") from None
 

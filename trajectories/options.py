@@ -5,6 +5,7 @@ from typing import Final
 
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.parser import Parser
+from esplanade.commandline.pictures import SUFFIXES
 from esplanade.commandline.readers import InputFile, Number, OutputFile
 from esplanade.commandline.recording_settings import add_reading, add_strict, check_reading
 
@@ -118,5 +119,5 @@ def check(options: Namespace) -> None:
         They do not.
     """
     check_reading_options(options)
-    if options.out is not None and options.out.suffix.lower() not in {".png", ".svg", ".pdf"}:
+    if options.out is not None and options.out.suffix.lower() not in SUFFIXES:
         raise UsageError(f"--out: {options.out.name} is no .png, .svg or .pdf file")

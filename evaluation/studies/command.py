@@ -33,7 +33,7 @@ def show_sensitivity(options: argparse.Namespace) -> None:
         told = {"settings": _settings(options, names, base), "points": sensitivity.figures(found)}
         write_json("--json", options.json, told)
     if options.plots is not None:
-        sensitivity_plot.draw(options.plots / "sensitivity.svg", found)
+        sensitivity_plot.draw(options.plots / f"sensitivity.{options.picture or 'svg'}", found)
 
 
 def show_tuning(options: argparse.Namespace) -> None:

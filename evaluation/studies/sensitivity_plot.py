@@ -7,6 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from esplanade.commandline.pictures import save
 from esplanade.evaluation.plotting import require_matplotlib
 from esplanade.evaluation.studies.measures import MEASURES
 from esplanade.evaluation.studies.sensitivity import Curve, Point
@@ -62,7 +63,7 @@ def draw(path: Path, curves: Sequence[Curve]) -> None:
             va="bottom",
         )
         figure.tight_layout(rect=(0, 0.3 / height, 1, 1), h_pad=0.4, w_pad=0.8)
-        figure.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else None)
+        save(figure, path)
 
 
 def _draw(panel: Any, curve: Curve, column: int) -> None:

@@ -15,7 +15,7 @@ from esplanade.scenery.exports.layers import LayerCells, layers_of
 from esplanade.scenery.exports.ros import layer_as_pgm, layer_as_yaml
 from esplanade.scenery.exports.wkt import layer_as_wkt
 
-SUFFIXES = (".glb", ".wkt", ".yaml", ".png", ".svg")
+SUFFIXES = (".glb", ".wkt", ".yaml", ".png", ".svg", ".pdf")
 
 
 def export(options: Namespace) -> int:

@@ -20,7 +20,7 @@ class Notice:
     about: str | None = None
     """The things that are others now: presets, schedules, groups, accounts."""
     event: Mapping[str, Any] | None = None
-    """An event of the kinds command, mark, report or pace, without its number."""
+    """An event of the kinds command, mark, report, pace or trajectories, without its number."""
 
 
 @dataclass

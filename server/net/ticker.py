@@ -17,6 +17,7 @@ from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.hub import Hub
 from esplanade.server.net.persistence import Persistence
 from esplanade.server.net.schedule import Schedule
+from esplanade.server.trajectories.keeping import WorldTrajectories
 from esplanade.server.world.audience import Audience
 from esplanade.server.world.inputs import Input, Still
 from esplanade.server.world.zone import Zone
@@ -52,6 +53,8 @@ class Ticker:
         self._console = console
         self.tap: Tap | None = None
         """Where the ticks go that operators see."""
+        self.trajectories: WorldTrajectories | None = None
+        """Where the ticks go that are written to a file."""
         self._stopping = asyncio.Event()
         self._persistence: Persistence | None = None
         metrics.gauge(
@@ -137,7 +140,8 @@ class Ticker:
     async def _run(self, given: Sequence[Input], derived: Sequence[Input]) -> None:
         loop, start = asyncio.get_running_loop(), perf_counter()
         self._link.send(list(given))
-        self._world.begin([*self._link.inputs(), *derived])
+        inputs = [*self._link.inputs(), *derived]
+        self._world.begin(inputs)
         actors_moved = await loop.run_in_executor(self._thread, self._think)
         self._link.publish(self._world.finish(actors_moved))
         frames = self._link.frames()
@@ -152,6 +156,9 @@ class Ticker:
         if self.tap is not None:
             for frame in frames:
                 self.tap.take(frame, seconds, self._schedule.late_ticks)
+        if self.trajectories is not None:
+            for frame in frames:
+                self.trajectories.take(frame, inputs)
         if self._persistence is not None:
             self._persistence.between_ticks(loop.time())
 

@@ -21,6 +21,7 @@ from rich.panel import Panel
 
 from esplanade.commandline.errors import CommandError
 from esplanade.commandline.running import imported
+from esplanade.opening import with_scene
 
 POLL_S: Final = 0.25
 GRACE_S: Final = 2.0
@@ -29,6 +30,7 @@ END_LIMIT_S: Final = 5.0
 
 def run(options: Namespace) -> int:
     """Run the demo until the server ends, and return the server's exit code."""
+    with_scene(options)
     for port in (options.port, options.private_port):
         if not _is_free(port):
             raise CommandError(
@@ -75,7 +77,21 @@ class Visitors:
             if self._ending.wait(POLL_S):
                 return
         _announce(page_address(self._options))
-        if not self._options.visitors or self._ending.is_set():
+        if not (self._options.visitors or self._replays) or self._ending.is_set():
+            return
+        self._send()
+        while self._process is not None and not self._ending.is_set():
+            self._watch(self._process)
+            if not (self._replays and self._process.poll() == 0):
+                return
+            self._send()  # the recording is over, and begins anew
+
+    @property
+    def _replays(self) -> bool:
+        return getattr(self._options, "crowd", None) is not None
+
+    def _send(self) -> None:
+        if self._ending.is_set():
             return
         self._process = subprocess.Popen(
             [sys.executable, "-m", "esplanade", "bots", *bots_arguments(self._options)],
@@ -85,13 +101,14 @@ class Visitors:
             # Not the terminal's group: its Ctrl-C is ours alone, and we send them home.
             process_group=0,
         )
-        self._watch(self._process)
 
     def _watch(self, process: subprocess.Popen[bytes]) -> None:
         """Say so if the visitors leave before the world ends."""
         while process.poll() is None:
             if self._ending.wait(POLL_S):
                 return
+        if self._replays and process.poll() == 0:
+            return
         if not self._ending.wait(GRACE_S):
             print(
                 f"The visitors have left (status {process.returncode}). "
@@ -103,6 +120,13 @@ class Visitors:
 def bots_arguments(options: Namespace) -> list[str]:
     certificate = _certificate(options)
     trusted = [] if certificate is None else [f"--trust={certificate}"]
+    if (crowd := getattr(options, "crowd", None)) is not None:
+        reading = [
+            f"--{name}={value}"
+            for name in ("fps", "unit", "scale")
+            if (value := getattr(options, name, None)) is not None
+        ]
+        return [f"--url={page_address(options)}", *trusted, f"--replay={crowd}", *reading]
     return [
         f"--url={page_address(options)}",
         *trusted,

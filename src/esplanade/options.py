@@ -1,4 +1,4 @@
-"""The options of the commands that belong to no part alone: `demo`, `op` and `completion`."""
+"""The options of commands that belong to no part alone: `serve`, `demo`, `op` and others."""
 
 from typing import Final
 
@@ -7,6 +7,7 @@ from esplanade.commandline.readers import SEED_LIMIT, Whole
 from esplanade.commandline.settings import Setting, settings_parser
 from esplanade.operators.options import add_parts
 from esplanade.server import options as server
+from esplanade.server.offline import options as offline
 from esplanade.server.operating import options as operating
 
 COMPLETION_EPILOG: Final = """\
@@ -23,7 +24,11 @@ _DEMO: Final = {
     "port": Setting("port for people", _PORT, 8080),
     "private_port": Setting("port for health and metrics", _PORT, 8081),
     "actors": Setting("number of actors", _AMOUNT, 12),
-    "visitors": Setting("number of wandering bots", _AMOUNT, 6),
+    "visitors": Setting(
+        "number of wandering bots; with --crowd its people come instead, again and again",
+        _AMOUNT,
+        6,
+    ),
     "seed": Setting("seed of everything drawn by chance", Whole(0, SEED_LIMIT), 1),
 }
 
@@ -41,11 +46,31 @@ def demo() -> Parser:
         "esplanade demo",
         settings,
         run="esplanade.demo:run",
-        explained=_DEMO.keys(),
+        explained=(*_DEMO.keys(), "scene", "crowd"),
         description="Run the demo world with actors, and with a few visitors made of code.",
-        epilog="All other options go to the server: see `esplanade serve --help`.",
+        epilog="""\
+examples:
+  esplanade demo                             the gallery
+  esplanade demo --scene house.ifc           a building, a plan (DXF, WKT, ROS map, ..) or a scene
+  esplanade demo --crowd obsmat.txt          recorded people among actors
+
+All other options go to the server: see `esplanade serve --help`.""",
     )
     made.set_defaults(**{name: setting.default for name, setting in _DEMO.items()})
+    return made
+
+
+def serve() -> Parser:
+    """The options of the server; its scene may be made of a mesh or a plan first."""
+    made = server.parser()
+    made.set_defaults(run="esplanade.opening:serve")
+    return made
+
+
+def run() -> Parser:
+    """The options of a world without a server, likewise."""
+    made = offline.parser()
+    made.set_defaults(run="esplanade.opening:run")
     return made
 
 

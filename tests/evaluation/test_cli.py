@@ -81,12 +81,14 @@ def test_strict_fails_where_somebody_was_touched(plaza: Path) -> None:
 
 
 @pytest.mark.skipif(find_spec("matplotlib") is None, reason="matplotlib is absent")
-def test_chosen_episodes_are_drawn(tmp_path: Path, plaza: Path) -> None:
+@pytest.mark.parametrize("form", ["png", "svg"])
+def test_chosen_episodes_are_drawn(tmp_path: Path, plaza: Path, form: str) -> None:
     folder = tmp_path / "strips" / "today"
-    run(plaza, "--policy", "straight", "--episodes", 4, "--plots", folder, "--plot-episodes=0,2")
+    words = ["--plots", folder, "--plot-episodes=0,2", "--picture", form]
+    run(plaza, "--policy", "straight", "--episodes", 4, *words)
     assert sorted(path.name for path in folder.iterdir()) == [
-        "plaza-straight-000.png",
-        "plaza-straight-002.png",
+        f"plaza-straight-000.{form}",
+        f"plaza-straight-002.{form}",
     ]
 
 

@@ -56,3 +56,15 @@ def test_films_have_all_frames_and_tell_of_each(tmp_path: Path):
             film.seek(frame)
             shown_ms += film.info["duration"]
     assert shown_ms == 12 * 50
+
+
+def test_strips_and_trails_are_shapes_where_papers_want_them(tmp_path: Path):
+    film = filmed("flat")
+    draw_strip(film, tmp_path / "strip.svg")
+    text = (tmp_path / "strip.svg").read_text()
+    assert "<image" not in text
+    assert text.count("<path") > 200
+    for name in ("one.svg", "two.svg", "trail.pdf"):
+        draw_trail(film, tmp_path / name)
+    assert (tmp_path / "one.svg").read_bytes() == (tmp_path / "two.svg").read_bytes()
+    assert (tmp_path / "trail.pdf").read_bytes().startswith(b"%PDF")

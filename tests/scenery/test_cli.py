@@ -86,6 +86,17 @@ def test_render_draws_every_layer(tmp_path: Path, capsys: pytest.CaptureFixture[
 
 
 @needs_matplotlib
+@pytest.mark.parametrize(("form", "begins"), [("svg", b"<?xml"), ("pdf", b"%PDF")])
+def test_pictures_for_papers(tmp_path: Path, form: str, begins: bytes) -> None:
+    out, target = tmp_path / "pictures", tmp_path / "house.json"
+    assert run("render", write(tmp_path, LOFT), "--picture", form, "--out", out) == exit_codes.OK
+    assert {path.suffix for path in out.iterdir()} == {f".{form}"}
+    mesh = write_building(tmp_path)
+    assert run("import", mesh, "--picture", form, "--out", target) == exit_codes.OK
+    assert target.with_suffix(f".{form}").read_bytes().startswith(begins)
+
+
+@needs_matplotlib
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

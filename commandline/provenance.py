@@ -1,0 +1,39 @@
+"""What every written file says of the software that has made it."""
+
+import hashlib
+from functools import cache
+from pathlib import Path
+
+from esplanade import __version__
+
+_ROOT = Path(__file__).resolve().parents[1]
+_ELSEWHERE = frozenset({"tests", "tools", "benchmarks", "chaos", "client_web", "docs", "deploy"})
+
+
+def software() -> dict[str, str]:
+    """Version and digest of the sources."""
+    return {"written by": f"esplanade {__version__}", "sources sha256": sources_digest()}
+
+
+@cache
+def sources_digest() -> str:
+    """SHA-256 of every Python file of the package, by name and content."""
+    digest = hashlib.sha256()
+    packages = sorted(
+        folder
+        for folder in _ROOT.iterdir()
+        if (folder / "__init__.py").exists() and folder.name not in _ELSEWHERE
+    )
+    for package in packages:
+        for path in sorted(package.rglob("*.py")):
+            digest.update(path.relative_to(_ROOT).as_posix().encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()
+
+
+def digest_of_file(path: Path) -> str:
+    """SHA-256 of a file; empty where it cannot be read any more."""
+    try:
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError:
+        return ""

@@ -1,0 +1,74 @@
+"""Worlds of files that are no scenes: made into scenes once, and then run as any other."""
+
+import json
+from argparse import Namespace
+from pathlib import Path
+
+import pytest
+
+from esplanade import opening
+from esplanade.cli import main
+from esplanade.commandline.errors import UsageError
+from esplanade.recordings import read_crowd
+
+pytest.importorskip("shapely")
+HALL = "POLYGON ((0 0, 12 0, 12 8, 0 8, 0 0), (5 3, 7 3, 7 5, 5 5, 5 3))"
+
+
+@pytest.fixture(autouse=True)
+def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder of its own for scenes that are made."""
+    folder = tmp_path / "kept"
+    monkeypatch.setattr(opening, "scenes_folder", lambda: folder)
+    return folder
+
+
+def test_a_plan_is_run_with_one_command_and_imported_once(
+    tmp_path: Path, kept: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plan, out = tmp_path / "hall.wkt", tmp_path / "hall.csv"
+    plan.write_text(HALL)
+    words = ["run", str(plan), "--actors", "2", "--seconds", "1", "--out", str(out)]
+    assert main(words) == 0
+    assert "92.0 m² of floor in all" in capsys.readouterr().out
+    assert len(read_crowd(out).tracks) == 2
+    (scene,) = kept.glob("*/hall.json")
+    assert "# scene: hall.json\n" in out.read_text()
+    assert main(words) == 0
+    shown = capsys.readouterr()
+    assert "of floor" not in shown.out
+    assert f"imported before, as {scene}" in shown.err
+
+
+def test_what_cannot_be_imported_is_named(tmp_path: Path) -> None:
+    plan = tmp_path / "hall.wkt"
+    plan.write_text("POLYGON ((0 0, 1 1")
+    with pytest.raises(UsageError, match=r"hall\.wkt: .*bracket"):
+        opening.with_scene(Namespace(scene=plan))
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "made"),
+    [
+        ("a.json", {"bounds": [0, 0, 4, 4]}, False),
+        ("a.json", {"type": "FeatureCollection", "features": []}, True),
+        ("a.json", [1, 2], False),
+        ("a.IFC", "", True),
+        ("a.glb", "", True),
+        ("a.toml", "", False),
+    ],
+)
+def test_which_files_are_made_into_scenes(
+    tmp_path: Path, name: str, content: object, made: bool
+) -> None:
+    path = tmp_path / name
+    path.write_text(json.dumps(content))
+    assert opening.is_made_into_a_scene(path) is made
+
+
+def test_a_scene_that_cannot_be_read_is_left_to_its_reader(tmp_path: Path) -> None:
+    path = tmp_path / "a.json"
+    path.write_text("{")
+    options = Namespace(scene=path)
+    opening.with_scene(options)
+    assert options.scene == path

@@ -1,0 +1,130 @@
+"""A world without a server: the same inputs make the same files, and changes stand in them."""
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from esplanade.planning import Scene
+from esplanade.recordings import read_crowd
+from esplanade.recordings.crowd import Crowd, Track
+from esplanade.recordings.writing import write_crowd
+from esplanade.server.loading import LoadingError
+from esplanade.server.offline import OfflineWorld
+
+ROOM = Scene.open_space((0.0, 0.0, 20.0, 12.0), walls=[((10.0, 0.0), (10.0, 5.0))])
+
+
+@pytest.fixture
+def room(tmp_path: Path) -> Path:
+    path = tmp_path / "room.json"
+    path.write_text(ROOM.model_dump_json(exclude_defaults=True))
+    return path
+
+
+@pytest.fixture
+def recording(tmp_path: Path) -> Path:
+    """Two people who cross the room, one of them two seconds later."""
+    times = np.arange(0.0, 4.01, 0.4)
+    tracks = [
+        Track("7", times, np.column_stack([2.0 + 1.2 * times, np.full(len(times), 8.0)])),
+        Track("8", 2.0 + times, np.column_stack([np.full(len(times), 5.0), 2.0 + 1.1 * times])),
+    ]
+    path = tmp_path / "people.csv"
+    write_crowd(path, Crowd("people", tuple(tracks)), {})
+    return path
+
+
+def notes(path: Path) -> list[tuple[int, str, dict[str, object]]]:
+    """Tick, kind and content of every note of a table."""
+    found = re.findall(r"^# frame \d+, tick (\d+), (\w+): (.*)$", path.read_text(), re.MULTILINE)
+    return [(int(tick), kind, json.loads(text)) for tick, kind, text in found]
+
+
+def walked(room: Path, out: Path, seed: int) -> bytes:
+    with OfflineWorld(room, actors=3, seed=seed) as world:
+        world.write(out)
+        for _ in range(40):
+            world.step()
+    return out.read_bytes()
+
+
+def test_the_same_seed_writes_the_same_file(room: Path, tmp_path: Path) -> None:
+    first = walked(room, tmp_path / "a.csv", 5)
+    assert first == walked(room, tmp_path / "b.csv", 5)
+    assert first != walked(room, tmp_path / "c.csv", 6)
+
+
+def test_changes_of_parameters_stand_at_their_tick(room: Path, tmp_path: Path) -> None:
+    out = tmp_path / "a.csv"
+    with OfflineWorld(room, actors=2, seed=1) as world:
+        world.write(out, hz=10)
+        for tick in range(1, 41):
+            world.step()
+            if tick == 20:
+                world.set_parameters("main/actor-2", speed_mps=0.6)
+        with pytest.raises(ValueError, match="main/nobody"):
+            world.set_parameters("main/nobody", speed_mps=0.6)
+        with pytest.raises(ValueError, match="speed_mps"):
+            world.set_parameters(speed_mps=99.0)
+    told = notes(out)
+    first = next(content for _, kind, content in told if kind == "parameters")
+    assert first["usual"]["speed_mps"] == 1.3
+    assert set(first["actors"]) == {"main/actor-1", "main/actor-2"}
+    later = [(tick, content) for tick, kind, content in told[1:] if kind == "parameters"]
+    assert later == [(21, {"actors": {"main/actor-2": {"speed_mps": 0.6}}})]
+    assert told[-1][:2] == (40, "end")
+    rows = [line.split(",") for line in out.read_text().splitlines() if line[:1].isdigit()]
+    assert [int(row[0]) for row in rows[::2]] == list(range(1, 21))
+    assert [float(row[1]) for row in rows[::2]] == pytest.approx(np.arange(1, 21) / 10)
+
+
+def test_recorded_people_walk_their_tracks_among_actors(
+    room: Path, recording: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "a.sqlite"
+    with OfflineWorld(room, people=recording, actors=2, seed=3) as world:
+        assert world.people is not None
+        world.write(out)
+        while world.time_s < world.people.duration_s + 0.5:
+            world.step()
+        assert world.people.furthest_m < 0.01
+        assert sorted(world.people.names.values()) == ["7", "8"]
+        assert world.zone.count() == (0, 2)
+        numbers = {name: str(avatar) for avatar, name in world.people.names.items()}
+    found = {track.id: track for track in read_crowd(out).tracks}
+    for track in read_crowd(recording).tracks:
+        for t in track.times[1:-1]:
+            assert found[numbers[track.id]].at(float(t)) == pytest.approx(
+                track.at(float(t)), abs=0.01
+            )
+
+
+def test_without_a_scene_the_ground_is_fitted_to_the_people(
+    recording: Path, tmp_path: Path
+) -> None:
+    with OfflineWorld(people=recording, actors=0) as world:
+        world.write(tmp_path / "a.txt")
+        for _ in range(30):
+            world.step()
+        assert len(world.positions) == 1
+        x0, y0, x1, y1 = world.zone.scene.bounds
+    assert (x0, y1) == pytest.approx((0.0, 10.0))
+    assert (x1, y0) == pytest.approx((8.8, 0.0))
+
+
+def test_rates_between_ticks_and_odd_files_are_refused(room: Path, tmp_path: Path) -> None:
+    refused = pytest.raises(ValueError, match=r"3 samples a second lie between .* 20, 10, 5, 4")
+    with OfflineWorld(room, actors=0) as world, refused:
+        world.write(tmp_path / "a.csv", hz=3)
+    with pytest.raises(LoadingError, match=r"no\.json"):
+        OfflineWorld(tmp_path / "no.json")
+
+
+def test_variables_of_a_server_change_nothing(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ESPLANADE_TICK_RATE", "10")
+    monkeypatch.setenv("ESPLANADE_CROWD", "no.csv")
+    with OfflineWorld(room, actors=0) as world:
+        assert world.zone.tick_s == 0.05
