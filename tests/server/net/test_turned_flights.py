@@ -1,4 +1,4 @@
-"""People on turned flights of 0.9 m, over real sockets: by keys, and by a click on the floor above."""
+"""People on turned flights of 0.9 m, over real sockets: by keys, and by a click on the floor."""
 
 import asyncio
 import json
