@@ -11,6 +11,7 @@ NAMES = (
     "planning",
     "layered",
     "meshes",
+    "turned",
     "server",
     "live",
     "social",

@@ -85,6 +85,11 @@ class Detour:
             "KiB": built["bytes"] / 1024.0,
         }
 
+    def rebuild(self, mesh: Floats) -> None:
+        """Build the navigation mesh of other triangles (T, 3, 3), in the same process."""
+        self._mesh = mesh
+        self.build()
+
     def __enter__(self) -> Self:
         return self
 

@@ -2,6 +2,7 @@
 
     python -m benchmarks.gallery                                    a minute, 20 actors, 20 bots
     python -m benchmarks.gallery --actors 50 --bots 50 --seconds 300
+    python -m benchmarks.gallery --scene scenes/gallery.json scenes/gallery_turned.json --runs 5
 
 The server runs in a process of its own and the visitors in another, over real sockets. One more
 client stands still and observes: the positions of all avatars that it is sent in every tick are
@@ -41,31 +42,47 @@ STEP_M = 0.65
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--scene", type=Path, default=DEFAULT_SCENE, help="a scene of polygons")
+    parser.add_argument(
+        "--scene", type=Path, nargs="+", default=[DEFAULT_SCENE], help="scenes of polygons, in turn"
+    )
+    parser.add_argument("--runs", type=int, default=1, help="of each scene [1]")
     parser.add_argument("--actors", type=int, default=20)
     parser.add_argument("--bots", type=int, default=20)
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--json", type=Path, help="also write the figures here")
     options = parser.parse_args()
-    scene = read_scene(options.scene)
+    runs: list[dict[str, Any]] = []
+    for run in range(options.runs):
+        for path in options.scene:
+            figures = {"scene": path.stem, **measure(path, options, options.seed + run)}
+            print("\n".join(_line(name, value) for name, value in figures.items()), flush=True)
+            runs.append(figures)
+    if options.json:
+        options.json.write_text(json.dumps(runs, indent=1))
+    return int(any(run["inside"] or run["unsupported"] for run in runs))
+
+
+def _line(name: str, value: str | int | float) -> str:
+    form = {int: ",", float: "g"}.get(type(value), "")
+    return f"{name:24} {value:{form}}"
+
+
+def measure(path: Path, options: argparse.Namespace, seed: int) -> dict[str, Any]:
+    """The figures of one run in one scene."""
     settings = ServerSettings(
-        scene=options.scene, actors=options.actors, seed=options.seed, host="127.0.0.1", port=0,
+        scene=path, actors=options.actors, seed=seed, host="127.0.0.1", port=0,
         private_port=0, view_radius_m=VIEW_M, view_limit=options.actors + options.bots + 1,
         log_level="error",
     )  # fmt: skip
     here, there = mp.get_context("spawn").Pipe()
     process = mp.get_context("spawn").Process(target=serve, args=(there, settings), daemon=True)
     process.start()
-    seen = uvloop.run(watch(here.recv(), options.bots, options.seconds, options.seed))
+    seen, visitors = uvloop.run(watch(here.recv(), options.bots, options.seconds, seed))
     here.send("end")
-    figures = {**here.recv(), **position_figures(scene, seen)}
+    figures = {**here.recv(), **visitors, **position_figures(read_scene(path), seen)}
     process.join()
-    for name, value in figures.items():
-        print(f"{name:24} {value:,}" if isinstance(value, int) else f"{name:24} {value:g}")
-    if options.json:
-        options.json.write_text(json.dumps(figures, indent=1))
-    return 1 if figures["inside"] or figures["unsupported"] else 0
+    return figures
 
 
 def serve(parent: Connection, settings: ServerSettings) -> None:
@@ -75,16 +92,19 @@ def serve(parent: Connection, settings: ServerSettings) -> None:
         async with running(settings) as server:
             parent.send(server.port)
             await asyncio.to_thread(parent.recv)
-            parent.send(server.summary())
+            lost = server.world.feet.lost
+            parent.send({**server.summary(), "walkers_lost": lost})
 
     with logs.written(settings):
         uvloop.run(run())
 
 
-async def watch(port: int, visitors: int, seconds: float, seed: int) -> Points:
-    """The positions of all others that one client is sent.
+async def watch(
+    port: int, visitors: int, seconds: float, seed: int
+) -> tuple[Points, dict[str, Any]]:
+    """The positions of all others that one client is sent, and what became of visitors' walks.
 
-    They are float64 (N, 5): tick, id, x, y and z, metres.
+    Positions are float64 (N, 5): tick, id, x, y and z, metres.
     """
     url = f"ws://127.0.0.1:{port}"
     with tempfile.TemporaryDirectory() as folder:
@@ -99,9 +119,13 @@ async def watch(port: int, visitors: int, seconds: float, seed: int) -> Points:
             reading = asyncio.create_task(_read(watcher, rows))
             code = await bots_process.wait()
             reading.cancel()
+        told = json.loads(await asyncio.to_thread(report.read_text))
     if code:
         raise SystemExit(f"some of the visitors failed: exit code {code}")
-    return np.concatenate(rows)
+    return np.concatenate(rows), {
+        "visitors_lost": told["clients"]["lost"],
+        "walks_without_a_way": told["no_path"],
+    }
 
 
 async def _read(watcher: bots.Bot, rows: list[Points]) -> None:

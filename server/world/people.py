@@ -1,6 +1,7 @@
 """Moves people: the server decides, within the limits of speed and walls."""
 
 from collections import deque
+from itertools import islice
 from typing import Final
 
 import numpy as np
@@ -9,12 +10,16 @@ from esplanade.actors import ObservedPeople
 from esplanade.actors.locomotion.footsteps.course import AHEAD, AHEAD_S
 from esplanade.planning import LayeredGrid
 from esplanade.server.world.inputs import Follow, Steer
+from esplanade.server.world.route_ahead import CORNERS, RouteAhead
 from esplanade.server.world.routes import Point
 from esplanade.server.world.rules import Rules
 from esplanade.server.world.state import PERSON, Floats, Slots, State
 
 BLOCKED_TICKS: Final = 20
 """A person who follows a route but gets nowhere for this long gives it up."""
+AT_CORNER_M: Final = 1e-6
+"""A person this near to the next point of a route is there."""
+_TIMES: Final = np.arange(AHEAD)[:, None]
 
 
 class People:
@@ -32,6 +37,7 @@ class People:
         self._targets = np.zeros((state.capacity, 2))
         self._blocked = np.zeros(state.capacity, dtype=np.int64)
         self._routes: dict[int, deque[Point]] = {}
+        self._route_ahead = RouteAhead(state.capacity)
 
     def stop(self, slot: int) -> None:
         """Stand still, without any intention."""
@@ -54,6 +60,7 @@ class People:
             self._following[slot] = True
             self._blocked[slot] = 0
             self._targets[slot] = wish.route[0][:2]
+            self._route_ahead.set(slot, wish.route)
 
     def observed(self) -> ObservedPeople:
         """People as actors see them in this tick."""
@@ -88,18 +95,20 @@ class People:
         self._pass_targets()
 
     def _look_ahead(self, moving: Slots, moved_m: Floats) -> None:
-        """Write the places of people who go on by (N, 2) a tick, at most to their last target."""
+        """Write the places of people who go on by (N, 2) a tick, or along their routes."""
         state = self._state
         here = state.positions[moving]
-        onward = (AHEAD_S / self._tick_s * moved_m)[:, None] * np.arange(AHEAD)[:, None]
-        left_m = np.hypot(*(self._targets[moving] - here).T)
-        last = self._following[moving]
-        last[last] = [len(self._routes[slot]) == 1 for slot in moving[last].tolist()]
-        length = np.maximum(np.hypot(onward[..., 0], onward[..., 1]), 1e-9)
-        share = np.where(last, left_m, np.inf)[:, None] / length
-        onward *= np.minimum(share, 1.0)[..., None]
+        places = here[:, None] + (AHEAD_S / self._tick_s * moved_m)[:, None] * _TIMES
+        on_route = self._following[moving]
+        slots = moving[on_route]
+        if len(slots):
+            # The tick that ends on a corner is a short one, which is no slower walk.
+            left = self._targets[slots] - here[on_route]
+            arrived = np.hypot(left[:, 0], left[:, 1]) < AT_CORNER_M
+            speeds = np.where(arrived, self._walk_speed_mps, state.speeds[slots])
+            places[on_route] = self._route_ahead.places(slots, here[on_route], speeds)
         cells = self._grid.on_ground(here, state.heights[moving])[1]
-        state.ahead[moving] = self._grid.with_heights(here[:, None] + onward, cells)
+        state.ahead[moving] = self._grid.with_heights(places, cells)
 
     def _head_for_targets(self) -> None:
         """Set velocities along routes; the last step to a point ends on it."""
@@ -119,12 +128,13 @@ class People:
         for slot in slots[self._blocked[slots] >= BLOCKED_TICKS].tolist():
             self.stop(slot)
         offsets = self._targets[slots] - state.positions[slots]
-        for slot in slots[np.hypot(offsets[:, 0], offsets[:, 1]) < 1e-6].tolist():
+        for slot in slots[np.hypot(offsets[:, 0], offsets[:, 1]) < AT_CORNER_M].tolist():
             route = self._routes.get(slot)
             if route is None:
                 continue
             route.popleft()
             if route:
                 self._targets[slot] = route[0][:2]
+                self._route_ahead.set(slot, (*islice(route, CORNERS), route[-1]))
             else:
                 self.stop(slot)

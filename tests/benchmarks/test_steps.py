@@ -2,15 +2,21 @@
 
 import asyncio
 import json
+import math
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
 from benchmarks import steps as benchmark
 from benchmarks._slide import judge
 from benchmarks._step_log import Seen, cost_of
+from benchmarks._treads import Flight, judge_treads
+from benchmarks._turned_scenes import Turn
 
 from esplanade.actors.locomotion.motion.key_poses import ANKLE
+from esplanade.planning import Scene
+from esplanade.planning.scene.scene_file import read_scene
 from esplanade.protocol.steps import RE_AIMED
 from esplanade.recordings import Crowd, Track, read_crowd
 from esplanade.server.settings import ServerSettings
@@ -23,16 +29,21 @@ TICK_RATE = 20
 WALK_S = 6
 
 
-def a_walk(speed_mps: float = 1.3) -> Seen:
+def a_walk(
+    speed_mps: float = 1.3,
+    scene: Scene = FIELD,
+    start: tuple[float, float] = (50.0, 50.0),
+    heading: float = 0.3,
+) -> Seen:
     """Somebody who stands, walks straight on and stops, as the world itself has it."""
-    trial = Trial(scene=FIELD)
-    (ann,) = trial.join((50.0, 50.0))
+    trial = Trial(scene=scene)
+    (ann,) = trial.join(start)
     world = trial.world
     slot = world.state.slot(ann)
     seen = Seen(float(world.state.legs_m[slot]), float(world.state.statures_m[slot]))
     for k in range(WALK_S * TICK_RATE):
         steering = {10: speed_mps, (WALK_S - 2) * TICK_RATE: 0.0}
-        trial.tick(*([Steer(ann, k, 0.3, steering[k])] if k in steering else []))
+        trial.tick(*([Steer(ann, k, heading, steering[k])] if k in steering else []))
         if world.steps.begun[slot] == world.tick or not seen.records:
             seen.records.append(world.steps.records[slot].copy())
             seen.heard.append(world.tick)
@@ -93,6 +104,22 @@ def test_a_foot_that_misses_its_footprint_is_seen(monkeypatch: pytest.MonkeyPatc
     steps.keys[row, -1, ANKLE.start + 1] -= 0.03
     monkeypatch.setattr("benchmarks._slide.from_records", lambda _: steps)
     assert judge([seen], TICK_RATE).landing.max() == pytest.approx(0.03, abs=0.003)
+
+
+def test_feet_are_held_against_the_treads_of_a_turned_flight(tmp_path: Path) -> None:
+    degrees, path = 30.0, tmp_path / "flight.json"
+    flight = Flight.at_angle(degrees)
+    flight.write(path)
+    seen = a_walk(0.9, read_scene(path), flight.turn.at(-1.0), math.radians(degrees))
+    found = judge_treads([seen], TICK_RATE, flight)
+    assert len(found.off_tread) >= 6
+    assert found.off_tread.max() < 1e-3
+    assert found.hanging.max() < 1e-3
+    assert np.percentile(found.cut, 95) < 0.01
+    elsewhere = Flight(Turn(degrees, flight.turn.at(-0.15)))
+    other = judge_treads([seen], TICK_RATE, elsewhere)
+    assert other.hanging.max() > 0.05
+    assert np.percentile(other.cut, 95) > 0.01
 
 
 def test_the_busiest_stretch_of_a_recording_is_replayed() -> None:
