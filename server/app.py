@@ -17,6 +17,7 @@ from esplanade.server.entrances import make_gate, people_url, private_certificat
 from esplanade.server.keeping import keeping
 from esplanade.server.kept import Kept
 from esplanade.server.link.local import LocalLink
+from esplanade.server.live.bulletin import Bulletin
 from esplanade.server.live.live import Live
 from esplanade.server.loading import LoadedScene, load_scene
 from esplanade.server.metrics import Metrics
@@ -144,14 +145,15 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         delivery = Delivery(
             audience, hub.sessions, settings.tick_rate, hub.stop_watching, hub.moderation.lines
         )
-        link = LocalLink()
+        link, bulletin = LocalLink(), Bulletin()
         console = await resume(
             await stack.enter_async_context(
-                commanding(world, hub, kept, loaded, metrics, presets, schedule.pace)
+                commanding(world, hub, kept, loaded, metrics, presets, schedule.pace, bulletin)
             ),
             recovery,
             kept,
             hub,
+            persistence,
             thread,
         )
         deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
@@ -160,7 +162,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         ticker = Ticker(
             world, ground_work, audience, link, hub, delivery, schedule, metrics, thread, console
         ).keeping(persistence)
-        gate.live = live = live_view(world, storeys, console, hub, metrics, settings)
+        gate.live = live = live_view(world, storeys, console, hub, metrics, settings, bulletin)
         ticker.tap = live.tap
         await stack.enter_async_context(
             Listener(hub, assets, settings, metrics, places).listening(sockets, tls)

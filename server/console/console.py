@@ -14,13 +14,14 @@ from esplanade.server.console.changes import Change, Changes
 from esplanade.server.console.command_plans import CommandPlans, check_list
 from esplanade.server.console.facts import together
 from esplanade.server.console.figures import ContactRate, zone_figures
+from esplanade.server.console.going_on import is_ramp
 from esplanade.server.console.history import plain_change
 from esplanade.server.console.inputs import inputs_for
 from esplanade.server.console.listeners import Listener, Listeners
 from esplanade.server.console.moderating import Moderating
 from esplanade.server.console.moderation import Moderation
 from esplanade.server.console.moderation_intents import KINDS, ModerationIntents
-from esplanade.server.console.ongoing import OngoingChanges, is_ramp
+from esplanade.server.console.ongoing import OngoingChanges
 from esplanade.server.console.planned import Planned
 from esplanade.server.console.preparation import Preparation
 from esplanade.server.console.presets import Presets
@@ -266,7 +267,12 @@ class Console:
 
     def save(self) -> dict[str, Any]:
         """What is set, and which commands are in it; call it between two ticks."""
-        return {"begun": self.begun, "settled": self.settled, "state": self.state.save()}
+        return {
+            "begun": self.begun,
+            "settled": self.settled,
+            "state": self.state.save(),
+            "ramps": self.ongoing.save(),
+        }
 
     def load(self, saved: Mapping[str, Any]) -> None:
         """Go on from what was saved.
@@ -278,6 +284,7 @@ class Console:
         """
         self.begun, self.settled = int(saved["begun"]), int(saved["settled"])
         self.state.load(saved["state"])
+        self.ongoing.load(saved.get("ramps", ()))
 
     async def load_operated(self) -> None:
         """Take in the presets, schedules and guards that the store has kept.
