@@ -7,6 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
 
+from esplanade.actors.warming import tables_ahead
 from esplanade.server.assets import Assets
 from esplanade.server.building import build_world, with_roster
 from esplanade.server.commanding import commanding, live_view, shipped_presets
@@ -157,7 +158,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             thread,
         )
         deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
-        ground_work = GroundWork(world, deriving)
+        ground_work = GroundWork(world, deriving, tables_ahead(population.navigator))
         gate.console = console
         ticker = Ticker(
             world, ground_work, audience, link, hub, delivery, schedule, metrics, thread, console

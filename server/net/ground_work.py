@@ -1,7 +1,7 @@
 """Derives what doors and commands change, in a thread of its own, so that no tick waits for it."""
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import Executor, Future
 from functools import partial
 from time import perf_counter
@@ -24,12 +24,16 @@ class GroundWork:
 
     From now on doors of the world move by the inputs that `drain` returns, and no other way. After
     each piece of work it rests as long as that took, so that actors have the other half of a core.
+    Where there is nothing else to do it does the work that is `ahead`, one by one.
     """
 
-    def __init__(self, world: Zone, thread: Executor) -> None:
+    def __init__(
+        self, world: Zone, thread: Executor, ahead: Iterable[Callable[[], None]] = ()
+    ) -> None:
         self._world = world
         self._thread = thread
-        self._work: Future[tuple[DerivedInput, float]] | None = None
+        self._ahead = deque(ahead)
+        self._work: Future[tuple[DerivedInput | None, float]] | None = None
         self._rests_until_s = 0.0
         self._kinds: deque[Callable[[], Callable[[], DerivedInput] | None]] = deque(
             [self._door, world.actor_work, self._potential]
@@ -44,7 +48,8 @@ class GroundWork:
         if self._work is not None and self._work.done():
             try:
                 derived, seconds = self._work.result()
-                done.append(derived)
+                if derived is not None:
+                    done.append(derived)
                 self._rests_until_s = perf_counter() + seconds
             except Exception:
                 log.exception("the ground cannot be derived because of a fault")
@@ -61,6 +66,8 @@ class GroundWork:
             if derive is not None:
                 self._work = self._thread.submit(_timed, derive)
                 return
+        if self._ahead:
+            self._work = self._thread.submit(_timed, self._ahead.popleft())
 
     def _door(self) -> Callable[[], DerivedInput] | None:
         door = self._next_door()
@@ -92,6 +99,6 @@ def _potential(derive: Callable[[], RenewedPotential]) -> DerivedInput:
     return PotentialDerived(derive())
 
 
-def _timed(derive: Callable[[], DerivedInput]) -> tuple[DerivedInput, float]:
+def _timed(work: Callable[[], DerivedInput | None]) -> tuple[DerivedInput | None, float]:
     start = perf_counter()
-    return derive(), perf_counter() - start
+    return work(), perf_counter() - start

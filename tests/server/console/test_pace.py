@@ -2,6 +2,7 @@
 
 import asyncio
 import time
+
 from esplanade import bots
 from esplanade.protocol import VERSION, NoticeCode
 from esplanade.protocol.messages import Chat, ChatLine, Hello, Notice

@@ -131,6 +131,17 @@ def test_work_that_fails_is_passed_over(at_once: AtOnce, monkeypatch: pytest.Mon
     assert {"gate": False} in moves_of(trial, work, [[]] * 20)
 
 
+def test_what_is_ahead_is_done_where_nothing_else_waits(at_once: AtOnce) -> None:
+    trial, done = gated(), list[str]()
+    ahead = [lambda name=name: done.append(name) for name in ("one", "two")]
+    work = GroundWork(trial.world, cast(ThreadPoolExecutor, at_once), ahead)
+    trial.world.doors.want("gate", is_open=False)
+    assert work.drain() == []
+    assert done == [], "the door comes first"
+    assert {"gate": False} in moves_of(trial, work, [[]] * 20)
+    assert done == ["one", "two"]
+
+
 def populated() -> tuple[Zone, Population]:
     grid = LayeredGrid.from_scene(GATED)
     population = Population(grid, GATED, TICK_S)
