@@ -4,7 +4,7 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from concurrent.futures import Executor, Future
 from functools import partial
-from time import perf_counter
+from time import perf_counter, thread_time
 from typing import Final
 
 import structlog
@@ -23,8 +23,9 @@ class GroundWork:
     """Derives one thing at a time: for doors, for commands on actors, and potentials take turns.
 
     From now on doors of the world move by the inputs that `drain` returns, and no other way. After
-    each piece of work it rests as long as that took, so that actors have the other half of a core.
-    Where there is nothing else to do it does the work that is `ahead`, one by one.
+    each piece of work it rests for as much processor time as that took, so that actors have the
+    other half of a core, on a busy machine too. Where there is nothing else to do it does the work
+    that is `ahead`, one by one; nothing waits for a rest after that.
     """
 
     def __init__(
@@ -34,6 +35,7 @@ class GroundWork:
         self._thread = thread
         self._ahead = deque(ahead)
         self._work: Future[tuple[DerivedInput | None, float]] | None = None
+        self._was_ahead = False
         self._rests_until_s = 0.0
         self._kinds: deque[Callable[[], Callable[[], DerivedInput] | None]] = deque(
             [self._door, world.actor_work, self._potential]
@@ -54,19 +56,23 @@ class GroundWork:
             except Exception:
                 log.exception("the ground cannot be derived because of a fault")
             self._work = None
-        if self._work is None and not done and perf_counter() >= self._rests_until_s:
-            self._begin()
+        if self._work is None and not done:
+            rested = perf_counter() >= self._rests_until_s
+            if rested or self._was_ahead:
+                self._begin(rested=rested)
         return done
 
-    def _begin(self) -> None:
+    def _begin(self, *, rested: bool) -> None:
         for _ in range(len(self._kinds)):
             next_work = self._kinds.popleft()
             self._kinds.append(next_work)
             derive = next_work()
             if derive is not None:
                 self._work = self._thread.submit(_timed, derive)
+                self._was_ahead = False
                 return
-        if self._ahead:
+        if self._ahead and rested:
+            self._was_ahead = True
             self._work = self._thread.submit(_timed, self._ahead.popleft())
 
     def _door(self) -> Callable[[], DerivedInput] | None:
@@ -100,5 +106,6 @@ def _potential(derive: Callable[[], RenewedPotential]) -> DerivedInput:
 
 
 def _timed(work: Callable[[], DerivedInput | None]) -> tuple[DerivedInput | None, float]:
-    start = perf_counter()
-    return work(), perf_counter() - start
+    """The result of some work, and the seconds of processor time that it took."""
+    start = thread_time()
+    return work(), thread_time() - start
