@@ -21,7 +21,7 @@ WITHIN_M: Final = 2.5
 ASIDE_M: Final = 0.3
 """Whoever stands beside the way by no more than this and both radii stands in it."""
 WALL_M: Final = 0.1
-_HELD: Final = (Reason.GIVING_WAY, Reason.WAITING, Reason.REPLANNING, Reason.NO_PATH)
+_HELD: Final = frozenset({Reason.GIVING_WAY, Reason.WAITING, Reason.REPLANNING, Reason.NO_PATH})
 
 
 @dataclass(frozen=True)
@@ -45,12 +45,13 @@ def find_blocker(
     """
     table = navigator.table
     row, agents = table.row(actor_id), table.agents
-    if agents.reasons[row] not in _HELD:
+    reason = int(agents.reasons[row])  # a number of numpy's is compared with an enum slowly
+    if reason not in _HELD:
         return None
     slot, cell = int(agents.potential_rows[row]), int(agents.cells[row])
     if slot >= 0 and navigator.potentials.provisional(agents.potential_rows[row : row + 1])[0]:
         return Blocker("route")
-    if agents.reasons[row] == Reason.NO_PATH:
+    if reason == Reason.NO_PATH:
         return _door(navigator, row) or Blocker("wall")
     here = np.array([*agents.positions[row], agents.heights[row]])
     ahead = None

@@ -11,6 +11,7 @@ from esplanade.actors.parameter_records import measures
 from esplanade.actors.parameters import body_of
 from esplanade.actors.potential_pool import Goal, GoalKey, PotentialPool, goal_key, kind_for_ways
 from esplanade.planning import AgentTable, Body, LayeredGrid
+from esplanade.planning.grid.clearances import kind_of
 from esplanade.planning.people.risk import RiskField
 from esplanade.planning.routes.moved_ends import moved_end
 
@@ -121,10 +122,20 @@ class DerivedRows:
         """
         edges = before["edge_cells"] != after["edge_cells"]
         other = np.flatnonzero(edges | (measures(before) != measures(after)).any(axis=1))
-        pairs = ((body_of(before[k]), body_of(after[k])) for k in other)
-        kinds = ((kind_for_ways(self._grid, a), kind_for_ways(self._grid, b)) for a, b in pairs)
-        new = [k for k, (old, now) in zip(other.tolist(), kinds, strict=True) if old != now]
+        new = [
+            k for k in other.tolist() if self._goes_otherwise(body_of(before[k]), body_of(after[k]))
+        ]
         return np.array(new, dtype=np.int64)
+
+    def _goes_otherwise(self, before: Body, after: Body) -> bool:
+        """Whether a body that is another goes other ways.
+
+        Bounds of cells on edges are asked for only where the kind is the same: for a kind that the
+        grid does not know yet they take as long as a tick.
+        """
+        if kind_of(before) != kind_of(after):
+            return True
+        return kind_for_ways(self._grid, before) != kind_for_ways(self._grid, after)
 
     def _potential(self, table: AgentTable, row: int, target: Goal) -> int:
         """The potential of an actor's goal, -1 where none can be."""

@@ -18,6 +18,8 @@ MEASURES: Final = ("radius_m", "height_m", "step_on_m", "leg_length_m")
 FaultCode = Literal["unknown", "unfit", "not_finite", "not_whole", "below", "above", "order"]
 
 _SCHEMA: Final = ActorParameters.model_json_schema()["properties"]
+RADII_M: Final = tuple(_SCHEMA["radius_m"][name] for name in ("minimum", "maximum"))
+"""The least and the greatest radius of an actor."""
 _LEAST: Final = np.array([_SCHEMA[name]["minimum"] for name in NAMES], dtype=np.float64)
 _MOST: Final = np.array([_SCHEMA[name]["maximum"] for name in NAMES], dtype=np.float64)
 _WHOLE: Final = np.array([_SCHEMA[name]["type"] == "integer" for name in NAMES])

@@ -1,13 +1,31 @@
-"""Calls every kernel that a tick of actors calls, so that it is compiled beforehand."""
+"""Has ready beforehand what ticks of actors call: kernels are compiled, tables of risk are made."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
+from typing import Final
 
 import numpy as np
 
 from esplanade.actors.navigator import Navigator
+from esplanade.actors.parameter_records import RADII_M
 from esplanade.planning import Body, Polygon, Potential, Scene
+
+RADIUS_STEP_M: Final = 0.05
+"""Tables of risk are for radii rounded up to this."""
+
+
+def tables_ahead(navigator: Navigator) -> list[Callable[[], None]]:
+    """Work that makes, in any thread, what actors of other radii will need to know of risk.
+
+    A table takes several times as long as all else that another body needs.
+    """
+    least, most = (round(limit / RADIUS_STEP_M) for limit in RADII_M)
+    return [
+        partial(navigator.prepare_contacts, [Body(radius_m=round(k * RADIUS_STEP_M, 2))])
+        for k in range(least, most + 1)
+    ]
 
 
 def warm_up(tick_s: float, ready_to_plan: Callable[[], None]) -> None:

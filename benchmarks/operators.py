@@ -22,6 +22,7 @@ from benchmarks.audit import fill, filters
 
 from esplanade.actors import ActorParameters, Overrides
 from esplanade.actors.behaviour_spec import WanderSpec
+from esplanade.actors.warming import tables_ahead
 from esplanade.planning import LayeredGrid
 from esplanade.protocol.commands import AddActors as AddActors_
 from esplanade.protocol.commands import Command
@@ -65,7 +66,7 @@ class World:
             roster=roster.actors,
         )
         self.population.warm_up()
-        self.work = GroundWork(self.zone, thread)
+        self.work = GroundWork(self.zone, thread, tables_ahead(self.population.navigator))
         self.ids = tuple(spec.id for spec in roster.actors)
         self.outcomes: dict[int, int] = {}
         """Ticks in which commands were carried out."""

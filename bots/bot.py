@@ -16,6 +16,7 @@ from esplanade.bots.events import Event, SnapshotEvent, StepsEvent
 from esplanade.bots.mailbox import Mailbox
 from esplanade.bots.person import Person
 from esplanade.bots.view import Avatar, View
+from esplanade.bots.world_pace import pace_of
 from esplanade.protocol import VERSION, ProtocolError, decode_server
 from esplanade.protocol.messages import (
     Bye,
@@ -24,6 +25,7 @@ from esplanade.protocol.messages import (
     FromClient,
     Hello,
     Leave,
+    Notice,
     Ping,
     Point,
     Pong,
@@ -203,8 +205,8 @@ class Bot(Person):
                 self._view.reshape(message)
             case Doors():
                 self._view.doors.update(message.doors)
-            case Pong():
-                self._take_pong(message)
+            case Pong() | Notice():
+                self._take_time(message)
             case Bye():
                 self._said_bye = True
             case Welcome():
@@ -214,11 +216,16 @@ class Bot(Person):
                 pass
         self._mailbox.put(message)
 
-    def _take_pong(self, pong: Pong) -> None:
-        sent_s, answer = self._pings.get(pong.nonce, (None, None))
-        if sent_s is None or answer is None or answer.done():
+    def _take_time(self, message: Pong | Notice) -> None:
+        """Learn the server's time, or the pace at which it goes on."""
+        now_s = time.monotonic()
+        if isinstance(message, Notice):
+            if (pace := pace_of(message)) is not None:
+                self._clock.pace(*pace, now_s)
             return
-        answer.set_result(self._clock.add(sent_s, time.monotonic(), pong.server_time))
+        sent_s, answer = self._pings.get(message.nonce, (None, None))
+        if sent_s is not None and answer is not None and not answer.done():
+            answer.set_result(self._clock.add(sent_s, now_s, message.server_time))
 
 
 @asynccontextmanager

@@ -17,9 +17,10 @@ from esplanade.bots.due import DueTicks
 from esplanade.bots.errors import BotError, Disconnected, Refused, TimedOut
 from esplanade.bots.tally import Tally
 from esplanade.bots.walkers import Walkers
+from esplanade.bots.world_pace import pace_of
 from esplanade.protocol import ErrorCode, ProtocolError, ServerCode, decode_server, peek_snapshot
 from esplanade.protocol.codes import CloseCode
-from esplanade.protocol.messages import Error, FromClient, Hello, Ping, Pong, Welcome
+from esplanade.protocol.messages import Error, FromClient, Hello, Notice, Ping, Pong, Welcome
 
 PING_EVERY_S: Final = 1.0
 FIRST_PINGS: Final = 3
@@ -37,7 +38,9 @@ DOUBT_S: Final = 0.25
 _CODE_BYTE: Final = 1
 """Position of the message code in a frame."""
 _STEPS: Final = bytes([ServerCode.STEPS])
-_LOOKED_INTO: Final = (bytes([ServerCode.ERROR]), bytes([ServerCode.PONG]))
+_LOOKED_INTO: Final = tuple(
+    bytes([code]) for code in (ServerCode.ERROR, ServerCode.PONG, ServerCode.NOTICE)
+)
 
 OnSnapshot = Callable[[int, int, bytes], Awaitable[None]]
 OnFrame = Callable[[bytes], None]
@@ -138,7 +141,7 @@ class Client:
         self._due.take(tick, due_s, now_s)
 
     def _take(self, frame: bytes, now_s: float) -> None:
-        """Look into steps, pongs and errors, and into nothing else."""
+        """Look into steps, pongs, errors and notices, and into nothing else."""
         code = frame[_CODE_BYTE : _CODE_BYTE + 1]
         if code == _STEPS:
             self._walkers.take(frame)
@@ -146,6 +149,9 @@ class Client:
             message = decode_server(frame)
             if isinstance(message, Error):
                 self._complain(message.error)
+            elif isinstance(message, Notice) and (pace := pace_of(message)) is not None:
+                self._clock.pace(*pace, now_s)
+                self._due.pace(pace.rate, now_s)
             elif isinstance(message, Pong) and message.nonce in self._pinged_s:
                 sent_s = self._pinged_s.pop(message.nonce)
                 round_trip_s = self._clock.add(sent_s, now_s, message.server_time)

@@ -25,9 +25,16 @@ class DueTicks:
         self._tally = tally
         self._tick_rate = tick_rate
         self._tick_s = 1.0 / tick_rate
+        self._rate = 1.0
         self._due_s = welcomed_s + self._tick_s
         self._tick = -1
         self._least_age_s = float("inf")
+
+    def pace(self, rate: float, now_s: float) -> None:
+        """The world runs at another rate from now on: so often are ticks due, in a pause none."""
+        if rate != self._rate:
+            self._rate = rate
+            self._due_s = max(self._due_s, now_s)
 
     def take(self, tick: int, due_s: float, now_s: float) -> None:
         """The snapshot of `tick` has come in, which was due at `due_s` on the local clock.
@@ -38,22 +45,22 @@ class DueTicks:
         if tick <= self._tick:
             return
         self._tick = tick
-        since = round((due_s - self._due_s) * self._tick_rate)
+        since = round((due_s - self._due_s) * self._tick_rate * self._rate)
         self._miss(self._due_s, since - 1, now_s)
-        self._due_s = due_s
-        age_s = max(0.0, now_s - due_s)
+        self._due_s = due_s if self._rate else now_s
+        age_s = max(0.0, now_s - self._due_s)
         self._least_age_s = min(self._least_age_s, age_s)
         self._tally.snapshots_received += 1
         self._tally.series.at(now_s).received += 1
         if age_s > LATE_TICKS * self._tick_s:
             self._tally.snapshots_late += 1
-        self._count(due_s, age_s)
+        self._count(self._due_s, age_s)
 
     def finish(self, now_s: float) -> None:
         """The client goes: what was due and has not come is missing, but for what is on its way."""
         usual_s = self._least_age_s if self._tick >= 0 else 0.0
         waited_s = now_s - usual_s - LATE_TICKS * self._tick_s - self._due_s
-        self._miss(self._due_s, int(waited_s * self._tick_rate), now_s)
+        self._miss(self._due_s, int(waited_s * self._tick_rate * self._rate), now_s)
 
     def _miss(self, before_s: float, ticks: int, now_s: float) -> None:
         """Count `ticks` that were due after `before_s` and were not overtaken before now."""
@@ -63,7 +70,7 @@ class DueTicks:
         counted = 0
         while counted < ticks:
             share = max(1, min(self._tick_rate, ticks - EXACT - counted))
-            due_s = before_s + (counted + (share + 1) / 2.0) * self._tick_s
+            due_s = before_s + (counted + (share + 1) / 2.0) * self._tick_s / self._rate
             self._count(due_s, max(0.0, now_s - due_s), share)
             counted += share
 

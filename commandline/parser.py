@@ -80,7 +80,8 @@ class Parser(ArgumentParser):
                 self.error(f"there is no option {name}{suggestion(name, self.option_names)}")
 
     def _check_value(self, action: Action, value: Any) -> None:
-        if action.choices is None or value in action.choices:
+        # An argument of which there may be none is checked as an empty list.
+        if action.choices is None or value == [] or value in action.choices:
             return
         choices = [str(choice) for choice in action.choices]
         near = suggestion(value, choices) if isinstance(value, str) else ""

@@ -1,11 +1,11 @@
-"""The options of the parts of `esplanade op` about actors, doors and people."""
+"""The options of the parts of `esplanade op` about actors and doors."""
 
 from argparse import ArgumentTypeError
 from argparse import _SubParsersAction as SubParsers  # argparse names the type nowhere else
 from typing import Any
 
 from esplanade.commandline.parser import Parser
-from esplanade.commandline.readers import Number, Span, Text, Whole
+from esplanade.commandline.readers import Number, Text, Whole
 from esplanade.operators.parts import add_note, add_part
 
 _METRE = Number(-100_000.0, 100_000.0)
@@ -13,7 +13,7 @@ _METRE = Number(-100_000.0, 100_000.0)
 
 def add_actor_parts(commands: "SubParsers[Parser]") -> list[Parser]:
     """Add the commands, and return their parsers."""
-    return [*_actors(commands), *_crowd(commands), *_people(commands)]
+    return [*_actors(commands), *_crowd(commands)]
 
 
 def behaviour(text: str) -> dict[str, Any]:
@@ -123,48 +123,3 @@ def _crowd(commands: "SubParsers[Parser]") -> list[Parser]:
     door.add_argument("state", metavar="open|close", choices=("open", "close"), help="the wish")
     add_note(door)
     return [add, remove, door]
-
-
-def _people(commands: "SubParsers[Parser]") -> list[Parser]:
-    announce = add_part(
-        commands,
-        "people_commands:announce",
-        "announce",
-        "Say something to all people.",
-        'announce "The east wing closes in ten minutes."',
-    )
-    announce.add_argument("text", metavar="TEXT", type=Text(), help="what all read")
-    mark = add_part(
-        commands,
-        "people_commands:mark",
-        "mark",
-        "Mark this moment: a line on charts, and a row of the audit.",
-        'mark "doors opened"',
-    )
-    mark.add_argument("text", metavar="TEXT", type=Text(), help="what happened")
-    mute = add_part(
-        commands,
-        "people_commands:mute",
-        "mute",
-        "Let nobody hear a person's chat for a time, and say so.",
-        "mute Eve --for 15m",
-        "mute 117 --for 0s",
-    )
-    mute.add_argument(
-        "--for", dest="span", metavar="SPAN", type=Span(), default=600.0, help="[default: 10m]"
-    )
-    kick = add_part(
-        commands,
-        "people_commands:kick",
-        "kick",
-        "Send a person out, and say why.",
-        'kick Eve --text "Please come back tomorrow."',
-    )
-    for part in (mute, kick):
-        part.add_argument(
-            "person", metavar="PERSON", type=Text(), help="the id of the avatar, or the whole name"
-        )
-        part.add_argument("--text", metavar="TEXT", type=Text(), help="what the person reads")
-    for part in (announce, mark, mute, kick):
-        add_note(part)
-    return [announce, mark, mute, kick]

@@ -3,12 +3,13 @@
 import json
 from argparse import Namespace
 from collections.abc import Mapping, Sequence
+from http import HTTPStatus
 from typing import Any
 
 from esplanade.commandline import exit_codes
 from esplanade.commandline.errors import CommandError
-from esplanade.operators.errors import OperatorError
-from esplanade.operators.http import ask
+from esplanade.operators.errors import OperatorError, RefusedError
+from esplanade.operators.http import SessionToken, ask
 from esplanade.operators.scopes import scope_text
 
 PRICES = {"tick": "at once", "prepared": "once the ground is prepared for other bodies"}
@@ -25,7 +26,15 @@ def asked(options: Namespace, path: str, body: Any = None) -> Any:
     try:
         return ask(options.url, options.token, path, body)
     except OperatorError as error:
-        raise CommandError(str(error)) from None
+        raise CommandError(refusal_text(error, options.token)) from None
+
+
+def refusal_text(error: OperatorError, token: str) -> str:
+    """What went wrong, and what helps where a login that is kept holds no more."""
+    ended = isinstance(error, RefusedError) and error.status == HTTPStatus.UNAUTHORIZED
+    if ended and isinstance(token, SessionToken):
+        return "your session has ended: call `esplanade op login` again"
+    return str(error)
 
 
 def scope_of(options: Namespace) -> str:

@@ -48,9 +48,10 @@ class Directing(Conversation):
         """Let a world that is paused go on by some ticks."""
         return await self.send({"op": "pace", "step": ticks})
 
-    async def announce(self, text: str) -> Answer:
-        """Say something to all people."""
-        return await self.send({"op": "announce", "text": text})
+    async def announce(self, text: str, **whom: Any) -> Answer:
+        """Say something to all people, or to those whom `storey_m`, `polygon`, or `near_actor`
+        with `radius_m` mean."""
+        return await self.send({"op": "announce", "text": text, **whom})
 
     async def mark(self, text: str) -> Answer:
         """Mark this moment."""
@@ -64,3 +65,24 @@ class Directing(Conversation):
         """Send a person out."""
         more = {} if text is None else {"text": text}
         return await self.send({"op": "kick", "person": person, **more})
+
+    async def warn(self, person: int, text: str) -> Answer:
+        """Say something to one person, as a warning."""
+        return await self.send({"op": "warn", "person": person, "text": text})
+
+    async def walk_out(self, person: int, text: str | None = None) -> Answer:
+        """Let a person's avatar walk to a place of arrival, where the person leaves."""
+        more = {} if text is None else {"text": text}
+        return await self.send({"op": "walk_out", "person": person, **more})
+
+    async def ban(self, person: int | None = None, **more: Any) -> Answer:
+        """Let somebody in no more: a person, or whoever has a `name_pattern` or an `address`.
+
+        `by`, `until_s` and `text` are those of the command.
+        """
+        whom = {} if person is None else {"person": person}
+        return await self.send({"op": "ban", **whom, **more})
+
+    async def unban(self, ban: int) -> Answer:
+        """Let a ban hold no more."""
+        return await self.send({"op": "unban", "ban": ban})

@@ -2,7 +2,6 @@
 
 import json
 from argparse import Namespace
-from datetime import UTC, datetime
 from typing import Any
 from urllib.parse import quote
 
@@ -11,6 +10,7 @@ from rich.table import Table
 from esplanade.commandline import exit_codes
 from esplanade.commandline.output import console
 from esplanade.operators.asking import asked, in_words
+from esplanade.operators.times import at_time
 
 
 def changes_(options: Namespace) -> int:
@@ -62,13 +62,6 @@ def _columns(options: Namespace) -> int:
             table.add_row(row["name"], *values)
     console().print(table)
     return exit_codes.OK
-
-
-def at_time(at_us: int | None) -> str:
-    """A moment for people, in UTC."""
-    if at_us is None:
-        return ""
-    return datetime.fromtimestamp(at_us / 1e6, UTC).strftime("%Y-%m-%d %H:%M:%SZ")
 
 
 def _what(change: dict[str, Any]) -> list[str]:

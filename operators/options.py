@@ -6,22 +6,28 @@ from esplanade.commandline.parser import Parser
 from esplanade.commandline.readers import Span, Whole
 from esplanade.operators.account_options import add_account_parts
 from esplanade.operators.actor_options import add_actor_parts
+from esplanade.operators.login_options import add_login_parts
 from esplanade.operators.parts import add_json, add_note, add_part, add_scope, assignment
+from esplanade.operators.people_options import add_people_parts
 from esplanade.operators.preset_options import add_preset_parts
 from esplanade.operators.schedule_options import add_schedule_parts
 from esplanade.operators.scopes import guard
 from esplanade.operators.time_options import add_time_parts
+from esplanade.operators.watch_options import add_watch_parts
 
 
 def add_parts(commands: "SubParsers[Parser]") -> list[Parser]:
     """Add the commands, and return their parsers."""
     return [
+        *add_login_parts(commands),
         *_parameters(commands),
         *_history(commands),
         *add_preset_parts(commands),
         *add_schedule_parts(commands),
         *add_actor_parts(commands),
+        *add_people_parts(commands),
         *add_time_parts(commands),
+        *add_watch_parts(commands),
         *add_account_parts(commands),
     ]
 

@@ -3,6 +3,7 @@
 import os
 from argparse import ArgumentTypeError, Namespace
 from argparse import _SubParsersAction as SubParsers  # argparse names the type nowhere else
+from collections.abc import Callable
 from typing import Any, Final
 
 from esplanade.commandline.errors import UsageError
@@ -13,9 +14,19 @@ URL: Final = "http://localhost:8081"
 
 
 def add_part(
-    commands: "SubParsers[Parser]", run: str, name: str, text: str, *examples: str, more: str = ""
+    commands: "SubParsers[Parser]",
+    run: str,
+    name: str,
+    text: str,
+    *examples: str,
+    more: str = "",
+    before_login: bool = False,
+    check: Callable[[Namespace], None] | None = None,
 ) -> Parser:
-    """Add a command that asks a server; `run` is "module:function" of this package."""
+    """Add a command that asks a server; `run` is "module:function" of this package.
+
+    `before_login` says that it needs no token yet; `check` sees whether options fit together.
+    """
     lines = [more] if more else []
     if examples:
         lines += ["examples:", *(f"  esplanade op {example}" for example in examples)]
@@ -27,7 +38,7 @@ def add_part(
         description=text,
         epilog="\n".join(lines),
     )
-    _add_server(made)
+    _add_server(made, check, before_login=before_login)
     return made
 
 
@@ -77,21 +88,55 @@ def assignment(text: str) -> tuple[str, float]:
     raise ArgumentTypeError(f"{text!r} is not of the form NAME=NUMBER")
 
 
-def _add_server(parser: Parser) -> None:
+def _add_server(
+    parser: Parser, also: Callable[[Namespace], None] | None, *, before_login: bool
+) -> None:
     group: Any = parser.add_argument_group("the server")
     group.add_argument(
         "--url",
         metavar="URL",
         type=Text(),
-        help=f"its private port [or ESPLANADE_URL; default: {URL}]",
+        help=f"its private port [or ESPLANADE_URL; default: that of `op login`, or {URL}]",
     )
 
     def check(found: Namespace) -> None:
-        found.url = found.url or os.environ.get("ESPLANADE_URL") or URL
+        if also is not None:
+            also(found)
+        found.url = found.url or os.environ.get("ESPLANADE_URL") or None
         found.token = os.environ.get("ESPLANADE_TOKEN", "")
-        if not found.token:
-            raise UsageError(
-                "give your token in ESPLANADE_TOKEN; `esplanade op token add` makes one"
-            )
+        if before_login:
+            found.url = (found.url or _latest_url()).rstrip("/")
+        elif found.token:
+            found.url = found.url or _latest_url()
+        else:
+            _take_login(found)
 
     parser.check = check
+
+
+def _latest_url() -> str:
+    """The address of the latest login, or the one that a server has by default."""
+    from esplanade.operators.logins import LoginsError, kept_login  # noqa: PLC0415 (only if needed)
+
+    try:
+        login = kept_login()
+    except LoginsError:
+        return URL
+    return URL if login is None else login.url
+
+
+def _take_login(found: Namespace) -> None:
+    """Let a command act by the login that is kept."""
+    from esplanade.operators.logins import LoginsError, kept_login  # noqa: PLC0415 (only if needed)
+
+    try:
+        login = kept_login(found.url)
+    except LoginsError as error:
+        raise UsageError(str(error)) from None
+    if login is None:
+        where = "" if found.url is None else f" to {found.url}"
+        raise UsageError(
+            f"there is no login{where}: call `esplanade op login`, or give a token in "
+            "ESPLANADE_TOKEN, which `esplanade op token add` makes"
+        )
+    found.url, found.token = login.url, login.token

@@ -11,7 +11,7 @@ from esplanade.commandline.errors import UsageError
 from esplanade.commandline.output import console
 from esplanade.files.text import read_text
 from esplanade.operators.asking import asked, change, scope_of
-from esplanade.operators.history_commands import at_time
+from esplanade.operators.times import at_time
 
 
 def list_(options: Namespace) -> int:

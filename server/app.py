@@ -7,6 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
 
+from esplanade.actors.warming import tables_ahead
 from esplanade.server.assets import Assets
 from esplanade.server.building import build_world, with_roster
 from esplanade.server.commanding import commanding, live_view, shipped_presets
@@ -17,6 +18,7 @@ from esplanade.server.entrances import make_gate, people_url, private_certificat
 from esplanade.server.keeping import keeping
 from esplanade.server.kept import Kept
 from esplanade.server.link.local import LocalLink
+from esplanade.server.live.bulletin import Bulletin
 from esplanade.server.live.live import Live
 from esplanade.server.loading import LoadedScene, load_scene
 from esplanade.server.metrics import Metrics
@@ -145,23 +147,24 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         delivery = Delivery(
             audience, hub.sessions, settings.tick_rate, hub.stop_watching, hub.moderation.lines
         )
-        link = LocalLink()
+        link, bulletin = LocalLink(), Bulletin()
         console = await resume(
             await stack.enter_async_context(
-                commanding(world, hub, kept, loaded, metrics, presets, schedule.pace)
+                commanding(world, hub, kept, loaded, metrics, presets, schedule.pace, bulletin)
             ),
             recovery,
             kept,
             hub,
+            persistence,
             thread,
         )
         deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
-        ground_work = GroundWork(world, deriving)
+        ground_work = GroundWork(world, deriving, tables_ahead(population.navigator))
         gate.console = console
         ticker = Ticker(
             world, ground_work, audience, link, hub, delivery, schedule, metrics, thread, console
         ).keeping(persistence)
-        gate.live = live = live_view(world, storeys, console, hub, metrics, settings)
+        gate.live = live = live_view(world, storeys, console, hub, metrics, settings, bulletin)
         ticker.tap, ticker.trajectories = (
             live.tap,
             await stack.enter_async_context(

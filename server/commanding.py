@@ -29,8 +29,9 @@ async def commanding(
     metrics: Metrics,
     presets: Presets,
     pace: Pace,
+    bulletin: Bulletin,
 ) -> AsyncIterator[Console]:
-    """Make the console, which all commands of operators go through.
+    """Make the console, which all commands of operators go through; the bulletin hears of them.
 
     Raises
     ------
@@ -47,6 +48,8 @@ async def commanding(
         "Percentile 99 of the last minute's ticks",
         lambda: 1e3 * metrics.ticks.percentile(99, round(60.0 / world.tick_s)),
     )
+    # It hears before anything is loaded: what was missed meanwhile is an event too.
+    console.listen(bulletin.heard)
     await console.load_operated()
     try:
         yield console
@@ -61,17 +64,17 @@ def live_view(
     hub: Hub,
     metrics: Metrics,
     settings: ServerSettings,
+    bulletin: Bulletin,
 ) -> Live:
-    """Make what operators see of the world, and let it hear of their changes."""
+    """Make what operators see of the world."""
     live = Live(
         world,
         storeys,
-        Bulletin(),
+        bulletin,
         metrics.traffic,
         hide_names=settings.hide_names,
         groups=lambda spec: console.state.groups.names(spec),  # noqa: PLW0108 - they are replaced
     )
-    console.listen(live.bulletin.heard)
     hub.moderation.listeners.append(live.bulletin.heard)
     return live
 

@@ -30,11 +30,17 @@ def persistence_of(world: Zone, recovery: Recovery, kept: Kept, metrics: Metrics
 
 
 async def resume(
-    console: Console, recovery: Recovery, kept: Kept, hub: Hub, thread: Executor
+    console: Console,
+    recovery: Recovery,
+    kept: Kept,
+    hub: Hub,
+    persistence: Persistence,
+    thread: Executor,
 ) -> Console:
     """The console, with everything where the audit says that it was when the server ended.
 
-    Here all parts of checkpoints are registered.
+    Here all parts of checkpoints are registered. A new world has its first one written before
+    anything can happen in it: what is acknowledged afterwards is found from there.
 
     Raises
     ------
@@ -52,6 +58,9 @@ async def resume(
     if parts.restored is not None:
         await loop.run_in_executor(thread, redo, console, recovery.tail)
         remember(console, recovery.tail)
+        await console.ongoing.resume(recovery.tail.going_on)
         await tell_the_lost(recovery, kept)
         log.info("goes on", tick=console.zone.tick, people=len(recovery.left.waiting))
+    else:
+        await persistence.begin()
     return console

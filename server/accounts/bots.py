@@ -20,7 +20,9 @@ from esplanade.server.store.tables import BOTS
 PREFIX: Final = "esplanade_bot_"
 """Tokens begin with this, so that one that has slipped into a text is found."""
 MOST: Final = 1000
+"""No more bots are kept; those whose tokens are over for a month are forgotten first."""
 LONGEST_US: Final = 366 * 24 * 3600 * 10**6
+_KEPT_US: Final = 30 * 24 * 3600 * 10**6
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +51,7 @@ class Bots:
     async def add(
         self, by: Identity, name: str, *, message_rate: int, connections: int, lasts_us: int
     ) -> str:
-        """Make a token; it is returned this once.
+        """Make a token; it is returned this once. One of that name that is over makes way.
 
         Raises
         ------
@@ -64,6 +66,9 @@ class Bots:
         zone, now, token = self._store.zone, self._clock_us(), new_secret(PREFIX)
 
         def change(connection: Connection) -> None:
+            over = (BOTS.c.name == name) & (BOTS.c.expires_us <= now)
+            long_over = BOTS.c.expires_us <= now - _KEPT_US
+            connection.execute(delete(BOTS).where(BOTS.c.zone == zone, over | long_over))
             query = select(func.count()).where(BOTS.c.zone == zone)
             if connection.execute(query.where(BOTS.c.name == name)).scalar():
                 raise AccountError(f"there is a bot {name!r} already", "taken")

@@ -64,6 +64,13 @@ class CheckpointWriter:
         self.taking_s = time.perf_counter() - start
         self._writing = asyncio.create_task(self._write(saved, tick))
 
+    async def begin(self, tick: int) -> None:
+        """Write the checkpoint of a world that begins, so that nothing happens before there is one.
+
+        It is no fault of the start if that fails: the next one is due with the first tick.
+        """
+        await self._write(self._parts.save(), tick)
+
     async def end(self, tick: int | None) -> None:
         """Finish what is under way; with a tick, take a last checkpoint of the world after it."""
         self._ended = True

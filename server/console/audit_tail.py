@@ -1,12 +1,13 @@
 """The end of the audit, read at a start: what can be taken back, what has to be done again."""
 
+import copy
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
 from pydantic import ValidationError
 
-from esplanade.protocol.commands import COMMAND, Facts, Mark, Revert
+from esplanade.protocol.commands import COMMAND, Command, Facts, Mark, Revert, SetParameters
 from esplanade.server.accounts.rights import COMMANDS
 from esplanade.server.audit.entries import Entry, Row
 from esplanade.server.console.changes import REMEMBERED, Change
@@ -17,6 +18,20 @@ MOST_ROWS: Final = 2 * REMEMBERED + 5_000
 """No more rows are read: one for each change that is remembered, and one for its outcome."""
 NOT_DONE: Final = "not_done"
 """The outcome of a command that nobody was told of, and that was rolled back at a start."""
+BEGUN: Final = "begun"
+"""The outcome of a change that goes on, such as a ramp, until it has ended."""
+
+
+@dataclass(frozen=True)
+class GoingOn:
+    """A change that went on when the server ended: it was acknowledged, and has not ended."""
+
+    change: Change
+    command: Command
+    account: str | None
+    role: str
+    wanted: Facts
+    """The values that it goes to, or that were dragged first."""
 
 
 @dataclass(frozen=True)
@@ -33,6 +48,8 @@ class Tail:
     """People who were sent out after the checkpoint."""
     lost: list[Row] = field(default_factory=list)
     """Commands that nobody was told of: they are rolled back."""
+    going_on: list[GoingOn] = field(default_factory=list)
+    """Changes that went on, the oldest first; they are among `changes` too."""
     settled: int = 0
     """The number of the last command."""
     tick: int = 0
@@ -51,27 +68,43 @@ def read_tail(rows: Sequence[Row], settled: int) -> Tail:
         settled=max([settled, *(row.seq for row in rows if _is_command(row))]),
         tick=max((row.tick or 0 for row in rows), default=0),
     )
+    ended_at = {row.refers_to: row.seq for row in rows if "after" in row.body}
     facts: list[Facts] = []
+    late: Facts = {}
+    """Facts of what has begun before the checkpoint and ended after it."""
     for row in rows:
         if not _is_command(row):
             continue
         outcome = outcomes.get(row.seq)
         if outcome is None and row.seq > settled:
             tail.lost.append(row)
-        is_done = outcome == "done" or (outcome is None and row.seq <= settled)
+        is_done = outcome in {"done", BEGUN} or (outcome is None and row.seq <= settled)
         ended = last.get(row.seq, row.body)  # of what went on, such as a ramp
         before, after = ended.get("before", {}), ended.get("after", {})
-        if is_done:
+        if outcome == BEGUN:
+            after = _begun(tail, row, before, after)
+        elif is_done:
             _remember(tail, row, before, after)
+        if is_done:
+            _leave_out(late, after)
         if row.seq > settled:
             facts.append(after if is_done else before)
-    for subject, fields in together(facts).items():
+        elif ended_at.get(row.seq, 0) > settled:
+            late = together([late, after])
+    for subject, fields in together([late, *facts]).items():
         kind, _, name = subject.partition(":")
         if kind == "person":
             _about_person(tail, int(name), fields)
         elif kind != "people":
             tail.facts[subject] = fields
     return tail
+
+
+def _leave_out(facts: Facts, others: Facts) -> None:
+    """Leave out of facts what others are about."""
+    for subject, fields in others.items():
+        for field_ in fields:
+            facts.get(subject, {}).pop(field_, None)
 
 
 def not_done(row: Row) -> Entry:
@@ -91,6 +124,18 @@ def _is_command(row: Row) -> bool:
     """Whether a row says what somebody wants of the world."""
     is_command = isinstance(row.body.get("command"), dict) and row.refers_to is None
     return is_command and not row.outcome and row.command in COMMANDS
+
+
+def _begun(tail: Tail, row: Row, before: Facts, wanted: Facts) -> Facts:
+    """Take in a change that went on; the facts that are true of it at least."""
+    try:
+        command = SetParameters.model_validate(row.body["command"])
+    except ValidationError:
+        return wanted  # of a program that knew other commands
+    after = copy.deepcopy(before if command.over_s is not None else wanted)
+    _remember(tail, row, before, after)
+    tail.going_on.append(GoingOn(tail.changes[-1], command, row.account, row.role, wanted))
+    return {} if command.over_s is not None else wanted
 
 
 def _remember(tail: Tail, row: Row, before: Facts, after: Facts) -> None:

@@ -1,51 +1,43 @@
-"""The one path of operators' commands: rights, checks, the audit, a tick, the answer."""
+"""The console of operators: all that they command goes through it, to the zone and back."""
 
 import asyncio
 from collections.abc import Callable, Mapping, Sequence
-from time import perf_counter
-from typing import Any, Final, TypeVar
+from typing import Any, TypeVar
 
 from esplanade.actors import Overrides
-from esplanade.protocol.commands import Answer, Command, CommandFault, Facts, Price
+from esplanade.protocol.commands import Answer, Command, Facts, Price
 from esplanade.server.accounts.identity import Identity
 from esplanade.server.audit.log import AuditLog, now_us
 from esplanade.server.console.between_ticks import BetweenTicks
 from esplanade.server.console.changes import Change, Changes
-from esplanade.server.console.command_plans import CommandPlans, check_list
-from esplanade.server.console.facts import together
+from esplanade.server.console.command_path import CommandPath
+from esplanade.server.console.command_plans import CommandPlans
 from esplanade.server.console.figures import ContactRate, zone_figures
 from esplanade.server.console.history import plain_change
-from esplanade.server.console.inputs import inputs_for
 from esplanade.server.console.listeners import Listener, Listeners
 from esplanade.server.console.moderating import Moderating
 from esplanade.server.console.moderation import Moderation
 from esplanade.server.console.moderation_intents import KINDS, ModerationIntents
-from esplanade.server.console.ongoing import OngoingChanges, is_ramp
-from esplanade.server.console.planned import Planned
-from esplanade.server.console.preparation import Preparation
+from esplanade.server.console.ongoing import OngoingChanges
 from esplanade.server.console.presets import Presets
 from esplanade.server.console.records import Records
-from esplanade.server.console.refusals import RefusedError, of_world
 from esplanade.server.console.scheduler import Scheduler
 from esplanade.server.console.settling import Settling
-from esplanade.server.console.state import PACE, OperatedState, parameters_of
+from esplanade.server.console.state import OperatedState
 from esplanade.server.console.tick_inputs import TickInputs
 from esplanade.server.store.sql_store import SqlStore
 from esplanade.server.world.frame import Frame
-from esplanade.server.world.inputs import ActorCommand, Input
+from esplanade.server.world.inputs import Input
 from esplanade.server.world.pace import Pace
 from esplanade.server.world.zone import Zone
 
 Result = TypeVar("Result")
-MOST_WAITING: Final = 32
-"""Commands, or lists of them, that may wait for their turn; more are refused."""
 
 
 class Console:
     """Carries out commands on a zone, one list after the other, on the zone's event loop.
 
-    Each list is checked as a whole; then its rows in the audit are committed, and only after that
-    it enters a tick. A ticker calls `drain` between two ticks, and `take` with each frame.
+    A ticker calls `drain` between two ticks, and `take` with each frame.
     """
 
     def __init__(
@@ -71,15 +63,11 @@ class Console:
         """The row of the audit, of the server's chain, with which the world of now began."""
         self.settled = 0
         """The last command whose outcome is in the audit; all before it is in the state too."""
-        self.turn = asyncio.Lock()
-        """Held by whoever changes the world: one after the other."""
-        self._waiting = 0
         intents = ModerationIntents(moderation, zone)
-        self._moderating = Moderating(moderation, intents)
         self.state.elsewhere.update(dict.fromkeys(KINDS, intents.fact))
         self._records = Records(store, audit)
         self.ongoing = OngoingChanges(self, self._records)
-        self._plans = CommandPlans(
+        plans = CommandPlans(
             self.state,
             self.changes,
             intents,
@@ -88,16 +76,27 @@ class Console:
             self.ongoing.check_room,
             clock_us,
         )
-        self._settling = Settling(self, self._records, clock_us)
-        self._preparation = Preparation(zone)
         self._listeners = Listeners()
         self._tick_inputs = TickInputs(zone, self.pace)
+        self._path = CommandPath(
+            self,
+            plans,
+            self._records,
+            Moderating(moderation, intents),
+            self._tick_inputs,
+            Settling(self, self._records, clock_us),
+        )
         self._between_ticks = BetweenTicks(zone)
 
     @property
     def waiting(self) -> int:
         """Number of lists of commands that wait for their turn, or are being carried out."""
-        return self._waiting
+        return self._path.waiting
+
+    @property
+    def turn(self) -> asyncio.Lock:
+        """Held by whoever changes the world: one after the other."""
+        return self._path.turn
 
     def new_number(self) -> int:
         """A number for an input, by which its outcome is known."""
@@ -115,44 +114,7 @@ class Console:
         StoreError
             Nothing was changed, since the audit cannot be written.
         """
-        check_list(by, commands)
-        if self._waiting >= MOST_WAITING:
-            raise RefusedError.of("busy", f"{MOST_WAITING} lists of commands wait already")
-        self._waiting += 1
-        try:
-            async with self.turn:
-                return await self._carry_out(by, commands)
-        finally:
-            self._waiting -= 1
-
-    async def _carry_out(self, by: Identity, commands: Sequence[Command]) -> list[Answer]:
-        dragged = await self.ongoing.dragged(by, commands)
-        if dragged is not None:
-            return [self._answer(dragged.planned, **dragged.found)]
-        planned = self._plans.plan(by, commands)
-        facts = together([one.after for one in planned])
-        inputs, doors = inputs_for(facts, self.state, self.new_number)
-        price, bodies = await self.ask(lambda: self._checked(inputs, len(commands)))
-        prepare_s = self._preparation.seconds(bodies) if price == "prepared" else None
-        if commands[0].dry_run:
-            return [self._answer(one, price=price, prepare_s=prepare_s) for one in planned]
-        if any(map(is_ramp, commands)):  # their values come later, a bit in each tick
-            facts = together([one.after for one in planned if not is_ramp(one.command)])
-            inputs, doors = inputs_for(facts, self.state, self.new_number)
-        numbers = await self._records.intents(by, planned, self.zone.tick)
-        await self._moderating.carry_out(planned, by.account)
-        began = perf_counter()
-        tick, faults = await self._tick_inputs.carry_out(inputs, doors, facts.get(PACE, {}))
-        if faults:
-            await self._records.outcomes(by, planned, numbers, tick, faults)
-            self.settled = numbers[-1]
-            raise RefusedError(faults).within(0) if len(commands) == 1 else RefusedError(faults)
-        self._preparation.took(bodies, perf_counter() - began)
-        await self._settling.settle(by, planned, numbers, tick, facts)
-        return [
-            self._answer(one, number=number, tick=tick, price=price, prepare_s=prepare_s)
-            for number, one in zip(numbers, planned, strict=True)
-        ]
+        return await self._path.carry_out(by, commands)
 
     async def go_on(self, change: Change, facts: Facts) -> tuple[int, Price]:
         """Let a change that was made go further; call it when it is your turn.
@@ -162,55 +124,7 @@ class Console:
         RefusedError
             The world does not take it.
         """
-        inputs, doors = inputs_for(facts, self.state, self.new_number)
-        price, _ = await self.ask(lambda: self._checked(inputs, 2))
-        before = self.state.now(facts)
-        tick, faults = await self._tick_inputs.carry_out(inputs, doors)
-        if faults or tick is None:
-            raise RefusedError(faults)
-        self.state.take(facts)
-        self.changes.moved(change, before, facts)
-        self.tell_change(change)
-        return tick, price
-
-    def _checked(self, inputs: list[ActorCommand], count: int) -> tuple[Price, int]:
-        """Return the price of inputs that the world would take, and the number of bodies that they
-        need; call it between two ticks."""
-        faults: list[CommandFault] = []
-        for one in inputs:
-            fault = self.zone.check(one)
-            if fault is not None:
-                faults += of_world(fault)
-        if faults:
-            refused = RefusedError(faults)
-            raise refused.within(0) if count == 1 else refused
-        return self._preparation.price(inputs), self._preparation.bodies(inputs)
-
-    def _answer(
-        self,
-        planned: Planned,
-        price: Price,
-        number: int | None = None,
-        tick: int | None = None,
-        prepare_s: float | None = None,
-    ) -> Answer:
-        shadowed: dict[str, int] = {}
-        for scope, values in parameters_of(planned.after).items():
-            for name in values:
-                count = sum(1 for _ in self.state.overrides.shadowed(scope, name))
-                if count:
-                    shadowed[name] = count
-        return Answer(
-            op=planned.command.op,
-            command=number,
-            tick=tick,
-            revision=self.changes.revision,
-            before=planned.before,
-            after=planned.after,
-            price=price,
-            prepare_s=prepare_s,
-            shadowed=shadowed,
-        )
+        return await self._path.go_on(change, facts)
 
     # --- what others are told -------------------------------------------------------------------
 
@@ -266,7 +180,12 @@ class Console:
 
     def save(self) -> dict[str, Any]:
         """All that is set, and which commands are in it; call it between two ticks."""
-        return {"begun": self.begun, "settled": self.settled, "state": self.state.save()}
+        return {
+            "begun": self.begun,
+            "settled": self.settled,
+            "state": self.state.save(),
+            "ramps": self.ongoing.save(),
+        }
 
     def load(self, saved: Mapping[str, Any]) -> None:
         """Go on from what was saved.
@@ -278,6 +197,7 @@ class Console:
         """
         self.begun, self.settled = int(saved["begun"]), int(saved["settled"])
         self.state.load(saved["state"])
+        self.ongoing.load(saved.get("ramps", ()))
 
     async def load_operated(self) -> None:
         """Take in the presets, schedules and guards that the store has kept.

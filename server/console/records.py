@@ -1,6 +1,6 @@
 """Rows of the audit for commands: what is wanted before a tick, and what came of it after."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 import structlog
@@ -10,6 +10,7 @@ from esplanade.protocol.commands import CommandFault, Facts
 from esplanade.server.accounts.identity import Identity
 from esplanade.server.audit.entries import Entry
 from esplanade.server.audit.log import AuditLog
+from esplanade.server.console.audit_tail import BEGUN
 from esplanade.server.console.operated_rows import OperatedRow, write_rows
 from esplanade.server.console.planned import Planned
 from esplanade.server.store.sql_store import SqlStore
@@ -71,11 +72,13 @@ class Records:
         faults: list[CommandFault],
         *,
         rows: Sequence[OperatedRow] = (),
+        begun: Collection[int] = (),
         more: Mapping[str, Any] | None = None,
     ) -> None:
         """Write down what came of commands in that tick, and the rows that are others by them.
 
-        If that fails it is logged only, unless there are such rows. `more` is said of each outcome.
+        Those of the numbers `begun` go on, and will have another row once they have ended. If
+        that fails it is logged only, unless there are such rows. `more` is said of each outcome.
 
         Raises
         ------
@@ -89,7 +92,7 @@ class Records:
                 role=by.role,
                 target=_target(one.after),
                 tick=tick,
-                outcome="refused" if faults else "done",
+                outcome="refused" if faults else BEGUN if number in begun else "done",
                 refers_to=number,
                 body={
                     "faults": [fault.model_dump(mode="json") for fault in faults],

@@ -9,20 +9,18 @@ from typing import TYPE_CHECKING, Any, Final
 import structlog
 
 from esplanade.protocol.commands import COMMAND, Command, CommandFault, GuardCondition, Revert
-from esplanade.server.audit.entries import Entry
 from esplanade.server.audit.log import AuditLog
 from esplanade.server.console.authority import Authority
 from esplanade.server.console.figures import ContactRate, Figures
 from esplanade.server.console.guards import Guard, Guards
-from esplanade.server.console.operated_rows import (
-    GUARDS,
-    PRESETS,
-    SCHEDULES,
-    OperatedRow,
-    read_rows,
-    write_rows,
-)
+from esplanade.server.console.operated_rows import GUARDS, PRESETS, SCHEDULES, read_rows
 from esplanade.server.console.refusals import RefusedError
+from esplanade.server.console.schedule_records import (
+    ScheduleRecords,
+    guard_of,
+    missed,
+    why_missed,
+)
 from esplanade.server.console.schedules import LATE_S, Schedule
 from esplanade.server.store.sql_store import SqlStore
 from esplanade.server.store.store import StoreError
@@ -55,7 +53,7 @@ class Scheduler:
         self._figures = figures
         self._contacts = contacts
         self._store = store
-        self._audit = audit
+        self._rows = ScheduleRecords(store, audit, console.tell)
         self._authority = Authority(store)
         self._clock_us = clock_us
         self._work: deque[Coroutine[Any, Any, None]] = deque()
@@ -85,7 +83,8 @@ class Scheduler:
             due += self._look(now_s, now_us)
         for schedule in due:
             if schedule.due_us is not None and now_us - schedule.due_us > 1e6 * LATE_S:
-                self._miss(schedule, "it was due while the world did not run")
+                text = "it was due while the world did not run"
+                self._miss(schedule, missed(schedule, now_us, text))
                 continue
             schedule.state = "firing"
             self._do(self._fire(schedule, tick))
@@ -103,7 +102,7 @@ class Scheduler:
             stand = any(change is not None and change.reverted_by is None for change in changes)
             if now_us >= guard.until_us or not stand:
                 self.guards.end(guard, "ended")
-                self._do(self._keep(*guard_row(guard)))
+                self._do(self._rows.keep(guard))
         for guard in self.guards.held(values, now_s):
             self.guards.end(guard, "taken_back")
             self._do(self._guarded(guard, values[guard.condition["name"]]))
@@ -124,7 +123,7 @@ class Scheduler:
                 state.presets.load(name, body)
             elif part == SCHEDULES:
                 schedule = state.schedules.load(body)
-                why = _missed(schedule, now_us, self._console.zone.tick)
+                why = why_missed(schedule, now_us, self._console.zone.tick)
                 if why is not None:
                     self._miss(schedule, why)
             elif part == GUARDS:
@@ -153,7 +152,7 @@ class Scheduler:
                 log.exception("what became of a schedule or guard is not kept")
 
     async def _fire(self, schedule: Schedule, tick: int) -> None:
-        await self._keep_schedule(schedule)
+        await self._rows.keep(schedule)
         commands = [_with_note(each, schedule) for each in schedule.commands]
         changes, faults = await self._carried_out(schedule, commands)
         schedule.changes, schedule.faults = changes, faults
@@ -166,12 +165,12 @@ class Scheduler:
             schedule.back_us = now_us + round(1e6 * schedule.again_after_s)
         else:
             schedule.state = "done"
-        await self._keep_schedule(schedule)
+        await self._kept(schedule)
         if changes and schedule.guard is not None:
             given = GuardCondition.model_validate(schedule.guard)
             guard = guard_of(given, changes, schedule.by, schedule.rights, now_us)
             self.guards.add(guard)
-            await self._keep(*guard_row(guard))
+            await self._rows.keep(guard)
 
     async def _take_back(self, schedule: Schedule) -> None:
         commands = [
@@ -181,7 +180,7 @@ class Scheduler:
         ]
         _, faults = await self._carried_out(schedule, commands) if commands else ([], [])
         schedule.state, schedule.faults = ("refused", faults) if faults else ("undone", [])
-        await self._keep_schedule(schedule)
+        await self._kept(schedule)
 
     async def _guarded(self, guard: Guard, value: float | None) -> None:
         condition = guard.condition
@@ -195,8 +194,7 @@ class Scheduler:
         _, faults = await self._carried_out(guard, commands) if commands else ([], [])
         if faults:
             guard.state, guard.faults = "refused", faults
-        await self._keep(*guard_row(guard))
-        self._console.tell("about", {"about": "schedules"})
+        await self._kept(guard)
 
     async def _carried_out(
         self, item: Schedule | Guard, commands: Sequence[Command]
@@ -222,71 +220,15 @@ class Scheduler:
         change = self._console.changes.get(number)
         return change is not None and bool(change.after) and change.reverted_by is None
 
-    def _miss(self, schedule: Schedule, why: str) -> None:
-        schedule.state = "missed"
-        schedule.faults = [CommandFault(code="missed", text=why).model_dump(mode="json")]
-        log.warning("a schedule was missed", schedule=schedule.id, why=why)
-        self._do(self._tell_missed(schedule, why))
+    def _miss(self, schedule: Schedule, why: CommandFault) -> None:
+        schedule.state, schedule.faults = "missed", [why.model_dump(mode="json")]
+        self._do(self._rows.failed(schedule))
 
-    async def _tell_missed(self, schedule: Schedule, why: str) -> None:
-        entry = Entry(
-            command="schedule_missed",
-            account=schedule.by,
-            target=f"schedule:{schedule.id}",
-            outcome="missed",
-            body={"why": why, "commands": schedule.commands},
-        )
-        row = OperatedRow(SCHEDULES, schedule.id, schedule.plain())
-
-        def change(connection: Any) -> None:
-            self._audit.add(connection, entry)
-            write_rows(connection, self._store.zone, [row])
-
-        await self._store.write(change)
-        self._console.tell("about", {"about": "schedules"})
-
-    async def _keep_schedule(self, schedule: Schedule) -> None:
-        await self._keep(SCHEDULES, schedule.id, schedule.plain())
-        self._console.tell("about", {"about": "schedules"})
-
-    async def _keep(self, part: str, name: str, body: Any) -> None:
-        row = OperatedRow(part, name, body)
-        await self._store.write(lambda connection: write_rows(connection, self._store.zone, [row]))
-
-
-def guard_of(
-    given: GuardCondition, changes: list[int], by: str | None, rights: str, now_us: int
-) -> Guard:
-    """A guard over changes that were made now."""
-    return Guard(
-        id=f"g{changes[0]}",
-        changes=list(changes),
-        condition=given.condition.model_dump(mode="json"),
-        until_us=now_us + round(1e6 * given.within_s),
-        by=by,
-        rights=rights,
-    )
-
-
-def guard_row(guard: Guard) -> OperatedRow:
-    """The state of a guard that is kept."""
-    return OperatedRow(GUARDS, guard.id, guard.plain())
+    def _kept(self, item: Schedule | Guard) -> Coroutine[Any, Any, None]:
+        """The work of keeping something as it is now."""
+        return self._rows.failed(item) if item.state == "refused" else self._rows.keep(item)
 
 
 def _with_note(given: dict[str, Any], schedule: Schedule) -> Command:
     note = f"schedule {schedule.id}" + (f": {schedule.note}" if schedule.note else "")
     return COMMAND.validate_python({**given, "note": given.get("note") or note[:500]})
-
-
-def _missed(schedule: Schedule, now_us: int, tick: int) -> str | None:
-    """Why a schedule that was kept was missed; None if it was not."""
-    match schedule.state:
-        case "firing":
-            return "the server ended while it was carried out; the audit says how far it came"
-        case "fired" if schedule.back_us is None or now_us >= schedule.back_us:
-            return "its changes were to be taken back while the server did not run; they stay"
-        case "waiting" if schedule.due_us is not None and now_us >= schedule.due_us:
-            return "it was due while the server did not run"
-        case "waiting" if schedule.due_tick is not None and tick >= schedule.due_tick:
-            return "its tick was over when the server came back"
-    return None

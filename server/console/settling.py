@@ -9,13 +9,13 @@ from esplanade.server.accounts.identity import Identity
 from esplanade.server.accounts.rights import as_text
 from esplanade.server.console.changes import Change
 from esplanade.server.console.facts import together
+from esplanade.server.console.going_on import goes_on, is_ramp
 from esplanade.server.console.guards import Guard
 from esplanade.server.console.moderation_intents import MODERATING, REVERTIBLE
-from esplanade.server.console.ongoing import goes_on, is_ramp
 from esplanade.server.console.operated_rows import rows_of
 from esplanade.server.console.planned import Planned
 from esplanade.server.console.records import Records
-from esplanade.server.console.scheduler import guard_of, guard_row
+from esplanade.server.console.schedule_records import guard_of, row_of
 from esplanade.server.console.state import PACE, STEPPED
 from esplanade.server.store.store import StoreError
 
@@ -50,11 +50,10 @@ class Settling:
         stored = {s: f for s, f in facts.items() if s.startswith(("preset:", "schedule:"))}
         state.take(stored)
         guards = self._guards(by, numbered)
-        rows = [*rows_of(stored, state), *map(guard_row, guards)]
-        done = [(one, number) for one, number in numbered if not goes_on(one.command)]
-        ended, of_ended = [one for one, _ in done], [number for _, number in done]
+        rows = [*rows_of(stored, state), *map(row_of, guards)]
+        begun = {number for one, number in numbered if goes_on(one.command)}
         try:
-            await self._records.outcomes(by, ended, of_ended, tick, [], rows=rows)
+            await self._records.outcomes(by, planned, numbers, tick, [], rows=rows, begun=begun)
         except StoreError:
             before = together([one.before for one in reversed(planned)])
             state.take({subject: before[subject] for subject in stored})
@@ -82,10 +81,8 @@ class Settling:
             note=one.command.text if isinstance(one.command, Mark) else one.command.note,
         )
         console.changes.add(change)
-        if ramps:
-            console.ongoing.begin_ramp(by, one, change, tick or console.zone.tick)
-        elif goes_on(one.command):
-            console.ongoing.begin_stream(by, one, change, tick or console.zone.tick)
+        if goes_on(one.command):
+            console.ongoing.begin(by, one, change, tick or console.zone.tick)
         console.tell_change(change)
 
     def _guards(self, by: Identity, numbered: list[tuple[Planned, int]]) -> list[Guard]:

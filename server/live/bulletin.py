@@ -20,7 +20,7 @@ class Notice:
     about: str | None = None
     """The things that are others now: presets, schedules, groups, accounts."""
     event: Mapping[str, Any] | None = None
-    """An event of the kinds command, mark, report, pace or trajectories, without its number."""
+    """An event of the kinds command, mark, report, pace, schedule or trajectories, not numbered."""
 
 
 @dataclass
@@ -37,7 +37,8 @@ class Bulletin:
     def heard(self, kind: str, what: Mapping[str, Any]) -> None:
         """Take in what a console or those who serve people tell their listeners.
 
-        That is a change, a mark, what is others now, or a report; other kinds are passed over.
+        That is a change, a mark, what is others now, a report, or a schedule or guard that came to
+        nothing; other kinds are passed over.
         """
         if kind == "change":
             self.change(what)
@@ -45,6 +46,9 @@ class Bulletin:
             self.event("mark", str(what.get("text") or ""), account=what.get("account"))
         elif kind == "about":
             self.about(str(what["about"]))
+        elif kind == "schedule":
+            told = {name: value for name, value in what.items() if name != "text"}
+            self.event("schedule", str(what["text"]), **told)
         elif kind == "report":
             self.event(
                 "report",

@@ -5,7 +5,7 @@ import struct
 from collections import deque
 from collections.abc import Callable, Hashable, Iterable, Mapping
 from dataclasses import replace
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -22,6 +22,14 @@ REMEMBERED: Final = 4096
 """Comings, goings and other changes of avatars that are kept; whoever needs more begins anew."""
 KEY_S: Final = 5.0
 """Everybody is told of after this time, so that a fault of a page does not last."""
+
+
+class _Columns(NamedTuple):
+    """Rows of all actors and of all people, ascending, and the radius of everybody by row."""
+
+    actors: npt.NDArray[np.int64]
+    people: npt.NDArray[np.int64]
+    radii_m: npt.NDArray[np.float64]
 
 
 class MapFeed:
@@ -44,7 +52,7 @@ class MapFeed:
         """RECORD (N,), in ascending order of ids; another array after somebody came or went."""
         self.turned: list[tuple[int, int]] = []
         """(id, reason) of everybody whose reason is another since the tick before."""
-        self._made: tuple[npt.NDArray[np.bool_], npt.NDArray[np.float64]] | None = None
+        self._made: _Columns | None = None
         self._changed: npt.NDArray[np.int64] = np.zeros(0, dtype=np.int64)
         self._origin_m = origin_m
         self._key_ticks = max(1, round(KEY_S / tick_s))
@@ -114,22 +122,21 @@ class MapFeed:
 
     def rows_by_kind(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
         """Rows of all actors, and of all people, ascending, int64."""
-        actors = self._columns()[0]
-        return np.flatnonzero(actors), np.flatnonzero(~actors)
+        made = self._columns()
+        return made.actors, made.people
 
     @property
     def radii_m(self) -> npt.NDArray[np.float64]:
         """Radii of everybody by row, float64 (N,), metres."""
-        return self._columns()[1]
+        return self._columns().radii_m
 
-    def _columns(self) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.float64]]:
-        """By row, whether it is an actor, and its radius; made anew after somebody came or went."""
+    def _columns(self) -> _Columns:
+        """What hardly ever changes, by row; made anew after somebody came or went."""
         if self._made is None:
             everybody = [self.avatars[who] for who in self.ids.tolist()]
-            self._made = (
-                np.array([each.actor is not None for each in everybody], dtype=np.bool_),
-                np.array([each.radius_m for each in everybody], dtype=np.float64),
-            )
+            is_actor = np.array([each.actor is not None for each in everybody], dtype=np.bool_)
+            radii_m = np.array([each.radius_m for each in everybody], dtype=np.float64)
+            self._made = _Columns(np.flatnonzero(is_actor), np.flatnonzero(~is_actor), radii_m)
         return self._made
 
     def is_person(self, avatar_id: int) -> bool:

@@ -10,7 +10,7 @@ MOST_SUBSCRIPTIONS: Final = 16
 ACTOR: Final = "actor:"
 EVENT_KINDS: Final = (
     *("join", "leave", "contact", "stop", "no_path", "door", "plan_failure", "late_tick"),
-    *("chat", "command", "mark", "report", "pace", "trajectories"),
+    *("chat", "command", "mark", "report", "pace", "schedule", "trajectories"),
 )
 BEATS_A_SECOND: Final = 10
 """So often a second are subscribers told what is new."""

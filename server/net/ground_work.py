@@ -1,10 +1,10 @@
 """Derives what doors and commands change, in a thread of its own, so that no tick waits for it."""
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import Executor, Future
 from functools import partial
-from time import perf_counter
+from time import perf_counter, thread_time
 from typing import Final
 
 import structlog
@@ -23,13 +23,19 @@ class GroundWork:
     """Derives one thing at a time: for doors, for commands on actors, and potentials take turns.
 
     From now on doors of the world move by the inputs that `drain` returns, and no other way. After
-    each piece of work it rests as long as that took, so that actors have the other half of a core.
+    each piece of work it rests for as much processor time as that took, so that actors have the
+    other half of a core, on a busy machine too. Where there is nothing else to do it does the work
+    that is `ahead`, one by one; nothing waits for a rest after that.
     """
 
-    def __init__(self, world: Zone, thread: Executor) -> None:
+    def __init__(
+        self, world: Zone, thread: Executor, ahead: Iterable[Callable[[], None]] = ()
+    ) -> None:
         self._world = world
         self._thread = thread
-        self._work: Future[tuple[DerivedInput, float]] | None = None
+        self._ahead = deque(ahead)
+        self._work: Future[tuple[DerivedInput | None, float]] | None = None
+        self._was_ahead = False
         self._rests_until_s = 0.0
         self._kinds: deque[Callable[[], Callable[[], DerivedInput] | None]] = deque(
             [self._door, world.actor_work, self._potential]
@@ -44,23 +50,30 @@ class GroundWork:
         if self._work is not None and self._work.done():
             try:
                 derived, seconds = self._work.result()
-                done.append(derived)
+                if derived is not None:
+                    done.append(derived)
                 self._rests_until_s = perf_counter() + seconds
             except Exception:
                 log.exception("the ground cannot be derived because of a fault")
             self._work = None
-        if self._work is None and not done and perf_counter() >= self._rests_until_s:
-            self._begin()
+        if self._work is None and not done:
+            rested = perf_counter() >= self._rests_until_s
+            if rested or self._was_ahead:
+                self._begin(rested=rested)
         return done
 
-    def _begin(self) -> None:
+    def _begin(self, *, rested: bool) -> None:
         for _ in range(len(self._kinds)):
             next_work = self._kinds.popleft()
             self._kinds.append(next_work)
             derive = next_work()
             if derive is not None:
                 self._work = self._thread.submit(_timed, derive)
+                self._was_ahead = False
                 return
+        if self._ahead and rested:
+            self._was_ahead = True
+            self._work = self._thread.submit(_timed, self._ahead.popleft())
 
     def _door(self) -> Callable[[], DerivedInput] | None:
         door = self._next_door()
@@ -92,6 +105,7 @@ def _potential(derive: Callable[[], RenewedPotential]) -> DerivedInput:
     return PotentialDerived(derive())
 
 
-def _timed(derive: Callable[[], DerivedInput]) -> tuple[DerivedInput, float]:
-    start = perf_counter()
-    return derive(), perf_counter() - start
+def _timed(work: Callable[[], DerivedInput | None]) -> tuple[DerivedInput | None, float]:
+    """The result of some work, and the seconds of processor time that it took."""
+    start = thread_time()
+    return work(), thread_time() - start

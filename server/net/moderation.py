@@ -1,6 +1,5 @@
 """Moderates people for operators: words to them, mutes, bans, and the way out."""
 
-import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Any
@@ -9,17 +8,16 @@ import structlog
 
 from esplanade.protocol import ByeCode, CloseCode, ErrorCode, NoticeCode, ProtocolError
 from esplanade.protocol.messages import Bye, Hide, Notice
-from esplanade.server.moderation.areas import Area, Place, same_storey
 from esplanade.server.moderation.bans import Ban, Bans
 from esplanade.server.moderation.chat_log import KeptLine
 from esplanade.server.moderation.state import ModerationState
 from esplanade.server.net import frames
-from esplanade.server.net.known_people import AddressHashes, Gone, KnownPerson
+from esplanade.server.net.known_people import KnownPerson
 from esplanade.server.net.lines import Lines
 from esplanade.server.net.mutes import Mutes
+from esplanade.server.net.people_here import PeopleHere
 from esplanade.server.net.seats import Seats, digest_of
 from esplanade.server.net.session import Session
-from esplanade.server.net.walk_outs import WalkOuts
 from esplanade.server.world.audience import Heard
 from esplanade.server.world.zone import Zone
 
@@ -27,7 +25,7 @@ Listener = Callable[[str, dict[str, Any]], None]
 log = structlog.get_logger(__name__)
 
 
-class PeopleModeration:
+class PeopleModeration(PeopleHere):
     """Moderates the people of a hub, by their avatars' ids. A mute outlives a lost connection."""
 
     def __init__(
@@ -41,83 +39,13 @@ class PeopleModeration:
         now_s: Callable[[], float],
     ) -> None:
         """`kick` gives up the seat of a session, so that its token opens nothing any more."""
+        super().__init__(world, storeys, sessions, seats, now_s)
         self.state = state
         self.lines = Lines(state.now_us() // 1000, self._said)
-        self.walk_outs: WalkOuts | None = None
         self.mutes = Mutes(state.now_us)
         self.listeners: list[Listener] = []
         """Are told of reports and, where chat is kept, of lines: the kind, and plain data."""
-        self._world = world
-        self._storeys = storeys
-        self._sessions = sessions
-        self._seats = seats
         self._kick = kick
-        self._now_s = now_s
-        self._gone = Gone()
-        self._hashes = AddressHashes()
-
-    # --- who there is ---------------------------------------------------------------------------
-
-    def name_of(self, person: int) -> str | None:
-        """Return the name of a connected person."""
-        session = self._sessions.get(person)
-        return None if session is None else session.name
-
-    def known(self, person: int) -> KnownPerson | None:
-        """A person who is connected, or has left within the last minutes."""
-        session = self._sessions.get(person)
-        return self._gone.get(person, self._now_s()) if session is None else self._of(session)
-
-    def remember(self, session: Session) -> None:
-        """Remember somebody whose connection ends."""
-        if session.avatar_id is not None:
-            self._gone.add(self._of(session), self._now_s())
-
-    def where(self, avatar_id: int) -> Place | None:
-        """The place of an avatar; None if it is not in the world."""
-        state = self._world.state
-        if avatar_id not in state:
-            return None
-        slot = state.slot(avatar_id)
-        x, y = state.positions[slot].tolist()
-        return round(x, 3), round(y, 3), round(float(state.heights[slot]), 3)
-
-    def within(
-        self,
-        *,
-        storey_m: float | None,
-        polygon: Sequence[tuple[float, float]] | None,
-        centre: Place | None,
-        radius_m: float,
-    ) -> list[int]:
-        """Connected people on a storey, in a polygon, or around a centre; all of them without."""
-        area = None if polygon is None else Area(tuple(polygon), storey_m)
-        found = []
-        for avatar_id in self._sessions:
-            place = self.where(avatar_id)
-            if place is None:
-                continue
-            if area is not None:
-                wanted = area.holds(place, self._storeys)
-            elif storey_m is not None:
-                wanted = same_storey(place[2], storey_m, self._storeys)
-            else:
-                wanted = centre is None or _near(place, centre, radius_m)
-            if wanted:
-                found.append(avatar_id)
-        return found
-
-    def details(self, person: int) -> dict[str, Any]:
-        """The facts of a connected person that operators are shown beside place and name."""
-        session = self._sessions[person]
-        return {
-            "since_us": session.since_us,
-            "address_hash": self._hashes.of(session.address),
-            "delay_ms": None,
-            "queue_bytes": session.outbox.unsent,
-            "operator": session.is_operator,
-            "walked_out": self.walk_outs is not None and person in self.walk_outs,
-        }
 
     # --- what operators want --------------------------------------------------------------------
 
@@ -232,12 +160,6 @@ class PeopleModeration:
         about = {"line": number, "who": line.id, "name": heard.name, "text": line.text}
         self.happened("chat", {**about, "place": self.where(line.id)})
 
-    def _of(self, session: Session) -> KnownPerson:
-        avatar_id = session.avatar_id or 0
-        seat = self._seats.of(avatar_id)
-        digests = () if seat is None else tuple(each.hex() for each in seat.digests)
-        return KnownPerson(avatar_id, session.name, session.wished, session.address, digests)
-
     def _keeps_out(self, bans: Bans, person: KnownPerson) -> bool:
         now_us = self.state.now_us()
         return any(
@@ -287,7 +209,3 @@ def _farewell(ban: Ban) -> str:
         return ban.text
     end = datetime.fromtimestamp(ban.until_us / 1e6, UTC)
     return f"{ban.text} (until {end:%Y-%m-%d %H:%M} UTC)"
-
-
-def _near(place: Place, centre: Place, radius_m: float) -> bool:
-    return math.dist(place, centre) <= radius_m

@@ -52,6 +52,11 @@ class Persistence:
         if self._writer is not None:
             self._writer.between_ticks(self._zone.tick, now_s)
 
+    async def begin(self) -> None:
+        """Write the checkpoint of a world before its first tick."""
+        if self._writer is not None:
+            await self._writer.begin(self._zone.tick)
+
     async def stop(self, *, in_order: bool) -> None:
         """Write all that is left; with a last checkpoint if the world has ended in good order."""
         if self.seats is not None:

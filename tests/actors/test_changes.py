@@ -7,8 +7,11 @@ from hypothesis import strategies as st
 
 from esplanade.actors import ActorParameters, GoTo, Guide, Idle, ParameterError, Population
 from esplanade.actors.parameter_records import NAMES
-from esplanade.planning import Body, LayeredGrid
+from esplanade.actors.warming import tables_ahead
+from esplanade.planning import Body, LayeredGrid, Polygon
+from esplanade.planning.people import risk
 from esplanade.planning.scene.bodies import MOST_BODIES
+from esplanade.planning.traversal import cache
 from tests.actors.worlds import holds, plaza
 
 SCENE = plaza()
@@ -155,3 +158,31 @@ def test_a_tick_in_which_planning_fails_is_like_one_in_which_all_stand() -> None
     assert stories[0] != stories[2]
     for population in (failing, standing, whole):
         population.close()
+
+
+def test_no_table_of_risk_is_made_for_a_radius_once_they_are_made_ahead():
+    navigator = populated().navigator
+    for work in tables_ahead(navigator):
+        work()
+    least, most = SCHEMA["radius_m"]["minimum"], SCHEMA["radius_m"]["maximum"]
+    made = risk._radial_table.cache_info().misses
+    radii = np.linspace(least, most, 30)
+    navigator.prepare_contacts(Body(radius_m=radius) for radius in radii)
+    for radius in radii:
+        navigator.set_parameters("a", ActorParameters(radius_m=radius))
+    assert risk._radial_table.cache_info().misses == made
+
+
+def test_asking_for_new_bodies_derives_nothing(monkeypatch):
+    """It is asked between two ticks, and the ground of a body is as much as a tick may take."""
+    step = Polygon(points=((4.5, 4.5), (5.5, 4.5), (5.5, 5.5), (4.5, 5.5)), height_m=0.3)
+    scene = SCENE.model_copy(update={"name": "another", "polygons": (*SCENE.polygons, step)})
+    population = populated(LayeredGrid.from_scene(scene))
+    assert not population.grid.arrays.flat
+
+    def fail(*_):
+        raise AssertionError("ground is derived")
+
+    monkeypatch.setattr(cache, "find_traversability", fail)
+    found = population.new_bodies(("a", "b"), {"radius_m": [0.31, 0.25]})
+    assert found == [(population.table.wanted(0), Body(radius_m=0.31))]

@@ -91,6 +91,26 @@ def test_a_snapshot_that_comes_twice_counts_once() -> None:
     assert counted(twice, end_s=2.01).snapshots_received == 40
 
 
+@pytest.mark.parametrize("rate", [0.1, 0.5, 4.0])
+def test_at_another_pace_other_ticks_are_due(rate: float) -> None:
+    tally = Tally()
+    tally.series.begin_s = 0.0
+    due, period_s = DueTicks(tally, RATE, welcomed_s=0.0), TICK_S / rate
+    for tick in range(1, 21):
+        due.take(tick, tick * TICK_S, tick * TICK_S + 0.01)
+    due.pace(rate, 1.01)
+    begun_s = 1.01
+    for k in range(1, 41):
+        if k not in {10, 11}:
+            due.take(20 + k, begun_s + k * period_s, begun_s + k * period_s + 0.01)
+    assert (tally.snapshots_received, tally.snapshots_missing) == (58, 2)
+    end_s = begun_s + 40 * period_s
+    due.pace(0.0, end_s)
+    due.take(61, 0.0, end_s + 30.0)  # a single step in a pause
+    due.finish(end_s + 60.0)
+    assert (tally.snapshots_received, tally.snapshots_missing) == (59, 2)
+
+
 @given(st.integers(1, 20_000))
 def test_long_gaps_are_counted_whole(ticks: int) -> None:
     """Ticks of a long gap are counted a second at a time; ages are right within a second."""

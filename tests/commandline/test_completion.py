@@ -56,6 +56,13 @@ def test_bash_offers_commands_options_and_choices(script: Path) -> None:
     assert set(offered_by_bash(script, "esplanade", "op", "preset", "")) >= {"apply", "import"}
     assert "--guard" in offered_by_bash(script, "esplanade", "op", "preset", "apply", "--g")
     assert "close" in offered_by_bash(script, "esplanade", "op", "door", "lobby", "c")
+    assert set(offered_by_bash(script, "esplanade", "op", "")) >= {
+        *("login", "logout", "watch", "people", "warn", "walk-out", "ban", "unban", "bans"),
+    }
+    assert set(offered_by_bash(script, "esplanade", "op", "watch", "")) >= {"events", "changes"}
+    assert "late_tick" in offered_by_bash(script, "esplanade", "op", "watch", "--kind", "l")
+    assert "address" in offered_by_bash(script, "esplanade", "op", "ban", "Eve", "--by", "a")
+    assert "--with-token" in offered_by_bash(script, "esplanade", "op", "login", "--w")
     assert "--verify" in offered_by_bash(script, "esplanade", "op", "audit", "--")
     assert "auditor" in offered_by_bash(script, "esplanade", "op", "user", "add", "--role", "a")
 

@@ -9,7 +9,9 @@ from typing import Any
 import pytest
 
 from esplanade.cli import main
-from tests.server.client import joined
+from esplanade.protocol import VERSION, CloseCode, NoticeCode
+from esplanade.protocol.messages import Hello, Notice
+from tests.server.client import Client, connected, joined
 from tests.server.conftest import Serving, room_file, serving, serving_assets
 from tests.server.console.operators import operator
 
@@ -37,6 +39,15 @@ def told(capsys: pytest.CaptureFixture[str]) -> Told:
 def _here(server: Any, token: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ESPLANADE_URL", f"http://127.0.0.1:{server.private_port}")
     monkeypatch.setenv("ESPLANADE_TOKEN", token)
+
+
+async def _notice(client: Client, code: NoticeCode) -> Notice:
+    """The next notice of a kind that somebody reads."""
+    while True:
+        found = await client.until(Notice)
+        assert isinstance(found, Notice)
+        if found.notice is code:
+            return found
 
 
 async def test_presets_go_to_files_and_come_back(
@@ -135,8 +146,51 @@ async def test_actors_doors_and_people(
         await told("pace", "9", code=2)
         await told("announce", "hello")
         await told("mark", "now")
-        async with joined(server.port, "Eve") as eve:
+
+
+async def test_people_are_warned_muted_sent_out_and_banned(
+    serving: Serving, told: Told, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with serving(actors=1) as server:
+        _here(server, (await operator(server, "mara", "moderator")).token, monkeypatch)
+        async with joined(server.port, "Eve") as eve, joined(server.port, "Ann") as ann:
+            shown = await told("people")
+            assert "Eve" in shown
+            assert str(ann.id) in shown
+            await told("announce", "The tour begins.", "--near", "actor-1", "--radius", "1000")
+            assert (await _notice(eve, NoticeCode.ANNOUNCEMENT)).text == "The tour begins."
+            await told("announce", "Up there", "--storey", "50", "--dry-run")
+            await told("warn", "Eve", "--text", "Please let others speak.")
+            assert (await _notice(eve, NoticeCode.WARNED)).text == "Please let others speak."
             await told("mute", "Eve", "--for", "1m", "--text", "a while")
+            assert "a while" in (await _notice(eve, NoticeCode.MUTED)).text
+            muted = json.loads(await told("people", "--json"))["people"]
+            assert {each["name"]: each["muted_s"] > 0 for each in muted} == {
+                "Eve": True,
+                "Ann": False,
+            }
             assert "nobody is called" in await told("mute", "Adam", code=1)
-            await told("kick", "Eve")
-            assert eve.id > 0
+            await told("walk-out", str(ann.id), "--text", "We are closing.")
+            assert "We are closing." in (await _notice(ann, NoticeCode.WALKED_OUT)).text
+            await told("ban", "Eve", "--for", "7d", "--by", "name", "--text", "No shouting.")
+            assert (await eve.last_words())[1] == CloseCode.BANNED
+        shown = await told("bans")
+        assert "name Eve" in shown
+        assert "No shouting." in shown
+        async with connected(server.port) as again:
+            await again.send(Hello(name="Eve", version=VERSION))
+            assert (await again.refusal())[1] == CloseCode.BANNED
+        await told("unban", "1")
+        assert "No shouting." not in await told("bans")
+        assert "over" in await told("bans", "--all")
+        async with joined(server.port, "Eve") as eve:
+            await told("kick", "Eve", "--text", "Come back tomorrow.")
+            assert (await eve.last_words())[1] == CloseCode.KICKED
+        await told("ban", "--name", "Ev*", "--for", "1h", "--note", "third time")
+        await told("ban", "--address", "192.0.2.0/24")
+        shown = await told("bans")
+        assert "name Ev*" in shown
+        assert "address 192.0.2.0/24" in shown
+        assert "for ever" in shown
+        await told("ban", code=2)
+        await told("ban", "--by", "name", "--address", "192.0.2.1", code=2)

@@ -3,6 +3,7 @@
 import asyncio
 import time
 
+from esplanade import bots
 from esplanade.protocol import VERSION, NoticeCode
 from esplanade.protocol.messages import Chat, ChatLine, Hello, Notice
 from esplanade.server.world.frame import Frame
@@ -23,6 +24,36 @@ async def told(client: Client) -> Notice:
     assert notice.text
     assert set(notice.arguments) == {"factor", "rate", "server_time"}
     return notice
+
+
+async def test_the_clock_of_a_bot_goes_at_the_pace(serving: Serving) -> None:
+    async with (
+        serving() as server,
+        bots.connect(f"ws://127.0.0.1:{server.port}") as bot,
+    ):
+        olga = await operator(server, "olga", "director")
+        for factor in (4.0, 0.25):
+            await pace(olga, factor=factor)
+            await _noticed(bot)
+            before, began_s = bot.server_time, time.monotonic()
+            await asyncio.sleep(0.5)
+            passed_s = bot.server_time - before
+            rate = passed_s / (time.monotonic() - began_s)
+            # A slow machine may have told of a lower rate meanwhile.
+            assert 0.1 * factor < rate < 1.05 * factor
+        await pace(olga, pause=True)
+        await _noticed(bot, NoticeCode.PAUSED)
+        stands = bot.server_time
+        await asyncio.sleep(0.1)
+        assert bot.server_time == stands
+
+
+async def _noticed(bot: bots.Bot, code: NoticeCode = NoticeCode.PACE) -> None:
+    """Wait until a bot is told of a pace."""
+    async with asyncio.timeout(PATIENCE_S):
+        async for event in bot.events():
+            if isinstance(event, Notice) and event.notice is code:
+                return
 
 
 async def test_in_a_pause_nobody_moves_and_nobody_is_lost(serving: Serving) -> None:

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from esplanade.server.accounts.identity import MACHINE
+from esplanade.server.audit.log import Filter
 from esplanade.server.console.schedules import Schedule
 from esplanade.server.store.location import Location
 from esplanade.server.store.sql_store import SqlStore, open_store
@@ -96,10 +97,18 @@ async def test_it_has_the_rights_of_its_account_at_that_moment(
         at.clock.pass_s(11)
         await at.until(lambda: _schedule(at).state == "refused")
         assert _schedule(at).faults[0]["code"] == "forbidden"
+        (told,) = [what for kind, what in at.told if kind == "schedule"]
+        assert (told["schedule"], told["outcome"], told["account"]) == ("s1", "refused", "olga")
+        assert told["faults"] == _schedule(at).faults
+        assert told["text"].startswith("schedule s1 could not be carried out: ")
         assert "main/a3" in world.zone.actors
         await directory.remove(MACHINE, "olga")
         at.clock.pass_s(10)
         await at.until(lambda: _schedule(at, "s2").state == "refused")
+        await at.until(lambda: not at.console.scheduler.busy)
+        page = await at.audit.page(Filter(command="schedule_refused"))
+        assert [row.target for row in page.rows] == ["schedule:s2", "schedule:s1"]
+        assert page.rows[1].body["faults"][0]["code"] == "forbidden"
         assert at.value("main/a1", "risk_weight") == 9.5
 
 
@@ -136,7 +145,13 @@ async def test_it_goes_on_after_a_restart_and_what_was_missed_is_told(
     clock.pass_s(200)
     async with open_store(Location.of(tmp_path)) as store, desk(world, store, clock) as at:
         assert _schedule(at, "s1").state == "missed"
-        assert _schedule(at, "s1").faults[0]["code"] == "missed"
+        (fault,) = _schedule(at, "s1").faults
+        assert (fault["code"], fault["arguments"]["now_us"]) == ("missed", clock())
+        await at.until(lambda: not at.console.scheduler.busy)
+        (told,) = [what for kind, what in at.told if kind == "schedule"]
+        assert (told["schedule"], told["outcome"], told["faults"]) == ("s1", "missed", [fault])
+        (row,) = (await at.audit.page(Filter(command="schedule_missed"))).rows
+        assert (row.target, row.outcome, row.body["faults"]) == ("schedule:s1", "missed", [fault])
         assert _schedule(at, "s2").state == "waiting"
         assert at.value("main/a1", "risk_weight") == 9.5
         assert len(list(at.console.scheduler.guards)) == 1

@@ -52,7 +52,7 @@ class AtOnce:
 @pytest.fixture
 def at_once(monkeypatch: pytest.MonkeyPatch) -> AtOnce:
     # Without the time that work takes there is no rest after it.
-    monkeypatch.setattr("esplanade.server.net.ground_work.perf_counter", lambda: 0.0)
+    monkeypatch.setattr("esplanade.server.net.ground_work.thread_time", lambda: 0.0)
     return AtOnce()
 
 
@@ -129,6 +129,31 @@ def test_work_that_fails_is_passed_over(at_once: AtOnce, monkeypatch: pytest.Mon
         broken.setattr(LayeredGrid, "prepare_door", fail)
         moves_of(trial, work, [[MoveDoor("gate", is_open=False)], [], []])
     assert {"gate": False} in moves_of(trial, work, [[]] * 20)
+
+
+def test_what_is_ahead_is_done_where_nothing_else_waits(at_once: AtOnce) -> None:
+    trial, done = gated(), list[str]()
+    ahead = [lambda name=name: done.append(name) for name in ("one", "two")]
+    work = GroundWork(trial.world, cast(ThreadPoolExecutor, at_once), ahead)
+    trial.world.doors.want("gate", is_open=False)
+    assert work.drain() == []
+    assert done == [], "the door comes first"
+    assert {"gate": False} in moves_of(trial, work, [[]] * 20)
+    assert done == ["one", "two"]
+
+
+def test_a_rest_after_what_is_ahead_holds_up_nothing_else(
+    at_once: AtOnce, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    trial, done = gated(), list[str]()
+    ahead = [lambda name=name: done.append(name) for name in ("one", "two")]
+    work = GroundWork(trial.world, cast(ThreadPoolExecutor, at_once), ahead)
+    seconds = count()
+    monkeypatch.setattr("esplanade.server.net.ground_work.thread_time", lambda: 60 * next(seconds))
+    moves_of(trial, work, [[]] * 10)
+    assert done == ["one"], "it rests for a minute"
+    assert {"gate": False} in moves_of(trial, work, [[MoveDoor("gate", is_open=False)], [], [], []])
+    assert done == ["one"]
 
 
 def populated() -> tuple[Zone, Population]:
