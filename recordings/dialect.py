@@ -11,6 +11,8 @@ _NUMBER: Final = re.compile(
 )
 _COMMA_NUMBER: Final = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?")
 _SEPARATOR_LINE: Final = re.compile(r"sep=(.)", re.IGNORECASE)
+_RULE: Final = frozenset("|-+:= \t")
+_MINUS: Final = "\N{MINUS SIGN}"
 COMMENTS: Final = ("#", "//", "%", "*")
 
 
@@ -35,7 +37,9 @@ class Dialect(NamedTuple):
         return lambda text: _by(text, str(self.delimiter))
 
     def plain(self, cell: str) -> str:
-        """The cell with a decimal point."""
+        """The cell with a decimal point and the minus of ASCII."""
+        if cell.startswith(_MINUS):
+            cell = f"-{cell[1:]}"
         if self.decimal_comma and _COMMA_NUMBER.fullmatch(cell):
             return cell.replace(",", ".")
         return cell
@@ -63,7 +67,8 @@ def table_of(text: str) -> Table:
         if not stripped.strip():
             continue
         is_section = stripped.startswith("$") and ":" not in stripped  # of PTV's programs
-        if is_section or stripped.lstrip("\"'").startswith(COMMENTS):
+        is_rule = "--" in stripped and set(stripped) <= _RULE
+        if is_section or is_rule or stripped.lstrip("\"'").startswith(COMMENTS):
             comments.append(Line(number, stripped.strip().strip("\"'")))
         elif not lines and (found := _SEPARATOR_LINE.fullmatch(stripped.strip().strip('"'))):
             separator = found[1]

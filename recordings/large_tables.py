@@ -20,7 +20,7 @@ LARGE_BYTES: Final = 32 * 2**20
 MOST_BYTES: Final = 8 * 2**30
 _HEAD_BYTES: Final = 2**16
 _BLOCK_BYTES: Final = 2**18
-_PLAIN: Final = frozenset(("time", "frame", "id", "x", "y"))
+_PLAIN: Final = frozenset(("time", "frame", "id", "x", "y", "z"))
 
 
 class _Head(NamedTuple):
@@ -94,6 +94,8 @@ def read_large(path: Path) -> Rows | None:
         x=blocks["x"],
         y=blocks["y"],
         counts_frames=in_frames,
+        z=blocks.get("z"),
+        times_named=bool(units.get("time")),
         unit=unit,
         unit_from="as its header says" if unit else "",
     )

@@ -107,11 +107,19 @@ def warnings_of(
     *,
     unit_known: bool,
     rate_known: bool,
+    times_known: bool,
 ) -> tuple[str, ...]:
     """What is not as recordings of people are."""
     found = []
+    if np.isnan(median_mps):
+        found.append("nobody has two samples: nothing shows that these are people who walk")
     if not np.isnan(median_mps) and not WALKING_MPS[0] <= median_mps <= WALKING_MPS[1]:
         told = advice(median_mps, fps, unit_known=unit_known, rate_known=rate_known)
+        if not times_known and WALKING_MPS[0] <= 1e3 * median_mps <= WALKING_MPS[1]:
+            told = (
+                f"were its times milliseconds, people would walk at {1e3 * median_mps:.3g} m/s: "
+                "name that column t_ms, or give --columns, as in --columns t=NAME/ms,id=NAME,.."
+            )
         found.append(
             f"the median speed is {median_mps:.3g} m/s, people walk at {WALKING_MPS[0]} to "
             f"{WALKING_MPS[1]} m/s; {told}"

@@ -4,6 +4,7 @@ Each format is one module, which turns a file into rows with the file's own numb
 in seconds and metres, and the checks that apply to all recordings, are here.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
@@ -14,6 +15,7 @@ from esplanade.recordings.crowd import Crowd, Floats, Track
 from esplanade.recordings.errors import RecordingError
 from esplanade.recordings.formats import read_rows
 from esplanade.recordings.glitches import own_pace, sound_part
+from esplanade.recordings.meanings import on_the_ground, since_1970
 from esplanade.recordings.plausibility import (
     Report,
     advice,
@@ -23,7 +25,7 @@ from esplanade.recordings.plausibility import (
 )
 from esplanade.recordings.rates import Rate, frame_rate, likely_rates, pairs_of
 from esplanade.recordings.rows import Given, Rows, Whole
-from esplanade.recordings.units import MAX_METRES, PIXELS, UNITS
+from esplanade.recordings.units import DEGREES, MAX_METRES, PIXELS, UNITS
 
 MIN_STEP_S: Final = 1e-3
 """Two samples of one pedestrian that are closer in time than this count as simultaneous."""
@@ -39,11 +41,14 @@ def read_crowd(
     unit: str | None = None,
     scale: float | None = None,
     strict: bool = False,
+    columns: str | Sequence[str] = (),
 ) -> Crowd:
-    """Read the crowd of a recording; its `report` says how it was understood.
+    """Read the crowd of a recording, a file or a folder; its `report` says how it was understood.
 
     `fps` > 0 is the number of frame numbers in a second, for files that count frames and do not
     say it. `unit` is the unit of coordinates (`UNITS`), or `scale` the metres in one unit of them.
+    `columns` names the columns of a table, whatever its header says: a name for each, as in
+    `frame,id,,x/cm,y/cm`, or `role=name` for those that count, in a text or as a list.
     Samples that nobody can have been at are passed over; with `strict`, they are an error. Exact
     repeats and unsorted samples are forgiven. A pedestrian with a single sample becomes a track of
     zero duration.
@@ -55,19 +60,47 @@ def read_crowd(
         range or at two places, or nobody can have moved as it says.
     """
     path = Path(path)
-    given = Given(fps, unit, scale, strict)
-    rows = read_rows(path)
+    named = columns.split(",") if isinstance(columns, str) else columns
+    given = Given(fps, unit, scale, strict, tuple(name.strip() for name in named))
+    rows = _with_places(read_rows(path, given))
     if not len(rows.clock):
         raise RecordingError(path, "holds no samples of people, expected at least one")
     _check_finite(path, rows)
     metres, unit_source = _metres(path, rows, given)
-    rate = frame_rate(rows, given, metres) if rows.counts_frames else _seconds(given)
+    rows = on_the_ground(rows, metres)
+    if rows.counts_frames:
+        rate = frame_rate(rows, given, metres)
+    else:
+        rate = _seconds(given)
+        rows = since_1970(rows)
     if rate.fps is None:
         raise RecordingError(path, _no_rate(rows, metres))
     rows = replace(rows, clock=rows.clock / rate.fps, x=rows.x * metres, y=rows.y * metres)
     _check_range(path, rows, unit_known=bool(rows.unit or given.unit or given.scale))
     order, repeats = _in_order(path, rows)
     return _crowd(path, rows, order, repeats, given, rate, unit_source)
+
+
+def _with_places(rows: Rows) -> Rows:
+    """The samples that are somewhere: tables often have lines of people who are not seen."""
+    nowhere = np.isnan(rows.x) & np.isnan(rows.y)
+    count = int(np.count_nonzero(nowhere))
+    if not count:
+        return rows
+    there = ~nowhere
+    remark = f"{count} {'sample' if count == 1 else 'samples'} without a place are left out"
+    return replace(
+        rows,
+        lines=rows.lines[there],
+        who=rows.who[there],
+        clock=rows.clock[there],
+        x=rows.x[there],
+        y=rows.y[there],
+        velocities=None if rows.velocities is None else rows.velocities[there],
+        z=None if rows.z is None else rows.z[there],
+        remarks=(*rows.remarks, remark),
+        dropped=rows.dropped + count,
+    )
 
 
 def _name(path: Path) -> str:
@@ -96,6 +129,8 @@ def _metres(path: Path, rows: Rows, given: Given) -> tuple[float, str]:
     if given.unit is not None and given.unit not in UNITS:
         raise RecordingError(path, f"unit {given.unit!r} is none of {', '.join(UNITS)}")
     unit = given.unit or rows.unit
+    if unit == DEGREES:
+        return 1.0, "in degrees, made metres around their middle"
     if unit == PIXELS:
         raise RecordingError(
             path,
@@ -243,6 +278,7 @@ def _crowd(
         report.share_passed_over,
         unit_known=unit_known,
         rate_known=rate_known,
+        times_known=rows.counts_frames or rows.times_named,
     )
     return Crowd(_name(path), found, replace(report, warnings=(*rate.warnings, *warnings)))
 

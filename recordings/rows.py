@@ -21,13 +21,18 @@ class Given(NamedTuple):
     """What the reader of a file says about it, because the file does not, or says it wrongly.
 
     `fps` is the number of frame numbers in a second, `unit` the name of a unit of length, `scale`
-    the metres in one unit of the file. With `strict`, glitches are refused.
+    the metres in one unit of the file. With `strict`, glitches are refused. `columns` names the
+    columns of a table: a name for each, or `role=name` for those that count.
     """
 
     fps: float | None = None
     unit: str | None = None
     scale: float | None = None
     strict: bool = False
+    columns: tuple[str, ...] = ()
+
+
+AS_IT_SAYS: Final = Given()
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +41,7 @@ class Rows:
 
     `lines` (N,) is where each stands, `who` (N,) whose it is, an index into `ids`. `clock` (N,)
     is seconds or, if `counts_frames`, numbers of frames. `x` and `y` (N,) are in units of the
-    file, `velocities` (N, 2) in metres a second.
+    file.
     """
 
     format: str
@@ -48,6 +53,11 @@ class Rows:
     y: Floats
     counts_frames: bool = False
     velocities: Floats | None = None
+    """In metres a second, or in units of the file a second: which, is found by the rate."""
+    z: Floats | None = None
+    """What the file has beside `x` and `y`: heights, unless the file has `y` for the height."""
+    times_named: bool = False
+    """Whether the file says in which unit its times are."""
     fps: float | None = None
     """Frames a second, as the file says."""
     samples_per_s: float | None = None

@@ -28,6 +28,7 @@ def check(options: Namespace) -> int:
             unit=options.unit,
             scale=options.scale,
             strict=options.strict,
+            columns=options.columns or (),
         )
     except RecordingError as error:
         raise UsageError(str(error)) from None
@@ -61,6 +62,7 @@ def convert(options: Namespace) -> int:
             unit=options.unit,
             scale=options.scale,
             strict=options.strict,
+            columns=options.columns or (),
         )
         tell_recording(options.prog, str(options.recording), crowd.report)
         write_crowd(options.out, crowd, _provenance(options, crowd), options.hz)
