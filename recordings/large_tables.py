@@ -12,7 +12,7 @@ import numpy as np
 
 from esplanade.recordings.columns import Columns, find_columns
 from esplanade.recordings.dialect import dialect_of, table_of
-from esplanade.recordings.errors import RecordingError
+from esplanade.recordings.errors import MAX_FILE_BYTES, RecordingError
 from esplanade.recordings.rows import Floats, Rows, numbered_people
 from esplanade.recordings.units import FRAMES, length_named, time_named
 
@@ -20,6 +20,8 @@ LARGE_BYTES: Final = 32 * 2**20
 MOST_BYTES: Final = 8 * 2**30
 _HEAD_BYTES: Final = 2**16
 _BLOCK_BYTES: Final = 2**18
+_NOWHERE: Final = ["", "?", "NA", "N/A", "NaN", "nan", "null", "None", "none", "-"]
+_NEEDED: Final = ("time", "frame", "id")
 _PLAIN: Final = frozenset(("time", "frame", "id", "x", "y", "z"))
 
 
@@ -76,6 +78,8 @@ def read_large(path: Path) -> Rows | None:
         return None
     units = {role: unit for role, unit in columns.units.items() if unit}
     blocks = _blocks(path, reader, head.delimiter, head.header, columns.places)
+    if blocks is None:
+        return None
     ids, who = numbered_people(blocks.pop("id"))
     unit_s = time_named(units.get("time", ""))
     in_frames = "time" not in blocks or unit_s == FRAMES
@@ -103,8 +107,8 @@ def read_large(path: Path) -> Rows | None:
 
 def _blocks(
     path: Path, reader: Any, delimiter: str, header: list[str], places: dict[str, int]
-) -> dict[str, Floats]:
-    """The columns by role."""
+) -> dict[str, Floats] | None:
+    """The columns by role; None where they are not plain, and small enough for the other way."""
     pa: Any = import_module("pyarrow")
     names = [f"c{i}" for i in range(len(header))]
     used = {role: names[place] for role, place in places.items()}
@@ -116,18 +120,21 @@ def _blocks(
         "convert_options": reader.ConvertOptions(
             include_columns=list(used.values()),
             column_types=dict.fromkeys(used.values(), pa.float64()),
-            null_values=[],
-            strings_can_be_null=False,
+            null_values=_NOWHERE,
         ),
     }
     parts: dict[str, list[Floats]] = {role: [] for role in used}
     read = 1
     try:
         for batch in reader.open_csv(str(path), **options):
+            if any(batch.column(used[role]).null_count for role in used if role in _NEEDED):
+                raise pa.ArrowInvalid("a cell is empty")
             for role, name in used.items():
                 parts[role].append(batch.column(name).to_numpy(zero_copy_only=False))
             read += batch.num_rows
     except (pa.ArrowException, OSError) as error:
+        if path.stat().st_size <= MAX_FILE_BYTES:
+            return None  # read line by line, it may be readable, and its fault is named else
         fault = _first_fault(path, read, delimiter, header, places) or (f"{error}"[:300], None)
         raise RecordingError(path, *fault) from None
     return {role: np.concatenate(parts.pop(role)) for role in used}

@@ -101,12 +101,13 @@ def read_named(path: Path, table: Table, dialect: Dialect, named: Sequence[str])
     if columns.missing:
         told = " and ".join(columns.missing)
         raise RecordingError(path, f"--columns names no column for {told}")
-    if len(header) > len(first):
-        text = f"--columns names {len(header)} columns, but the line has {len(first)}"
-        raise RecordingError(path, text, table.lines[0].number)
     kept = table._replace(lines=table.lines[1:] if has_header else table.lines)
     if not kept.lines:
         raise RecordingError(path, "holds no samples, expected at least one")
+    width = len(dialect.cells(kept.lines[0].text))
+    if len(header) > width:
+        text = f"expected {len(header)} columns, as --columns names, not {width}"
+        raise RecordingError(path, text, kept.lines[0].number)
     return read_table(path, kept, dialect, header)
 
 

@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any, Final
 
-from esplanade.planning.scene.formats.text import decoded
+from esplanade.files.text import decoded
 from esplanade.scenery.plans.storey import Storey, library
 
 _METRES: Final = {1: 0.0254, 2: 0.3048, 4: 0.001, 5: 0.01, 6: 1.0, 10: 0.9144, 14: 0.1}
@@ -30,7 +30,7 @@ def read_dxf(data: bytes, name: str, layers: Sequence[str] = ()) -> Storey:
     path_of = library("ezdxf.path", "drawings in DXF").make_path
     disassemble = library("ezdxf.disassemble", "drawings in DXF").recursive_decompose
     try:
-        drawing = ezdxf.read(io.StringIO(decoded(data)))
+        drawing = ezdxf.read(io.StringIO(decoded(data, eight_bit=True).text))
     except (ezdxf.DXFError, ValueError) as error:
         raise ValueError(f"it is no DXF that can be read: {error}") from None
     storey = Storey(name)

@@ -6,7 +6,7 @@ import json
 import math
 from typing import Any, Final
 
-from esplanade.planning.scene.formats.text import decoded
+from esplanade.files.text import decoded
 from esplanade.scenery.plans.storey import Storey, library
 
 METRES_A_DEGREE: Final = 111_319.49
@@ -18,7 +18,11 @@ _MOST_DEGREES: Final = 0.02
 def read_wkt(data: bytes, name: str) -> Storey:
     """The storey of a text with one or more geometries, each in a line or over several."""
     shapely = library("shapely", "plans")
-    text = " ".join(line for line in decoded(data).split("\n") if not line.lstrip().startswith("#"))
+    text = " ".join(
+        line
+        for line in decoded(data, eight_bit=True).text.split("\n")
+        if not line.lstrip().startswith("#")
+    )
     storey = Storey(name)
     areas: list[Any] = []
     for number, part in enumerate(_geometries(text), 1):
@@ -53,7 +57,7 @@ def read_geojson(data: bytes, name: str) -> Storey:
     shapely = library("shapely", "plans")
     geometry_of = library("shapely.geometry", "plans").shape
     try:
-        content = json.loads(decoded(data, strict=True))
+        content = json.loads(decoded(data).text)
     except RecursionError:
         raise ValueError("its brackets are too deep") from None
     features = content.get("features", [content]) if isinstance(content, dict) else []

@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.planning.scene.formats.text import decoded
+from esplanade.files.text import decoded
 from esplanade.scenery.plans.storey import Storey, library
 
 MAX_PIXELS: Final = 16_000_000
@@ -26,7 +26,7 @@ def read_ros_map(path: Path, data: bytes) -> Storey:
     shapely = library("shapely", "plans")
     yaml = library("yaml", "ROS maps")
     try:
-        content = yaml.safe_load(decoded(data, strict=True))
+        content = yaml.safe_load(decoded(data).text)
     except (yaml.YAMLError, RecursionError) as error:
         raise ValueError(f"it is no YAML: {error}") from None
     if not isinstance(content, dict) or "image" not in content:

@@ -9,8 +9,8 @@ from typing import Final
 
 import numpy as np
 
+from esplanade.files.text import decoded, shown
 from esplanade.planning.scene.formats.faces import Faces
-from esplanade.planning.scene.formats.text import decoded, shown
 
 MAX_ELEMENTS: Final = 15_000_000
 """Most corners of all faces, and most numbers of all vertices."""
@@ -42,7 +42,7 @@ def read_obj(data: bytes) -> Faces:
     numbers, corners, sizes = array("d"), array("q"), array("q")
     lines_of_faces = array("q")
     passed: Counter[str] = Counter()
-    for line, words in _statements(decoded(data)):
+    for line, words in _statements(decoded(data, eight_bit=True).text):
         key = words[0]
         if key == "v":
             _add_vertex(line, words, numbers)

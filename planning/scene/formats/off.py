@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
+from esplanade.files.text import decoded, shown
 from esplanade.planning.scene.formats.faces import Faces
-from esplanade.planning.scene.formats.text import decoded, shown
 
 HEADERS: Final = ("OFF", "COFF", "NOFF", "CNOFF", "STOFF", "STCOFF", "STNOFF", "STCNOFF")
 
@@ -20,7 +20,7 @@ def read_off(data: bytes) -> Faces:
     ValueError
         The file is none of OFF, with the number of the line.
     """
-    lines = _lines(decoded(data))
+    lines = _lines(decoded(data, eight_bit=True).text)
     number, words = next(lines, (1, []))
     if not words or words[0].upper() not in HEADERS:
         raise ValueError(f"line {number}: a file of OFF begins with 'OFF', and is text")

@@ -7,8 +7,8 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.files.text import shown
 from esplanade.planning.scene.formats.faces import Faces
-from esplanade.planning.scene.formats.text import shown
 
 _TYPES: Final = {
     **dict.fromkeys(("char", "int8"), "i1"),
@@ -46,6 +46,7 @@ def read_ply(data: bytes) -> Faces:
     ValueError
         The file is none of PLY, or ends too early.
     """
+    data = data.removeprefix(b"\xef\xbb\xbf")
     end = data.find(b"end_header", 0, _MAX_HEADER_BYTES)
     line_end = data.find(b"\n", end)
     if end < 0 or line_end < 0:
