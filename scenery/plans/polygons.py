@@ -10,6 +10,8 @@ from esplanade.files.text import decoded
 from esplanade.scenery.plans.storey import Storey, library
 
 METRES_A_DEGREE: Final = 111_319.49
+STAIRS: Final = ("stairs", "stair", "steps", "staircase")
+_WIDTH_M: Final = 1.5
 _WRONG: Final = (AttributeError, KeyError, TypeError, IndexError, ValueError)
 _MOST_DEGREES: Final = 0.02
 """Plans that measure less and lie within the degrees of the earth are degrees, as GeoJSON says."""
@@ -92,6 +94,29 @@ def read_geojson(data: bytes, name: str) -> Storey:
     return storey
 
 
+def _take_polygon(geometry: Any, kind: str, storey: Storey, areas: list[Any]) -> None:
+    if not geometry.is_valid:
+        raise ValueError(f"a polygon crosses itself near {geometry.centroid.wkt}")
+    if kind in ("obstacle", "wall", "building", "furniture", "solid"):
+        for ring in (geometry.exterior, *geometry.interiors):
+            storey.add_path([(x, y) for x, y, *_ in ring.coords])
+        return
+    areas.append(geometry)
+    if kind in STAIRS:
+        storey.remarks.append(
+            "an area of stairs is taken as level: a line from foot to head is a flight"
+        )
+
+
+def _width(properties: Any) -> float:
+    """The width of a flight, metres."""
+    try:
+        width = float(properties.get("width_m", properties.get("width", _WIDTH_M)))
+    except (TypeError, ValueError):
+        return _WIDTH_M
+    return width if 0.3 <= width <= 100.0 else _WIDTH_M
+
+
 def _take(geometry: Any, properties: Any, storey: Storey, areas: list[Any]) -> None:
     """Add a geometry to a storey by its type, and by `kind`, `type` or `class` of it."""
     kind = next(
@@ -100,16 +125,12 @@ def _take(geometry: Any, properties: Any, storey: Storey, areas: list[Any]) -> N
     name = str(properties.get("name", ""))
     match geometry.geom_type:
         case "Polygon":
-            if not geometry.is_valid:
-                raise ValueError(f"a polygon crosses itself near {geometry.centroid.wkt}")
-            if kind in ("obstacle", "wall", "building", "furniture", "solid"):
-                for ring in (geometry.exterior, *geometry.interiors):
-                    storey.add_path([(x, y) for x, y, *_ in ring.coords])
-            else:
-                areas.append(geometry)
+            _take_polygon(geometry, kind, storey, areas)
         case "LineString" | "LinearRing":
             points = [(x, y) for x, y, *_ in geometry.coords]
-            if kind == "door":
+            if kind in STAIRS:
+                storey.stairs.append(((points[0], points[-1]), _width(properties)))
+            elif kind == "door":
                 number = len(storey.doors) + 1
                 storey.doors.append((name or f"door {number}", (points[0], points[-1])))
             else:
