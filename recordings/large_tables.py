@@ -4,6 +4,7 @@ Only what is sure to mean the same is read so: a header in the first line, one d
 comma, people with whole numbers. All else is read line by line, as far as that is bounded.
 """
 
+from collections.abc import Collection, Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -13,7 +14,7 @@ import numpy as np
 from esplanade.recordings.columns import Columns, find_columns
 from esplanade.recordings.dialect import dialect_of, table_of
 from esplanade.recordings.errors import MAX_FILE_BYTES, RecordingError
-from esplanade.recordings.rows import Floats, Rows, numbered_people
+from esplanade.recordings.rows import Rows, numbered_people
 from esplanade.recordings.units import FRAMES, length_named, time_named
 
 LARGE_BYTES: Final = 32 * 2**20
@@ -77,7 +78,7 @@ def read_large(path: Path) -> Rows | None:
     except ImportError:
         return None
     units = {role: unit for role, unit in columns.units.items() if unit}
-    blocks = _blocks(path, reader, head.delimiter, head.header, columns.places)
+    blocks = _blocks(path, reader, head.delimiter, head.header, columns.places, ("id",))
     if blocks is None:
         return None
     ids, who = numbered_people(blocks.pop("id"))
@@ -91,7 +92,7 @@ def read_large(path: Path) -> Rows | None:
     unit = length_named(units.get("x", ""))
     return Rows(
         format="table with named columns",
-        lines=np.arange(2, len(who) + 2),
+        lines=np.arange(2, len(who) + 2, dtype=np.int32),
         ids=ids,
         who=who,
         clock=clock,
@@ -106,12 +107,21 @@ def read_large(path: Path) -> Rows | None:
 
 
 def _blocks(
-    path: Path, reader: Any, delimiter: str, header: list[str], places: dict[str, int]
-) -> dict[str, Floats] | None:
-    """The columns by role; None where they are not plain, and small enough for the other way."""
+    path: Path,
+    reader: Any,
+    delimiter: str,
+    header: list[str],
+    places: dict[str, int],
+    whole: Collection[str],
+) -> dict[str, Any] | None:
+    """The columns by role; None where they are not plain, and small enough for the other way.
+
+    Those that are `whole` are read as whole numbers, and once more as others where they are not.
+    """
     pa: Any = import_module("pyarrow")
     names = [f"c{i}" for i in range(len(header))]
     used = {role: names[place] for role, place in places.items()}
+    kinds = {role: pa.int32() if role in whole else pa.float64() for role in used}
     options = {
         "read_options": reader.ReadOptions(
             use_threads=False, block_size=_BLOCK_BYTES, column_names=names, skip_rows=1
@@ -119,25 +129,54 @@ def _blocks(
         "parse_options": reader.ParseOptions(delimiter=delimiter),
         "convert_options": reader.ConvertOptions(
             include_columns=list(used.values()),
-            column_types=dict.fromkeys(used.values(), pa.float64()),
+            column_types={name: kinds[role] for role, name in used.items()},
             null_values=_NOWHERE,
         ),
     }
-    parts: dict[str, list[Floats]] = {role: [] for role in used}
-    read = 1
+    room = _rows_at_most(path)
+    found = _columns(used, kinds, room)
+    count = 0
     try:
         for batch in reader.open_csv(str(path), **options):
             if any(batch.column(used[role]).null_count for role in used if role in _NEEDED):
                 raise pa.ArrowInvalid("a cell is empty")
+            end = count + batch.num_rows
+            if end > room:
+                # Lines further on are shorter than those that were looked at.
+                room = end + room // 4
+                grown = _columns(used, kinds, room)
+                for role, column in found.items():
+                    grown[role][:count] = column[:count]
+                found = grown
             for role, name in used.items():
-                parts[role].append(batch.column(name).to_numpy(zero_copy_only=False))
-            read += batch.num_rows
+                found[role][count:end] = batch.column(name).to_numpy(zero_copy_only=False)
+            count = end
     except (pa.ArrowException, OSError) as error:
+        if whole:
+            return _blocks(path, reader, delimiter, header, places, ())
         if path.stat().st_size <= MAX_FILE_BYTES:
             return None  # read line by line, it may be readable, and its fault is named else
-        fault = _first_fault(path, read, delimiter, header, places) or (f"{error}"[:300], None)
+        fault = _first_fault(path, count + 1, delimiter, header, places) or (f"{error}"[:300], None)
         raise RecordingError(path, *fault) from None
-    return {role: np.concatenate(parts.pop(role)) for role in used}
+    return {role: column[:count] for role, column in found.items()}
+
+
+def _columns(used: Collection[str], kinds: Mapping[str, Any], room: int) -> dict[str, Any]:
+    """Columns of so many rows; x and y are those of one array, as places are kept."""
+    places = np.empty((room, 2))
+    made: dict[str, Any] = {"x": places[:, 0], "y": places[:, 1]}
+    others = (role for role in used if role not in made)
+    return made | {role: np.empty(room, kinds[role].to_pandas_dtype()) for role in others}
+
+
+def _rows_at_most(path: Path) -> int:
+    """About as many lines as the file has, judged by lines at its beginning and at its end."""
+    size = path.stat().st_size
+    with path.open("rb") as file:
+        lines = file.read(_HEAD_BYTES).count(b"\n")
+        file.seek(max(0, size - _HEAD_BYTES))
+        lines = max(lines, file.read(_HEAD_BYTES).count(b"\n"))
+    return int(1.03 * (lines + 1) * max(1.0, size / _HEAD_BYTES)) + 16
 
 
 def _first_fault(

@@ -20,7 +20,9 @@ _TIMES_FLATTER: Final = 10.0
 
 def since_1970(rows: Rows) -> Rows:
     """Seconds, where times without a unit are so great that they can only count parts of them."""
-    middle = float(np.median(rows.clock)) if len(rows.clock) and not rows.times_named else 0.0
+    if rows.times_named or not rows.clock.max() > _SINCE_1970[-1][0]:
+        return rows
+    middle = float(np.median(rows.clock))
     for least, part_s, name in _SINCE_1970:
         if middle > least:
             remark = f"times are read as {name} since 1970, by their size"

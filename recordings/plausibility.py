@@ -1,12 +1,10 @@
 """What a recording says of itself in one line, and what of it cannot be meant."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 
-from esplanade.recordings.crowd import Track
 from esplanade.recordings.glitches import FASTEST_MPS
 from esplanade.recordings.rates import WALKING_MPS, likely_rates
 
@@ -56,19 +54,6 @@ class Report:
             share = f"{share} ({self.passed_over} glitch{'es' if self.passed_over > 1 else ''})"
         source = f"{self.format}, {self.rate}, {self.unit}"
         return f"{count}, {self.seconds:.6g} s, {pace}, {share}; {source}"
-
-
-def measured(tracks: Sequence[Track]) -> tuple[float, float]:
-    """The most common time of a sample, s, and the median speed over all steps, m/s."""
-    gaps = [np.diff(track.times) for track in tracks if len(track.times) > 1]
-    if not gaps:
-        return 0.0, float("nan")
-    every = np.concatenate(gaps)
-    away = np.concatenate(
-        [np.hypot(*np.diff(t.positions, axis=0).T) for t in tracks if len(t.times) > 1]
-    )
-    steps, counts = np.unique(np.round(every, 4), return_counts=True)
-    return float(steps[np.argmax(counts)]), float(np.median(away / every))
 
 
 def beyond_meaning(median_mps: float) -> bool:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from esplanade.recordings.errors import RecordingError
 
 Floats = npt.NDArray[np.float64]
-Whole = npt.NDArray[np.int64]
+Whole = npt.NDArray[np.signedinteger]
 
 EXACT_WHOLE: Final = 2.0**53
 """Greater whole numbers are not told apart as floating-point numbers."""
@@ -113,16 +113,17 @@ def _close_people(numbers: Floats) -> tuple[list[str], Whole] | None:
     """The same, without sorting, where ids are whole and not far apart."""
     if not len(numbers):
         return None
-    with np.errstate(invalid="ignore"):
-        marks = numbers.astype(np.int64)
-    low, high = int(marks.min()), int(marks.max())
-    if high - low > 4 * len(marks) or not np.array_equal(marks, numbers):
+    low, high = float(numbers.min()), float(numbers.max())
+    if not high - low <= min(4 * len(numbers), 2**31 - 1) or not abs(low) < EXACT_WHOLE:
         return None
-    marks -= low
-    first = np.full(high - low + 1, -1, np.int64)
-    first[marks[::-1]] = np.arange(len(marks) - 1, -1, -1)
+    base = int(low)
+    marks = np.subtract(numbers, base, dtype=np.int32, casting="unsafe")
+    if numbers.dtype.kind == "f" and not np.array_equal(marks, numbers - base):
+        return None
+    first = np.full(int(high) - base + 1, -1, np.int32)
+    first[marks[::-1]] = np.arange(len(marks) - 1, -1, -1, dtype=np.int32)
     there = np.flatnonzero(first >= 0)
     there = there[np.argsort(first[there])]
     rank = first  # its values are not needed any more
     rank[there] = np.arange(len(there))
-    return [str(mark + low) for mark in there.tolist()], rank[marks]
+    return [str(mark + base) for mark in there.tolist()], rank[marks]
