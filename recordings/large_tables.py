@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from esplanade.recordings.columns import Columns, find_columns
-from esplanade.recordings.dialect import dialect_of, table_of
+from esplanade.recordings.dialect import COMMENTS, dialect_of, table_of
 from esplanade.recordings.errors import MAX_FILE_BYTES, RecordingError
 from esplanade.recordings.rows import Rows, numbered_people
 from esplanade.recordings.units import FRAMES, length_named, time_named
@@ -154,10 +154,10 @@ def _blocks(
     except (pa.ArrowException, OSError) as error:
         if whole:
             return _blocks(path, reader, delimiter, header, places, ())
-        if path.stat().st_size <= MAX_FILE_BYTES:
-            return None  # read line by line, it may be readable, and its fault is named else
-        fault = _first_fault(path, count + 1, delimiter, header, places) or (f"{error}"[:300], None)
-        raise RecordingError(path, *fault) from None
+        fault = _first_fault(path, count + 1, delimiter, header, places)
+        if fault is None and path.stat().st_size <= MAX_FILE_BYTES:
+            return None
+        raise RecordingError(path, *(fault or (f"{error}"[:300], None))) from None
     return {role: column[:count] for role, column in found.items()}
 
 
@@ -182,13 +182,18 @@ def _rows_at_most(path: Path) -> int:
 def _first_fault(
     path: Path, read: int, delimiter: str, header: list[str], places: dict[str, int]
 ) -> tuple[str, int] | None:
-    """What is wrong, and in which line, looked for from the line after those that were read."""
+    """What is wrong, and in which line, looked for from the line after those that were read.
+
+    None where the other way of reading forgives it: comments, headers once more, times of day.
+    """
     count = len(header)
     with path.open(encoding="utf-8", errors="replace") as file:
         for number, text in enumerate(file, start=1):
             if number <= read or not text.strip():
                 continue
             cells = text.rstrip("\r\n").split(delimiter)
+            if text.lstrip().startswith(COMMENTS) or cells == header:
+                return None
             if len(cells) != count:
                 return f"expected {count} columns {','.join(header)}, not {len(cells)}", number
             for place in places.values():
@@ -196,5 +201,7 @@ def _first_fault(
                 try:
                     float(cell)
                 except ValueError:
+                    if not cell or ":" in cell or '"' in text:
+                        return None
                     return f"{header[place]} is {cell!r:.40}, expected a number", number
     return None
