@@ -2,6 +2,7 @@
 
 import codecs
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -16,6 +17,7 @@ _MARKS: Final = (
 )
 _HEAD_BYTES: Final = 4096
 _LOOKED_AT: Final = 1024
+MAX_LINES: Final = 8_000_000
 _CONTROLS: Final = re.compile(rb"[\x00-\x08\x0e-\x1a\x1c-\x1f]")
 """Bytes that no text in eight bits holds."""
 
@@ -72,6 +74,27 @@ def shown(line: str) -> str:
     """A line as messages quote it: short, and without control characters."""
     text = " ".join(line.split())
     return repr(text if len(text) <= 40 else text[:39] + "…")
+
+
+def check_lines(text: str, most: int = MAX_LINES) -> None:
+    """Check that a text has no more lines than are gone through in some seconds.
+
+    Raises
+    ------
+    ContentError
+        It has more.
+    """
+    if len(text) > most and text.count("\n") > most:
+        raise ContentError(f"has more than {most} lines, the most that is read")
+
+
+def lines_of(text: str) -> Iterator[str]:
+    """The lines of a text one by one, without a list of all of them."""
+    begin = 0
+    while (end := text.find("\n", begin)) >= 0:
+        yield text[begin:end]
+        begin = end + 1
+    yield text[begin:]
 
 
 def _encoding(content: bytes) -> str:

@@ -16,6 +16,9 @@ from esplanade.recordings.units import FRAMES, length_named, time_named
 PARQUET: Final = b"PAR1"
 HDF5: Final = b"\x89HDF\r\n\x1a\n"
 MOST_SAMPLES: Final = 100_000_000
+MOST_SAMPLES_A_BYTE: Final = 2
+_FEW_SAMPLES: Final = 200_000
+_MOST_ROW_BYTES: Final = 4096
 
 
 def read_parquet(path: Path, content: bytes, named: Sequence[str] = ()) -> Rows:
@@ -29,7 +32,7 @@ def read_parquet(path: Path, content: bytes, named: Sequence[str] = ()) -> Rows:
     pq = _library(path, "pyarrow.parquet", "Parquet", "pyarrow")
     try:
         file = pq.ParquetFile(io.BytesIO(content))
-        _check_count(path, file.metadata.num_rows)
+        _check_count(path, file.metadata.num_rows, len(content))
         names = list(file.schema_arrow.names)
         columns = _columns(path, names, named)
         table = file.read(columns=[names[place] for place in columns.places.values()])
@@ -56,7 +59,7 @@ def read_hdf5(path: Path, content: bytes, named: Sequence[str] = ()) -> Rows:
     h5py = _library(path, "h5py", "HDF5", "h5py")
     try:
         with h5py.File(io.BytesIO(content), "r") as file:
-            held = _data_set(path, file)
+            held = _data_set(path, file, len(content))
             names = list(held.dtype.names or ())
             columns = _columns(path, names, named)
             found = {role: np.asarray(held[names[p]]) for role, p in columns.places.items()}
@@ -68,16 +71,20 @@ def read_hdf5(path: Path, content: bytes, named: Sequence[str] = ()) -> Rows:
     return _rows(path, "Jülich HDF5", columns, found, _rate(path, fps), "m")
 
 
-def _check_count(path: Path, count: int) -> None:
-    if count > MOST_SAMPLES:
-        raise RecordingError(path, f"has {count} samples, {MOST_SAMPLES} are possible")
+def _check_count(path: Path, count: int, size: int) -> None:
+    """Refuse what would fill the memory: places of people take some bytes, however packed."""
+    most = min(MOST_SAMPLES, MOST_SAMPLES_A_BYTE * size + _FEW_SAMPLES)
+    if count > most:
+        raise RecordingError(path, f"has {count} samples in {size} bytes, {most} are possible")
 
 
-def _data_set(path: Path, file: Any) -> Any:
+def _data_set(path: Path, file: Any, size: int) -> Any:
     held = file.get("trajectory")
     if held is None or not getattr(held, "shape", None) or held.dtype.names is None:
         raise RecordingError(path, "is an HDF5 file without a table `trajectory`")
-    _check_count(path, held.shape[0])
+    _check_count(path, held.shape[0], size)
+    if len(held.shape) != 1 or held.dtype.itemsize > _MOST_ROW_BYTES:
+        raise RecordingError(path, "its table `trajectory` is no list of samples")
     return held
 
 

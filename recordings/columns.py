@@ -49,6 +49,7 @@ _DEGREES: Final = frozenset(("lon", "long", "lng", "longitude"))
 _BRACKETS: Final = re.compile(r"(.*?)\s*[\[({<]\s*([^\])}>]*?)\s*[\])}>]\s*")
 _SLASH: Final = re.compile(r"(.*?)\s*/\s*([^\s/]+)")
 _TAIL: Final = re.compile(r"(.*?)[_\s.]+(?:in[_\s.]+)?([a-zµμ]+)")
+_MOST_OF_A_NAME: Final = 100
 _NO_TAILS: Final = ("min", "h")
 """What ends a name like x_min is no unit."""
 _VADERE: Final = re.compile(r"-PID\d+$", re.IGNORECASE)
@@ -77,7 +78,9 @@ class Columns(NamedTuple):
 
 def name_of(cell: str) -> Name:
     """The name in a cell of a header."""
-    text = _VADERE.sub("", cell.strip().strip("\"'").strip().lstrip("#$*% ").rpartition(":")[2])
+    text = _VADERE.sub(
+        "", cell[:_MOST_OF_A_NAME].strip().strip("\"'").strip().lstrip("#$*% ").rpartition(":")[2]
+    )
     stem, unit = text, ""
     for form in (_BRACKETS, _SLASH, _TAIL):
         found = form.fullmatch(text.lower() if form is _TAIL else text)

@@ -4,6 +4,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
+from esplanade.files.content import ContentError
+from esplanade.files.text import check_lines
 from esplanade.recordings.annotations import looks_annotated, read_annotated
 from esplanade.recordings.bare_format import read_bare
 from esplanade.recordings.columnar_format import HDF5, PARQUET, read_hdf5, read_parquet
@@ -40,6 +42,9 @@ READABLE: Final = (
 MAX_NUMBERS_BYTES: Final = 2**31
 """Files of numbers are smaller in memory than texts."""
 
+MOST_LINES: Final = 4_000_000
+LARGE_CHARACTERS: Final = 4 * 2**20
+MOST_OF_A_LINE: Final = 65_536
 _OTHERS: Final = {
     b"PK\x03\x04": "is a ZIP archive or a spreadsheet: unpack it, or save it as CSV",
     b"%PDF": "is a PDF file",
@@ -84,6 +89,7 @@ def _read_file(path: Path, given: Given) -> Rows:
 
 
 def _read_text(path: Path, text: str, given: Given) -> Rows:
+    _check_bounds(path, text, given)
     start = text[:200].lstrip()
     if start.startswith(("{", "[")):
         return read_json(path, text, given.columns)
@@ -100,7 +106,26 @@ def _read_text(path: Path, text: str, given: Given) -> Rows:
     return read_lists(path, table) if looks_like_lists(table) else _read_cells(path, table, given)
 
 
+def _check_bounds(path: Path, text: str, given: Given) -> None:
+    """Refuse texts that would fill the memory, and large ones that begin as no table does."""
+    try:
+        check_lines(text, MOST_LINES)
+    except ContentError as error:
+        why = f"{error} where it is no plain CSV, or pyarrow is not installed"
+        raise RecordingError(path, why) from None
+    if len(text) <= LARGE_CHARACTERS or text[:200].lstrip().startswith(("{", "[", "<")):
+        return
+    if text.find("\n", 0, MOST_OF_A_LINE) < 0:
+        raise RecordingError(path, f"has more than {MOST_OF_A_LINE} characters in a line", 1)
+    # What is wrong with the beginning of a large file is found before all of it is taken apart.
+    _read_text(path, text[: text.rindex("\n", 0, 4 * MOST_OF_A_LINE)], given)
+
+
 def _read_cells(path: Path, table: Table, given: Given) -> Rows:
+    long = next((line for line in table.lines if len(line.text) > MOST_OF_A_LINE), None)
+    if long is not None:
+        fault = f"has more than {MOST_OF_A_LINE} characters in a line"
+        raise RecordingError(path, fault, long.number)
     dialect = dialect_of(table)
     if given.columns:
         return read_named(path, table, dialect, given.columns)

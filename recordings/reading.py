@@ -29,6 +29,7 @@ from esplanade.recordings.units import DEGREES, MAX_METRES, PIXELS, UNITS
 MIN_STEP_S: Final = 1e-3
 """Two samples of one pedestrian that are closer in time than this count as simultaneous."""
 
+MOST_PEOPLE: Final = 500_000
 MAX_SECONDS: Final = 1e10
 """Times beyond this, either way, are taken for errors of the file."""
 
@@ -64,6 +65,9 @@ def read_crowd(
     rows = _with_places(read_rows(path, given))
     if not len(rows.clock):
         raise RecordingError(path, "holds no samples of people, expected at least one")
+    if len(rows.ids) > MOST_PEOPLE:
+        fault = f"has {len(rows.ids)} people, {MOST_PEOPLE} are possible: is that column their id?"
+        raise RecordingError(path, fault)
     _check_finite(path, rows)
     metres, unit_source = _metres(path, rows, given)
     rows = on_the_ground(rows, metres)

@@ -13,6 +13,7 @@ from esplanade.recordings.errors import RecordingError
 Floats = npt.NDArray[np.float64]
 Whole = npt.NDArray[np.signedinteger]
 
+_MOST_DIGITS: Final = 400
 EXACT_WHOLE: Final = 2.0**53
 """Greater whole numbers are not told apart as floating-point numbers."""
 
@@ -82,7 +83,7 @@ def number(path: Path, line: int, column: str, text: str) -> float:
         The text is not a number.
     """
     try:
-        if "_" not in text:
+        if "_" not in text and len(text) <= _MOST_DIGITS:
             return float(text)
     except ValueError:
         pass

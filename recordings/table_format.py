@@ -15,7 +15,7 @@ from esplanade.recordings.errors import RecordingError
 from esplanade.recordings.rows import Floats, Rows
 from esplanade.recordings.units import FRAMES, length_named, length_said, time_named
 
-_NUMBER: Final = r"([-+]?[\d.]+(?:e[-+]?\d+)?)"
+_NUMBER: Final = r"([-+]?[\d.]{1,20}(?:e[-+]?\d{1,3})?)"
 _RATES: Final = (
     re.compile(rf"\b(?:frame\s*_?rate|fps)\b[^\d+-]{{0,20}}{_NUMBER}", re.IGNORECASE),
     re.compile(

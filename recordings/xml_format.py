@@ -11,6 +11,8 @@ from esplanade.recordings.errors import RecordingError
 from esplanade.recordings.rows import Rows, number, people
 from esplanade.recordings.units import PIXELS
 
+MOST_IDLE: Final = 20_000
+"""So many elements without a person in them are of something else."""
 _FRAMES_A_SECOND: Final = {"dataset": (7.0, "as PETS has")}
 """By the root of the annotations."""
 
@@ -53,10 +55,16 @@ class _Reader:
         self._lines: list[int] = []
         self._samples: list[tuple[float, float, float]] = []
         self._boxes = False
+        self._idle = 0
 
     def start(self, tag: str, has: dict[str, str]) -> None:
         """Take in the beginning of an element."""
         self._root = self._root or tag
+        self._idle += 1
+        if self._idle > MOST_IDLE:
+            raise RecordingError(
+                self.path, f"is XML with the root <{self._root:.40}> and without people"
+            )
         self._open = tag
         match tag:
             case "frame" if has:
@@ -118,6 +126,7 @@ class _Reader:
     def _add(self, name: str, x: float, y: float) -> None:
         if not name:
             raise RecordingError(self.path, "a person has no id", self.line())
+        self._idle = 0
         self._names.append(name)
         self._lines.append(self.line())
         self._samples.append((self._frame or 0.0, x, y))

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from typing import Any, Final
 
 from esplanade.files.text import decoded
 from esplanade.scenery.plans.storey import Storey, library
 
 METRES_A_DEGREE: Final = 111_319.49
+MAX_VALUES: Final = 3_000_000
 STAIRS: Final = ("stairs", "stair", "steps", "staircase")
 _WIDTH_M: Final = 1.5
 _WRONG: Final = (AttributeError, KeyError, TypeError, IndexError, ValueError)
@@ -40,10 +42,11 @@ def read_wkt(data: bytes, name: str) -> Storey:
 def _geometries(text: str) -> list[str]:
     """The geometries of a text, each with its brackets."""
     found, depth, start = [], 0, 0
-    for place, letter in enumerate(text):
-        if letter == "(":
+    for bracket in re.finditer(r"[()]", text):
+        place = bracket.start()
+        if bracket.group() == "(":
             depth += 1
-        elif letter == ")":
+        else:
             depth -= 1
             if depth == 0:
                 part = text[start : place + 1].strip(" ;,\t")
@@ -58,6 +61,8 @@ def read_geojson(data: bytes, name: str) -> Storey:
     """The storey of a GeoJSON file; coordinates in degrees become metres around its middle."""
     shapely = library("shapely", "plans")
     geometry_of = library("shapely.geometry", "plans").shape
+    if sum(data.count(mark) for mark in (b",", b"[", b"{")) > MAX_VALUES:
+        raise ValueError(f"it has more than {MAX_VALUES} values")
     try:
         content = json.loads(decoded(data).text)
     except RecursionError:

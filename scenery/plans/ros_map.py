@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from esplanade.files.text import decoded
 from esplanade.scenery.plans.storey import Storey, library
 
+MAX_YAML_BYTES: Final = 65_536
+MAX_RUNS: Final = 200_000
 MAX_PIXELS: Final = 16_000_000
 
 
@@ -25,6 +27,8 @@ def read_ros_map(path: Path, data: bytes) -> Storey:
     """
     shapely = library("shapely", "plans")
     yaml = library("yaml", "ROS maps")
+    if len(data) > MAX_YAML_BYTES:
+        raise ValueError(f"it has more than {MAX_YAML_BYTES} bytes, which no map has")
     try:
         content = yaml.safe_load(decoded(data).text)
     except (yaml.YAMLError, RecursionError) as error:
@@ -80,5 +84,7 @@ def _boxes(free: NDArray[np.bool_], size: float) -> NDArray[Any]:
     edges = np.diff(np.pad(free.astype(np.int8), ((0, 0), (1, 1))), axis=1)
     rows, begins = np.nonzero(edges == 1)
     _, ends = np.nonzero(edges == -1)
+    if len(rows) > MAX_RUNS:
+        raise ValueError(f"its free pixels are torn into {len(rows)} runs, {MAX_RUNS} are possible")
     boxes: NDArray[Any] = shapely.box(begins * size, rows * size, ends * size, (rows + 1) * size)
     return boxes

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -177,7 +178,10 @@ def _row_by_row(
 
 
 def _ascii(body: bytes, elements: list[_Element]) -> dict[str, dict[str, Any]]:
-    words = iter(body.decode("latin-1").split())
+    least = sum(element.length * max(1, len(element.properties)) for element in elements)
+    if 2 * least > len(body) + 1:
+        raise ValueError(f"it ends before its {least} numbers")
+    words = (found.group() for found in re.finditer(rb"\S+", body))
     found: dict[str, dict[str, Any]] = {}
     try:
         for element in elements:

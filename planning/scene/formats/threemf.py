@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 import zipfile
+from array import array
 from collections import Counter
 from pathlib import PurePosixPath
 from typing import Final
@@ -15,10 +16,11 @@ from numpy.typing import NDArray
 
 from esplanade.planning.scene.formats.faces import Triangles
 
-MAX_UNPACKED_BYTES: Final = 256 * 2**20
-MAX_RATIO: Final = 200
+MAX_UNPACKED_BYTES: Final = 160 * 2**20
+MAX_RATIO: Final = 60
 """Text packs to a twentieth at best; an archive that grows more is meant to fill a memory."""
 MAX_TRIANGLES: Final = 5_000_000
+MAX_THINGS: Final = 5_000
 MAX_DEPTH: Final = 32
 _UNITS: Final = {
     "micron": 1e-6,
@@ -28,6 +30,7 @@ _UNITS: Final = {
     "foot": 0.3048,
     "meter": 1.0,
 }
+_EMPTY: Final = np.empty((0, 3, 3))
 _KNOWN: Final = re.compile(r"/(core|production|material|securecontent|triangleset)s?/")
 """Extensions that are read or change no geometry."""
 _MOST_RELATIONS_BYTES: Final = 2**16
@@ -38,8 +41,8 @@ class _Thing:
     """A mesh, or a group of other things."""
 
     def __init__(self) -> None:
-        self.numbers: list[float] = []
-        self.corners: list[int] = []
+        self.numbers = array("d")
+        self.corners = array("q")
         self.parts: list[tuple[tuple[str, str], _Floats]] = []
 
 
@@ -69,9 +72,9 @@ class _Model:
     def _start(self, tag: str, has: dict[str, str]) -> None:
         match tag.rpartition(":")[2]:
             case "vertex":
-                self._open.numbers += (float(has["x"]), float(has["y"]), float(has["z"]))
+                self._open.numbers.extend((float(has["x"]), float(has["y"]), float(has["z"])))
             case "triangle":
-                self._open.corners += (int(has["v1"]), int(has["v2"]), int(has["v3"]))
+                self._open.corners.extend((int(has["v1"]), int(has["v2"]), int(has["v3"])))
             case "model":
                 unit = has.get("unit", "millimeter")
                 if unit not in _UNITS:
@@ -165,8 +168,10 @@ def _show(
             raise ValueError("a triangle names a corner that is out of bounds")
         points = (vertices @ at[:3] + at[3])[corners]
         shown.append(points[:, ::-1] if np.linalg.det(at[:3]) < 0.0 else points)
-    if sum(map(len, shown)) > MAX_TRIANGLES or len(shown) > MAX_TRIANGLES // 100:
-        raise ValueError(f"it builds more than {MAX_TRIANGLES} triangles")
+    else:
+        shown.append(_EMPTY)  # counts as a thing that is built
+    if len(shown) > MAX_THINGS or sum(map(len, shown)) > MAX_TRIANGLES:
+        raise ValueError(f"it builds more than {MAX_TRIANGLES} triangles or {MAX_THINGS} objects")
     for part, transform in thing.parts:
         below = np.concatenate([transform[:3] @ at[:3], transform[3:] @ at[:3] + at[3]])
         _show(things, part, below, shown, left - 1)
