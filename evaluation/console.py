@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.progress import progress
 from esplanade.commandline.recording_settings import tell_recording
+from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.runner import TrialResult, run_trials
 from esplanade.evaluation.score_cache import ScoreCache
 from esplanade.evaluation.trials import Source, Trial
@@ -28,6 +29,16 @@ def named_sources(options: Namespace) -> dict[Source, str]:
     names = {source: source.read()[0].name for source in sources}
     shared = {name for name in names.values() if list(names.values()).count(name) > 1}
     return {s: str(s.path.with_suffix("")) if n in shared else n for s, n in names.items()}
+
+
+def rules_of(options: Namespace) -> Rules:
+    """The rules of the command line."""
+    return Rules(
+        max_acceleration_mps2=options.a_max,
+        people=options.people,
+        reaction=1.0 if options.reaction is None else options.reaction,
+        people_seed=options.seed,
+    )
 
 
 def walk(trials: Sequence[Trial], options: Namespace) -> list[TrialResult]:
