@@ -48,7 +48,7 @@ def _trips(options: Namespace) -> bool:
     _check_numbers(options.plot_episodes, min(len(trial.episodes) for trial in trials))
     results = walk(trials, options)
     rows = report.summaries(results, names)
-    report.show(console(), rows)
+    report.show(console(), rows, reacting=rules.people == "reacting")
     if options.json is not None:
         told = {**rules.__dict__, "seed": options.seed, "interpolation": options.interp}
         figures = report.figures(results, rows, names, {**told, **settings})

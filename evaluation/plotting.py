@@ -88,7 +88,7 @@ def _chosen(moments: list[Moment], rules: Rules) -> list[int]:
 
 def _outcome(score: Score) -> str:
     touched = f"touched {score.people_touched}" if score.touched else "no contact"
-    imposed = "" if np.isnan(score.displacement_m) else f", imposed {score.displacement_m:.2f} m"
+    imposed = f", imposed {score.displacement_m:.2f} m" if score.displacement_m else ""
     arrived = f"{score.time_ratio:.2f} × the time" if score.reached else "did not arrive"
     return f"{touched}, {arrived}, clearance {score.clearance_m:+.2f} m{imposed}"
 

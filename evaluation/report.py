@@ -48,8 +48,13 @@ def summaries(
     return rows
 
 
-def show(console: Console, rows: Sequence[tuple[str, str, Summary]]) -> None:
-    """Print one table for each recording, with a column for each policy."""
+def show(
+    console: Console, rows: Sequence[tuple[str, str, Summary]], *, reacting: bool = False
+) -> None:
+    """Print one table for each recording, with a column for each policy.
+
+    `reacting` says whether people react, and something can be imposed on them.
+    """
     for recording in dict.fromkeys(name for name, _, _ in rows):
         shown = {policy: summary for name, policy, summary in rows if name == recording}
         table = Table("", title=recording, title_justify="left", box=box.SIMPLE_HEAD)
@@ -57,7 +62,7 @@ def show(console: Console, rows: Sequence[tuple[str, str, Summary]]) -> None:
             table.add_column(policy, justify="right")
         for heading, field, digits in LINES:
             values = [getattr(summary, field) for summary in shown.values()]
-            if field in OF_REACTING_PEOPLE and not any(map(math.isfinite, values)):
+            if field in OF_REACTING_PEOPLE and not reacting:
                 continue
             table.add_row(heading, *(_cell(value, digits) for value in values))
         console.print(table)

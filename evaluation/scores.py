@@ -38,7 +38,7 @@ class Score:
     pop_ins: int
     displacement_m: float
     """The sum over people of the greatest distance between where each person was and where that
-    person would have been without the robot, metres; nan if people do not react."""
+    person would have been without the robot, metres; 0 if people do not react."""
     acceleration_max_mps2: float
     acceleration_rms_mps2: float
     jerk_rms_mps3: float
@@ -101,7 +101,7 @@ def score(
         path_ratio=walked_m / max(1e-9, to_go_m) if reached else np.nan,
         wall_contact=wall_m < rules.robot_radius_m - rules.wall_overlap_m,
         pop_ins=pop_ins,
-        displacement_m=np.nan,
+        displacement_m=0.0,
         acceleration_max_mps2=float(accelerations.max(initial=0.0)),
         acceleration_rms_mps2=_rms(accelerations),
         jerk_rms_mps3=_rms(jerks),

@@ -82,7 +82,7 @@ def test_reacting_people_add_a_row_and_the_recorded_do_not(
     straight = (plaza, "--policy", "straight", "--episodes", 6, "--json", target)
     assert run(*straight) == exit_codes.OK
     assert row not in capsys.readouterr().out
-    assert json.loads(target.read_text())["episodes"][0]["displacement_m"] is None
+    assert json.loads(target.read_text())["episodes"][0]["displacement_m"] == 0.0
     imposed = []
     for reaction in ("0", "0.5", "1"):
         assert run(*straight, "--people", "reacting", "--reaction", reaction) == exit_codes.OK
