@@ -2,6 +2,7 @@
 
 from argparse import Namespace
 from collections.abc import Sequence
+from dataclasses import replace
 
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.progress import progress
@@ -33,12 +34,11 @@ def named_sources(options: Namespace) -> dict[Source, str]:
 
 def rules_of(options: Namespace) -> Rules:
     """The rules of the command line."""
-    return Rules(
-        max_acceleration_mps2=options.a_max,
-        people=options.people,
-        reaction=1.0 if options.reaction is None else options.reaction,
-        people_seed=options.seed,
-    )
+    rules = Rules(max_acceleration_mps2=options.a_max)
+    if options.people == "recorded":
+        return rules
+    reaction = rules.reaction if options.reaction is None else options.reaction
+    return replace(rules, people="reacting", reaction=reaction, people_seed=options.seed)
 
 
 def walk(trials: Sequence[Trial], options: Namespace) -> list[TrialResult]:
