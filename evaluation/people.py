@@ -16,7 +16,7 @@ Ints = NDArray[np.int64]
 
 
 class People(Protocol):
-    """Where people are up to the newest tick; they have the numbers that they have in the replay.
+    """The places of people up to the newest tick, numbered as in the replay.
 
     Each is there from the first to the last tick of the recording.
     """

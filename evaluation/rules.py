@@ -32,9 +32,9 @@ class Rules:
     clearance_cap_m: float = 2.0
     """Larger clearances count as this."""
     people: Literal["recorded", "reacting"] = "recorded"
-    """Whether people walk as they were recorded whatever happens, or react to the robot."""
+    """`recorded` people walk as they did whatever happens, `reacting` ones evade the robot."""
     reaction: float = 1.0
-    """How strongly people react: a factor of the evasion that was measured on people."""
+    """Factor of the evasion that was measured on people."""
     people_seed: int = 0
     """Draws how strongly each single person reacts."""
 

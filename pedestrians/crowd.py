@@ -92,26 +92,26 @@ class Walk:
             np.zeros(people, dtype=np.bool_),
         )
         self.displacement_m = np.zeros(people)
-        """How far each person has been from the recorded place at most so far, float64 (N,)."""
+        """The greatest distance of each person from the recorded place so far, float64 (N,)."""
         self.present = self._there()
         """The people who are there, in ascending order, int64 (P,)."""
         self._place(self.present, self._now)
 
     @property
     def positions(self) -> Floats:
-        """Where the present people are, float64 (P, 2), metres."""
+        """Places of the present people, float64 (P, 2), metres."""
         return np.asarray(self._now.places[self.present])
 
     @property
     def recorded(self) -> Floats:
-        """Where the present people were recorded at this tick, float64 (P, 2), metres."""
+        """Recorded places of the present people at this tick, float64 (P, 2), metres."""
         paths = self._crowd.paths
         own = self.tick - paths.first[self.present]
         return np.asarray(paths.places[paths.begins[self.present] + own])
 
     @property
     def late_s(self) -> Floats:
-        """How far the present people are behind their recorded timing, float64 (P,), seconds."""
+        """Delay of the present people behind their recorded timing, float64 (P,), seconds."""
         own = self._now.own_ticks[self.present]
         due = self.tick - self._crowd.paths.first[self.present]
         return np.asarray((due - own) * self._crowd.numbers.tick_s)

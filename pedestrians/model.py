@@ -32,7 +32,7 @@ WALL_RANGE: Final = 10.0
 
 @dataclass(frozen=True)
 class SocialForce:
-    """How people evade others and walls; by default as was measured on people.
+    """A model of how people evade others and walls; by default as was measured on people.
 
     Notes
     -----
@@ -56,13 +56,13 @@ class SocialForce:
     relaxation_s: float = 0.54
     """τ: a velocity becomes the wanted one in about this time, seconds."""
     return_s: float = 2.0
-    """Who was driven off the recorded path wants to be back on it in about this time, seconds.
+    """Time within which a person who was driven off the recorded path wants to be back, seconds.
     Ours: about four times τ, the quickest return that does not overshoot."""
     hurry: float = 1.3
-    """Who is late walks at most this many times the recorded speed; the greatest speed of all is
-    this many times the recorded or the usual one, whichever is higher."""
+    """Greatest speed of somebody who is late, in recorded speeds; evading, nobody is faster than
+    this many times the recorded or the usual speed, whichever is higher."""
     usual_speed_mps: float = 1.29
-    """What people walk at, m/s; it limits how fast somebody who was recorded standing evades."""
+    """Speed of walking, m/s; it limits how fast somebody who was recorded standing evades."""
     strength_mps2: float = 4.5
     """A: the strength of evasion, m/s²."""
     strength_spread: float = 0.3 / 4.5
@@ -78,9 +78,9 @@ class SocialForce:
     side_bias: float = 0.005
     """ε: who meets somebody exactly ahead evades to the right; negative means to the left, 1/m."""
     sight_deg: float = 200.0
-    """What is within this angle around the direction of walking is seen, degrees."""
+    """Angle around the direction of walking that is seen, degrees."""
     unseen: float = 0.5
-    """What is not seen counts this part."""
+    """Weight of a body that is not seen; one that is seen counts 1."""
     range_m: float = 8.0
     """Bodies farther away than this are left out, metres. Ours, to bound the search."""
     wall_strength_mps2: float = 3.0
@@ -88,7 +88,7 @@ class SocialForce:
     wall_reach_m: float = 0.1
     """b: it fades over this distance, metres."""
     wall_margin_m: float = 0.05
-    """No step leads nearer to a wall ahead than this, metres. Ours: a push does not stop all."""
+    """Least distance to a wall ahead, metres. Ours: a push alone does not stop everyone."""
 
     def __post_init__(self) -> None:
         for field in fields(self):

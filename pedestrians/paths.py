@@ -47,7 +47,7 @@ def checked_walls(walls: ArrayLike) -> Floats:
 
 
 def walls_passed(paths: Paths, walls: Floats) -> Bools:
-    """Whether each of N paths leads through each of M walls, (N, M).
+    """A table (N, M) of whether each of N paths leads through each of M walls.
 
     Walls of recordings are drawn by hand, so some people walk through one. These walls cannot
     hold up these people.

@@ -30,7 +30,7 @@ def crowded(seed: int = 1, people: int = 30) -> ReactingCrowd:
 
 
 def walked(walk: Walk, ticks: int, actor: list[float] | None) -> np.ndarray:
-    """Where the first person is at every tick."""
+    """Places of the first person, tick by tick."""
     places = []
     for _ in range(ticks):
         walk.step([] if actor is None else [actor])
@@ -149,7 +149,7 @@ def test_people_make_room_for_people_who_make_room() -> None:
 
 
 def test_nothing_draws_a_person_to_where_somebody_was() -> None:
-    """Of two who walk together one is held up: the other keeps the recorded way."""
+    """One of two who walk together is away: the other keeps the recorded way."""
     two = [straight((-10, 0), (10, 0)), straight((-10, -0.7), (10, -0.7))]
     crowd = ReactingCrowd(two, [0, 0], TICK_S)
     walk = crowd.begin(0, without={0})
