@@ -1,4 +1,4 @@
-"""What drives one person aside: another body, and a wall."""
+"""The forces that drive one person aside: by another body, and by a wall."""
 
 import math
 
@@ -11,7 +11,7 @@ PEOPLE_CONTACT_M = 0.5
 SAME_PLACE_M = 1e-9
 """Bodies nearer to each other than this have no direction from one to the other."""
 STANDING_MPS = 0.05
-"""Who is slower than this looks around: nobody is behind such a person."""
+"""A slower person than this looks around, and has nobody behind."""
 
 
 @kernel
@@ -114,7 +114,7 @@ def wall_push(
 
 @kernel
 def beyond(ax: float, ay: float, rx: float, ry: float) -> tuple[float, float]:
-    """What acts now (ax, ay) beyond what acted in the recording (rx, ry).
+    """The part of what acts now (ax, ay) that did not act in the recording (rx, ry).
 
     Of the recorded part no more is taken off than acts now: where nobody is any more, nothing
     draws a person there.

@@ -16,7 +16,8 @@ from esplanade.planning.compiled.arrays import Bools, Floats, Ints
 from esplanade.planning.compiled.jit import kernel
 
 BACK_M = 1e-3
-"""Whoever comes this near to the recorded place, and goes as recorded, is on the recording."""
+"""Distance to the recorded place, and below it deviation of velocity, within which a person is on
+the recording again."""
 BACK_MPS = 1e-2
 PASSING_MPS = 0.1
 """A person who was recorded slower than this stands; time alone leads on along such a path."""
@@ -24,7 +25,7 @@ PASSING_MPS = 0.1
 
 @kernel
 def recorded_place(paths: Paths, person: int, own: float) -> tuple[float, float]:
-    """Where a path is after `own` ticks, metres; the last place after its end."""
+    """The place of a path after `own` ticks, metres; the last place after its end."""
     begin = paths.begins[person]
     last = paths.begins[person + 1] - begin - 1
     k = min(int(own), last)
@@ -40,7 +41,7 @@ def recorded_place(paths: Paths, person: int, own: float) -> tuple[float, float]
 
 @kernel
 def recorded_velocity(paths: Paths, person: int, own: float, tick_s: float) -> tuple[float, float]:
-    """How a path goes on after `own` ticks, m/s; 0 if it is a single place."""
+    """The velocity of a path after `own` ticks, m/s; 0 if it is a single place."""
     begin = paths.begins[person]
     k = min(int(own), paths.begins[person + 1] - begin - 2)
     if k < 0:

@@ -39,7 +39,7 @@ class Paths(NamedTuple):
 
 
 class State(NamedTuple):
-    """Where N people are at a tick. Rows of people who are not there mean nothing."""
+    """N people at a tick. Rows of people who are not there mean nothing."""
 
     places: Floats
     """(N, 2) metres."""
@@ -52,7 +52,7 @@ class State(NamedTuple):
 
 
 class Surroundings(NamedTuple):
-    """What people react to, and how strongly."""
+    """Actors and walls that people react to, and everyone's strength of reaction."""
 
     actors: Floats
     """(A, 5): x and y in metres, their velocity in m/s, radius beyond a person's in metres."""
