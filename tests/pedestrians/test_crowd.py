@@ -1,32 +1,12 @@
-"""Recorded people among actors: they make room, come back, keep off walls, and stay the same."""
+"""Recorded people among actors: they make room, come back, and keep off walls."""
 
-import hashlib
-import subprocess
-import sys
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from esplanade.pedestrians import ReactingCrowd, SocialForce, Walk
-
-TICK_S = 0.1
-STANDING_ACTOR = [0.0, 0.0, 0.0, 0.0, 0.25]
-
-
-def straight(start: tuple[float, float], end: tuple[float, float], speed_mps: float = 1.3):
-    """A path from start to end at constant speed."""
-    way = np.subtract(end, start)
-    ticks = round(float(np.hypot(*way)) / speed_mps / TICK_S)
-    return start + np.linspace(0.0, 1.0, ticks + 1)[:, None] * way
-
-
-def crowded(seed: int = 1, people: int = 30) -> ReactingCrowd:
-    """People on straight ways across a square of 16 m, who come in one after the other."""
-    rng = np.random.default_rng(seed)
-    ends = rng.uniform(-8, 8, (people, 2, 2))
-    paths = [straight(tuple(a), tuple(b)) for a, b in ends]
-    return ReactingCrowd(paths, rng.integers(0, 60, people).tolist(), TICK_S, seed=seed)
+from tests.pedestrians.worlds import STANDING_ACTOR, TICK_S, crowded, straight
 
 
 def walked(walk: Walk, ticks: int, actor: list[float] | None) -> np.ndarray:
@@ -101,31 +81,6 @@ def test_whoever_walks_through_a_wall_in_the_recording_is_not_held_up_by_it() ->
     assert places[-1, 0] > 5.0
 
 
-def test_without_actors_the_crowd_is_the_recording_bit_for_bit() -> None:
-    crowd = crowded()
-    walk = crowd.begin(0)
-    for _ in range(150):
-        walk.step()
-        np.testing.assert_array_equal(walk.positions, walk.recorded)
-    assert walk.displacement_m.max() == 0.0
-
-
-def test_at_scale_0_nobody_reacts_bit_for_bit() -> None:
-    crowd = crowded()
-    still = ReactingCrowd(
-        [
-            crowd.paths.places[a:b]
-            for a, b in zip(crowd.paths.begins, crowd.paths.begins[1:], strict=False)
-        ],
-        crowd.paths.first.tolist(),
-        TICK_S,
-        reaction=0.0,
-    ).begin(0)
-    for _ in range(150):
-        still.step([STANDING_ACTOR])
-        np.testing.assert_array_equal(still.positions, still.recorded)
-
-
 def test_stronger_reactions_impose_more() -> None:
     path = straight((-10, 0), (10, 0))
     imposed = []
@@ -196,44 +151,6 @@ def test_people_come_and_go_as_they_were_recorded() -> None:
     walk.step([STANDING_ACTOR])
     assert someone not in walk.present
     assert walk.displacement_m[someone] == 0.0
-
-
-def digest_of_a_walk() -> str:
-    """All positions of a walk among two actors."""
-    walk = crowded(seed=4).begin(0)
-    digest = hashlib.sha256()
-    for tick in range(120):
-        walk.step([[0.02 * tick, 0.1, 0.2, 0, 0.4], [1.0, 2.0 - 0.05 * tick, 0, -0.5, 0.25]])
-        digest.update(walk.positions.tobytes())
-    assert walk.displacement_m.sum() > 1.0
-    return digest.hexdigest()
-
-
-def test_two_processes_walk_the_same_walk() -> None:
-    code = f"from {__name__} import digest_of_a_walk\nprint(digest_of_a_walk())"
-    other = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
-    assert other.stdout.split()[-1] == digest_of_a_walk()
-
-
-def test_the_order_of_people_means_nothing() -> None:
-    """Each has the same strength, so that only numbers differ."""
-    even = SocialForce(strength_spread=0.0)
-    crowd = crowded(seed=6)
-    ends = zip(crowd.paths.begins, crowd.paths.begins[1:], strict=False)
-    paths, first = [crowd.paths.places[a:b] for a, b in ends], crowd.paths.first.tolist()
-    one = ReactingCrowd(paths, first, TICK_S, model=even).begin(0)
-    other = ReactingCrowd(paths[::-1], first[::-1], TICK_S, model=even).begin(0)
-    for _ in range(100):
-        one.step([STANDING_ACTOR])
-        other.step([STANDING_ACTOR])
-        np.testing.assert_allclose(one.positions, other.positions[::-1], atol=1e-9)
-
-
-def test_the_seed_draws_strengths() -> None:
-    strengths = [crowded(seed).strengths_mps2 for seed in (1, 1, 2)]
-    np.testing.assert_array_equal(strengths[0], strengths[1])
-    assert (strengths[0] != strengths[2]).all()
-    assert strengths[0].mean() == pytest.approx(4.5, abs=0.3)
 
 
 @pytest.mark.parametrize(
