@@ -37,11 +37,11 @@ serve: $(VENV)/.serve $(CLIENT)  ## run the demo world at http://localhost:8080
 test: $(VENV)/.test $(CLIENT)  ## run all tests, in a real browser too
 	@ESPLANADE_CHROMIUM="$$($(RUN) tools/ensure_browser.py)" $(PYTEST) --numprocesses 2 $(ARGS)
 
-test-boundscheck: $(VENV)/.test  ## run the planning tests with every array access checked
-	NUMBA_BOUNDSCHECK=1 $(PYTEST) tests/planning $(ARGS)
+test-boundscheck: $(VENV)/.test  ## run tests of kernels with every array access checked
+	NUMBA_BOUNDSCHECK=1 $(PYTEST) tests/planning tests/pedestrians $(ARGS)
 
-test-nojit: $(VENV)/.test  ## run the planning tests uncompiled, for branch coverage
-	NUMBA_DISABLE_JIT=1 $(RUN) -m coverage run -m pytest tests/planning $(ARGS)
+test-nojit: $(VENV)/.test  ## run tests of kernels uncompiled, for branch coverage
+	NUMBA_DISABLE_JIT=1 $(RUN) -m coverage run -m pytest tests/planning tests/pedestrians $(ARGS)
 	$(RUN) -m coverage report
 
 fuzz-files: $(VENV)/.test  ## read 100 000 mutated recordings, meshes and plans

@@ -9,9 +9,8 @@ from esplanade.commandline.errors import UsageError
 from esplanade.commandline.output import console, made_folder, write_json
 from esplanade.commandline.progress import progress
 from esplanade.evaluation import forecast_report, plotting, report
-from esplanade.evaluation.console import named_sources, walk
+from esplanade.evaluation.console import named_sources, rules_of, walk
 from esplanade.evaluation.policies import PolicyError
-from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.runner import TrialResult, ready_policy
 from esplanade.evaluation.score_cache import ScoreCacheError
 from esplanade.evaluation.settings import SettingError, read_changes
@@ -45,13 +44,13 @@ def _trips(options: Namespace) -> bool:
     if options.plots is not None:
         made_folder("--plots", options.plots)
         plotting.require_matplotlib()
-    rules = Rules(max_acceleration_mps2=options.a_max)
+    rules = rules_of(options)
     policies = list(dict.fromkeys(options.policy))
     trials = plan_trials(list(names), policies, rules, options.episodes, options.seed, settings)
     _check_numbers(options.plot_episodes, min(len(trial.episodes) for trial in trials))
     results = walk(trials, options, _files(options, names))
     rows = report.summaries(results, names)
-    report.show(console(), rows)
+    report.show(console(), rows, reacting=rules.people == "reacting")
     if options.json is not None:
         told = {**rules.__dict__, "seed": options.seed, "interpolation": options.interp}
         figures = report.figures(results, rows, names, {**told, **settings})

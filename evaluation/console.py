@@ -2,10 +2,12 @@
 
 from argparse import Namespace
 from collections.abc import Sequence
+from dataclasses import replace
 
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.progress import progress
 from esplanade.commandline.recording_settings import tell_recording
+from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.runner import TrialResult, run_trials
 from esplanade.evaluation.score_cache import ScoreCache
 from esplanade.evaluation.trajectory_files import EpisodeFiles
@@ -35,6 +37,15 @@ def named_sources(options: Namespace) -> dict[Source, str]:
     names = {source: source.read()[0].name for source in sources}
     shared = {name for name in names.values() if list(names.values()).count(name) > 1}
     return {s: str(s.path.with_suffix("")) if n in shared else n for s, n in names.items()}
+
+
+def rules_of(options: Namespace) -> Rules:
+    """The rules of the command line."""
+    rules = Rules(max_acceleration_mps2=options.a_max)
+    if options.people == "recorded":
+        return rules
+    reaction = rules.reaction if options.reaction is None else options.reaction
+    return replace(rules, people="reacting", reaction=reaction, people_seed=options.seed)
 
 
 def walk(

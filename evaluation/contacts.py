@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.evaluation.obstacles import point_segment_distances
+from esplanade.evaluation.people import People
 from esplanade.evaluation.policies.policy import Person
-from esplanade.evaluation.replay import Replay
 from esplanade.evaluation.rules import Rules
 
 Floats = NDArray[np.float64]
@@ -29,8 +29,8 @@ def closest_approach(offset: Floats, change: Floats) -> float:
 class ContactMonitor:
     """Counts contacts and measures clearances over one episode."""
 
-    def __init__(self, replay: Replay, rules: Rules) -> None:
-        self._replay = replay
+    def __init__(self, everyone: People, rules: Rules) -> None:
+        self._everyone = everyone
         self._rules = rules
         self.touched: set[int] = set()
         """The people that the robot has touched."""
@@ -51,10 +51,10 @@ class ContactMonitor:
         """
         nearest = np.inf
         for person in people:
-            if tick + 1 > self._replay.last[person.id]:
+            if tick + 1 > self._everyone.last[person.id]:
                 continue
             offset = old - person.position
-            change = (new - self._replay.at(person.id, tick + 1)) - offset
+            change = (new - self._everyone.at(person.id, tick + 1)) - offset
             distance = closest_approach(offset, change)
             nearest = min(nearest, distance)
             if distance < self._rules.contact_m and person.id not in self.touched:

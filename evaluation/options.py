@@ -35,6 +35,7 @@ examples:
   esplanade evaluate zara1.csv
   esplanade evaluate eth.csv hotel.csv --policy esplanade discs oracle --json all.json
   esplanade evaluate zara1.csv --episodes 20 --plots failed/
+  esplanade evaluate zara1.csv --people reacting --policy esplanade straight discs
   esplanade evaluate zara1.csv --set risk_weight=12 --set foresight_s=2
   esplanade evaluate eth.csv zara1.csv --prediction --fit
   esplanade evaluate eth.csv zara1.csv --sensitivity --score-cache done.jsonl --plots .
@@ -53,9 +54,9 @@ def parser() -> Parser:
         "esplanade evaluate",
         run="esplanade.evaluation.cli:run",
         check=check,
-        description="Put an actor among recorded people who do not react, each time in the place "
-        "of one\nof them, and measure how it gets to where that one went; or measure how well "
-        "people\nare predicted.",
+        description="Put an actor among recorded people, who may react to it, each time in the "
+        "place of one\nof them, and measure how it gets to where that one went; or measure how "
+        "well people\nare predicted.",
         epilog=EXAMPLES,
     )
     made.add_argument(
@@ -104,6 +105,19 @@ def parser() -> Parser:
         type=_acceleration,
         default=2.0,
         help="greatest acceleration, or `none` [default: 2.0]",
+    )
+    trips.add_argument(
+        "--people",
+        choices=("recorded", "reacting"),
+        default="recorded",
+        help="recorded: people walk as they did; reacting: they evade the robot and each other by "
+        "a social force model [default: recorded]",
+    )
+    trips.add_argument(
+        "--reaction",
+        metavar="SCALE",
+        type=Number(0.0, 10.0),
+        help="how strongly reacting people react, as a factor [default: 1.0]",
     )
     trips.add_argument(
         "--set",
@@ -227,6 +241,8 @@ def check(options: Namespace) -> None:
         raise UsageError("--tune needs candidates: --vary NAME=V1,V2,.. or --candidates FILE")
     if options.tune and not all("=" in text for text in options.vary):
         raise UsageError("--vary: --tune needs values, as NAME=V1,V2,..")
+    if options.reaction is not None and options.people != "reacting":
+        raise UsageError("--reaction is for --people reacting")
     if options.walls is not None and len(options.crowds) > 1:
         raise UsageError("--walls belongs to one recording; name them NAME.walls.json beside each")
     try:

@@ -89,8 +89,9 @@ def _chosen(moments: list[Moment], rules: Rules) -> list[int]:
 
 def _outcome(score: Score) -> str:
     touched = f"touched {score.people_touched}" if score.touched else "no contact"
+    imposed = f", imposed {score.displacement_m:.2f} m" if score.displacement_m else ""
     arrived = f"{score.time_ratio:.2f} × the time" if score.reached else "did not arrive"
-    return f"{touched}, {arrived}, clearance {score.clearance_m:+.2f} m"
+    return f"{touched}, {arrived}, clearance {score.clearance_m:+.2f} m{imposed}"
 
 
 def _draw(
@@ -106,10 +107,15 @@ def _draw(
         axes.plot([x0, x1], [y0, y1], color="0.25", lw=2)
     for x, y, radius_m in moment.debug_info.circles:
         axes.add_patch(circle((x, y), radius_m, fill=False, ec="tab:red", alpha=0.3, lw=0.8))
+    tick = episode.first_tick + round(moment.observation.t / rules.tick_s)
     for person in moment.observation.people:
         axes.plot(*person.track.T, color="tab:red", lw=0.8, alpha=0.6)
         disc = circle(tuple(person.position), rules.person_radius_m, color="tab:red", alpha=0.7)
         axes.add_patch(disc)
+        recorded = environment.replay.at(person.id, tick)
+        if (recorded != person.position).any():
+            unmoved = circle(tuple(recorded), rules.person_radius_m, fill=False, ec="0.5", ls=":")
+            axes.add_patch(unmoved)
         axes.annotate(environment.replay.ids[person.id], person.position, fontsize=7, clip_on=True)
     axes.plot(*trajectory.T, color="tab:blue", lw=1.2)
     axes.plot(*moment.debug_info.path.T, ".-", color="tab:green", lw=1.0, ms=3)

@@ -24,12 +24,15 @@ LINES = (
     ("time / straight way", "time_ratio", 3),
     ("path / straight way", "path_ratio", 3),
     ("wall contacts, %", "wall_contacts_percent", 1),
+    ("displacement imposed on people, m an episode", "displacement_m", 2),
     ("greatest acceleration, m/s²", "acceleration_max_mps2", 1),
     ("turn rate, rms rad/s", "turn_rms_radps", 2),
     ("decision, mean ms", "decision_ms", 2),
     ("decision, greatest ms", "decision_max_ms", 1),
 )
 """The rows of the table: heading, field of `Summary`, digits after the decimal point."""
+OF_REACTING_PEOPLE = frozenset({"displacement_m"})
+"""Rows that are left out where people do not react."""
 
 
 def summaries(
@@ -45,15 +48,22 @@ def summaries(
     return rows
 
 
-def show(console: Console, rows: Sequence[tuple[str, str, Summary]]) -> None:
-    """Print one table for each recording, with a column for each policy."""
+def show(
+    console: Console, rows: Sequence[tuple[str, str, Summary]], *, reacting: bool = False
+) -> None:
+    """Print one table for each recording, with a column for each policy.
+
+    `reacting` says whether people react, and something can be imposed on them.
+    """
     for recording in dict.fromkeys(name for name, _, _ in rows):
         shown = {policy: summary for name, policy, summary in rows if name == recording}
         table = Table("", title=recording, title_justify="left", box=box.SIMPLE_HEAD)
         for policy in shown:
             table.add_column(policy, justify="right")
         for heading, field, digits in LINES:
-            values = (getattr(summary, field) for summary in shown.values())
+            values = [getattr(summary, field) for summary in shown.values()]
+            if field in OF_REACTING_PEOPLE and not reacting:
+                continue
             table.add_row(heading, *(_cell(value, digits) for value in values))
         console.print(table)
 

@@ -1,6 +1,7 @@
 """The rules of an episode: bodies, speeds, limits, and the definitions of what is measured."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 
 @dataclass(frozen=True)
@@ -30,6 +31,12 @@ class Rules:
     """Walls are drawn by hand, so only an overlap with the body beyond this counts as contact."""
     clearance_cap_m: float = 2.0
     """Larger clearances count as this."""
+    people: Literal["recorded", "reacting"] = "recorded"
+    """`recorded` people walk as they did whatever happens, `reacting` ones evade the robot."""
+    reaction: float = 1.0
+    """Factor of the evasion that was measured on people."""
+    people_seed: int = 0
+    """Draws how strongly each single person reacts."""
 
     @property
     def contact_m(self) -> float:

@@ -16,7 +16,7 @@ from esplanade.evaluation.trials import Source, Trial
 from esplanade.recordings import walls_beside
 
 _ROOT: Final = Path(__file__).resolve().parents[1]
-_PACKAGES: Final = ("actors", "evaluation", "planning", "recordings")
+_PACKAGES: Final = ("actors", "evaluation", "pedestrians", "planning", "recordings")
 _SHOW_ONLY: Final = frozenset(
     {
         "calibration",

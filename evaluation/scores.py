@@ -36,6 +36,9 @@ class Score:
     path_ratio: float
     wall_contact: bool
     pop_ins: int
+    displacement_m: float
+    """The sum over people of the greatest distance between where each person was and where that
+    person would have been without the robot, metres; 0 if people do not react."""
     acceleration_max_mps2: float
     acceleration_rms_mps2: float
     jerk_rms_mps3: float
@@ -98,6 +101,7 @@ def score(
         path_ratio=walked_m / max(1e-9, to_go_m) if reached else np.nan,
         wall_contact=wall_m < rules.robot_radius_m - rules.wall_overlap_m,
         pop_ins=pop_ins,
+        displacement_m=0.0,
         acceleration_max_mps2=float(accelerations.max(initial=0.0)),
         acceleration_rms_mps2=_rms(accelerations),
         jerk_rms_mps3=_rms(jerks),
@@ -133,6 +137,8 @@ class Summary:
     time_ratio: float
     path_ratio: float
     wall_contacts_percent: float
+    displacement_m: float
+    """The mean over episodes of what the robot imposed on people."""
     acceleration_max_mps2: float
     """The median of the episodes' greatest accelerations."""
     turn_rms_radps: float
@@ -153,6 +159,7 @@ def summarise(scores: Sequence[Score]) -> Summary:
         time_ratio=_mean([s.time_ratio for s in scores if s.reached]),
         path_ratio=_mean([s.path_ratio for s in scores if s.reached]),
         wall_contacts_percent=_percent([s.wall_contact for s in scores]),
+        displacement_m=float(np.mean([s.displacement_m for s in scores])),
         acceleration_max_mps2=float(np.median([s.acceleration_max_mps2 for s in scores])),
         turn_rms_radps=float(np.mean([s.turn_rms_radps for s in scores])),
         decision_ms=sum(s.decision_ms * s.decisions for s in scores) / decisions,

@@ -1,14 +1,15 @@
-"""The simulation of one episode: a robot among replayed people, who do not react."""
+"""The simulation of one episode: a robot among recorded people, who may react to it."""
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.evaluation.contacts import ContactMonitor
 from esplanade.evaluation.episodes import Episode
+from esplanade.evaluation.people import People, ReactingPeople
 from esplanade.evaluation.policies.policy import Observation, Person, Policy, Task
 from esplanade.evaluation.replay import Replay
 from esplanade.evaluation.rules import Rules
@@ -54,8 +55,10 @@ def run_episode(
     policy.reset(Task(rules, replay, episode))
     goal = np.array(episode.goal)
     waypoints = Waypoints(environment.wall_map, goal)
-    sensor = Sensor(replay, rules, episode)
-    contacts = ContactMonitor(replay, rules)
+    reacting = ReactingPeople(replay, rules, episode) if rules.people == "reacting" else None
+    everyone: People = reacting or replay
+    sensor = Sensor(everyone, rules, episode)
+    contacts = ContactMonitor(everyone, rules)
     trajectory = [np.array(episode.start)]
     velocities = [np.zeros(2)]
     decide_s: list[float] = []
@@ -77,6 +80,10 @@ def run_episode(
         velocity = (
             wanted if policy.follows_recording else limit_velocity(rules, velocities[-1], wanted)
         )
+        if reacting is not None:
+            for pedestrian in sensor.popped_in:
+                reacting.leave_out(pedestrian)
+            reacting.step(position, velocity, rules.robot_radius_m)
         velocities.append(velocity)
         trajectory.append(position + velocity * rules.tick_s)
         contacts.step(tick, people, position, velocity, trajectory[-1])
@@ -90,6 +97,8 @@ def run_episode(
         replay, rules, episode, contacts, sensor.pop_ins, walked, np.array(velocities[1:]),
         wall_m, reached, decide_s,
     )  # fmt: skip
+    if reacting is not None:
+        result = replace(result, displacement_m=reacting.displacement_m)
     return EpisodeResult(result, walked)
 
 
@@ -116,27 +125,32 @@ class Sensor:
     A person whose recording begins right beside the robot is left out of the whole episode.
     """
 
-    def __init__(self, replay: Replay, rules: Rules, episode: Episode) -> None:
-        self._replay = replay
+    def __init__(self, everyone: People, rules: Rules, episode: Episode) -> None:
+        self._everyone = everyone
         self._rules = rules
         self._first_tick = episode.first_tick
-        self._ignored = {episode.pedestrian}
-        self.pop_ins = 0
+        self._pedestrian = episode.pedestrian
+        self.popped_in: set[int] = set()
+        """The people who are left out because they appeared beside the robot."""
+
+    @property
+    def pop_ins(self) -> int:
+        """The number of people who are left out."""
+        return len(self.popped_in)
 
     def people(self, n: int, position: Floats) -> list[Person]:
         """The people within range at the n-th tick of the episode."""
         tick = self._first_tick + n
-        present = self._replay.present(tick)
-        away = np.linalg.norm(self._replay.positions(present, tick) - position, axis=1)
+        present = self._everyone.present(tick)
+        away = np.linalg.norm(self._everyone.positions(present, tick) - position, axis=1)
         seen = []
         for pedestrian, distance in zip(present.tolist(), away.tolist(), strict=True):
-            if pedestrian in self._ignored:
+            if pedestrian == self._pedestrian or pedestrian in self.popped_in:
                 continue
-            appears = n > 0 and self._replay.first[pedestrian] == tick
+            appears = n > 0 and self._everyone.first[pedestrian] == tick
             if appears and distance < self._rules.pop_in_m:
-                self._ignored.add(pedestrian)
-                self.pop_ins += 1
+                self.popped_in.add(pedestrian)
             elif distance < self._rules.sensor_range_m:
-                past = self._replay.past(pedestrian, tick, self._rules.past_ticks)
+                past = self._everyone.past(pedestrian, tick, self._rules.past_ticks)
                 seen.append(Person(pedestrian, past.copy()))
         return seen

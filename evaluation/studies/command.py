@@ -7,7 +7,7 @@ from typing import Any
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.output import console, made_folder, write_json
 from esplanade.evaluation import plotting
-from esplanade.evaluation.console import named_sources, walk
+from esplanade.evaluation.console import named_sources, rules_of, walk
 from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.settings import read_changes, read_choices
 from esplanade.evaluation.studies import report, sensitivity, sensitivity_plot, tuning
@@ -63,7 +63,7 @@ def _begin(options: argparse.Namespace) -> tuple[dict[Source, str], dict[str, An
     if options.plots is not None:
         made_folder("--plots", options.plots)
         plotting.require_matplotlib()
-    return names, base, Rules(max_acceleration_mps2=options.a_max)
+    return names, base, rules_of(options)
 
 
 def _settings(
@@ -76,5 +76,7 @@ def _settings(
         "seed": options.seed,
         "max_acceleration_mps2": options.a_max,
         "interpolation": options.interp,
+        "people": options.people,
+        "reaction": options.reaction,
         **base,
     }

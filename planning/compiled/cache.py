@@ -32,6 +32,7 @@ _SOURCES: Final = (
     "planning",
     "actors/locomotion",
     "evaluation/policies",
+    "pedestrians/compiled",
     "server/net/compiled",
     "server/world/compiled",
 )

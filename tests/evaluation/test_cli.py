@@ -75,6 +75,28 @@ def test_episodes_that_did_not_arrive_have_no_time_in_the_json(tmp_path: Path) -
     assert found["summaries"][0]["time_ratio"] is None
 
 
+def test_reacting_people_add_a_row_and_the_recorded_do_not(
+    tmp_path: Path, plaza: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    target, row = tmp_path / "all.json", "displacement imposed on people, m an episode"
+    straight = (plaza, "--policy", "straight", "--episodes", 6, "--json", target)
+    assert run(*straight) == exit_codes.OK
+    assert row not in capsys.readouterr().out
+    assert json.loads(target.read_text())["episodes"][0]["displacement_m"] == 0.0
+    imposed = []
+    for reaction in ("0", "0.5", "1"):
+        assert run(*straight, "--people", "reacting", "--reaction", reaction) == exit_codes.OK
+        assert row in capsys.readouterr().out
+        found = json.loads(target.read_text())
+        assert found["settings"]["people"] == "reacting"
+        assert found["settings"]["reaction"] == float(reaction)
+        (summary,) = found["summaries"]
+        each = [episode["displacement_m"] for episode in found["episodes"]]
+        assert summary["displacement_m"] == pytest.approx(sum(each) / 6)
+        imposed.append(summary["displacement_m"])
+    assert imposed[0] == 0.0 < imposed[1] < imposed[2]
+
+
 def test_strict_fails_where_somebody_was_touched(plaza: Path) -> None:
     assert run(plaza, "--policy", "straight", "--episodes", 20) == exit_codes.OK
     assert run(plaza, "--policy", "straight", "--episodes", 20, "--strict") == exit_codes.FAILED
@@ -90,6 +112,16 @@ def test_chosen_episodes_are_drawn(tmp_path: Path, plaza: Path, form: str) -> No
         f"plaza-straight-000.{form}",
         f"plaza-straight-002.{form}",
     ]
+
+
+@pytest.mark.skipif(find_spec("matplotlib") is None, reason="matplotlib is absent")
+def test_people_who_were_displaced_are_drawn_with_where_they_were(
+    tmp_path: Path, plaza: Path
+) -> None:
+    folder = tmp_path / "strips"
+    run(plaza, "--policy", "straight", "--episodes", 1, "--plots", folder, "--plot-episodes=0",
+        "--people=reacting")  # fmt: skip
+    assert [path.name for path in folder.iterdir()] == ["plaza-straight-000.png"]
 
 
 @pytest.mark.skipif(find_spec("matplotlib") is None, reason="matplotlib is absent")
@@ -155,6 +187,12 @@ def test_recordings_of_one_name_are_told_apart_by_their_paths(
         (["--episodes", "0"], "--episodes: '0' is no whole number from 1 to 100000"),
         (["--a-max", "fast"], "'fast' is no number from 0.2 to 20"),
         (["--fps", "nan"], "'nan' is no number"),
+        (["--people", "polite"], "--people: 'polite' is no choice; there are recorded, reacting"),
+        (["--reaction", "2"], "--reaction is for --people reacting"),
+        (
+            ["--people", "reacting", "--reaction", "-1"],
+            "--reaction: '-1' is no number from 0 to 10",
+        ),
         (["--set", "tempo=3"], "--set: tempo: there is no such setting"),
         (["--set", "risk_weigth=3"], "there is no such setting; did you mean risk_weight?"),
         (["--sensitivity", "--vary", "tempo"], "--vary: tempo: there is no such setting"),

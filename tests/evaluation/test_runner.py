@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from esplanade.evaluation.rules import Rules
 from esplanade.evaluation.runner import run_trials
 from esplanade.evaluation.score_cache import ScoreCache
 from esplanade.evaluation.scores import Score
@@ -12,9 +13,9 @@ from esplanade.evaluation.trials import Source, Trial, plan_trials
 from tests.evaluation.worlds import RULES, busy_plaza, write_csv
 
 
-def planned(folder: Path, *policies: str) -> list[Trial]:
+def planned(folder: Path, *policies: str, rules: Rules = RULES) -> list[Trial]:
     source = Source(write_csv(folder, busy_plaza()))
-    return plan_trials([source], policies, RULES, 100, 0, {})
+    return plan_trials([source], policies, rules, 100, 0, {})
 
 
 def timeless(scores: tuple[Score, ...]) -> list[Score]:
@@ -24,6 +25,7 @@ def timeless(scores: tuple[Score, ...]) -> list[Score]:
 
 def test_processes_change_nothing_but_the_time(tmp_path: Path) -> None:
     trials = planned(tmp_path, "straight", "human")
+    trials += planned(tmp_path, "straight", rules=replace(RULES, people="reacting"))
     done: list[int] = []
     alone = run_trials(trials, 1, done.append)
     together = run_trials(trials, 2, done.append)
@@ -31,6 +33,7 @@ def test_processes_change_nothing_but_the_time(tmp_path: Path) -> None:
         assert one.trial == two.trial
         assert timeless(one.scores) == timeless(two.scores)
         assert [s.number for s in one.scores] == [e.number for e in one.trial.episodes]
+    assert sum(score.displacement_m for score in alone[-1].scores) > 0.0
     assert sum(done) == 2 * sum(len(trial.episodes) for trial in trials)
 
 

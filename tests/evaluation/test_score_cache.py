@@ -57,6 +57,7 @@ def test_scores_measured_otherwise_are_not_found(
     assert found(path, trial) == 6
     assert found(path, replace(trial, policy="discs")) == 0
     assert found(path, replace(trial, rules=replace(RULES, near_m=0.3))) == 0
+    assert found(path, replace(trial, rules=replace(RULES, people="reacting"))) == 0
     assert found(path, replace(trial, settings=(("risk_weight", 9.0),))) == 0
     assert found(path, replace(trial, source=replace(trial.source, interpolation="cubic"))) == 0
     monkeypatch.setattr(score_caches, "_code_digest", lambda: "changed")
