@@ -17,7 +17,9 @@ from typing import Final
 from esplanade import cli
 
 EXTRAS: Final = ("DracoPy", "ezdxf", "ifcopenshell", "matplotlib", "PIL", "shapely", "trimesh")
-COMMANDS: Final = ("serve", "demo", "bots", "evaluate", "scene", "gait", "op", "completion")
+COMMANDS: Final = (
+    *("serve", "run", "demo", "bots", "evaluate", "scene", "recording", "gait", "op", "completion"),
+)
 SCENE_COMMANDS: Final = ("check", "render", "import", "export", "turn", "schema")
 
 CORNERS: Final = ((0, 0, 0), (6, 0, 0), (6, 0, -5), (0, 0, -5))

@@ -6,6 +6,7 @@ from importlib.metadata import entry_points
 import pytest
 
 from esplanade import __main__, __version__, cli
+from esplanade import options as commands
 from esplanade.commandline import exit_codes
 from esplanade.commandline.errors import CommandError, UsageError
 from esplanade.server import options
@@ -58,7 +59,7 @@ def command_that(monkeypatch: pytest.MonkeyPatch, outcome: int | BaseException) 
     monkeypatch.setattr(options, "stand_in", run, raising=False)
     parser = options.parser()
     parser.set_defaults(run="esplanade.server.options:stand_in")
-    monkeypatch.setattr(options, "parser", lambda: parser)
+    monkeypatch.setattr(commands, "serve", lambda: parser)
     return received
 
 
