@@ -2,6 +2,7 @@
 
 import codecs
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -15,6 +16,8 @@ _MARKS: Final = (
     (codecs.BOM_UTF16_BE, "utf-16"),
 )
 _HEAD_BYTES: Final = 4096
+_LOOKED_AT: Final = 1024
+MAX_LINES: Final = 8_000_000
 _CONTROLS: Final = re.compile(rb"[\x00-\x08\x0e-\x1a\x1c-\x1f]")
 """Bytes that no text in eight bits holds."""
 
@@ -41,7 +44,8 @@ def decoded(content: bytes, *, eight_bit: bool = False) -> Text:
     """Decode by the byte order mark, else by where the zeros of UTF-16 are, else as UTF-8.
 
     With `eight_bit`, what is no UTF-8 but has no control characters is taken for Windows-1252, as
-    spreadsheets still write it, and a remark says so.
+    spreadsheets still write it, and a remark says so. Zeros at the end, with which some programs
+    fill a block, and marks between joined files are left out.
 
     Raises
     ------
@@ -49,6 +53,11 @@ def decoded(content: bytes, *, eight_bit: bool = False) -> Text:
         It is no text of these.
     """
     encoding = _encoding(content)
+    if encoding.startswith("utf-8"):
+        content = content.rstrip(b"\0") if content.endswith(b"\0") else content
+        # Looked at first, since a large file of bytes would take long to decode.
+        if b"\0" in content[:_LOOKED_AT]:
+            raise ContentError("is no text, but bytes")
     try:
         return Text(_lines(content.decode(encoding)))
     except UnicodeDecodeError as error:
@@ -56,7 +65,36 @@ def decoded(content: bytes, *, eight_bit: bool = False) -> Text:
             text = _lines(content.decode("cp1252", errors="replace"))
             return Text(text, f"byte {error.start} is no UTF-8: read as Windows-1252")
         name = "UTF-8" if encoding.startswith("utf-8") else encoding.upper()
-        raise ContentError(f"is not {name} text (byte {error.start})") from None
+        line = content.count(b"\n", 0, error.start) + 1
+        where = f"byte {error.start}, line {line}" if name == "UTF-8" else f"byte {error.start}"
+        raise ContentError(f"is not {name} text ({where})") from None
+
+
+def shown(line: str) -> str:
+    """A line as messages quote it: short, and without control characters."""
+    text = " ".join(line.split())
+    return repr(text if len(text) <= 40 else text[:39] + "…")
+
+
+def check_lines(text: str, most: int = MAX_LINES) -> None:
+    """Check that a text has no more lines than are gone through in some seconds.
+
+    Raises
+    ------
+    ContentError
+        It has more.
+    """
+    if len(text) > most and text.count("\n") > most:
+        raise ContentError(f"has more than {most} lines, the most that is read")
+
+
+def lines_of(text: str) -> Iterator[str]:
+    """The lines of a text one by one, without a list of all of them."""
+    begin = 0
+    while (end := text.find("\n", begin)) >= 0:
+        yield text[begin:end]
+        begin = end + 1
+    yield text[begin:]
 
 
 def _encoding(content: bytes) -> str:
@@ -69,12 +107,13 @@ def _encoding(content: bytes) -> str:
     even, odd = head[0::2].count(0), head[1::2].count(0)
     half = len(head) // 2
     # ASCII in UTF-16 has a zero in every second byte.
-    if odd > 0.8 * half and even < 0.05 * half:
+    if odd > 0.4 * half and even < 0.05 * half:
         return "utf-16-le"
-    if even > 0.8 * half and odd < 0.05 * half:
+    if even > 0.4 * half and odd < 0.05 * half:
         return "utf-16-be"
     return "utf-8"
 
 
 def _lines(text: str) -> str:
+    text = text.replace("\ufeff", "")
     return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text

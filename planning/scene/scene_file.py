@@ -8,8 +8,8 @@ from typing import Any, Final
 
 from pydantic import ValidationError
 
+from esplanade.files.text import decoded
 from esplanade.planning.scene.bounded_reading import read_bounded
-from esplanade.planning.scene.formats.text import decoded
 from esplanade.planning.scene.json_places import Path as Loc
 from esplanade.planning.scene.json_places import Spot, find_places
 from esplanade.planning.scene.scene import Scene
@@ -82,7 +82,7 @@ def read_scene(path: Path) -> Scene:
     """
     data = read_bounded(path, MAX_FILE_BYTES)
     try:
-        text = decoded(data, strict=True)
+        text = decoded(data).text
     except ValueError as error:
         raise SceneError(path, (str(error),)) from None
     try:

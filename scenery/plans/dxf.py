@@ -1,21 +1,42 @@
-"""Drawings in DXF: lines of all or chosen layers are walls, those of door layers are doors."""
+"""Drawings in DXF: lines of all or chosen layers are walls; those of doors and stairs are not."""
 
 from __future__ import annotations
 
 import io
 import re
 from collections import Counter
-from collections.abc import Sequence
-from typing import Any, Final
+from collections.abc import Iterator, Sequence
+from typing import Any, Final, NamedTuple
 
-from esplanade.planning.scene.formats.text import decoded
+from esplanade.files.text import decoded
+from esplanade.scenery.plans.dxf_doors import Stroke, doorways
 from esplanade.scenery.plans.storey import Storey, library
 
-_METRES: Final = {1: 0.0254, 2: 0.3048, 4: 0.001, 5: 0.01, 6: 1.0, 10: 0.9144, 14: 0.1}
+_METRES: Final = {
+    1: 0.0254, 2: 0.3048, 3: 1609.344, 4: 0.001, 5: 0.01, 6: 1.0, 7: 1000.0, 9: 2.54e-5,
+    10: 0.9144, 13: 1e-6, 14: 0.1, 15: 10.0, 16: 100.0, 21: 1200.0 / 3937.0,
+}  # fmt: skip
 """Metres in the unit of the header `$INSUNITS`."""
 _DOORS: Final = re.compile(r"door|t(ü|ue)r(en)?\b|porte|puerta|porta", re.IGNORECASE)
+_STAIRS: Final = re.compile(r"stair|treppe|escalier|escalera|scal[ae]\b|escada", re.IGNORECASE)
+_DRAWN: Final = frozenset(
+    ("LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE", "HELIX", "3DFACE",
+     "SOLID", "TRACE")
+)  # fmt: skip
+"""What is drawn as a line; texts, dimensions, hatches and pictures are none."""
 _FLATTENING: Final = 0.01
+_FLAT_M: Final = 1.0
 MAX_LINES: Final = 50_000
+MAX_ENTITIES: Final = 200_000
+MAX_DEPTH: Final = 16
+
+
+class _Drawn(NamedTuple):
+    """An entity, the layer that it is on, and the block that it comes from, by number."""
+
+    entity: Any
+    layer: str
+    block: int
 
 
 def read_dxf(data: bytes, name: str, layers: Sequence[str] = ()) -> Storey:
@@ -26,49 +47,143 @@ def read_dxf(data: bytes, name: str, layers: Sequence[str] = ()) -> Storey:
     ValueError
         It is no DXF, has none of the layers, or draws more than may be.
     """
-    ezdxf = library("ezdxf", "drawings in DXF")
+    drawing, faults = _opened(data)
     path_of = library("ezdxf.path", "drawings in DXF").make_path
-    disassemble = library("ezdxf.disassemble", "drawings in DXF").recursive_decompose
-    try:
-        drawing = ezdxf.read(io.StringIO(decoded(data)))
-    except (ezdxf.DXFError, ValueError) as error:
-        raise ValueError(f"it is no DXF that can be read: {error}") from None
     storey = Storey(name)
+    if faults:
+        storey.remarks.append(f"it is damaged: {faults} faults were mended, or left out")
     unit = drawing.header.get("$INSUNITS", 0)
     if unit not in _METRES:
         storey.remarks.append("it names no unit: taken as metres (--scale says otherwise)")
     scale = _METRES.get(unit, 1.0)
     wanted = {layer.lower() for layer in layers}
+    hidden = {
+        layer.dxf.name.lower() for layer in drawing.layers if layer.is_off() or layer.is_frozen()
+    } - wanted
     passed: Counter[str] = Counter()
     seen: set[str] = set()
-    for entity in disassemble(drawing.modelspace()):
-        layer = entity.dxf.get("layer", "0")
+    doors: dict[int, list[Stroke]] = {}
+    heights: list[float] = []
+    for entity, layer, block in _Drawing().entities(drawing.modelspace()):
         seen.add(layer)
         is_door = bool(_DOORS.search(layer))
-        if wanted and layer.lower() not in wanted and not is_door:
-            passed[f"entities of layer {layer}"] += 1
-            continue
-        points = _points(entity, path_of, scale)
-        if points is None:
+        why = _why_passed(layer, wanted, hidden)
+        if why:
+            passed[why] += 1
+        elif (stroke := _stroke(entity, path_of, scale, heights)) is None:
             passed[f"entities of type {entity.dxftype()}"] += 1
         elif is_door:
-            storey.doors.append((f"door {len(storey.doors) + 1}", (points[0], points[-1])))
+            doors.setdefault(block, []).append(stroke)
         else:
-            storey.add_path(points)
+            storey.add_path(stroke.points)
         if len(storey.walls) > MAX_LINES:
             raise ValueError(f"it draws more than {MAX_LINES} lines; choose layers with --layer")
-    missing = wanted - {layer.lower() for layer in seen}
-    if missing:
-        known = ", ".join(sorted(seen)) or "none"
-        raise ValueError(f"it has no layer {', '.join(sorted(missing))}; there are {known}")
+    _check_layers(wanted, seen)
+    for block, strokes in doors.items():
+        for doorway in doorways(strokes, is_block=block > 0):
+            storey.doors.append((f"door {len(storey.doors) + 1}", doorway))
+    storey.remarks += _differing(heights)
     storey.remarks += [f"passed over: {count} {what}" for what, count in passed.items()]
     return storey
 
 
-def _points(entity: Any, path_of: Any, scale: float) -> list[tuple[float, float]] | None:
+def _why_passed(layer: str, wanted: set[str], hidden: set[str]) -> str:
+    """Why a layer is not drawn; empty where it is."""
+    if layer.lower() in hidden:
+        return f"entities of layer {layer}, which is off"
+    if wanted:
+        chosen = layer.lower() in wanted or _DOORS.search(layer)
+        return "" if chosen else f"entities of layer {layer}"
+    if _STAIRS.search(layer):
+        return f"lines of stairs (layer {layer}), taken as level floor"
+    return ""
+
+
+def _differing(heights: list[float]) -> list[str]:
+    low, high = min(heights, default=0.0), max(heights, default=0.0)
+    if high - low <= _FLAT_M:
+        return []
+    return [f"its lines lie {low:.1f} to {high:.1f} m high: all are taken for one storey"]
+
+
+def _opened(data: bytes) -> tuple[Any, int]:
+    """The drawing; one that is damaged is read as far as it can be, and its faults are counted."""
+    ezdxf = library("ezdxf", "drawings in DXF")
+    recover = library("ezdxf.recover", "drawings in DXF")
+    if re.match(rb"AC10\d\d", data):
+        raise ValueError("it is a drawing in DWG, which is not read: save it as DXF")
+    try:
+        if not data.startswith(b"AutoCAD Binary DXF"):
+            return ezdxf.read(io.StringIO(decoded(data, eight_bit=True).text)), 0
+    except Exception:  # noqa: BLE001, S110  (the library raises many kinds on damaged files)
+        pass
+    try:
+        drawing, auditor = recover.read(io.BytesIO(data))
+    except Exception as error:  # noqa: BLE001
+        raise ValueError(f"it is no DXF that can be read: {error}"[:300]) from None
+    return drawing, len(auditor.errors) + len(auditor.fixes)
+
+
+class _Drawing:
+    """Goes through a drawing and the blocks in it, as far as that is bounded."""
+
+    def __init__(self) -> None:
+        self._count = 0
+        self._blocks = 0
+
+    def entities(
+        self, found: Any, layer: str = "0", block: int = 0, left: int = MAX_DEPTH
+    ) -> Iterator[_Drawn]:
+        """All that is drawn as a line, each with the layer on which it is seen."""
+        if left == 0:
+            raise ValueError("its blocks lie too deep within each other")
+        for entity in found:
+            self._count += 1
+            if self._count > MAX_ENTITIES:
+                raise ValueError(f"it has more than {MAX_ENTITIES} entities")
+            own = entity.dxf.get("layer", "0")
+            kind = entity.dxftype()
+            # What a block has on layer 0 is on the layer of the block's copy.
+            own = layer if own == "0" else own
+            if kind in ("INSERT", "MLINE"):
+                for copy in self._copies(entity, kind):
+                    self._blocks += block == 0 and kind == "INSERT"
+                    name = entity.dxf.get("name", "") if kind == "INSERT" else ""
+                    seen = name if own == "0" and _DOORS.search(name) else own
+                    inner = self._blocks if kind == "INSERT" and block == 0 else block
+                    yield from self.entities(copy.virtual_entities(), seen, inner, left - 1)
+            else:
+                yield _Drawn(entity, own, block)
+
+    def _copies(self, entity: Any, kind: str) -> Iterator[Any]:
+        if kind == "INSERT" and entity.mcount > 1:
+            if entity.mcount > MAX_ENTITIES:
+                raise ValueError(f"it has more than {MAX_ENTITIES} entities")
+            yield from entity.multi_insert()
+        else:
+            yield entity
+
+
+def _stroke(entity: Any, path_of: Any, scale: float, heights: list[float]) -> Stroke | None:
+    if entity.dxftype() not in _DRAWN:
+        return None
     try:
         path = path_of(entity)
-    except TypeError:
+        found = list(path.flattening(_FLATTENING / scale))
+    except Exception:  # noqa: BLE001  (of damaged entities the library raises many kinds)
         return None
-    points = [(scale * p.x, scale * p.y) for p in path.flattening(_FLATTENING / scale)]
-    return points if len(points) >= 2 else None
+    if len(found) < 2 or len(found) > MAX_LINES:
+        return None
+    heights += (scale * min(p.z for p in found), scale * max(p.z for p in found))
+    points = [(scale * p.x, scale * p.y) for p in found]
+    if entity.dxftype() != "ARC":
+        return Stroke(points)
+    centre = entity.ocs().to_wcs(entity.dxf.center)
+    return Stroke(points, (scale * centre.x, scale * centre.y))
+
+
+def _check_layers(wanted: set[str], seen: set[str]) -> None:
+    missing = wanted - {layer.lower() for layer in seen}
+    if missing:
+        known = ", ".join(sorted(seen)) or "none"
+        raise ValueError(f"it has no layer {', '.join(sorted(missing))}; there are {known}"[:600])

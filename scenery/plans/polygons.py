@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from typing import Any, Final
 
-from esplanade.planning.scene.formats.text import decoded
+from esplanade.files.text import decoded
 from esplanade.scenery.plans.storey import Storey, library
 
 METRES_A_DEGREE: Final = 111_319.49
+MAX_VALUES: Final = 3_000_000
+STAIRS: Final = ("stairs", "stair", "steps", "staircase")
+_WIDTH_M: Final = 1.5
 _WRONG: Final = (AttributeError, KeyError, TypeError, IndexError, ValueError)
 _MOST_DEGREES: Final = 0.02
 """Plans that measure less and lie within the degrees of the earth are degrees, as GeoJSON says."""
@@ -18,7 +22,11 @@ _MOST_DEGREES: Final = 0.02
 def read_wkt(data: bytes, name: str) -> Storey:
     """The storey of a text with one or more geometries, each in a line or over several."""
     shapely = library("shapely", "plans")
-    text = " ".join(line for line in decoded(data).split("\n") if not line.lstrip().startswith("#"))
+    text = " ".join(
+        line
+        for line in decoded(data, eight_bit=True).text.split("\n")
+        if not line.lstrip().startswith("#")
+    )
     storey = Storey(name)
     areas: list[Any] = []
     for number, part in enumerate(_geometries(text), 1):
@@ -34,10 +42,11 @@ def read_wkt(data: bytes, name: str) -> Storey:
 def _geometries(text: str) -> list[str]:
     """The geometries of a text, each with its brackets."""
     found, depth, start = [], 0, 0
-    for place, letter in enumerate(text):
-        if letter == "(":
+    for bracket in re.finditer(r"[()]", text):
+        place = bracket.start()
+        if bracket.group() == "(":
             depth += 1
-        elif letter == ")":
+        else:
             depth -= 1
             if depth == 0:
                 part = text[start : place + 1].strip(" ;,\t")
@@ -52,8 +61,10 @@ def read_geojson(data: bytes, name: str) -> Storey:
     """The storey of a GeoJSON file; coordinates in degrees become metres around its middle."""
     shapely = library("shapely", "plans")
     geometry_of = library("shapely.geometry", "plans").shape
+    if sum(data.count(mark) for mark in (b",", b"[", b"{")) > MAX_VALUES:
+        raise ValueError(f"it has more than {MAX_VALUES} values")
     try:
-        content = json.loads(decoded(data, strict=True))
+        content = json.loads(decoded(data).text)
     except RecursionError:
         raise ValueError("its brackets are too deep") from None
     features = content.get("features", [content]) if isinstance(content, dict) else []
@@ -88,6 +99,29 @@ def read_geojson(data: bytes, name: str) -> Storey:
     return storey
 
 
+def _take_polygon(geometry: Any, kind: str, storey: Storey, areas: list[Any]) -> None:
+    if not geometry.is_valid:
+        raise ValueError(f"a polygon crosses itself near {geometry.centroid.wkt}")
+    if kind in ("obstacle", "wall", "building", "furniture", "solid"):
+        for ring in (geometry.exterior, *geometry.interiors):
+            storey.add_path([(x, y) for x, y, *_ in ring.coords])
+        return
+    areas.append(geometry)
+    if kind in STAIRS:
+        storey.remarks.append(
+            "an area of stairs is taken as level: a line from foot to head is a flight"
+        )
+
+
+def _width(properties: Any) -> float:
+    """The width of a flight, metres."""
+    try:
+        width = float(properties.get("width_m", properties.get("width", _WIDTH_M)))
+    except (TypeError, ValueError):
+        return _WIDTH_M
+    return width if 0.3 <= width <= 100.0 else _WIDTH_M
+
+
 def _take(geometry: Any, properties: Any, storey: Storey, areas: list[Any]) -> None:
     """Add a geometry to a storey by its type, and by `kind`, `type` or `class` of it."""
     kind = next(
@@ -96,16 +130,12 @@ def _take(geometry: Any, properties: Any, storey: Storey, areas: list[Any]) -> N
     name = str(properties.get("name", ""))
     match geometry.geom_type:
         case "Polygon":
-            if not geometry.is_valid:
-                raise ValueError(f"a polygon crosses itself near {geometry.centroid.wkt}")
-            if kind in ("obstacle", "wall", "building", "furniture", "solid"):
-                for ring in (geometry.exterior, *geometry.interiors):
-                    storey.add_path([(x, y) for x, y, *_ in ring.coords])
-            else:
-                areas.append(geometry)
+            _take_polygon(geometry, kind, storey, areas)
         case "LineString" | "LinearRing":
             points = [(x, y) for x, y, *_ in geometry.coords]
-            if kind == "door":
+            if kind in STAIRS:
+                storey.stairs.append(((points[0], points[-1]), _width(properties)))
+            elif kind == "door":
                 number = len(storey.doors) + 1
                 storey.doors.append((name or f"door {number}", (points[0], points[-1])))
             else:

@@ -32,19 +32,35 @@ def read_plan(path: Path, layers: Sequence[str] = ()) -> Storey:
         The file cannot be read; the message names it and its fault.
     """
     try:
-        data = read_bounded(path, MAX_BYTES)
-        match path.suffix.lower():
-            case ".wkt":
-                return read_wkt(data, path.stem)
-            case ".geojson" | ".json":
-                return read_geojson(data, path.stem)
-            case ".xml":
-                return read_jupedsim(data, path.stem)
-            case ".yaml" | ".yml":
-                return read_ros_map(path, data)
-            case _:
-                return read_dxf(data, path.stem, layers)
+        storey = _read(path, read_bounded(path, MAX_BYTES), layers)
+        _check_drawn(storey)
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror or error}") from None
-    except (ValueError, KeyError, TypeError, RecursionError) as error:
-        raise UsageError(f"{path}: {error}") from None
+    except UsageError:
+        raise
+    # Broken bytes take libraries to places that nobody thought of.
+    except Exception as error:  # noqa: BLE001
+        words = str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"
+        raise UsageError(f"{path}: {words}"[:800]) from None
+    return storey
+
+
+def _check_drawn(storey: Storey) -> None:
+    try:
+        storey.bounds()
+    except ValueError as error:
+        raise ValueError("; ".join((str(error), *storey.remarks))) from None
+
+
+def _read(path: Path, data: bytes, layers: Sequence[str]) -> Storey:
+    match path.suffix.lower():
+        case ".wkt":
+            return read_wkt(data, path.stem)
+        case ".geojson" | ".json":
+            return read_geojson(data, path.stem)
+        case ".xml":
+            return read_jupedsim(data, path.stem)
+        case ".yaml" | ".yml":
+            return read_ros_map(path, data)
+        case _:
+            return read_dxf(data, path.stem, layers)

@@ -9,9 +9,11 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.planning.scene.formats.text import decoded
+from esplanade.files.text import decoded
 from esplanade.scenery.plans.storey import Storey, library
 
+MAX_YAML_BYTES: Final = 65_536
+MAX_RUNS: Final = 200_000
 MAX_PIXELS: Final = 16_000_000
 
 
@@ -25,8 +27,10 @@ def read_ros_map(path: Path, data: bytes) -> Storey:
     """
     shapely = library("shapely", "plans")
     yaml = library("yaml", "ROS maps")
+    if len(data) > MAX_YAML_BYTES:
+        raise ValueError(f"it has more than {MAX_YAML_BYTES} bytes, which no map has")
     try:
-        content = yaml.safe_load(decoded(data, strict=True))
+        content = yaml.safe_load(decoded(data).text)
     except (yaml.YAMLError, RecursionError) as error:
         raise ValueError(f"it is no YAML: {error}") from None
     if not isinstance(content, dict) or "image" not in content:
@@ -80,5 +84,7 @@ def _boxes(free: NDArray[np.bool_], size: float) -> NDArray[Any]:
     edges = np.diff(np.pad(free.astype(np.int8), ((0, 0), (1, 1))), axis=1)
     rows, begins = np.nonzero(edges == 1)
     _, ends = np.nonzero(edges == -1)
+    if len(rows) > MAX_RUNS:
+        raise ValueError(f"its free pixels are torn into {len(rows)} runs, {MAX_RUNS} are possible")
     boxes: NDArray[Any] = shapely.box(begins * size, rows * size, ends * size, (rows + 1) * size)
     return boxes

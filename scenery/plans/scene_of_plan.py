@@ -17,6 +17,8 @@ from esplanade.scenery.plans.storey import Line, Point, Storey, library
 STOREY_M: Final = 3.2
 """From one floor to the next."""
 _SLAB_M: Final = 0.3
+_STEPS: Final = 19
+"""Steps of a flight between storeys, of 17 cm each."""
 _WALL_M: Final = 2.5
 _MOST_CORNERS: Final = 500
 _LEAST_AREA_M2: Final = 1e-4
@@ -45,9 +47,27 @@ def scene_of_plan(
         math.ceil(x1 - moved[0] - 1e-6),
         math.ceil(y1 - moved[1] - 1e-6),
     )
-    parts: dict[str, list[Any]] = {"polygons": [], "walls": [], "doors": [], "places": []}
+    parts: dict[str, list[Any]] = {
+        group: [] for group in ("polygons", "walls", "doors", "places", "stairs")
+    }
+    mover = _Mover(scale, moved)
+    below: Storey | None = None
     for number, storey in enumerate(storeys):
-        _add_storey(parts, storey, number, bounds, _Mover(scale, moved), len(storeys) > 1)
+        _add_storey(parts, storey, number, bounds, mover, len(storeys) > 1, _shafts(below, mover))
+        if number + 1 < len(storeys):
+            parts["stairs"] += [
+                {
+                    **mover.line(flight),
+                    "width_m": width * scale,
+                    "bottom_m": number * STOREY_M,
+                    "top_m": (number + 1) * STOREY_M,
+                    "steps": _STEPS,
+                }
+                for flight, width in storey.stairs
+            ]
+        elif storey.stairs:
+            storey.remarks.append("its stairs lead to no storey above: they are left out")
+        below = storey
     try:
         return Scene.model_validate(
             {"name": name[:64], "bounds": bounds, "origin_m": (*moved, 0.0), **parts}
@@ -55,18 +75,31 @@ def scene_of_plan(
     except ValidationError as error:
         faults = scene_faults(error)
         more = f" and {len(faults) - 3} others" if len(faults) > 3 else ""
-        raise UsageError(f"it makes no scene: {'; '.join(faults[:3])}{more}") from None
+        hint = "; is its unit right? --scale says otherwise" if "may measure" in faults[0] else ""
+        raise UsageError(f"it makes no scene: {'; '.join(faults[:3])}{more}{hint}") from None
+
+
+def _shafts(below: Storey | None, mover: _Mover) -> Any:
+    """The openings above the flights of a storey; None without any."""
+    if below is None or not below.stairs:
+        return None
+    shapely = library("shapely", "plans")
+    found = []
+    for flight, width in below.stairs:
+        line = shapely.LineString([mover.point(end) for end in flight])
+        found.append(line.buffer(0.5 * width * mover.scale, cap_style="flat"))
+    return shapely.union_all(found)
 
 
 class _Mover:
     """From the coordinates of the plan to those of the scene."""
 
     def __init__(self, scale: float, moved: tuple[int, int]) -> None:
-        self._scale = scale
+        self.scale = scale
         self._moved = moved
 
     def point(self, point: Point) -> Point:
-        x, y = (round(self._scale * c - m, 6) for c, m in zip(point, self._moved, strict=True))
+        x, y = (round(self.scale * c - m, 6) for c, m in zip(point, self._moved, strict=True))
         return x, y
 
     def line(self, line: Line) -> dict[str, Point]:
@@ -74,7 +107,7 @@ class _Mover:
 
     def area(self, area: Any) -> Any:
         shapely = library("shapely", "plans")
-        return shapely.transform(area, lambda c: c[:, :2] * self._scale - self._moved)
+        return shapely.transform(area, lambda c: c[:, :2] * self.scale - self._moved)
 
 
 def _add_storey(
@@ -84,6 +117,7 @@ def _add_storey(
     bounds: tuple[int, int, int, int],
     mover: _Mover,
     several: bool,
+    shafts: Any,
 ) -> None:
     floor_m = number * STOREY_M
     prefix = f"{storey.name} " if several else ""
@@ -92,6 +126,7 @@ def _add_storey(
     if area is None and number:
         area = shapely.box(*bounds)
     if number:
+        area = area if shafts is None or area is None else area.difference(shafts)
         parts["polygons"] += [
             {"kind": "floor", "offset_m": floor_m - _SLAB_M, "height_m": _SLAB_M, "points": ring}
             for ring in rings_without_holes(area)

@@ -23,6 +23,8 @@ class Storey:
     walls: list[Line] = field(default_factory=list)
     doors: list[tuple[str, Line]] = field(default_factory=list)
     points: list[tuple[str, Point]] = field(default_factory=list)
+    stairs: list[tuple[Line, float]] = field(default_factory=list)
+    """Flights to the storey above, from foot to head, with their widths."""
     remarks: list[str] = field(default_factory=list)
     """What was taken for granted or passed over, one sentence each."""
 
@@ -41,6 +43,7 @@ class Storey:
         ends = [point for wall in self.walls for point in wall]
         ends += [point for _, door in self.doors for point in door]
         ends += [point for _, point in self.points]
+        ends += [point for flight, _ in self.stairs for point in flight]
         if self.walkable is not None and not self.walkable.is_empty:
             x0, y0, x1, y1 = self.walkable.bounds
             ends += [(x0, y0), (x1, y1)]

@@ -42,6 +42,9 @@ class Container:
         version = str(content["asset"].get("version"))
         if not version.startswith("2."):
             raise ValueError(f"it is glTF {version}; glTF 2.0 is read")
+        least = content["asset"].get("minVersion", "2.0")
+        if least != "2.0":
+            raise ValueError(f"it needs a reader of glTF {least!r:.20}; glTF 2.0 is read")
         self.content: dict[str, Any] = content
         self._buffers: dict[int, bytes] = {}
         self._read = 0

@@ -9,8 +9,9 @@ from typing import Final
 
 import numpy as np
 
+from esplanade.files.text import lines_of, shown
 from esplanade.planning.scene.formats.faces import Faces
-from esplanade.planning.scene.formats.text import decoded, shown
+from esplanade.planning.scene.formats.mesh_text import text_of_mesh
 
 MAX_ELEMENTS: Final = 15_000_000
 """Most corners of all faces, and most numbers of all vertices."""
@@ -42,7 +43,7 @@ def read_obj(data: bytes) -> Faces:
     numbers, corners, sizes = array("d"), array("q"), array("q")
     lines_of_faces = array("q")
     passed: Counter[str] = Counter()
-    for line, words in _statements(decoded(data)):
+    for line, words in _statements(text_of_mesh(data)):
         key = words[0]
         if key == "v":
             _add_vertex(line, words, numbers)
@@ -79,7 +80,7 @@ def _statements(text: str) -> Iterator[tuple[int, list[str]]]:
     """The words of each statement, with the number of its last line."""
     begun = ""
     continued = "\\" in text
-    for number, line in enumerate(text.split("\n"), 1):
+    for number, line in enumerate(lines_of(text), 1):
         if "#" in line:
             line = line[: line.index("#")]  # noqa: PLW2901
         elif continued and line.rstrip().endswith("\\"):

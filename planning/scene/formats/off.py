@@ -6,8 +6,9 @@ from typing import Final
 
 import numpy as np
 
+from esplanade.files.text import lines_of, shown
 from esplanade.planning.scene.formats.faces import Faces
-from esplanade.planning.scene.formats.text import decoded, shown
+from esplanade.planning.scene.formats.mesh_text import text_of_mesh
 
 HEADERS: Final = ("OFF", "COFF", "NOFF", "CNOFF", "STOFF", "STCOFF", "STNOFF", "STCNOFF")
 
@@ -20,7 +21,7 @@ def read_off(data: bytes) -> Faces:
     ValueError
         The file is none of OFF, with the number of the line.
     """
-    lines = _lines(decoded(data))
+    lines = _lines(text_of_mesh(data))
     number, words = next(lines, (1, []))
     if not words or words[0].upper() not in HEADERS:
         raise ValueError(f"line {number}: a file of OFF begins with 'OFF', and is text")
@@ -71,7 +72,7 @@ def read_off(data: bytes) -> Faces:
 
 
 def _lines(text: str) -> Iterator[tuple[int, list[str]]]:
-    for number, line in enumerate(text.split("\n"), 1):
+    for number, line in enumerate(lines_of(text), 1):
         words = line.partition("#")[0].split()
         if words:
             yield number, words

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.files.text import shown
 from esplanade.planning.scene.formats.faces import Faces
-from esplanade.planning.scene.formats.text import shown
 
 _TYPES: Final = {
     **dict.fromkeys(("char", "int8"), "i1"),
@@ -46,6 +47,7 @@ def read_ply(data: bytes) -> Faces:
     ValueError
         The file is none of PLY, or ends too early.
     """
+    data = data.removeprefix(b"\xef\xbb\xbf")
     end = data.find(b"end_header", 0, _MAX_HEADER_BYTES)
     line_end = data.find(b"\n", end)
     if end < 0 or line_end < 0:
@@ -176,7 +178,10 @@ def _row_by_row(
 
 
 def _ascii(body: bytes, elements: list[_Element]) -> dict[str, dict[str, Any]]:
-    words = iter(body.decode("latin-1").split())
+    least = sum(element.length * max(1, len(element.properties)) for element in elements)
+    if 2 * least > len(body) + 1:
+        raise ValueError(f"it ends before its {least} numbers")
+    words = (found.group() for found in re.finditer(rb"\S+", body))
     found: dict[str, dict[str, Any]] = {}
     try:
         for element in elements:

@@ -4,8 +4,9 @@ from typing import Final
 
 import numpy as np
 
+from esplanade.files.text import lines_of, shown
 from esplanade.planning.scene.formats.faces import Triangles
-from esplanade.planning.scene.formats.text import decoded, shown
+from esplanade.planning.scene.formats.mesh_text import text_of_mesh
 
 _HEADER_BYTES: Final = 84
 _ROW: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")])
@@ -24,8 +25,9 @@ def read_stl(data: bytes) -> Triangles:
     if len(data) >= _HEADER_BYTES and len(data) == length:
         rows = np.frombuffer(data, dtype=_ROW, count=count, offset=_HEADER_BYTES)
         return Triangles(rows["corners"].astype(np.float64))
-    if data[: 2**10].lstrip(b"\xef\xbb\xbf\xff\xfe \t\r\n\0").lower().startswith(b"s"):
-        return _of_text(decoded(data))
+    is_text = b"\0" not in data[:_HEADER_BYTES] or data.startswith((b"\xff\xfe", b"\xfe\xff"))
+    if is_text and data[: 2**10].lstrip(b"\xef\xbb\xbf\xff\xfe \t\r\n\0").lower().startswith(b"s"):
+        return _of_text(text_of_mesh(data))
     if len(data) > length >= _HEADER_BYTES:
         rows = np.frombuffer(data, dtype=_ROW, count=count, offset=_HEADER_BYTES)
         return Triangles(rows["corners"].astype(np.float64))
@@ -35,7 +37,7 @@ def read_stl(data: bytes) -> Triangles:
 def _of_text(text: str) -> Triangles:
     numbers: list[float] = []
     in_loop = 0
-    for number, line in enumerate(text.split("\n"), 1):
+    for number, line in enumerate(lines_of(text), 1):
         words = line.split()
         match [word.lower() for word in words]:
             case ["vertex", x, y, z]:

@@ -10,6 +10,7 @@ from PIL import Image
 from esplanade.cli import main
 from esplanade.commandline.errors import UsageError
 from esplanade.planning import LayeredGrid, Scene
+from esplanade.planning.scene.rings import twice_area
 from esplanade.planning.scene.scene_file import read_scene
 from esplanade.scenery.plans.reading import read_plan
 from esplanade.scenery.plans.scene_of_plan import STOREY_M, scene_of_plan
@@ -181,3 +182,88 @@ def test_the_command_tells_floors_and_writes_a_scene(
     assert "3 polygons, 1 walls, 0 doors" in told
     assert out.with_suffix(".png").is_file()
     assert read_scene(out).spawns
+
+
+def drawing_with_doors(path: Path) -> None:
+    """A room whose door is a block: a leaf that stands open, its swing, and a threshold."""
+    ezdxf = pytest.importorskip("ezdxf")
+    drawing = ezdxf.new()
+    drawing.header["$INSUNITS"] = 6
+    for layer in ("A-WALL", "A-DOOR", "A-STAIR", "A-OLD"):
+        drawing.layers.add(layer)
+    drawing.layers.get("A-OLD").off()
+    block = drawing.blocks.new("LEAF")
+    block.add_line((0, 0), (0, 0.9))
+    block.add_arc((0, 0), 0.9, 0, 90)
+    space = drawing.modelspace()
+    space.add_lwpolyline(
+        [(2.9, 0), (8, 0), (8, 6), (0, 6), (0, 0), (2, 0)], dxfattribs={"layer": "A-WALL"}
+    )
+    space.add_blockref("LEAF", (2, 0), dxfattribs={"layer": "A-DOOR"})
+    space.add_line((0, 3), (8, 3), dxfattribs={"layer": "A-OLD"})
+    for k in range(5):
+        space.add_line((5 + 0.3 * k, 4), (5 + 0.3 * k, 5), dxfattribs={"layer": "A-STAIR"})
+    space.add_linear_dim(base=(0, 8), p1=(0, 6), p2=(8, 6)).render()
+    drawing.saveas(path)
+
+
+def test_a_door_is_where_its_leaf_closes(tmp_path: Path) -> None:
+    path = tmp_path / "plan.dxf"
+    drawing_with_doors(path)
+    storey = read_plan(path)
+    ((_, (hinge, end)),) = storey.doors
+    assert hinge == pytest.approx((2.0, 0.0), abs=1e-6)
+    assert end == pytest.approx((2.9, 0.0), abs=0.01)
+    assert len(storey.walls) == 5
+    told = " ".join(storey.remarks)
+    assert "1 entities of layer A-OLD, which is off" in told
+    assert "5 lines of stairs (layer A-STAIR), taken as level floor" in told
+    assert "1 entities of type DIMENSION" in told
+
+
+def test_blocks_within_blocks_fill_no_memory(tmp_path: Path) -> None:
+    ezdxf = pytest.importorskip("ezdxf")
+    drawing = ezdxf.new()
+    inner = drawing.blocks.new("B0")
+    inner.add_line((0, 0), (1, 0))
+    for k in range(1, 12):
+        block = drawing.blocks.new(f"B{k}")
+        for _ in range(10):
+            block.add_blockref(f"B{k - 1}", (0, 0))
+    drawing.modelspace().add_blockref("B11", (0, 0))
+    path = tmp_path / "bomb.dxf"
+    drawing.saveas(path)
+    with pytest.raises(UsageError, match="draws more than 50000 lines"):
+        read_plan(path)
+
+
+def test_a_drawing_of_another_program_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "plan.dxf"
+    path.write_bytes(b"AC1027\0\0\0\0\0")
+    with pytest.raises(UsageError, match="DWG, which is not read: save it as DXF"):
+        read_plan(path)
+
+
+def test_a_line_of_stairs_leads_to_the_storey_above(tmp_path: Path) -> None:
+    ring = [[0, 0], [20, 0], [20, 10], [0, 10], [0, 0]]
+    floor = {
+        "type": "Feature",
+        "properties": {},
+        "geometry": {"type": "Polygon", "coordinates": [ring]},
+    }
+    flight = {
+        "type": "Feature",
+        "properties": {"kind": "stairs", "width_m": 2.0},
+        "geometry": {"type": "LineString", "coordinates": [[4, 5], [12, 5]]},
+    }
+    storeys = []
+    for name in ("ground", "first"):
+        path = tmp_path / f"{name}.geojson"
+        path.write_text(json.dumps({"type": "FeatureCollection", "features": [floor, flight]}))
+        storeys.append(read_plan(path))
+    scene = scene_of_plan(storeys, "house")
+    (stairs,) = scene.stairs
+    assert (stairs.start, stairs.end, stairs.top_m) == ((4.0, 5.0), (12.0, 5.0), STOREY_M)
+    assert "no storey above" in " ".join(storeys[1].remarks)
+    upper = [p for p in scene.polygons if p.kind == "floor"]
+    assert sum(abs(twice_area(p.points)) / 2 for p in upper) == pytest.approx(200.0 - 16.0)

@@ -80,7 +80,7 @@ def test_negative_indices_count_from_where_they_stand() -> None:
         ("v 0 0 0\nf 0 1 1\n", "line 2: the face names corner 0"),
         ("v 0 0 0\nf -2 1 1\n", "line 2: the face names corner -2"),
         ("call other.obj\n", "line 1: 'call' takes in another file"),
-        (b"\xff\xfev\0 \0\0", "no text"),
+        (b"\xff\xfev\0 \0\0", "is not UTF-16 text"),
         (b"\x00\x01\x02" * 90, "no text"),
     ],
 )
