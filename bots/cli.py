@@ -49,6 +49,7 @@ def run(options: Namespace) -> int:
                 unit=settings.unit,
                 scale=settings.scale,
                 strict=settings.strict,
+                columns=settings.columns or (),
             )
         except RecordingError as error:
             raise UsageError(str(error)) from None

@@ -124,7 +124,7 @@ _LOAD: Final = {
 _REPLAY: Final = {
     "replay": Setting(
         "send in the people of this recording instead of visitors; docs/files.md lists the formats",
-        InputFile(),
+        InputFile(folders=True),
     ),
     "speedup": Setting(
         "how many times faster than they were recorded", Number(0.1, 20.0), 1.0, "times"

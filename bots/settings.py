@@ -51,6 +51,7 @@ class BotsSettings(BaseSettings):
     fps: float | None = _field("fps")
     unit: str | None = _field("unit")
     scale: float | None = _field("scale")
+    columns: str | None = _field("columns")
     strict: bool = _field("strict")
 
     fail_if: Annotated[tuple[str, ...], NoDecode] = _field("fail_if")

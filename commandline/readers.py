@@ -121,9 +121,12 @@ class Choice:
 
 
 class InputFile:
-    """A file that is there and can be read."""
+    """A file that is there and can be read; with `folders`, a folder too."""
 
     metavar = "FILE"
+
+    def __init__(self, *, folders: bool = False) -> None:
+        self.folders = folders
 
     def __call__(self, text: str) -> Path:
         path = Path(text)
@@ -132,7 +135,7 @@ class InputFile:
         except (OSError, ValueError) as error:
             why = getattr(error, "strerror", None) or error
             raise ArgumentTypeError(f"{text}: cannot be read: {why}") from None
-        if path.is_dir():
+        if path.is_dir() and not self.folders:
             raise ArgumentTypeError(f"{text}: cannot be read: this is a folder, not a file")
         if not os.access(path, os.R_OK):
             raise ArgumentTypeError(f"{text}: cannot be read: permission denied")

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final, Protocol
 
 from esplanade.commandline.parser import Parser
-from esplanade.commandline.readers import Choice, Flag, Number
+from esplanade.commandline.readers import Choice, Flag, Number, Text
 from esplanade.commandline.settings import Setting
 
 UNITS: Final = ("m", "dm", "cm", "mm", "km", "ft", "in")
@@ -26,7 +26,12 @@ STRICT: Final = Setting(
     Flag(),
     default=False,
 )
-READING: Final = {"fps": FPS, "unit": UNIT, "scale": SCALE, "strict": STRICT}
+COLUMNS: Final = Setting(
+    "names of the recording's columns, whatever its header says, as frame,id,,x/cm,y/cm or, for "
+    "those that count, t=Zeit/ms,id=Wer,x=Ost,y=Nord",
+    Text(),
+)
+READING: Final = {"fps": FPS, "unit": UNIT, "scale": SCALE, "columns": COLUMNS, "strict": STRICT}
 
 
 def check_reading(given: Mapping[str, Any]) -> None:
@@ -47,8 +52,8 @@ def misplaced(given: Mapping[str, Any]) -> str | None:
 
 
 def add_reading(parser: Any) -> None:
-    """Add `--fps`, `--unit` and `--scale` to a parser or a group of it."""
-    for name in ("fps", "unit", "scale"):
+    """Add `--fps`, `--unit`, `--scale` and `--columns` to a parser or a group of it."""
+    for name in ("fps", "unit", "scale", "columns"):
         setting = READING[name]
         parser.add_argument(
             f"--{name}",

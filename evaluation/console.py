@@ -18,7 +18,13 @@ def named_sources(options: Namespace) -> dict[Source, str]:
         Source(
             path,
             options.walls,
-            Given(options.fps, options.unit, options.scale, options.strict),
+            Given(
+                options.fps,
+                options.unit,
+                options.scale,
+                options.strict,
+                tuple(options.columns.split(",")) if options.columns else (),
+            ),
             options.interp,
         )
         for path in options.crowds

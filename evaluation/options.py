@@ -56,7 +56,9 @@ def parser() -> Parser:
         "people\nare predicted.",
         epilog=EXAMPLES,
     )
-    made.add_argument("crowds", metavar="CROWD", nargs="+", type=InputFile(), help="recorded crowd")
+    made.add_argument(
+        "crowds", metavar="CROWD", nargs="+", type=InputFile(folders=True), help="recorded crowd"
+    )
     files = made.add_argument_group("recordings")
     files.add_argument(
         "--walls",

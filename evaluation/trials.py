@@ -56,6 +56,7 @@ def _read(source: Source) -> tuple[Crowd, Obstacles]:
         unit=source.given.unit,
         scale=source.given.scale,
         strict=source.given.strict,
+        columns=source.given.columns,
     )
     return crowd, Obstacles() if walls is None else read_obstacles(walls)
 

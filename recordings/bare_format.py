@@ -1,6 +1,5 @@
 """Tables of numbers without a header: TrajNet's four columns, Jülich's five, ETH's eight."""
 
-import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
@@ -14,8 +13,6 @@ from esplanade.recordings.rows import Floats, Rows, Whole, numbered_people
 from esplanade.recordings.table_format import said_in
 
 OBSMAT: Final = ("frame", "id", "x", "z", "y", "vx", "vz", "vy")
-_SDD: Final = re.compile(r"(\S+\s+){9}\"?[A-Za-z]+\"?")
-_SDD_FPS: Final = 30.0
 _HEIGHTS: Final = {"m": (1.0, 2.3), "cm": (100.0, 230.0), "mm": (1000.0, 2300.0)}
 """Heights of heads, by which the unit of a table shows itself."""
 _FEWEST: Final = 4
@@ -30,8 +27,6 @@ def read_bare(path: Path, table: Table, dialect: Dialect) -> Rows:
         The columns cannot be told, or a line does not fit.
     """
     first = table.lines[0]
-    if _SDD.fullmatch(first.text):
-        return _stanford(path, table, dialect)
     width = len(dialect.cells(first.text))
     if width < _FEWEST:
         raise RecordingError(
@@ -89,40 +84,6 @@ def _obsmat(path: Path, table: Table, dialect: Dialect) -> Rows:
     )
 
 
-def _stanford(path: Path, table: Table, dialect: Dialect) -> Rows:
-    """Stanford Drone: boxes in pixels, of which the middle counts; those marked lost do not."""
-    spaced = dialect._replace(delimiter=None)
-    names = "id xmin ymin xmax ymax frame lost occluded generated kind"
-    places = {name: place for place, name in enumerate(names.split())}
-    cells, others = read_cells(
-        path, table.lines, spaced, places, len(places), names,
-        lambda kind: kind.strip('"').lower() == "pedestrian",
-    )  # fmt: skip
-    numbers = cells.numbers
-    seen = numbers["lost"] == 0.0
-    ids, who = cells.ids, cells.who
-    dropped = int(others + np.count_nonzero(~seen))
-    remarks = [f"{others} samples of bikers, carts and others are left out"] if others else []
-    if not np.all(seen):
-        remarks.append(f"{np.count_nonzero(~seen)} samples that are marked as lost are left out")
-    return Rows(
-        format="Stanford Drone annotations",
-        lines=cells.lines[seen],
-        ids=ids,
-        who=who[seen],
-        clock=numbers["frame"][seen],
-        x=(numbers["xmin"] + numbers["xmax"])[seen] / 2.0,
-        y=-(numbers["ymin"] + numbers["ymax"])[seen] / 2.0,
-        counts_frames=True,
-        usual_fps=_SDD_FPS,
-        usual_from="as Stanford's videos have",
-        unit="px",
-        unit_from="as its form has it",
-        remarks=tuple(remarks),
-        dropped=dropped,
-    )
-
-
 def _marks(path: Path, cells: Cells) -> Floats:
     try:
         names = np.array([float(name) for name in cells.ids])
@@ -172,9 +133,10 @@ def _jump(who: Floats, when: Floats, numbers: Mapping[str, Floats]) -> float:
     """The mean distance of neighbouring samples if these columns say whose and when."""
     order = np.lexsort((when, who))
     same = (np.diff(who[order]) == 0) & (np.diff(when[order]) > 0)
+    away = np.hypot(np.diff(numbers["x"][order]), np.diff(numbers["y"][order]))
+    same &= np.isfinite(away)
     if not same.any():
         return float("inf")
-    away = np.hypot(np.diff(numbers["x"][order]), np.diff(numbers["y"][order]))
     return float(np.mean(away[same]))
 
 

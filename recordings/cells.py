@@ -1,7 +1,9 @@
 """The numbers of a table's columns: all at once where they are plain, else cell by cell."""
 
+import math
+import re
 from collections.abc import Callable, Mapping, Sequence
-from datetime import datetime
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final
 
@@ -11,8 +13,12 @@ from esplanade.recordings.dialect import Dialect, Line
 from esplanade.recordings.errors import RecordingError
 from esplanade.recordings.rows import EXACT_WHOLE, Floats, Whole, number, numbered_people, people
 
-UNKNOWN: Final = "?"
-"""Stands for a place that is to be predicted, in the tests of TrajNet."""
+_NOWHERE: Final = frozenset(("", "?", "na", "n/a", "nan", "null", "none", "-"))
+"""Stand for a place that is not known; `?` for one to be predicted, in the tests of TrajNet."""
+_OF_DAY: Final = re.compile(r"(?:(\d{1,2}):)?(\d{1,2}):(\d{1,2}(?:[.,]\d+)?)")
+_DAY_S: Final = 86_400.0
+_MILLISECONDS: Final = re.compile(r"(:\d\d):(\d{1,6})$")
+_CLOCKS: Final = ("time", "frame")
 _NO_NUMBERS: Final = ("id", "kind")
 
 
@@ -75,7 +81,7 @@ def _all_at_once(
     except (ValueError, IndexError, OverflowError):
         return None
     numbers = {role: np.ascontiguousarray(block[:, i]) for i, role in enumerate(roles)}
-    marks = numbers.pop("id")
+    marks = numbers.pop("id", np.ones(len(block)))
     if len(block) != len(texts) or not np.all(np.abs(marks) < EXACT_WHOLE):
         return None
     ids, who = numbered_people(marks)
@@ -108,30 +114,64 @@ def _one_by_one(
         if keep is not None and "kind" in places and not keep(cells[places["kind"]]):
             dropped += 1
             continue
-        if UNKNOWN in cells and all(cells[places.get(c, 0)] == UNKNOWN for c in "xy"):
-            continue
-        name = cells[places["id"]]
+        nowhere = all(cells[places.get(c, 0)].lower() in _NOWHERE for c in "xy")
+        name = cells[places["id"]] if "id" in places else "1"
         if not name:
             raise RecordingError(path, "expected a pedestrian's id, not an empty cell", line.number)
         for role in roles:
             cell = dialect.plain(cells[places[role]])
-            columns[role].append(_value(path, line.number, role, cell))
+            if nowhere and role not in _CLOCKS:
+                columns[role].append(math.nan)
+            else:
+                columns[role].append(_value(path, line.number, role, cell))
         names.append(dialect.plain(name))
         kept.append(line)
     ids, who = _people(names)
+    _over_midnight(columns.get("time"), lines, dialect, places)
     numbers = {role: np.array(column, np.float64) for role, column in columns.items()}
     return Cells(_numbers(kept), numbers, ids, who), dropped
 
 
 def _value(path: Path, line: int, role: str, cell: str) -> float:
     column = {"time": "t"}.get(role, role)
-    if role == "time" and "-" in cell[1:] and ":" in cell:
-        try:
-            moment = datetime.fromisoformat(cell)
-            return moment.timestamp()
-        except (ValueError, OverflowError):
-            pass
+    if role == "time" and ":" in cell:
+        moment = _moment(cell)
+        if moment is not None:
+            return moment
     return number(path, line, column, cell)
+
+
+def _moment(cell: str) -> float | None:
+    """Seconds of a date and time, or of a time of day; None where it is neither."""
+    of_day = _OF_DAY.fullmatch(cell)
+    if of_day is not None:
+        hours, minutes, seconds = (
+            float((part or "0").replace(",", ".")) for part in of_day.groups()
+        )
+        return 3600.0 * hours + 60.0 * minutes + seconds
+    try:
+        # Some write milliseconds behind a colon, and the date with slashes.
+        plain = _MILLISECONDS.sub(r"\1.\2", cell).replace("/", "-").replace(",", ".")
+        moment = datetime.fromisoformat(plain)
+        zoned = moment if moment.tzinfo else moment.replace(tzinfo=UTC)
+        return zoned.timestamp()
+    except (ValueError, OverflowError):
+        return None
+
+
+def _over_midnight(
+    times: list[float] | None, lines: Sequence[Line], dialect: Dialect, places: Mapping[str, int]
+) -> None:
+    """Let times of day go on after midnight."""
+    if not times or not _OF_DAY.fullmatch(dialect.cells(lines[0].text)[places["time"]]):
+        return
+    days = 0.0
+    before = times[0]
+    for i, time in enumerate(times):
+        days += _DAY_S if before - time > 0.5 * _DAY_S else 0.0
+        days -= _DAY_S if time - before > 0.5 * _DAY_S else 0.0
+        before = time
+        times[i] = time + days
 
 
 def _people(names: list[str]) -> tuple[list[str], Whole]:

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from esplanade.recordings.columns import Columns, find_columns
+from esplanade.recordings.columns import Columns, find_columns, named_by_hand
 from esplanade.recordings.errors import RecordingError
 from esplanade.recordings.rows import Rows, numbered_people, people
 from esplanade.recordings.units import FRAMES, length_named, time_named
@@ -16,9 +16,12 @@ from esplanade.recordings.units import FRAMES, length_named, time_named
 PARQUET: Final = b"PAR1"
 HDF5: Final = b"\x89HDF\r\n\x1a\n"
 MOST_SAMPLES: Final = 100_000_000
+MOST_SAMPLES_A_BYTE: Final = 2
+_FEW_SAMPLES: Final = 200_000
+_MOST_ROW_BYTES: Final = 4096
 
 
-def read_parquet(path: Path, content: bytes) -> Rows:
+def read_parquet(path: Path, content: bytes, named: Sequence[str] = ()) -> Rows:
     """Read the columns of a Parquet file.
 
     Raises
@@ -29,9 +32,9 @@ def read_parquet(path: Path, content: bytes) -> Rows:
     pq = _library(path, "pyarrow.parquet", "Parquet", "pyarrow")
     try:
         file = pq.ParquetFile(io.BytesIO(content))
-        _check_count(path, file.metadata.num_rows)
+        _check_count(path, file.metadata.num_rows, len(content))
         names = list(file.schema_arrow.names)
-        columns = _columns(path, names)
+        columns = _columns(path, names, named)
         table = file.read(columns=[names[place] for place in columns.places.values()])
         found = {role: table[names[p]].to_numpy() for role, p in columns.places.items()}
         said = file.schema_arrow.metadata or {}
@@ -45,7 +48,7 @@ def read_parquet(path: Path, content: bytes) -> Rows:
     return _rows(path, "Parquet", columns, found, _rate(path, rate.get("fps")))
 
 
-def read_hdf5(path: Path, content: bytes) -> Rows:
+def read_hdf5(path: Path, content: bytes, named: Sequence[str] = ()) -> Rows:
     """Read the data set `trajectory` of the Jülich archive.
 
     Raises
@@ -56,9 +59,9 @@ def read_hdf5(path: Path, content: bytes) -> Rows:
     h5py = _library(path, "h5py", "HDF5", "h5py")
     try:
         with h5py.File(io.BytesIO(content), "r") as file:
-            held = _data_set(path, file)
+            held = _data_set(path, file, len(content))
             names = list(held.dtype.names or ())
-            columns = _columns(path, names)
+            columns = _columns(path, names, named)
             found = {role: np.asarray(held[names[p]]) for role, p in columns.places.items()}
             fps = held.attrs.get("fps", file.attrs.get("fps"))
     except RecordingError:
@@ -68,16 +71,20 @@ def read_hdf5(path: Path, content: bytes) -> Rows:
     return _rows(path, "Jülich HDF5", columns, found, _rate(path, fps), "m")
 
 
-def _check_count(path: Path, count: int) -> None:
-    if count > MOST_SAMPLES:
-        raise RecordingError(path, f"has {count} samples, {MOST_SAMPLES} are possible")
+def _check_count(path: Path, count: int, size: int) -> None:
+    """Refuse what would fill the memory: places of people take some bytes, however packed."""
+    most = min(MOST_SAMPLES, MOST_SAMPLES_A_BYTE * size + _FEW_SAMPLES)
+    if count > most:
+        raise RecordingError(path, f"has {count} samples in {size} bytes, {most} are possible")
 
 
-def _data_set(path: Path, file: Any) -> Any:
+def _data_set(path: Path, file: Any, size: int) -> Any:
     held = file.get("trajectory")
     if held is None or not getattr(held, "shape", None) or held.dtype.names is None:
         raise RecordingError(path, "is an HDF5 file without a table `trajectory`")
-    _check_count(path, held.shape[0])
+    _check_count(path, held.shape[0], size)
+    if len(held.shape) != 1 or held.dtype.itemsize > _MOST_ROW_BYTES:
+        raise RecordingError(path, "its table `trajectory` is no list of samples")
     return held
 
 
@@ -92,13 +99,16 @@ def _library(path: Path, module: str, form: str, package: str) -> Any:
         ) from None
 
 
-def _columns(path: Path, names: Sequence[str]) -> Columns:
-    columns = find_columns(names)
+def _columns(path: Path, names: Sequence[str], named: Sequence[str]) -> Columns:
+    try:
+        columns = find_columns(named_by_hand(names, named) if named else names)
+    except ValueError as error:
+        raise RecordingError(path, f"--columns: {error}") from None
     if columns.missing:
         raise RecordingError(
             path,
             f"expected the columns t,id,x,y or other names of these; none of "
-            f"{', '.join(names)!r:.100} is {' or '.join(columns.missing)}",
+            f"{', '.join(names)!r:.100} is {' or '.join(columns.missing)}; --columns names them",
         )
     columns.places.pop("kind", None)
     return columns
@@ -154,6 +164,8 @@ def _rows(
         y=numbers["y"],
         counts_frames=in_frames,
         velocities=velocities,
+        z=numbers.get("z"),
+        times_named=bool(columns.units.get("time")),
         fps=fps,
         unit=said,
         unit_from="as its columns say" if said else "",

@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
-from esplanade.recordings.units import length_named, time_named
+from esplanade.recordings.units import DEGREES, length_named, time_named
 
 _NAMES: Final = {
     "time": (
@@ -24,22 +24,32 @@ _NAMES: Final = {
     "x": (
         *("x", "posx", "xpos", "positionx", "xposition", "px", "startx", "xcoord", "xcoordinate"),
         *("coordx", "coordinatex", "coordcentx", "worldx", "xworld", "xcenter", "xcentre"),
-        *("centerx", "centrex", "centroidx", "xc", "localx", "poslocalx"),
+        *("centerx", "centrex", "centroidx", "xc", "localx", "poslocalx", "xest", "locx", "xloc"),
+        *("locationx", "xlocation", "translationx", "east", "easting"),
+        *("lon", "long", "lng", "longitude"),
     ),
     "y": (
         *("y", "posy", "ypos", "positiony", "yposition", "py", "starty", "ycoord", "ycoordinate"),
         *("coordy", "coordinatey", "coordcenty", "worldy", "yworld", "ycenter", "ycentre"),
-        *("centery", "centrey", "centroidy", "yc", "localy", "poslocaly"),
+        *("centery", "centrey", "centroidy", "yc", "localy", "poslocaly", "yest", "locy", "yloc"),
+        *("locationy", "ylocation", "translationy", "north", "northing"),
+        *("lat", "latitude"),
     ),
-    "vx": ("vx", "velx", "xvel", "velocityx", "xvelocity", "speedx", "xspeed"),
-    "vy": ("vy", "vely", "yvel", "velocityy", "yvelocity", "speedy", "yspeed"),
+    "z": (
+        *("z", "posz", "zpos", "positionz", "zposition", "pz", "zcoord", "zcoordinate", "coordz"),
+        *("worldz", "zworld", "locationz", "translationz", "localz", "height"),
+    ),
+    "vx": ("vx", "velx", "xvel", "velocityx", "xvelocity", "speedx", "xspeed", "vxest"),
+    "vy": ("vy", "vely", "yvel", "velocityy", "yvelocity", "speedy", "yspeed", "vyest"),
     "kind": ("type", "label", "class", "agenttype", "category", "objecttype"),
 }
 """Names without anything but letters and digits, the likelier first."""
 
+_DEGREES: Final = frozenset(("lon", "long", "lng", "longitude"))
 _BRACKETS: Final = re.compile(r"(.*?)\s*[\[({<]\s*([^\])}>]*?)\s*[\])}>]\s*")
 _SLASH: Final = re.compile(r"(.*?)\s*/\s*([^\s/]+)")
 _TAIL: Final = re.compile(r"(.*?)[_\s.]+(?:in[_\s.]+)?([a-zµμ]+)")
+_MOST_OF_A_NAME: Final = 100
 _NO_TAILS: Final = ("min", "h")
 """What ends a name like x_min is no unit."""
 _VADERE: Final = re.compile(r"-PID\d+$", re.IGNORECASE)
@@ -68,7 +78,9 @@ class Columns(NamedTuple):
 
 def name_of(cell: str) -> Name:
     """The name in a cell of a header."""
-    text = _VADERE.sub("", cell.strip().strip("\"'").strip().lstrip("#$*% ").rpartition(":")[2])
+    text = _VADERE.sub(
+        "", cell[:_MOST_OF_A_NAME].strip().strip("\"'").strip().lstrip("#$*% ").rpartition(":")[2]
+    )
     stem, unit = text, ""
     for form in (_BRACKETS, _SLASH, _TAIL):
         found = form.fullmatch(text.lower() if form is _TAIL else text)
@@ -89,7 +101,36 @@ def find_columns(header: Sequence[str]) -> Columns:
         if place is not None and place not in places.values():
             places[role] = place
             units[role] = names[place].unit
+    if "y" not in places and "x" in places and "z" in places:
+        # Worlds of games have their ground in x and z.
+        places["y"], units["y"] = places.pop("z"), units.pop("z")
+    if "x" in places and keys[places["x"]] in _DEGREES:
+        units["x"] = units["y"] = DEGREES
     return Columns(places, units)
+
+
+def named_by_hand(header: Sequence[str], named: Sequence[str]) -> list[str]:
+    """The header that a reader of the file gives: a name for each column, or `role=name`.
+
+    Raises
+    ------
+    ValueError
+        A name is not in the header.
+    """
+    if not any("=" in name for name in named):
+        return [*named]
+    made = [""] * len(header)
+    known = [cell.strip().strip("\"'").lower() for cell in header]
+    for pair in named:
+        role, _, name = pair.partition("=")
+        found, _, unit = (
+            name.partition("/") if name.strip().lower() not in known else (name, "", "")
+        )
+        if found.strip().lower() not in known:
+            raise ValueError(f"there is no column {found.strip()!r:.40}")
+        place = known.index(found.strip().lower())
+        made[place] = f"{role.strip()}/{unit}" if unit else role.strip()
+    return made
 
 
 def _is_unit(text: str) -> bool:

@@ -5,12 +5,18 @@ import re
 from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple
 
+from esplanade.files.text import lines_of
+
 _SAMPLE_LINES: Final = 60
 _NUMBER: Final = re.compile(
     r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|[-+]?(nan|inf|infinity)", re.IGNORECASE
 )
 _COMMA_NUMBER: Final = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?")
 _SEPARATOR_LINE: Final = re.compile(r"sep=(.)", re.IGNORECASE)
+_RULE: Final = frozenset("|-+:= \t")
+_MINUS: Final = "\N{MINUS SIGN}"
+MOST_COMMENTS: Final = 1000
+MOST_OF_A_COMMENT: Final = 2000
 COMMENTS: Final = ("#", "//", "%", "*")
 
 
@@ -35,7 +41,9 @@ class Dialect(NamedTuple):
         return lambda text: _by(text, str(self.delimiter))
 
     def plain(self, cell: str) -> str:
-        """The cell with a decimal point."""
+        """The cell with a decimal point and the minus of ASCII."""
+        if cell.startswith(_MINUS):
+            cell = f"-{cell[1:]}"
         if self.decimal_comma and _COMMA_NUMBER.fullmatch(cell):
             return cell.replace(",", ".")
         return cell
@@ -58,13 +66,15 @@ def table_of(text: str) -> Table:
     lines: list[Line] = []
     comments: list[Line] = []
     separator = None
-    for number, line in enumerate(text.split("\n"), start=1):
+    for number, line in enumerate(lines_of(text), start=1):
         stripped = line.strip(" \f\v\0") if "\t" in line else line.strip()
         if not stripped.strip():
             continue
         is_section = stripped.startswith("$") and ":" not in stripped  # of PTV's programs
-        if is_section or stripped.lstrip("\"'").startswith(COMMENTS):
-            comments.append(Line(number, stripped.strip().strip("\"'")))
+        is_rule = "--" in stripped and set(stripped) <= _RULE
+        if is_section or is_rule or stripped.lstrip("\"'").startswith(COMMENTS):
+            if len(comments) < MOST_COMMENTS:
+                comments.append(Line(number, stripped[:MOST_OF_A_COMMENT].strip().strip("\"'")))
         elif not lines and (found := _SEPARATOR_LINE.fullmatch(stripped.strip().strip('"'))):
             separator = found[1]
         else:

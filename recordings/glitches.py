@@ -43,11 +43,21 @@ class Sound(NamedTuple):
 
 def own_pace(times: Floats, places: Floats) -> float:
     """The pace, m/s, that glitches hardly change: a quarter of the steps are slower."""
-    if len(times) < 2:
+    return own_pace_of(_speeds(times, places))
+
+
+def own_pace_of(speeds: Floats) -> float:
+    """The same of speeds that are known; NaN without any."""
+    if not len(speeds):
         return float("nan")
-    speeds = _speeds(times, places)
     slower = (len(speeds) - 1) // 4
     return float(np.partition(speeds, slower)[slower])
+
+
+def suspicious_mps(own_mps: float, usual_mps: float) -> float:
+    """Steps faster than this are suspicious, of somebody with this pace in such a crowd."""
+    pace = max(own_mps, usual_mps) if own_mps == own_mps else usual_mps  # noqa: PLR0124 (NaN)
+    return min(max(TIMES_OWN * pace, LEAST_SUSPICIOUS_MPS), FASTEST_MPS)
 
 
 def sound_part(times: Floats, places: Floats, usual_mps: float, own_mps: float) -> Sound:
@@ -57,7 +67,7 @@ def sound_part(times: Floats, places: Floats, usual_mps: float, own_mps: float) 
         return Sound(pieces)
     speeds = _speeds(times, places)
     pace = max(own_mps, usual_mps)
-    limit = min(max(TIMES_OWN * pace, LEAST_SUSPICIOUS_MPS), FASTEST_MPS)
+    limit = suspicious_mps(own_mps, usual_mps)
     if speeds.max() > limit and (breaks := _breaks(speeds, pace, limit)).any():
         pieces = _pieces(times, places, breaks, limit)
     elif not _spikes(times, places).any():

@@ -4,6 +4,7 @@ Only what is sure to mean the same is read so: a header in the first line, one d
 comma, people with whole numbers. All else is read line by line, as far as that is bounded.
 """
 
+from collections.abc import Collection, Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -11,16 +12,18 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from esplanade.recordings.columns import Columns, find_columns
-from esplanade.recordings.dialect import dialect_of, table_of
-from esplanade.recordings.errors import RecordingError
-from esplanade.recordings.rows import Floats, Rows, numbered_people
+from esplanade.recordings.dialect import COMMENTS, dialect_of, table_of
+from esplanade.recordings.errors import MAX_FILE_BYTES, RecordingError
+from esplanade.recordings.rows import Rows, numbered_people
 from esplanade.recordings.units import FRAMES, length_named, time_named
 
 LARGE_BYTES: Final = 32 * 2**20
 MOST_BYTES: Final = 8 * 2**30
 _HEAD_BYTES: Final = 2**16
 _BLOCK_BYTES: Final = 2**18
-_PLAIN: Final = frozenset(("time", "frame", "id", "x", "y"))
+_NOWHERE: Final = ["", "?", "NA", "N/A", "NaN", "nan", "null", "None", "none", "-"]
+_NEEDED: Final = ("time", "frame", "id")
+_PLAIN: Final = frozenset(("time", "frame", "id", "x", "y", "z"))
 
 
 class _Head(NamedTuple):
@@ -75,7 +78,9 @@ def read_large(path: Path) -> Rows | None:
     except ImportError:
         return None
     units = {role: unit for role, unit in columns.units.items() if unit}
-    blocks = _blocks(path, reader, head.delimiter, head.header, columns.places)
+    blocks = _blocks(path, reader, head.delimiter, head.header, columns.places, ("id",))
+    if blocks is None:
+        return None
     ids, who = numbered_people(blocks.pop("id"))
     unit_s = time_named(units.get("time", ""))
     in_frames = "time" not in blocks or unit_s == FRAMES
@@ -87,25 +92,36 @@ def read_large(path: Path) -> Rows | None:
     unit = length_named(units.get("x", ""))
     return Rows(
         format="table with named columns",
-        lines=np.arange(2, len(who) + 2),
+        lines=np.arange(2, len(who) + 2, dtype=np.int32),
         ids=ids,
         who=who,
         clock=clock,
         x=blocks["x"],
         y=blocks["y"],
         counts_frames=in_frames,
+        z=blocks.get("z"),
+        times_named=bool(units.get("time")),
         unit=unit,
         unit_from="as its header says" if unit else "",
     )
 
 
 def _blocks(
-    path: Path, reader: Any, delimiter: str, header: list[str], places: dict[str, int]
-) -> dict[str, Floats]:
-    """The columns by role."""
+    path: Path,
+    reader: Any,
+    delimiter: str,
+    header: list[str],
+    places: dict[str, int],
+    whole: Collection[str],
+) -> dict[str, Any] | None:
+    """The columns by role; None where they are not plain, and small enough for the other way.
+
+    Those that are `whole` are read as whole numbers, and once more as others where they are not.
+    """
     pa: Any = import_module("pyarrow")
     names = [f"c{i}" for i in range(len(header))]
     used = {role: names[place] for role, place in places.items()}
+    kinds = {role: pa.int32() if role in whole else pa.float64() for role in used}
     options = {
         "read_options": reader.ReadOptions(
             use_threads=False, block_size=_BLOCK_BYTES, column_names=names, skip_rows=1
@@ -113,34 +129,71 @@ def _blocks(
         "parse_options": reader.ParseOptions(delimiter=delimiter),
         "convert_options": reader.ConvertOptions(
             include_columns=list(used.values()),
-            column_types=dict.fromkeys(used.values(), pa.float64()),
-            null_values=[],
-            strings_can_be_null=False,
+            column_types={name: kinds[role] for role, name in used.items()},
+            null_values=_NOWHERE,
         ),
     }
-    parts: dict[str, list[Floats]] = {role: [] for role in used}
-    read = 1
+    room = _rows_at_most(path)
+    found = _columns(used, kinds, room)
+    count = 0
     try:
         for batch in reader.open_csv(str(path), **options):
+            if any(batch.column(used[role]).null_count for role in used if role in _NEEDED):
+                raise pa.ArrowInvalid("a cell is empty")
+            end = count + batch.num_rows
+            if end > room:
+                # Lines further on are shorter than those that were looked at.
+                room = end + room // 4
+                grown = _columns(used, kinds, room)
+                for role, column in found.items():
+                    grown[role][:count] = column[:count]
+                found = grown
             for role, name in used.items():
-                parts[role].append(batch.column(name).to_numpy(zero_copy_only=False))
-            read += batch.num_rows
+                found[role][count:end] = batch.column(name).to_numpy(zero_copy_only=False)
+            count = end
     except (pa.ArrowException, OSError) as error:
-        fault = _first_fault(path, read, delimiter, header, places) or (f"{error}"[:300], None)
-        raise RecordingError(path, *fault) from None
-    return {role: np.concatenate(parts.pop(role)) for role in used}
+        if whole:
+            return _blocks(path, reader, delimiter, header, places, ())
+        fault = _first_fault(path, count + 1, delimiter, header, places)
+        if fault is None and path.stat().st_size <= MAX_FILE_BYTES:
+            return None
+        raise RecordingError(path, *(fault or (f"{error}"[:300], None))) from None
+    return {role: column[:count] for role, column in found.items()}
+
+
+def _columns(used: Collection[str], kinds: Mapping[str, Any], room: int) -> dict[str, Any]:
+    """Columns of so many rows; x and y are those of one array, as places are kept."""
+    places = np.empty((room, 2))
+    made: dict[str, Any] = {"x": places[:, 0], "y": places[:, 1]}
+    others = (role for role in used if role not in made)
+    return made | {role: np.empty(room, kinds[role].to_pandas_dtype()) for role in others}
+
+
+def _rows_at_most(path: Path) -> int:
+    """About as many lines as the file has, judged by lines at its beginning and at its end."""
+    size = path.stat().st_size
+    with path.open("rb") as file:
+        lines = file.read(_HEAD_BYTES).count(b"\n")
+        file.seek(max(0, size - _HEAD_BYTES))
+        lines = max(lines, file.read(_HEAD_BYTES).count(b"\n"))
+    return int(1.03 * (lines + 1) * max(1.0, size / _HEAD_BYTES)) + 16
 
 
 def _first_fault(
     path: Path, read: int, delimiter: str, header: list[str], places: dict[str, int]
 ) -> tuple[str, int] | None:
-    """What is wrong, and in which line, looked for from the line after those that were read."""
+    """What is wrong, and in which line, looked for from the line after those that were read.
+
+    None where the other way of reading forgives it: comments, headers once more, times of day.
+    """
     count = len(header)
     with path.open(encoding="utf-8", errors="replace") as file:
         for number, text in enumerate(file, start=1):
             if number <= read or not text.strip():
                 continue
             cells = text.rstrip("\r\n").split(delimiter)
+            if text.lstrip().startswith(COMMENTS) or cells == header:
+                return None
             if len(cells) != count:
                 return f"expected {count} columns {','.join(header)}, not {len(cells)}", number
             for place in places.values():
@@ -148,5 +201,7 @@ def _first_fault(
                 try:
                     float(cell)
                 except ValueError:
+                    if not cell or ":" in cell or '"' in text:
+                        return None
                     return f"{header[place]} is {cell!r:.40}, expected a number", number
     return None

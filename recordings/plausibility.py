@@ -1,12 +1,10 @@
 """What a recording says of itself in one line, and what of it cannot be meant."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 
-from esplanade.recordings.crowd import Track
 from esplanade.recordings.glitches import FASTEST_MPS
 from esplanade.recordings.rates import WALKING_MPS, likely_rates
 
@@ -58,19 +56,6 @@ class Report:
         return f"{count}, {self.seconds:.6g} s, {pace}, {share}; {source}"
 
 
-def measured(tracks: Sequence[Track]) -> tuple[float, float]:
-    """The most common time of a sample, s, and the median speed over all steps, m/s."""
-    gaps = [np.diff(track.times) for track in tracks if len(track.times) > 1]
-    if not gaps:
-        return 0.0, float("nan")
-    every = np.concatenate(gaps)
-    away = np.concatenate(
-        [np.hypot(*np.diff(t.positions, axis=0).T) for t in tracks if len(t.times) > 1]
-    )
-    steps, counts = np.unique(np.round(every, 4), return_counts=True)
-    return float(steps[np.argmax(counts)]), float(np.median(away / every))
-
-
 def beyond_meaning(median_mps: float) -> bool:
     """Whether nobody can be as fast as half of the steps are."""
     return bool(median_mps > FASTEST_MPS)
@@ -107,11 +92,19 @@ def warnings_of(
     *,
     unit_known: bool,
     rate_known: bool,
+    times_known: bool,
 ) -> tuple[str, ...]:
     """What is not as recordings of people are."""
     found = []
+    if np.isnan(median_mps):
+        found.append("nobody has two samples: nothing shows that these are people who walk")
     if not np.isnan(median_mps) and not WALKING_MPS[0] <= median_mps <= WALKING_MPS[1]:
         told = advice(median_mps, fps, unit_known=unit_known, rate_known=rate_known)
+        if not times_known and WALKING_MPS[0] <= 1e3 * median_mps <= WALKING_MPS[1]:
+            told = (
+                f"were its times milliseconds, people would walk at {1e3 * median_mps:.3g} m/s: "
+                "name that column t_ms, or give --columns, as in --columns t=NAME/ms,id=NAME,.."
+            )
         found.append(
             f"the median speed is {median_mps:.3g} m/s, people walk at {WALKING_MPS[0]} to "
             f"{WALKING_MPS[1]} m/s; {told}"

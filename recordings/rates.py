@@ -14,8 +14,12 @@ WALKING_MPS: Final = (0.3, 2.5)
 
 _FEW_PAIRS: Final = 3
 _LEAST_SPEED_MPS: Final = 0.2
+_LEAST_RATE: Final = 0.5
+_GREATEST_RATE: Final = 250.0
 _SURE: Final = 0.01
 _UNSURE: Final = 0.08
+_SMOOTHED: Final = 0.05
+_UNSURE_OF_SMOOTHED: Final = 0.15
 
 
 class Rate(NamedTuple):
@@ -74,7 +78,7 @@ def frame_rate(rows: Rows, given: Given, metres: float) -> Rate:
         said = rows.fps or (rows.samples_per_s or 0.0) * step
         return Rate(said, "as the file says" if rows.fps else rows.usual_from, remarks)
     away = metres * np.hypot(*(v[pairs.second] - v[pairs.first] for v in (rows.x, rows.y)))
-    shown = _shown_by_velocities(rows, pairs, away, step)
+    shown = _shown_by_velocities(rows, pairs, away, step, metres)
     if shown is not None or rows.usual_fps is not None:
         source = rows.usual_from if shown is None else "as its velocities show"
         return Rate(rows.usual_fps if shown is None else shown, source, remarks)
@@ -109,11 +113,23 @@ def _odd_frames(rows: Rows, step: float) -> tuple[str, ...]:
     return (f"{count} are out of the step of {step:g}, {first}",)
 
 
-def _shown_by_velocities(rows: Rows, pairs: Pairs, away: Floats, step: float) -> float | None:
-    """The rate at which distances and velocities agree, made round if near a usual one."""
+def _shown_by_velocities(
+    rows: Rows, pairs: Pairs, away: Floats, step: float, metres: float
+) -> float | None:
+    """The rate at which distances and velocities agree, made round if near a usual one.
+
+    Velocities are in the unit of places or in metres: only one of these gives a rate of cameras.
+    """
     if rows.velocities is None or not len(away):
         return None
     speeds = np.hypot(*rows.velocities.T)
+    found = [_agreed(speeds * unit, pairs, away, step) for unit in dict.fromkeys((metres, 1.0))]
+    likely = [rate for rate in found if rate is not None and _LEAST_RATE <= rate <= _GREATEST_RATE]
+    usual = [rate for rate in likely if rate in USUAL_RATES]
+    return next(iter((*usual, *likely, *(rate for rate in found if rate is not None))), None)
+
+
+def _agreed(speeds: Floats, pairs: Pairs, away: Floats, step: float) -> float | None:
     ends = np.stack([speeds[pairs.first], speeds[pairs.second]])
     between = ends.mean(axis=0)
     steady = np.abs(ends[0] - ends[1]) < 0.5 * between
@@ -126,6 +142,9 @@ def _shown_by_velocities(rows: Rows, pairs: Pairs, away: Floats, step: float) ->
     if len(found) >= _FEW_PAIRS:
         spread = 1.4826 * float(np.median(np.abs(found - rate))) / rate
         unsure = min(_UNSURE, max(_SURE, 3.0 * spread / np.sqrt(len(found))))
+        if spread > _SMOOTHED:
+            # Velocities that were smoothed are too low or too high by a share of their own.
+            unsure = min(_UNSURE_OF_SMOOTHED, 1.5 * spread)
     for usual in (USUAL_SAMPLES_PER_S * step, *sorted(USUAL_RATES, key=lambda r: abs(r - rate))):
         if abs(usual - rate) <= unsure * rate:
             return usual

@@ -11,8 +11,9 @@ import numpy.typing as npt
 from esplanade.recordings.errors import RecordingError
 
 Floats = npt.NDArray[np.float64]
-Whole = npt.NDArray[np.int64]
+Whole = npt.NDArray[np.signedinteger]
 
+_MOST_DIGITS: Final = 400
 EXACT_WHOLE: Final = 2.0**53
 """Greater whole numbers are not told apart as floating-point numbers."""
 
@@ -21,13 +22,18 @@ class Given(NamedTuple):
     """What the reader of a file says about it, because the file does not, or says it wrongly.
 
     `fps` is the number of frame numbers in a second, `unit` the name of a unit of length, `scale`
-    the metres in one unit of the file. With `strict`, glitches are refused.
+    the metres in one unit of the file. With `strict`, glitches are refused. `columns` names the
+    columns of a table: a name for each, or `role=name` for those that count.
     """
 
     fps: float | None = None
     unit: str | None = None
     scale: float | None = None
     strict: bool = False
+    columns: tuple[str, ...] = ()
+
+
+AS_IT_SAYS: Final = Given()
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +42,7 @@ class Rows:
 
     `lines` (N,) is where each stands, `who` (N,) whose it is, an index into `ids`. `clock` (N,)
     is seconds or, if `counts_frames`, numbers of frames. `x` and `y` (N,) are in units of the
-    file, `velocities` (N, 2) in metres a second.
+    file.
     """
 
     format: str
@@ -48,6 +54,11 @@ class Rows:
     y: Floats
     counts_frames: bool = False
     velocities: Floats | None = None
+    """In metres a second, or in units of the file a second: which, is found by the rate."""
+    z: Floats | None = None
+    """What the file has beside `x` and `y`: heights, unless the file has `y` for the height."""
+    times_named: bool = False
+    """Whether the file says in which unit its times are."""
     fps: float | None = None
     """Frames a second, as the file says."""
     samples_per_s: float | None = None
@@ -72,7 +83,7 @@ def number(path: Path, line: int, column: str, text: str) -> float:
         The text is not a number.
     """
     try:
-        if "_" not in text:
+        if "_" not in text and len(text) <= _MOST_DIGITS:
             return float(text)
     except ValueError:
         pass
@@ -103,16 +114,17 @@ def _close_people(numbers: Floats) -> tuple[list[str], Whole] | None:
     """The same, without sorting, where ids are whole and not far apart."""
     if not len(numbers):
         return None
-    with np.errstate(invalid="ignore"):
-        marks = numbers.astype(np.int64)
-    low, high = int(marks.min()), int(marks.max())
-    if high - low > 4 * len(marks) or not np.array_equal(marks, numbers):
+    low, high = float(numbers.min()), float(numbers.max())
+    if not high - low <= min(4 * len(numbers), 2**31 - 1) or not abs(low) < EXACT_WHOLE:
         return None
-    marks -= low
-    first = np.full(high - low + 1, -1, np.int64)
-    first[marks[::-1]] = np.arange(len(marks) - 1, -1, -1)
+    base = int(low)
+    marks = np.subtract(numbers, base, dtype=np.int32, casting="unsafe")
+    if numbers.dtype.kind == "f" and not np.array_equal(marks, numbers - base):
+        return None
+    first = np.full(int(high) - base + 1, -1, np.int32)
+    first[marks[::-1]] = np.arange(len(marks) - 1, -1, -1, dtype=np.int32)
     there = np.flatnonzero(first >= 0)
     there = there[np.argsort(first[there])]
     rank = first  # its values are not needed any more
     rank[there] = np.arange(len(there))
-    return [str(mark + low) for mark in there.tolist()], rank[marks]
+    return [str(mark + base) for mark in there.tolist()], rank[marks]

@@ -6,12 +6,15 @@ from typing import Final
 
 import numpy as np
 
+from esplanade.files.text import lines_of
 from esplanade.recordings.errors import RecordingError
 from esplanade.recordings.rows import Floats, Rows, number, people
 
 FPS: Final = 25.0
 SAMPLE_FRAMES: Final = 10
 """People are sampled every so many frames, 0.4 s, as everyone does with these files."""
+MAX_SAMPLES: Final = 3_000_000
+_MOST_OF_A_LINE: Final = 1000
 MAX_FRAMES: Final = 10_000_000
 _REMARK: Final = re.compile(r"\s+-\s.*$|\s*\(.*$")
 
@@ -22,7 +25,7 @@ def looks_like_splines(text: str) -> bool:
     return (
         len(heads) > 2
         and [len(head) for head in heads[:3]] == [1, 1, 4]
-        and all(head[0].isdigit() for head in heads[:2])
+        and all(head[0].isdecimal() for head in heads[:2])
     )
 
 
@@ -34,15 +37,17 @@ def read_splines(path: Path, text: str) -> Rows:
     RecordingError
         A number or a point is missing, or frames of a spline do not grow.
     """
-    lines = [
-        (number_, cells)
-        for number_, line in enumerate(text.split("\n"), start=1)
-        if (cells := _REMARK.sub("", line).split())
-    ]
+    lines: list[tuple[int, list[str]]] = []
+    for number_, written in enumerate(lines_of(text), start=1):
+        if len(written) > _MOST_OF_A_LINE:
+            raise RecordingError(path, "has too many characters for a point of a spline", number_)
+        if cells := _REMARK.sub("", written).split():
+            lines.append((number_, cells))
     place = 1
     names: list[str] = []
     numbers: list[int] = []
     parts: list[Floats] = []
+    total = 0
     count = _count(path, lines[0])
     for spline in range(count):
         if place >= len(lines):
@@ -55,6 +60,9 @@ def read_splines(path: Path, text: str) -> Rows:
         if not points:
             continue
         sampled = _sampled(path, rows)
+        total += len(sampled)
+        if total > MAX_SAMPLES:
+            raise RecordingError(path, f"its splines have more than {MAX_SAMPLES} samples", line)
         parts.append(sampled)
         names += [str(spline + 1)] * len(sampled)
         numbers += [line] * len(sampled)
@@ -76,7 +84,7 @@ def read_splines(path: Path, text: str) -> Rows:
 
 def _count(path: Path, line: tuple[int, list[str]]) -> int:
     where, cells = line
-    if len(cells) == 1 and cells[0].isdigit() and len(cells[0]) < 9:
+    if len(cells) == 1 and cells[0].isdecimal() and len(cells[0]) < 9:
         return int(cells[0])
     raise RecordingError(path, f"{' '.join(cells)!r:.40} is no number of splines or points", where)
 

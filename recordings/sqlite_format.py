@@ -12,7 +12,14 @@ from esplanade.recordings.rows import Rows, numbered_people
 
 MAGIC: Final = b"SQLite format 3\0"
 MOST_SAMPLES: Final = 40_000_000
-_PATIENCE_S: Final = 120.0
+_LEAST_PATIENCE_S: Final = 1.0
+_SLOWEST_BYTES_A_SECOND: Final = 2e6
+_LIMITS: Final = {
+    sqlite3.SQLITE_LIMIT_LENGTH: 4_000_000,
+    sqlite3.SQLITE_LIMIT_SQL_LENGTH: 100_000,
+    sqlite3.SQLITE_LIMIT_EXPR_DEPTH: 100,
+    sqlite3.SQLITE_LIMIT_COLUMN: 200,
+}
 _PIECE: Final = 50_000
 _ALONE_STEPS: Final = 100_000
 _WANTED: Final = ("frame", "id", "pos_x", "pos_y")
@@ -29,10 +36,12 @@ def read_sqlite(path: Path, content: bytes) -> Rows:
     connection = sqlite3.connect(":memory:")
     try:
         connection.deserialize(content)
+        for limit, most in _LIMITS.items():
+            connection.setlimit(limit, most)
         connection.execute("PRAGMA query_only = 1")
         connection.execute("PRAGMA trusted_schema = 0")
         connection.execute("PRAGMA cell_size_check = 1")
-        until = time.monotonic() + _PATIENCE_S
+        until = time.monotonic() + _LEAST_PATIENCE_S + len(content) / _SLOWEST_BYTES_A_SECOND
         connection.set_progress_handler(lambda: time.monotonic() > until, _ALONE_STEPS)
         return _read(path, connection)
     except (sqlite3.Error, OverflowError, UnicodeDecodeError) as error:
@@ -50,6 +59,7 @@ def _read(path: Path, connection: sqlite3.Connection) -> Rows:
             "is an SQLite file without the table trajectory_data that JuPedSim writes; "
             f"its tables: {found or 'none'}"[:300],
         )
+    # Columns that are computed are not among these.
     has = {row[1] for row in connection.execute("PRAGMA table_info(trajectory_data)")}
     lacking = [name for name in _WANTED if name not in has]
     if lacking:

@@ -8,22 +8,30 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from esplanade.recordings.cells import read_cells
-from esplanade.recordings.columns import Columns, find_columns
-from esplanade.recordings.dialect import Dialect, Line, Table
+from esplanade.recordings.cells import Cells, read_cells
+from esplanade.recordings.columns import Columns, find_columns, named_by_hand
+from esplanade.recordings.dialect import Dialect, Line, Table, dialect_of
 from esplanade.recordings.errors import RecordingError
 from esplanade.recordings.rows import Floats, Rows
 from esplanade.recordings.units import FRAMES, length_named, length_said, time_named
 
-_RATE: Final = re.compile(
-    r"\b(?:frame\s*_?rate|fps)\b[^\d+-]{0,20}([-+]?[\d.]+(?:e[-+]?\d+)?)", re.IGNORECASE
+_NUMBER: Final = r"([-+]?[\d.]{1,20}(?:e[-+]?\d{1,3})?)"
+_RATES: Final = (
+    re.compile(rf"\b(?:frame\s*_?rate|fps)\b[^\d+-]{{0,20}}{_NUMBER}", re.IGNORECASE),
+    re.compile(
+        rf"\b(?:sampl\w*|recording|capture)\s*_?(?:rate|frequency)\b[^\d+-]{{0,20}}{_NUMBER}",
+        re.IGNORECASE,
+    ),
+    re.compile(rf"{_NUMBER}\s*(?:fps|hz|frames?\s*(?:/|per)\s*s(?:ec(?:ond)?)?)\b", re.IGNORECASE),
 )
+"""Ways to write frames a second, the surer first."""
 _PEOPLE: Final = frozenset(
     ("ped", "peds", "pedestrian", "pedestrians", "person", "people", "human")
 )
 _OTHERS: Final = frozenset(
     ("veh", "vehicle", "car", "cart", "biker", "bicycle", "skater", "bus", "truck")
 )
+_MOST_LINES_BEFORE: Final = 60
 _CITR: Final = ["frame", "id", "x", "y", "type"]
 
 
@@ -42,10 +50,12 @@ def said_in(path: Path, comments: Sequence[Line]) -> Said:
     RecordingError
         The rate is none.
     """
-    fps = unit = None
-    for line in comments:
-        found = _RATE.search(line.text)
-        if found and fps is None:
+    unit = next(filter(None, (length_said(line.text) for line in comments)), None)
+    for form in _RATES:
+        for line in comments:
+            found = form.search(line.text)
+            if not found:
+                continue
             try:
                 fps = float(found[1])
             except ValueError:
@@ -54,8 +64,8 @@ def said_in(path: Path, comments: Sequence[Line]) -> Said:
                 raise RecordingError(
                     path, f"the frame rate is {found[1]}, expected more than 0", line.number
                 )
-        unit = unit or length_said(line.text)
-    return Said(fps, unit)
+            return Said(fps, unit)
+    return Said(None, unit)
 
 
 def header_in(comments: Sequence[Line], width: int) -> list[str] | None:
@@ -68,11 +78,60 @@ def header_in(comments: Sequence[Line], width: int) -> list[str] | None:
     return None
 
 
+def is_whole_header(dialect: Dialect, line: Line) -> bool:
+    """Whether the line names all columns that are needed, but perhaps that of people."""
+    return find_columns(dialect.cells(line.text)).missing in ([], ["id"])
+
+
+def read_named(path: Path, table: Table, dialect: Dialect, named: Sequence[str]) -> Rows:
+    """Read the samples of a table whose columns are named by hand, whatever its own header says.
+
+    Raises
+    ------
+    RecordingError
+        Names are missing or too many, or a line does not fit.
+    """
+    first = dialect.cells(table.lines[0].text)
+    has_header = not any(dialect.is_number(cell) for cell in first)
+    try:
+        header = named_by_hand(first, named)
+    except ValueError as error:
+        raise RecordingError(path, f"--columns: {error}", table.lines[0].number) from None
+    columns = find_columns(header)
+    if columns.missing:
+        told = " and ".join(columns.missing)
+        raise RecordingError(path, f"--columns names no column for {told}")
+    kept = table._replace(lines=table.lines[1:] if has_header else table.lines)
+    if not kept.lines:
+        raise RecordingError(path, "holds no samples, expected at least one")
+    width = len(dialect.cells(kept.lines[0].text))
+    if len(header) > width:
+        text = f"expected {len(header)} columns, as --columns names, not {width}"
+        raise RecordingError(path, text, kept.lines[0].number)
+    return read_table(path, kept, dialect, header)
+
+
 def names_columns(dialect: Dialect, line: Line) -> bool:
     """Whether the line is a header rather than a sample."""
     cells = dialect.cells(line.text)
     numbers = sum(dialect.is_number(cell) for cell in cells)
     return numbers == 0 or len(find_columns(cells).places) >= 3
+
+
+def from_header(table: Table) -> Table:
+    """The table from the line that names its columns, if others stand before it.
+
+    Those lines count as comments, since some programs write of the experiment there.
+    """
+    for place, line in enumerate(table.lines[1:_MOST_LINES_BEFORE], start=1):
+        below = table._replace(lines=table.lines[place:])
+        dialect = dialect_of(below)
+        if len(below.lines) < 2 or find_columns(cells := dialect.cells(line.text)).missing:
+            continue
+        first = dialect.cells(below.lines[1].text)
+        if len(first) >= len(cells) and any(dialect.is_number(cell) for cell in first):
+            return below._replace(comments=[*table.comments, *table.lines[:place]])
+    return table
 
 
 def read_table(path: Path, table: Table, dialect: Dialect, header: list[str] | None) -> Rows:
@@ -83,11 +142,13 @@ def read_table(path: Path, table: Table, dialect: Dialect, header: list[str] | N
     RecordingError
         A column that is needed is missing, or a line does not fit.
     """
-    lines = table.lines
+    lines, repeats = table.lines, 0
     if header is not None:
         columns, width = find_columns(header), len(dialect.cells(lines[0].text))
     else:
-        head, lines = lines[0], lines[1:]
+        head = lines[0]
+        lines = [line for line in lines if line.text != head.text]
+        repeats = len(table.lines) - len(lines) - 1
         header = dialect.cells(head.text)
         columns, width = _columns(path, header, head), len(header)
         first = dialect.cells(lines[0].text) if lines else []
@@ -104,7 +165,15 @@ def read_table(path: Path, table: Table, dialect: Dialect, header: list[str] | N
     cells, dropped = read_cells(
         path, lines, dialect, columns.places, width, ",".join(header), _is_person if kinds else None
     )
-    others = ", ".join(f"{count} of {kind!r}" for kind, count in kinds.items())
+    if "id" not in columns.places:
+        _check_one_person(path, columns, cells, header, table)
+        cells.ids = [path.stem]
+    remarks = []
+    if dropped:
+        others = ", ".join(f"{count} of {kind!r}" for kind, count in kinds.items())
+        remarks.append(f"samples that are not people's are left out: {others}"[:300])
+    if repeats:
+        remarks.append(f"{repeats} repeated headers are left out")
     in_frames, unit_s = _clock(columns)
     numbers = cells.numbers
     is_citr = [cell.strip().lower() for cell in header] == _CITR
@@ -123,22 +192,37 @@ def read_table(path: Path, table: Table, dialect: Dialect, header: list[str] | N
         usual_from="as CITR is recorded" if is_citr else "",
         unit=unit,
         unit_from="as its header says" if unit else "",
-        remarks=(f"samples that are not people's are left out: {others}",) if dropped else (),
+        z=numbers.get("z"),
+        times_named=bool(columns.units.get("time")),
+        remarks=tuple(remarks),
         dropped=dropped,
     )
 
 
 def _columns(path: Path, header: list[str], line: Line) -> Columns:
     columns = find_columns(header)
-    if columns.missing:
-        names = ", ".join(cell or "''" for cell in header)
-        raise RecordingError(
-            path,
-            f"expected the header t,id,x,y or other names of these columns; none of {names!r:.100} "
-            f"is {' or '.join(columns.missing)}",
-            line.number,
-        )
+    if columns.missing and columns.missing != ["id"]:
+        raise _lacking(path, header, line, columns)
     return columns
+
+
+def _lacking(path: Path, header: list[str], line: Line, columns: Columns) -> RecordingError:
+    names = ", ".join(cell or "''" for cell in header)
+    return RecordingError(
+        path,
+        f"expected the header t,id,x,y or other names of these columns; none of {names!r:.100} "
+        f"is {' or '.join(columns.missing)}; --columns names them",
+        line.number,
+    )
+
+
+def _check_one_person(
+    path: Path, columns: Columns, cells: Cells, header: list[str], table: Table
+) -> None:
+    """Check that a table without ids can be the track of one person."""
+    clock = cells.numbers["time" if "time" in columns.places else "frame"]
+    if not np.all(np.diff(clock) > 0.0):
+        raise _lacking(path, header, table.lines[0], columns)
 
 
 def _names_units(dialect: Dialect, cells: Sequence[str], columns: Columns) -> bool:

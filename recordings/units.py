@@ -14,6 +14,9 @@ UNITS: Final = {
 }
 """Metres in each unit that `--unit` takes."""
 PIXELS: Final = "px"
+DEGREES: Final = "deg"
+"""Of longitude and latitude, which become metres around their middle."""
+METRES_A_DEGREE: Final = 111_319.49
 MAX_METRES: Final = 100_000.0
 """Coordinates beyond this, either way, are taken for errors of the file."""
 
@@ -26,6 +29,7 @@ _LENGTHS: Final = {
     **dict.fromkeys(("foot", "feet"), "ft"),
     **dict.fromkeys(("inch", "inches"), "in"),
     **dict.fromkeys(("px", "pix", "pixel", "pixels"), PIXELS),
+    **dict.fromkeys(("deg", "degree", "degrees", "°"), DEGREES),
 }
 FRAMES: Final = 0.0
 """Stands among seconds for a count of frames."""

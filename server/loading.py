@@ -90,6 +90,7 @@ def load_scene(settings: ServerSettings) -> LoadedScene:
             unit=settings.unit,
             scale=settings.scale,
             strict=settings.strict,
+            columns=settings.columns or (),
         )
         path = settings.walls or walls_beside(settings.crowd)
         walls = open_doorways(read_walls(path), crowd, DOORWAY_M) if path else []

@@ -28,7 +28,7 @@ _WORLD: Final = {
     ),
     "crowd": Setting(
         "fit the scene to this recorded crowd instead of --scene; docs/files.md lists the formats",
-        InputFile(),
+        InputFile(folders=True),
     ),
     "walls": Setting(
         "walls around the crowd; without it, NAME.walls.json beside the crowd's file", InputFile()

@@ -31,6 +31,7 @@ class ServerSettings(BaseSettings):
     fps: float | None = _field("fps")
     unit: str | None = _field("unit")
     scale: float | None = _field("scale")
+    columns: str | None = _field("columns")
     strict: bool = _field("strict")
     actors: int = _field("actors")
     roster: Path | None = _field("roster")

@@ -5,6 +5,7 @@ import json
 import math
 import sys
 from argparse import Namespace
+from pathlib import Path
 from typing import Any
 
 from rich.table import Table
@@ -28,6 +29,7 @@ def check(options: Namespace) -> int:
             unit=options.unit,
             scale=options.scale,
             strict=options.strict,
+            columns=options.columns or (),
         )
     except RecordingError as error:
         raise UsageError(str(error)) from None
@@ -61,6 +63,7 @@ def convert(options: Namespace) -> int:
             unit=options.unit,
             scale=options.scale,
             strict=options.strict,
+            columns=options.columns or (),
         )
         tell_recording(options.prog, str(options.recording), crowd.report)
         write_crowd(options.out, crowd, _provenance(options, crowd), options.hz)
@@ -72,14 +75,25 @@ def convert(options: Namespace) -> int:
 
 def _provenance(options: Namespace, crowd: Crowd) -> dict[str, str]:
     """Where a written recording comes from."""
-    given = {name: getattr(options, name) for name in ("fps", "unit", "scale", "hz")}
+    given = {name: getattr(options, name) for name in ("fps", "unit", "scale", "columns", "hz")}
     told = "".join(f" --{name} {value}" for name, value in given.items() if value is not None)
     return {
         "written by": f"esplanade {__version__}, {options.prog}{told}",
         "source": options.recording.name,
-        "source sha256": hashlib.sha256(options.recording.read_bytes()).hexdigest(),
+        "source sha256": _digest(options.recording),
         "read as": "" if crowd.report is None else crowd.report.line,
     }
+
+
+def _digest(path: Path) -> str:
+    """SHA-256 of a file, or of the files of a folder in the order of their names."""
+    files = sorted(part for part in path.iterdir() if part.is_file()) if path.is_dir() else [path]
+    digest = hashlib.sha256()
+    for file in files:
+        with file.open("rb") as opened:
+            while piece := opened.read(2**20):
+                digest.update(piece)
+    return digest.hexdigest()
 
 
 def figures(crowd: Crowd, report: Report) -> dict[str, Any]:

@@ -60,7 +60,9 @@ def parser() -> Parser:
         "and in\nwhich unit, how fast people are, what was passed over; and what of it is odd.",
         epilog=EPILOG,
     )
-    one.add_argument("recording", metavar="FILE", type=InputFile(), help="recorded crowd")
+    one.add_argument(
+        "recording", metavar="FILE", type=InputFile(folders=True), help="recorded crowd"
+    )
     add_reading(one)
     add_strict(one)
     one.add_argument(
@@ -76,7 +78,9 @@ def parser() -> Parser:
         "What it comes from is written into the file.",
         epilog=CONVERT_EPILOG,
     )
-    other.add_argument("recording", metavar="FILE", type=InputFile(), help="recorded crowd")
+    other.add_argument(
+        "recording", metavar="FILE", type=InputFile(folders=True), help="recorded crowd"
+    )
     other.add_argument(
         "--out",
         metavar="FILE",

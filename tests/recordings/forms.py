@@ -117,6 +117,84 @@ def obsmat(n: int, who: int, x: float, y: float) -> str:
     return f" {10 * n:e} {who:e} {x:e} 0 {y:e} {east:e} 0 {SPEED_MPS - east:e}"
 
 
+def as_record(n: int, who: int, x: float, y: float) -> str:
+    return json.dumps({"time": round(0.4 * n, 3), "ped": who, "pos": [x, y]})
+
+
+def pathfinder(sample_s: float = 0.4) -> bytes:
+    people: dict[str, dict[str, object]] = {"1": {}, "2": {}}
+    for n, who, x, y in walk(sample_s):
+        at = {"name": "00001", "isActive": True, "position": {"x": x, "y": y, "z": 0.0}}
+        people[str(who)][f"{sample_s * n:.2f}"] = at
+    return json.dumps(people, indent=1).encode()
+
+
+def columns() -> bytes:
+    n, who, x, y = zip(*walk(0.04), strict=True)
+    return json.dumps({"fps": 25, "frame": n, "id": who, "x": x, "y": y}).encode()
+
+
+def frames_of_json() -> bytes:
+    samples = list(walk(0.4))
+    return json.dumps(
+        [
+            {
+                "t": 0.4 * k,
+                "agents": [{"id": w, "x": x, "y": y} for n, w, x, y in samples if n == k],
+            }
+            for k in range(SAMPLES + 3)
+        ]
+    ).encode()
+
+
+def xml_of(head: str, frame: str, person: Callable[[int, float, float], str], tail: str) -> bytes:
+    made = [head]
+    samples = list(walk(0.04))
+    for k in range(SAMPLES + 3):
+        made.append(frame.format(k))
+        made += [person(who, x, y) for n, who, x, y in samples if n == k]
+        made.append("</objectlist></frame>" if "objectlist" in frame else "</frame>")
+    return "\n".join([*made, tail]).encode()
+
+
+def jpscore() -> bytes:
+    head = '<?xml version="1.0"?><trajectories><header version="0.5.1"><frameRate>25</frameRate></header>'
+    person = '<agent ID="{}" x="{}" y="{}" z="0" rA="0.2" rB="0.2"/>'
+    return xml_of(head, '<frame ID="{}">', person.format, "</trajectories>")
+
+
+def boxes() -> bytes:
+    def person(who: int, x: float, y: float) -> str:
+        return f'<object id="{who}"><box h="90" w="30" xc="{x / 0.04:.2f}" yc="{400 - y / 0.04:.2f}"/></object>'
+
+    return xml_of('<dataset name="ours">', '<frame number="{}"><objectlist>', person, "</dataset>")
+
+
+def traf() -> bytes:
+    samples = list(walk(0.1))
+    rows = []
+    for k in range(SAMPLES + 3):
+        here = [(w, x, y) for n, w, x, y in samples if n == k]
+        cells = [f"{x / 0.002:.0f},{4000 - y / 0.002:.0f},20,60,ped{w}" for w, x, y in here]
+        rows.append(",".join([str(k), str(len(here) + 1), *cells, "5,5,90,40,car0"]))
+    return text(rows)
+
+
+def feet(x: float, y: float) -> tuple[float, float]:
+    """The foot of somebody in a film in which a metre has 25 pixels."""
+    return round(x / 0.04 + 400, 2), round(400 - y / 0.04, 2)
+
+
+def town(n: int, who: int, x: float, y: float) -> str:
+    u, v = feet(x, y)
+    return f"{who},{n},1,1,{u - 5},{v - 90},{u + 5},{v - 75},{u - 15},{v - 90},{u + 15},{v}"
+
+
+def challenge(n: int, who: int, x: float, y: float) -> str:
+    u, v = feet(x, y)
+    return f"{n + 1},{who},{u - 15:.2f},{v - 90:.2f},30,90,1,1,0.9"
+
+
 CSV = text(lines(plain), "t,id,x,y")
 FORMS: dict[str, Form] = {
     "csv": Form("a.csv", CSV),
@@ -219,6 +297,74 @@ FORMS: dict[str, Form] = {
         text(lines(lambda n, who, x, y: f"{101 + n},{who},{x:.9f},{y:.9f},ped", 1001 / 30000),
              "frame,id,x,y,type") + b"101,9,0,0,veh\n",
         1001 / 30000,
+    ),
+    "json": Form("a.json", json.dumps([json.loads(row) for row in lines(as_record)]).encode()),
+    "json in lines": Form("a.jsonl", text(lines(as_record))),
+    "json of columns": Form("a.json", columns(), 0.04),
+    "json of frames": Form("a.json", frames_of_json()),
+    "pathfinder json": Form("pathfinder.json", pathfinder()),
+    "jpscore": Form("trajectories.xml", jpscore(), 0.04),
+    "boxes": Form("gt.xml", boxes(), 0.04, {"scale": 0.04, "fps": 25.0}),
+    "town centre": Form("top.csv", text(lines(town, 0.04)), 0.04, {"scale": 0.04}),
+    "motchallenge": Form("gt.txt", text(lines(challenge, 0.04)), 0.04, {"scale": 0.04, "fps": 25.0}),
+    "kitti": Form(
+        "0000.txt",
+        text(
+            [*lines(lambda n, who, x, y: f"{n} {who} Pedestrian 0 0 -1.8 297 162 455 292 1.8 0.6 0.6 {x:.6f} 1.9 {y:.6f} -2.1", 0.1),
+             "0 -1 DontCare -1 -1 -10 219 188 245 218 -1000 -1000 -1000 -10 -1 -1 -1"]
+        ),
+        0.1,
+    ),
+    "traf": Form("TRAF11_gt.txt", traf(), 0.1, {"scale": 0.002}),
+    "atc": Form(
+        "atc-20121024.csv",
+        text(lines(lambda n, who, x, y: f"{1351040428 + 0.4 * n:.3f},{who},{1000 * x:.1f},{1000 * y:.1f},1700.5,1250.0,0.1,0.2")),
+    ),
+    "cff": Form(
+        "al_position.csv",
+        text(lines(lambda n, who, x, y: f"2012-09-18T06:25:{int(0.4 * n):02d}:{round(400 * n) % 1000:03d};PIE;{1000 * x:.0f};{1000 * y:.0f};{who}")),
+    ),
+    "csv below lines about the experiment": Form(
+        "a.csv", text(lines(plain), "Experiment,Corridor 3", "Date,2013-06-19", "", "t,id,x,y")
+    ),
+    "csv with its header repeated": Form("a.csv", text([*lines(plain)[:9], "t,id,x,y", *lines(plain)[9:]], "t,id,x,y")),
+    "csv with times of day": Form(
+        "a.csv",
+        text(lines(lambda n, who, x, y: f"{'23:59:' if n < 5 else '00:00:'}{(58 + 0.4 * n) % 60:06.3f},{who},{x},{y}"), "time,id,x,y"),
+    ),
+    "csv with milliseconds since 1970": Form(
+        "a.csv", text(lines(lambda n, who, x, y: f"{1700000000000 + 400 * n},{who},{x},{y}"), "timestamp,id,x,y")
+    ),
+    "csv with y up": Form("a.csv", text(lines(lambda n, who, x, y: f"{0.4 * n:.1f},{who},{x},0.0,{y}"), "t,id,x,y,z")),
+    "csv with people unseen": Form(
+        "a.csv", text([*lines(plain), "9.9,1,,", "9.9,2,NaN,NaN"], "t,id,x,y")
+    ),
+    "csv as a table of markdown": Form(
+        "a.md", text(lines(lambda n, who, x, y: f"| {0.4 * n:.1f} | {who} | {x} | {y} |"), "| t | id | x | y |", "|---|---|---|---|")
+    ),
+    "csv with a minus of print": Form(
+        "a.csv", text(lines(lambda n, who, x, y: f"{0.4 * n:.1f},{who},\N{MINUS SIGN}{x},{y}"), "t,id,x,y")
+    ),
+    "csv of 25 Hz": Form(
+        "a.txt", text(lines(lambda n, who, x, y: f"{n},{who},{x},{y}", 0.04), "# sampling frequency: 25 Hz", "frame,id,x,y"), 0.04
+    ),
+    "csv in cm with velocities in cm": Form(
+        "a.csv",
+        text(
+            lines(lambda n, who, x, y: f"{n},{who},{100 * x:.2f},{100 * y:.2f},{125 * (who == 1)},{125 * (who == 2)}", 0.04),
+            "frame,id,x/cm,y/cm,vx,vy",
+        ),
+        0.04,
+    ),
+    "csv with columns named by hand": Form(
+        "a.csv",
+        text(lines(lambda n, who, x, y: f"{100 * y:.1f};{who};{100 * x:.1f};{400 * n}"), "Hoch;Wer;Rechts;Zeit"),
+        0.4,
+        {"columns": "t=Zeit/ms,id=Wer,x=Rechts/cm,y=Hoch/cm"},
+    ),
+    "numbers with columns named by hand": Form(
+        "a.txt", text(lines(lambda n, who, x, y: f"7 {y} {x} {who} {n}", 0.04)), 0.04,
+        {"columns": ",y,x,id,frame", "fps": 25.0},
     ),
     "jupedsim": Form("trajectory.sqlite", jupedsim(), 0.04),
     "jupedsim packed": Form("trajectory.sqlite.gz", gzip.compress(jupedsim()), 0.04),

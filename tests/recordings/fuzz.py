@@ -1,22 +1,18 @@
-"""Mutated files of every form: `python -m tests.recordings.fuzz --count 100000` (make fuzz-files).
+"""Mutations of files, and what must hold of a recording that was read; see `tests.files.fuzz`.
 
 Whatever is done to a file, reading it ends soon, in a crowd or in a `RecordingError`. A crowd is
 held against checks of its own: nothing is accepted without a word that they would warn of.
 """
 
-import argparse
 import gzip
 import random
-import sys
-import tempfile
 import time
-from collections import Counter
 from pathlib import Path
 
 import numpy as np
 
 from esplanade.recordings import Crowd, RecordingError, read_crowd
-from tests.recordings.forms import FORMS, Form
+from tests.recordings.forms import Form
 
 SOON_S = 5.0
 WORDS = (
@@ -155,32 +151,3 @@ def tried(path: Path, form: Form, content: bytes) -> str:
     assert str(path) in said
     assert len(said) < 900, said[:2000]
     return outcome
-
-
-def main() -> int:
-    """Try so many files of all forms, and say how it went."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=100_000)
-    parser.add_argument("--seed", type=int, default=0)
-    options = parser.parse_args()
-    outcomes: Counter[str] = Counter()
-    with tempfile.TemporaryDirectory() as folder:
-        for number in range(options.count):
-            chance = random.Random(f"{options.seed}:{number}")
-            form = FORMS[chance.choice(list(FORMS))]
-            content = mutated(form.content, chance)
-            if number % 10_000 == 9_999:
-                sys.stderr.write(f"{number + 1} files: {dict(outcomes)}\n")
-            try:
-                outcomes[tried(Path(folder, form.name), form, content)] += 1
-            except BaseException:
-                kept = Path(tempfile.gettempdir(), f"fuzzed-{options.seed}-{number}-{form.name}")
-                kept.write_bytes(content)
-                sys.stderr.write(f"file {number} of seed {options.seed}, kept as {kept}:\n")
-                raise
-    sys.stdout.write(f"{options.count} files: {dict(outcomes)}\n")
-    return 0
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

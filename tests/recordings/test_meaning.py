@@ -138,3 +138,45 @@ def test_one_line_says_it_all(tmp_path: Path) -> None:
         "1 person, 11.6 s, 0.4 s a sample, median 1.25 m/s, greatest 1.25 m/s, 0 % of samples "
         "passed over; table with named columns, times in seconds, taken for metres"
     )
+
+
+def test_times_that_may_be_milliseconds_are_warned_of(tmp_path: Path) -> None:
+    content = table(1000.0 * TIMES, 1.25 * TIMES)
+    _, report = read(tmp_path, content)
+    assert "were its times milliseconds, people would walk at 1.25 m/s" in report.warnings[0]
+    _, report = read(tmp_path, content, columns="t/ms,id,x,y")
+    assert report.warnings == ()
+    assert report.median_mps == pytest.approx(1.25, rel=1e-3)
+
+
+def test_nobody_who_walks_is_warned_of(tmp_path: Path) -> None:
+    _, report = read(tmp_path, "t,id,x,y\n0,1,2,3\n0,2,5,5\n")
+    assert report.warnings == (
+        "nobody has two samples: nothing shows that these are people who walk",
+    )
+
+
+def test_degrees_become_metres(tmp_path: Path) -> None:
+    east = 8.5 + 1.25 * TIMES / (111_319.49 * np.cos(np.radians(48.0)))
+    rows = [f"{t:.1f},1,{x:.9f},48.0" for t, x in zip(TIMES, east, strict=True)]
+    _, report = read(tmp_path, "\n".join(["t,id,longitude,latitude", *rows]))
+    assert report.median_mps == pytest.approx(1.25, rel=1e-3)
+    assert any("in degrees becomes the origin" in remark for remark in report.remarks)
+
+
+def test_heights_of_heads_are_no_ground(tmp_path: Path) -> None:
+    heights = 1.7 + 0.02 * np.sin(TIMES)
+    rows = [f"{t:.1f},1,{1.25 * t:.3f},0,{z:.3f}" for t, z in zip(TIMES, heights, strict=True)]
+    crowd, report = read(tmp_path, "\n".join(["t,id,x,y,z", *rows]))
+    assert report.remarks == ()
+    assert np.all(crowd.tracks[0].positions[:, 1] == 0.0)
+
+
+def test_smoothed_velocities_show_the_nearest_rate_of_cameras(tmp_path: Path) -> None:
+    chance = np.random.default_rng(3)
+    rows = [
+        f"{10 * n} 1 {0.2 * n:.4f} 0 0 {0.46 * chance.uniform(0.85, 1.15):.4f} 0 0"
+        for n in range(200)
+    ]
+    _, report = read(tmp_path, "\n".join(rows))
+    assert "25 frames a second, as its velocities show" in report.line

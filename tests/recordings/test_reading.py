@@ -102,12 +102,12 @@ def test_faults_name_file_line_and_expectation(
 @pytest.mark.parametrize(
     ("name", "content", "fault"),
     [
-        ("crowd.csv", b"t,id,x,y\n0,\xff,1,2\0", "is not UTF-8 text (byte 11)"),
+        ("crowd.csv", b"t,id,x,y\n0,\xff,1,2\x01", "is not UTF-8 text (byte 11, line 2)"),
         ("crowd.csv", b"PK\x03\x04", "is a ZIP archive or a spreadsheet: unpack it, or save it"),
-        ("crowd.csv", b"<frame/>", "is XML or HTML. What is read: a table with columns"),
+        ("crowd.csv", b"<frame/>", "is XML with the root <frame> and without people"),
         ("crowd.csv", b"\x1f\x8b\x08", "its gzip is damaged"),
         ("crowd.txt", b"one\n", "none of 'one' is time or frame or id or x or y"),
-        ("crowd.csv", b"\x00\x01\x02", "expected the header"),
+        ("crowd.csv", b"\x00\x01\x02", "is no text, but bytes"),
     ],
 )
 def test_files_of_another_kind(tmp_path: Path, name: str, content: bytes, fault: str) -> None:

@@ -73,3 +73,25 @@ def test_help_teaches(capsys: pytest.CaptureFixture[str]) -> None:
     shown = capsys.readouterr().out
     for word in ("TrajNet", "JuPedSim", "--fps", "--unit", "--scale", "# framerate", "gzip"):
         assert word in shown
+
+
+def test_columns_are_named_by_hand(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = write(tmp_path, "csv with columns named by hand")
+    assert main(["recording", "check", str(path)]) == 2
+    assert "--columns names them" in capsys.readouterr().err
+    named = ["--columns", "t=Zeit/ms,id=Wer,x=Rechts/cm,y=Hoch/cm"]
+    assert main(["recording", "check", str(path), *named]) == 0
+    assert "median 1.25 m/s" in capsys.readouterr().out
+    assert main(["recording", "check", str(path), "--columns", "t=Uhr,id=Wer,x=Ost,y=Hoch"]) == 2
+    assert "--columns: there is no column 'Uhr'" in capsys.readouterr().err
+
+
+def test_a_folder_is_one_recording(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "people"
+    folder.mkdir()
+    write(folder, "vadere")
+    assert main(["recording", "check", str(folder)]) == 0
+    assert f"{folder}: 2 people" in capsys.readouterr().out
+    target = tmp_path / "both.csv"
+    assert main(["recording", "convert", str(folder), "--out", str(target)]) == 0
+    assert target.is_file()
