@@ -44,8 +44,8 @@ test-nojit: $(VENV)/.test  ## run the planning tests uncompiled, for branch cove
 	NUMBA_DISABLE_JIT=1 $(RUN) -m coverage run -m pytest tests/planning $(ARGS)
 	$(RUN) -m coverage report
 
-fuzz-files: $(VENV)/.test  ## read 100 000 mutated recordings of every format
-	$(RUN) -m tests.recordings.fuzz $(ARGS)
+fuzz-files: $(VENV)/.test  ## read 100 000 mutated recordings, meshes and plans
+	$(RUN) -m tests.files.fuzz $(ARGS)
 
 test-lowest: $(VENV)/.test  ## run tests with the oldest releases that pyproject.toml allows
 	$(RUN) -m tools.lowest
