@@ -1,5 +1,6 @@
 """Which reader a plan has: found by content and suffix."""
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
@@ -47,9 +48,12 @@ def read_plan(path: Path, layers: Sequence[str] = ()) -> Storey:
 
 def _check_drawn(storey: Storey) -> None:
     try:
-        storey.bounds()
+        box = storey.bounds()
     except ValueError as error:
         raise ValueError("; ".join((str(error), *storey.remarks))) from None
+    ends = [c for wall in storey.walls for point in wall for c in point]
+    if not all(map(math.isfinite, (*box, *ends))):
+        raise ValueError("a corner of it is not finite")
 
 
 def _read(path: Path, data: bytes, layers: Sequence[str]) -> Storey:
