@@ -5,6 +5,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
+import numpy as np
+
 from esplanade.commandline.errors import UsageError
 from esplanade.planning.scene.bounded_reading import read_bounded
 from esplanade.scenery.plans.dxf import read_dxf
@@ -33,7 +35,9 @@ def read_plan(path: Path, layers: Sequence[str] = ()) -> Storey:
         The file cannot be read; the message names it and its fault.
     """
     try:
-        storey = _read(path, read_bounded(path, MAX_BYTES), layers)
+        # Numbers too large for a corner are named by `_check_drawn`.
+        with np.errstate(over="ignore", invalid="ignore"):
+            storey = _read(path, read_bounded(path, MAX_BYTES), layers)
         _check_drawn(storey)
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror or error}") from None
