@@ -13,6 +13,7 @@ from esplanade.recordings.errors import RecordingError
 from esplanade.recordings.rows import Rows, number, people
 from esplanade.recordings.units import PIXELS
 
+_WHOLE: Final = re.compile(r"-?[0-9]{1,15}")
 _DATED: Final = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d[:.]\d+")
 _PEOPLE: Final = ("ped", "pedestrian", "human", "man", "woman", "person", "people")
 _AS_FORM: Final = "as its form has it"
@@ -54,7 +55,7 @@ def _numbers(dialect: Dialect, cells: list[str]) -> bool:
 
 
 def _is_whole(cell: str) -> bool:
-    return cell.lstrip("-").isdigit()
+    return bool(_WHOLE.fullmatch(cell))
 
 
 def _is_stanford(dialect: Dialect, cells: list[str]) -> bool:

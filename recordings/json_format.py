@@ -265,7 +265,7 @@ def _is_wildtrack(first: Any) -> bool:
 
 def _wildtrack(path: Path, content: list[Any]) -> Rows:
     """One frame of WildTrack, whose number is the name of the file: cells of a grid of 2.5 cm."""
-    if not path.stem.isdigit() or len(path.stem) > 12:
+    if not path.stem.isdecimal() or len(path.stem) > 12:
         raise RecordingError(path, "a file of WildTrack is named after its frame")
     try:
         names = [str(int(person["personID"])) for person in content]

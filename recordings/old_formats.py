@@ -17,7 +17,7 @@ _PROPERTIES: Final = "Properties."
 
 def looks_like_triples(table: Table) -> bool:
     """Whether each line is one number, in threes of x, y and frame."""
-    return len(table.lines) % 3 == 0 and all(line.text.isdigit() for line in table.lines)
+    return len(table.lines) % 3 == 0 and all(line.text.isdecimal() for line in table.lines)
 
 
 def read_triples(table: Table) -> Rows:

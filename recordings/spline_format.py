@@ -25,7 +25,7 @@ def looks_like_splines(text: str) -> bool:
     return (
         len(heads) > 2
         and [len(head) for head in heads[:3]] == [1, 1, 4]
-        and all(head[0].isdigit() for head in heads[:2])
+        and all(head[0].isdecimal() for head in heads[:2])
     )
 
 
@@ -84,7 +84,7 @@ def read_splines(path: Path, text: str) -> Rows:
 
 def _count(path: Path, line: tuple[int, list[str]]) -> int:
     where, cells = line
-    if len(cells) == 1 and cells[0].isdigit() and len(cells[0]) < 9:
+    if len(cells) == 1 and cells[0].isdecimal() and len(cells[0]) < 9:
         return int(cells[0])
     raise RecordingError(path, f"{' '.join(cells)!r:.40} is no number of splines or points", where)
 

@@ -152,7 +152,9 @@ def _read(path: Path) -> tuple[str, Triangles]:
         raise MeshError(f"{path.name}: it cannot be read: {error.strerror or error}") from None
     kind = _format_of(path, data)
     try:
-        return kind, _FORMATS[kind](path, data)
+        # Corners that are not finite are named later, and what is too large for its face is none.
+        with np.errstate(over="ignore", invalid="ignore"):
+            return kind, _FORMATS[kind](path, data)
     # Broken bytes take readers to places that nobody thought of.
     except Exception as error:
         words = str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"

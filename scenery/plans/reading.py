@@ -1,8 +1,11 @@
 """Which reader a plan has: found by content and suffix."""
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
+
+import numpy as np
 
 from esplanade.commandline.errors import UsageError
 from esplanade.planning.scene.bounded_reading import read_bounded
@@ -32,7 +35,9 @@ def read_plan(path: Path, layers: Sequence[str] = ()) -> Storey:
         The file cannot be read; the message names it and its fault.
     """
     try:
-        storey = _read(path, read_bounded(path, MAX_BYTES), layers)
+        # Numbers too large for a corner are named by `_check_drawn`.
+        with np.errstate(over="ignore", invalid="ignore"):
+            storey = _read(path, read_bounded(path, MAX_BYTES), layers)
         _check_drawn(storey)
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror or error}") from None
@@ -47,9 +52,12 @@ def read_plan(path: Path, layers: Sequence[str] = ()) -> Storey:
 
 def _check_drawn(storey: Storey) -> None:
     try:
-        storey.bounds()
+        box = storey.bounds()
     except ValueError as error:
         raise ValueError("; ".join((str(error), *storey.remarks))) from None
+    ends = [c for wall in storey.walls for point in wall for c in point]
+    if not all(map(math.isfinite, (*box, *ends))):
+        raise ValueError("a corner of it is not finite")
 
 
 def _read(path: Path, data: bytes, layers: Sequence[str]) -> Storey:

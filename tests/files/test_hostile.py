@@ -16,6 +16,7 @@ import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.recordings.forms import jupedsim
@@ -48,7 +49,7 @@ def computed(table: bytes) -> bytes:
 def parquet() -> bytes:
     pa = pytest.importorskip("pyarrow")
     files = pytest.importorskip("pyarrow.parquet")
-    column = pa.array([1.0]).take(pa.array([0] * 1_000_000, pa.int32()))
+    column = pa.array([1.0]).take(pa.array(np.zeros(1_000_000, np.int32)))
     table = pa.table(dict.fromkeys(("t", "id", "x", "y"), column))
     whole = pa.concat_tables([table] * 20)
     file = io.BytesIO()
@@ -115,22 +116,22 @@ LAUGHS = (
 )
 
 RECORDINGS: dict[str, Callable[[], bytes]] = {
-    "zeros.csv.gz": lambda: gzip.compress(bytes(512 * MB), 1),
-    "lines.csv.gz": lambda: gzip.compress(b"\n" * 120 * MB, 1),
-    "digits.txt.gz": lambda: gzip.compress(b"1\n" * 60 * MB, 1),
-    "words.txt.gz": lambda: gzip.compress(b"a b\n" * 3_900_000, 1),
-    "one_line.txt": lambda: b"1 " * 40 * MB,
+    "zeros.csv.gz": lambda: gzip.compress(bytes(140 * MB), 1),
+    "lines.csv.gz": lambda: gzip.compress(b"\n" * 5 * MB, 1),
+    "digits.txt.gz": lambda: gzip.compress(b"1\n" * 5 * MB, 1),
+    "words.txt.gz": lambda: gzip.compress(b"a b\n" * 2_000_000, 1),
+    "one_line.txt": lambda: b"1 " * 8 * MB,
     "wide.csv": lambda: b"x," * 60_000 + b"\n" + b"1," * 60_000 + b"\n",
     "long_number.csv": lambda: b"t,id,x,y\n0,1," + b"9" * 60_000 + b",2\n",
     "spaces.vsp": lambda: b"1\n2\n0 0 0 0\n" + b" " * 20_000 + b"0 1 1" + b" " * 60_000 + b"x\n",
     "comments.txt": lambda: (b"# " + b"1." * 5000 + b"\n") * 2000 + b"nothing\n",
-    "splines.vsp": lambda: b"400000\n" + b"2\n0 0 0 0\n9 9 9999999 0\n" * 400_000,
-    "deep.json": lambda: b"[" * 20 * MB,
-    "many.json": lambda: b"[" + b"0," * 20 * MB + b"0]",
-    "lists.json": lambda: b"[" + b"[]," * 3 * MB + b"[]]",
+    "splines.vsp": lambda: b"100000\n" + b"2\n0 0 0 0\n9 9 9999999 0\n" * 100_000,
+    "deep.json": lambda: b"[" * 5 * MB,
+    "many.json": lambda: b"[" + b"0," * 5 * MB + b"0]",
+    "lists.json": lambda: b"[" + b"[]," * 2 * MB + b"[]]",
     "deep.xml": lambda: b"<a>" * 4 * MB,
     "laughs.xml": lambda: LAUGHS.replace("{root}", "dataset").encode(),
-    "empty.xml": lambda: b"<dataset>" + b"<a/>" * 8 * MB + b"</dataset>",
+    "empty.xml": lambda: b"<dataset>" + b"<a/>" * MB + b"</dataset>",
     "other.sqlite": lambda: sqlite("CREATE TABLE a (b)", "CREATE VIEW trajectory_data AS SELECT 1"),
     "endless.sqlite": lambda: sqlite(
         "CREATE VIEW trajectory_data AS WITH RECURSIVE r(frame) AS (SELECT 1 UNION ALL SELECT "
@@ -140,14 +141,14 @@ RECORDINGS: dict[str, Callable[[], bytes]] = {
     "cut.sqlite": lambda: jupedsim()[:6000],
     "same.parquet": parquet,
     "unwritten.h5": hdf5,
-    "people.csv": lambda: b"t,id,x,y\n" + b"".join(b"0,%d,1,2\n" % n for n in range(600_000)),
+    "people.csv": lambda: b"t,id,x,y\n" + b"".join(b"0,%d,1,2\n" % n for n in range(510_000)),
 }  # fmt: skip
 MESHES: dict[str, Callable[[], bytes]] = {
-    "zeros.3mf": lambda: threemf("<model>" + " " * 200 * MB),
+    "zeros.3mf": lambda: threemf("<model>" + " " * 20 * MB),
     "nested.3mf": lambda: threemf(components()),
     "laughs.3mf": lambda: threemf(LAUGHS.replace("{root}", "model"), packed=False),
-    "lines.obj": lambda: b"\n" * 60 * MB,
-    "words.obj": lambda: b"f " + b"1 " * 20 * MB,
+    "lines.obj": lambda: b"\n" * 9 * MB,
+    "words.obj": lambda: b"f " + b"1 " * 4 * MB,
     "far.obj": lambda: b"v 0 0 0\nf 1 2 99999999999999999999\n",
     "counts.off": lambda: b"OFF\n999999999 999999999 0\n0 0 0\n",
     "counts.ply": lambda: (
@@ -161,14 +162,14 @@ MESHES: dict[str, Callable[[], bytes]] = {
     "counts.stl": lambda: bytes(80) + struct.pack("<I", 2**32 - 1) + bytes(50),
     "sparse.gltf": lambda: gltf(2**31),
     "nodes.gltf": lambda: gltf(3_000_000, 1000),
-    "deep.gltf": lambda: b'{"asset":' + b"[" * 20 * MB,
-    "many.gltf": lambda: b'{"asset":{"version":"2.0"},"nodes":[' + b"0," * 10 * MB + b"0]}",
+    "deep.gltf": lambda: b'{"asset":' + b"[" * 4 * MB,
+    "many.gltf": lambda: b'{"asset":{"version":"2.0"},"nodes":[' + b"0," * 4 * MB + b"0]}",
     "noise.ifc": lambda: b"ISO-10303-21;\n" + b"#1=IFCWALL(" * 100_000,
 }
 PLANS: dict[str, Callable[[], bytes]] = {
-    "deep.wkt": lambda: b"POLYGON " + b"(" * 4 * MB,
+    "deep.wkt": lambda: b"POLYGON " + b"(" * 2 * MB,
     "deep.geojson": lambda: b'{"type":"FeatureCollection","features":' + b"[" * 4 * MB,
-    "many.geojson": lambda: b'{"features":[' + b"0," * 8 * MB + b"0]}",
+    "many.geojson": lambda: b'{"features":[' + b"0," * 4 * MB + b"0]}",
     "laughs.xml": lambda: LAUGHS.replace("{root}", "geometry").encode(),
     "laughs.yaml": laughs_of_yaml,
     "long.yaml": lambda: b"image: a.pgm\n" + b"#" * 8 * MB,

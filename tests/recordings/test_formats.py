@@ -112,3 +112,10 @@ def test_faults_of_ndjson(
 def test_lines_that_are_no_json(tmp_path: Path, text: str) -> None:
     with pytest.raises(RecordingError, match=":1: "):
         read_crowd(write(tmp_path, "plaza.ndjson", text + "\n"))
+
+
+def test_digits_of_print_are_no_numbers(tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    path.write_text("1\n2\n\N{SUPERSCRIPT THREE}00\n")
+    with pytest.raises(RecordingError):
+        read_crowd(path)

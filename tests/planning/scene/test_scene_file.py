@@ -110,7 +110,7 @@ def test_a_scene_is_read_in_any_unicode(tmp_path: Path, encoding: str) -> None:
 def test_a_scene_that_is_no_unicode_is_refused_with_the_line(tmp_path: Path) -> None:
     path = tmp_path / "scene.json"
     path.write_bytes(b'{"bounds": [0, 0, 20, 10],\n"name": "caf\xe9"}')
-    assert "is not UTF-8 text (byte 41, line 2)" in faults(path)[0]
+    assert "is not UTF-8 text (byte 39, line 2)" in faults(path)[0]
 
 
 RING = [[2, 2], [6, 2], [6, 6], [2, 6]]

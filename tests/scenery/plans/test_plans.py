@@ -267,3 +267,10 @@ def test_a_line_of_stairs_leads_to_the_storey_above(tmp_path: Path) -> None:
     assert "no storey above" in " ".join(storeys[1].remarks)
     upper = [p for p in scene.polygons if p.kind == "floor"]
     assert sum(abs(twice_area(p.points)) / 2 for p in upper) == pytest.approx(200.0 - 16.0)
+
+
+def test_corners_that_are_not_finite_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "far.wkt"
+    path.write_text("LINESTRING (0 0, 10 0)\nLINESTRING (0 0, 1e400 5)\n")
+    with pytest.raises(UsageError, match=r"a corner of it is not finite|geometry 2"):
+        read_plan(path)
