@@ -21,6 +21,12 @@ export class Editing {
     this.typing = null;
   }
 
+  /** Let a box go on with what holds, once what was typed in it does. */
+  applied({ draft }: ParameterWork): void {
+    if (this.typing === null || draft.edit(this.typing.name) !== undefined) return;
+    if (draft.source(this.typing.name)?.value === Number(this.typing.text)) this.typing = null;
+  }
+
   /** Take an edit out of the draft. */
   drop(work: ParameterWork, name: string): void {
     this.typing = null;

@@ -193,6 +193,8 @@ class ParametersPanel extends CommandingPanel {
     }
     try {
       const answer = await work.apply();
+      this.editing.applied(work);
+      this.requestUpdate();
       if (answer) this.app.toast(appliedText(answer.tick), "done");
     } catch (error) {
       if (!(error instanceof RefusedError)) throw error;
