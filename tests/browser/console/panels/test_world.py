@@ -115,7 +115,7 @@ async def test_a_password_is_changed_and_the_audit_taken_away(
     assert download.suggested_filename == "audit.jsonl"
     await download.save_as(tmp_path / "audit.jsonl")
     rows = [json.loads(line) for line in (tmp_path / "audit.jsonl").read_text().splitlines()]
-    assert ("paula", "password") in {(row["account"], row["command"]) for row in rows}
+    assert ("paula", "user_password") in {(row["account"], row["command"]) for row in rows}
     with file.open(newline="") as table:
         assert [row["hash"] for row in csv.DictReader(table)] == [row["hash"] for row in rows]
     await audit.get_by_role("button", name="Verify the chains").click()
