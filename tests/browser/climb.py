@@ -13,12 +13,12 @@ from tempfile import TemporaryDirectory
 from typing import Final
 
 from PIL import Image
-from playwright.async_api import Browser, Page, async_playwright
+from playwright.async_api import Browser, Page
 
 from esplanade.planning import Scene
 from esplanade.server.app import running
 from esplanade.server.settings import ServerSettings
-from tests.browser.conftest import FLAGS, executable
+from tests.browser.chromium import WEBGL, launched
 from tests.browser.visitor import Visitor, own
 
 SCENE: Final = Path(__file__).parents[2] / "scenes" / "gallery.json"
@@ -66,14 +66,8 @@ async def _run(scene: Path, joints: bool) -> list[Image.Image]:
         scene=scene,
         person_max_speed_mps=SPEED_MPS,
     )
-    async with running(settings) as server, async_playwright() as playwright:
-        browser = await playwright.chromium.launch(
-            executable_path=executable(playwright), args=[*FLAGS]
-        )
-        try:
-            return await _climb(browser, f"http://127.0.0.1:{server.port}/", joints)
-        finally:
-            await browser.close()
+    async with running(settings) as server, launched(*WEBGL) as browser:
+        return await _climb(browser, f"http://127.0.0.1:{server.port}/", joints)
 
 
 async def _climb(browser: Browser, url: str, joints: bool) -> list[Image.Image]:

@@ -10,13 +10,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Final
 
-from playwright.async_api import async_playwright
-
 from esplanade.planning import Scene
 from esplanade.server.app import running
 from esplanade.server.loading import DEFAULT_SCENE
 from esplanade.server.settings import ServerSettings
-from tests.browser.conftest import FLAGS, executable
+from tests.browser.chromium import WEBGL, launched
 from tests.browser.visitor import View, Visitor, own, place_of
 
 ACTORS: Final = 30
@@ -61,10 +59,7 @@ async def _visitors(url: str) -> asyncio.subprocess.Process:
 
 
 async def _picture(url: str) -> bytes:
-    async with async_playwright() as playwright:
-        browser = await playwright.chromium.launch(
-            executable_path=executable(playwright), args=[*FLAGS]
-        )
+    async with launched(*WEBGL) as browser:
         context = await browser.new_context(viewport={"width": 1280, "height": 720})
         visitor = await Visitor.arrive(context, url, drawing="fine")
         await visitor.join("Ida")
@@ -80,7 +75,6 @@ async def _picture(url: str) -> bytes:
             view = await visitor.until(lambda view: view["plan"] is not None)
         await visitor.page.click("#people-open")
         picture: bytes = await visitor.page.screenshot()
-        await browser.close()
         return picture
 
 

@@ -6,10 +6,9 @@ import pytest
 import pytest_asyncio
 from playwright.async_api import Browser, BrowserContext
 
-from esplanade.server.app import Running, running
-from esplanade.server.settings import ServerSettings
+from esplanade.server.app import Running
 from tests.browser.visitor import Visitor, avatar_of, own
-from tests.browser.worlds import PROMENADE, PROMENADE_END, entered_at
+from tests.browser.worlds import PROMENADE, PROMENADE_END, entered_at, served
 from tests.patience import PATIENCE_S
 from tests.server.console.operators import Operator, operator
 
@@ -19,20 +18,9 @@ pytestmark = [pytest.mark.browser, pytest.mark.asyncio(loop_scope="module")]
 @pytest_asyncio.fixture(scope="module", loop_scope="module")
 async def server(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[Running]:
     """A world that keeps chat, in which everybody comes in at one end of a promenade."""
-    settings = ServerSettings(
-        scene=entered_at(PROMENADE, PROMENADE_END, tmp_path_factory.mktemp("promenade")),
-        host="127.0.0.1",
-        port=0,
-        private_port=0,
-        actors=0,
-        log_level="warning",
-        hello_timeout_s=60.0,
-        drop_seconds=PATIENCE_S,
-        keep_chat=True,
-        resume_seconds=PATIENCE_S,
-        chat_rate=100.0,
-    )
-    async with running(settings) as made:
+    scene = entered_at(PROMENADE, PROMENADE_END, tmp_path_factory.mktemp("promenade"))
+    more = {"keep_chat": True, "resume_seconds": PATIENCE_S, "chat_rate": 100.0}
+    async with served(scene=scene, **more) as made:
         yield made
 
 

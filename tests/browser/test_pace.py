@@ -9,12 +9,9 @@ import pytest
 import pytest_asyncio
 from playwright.async_api import BrowserContext, ViewportSize
 
-from esplanade.server.app import Running, running
-from esplanade.server.assets import CLIENT_ASSETS
-from esplanade.server.settings import ServerSettings
+from esplanade.server.app import Running
 from tests.browser.visitor import Visitor
-from tests.browser.worlds import PROMENADE, PROMENADE_END, entered_at
-from tests.patience import PATIENCE_S
+from tests.browser.worlds import PROMENADE, PROMENADE_END, built, entered_at, served
 from tests.server.console.operators import Operator, operator
 
 pytestmark = [pytest.mark.browser, pytest.mark.asyncio(loop_scope="module")]
@@ -42,19 +39,9 @@ _RECORD: Final = """(seconds) => new Promise((resolve) => {
 @pytest_asyncio.fixture(scope="module", loop_scope="module")
 async def promenade(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[Running]:
     """A server of bare ground with actors, on which nothing stops a walk to the south."""
-    if not (CLIENT_ASSETS / "index.html").is_file():
-        pytest.fail("the web client is not built; run: make client")
+    built("index.html")
     scene = entered_at(PROMENADE, PROMENADE_END, tmp_path_factory.mktemp("promenade"))
-    values: dict[str, Any] = {
-        "host": "127.0.0.1",
-        "port": 0,
-        "private_port": 0,
-        "scene": scene,
-        "actors": 12,
-        "hello_timeout_s": 60.0,
-        "drop_seconds": PATIENCE_S,
-    }
-    async with running(ServerSettings(**values)) as server:
+    async with served(scene=scene, actors=12) as server:
         yield server
 
 

@@ -8,8 +8,11 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any, Final
 
+import pytest
+
 from esplanade.planning import Scene
-from esplanade.server.app import running
+from esplanade.server.app import Running, running
+from esplanade.server.assets import CLIENT_ASSETS
 from esplanade.server.settings import ServerSettings
 from tests.patience import PATIENCE_S
 
@@ -25,8 +28,8 @@ PROMENADE_END: Final[Place] = (20.0, 155.0, 0.0)
 
 
 @asynccontextmanager
-async def world(**changes: Any) -> AsyncIterator[str]:
-    """The address of a running world, that drops no page because its machine is slow."""
+async def served(**changes: Any) -> AsyncIterator[Running]:
+    """A running world, that drops no page because its machine is slow."""
     values: dict[str, Any] = {
         "host": "127.0.0.1",
         "port": 0,
@@ -37,7 +40,20 @@ async def world(**changes: Any) -> AsyncIterator[str]:
         "drop_seconds": PATIENCE_S,
     }
     async with running(ServerSettings(**{**values, **changes})) as server:
+        yield server
+
+
+@asynccontextmanager
+async def world(**changes: Any) -> AsyncIterator[str]:
+    """The address at which people come into such a world."""
+    async with served(**changes) as server:
         yield f"http://127.0.0.1:{server.port}/"
+
+
+def built(page: str) -> None:
+    """Fail a test of a page that is not built."""
+    if not (CLIENT_ASSETS / page).is_file():
+        pytest.fail("the web client is not built; run: make client")
 
 
 def entered_at(scene: Scene, place: Place, folder: Path) -> Path:

@@ -7,6 +7,7 @@ import { decode, encode as pack } from "@msgpack/msgpack";
 import { ClientCode, ServerCode, VERSION } from "./codes";
 import { WireError } from "./errors";
 import type { ClientMessage, EntityRecord, Point, ServerMessage } from "./messages";
+import { readRecord, RECORD_BYTES } from "./records";
 
 const CLIENT_CODES: Record<ClientMessage["type"], number> = {
   hello: ClientCode.HELLO,
@@ -44,11 +45,6 @@ const ADDED = new Map<ServerMessage["type"], object>([
   ["error", { arguments: {} }],
   ["bye", { arguments: {} }],
 ]);
-
-const RECORD_BYTES = 14;
-const POSITION_M = 0.01;
-const HEADING_RAD = (2 * Math.PI) / 256;
-const SPEED_MPS = 0.02;
 
 export function encodeClient(message: ClientMessage): Uint8Array<ArrayBuffer> {
   const { type, ...fields } = message;
@@ -96,16 +92,7 @@ export function unpackBlock(block: Uint8Array, origin: Point): EntityRecord[] {
   const view = new DataView(block.buffer, block.byteOffset, block.byteLength);
   const records: EntityRecord[] = [];
   for (let at = 0; at < block.byteLength; at += RECORD_BYTES) {
-    records.push({
-      id: view.getUint32(at, true),
-      layer: view.getUint8(at + 4),
-      reason: view.getUint8(at + 5),
-      x: view.getUint16(at + 6, true) * POSITION_M + origin[0],
-      y: view.getUint16(at + 8, true) * POSITION_M + origin[1],
-      z: view.getInt16(at + 10, true) * POSITION_M,
-      heading: view.getUint8(at + 12) * HEADING_RAD,
-      speed: view.getUint8(at + 13) * SPEED_MPS,
-    });
+    records.push(readRecord(view, at, origin));
   }
   return records;
 }

@@ -1,5 +1,6 @@
 /** The list of people and actors in view, and how many the whole world holds. */
 
+import { byName } from "../world/ordering";
 import type { Avatar } from "../world/world";
 import { byId, element } from "./dom";
 
@@ -70,7 +71,7 @@ export class PeopleList {
 
 function byPlaceInList(a: Avatar, b: Avatar): number {
   const group = ({ own, kind }: Avatar): number => (own ? 0 : kind === "person" ? 1 : 2);
-  return group(a) - group(b) || a.name.localeCompare(b.name, undefined, { numeric: true });
+  return group(a) - group(b) || byName(a.name, b.name);
 }
 
 function plural(count: number, one: string, many: string): string {

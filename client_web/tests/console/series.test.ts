@@ -17,13 +17,33 @@ describe("a window of series", () => {
     ]);
   });
 
-  it("puts the seconds of a longer step into it, and forgets what is older than its span", () => {
+  it("leaves longer steps to the server, which knows whether seconds add up in them", () => {
     const window = new SeriesWindow(10, 30);
-    for (let second = 0; second <= 60; second += 1) window.append(second * S, { people: second });
-    expect(window.data(["people"])).toEqual([
-      [40, 50, 60],
-      [49, 59, 60],
+    window.load({ at_us: [40 * S, 50 * S], values: { contacts: [3, 1] } });
+    window.append(60 * S, { contacts: 1 });
+    expect(window.data(["contacts"])).toEqual([
+      [40, 50],
+      [3, 1],
     ]);
+    expect(window.endUs(69.5 * S)).toBe(60 * S);
+  });
+
+  it("forgets what is older than its span", () => {
+    const window = new SeriesWindow(1, 3);
+    for (let second = 0; second <= 6; second += 1) window.append(second * S, { people: second });
+    expect(window.data(["people"])).toEqual([
+      [4, 5, 6],
+      [4, 5, 6],
+    ]);
+  });
+
+  it("keeps what the server does not know when it is asked again", () => {
+    const before = new SeriesWindow(1, 600);
+    before.load({ at_us: [S], values: { people: [1] } });
+    before.append(2 * S, { people: 2, "speed of actor-1": 1.3 });
+    const window = new SeriesWindow(1, 600);
+    window.load({ at_us: [S, 2 * S, 3 * S], values: { people: [1, 2, 3] } }, before);
+    expect(window.data(["speed of actor-1"])[1]).toEqual([null, 1.3, null]);
   });
 
   it("takes no figure of the past", () => {

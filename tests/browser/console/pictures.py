@@ -7,17 +7,16 @@ import asyncio
 import sys
 from io import BytesIO
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from PIL import Image
-from playwright.async_api import Browser, BrowserContext, Locator, Page, async_playwright
+from playwright.async_api import Browser, Locator, Page
 
-from esplanade.server.accounts.identity import MACHINE
-from esplanade.server.app import Running, running
-from esplanade.server.settings import ServerSettings
-from tests.browser.conftest import FLAGS, executable
-from tests.browser.console.stage_answers import ACCOUNT, PASSWORD
-from tests.patience import PATIENCE_S
+from esplanade.server.app import Running
+from tests.browser.chromium import FLAT, launched
+from tests.browser.console.stage_answers import ACCOUNT
+from tests.browser.console.visit import arrived
+from tests.browser.console.worlds import operated, script_of
 from tests.server.console.operators import Operator
 
 ACTORS: Final = 24
@@ -25,36 +24,27 @@ VISITORS: Final = 8
 LIVELY_S: Final = 60.0
 """Time for everybody to walk about, so that figures and reasons have something to tell."""
 COLOURS: Final = 256
-WIDE: Final = (1440, 900)
-NARROW: Final = (390, 844)
+WIDE: Final[dict[str, Any]] = {"width": 1440, "height": 900}
+NARROW: Final[dict[str, Any]] = {"width": 390, "height": 844}
 NOTE: Final = "more room at the door"
 
 
 async def take(folder: Path) -> None:
     """All pictures, of a lively gallery."""
-    settings = ServerSettings(
-        host="127.0.0.1", port=0, private_host="127.0.0.1", private_port=0, actors=ACTORS
-    )
-    async with running(settings) as server, async_playwright() as playwright:
-        await server.kept.directory.add(MACHINE, ACCOUNT, "director", PASSWORD)
-        token = await server.kept.tokens.add(MACHINE, ACCOUNT, "pictures")
-        script = Operator(server.private_port, token)
+    async with operated({ACCOUNT: "director"}, actors=ACTORS) as server, launched(*FLAT) as browser:
+        script = await script_of(server, ACCOUNT, "pictures")
         visitors = await _visitors(server)
-        browser = await playwright.chromium.launch(
-            executable_path=executable(playwright), args=[*FLAGS]
-        )
         try:
             await asyncio.sleep(LIVELY_S)
             await _wide(browser, server, script, folder)
             await _narrow(browser, server, folder)
         finally:
-            await browser.close()
             visitors.terminate()
             await visitors.wait()
 
 
 async def _wide(browser: Browser, server: Running, script: Operator, folder: Path) -> None:
-    page = await _page(browser, server, WIDE)
+    page = (await arrived(browser, server, ACCOUNT, **WIDE)).page
     risk = {"op": "set_parameters", "scope": "world", "values": {"risk_weight": 14}, "note": NOTE}
     status, answer = await script.send(risk)
     if status != 200:
@@ -77,23 +67,10 @@ async def _wide(browser: Browser, server: Running, script: Operator, folder: Pat
 
 
 async def _narrow(browser: Browser, server: Running, folder: Path) -> None:
-    page = await _page(browser, server, NARROW)
+    page = (await arrived(browser, server, ACCOUNT, **NARROW)).page
     await page.get_by_role("tab", name="Map", exact=True).click()
-    await asyncio.sleep(3.0)
+    await page.wait_for_selector("canvas.map[data-ms]")
     await _save(page, folder / "console-narrow.png")
-
-
-async def _page(browser: Browser, server: Running, size: tuple[int, int]) -> Page:
-    width, height = size
-    context: BrowserContext = await browser.new_context(viewport={"width": width, "height": height})
-    context.set_default_timeout(1e3 * PATIENCE_S)
-    page = await context.new_page()
-    await page.goto(f"http://127.0.0.1:{server.private_port}/console")
-    await page.get_by_label("Name", exact=True).fill(ACCOUNT)
-    await page.get_by_label("Password", exact=True).fill(PASSWORD)
-    await page.keyboard.press("Enter")
-    await page.get_by_text("live", exact=True).first.wait_for()
-    return page
 
 
 async def _visitors(server: Running) -> asyncio.subprocess.Process:

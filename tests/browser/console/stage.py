@@ -160,7 +160,7 @@ def _add_live(app: FastAPI, stage: Stage) -> None:
 
 
 async def _read(socket: WebSocket, wanted: dict[str, dict[str, Any]]) -> None:
-    with suppress(Exception):
+    with suppress(RuntimeError, WebSocketDisconnect):
         while True:
             message = await socket.receive_json()
             if "subscribe" in message:

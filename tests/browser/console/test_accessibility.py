@@ -1,16 +1,16 @@
-"""Axe finds nothing in the operators' page, in both colour schemes and at two sizes."""
+"""Axe finds nothing in the operators' page, in both colour schemes and at three sizes."""
 
 import pytest
 from playwright.async_api import Browser
 
-from tests.browser.console.conftest import AXE, visit_of
 from tests.browser.console.stage import Stage
+from tests.browser.console.visit import AXE, visit_of
 
 pytestmark = pytest.mark.asyncio(loop_scope="module")
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("size", [(360, 740), (1280, 800)])
+@pytest.mark.parametrize("size", [(360, 740), (1280, 720), (2560, 1440)])
 async def test_axe_finds_nothing(
     browser: Browser, stage: tuple[str, Stage], scheme: str, size: tuple[int, int]
 ) -> None:

@@ -2,9 +2,9 @@
 
 import pytest
 
-from tests.browser.console.conftest import Visit
 from tests.browser.console.stage import Stage
 from tests.browser.console.stage_answers import PASSWORD
+from tests.browser.console.visit import Visit
 
 pytestmark = pytest.mark.asyncio(loop_scope="module")
 
@@ -16,9 +16,7 @@ async def test_an_operator_comes_in_and_leaves(visit: Visit) -> None:
     await page.wait_for_selector("text=no account has this name and password")
     assert await page.locator("esp-map").count() == 0
     await visit.come_in()
-    await page.click("summary:has-text('olga')")
-    await page.click("text=Log out")
-    await page.wait_for_selector("#password")
+    await visit.log_out()
     assert await page.locator("esp-map").count() == 0
     await page.reload()
     await page.wait_for_selector("#password")

@@ -3,9 +3,9 @@
 import pytest
 from playwright.async_api import Browser
 
-from tests.browser.console.conftest import Visit, visit_of
 from tests.browser.console.stage import Stage
 from tests.browser.console.stage_answers import ACCOUNT, PASSWORD
+from tests.browser.console.visit import Visit, visit_of
 
 pytestmark = pytest.mark.asyncio(loop_scope="module")
 

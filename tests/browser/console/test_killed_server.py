@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from playwright.async_api import BrowserContext
 
-from esplanade.server.assets import CLIENT_ASSETS
-from tests.browser.console.conftest import Visit
 from tests.browser.console.stage_answers import ACCOUNT, PASSWORD
+from tests.browser.console.visit import Visit
+from tests.browser.worlds import built
 from tests.patience import PATIENCE_S
 from tests.server.test_process import served
 from tests.server.worlds import ROOM
@@ -19,8 +19,7 @@ pytestmark = pytest.mark.asyncio(loop_scope="module")
 
 
 async def test_the_page_comes_back_by_itself(profile: BrowserContext, tmp_path: Path) -> None:
-    if not (CLIENT_ASSETS / "console.html").is_file():
-        pytest.fail("the web client is not built; run: make client")
+    built("console.html")
     room, data = tmp_path / "room.json", ["--data", str(tmp_path / "world")]
     room.write_text(ROOM.model_dump_json())
     await asyncio.to_thread(_add_account, *data)

@@ -6,8 +6,8 @@ import math
 import pytest
 from playwright.async_api import Browser
 
-from tests.browser.console.conftest import Visit, visit_of
 from tests.browser.console.stage import staged
+from tests.browser.console.visit import Visit, visit_of
 from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.asyncio(loop_scope="module")

@@ -1,48 +1,41 @@
-"""The operators' page on a real server: its actors on the map, and a change that the page shows."""
+"""The operators' page on a real server: actors on the map, a change of one, how one decides."""
 
 from collections.abc import AsyncIterator
 from typing import Final
 
 import pytest
 import pytest_asyncio
-from playwright.async_api import BrowserContext
+from playwright.async_api import Browser
 
-from esplanade.server.accounts.identity import MACHINE
-from esplanade.server.app import Running, running
-from esplanade.server.settings import ServerSettings
-from tests.browser.console.conftest import Visit
-from tests.browser.console.stage_answers import ACCOUNT, PASSWORD
+from esplanade.server.app import Running
+from tests.browser.console.stage_answers import ACCOUNT
+from tests.browser.console.visit import Visit, arrived
+from tests.browser.console.worlds import operated
 
 pytestmark = pytest.mark.asyncio(loop_scope="module")
 
-ACTORS: Final = 6
+ACTORS: Final = 12
+VIEWER: Final = "vera"
 
 
-@pytest_asyncio.fixture(loop_scope="module")
+@pytest_asyncio.fixture(scope="module", loop_scope="module")
 async def world() -> AsyncIterator[Running]:
-    """The gallery with some actors, and an account."""
-    settings = ServerSettings(
-        host="127.0.0.1",
-        port=0,
-        private_host="127.0.0.1",
-        private_port=0,
-        actors=ACTORS,
-        seed=7,
-        log_level="warning",
-    )
-    async with running(settings) as server:
-        await server.kept.directory.add(MACHINE, ACCOUNT, "tuner", PASSWORD)
+    """The gallery with actors, and two accounts."""
+    async with operated({ACCOUNT: "tuner", VIEWER: "viewer"}, actors=ACTORS, seed=7) as server:
         yield server
 
 
+async def _choose_first(visit: Visit) -> None:
+    await visit.page.wait_for_selector(f"text={ACTORS} actors, 0 people")
+    await visit.page.click("[role=option] >> nth=0")
+
+
 async def test_an_operator_sees_the_actors_and_a_change_of_one(
-    world: Running, profile: BrowserContext
+    world: Running, browser: Browser
 ) -> None:
-    visit = Visit(await profile.new_page(), f"http://127.0.0.1:{world.private_port}/console/")
+    visit = await arrived(browser, world, ACCOUNT)
     page = visit.page
-    await visit.come_in()
-    await page.wait_for_selector(f"text={ACTORS} actors, 0 people")
-    await page.click("[role=option] >> nth=0")
+    await _choose_first(visit)
     await page.wait_for_selector("esp-inspector dd:has-text('main/actor-')")
     await page.wait_for_selector("esp-inspector .band span", state="attached")
     await page.wait_for_selector("esp-inspector th.name:has-text('risk weight')")
@@ -62,7 +55,22 @@ async def test_an_operator_sees_the_actors_and_a_change_of_one(
     )
     assert status == 200
     await page.wait_for_selector("esp-inspector tr:has-text('risk weight'):has-text('12.5')")
-    await page.click(f"summary:has-text('{ACCOUNT}')")
-    await page.click("text=Log out")
-    await page.wait_for_selector("#password")
+    await visit.log_out()
+    assert visit.complaints == []
+
+
+async def test_an_operator_sees_how_an_actor_decides(world: Running, browser: Browser) -> None:
+    visit = await arrived(browser, world, VIEWER)
+    page = visit.page
+    await _choose_first(visit)
+    await page.wait_for_selector("esp-inspector #cost")
+    await page.wait_for_selector("esp-inspector .costs .bar.time", state="attached")
+    await page.click("esp-inspector button:has-text('Show the search')")
+    await page.wait_for_selector("esp-inspector section:has(#search):has-text('expansions')")
+    await page.wait_for_selector("esp-inspector #compared")
+    await page.click("esp-inspector button:has-text('Colour by time ahead')")
+    await page.locator("esp-inspector .slice input").fill("6")
+    await page.wait_for_selector("esp-inspector .slice:has-text('Risk in 2.4 s')")
+    await page.click("esp-inspector button:has-text('Hide')")
+    await page.wait_for_selector("esp-inspector .slice", state="detached")
     assert visit.complaints == []

@@ -89,11 +89,8 @@ class EverybodyPanel extends Panel {
     this.watch(this.app.avatars.roster);
     this.watch(this.app.state.chosen);
     this.watch(this.app.scheme);
-    const timer = setInterval(() => {
-      if (!document.hidden) this.requestUpdate();
-    }, AGAIN_MS);
-    this.atEnd(() => {
-      clearInterval(timer);
+    this.every(AGAIN_MS, () => {
+      this.requestUpdate();
     });
     this.atEnd(
       this.app.shortcuts.add({

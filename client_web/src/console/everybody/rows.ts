@@ -1,5 +1,6 @@
 /** The rows of the list of everybody: whom it shows, and in which order. */
 
+import { byName } from "../../world/ordering";
 import type { Avatar } from "../map/avatars";
 import { reasonName, reasonText } from "../state/reasons";
 
@@ -23,9 +24,9 @@ export function rowsOf(avatars: Iterable<Avatar>, wanted: string): Row[] {
   }
   return rows.sort(
     (a, b) =>
-      a.kind.localeCompare(b.kind) ||
-      a.name.localeCompare(b.name, undefined, { numeric: true }) ||
-      a.key.localeCompare(b.key, undefined, { numeric: true }),
+      (a.kind === b.kind ? 0 : a.kind < b.kind ? -1 : 1) ||
+      byName(a.name, b.name) ||
+      byName(a.key, b.key),
   );
 }
 

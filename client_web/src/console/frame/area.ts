@@ -5,6 +5,7 @@ import { type Area, panelOf } from "../panels/registry";
 import { AREAS } from "../layout/layout";
 import { rove } from "../state/roving";
 import { controls } from "../style/controls";
+import { popup } from "../style/popup";
 
 /** The wishes of the operator about a panel. */
 export type AreaWish =
@@ -21,6 +22,7 @@ const DRAGGED = "application/x-esplanade-panel";
 class AreaElement extends LitElement {
   static override styles = [
     controls,
+    popup,
     css`
       :host {
         display: flex;
@@ -95,17 +97,7 @@ class AreaElement extends LitElement {
       }
 
       details > div {
-        position: absolute;
         z-index: 5;
-        right: 0;
-        display: grid;
-        gap: 2px;
-        padding: 6px;
-        border: 1px solid var(--line);
-        border-radius: 8px;
-        background: var(--paper);
-        box-shadow: 0 4px 16px rgb(0 0 0 / 25%);
-        white-space: nowrap;
       }
 
       :host(.dropping) {

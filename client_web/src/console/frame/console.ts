@@ -5,7 +5,6 @@ import type { AppContext, Mood } from "../context";
 import { LayoutStore } from "../layout/keeping";
 import {
   AREAS,
-  type AreaLayout,
   type Layout,
   moved,
   readLayout,
@@ -14,7 +13,7 @@ import {
   shut,
   usualLayout,
 } from "../layout/layout";
-import { type Area, panelOf } from "../panels/registry";
+import { panelOf } from "../panels/registry";
 import { firstToken, readFragment, type Shared } from "../state/fragment";
 import { Session } from "../state/session";
 import { type Stop, Watching } from "../state/signal";
@@ -22,14 +21,13 @@ import { takesText } from "../state/shortcuts";
 import { controls } from "../style/controls";
 import { Address, takeShared } from "./address";
 import type { AreaWish } from "./area";
-import "./area";
+import { allowed, alone, type Areas, wide } from "./areas";
 import { frame } from "./framestyle";
 import "./login";
 import { Panels } from "./panels";
 import { pageKeys } from "./pagekeys";
 import type { Sheet } from "./sheet";
 import "./sheet";
-import "./splitter";
 import { makeContext } from "./starting";
 import type { Toasts } from "./toasts";
 import "./toasts";
@@ -147,7 +145,7 @@ export class Console extends LitElement {
   }
 
   private page(isAway: boolean): TemplateResult {
-    const open = new Set(AREAS.flatMap((area) => this.visible(area).panels));
+    const open = new Set(AREAS.flatMap((area) => this.areas.visible(area).panels));
     return html`
       <div class="page" ?inert=${isAway}>
         <header>
@@ -164,80 +162,22 @@ export class Console extends LitElement {
           ></esp-topbar>
         </header>
         <main class=${this.narrow.matches ? "narrow" : "wide"}>
-          ${this.narrow.matches ? this.alone() : this.areas()}
+          ${this.narrow.matches ? alone(this.areas, this.front) : wide(this.areas)}
         </main>
       </div>
     `;
   }
 
-  private areas(): TemplateResult {
-    const has = (name: Area): boolean => this.visible(name).panels.length > 0;
-    return html`
-      ${has("left") ? html`${this.area("left")}${this.splitter("left", "Width of the left area")}` : nothing}
-      ${this.area("centre")}
-      ${
-        has("right")
-          ? html`${this.splitter("right", "Width of the right area")}${this.area("right")}`
-          : nothing
-      }
-      ${
-        has("bottom")
-          ? html`${this.splitter("bottom", "Height of the bottom area")}${this.area("bottom")}`
-          : nothing
-      }
-    `;
-  }
-
-  /** All panels as tabs of one area. */
-  private alone(): TemplateResult {
-    const order: readonly Area[] = ["centre", "left", "right", "bottom"];
-    const panels = order.flatMap((area) => this.visible(area).panels);
-    const active = panels.includes(this.front) ? this.front : (panels[0] ?? null);
-    return this.areaElement("centre", { panels, active, size: 0 }, true);
-  }
-
-  private area(name: Area): TemplateResult {
-    return this.areaElement(name, this.visible(name), false);
-  }
-
-  private areaElement(name: Area, { panels, active }: AreaLayout, alone: boolean): TemplateResult {
-    return html`<esp-area
-      class=${name}
-      .name=${name}
-      .panels=${panels}
-      .active=${active}
-      .content=${active === null ? null : this.panels.element(active)}
-      .alone=${alone}
-      @wish=${this.wish}
-    ></esp-area>`;
-  }
-
-  private splitter(name: Area, label: string): TemplateResult {
-    return html`<esp-splitter
-      class=${name}
-      .label=${label}
-      .size=${this.layout.areas[name].size}
-      .grows=${name === "left" ? 1 : -1}
-      ?across=${name === "bottom"}
-      @resized=${(event: CustomEvent<number>) => {
-        this.setLayout(resized(this.layout, name, event.detail));
-      }}
-    ></esp-splitter>`;
-  }
-
-  /** An area without the panels for which the account lacks the right. */
-  private visible(name: Area): AreaLayout {
-    const { panels, active, size } = this.layout.areas[name];
-    const allowed = panels.filter((id) => {
-      const entry = panelOf(id);
-      return entry !== undefined && this.app.state.may(entry.right);
-    });
-    return {
-      panels: allowed,
-      active: allowed.find((id) => id === active) ?? allowed[0] ?? null,
-      size,
-    };
-  }
+  private readonly areas: Areas = {
+    visible: (name) => allowed(this.layout.areas[name], (right) => this.app.state.may(right)),
+    content: (panel) => this.panels.element(panel),
+    wish: (event) => {
+      this.wish(event);
+    },
+    resize: (name, size) => {
+      this.setLayout(resized(this.layout, name, size));
+    },
+  };
 
   private readonly wish = (event: CustomEvent<AreaWish>): void => {
     const wish = event.detail;

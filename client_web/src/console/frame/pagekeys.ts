@@ -1,5 +1,6 @@
 /** The keys of the whole page. */
 
+import { byName } from "../../world/ordering";
 import type { AppContext } from "../context";
 
 export interface PageActions {
@@ -14,7 +15,7 @@ export function pageKeys(app: AppContext, actions: PageActions): void {
     const keys = [...avatars.byId.values()]
       .filter(({ kind }) => kind === "actor")
       .map(({ key }) => key)
-      .sort((a, b) => a.localeCompare(b, undefined, { numeric: true }));
+      .sort(byName);
     const at = keys.indexOf(state.chosen.value[0] ?? "");
     const next = keys[(at + step + keys.length) % keys.length];
     if (next !== undefined) app.choose(next);

@@ -3,13 +3,16 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import type { AppContext } from "../context";
 import { type Layout, readLayout, usualLayout, writeLayout } from "../layout/layout";
+import { keepFile, openFile } from "../models/files";
 import { PANELS } from "../panels/registry";
 import { Watching } from "../state/signal";
 import { controls } from "../style/controls";
+import { popup } from "../style/popup";
 
 class TopBar extends LitElement {
   static override styles = [
     controls,
+    popup,
     css`
       :host {
         display: flex;
@@ -60,24 +63,14 @@ class TopBar extends LitElement {
       }
 
       details > div {
-        position: absolute;
         z-index: 12;
-        right: 0;
-        display: grid;
-        gap: 2px;
         min-width: 180px;
         max-height: 70dvh;
         overflow: auto;
-        padding: 6px;
-        border: 1px solid var(--line);
-        border-radius: 8px;
-        background: var(--paper);
-        box-shadow: 0 4px 16px rgb(0 0 0 / 25%);
       }
 
       details > div button {
         text-align: left;
-        white-space: nowrap;
       }
 
       @media (max-width: 759px) {
@@ -205,7 +198,7 @@ class TopBar extends LitElement {
         class="plain"
         @click=${(event: Event) => {
           closeMenuOf(event);
-          saveFile("esplanade-layout.json", writeLayout(this.layout));
+          keepFile("esplanade-layout.json", writeLayout(this.layout), "application/json");
         }}
       >
         Save as a file
@@ -233,32 +226,6 @@ class TopBar extends LitElement {
   private use(layout: Layout): void {
     this.dispatchEvent(new CustomEvent<Layout>("layout", { detail: layout }));
   }
-}
-
-/** Have the browser save a text as a file. */
-export function saveFile(name: string, text: string, type = "application/json"): void {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([text], { type }));
-  link.download = name;
-  link.click();
-  URL.revokeObjectURL(link.href);
-}
-
-/** The text of a file that the operator picks; null where none is picked. */
-export function openFile(accept: string): Promise<string | null> {
-  return new Promise((resolve) => {
-    const input = document.createElement("input");
-    input.type = "file";
-    input.accept = accept;
-    input.addEventListener("change", () => {
-      const [file] = input.files ?? [];
-      resolve(file ? file.text() : null);
-    });
-    input.addEventListener("cancel", () => {
-      resolve(null);
-    });
-    input.click();
-  });
 }
 
 function closeMenuOf(event: Event): void {

@@ -1,10 +1,11 @@
 /** The panel on whom is chosen: what an actor does and why, or several beside each other. */
 
-import { css, html, nothing, type TemplateResult } from "lit";
+import { html, nothing, type TemplateResult } from "lit";
 import { Panel } from "../panels/panel";
 import { reasonText } from "../state/reasons";
 import { controls } from "../style/controls";
 import { valueText } from "./compare";
+import { inspectorStyle } from "./inspectorstyle";
 import { costTable, parameterTable, whyBand } from "./parts";
 import { searchPart } from "./searchpart";
 import { traceOverlay, type TraceView } from "./tree";
@@ -13,104 +14,13 @@ import { blockerText, secondsText } from "./why";
 
 const OVERLAY = "inspector";
 const TRACE = "trace";
+const AGAIN_MS = 500;
 const USUAL_TICK_S = 0.05;
 /** The number of actors that are watched at once, the first that are chosen. */
 const MOST = 2;
 
 class InspectorPanel extends Panel {
-  static override styles = [
-    controls,
-    css`
-      h2 {
-        font-size: 16px;
-      }
-
-      section {
-        margin-top: 14px;
-      }
-
-      dl {
-        display: grid;
-        grid-template-columns: max-content 1fr;
-        gap: 2px 10px;
-        margin: 0;
-      }
-
-      dt {
-        color: var(--soft-ink);
-      }
-
-      dd {
-        margin: 0;
-        overflow-wrap: anywhere;
-      }
-
-      .band {
-        position: relative;
-        height: 22px;
-        border-radius: 4px;
-        background: var(--raised);
-        overflow: hidden;
-      }
-
-      .band span {
-        position: absolute;
-        top: 0;
-        bottom: 0;
-      }
-
-      .stops {
-        margin: 6px 0 0;
-        padding: 0;
-        list-style: none;
-        max-height: 180px;
-        overflow: auto;
-      }
-
-      .dot {
-        display: inline-block;
-        width: 9px;
-        height: 9px;
-      }
-
-      th.name {
-        color: inherit;
-        font-weight: 400;
-      }
-
-      .set {
-        color: var(--accent);
-        font-weight: 600;
-      }
-
-      .costs td {
-        min-width: 56px;
-      }
-
-      .bar {
-        display: block;
-        height: 4px;
-        border-radius: 2px;
-        background: var(--accent);
-      }
-
-      .bar.risk,
-      .bar.others {
-        background: var(--fault);
-      }
-
-      .slice {
-        display: flex;
-        gap: 8px;
-        align-items: center;
-      }
-
-      .slice input {
-        flex: 1;
-        min-width: 60px;
-      }
-    `,
-  ];
+  static override styles = [controls, inspectorStyle];
 
   private watched: WatchedActor[] = [];
   private view: TraceView = { slice: 0, by: "order" };
@@ -122,12 +32,11 @@ class InspectorPanel extends Panel {
     });
     this.watch(state.following);
     this.watch(scheme);
-    const timer = setInterval(() => {
+    this.every(AGAIN_MS, () => {
       // People are told of by the map alone.
       if (this.watched.length === 0) this.requestUpdate();
-    }, 500);
+    });
     this.atEnd(() => {
-      clearInterval(timer);
       this.forget();
     });
     this.look();

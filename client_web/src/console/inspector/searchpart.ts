@@ -56,12 +56,18 @@ export function comparedPaths(trace: Trace): CostColumn[] {
   return columns;
 }
 
+/** What the greatest risk is, which has the darkest colour if it is no mere trifle. */
+function riskText(most: number): string {
+  return most < 0.005 ? "next to none" : `at most ${most.toFixed(2)}`;
+}
+
 function traceFacts(
   trace: Trace,
   view: TraceView,
   show: (view: TraceView) => void,
 ): TemplateResult {
   const { expanded, open } = countNodes(trace);
+  const { by } = view;
   const words = WORDS[trace.status] ?? trace.status;
   return html`
     <p>
@@ -70,7 +76,8 @@ function traceFacts(
     </p>
     <p>
       ${words}, with ${trace.expansions} of ${trace.budget} expansions. Nodes on the map:
-      ${expanded} expanded, from blue (first) to orange (last); ${open} left open.
+      ${expanded} expanded, from blue (${by === "order" ? "first" : "now"}) to orange
+      (${by === "order" ? "last" : "furthest ahead"}); ${open} left open.
     </p>
     ${
       trace.exact
@@ -104,7 +111,7 @@ function traceFacts(
               @input=${(event: Event) => {
                 show({ ...view, slice: Number((event.target as HTMLInputElement).value) });
               }}
-            /><span class="soft">at most ${mostRisk(trace).toFixed(2)}</span></label
+            /><span class="soft">${riskText(mostRisk(trace))}</span></label
           >`
         : nothing
     }

@@ -5,6 +5,8 @@ import type { Point, Trace } from "../net/types";
 import type { Line, Overlay, Segments } from "../state/overlays";
 
 const SHADES = 10;
+/** A risk below this never has the darkest colour. */
+const LEAST_FULL_RISK = 0.1;
 const UNEXPANDED = "#8a8f96";
 
 /** The meaning of the colour of a line of the search. */
@@ -40,7 +42,9 @@ export function traceOverlay(
   return {
     lines,
     segments: segmentsOf(trace, by),
-    ...(risk ? { raster: { ...risk, z_m: z, most: mostRisk(trace) } } : {}),
+    ...(risk
+      ? { raster: { ...risk, z_m: z, most: Math.max(LEAST_FULL_RISK, mostRisk(trace)) } }
+      : {}),
   };
 }
 

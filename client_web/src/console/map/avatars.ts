@@ -1,10 +1,11 @@
 /** Everybody in the world as the live map tells, drawn evenly between its frames. */
 
+import type { EntityRecord } from "../../net/messages";
 import { mixAngles } from "../../world/angles";
 import type { LiveMessage } from "../net/live";
 import { Signal } from "../state/signal";
 import { FrameClock } from "./frameclock";
-import { type MapRecord, readHeader, readRecords } from "./frames";
+import { readHeader, readRecords } from "./frames";
 import { Trail } from "./trail";
 
 /** Avatars are drawn this much behind their frames, which come ten times a second. */
@@ -128,7 +129,7 @@ export class Avatars {
     this.byKey.set(avatar.key, avatar);
   }
 
-  private unknown({ id }: Readonly<MapRecord>): Avatar {
+  private unknown({ id }: Readonly<EntityRecord>): Avatar {
     this.enter({ id, kind: "person", name: NOBODY, radius_m: 0.25 });
     this.roster.value++;
     return this.byId.get(id) ?? newAvatar(id);
@@ -141,7 +142,12 @@ export class Avatars {
     if (this.byKey.get(avatar.key) === avatar) this.byKey.delete(avatar.key);
   }
 
-  private move(avatar: Avatar, record: Readonly<MapRecord>, timeS: number, beforeS: number): void {
+  private move(
+    avatar: Avatar,
+    record: Readonly<EntityRecord>,
+    timeS: number,
+    beforeS: number,
+  ): void {
     const { from, to } = avatar;
     const isNew = to.timeS === Number.NEGATIVE_INFINITY;
     copy(isNew ? record : to, from);

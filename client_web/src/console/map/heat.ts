@@ -16,6 +16,8 @@ interface Shown extends Picture {
 export class HeatMap {
   /** The value that has the full colour; null while there is none. */
   most: number | null = null;
+  /** Becomes another with every picture. */
+  version = 0;
   private shown: readonly Shown[] = [];
 
   constructor(private readonly api: Api) {}
@@ -25,6 +27,7 @@ export class HeatMap {
     const values = heat.storeys.map(valuesOf);
     const most = Math.max(0, ...values.map(fullValue));
     this.most = most;
+    this.version++;
     this.shown = heat.storeys.map((raster, index) => {
       const [west, south] = raster.origin_m;
       const picture = pictureOf(raster, values[index] ?? new Float32Array(), most);
@@ -37,6 +40,7 @@ export class HeatMap {
   clear(): void {
     this.shown = [];
     this.most = null;
+    this.version++;
   }
 
   draw(pen: CanvasRenderingContext2D, view: MapView): void {

@@ -3,28 +3,30 @@
 import { html, nothing, type PropertyValues, type TemplateResult } from "lit";
 import type { MapData, Point } from "../net/types";
 import { Panel } from "../panels/panel";
-import type { Stop } from "../state/signal";
 import { controls } from "../style/controls";
+import { popup } from "../style/popup";
 import { Choosing } from "./choosing";
 import { PointerGestures, type Mode } from "./gestures";
 import { drawScale, HeatMap } from "./heat";
-import { Contacts, type ContactsMessage, type LayersMessage } from "./layers";
-import { type MapOptions, readOptions } from "./options";
+import { Contacts, type ContactsMessage } from "./layers";
+import { type MapOptions, USUAL } from "./options";
 import { Painter } from "./painter";
 import { boxOf, type Pixel } from "./picking";
 import { pressed } from "./mapkeys";
 import { mapStyle } from "./mapstyle";
+import { ShownLayers } from "./shown";
 import { legend, toolbar } from "./toolbar";
 import { MapView } from "./views";
 
-const KEY = "esplanade-console-map";
 const HEAT_MS = 10_000;
 /** The legend lies over this part of the map. */
 const LEGEND_PX = 30;
 const FOLLOW_PX_PER_M = 18;
+/** The page tells once in so many frames how long it draws. */
+const TOLD_FRAMES = 15;
 
 class MapPanel extends Panel {
-  static override styles = [controls, mapStyle];
+  static override styles = [controls, popup, mapStyle];
 
   private readonly view = new MapView();
   private readonly contacts = new Contacts();
@@ -33,19 +35,22 @@ class MapPanel extends Panel {
     this.view,
     () => this.painter,
   );
-  private options: MapOptions = readOptions(localStorage.getItem(KEY));
+  private shown: ShownLayers | null = null;
   private mode: Mode = "pan";
   private heat: HeatMap | null = null;
   private painter: Painter | null = null;
   private pen: CanvasRenderingContext2D | null = null;
   private frame = 0;
-  private stopLayers: Stop | null = null;
+  private frames = 0;
   private isFitted = false;
 
   protected override begin(): void {
     const { app } = this;
     this.heat ??= new HeatMap(app.api);
-    this.painter ??= new Painter(app, this.view, this.heat, this.contacts);
+    const painter = (this.painter ??= new Painter(app, this.view, this.heat, this.contacts));
+    this.shown ??= new ShownLayers(app, this.heat, (layers) => {
+      painter.layers = layers;
+    });
     this.watch(app.state.chosen);
     this.watch(app.state.picking);
     this.watch(app.state.following);
@@ -54,7 +59,7 @@ class MapPanel extends Panel {
       if (at) this.lookAt(at);
     });
     this.watch(app.state.world, (world) => {
-      if (world && this.painter) this.painter.doors = world.doors;
+      if (world) painter.doors = world.doors;
     });
     this.watch(app.live.phase, (phase) => {
       // Changes while the line was cut are asked for anew.
@@ -63,14 +68,12 @@ class MapPanel extends Panel {
     this.hear("contacts", {}, (message: ContactsMessage) => {
       this.contacts.hear(message, performance.now() / 1000);
     });
-    const timer = setInterval(() => void this.askHeat(), HEAT_MS);
+    this.every(HEAT_MS, () => void this.askHeat());
     this.atEnd(() => {
-      clearInterval(timer);
       cancelAnimationFrame(this.frame);
-      this.stopLayers?.();
-      this.stopLayers = null;
+      this.shown?.end();
     });
-    this.hearLayers();
+    this.shown.begin();
     void this.load();
     void this.askHeat();
     this.frame = requestAnimationFrame(this.draw);
@@ -173,6 +176,10 @@ class MapPanel extends Panel {
     `;
   }
 
+  private get options(): MapOptions {
+    return this.shown?.options ?? USUAL;
+  }
+
   private get canvas(): HTMLCanvasElement {
     const canvas = this.renderRoot.querySelector<HTMLCanvasElement>("canvas.map");
     if (!canvas) throw new Error("the map is not drawn yet");
@@ -215,7 +222,7 @@ class MapPanel extends Panel {
     const nowS = performance.now() / 1000;
     this.follow();
     painter.paint(pen, pen.canvas.width / view.width, nowS, this.options);
-    pen.canvas.dataset["ms"] = painter.tookMs.toFixed(2);
+    if (this.frames++ % TOLD_FRAMES === 0) pen.canvas.dataset["ms"] = painter.tookMs.toFixed(2);
   };
 
   private follow(): void {
@@ -246,39 +253,13 @@ class MapPanel extends Panel {
   }
 
   private setOptions(change: Partial<MapOptions>): void {
-    this.options = { ...this.options, ...change };
-    localStorage.setItem(KEY, JSON.stringify(this.options));
-    this.hearLayers();
+    this.shown?.set(change);
     if (change.heat ?? change.heatS) void this.askHeat();
     this.requestUpdate();
   }
 
-  /** Subscribe to the layers that are shown. */
-  private hearLayers(): void {
-    const { ways, goals, circles } = this.options;
-    const before = this.stopLayers;
-    this.stopLayers =
-      ways || goals || circles
-        ? this.app.live.subscribe(
-            "map.layers",
-            { ways, goals, circles, hz: 2 },
-            (message: LayersMessage) => {
-              if (this.painter) this.painter.layers = message;
-            },
-          )
-        : null;
-    before?.();
-    if (!this.stopLayers && this.painter) this.painter.layers = null;
-  }
-
   private async askHeat(): Promise<void> {
-    const { heat, heatS } = this.options;
-    if (heat === "none" || document.hidden) {
-      if (heat === "none") this.heat?.clear();
-      return;
-    }
-    const asked = this.heat?.ask(heat, heatS);
-    if (asked) await this.attempt(asked);
+    if (this.shown) await this.attempt(this.shown.askHeat());
     this.requestUpdate();
   }
 

@@ -103,16 +103,9 @@ export const mapStyle = css`
   }
 
   details > div {
-    position: absolute;
-    z-index: 3;
+    right: auto;
     left: 0;
-    display: grid;
     gap: 6px;
     padding: 10px;
-    border: 1px solid var(--line);
-    border-radius: 8px;
-    background: var(--paper);
-    box-shadow: 0 4px 16px rgb(0 0 0 / 25%);
-    white-space: nowrap;
   }
 `;

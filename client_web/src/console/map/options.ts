@@ -54,6 +54,15 @@ export const CHOICES = {
   Record<keyof MapOptions, readonly (readonly [string | number, string])[]>
 >;
 
+/** What the values of a heat map are counted in. */
+export const HEAT_UNITS: Readonly<Record<Exclude<MapOptions["heat"], "none">, string>> = {
+  density: "a m²",
+  speed: "m/s",
+  waiting: "s",
+  contacts: "",
+  risk: "s",
+};
+
 export const SWITCHES = {
   ways: "planned ways",
   goals: "goals",

@@ -1,26 +1,18 @@
 /** Draws the whole map anew for each picture of the screen. */
 
 import type { AppContext } from "../context";
-import type { MapData, Raster } from "../net/types";
-import { valuesOf, fullValue, pictureOf, type Picture } from "./raster";
+import type { MapData } from "../net/types";
 import { drawDoors, drawGround, drawPlaces } from "./ground";
-import { drawPicture, type HeatMap } from "./heat";
-import {
-  type Contacts,
-  drawLayers,
-  drawLine,
-  drawMarks,
-  drawSegments,
-  type LayersMessage,
-} from "./layers";
+import type { HeatMap } from "./heat";
+import type { Box } from "./labels";
+import { type Contacts, drawLayers, drawLine, drawMarks, type LayersMessage } from "./layers";
 import type { MapOptions } from "./options";
-import { type Drawn, drawPeople, drawTags, drawTrails, placed } from "./people";
+import { Offscreen } from "./offscreen";
+import { OverlayPainter } from "./overlaypainter";
+import { type Drawn, drawPeople, drawTags, placed } from "./people";
 import type { Pixel } from "./picking";
+import { Trails } from "./trails";
 import type { MapView } from "./views";
-
-/** With more avatars only the chosen ones have the long trails. */
-const MANY = 100;
-const SHORT_TRAIL_S = 10;
 
 export class Painter {
   /** Everybody in the last picture. */
@@ -32,9 +24,11 @@ export class Painter {
   layers: LayersMessage | null = null;
   /** Milliseconds that the last pictures took, on average. */
   tookMs = 0;
-  private readonly still = document.createElement("canvas");
-  private stillOf = "";
-  private readonly pictures = new WeakMap<Raster, Picture>();
+  private readonly still = new Offscreen();
+  private readonly trails = new Trails();
+  private readonly overlays = new OverlayPainter();
+  /** Where names of places are, which those of avatars keep away from. */
+  private names: readonly Box[] = [];
 
   constructor(
     private readonly app: AppContext,
@@ -53,88 +47,51 @@ export class Painter {
       pen.fillRect(0, 0, view.width, view.height);
       return;
     }
-    this.drawStill(pen, ratio, map);
+    this.drawStill(pen, ratio, map, options);
     const drawnS = app.avatars.drawnS(nowS);
     const chosen = new Set(app.state.chosen.value);
-    if (options.heat !== "none") this.heat.draw(pen, view);
-    this.drawOverlays(pen);
-    drawDoors(pen, view, map, this.doors, scheme);
-    const names = options.places ? drawPlaces(pen, view, map, scheme) : [];
-    this.trails(pen, drawnS, options, chosen);
+    const all = app.avatars.byId;
+    this.overlays.draw(pen, view, ratio, app.state.overlays.value.values());
+    this.drawPicking(pen);
+    this.trails.draw(pen, view, ratio, all, drawnS, options.trailS, chosen, scheme);
     if (this.layers) drawLayers(pen, view, this.layers, scheme);
     if (options.contacts) this.contacts.draw(pen, view, nowS, scheme);
-    this.drawn = placed(app.avatars.byId.values(), view, drawnS);
+    this.drawn = placed(all.values(), view, drawnS);
     drawPeople(pen, view, this.drawn, chosen, scheme);
-    drawTags(pen, this.drawn, chosen, options.tags, scheme, names);
+    drawTags(pen, this.drawn, chosen, options.tags, scheme, this.names);
     this.drawRing(pen);
     this.tookMs += 0.1 * (performance.now() - beganMs - this.tookMs);
   }
 
-  private trails(
+  /** The parts that seldom change: the ground, the heat map, doors, places. */
+  private drawStill(
     pen: CanvasRenderingContext2D,
-    drawnS: number,
-    { trailS }: MapOptions,
-    chosen: ReadonlySet<string>,
+    ratio: number,
+    map: MapData,
+    { heat, places }: MapOptions,
   ): void {
-    if (trailS === 0) return;
-    const { avatars, scheme } = this.app;
-    const all = [...avatars.byId.values()];
-    const isMuch = all.length > MANY && trailS > SHORT_TRAIL_S;
-    const long = isMuch ? all.filter(({ key }) => chosen.has(key)) : all;
-    const short = isMuch ? all.filter(({ key }) => !chosen.has(key)) : [];
-    drawTrails(pen, this.view, long, drawnS, trailS, scheme.value);
-    drawTrails(pen, this.view, short, drawnS, SHORT_TRAIL_S, scheme.value);
+    const { view, doors } = this;
+    const scheme = this.app.scheme.value;
+    const open = map.doors.map((door) => doors[door.name] ?? door.open);
+    const heated = heat === "none" ? -1 : this.heat.version;
+    const of = [map.scene, scheme.dark, heated, places, ...open].join();
+    this.still.show(pen, view, ratio, of, (own) => {
+      drawGround(own, view, map, scheme);
+      if (heat !== "none") this.heat.draw(own, view);
+      drawDoors(own, view, map, doors, scheme);
+      this.names = places ? drawPlaces(own, view, map, scheme) : [];
+    });
   }
 
-  /** Parts that never move are drawn once for each view of them. */
-  private drawStill(pen: CanvasRenderingContext2D, ratio: number, map: MapData): void {
-    const { view, still } = this;
-    const { dark } = this.app.scheme.value;
-    const { width, height, scale, centreX, centreY, only } = view;
-    const of = [width, height, scale, centreX, centreY, only, ratio, dark, map.scene].join();
-    if (of !== this.stillOf) {
-      this.stillOf = of;
-      still.width = Math.round(width * ratio);
-      still.height = Math.round(height * ratio);
-      const pen = still.getContext("2d");
-      if (!pen) return;
-      pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-      drawGround(pen, view, map, this.app.scheme.value);
-    }
-    pen.drawImage(still, 0, 0, width, height);
-  }
-
-  private drawOverlays(pen: CanvasRenderingContext2D): void {
+  /** The places that are being picked. */
+  private drawPicking(pen: CanvasRenderingContext2D): void {
     const { view } = this;
-    for (const { lines, raster, segments } of this.app.state.overlays.value.values()) {
-      if (raster) {
-        const storey = view.storeyOf(raster.z_m);
-        const [west, south] = raster.origin_m;
-        const east = west + raster.width * raster.cell_m;
-        const north = south + raster.height * raster.cell_m;
-        if (view.isShown(storey)) {
-          const { canvas } = this.picture(raster);
-          drawPicture(pen, view, canvas, storey, [west, south, east, north]);
-        }
-      }
-      for (const many of segments ?? []) drawSegments(pen, view, many);
-      for (const line of lines) drawLine(pen, view, line);
-    }
     const picking = this.app.state.picking.value;
     if (!picking || picking.points.length === 0) return;
     const { points, closed } = picking;
     const colour = this.app.scheme.value.colour("focus");
     drawLine(pen, view, { points, colour, widthPx: 2, closed, filled: closed });
     drawMarks(pen, view, points, colour);
-  }
-
-  private picture(raster: Raster & { most?: number }): Picture {
-    const known = this.pictures.get(raster);
-    if (known) return known;
-    const values = valuesOf(raster);
-    const made = pictureOf(raster, values, raster.most ?? fullValue(values));
-    this.pictures.set(raster, made);
-    return made;
   }
 
   private drawRing(pen: CanvasRenderingContext2D): void {

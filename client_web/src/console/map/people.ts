@@ -1,4 +1,4 @@
-/** Draws avatars with heading, tag and trail; many at once, by colour. */
+/** Draws avatars with heading and tag; many at once, by colour. */
 
 import { reasonColour, reasonName, reasonText } from "../state/reasons";
 import type { Scheme } from "../state/scheme";
@@ -128,40 +128,6 @@ export function tagOf(avatar: Avatar, tags: MapOptions["tags"]): string {
   if (tags === "reason")
     return avatar.kind === "actor" ? reasonText(reasonName(avatar.reason)) : "";
   return "";
-}
-
-/** Trails of all, or of those who are chosen where many are long. */
-export function drawTrails(
-  pen: CanvasRenderingContext2D,
-  view: MapView,
-  avatars: Iterable<Avatar>,
-  drawnS: number,
-  trailS: number,
-  scheme: Scheme,
-): void {
-  pen.lineWidth = 1.25;
-  pen.globalAlpha = 0.55;
-  const byColour = new Map<string, Path2D>();
-  for (const avatar of avatars) {
-    const colour = scheme.colour(avatar.kind);
-    const path = byColour.get(colour) ?? new Path2D();
-    byColour.set(colour, path);
-    placeAt(avatar, drawnS, place);
-    let storey = view.storeyOf(place.z);
-    if (view.isShown(storey)) path.moveTo(...view.toCanvas(place.x, place.y, storey));
-    avatar.trail.each(drawnS - trailS, (x, y, z) => {
-      const next = view.storeyOf(z);
-      const at = view.toCanvas(x, y, next);
-      if (next === storey && view.isShown(next)) path.lineTo(...at);
-      else path.moveTo(...at);
-      storey = next;
-    });
-  }
-  for (const [colour, path] of byColour) {
-    pen.strokeStyle = colour;
-    pen.stroke(path);
-  }
-  pen.globalAlpha = 1;
 }
 
 function radiusPx({ radiusM }: Avatar, view: MapView): number {

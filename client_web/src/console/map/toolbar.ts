@@ -1,10 +1,11 @@
 /** The controls above the map, and the legend in its corner. */
 
 import { html, nothing, type TemplateResult } from "lit";
+import { shown } from "../models/fields";
 import { reasonColour, REASONS, reasonText } from "../state/reasons";
 import { styled } from "../style/styled";
 import type { Mode } from "./gestures";
-import { CHOICES, type MapOptions, SWITCHES } from "./options";
+import { CHOICES, HEAT_UNITS, type MapOptions, SWITCHES } from "./options";
 
 export interface Toolbar {
   mode: Mode;
@@ -152,7 +153,7 @@ export function legend(
         : html`<span class="row"
             >${options.heat} 0
             <canvas class="scale" width="60" height="10" aria-hidden="true"></canvas
-            >${heatMost.toPrecision(2)}</span
+            >${shown(Number(heatMost.toPrecision(2)))} ${HEAT_UNITS[options.heat]}</span
           >`
     }
   </div>`;

@@ -21,12 +21,14 @@ export class Trail {
     this.lastS = timeS;
   }
 
-  /** Hand on the points since `fromS`, the newest first. */
-  each(fromS: number, take: (x: number, y: number, z: number) => void): void {
+  /** Hand on the points after `fromS` and up to `toS`, the newest first. */
+  each(fromS: number, toS: number, take: (x: number, y: number, z: number) => void): void {
     const { points } = this;
     for (let back = 1; back <= this.count; back++) {
       const at = ((this.next - back + MOST) % MOST) * FIELDS;
-      if ((points[at + 3] ?? 0) < fromS) return;
+      const timeS = points[at + 3] ?? 0;
+      if (timeS <= fromS) return;
+      if (timeS > toS) continue;
       take(points[at] ?? 0, points[at + 1] ?? 0, points[at + 2] ?? 0);
     }
   }

@@ -54,6 +54,22 @@ export class MapView {
     return [column * (x1 - x0 + gap), -row * (y1 - y0 + gap)];
   }
 
+  /** Differs where the same point of the world may be elsewhere on the canvas. */
+  get key(): string {
+    const { width, height, scale, centreX, centreY, only, columns, heights } = this;
+    return [
+      width,
+      height,
+      scale,
+      centreX,
+      centreY,
+      only,
+      columns,
+      ...this.bounds,
+      ...heights,
+    ].join();
+  }
+
   sheetX(sheet: number): number {
     return (sheet - this.centreX) * this.scale + this.width / 2;
   }

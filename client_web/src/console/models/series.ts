@@ -47,12 +47,21 @@ export class SeriesWindow {
     return this.found;
   }
 
-  /** Take what the server has kept; it replaces what was there. */
-  load(answer: SeriesAnswer): void {
+  /** Take what the server has kept, and of the window before what the server does not know. */
+  load(answer: SeriesAnswer, before?: SeriesWindow): void {
     this.atUs = [...answer.at_us];
     this.columns = new Map(
       Object.entries(answer.values).map(([name, values]) => [name, [...values]]),
     );
+    for (const name of before?.stepS === this.stepS ? before.names : []) {
+      if (this.columns.has(name)) continue;
+      const known = new Map(before?.data([name])[0]?.map((at, index) => [at, index]));
+      const values = before?.data([name])[1] ?? [];
+      this.columns.set(
+        name,
+        this.atUs.map((us) => values[known.get(us / 1e6) ?? -1] ?? null),
+      );
+    }
     this.found = (answer.marks ?? []).map((mark) => ({
       atUs: mark.at_us,
       text: mark.text,
@@ -61,10 +70,16 @@ export class SeriesWindow {
     this.trim();
   }
 
-  /** Take the figures of a second; in a window of longer steps it falls into its step. */
-  append(atUs: number, values: Readonly<Record<string, number | null>>): void {
+  /** The end of the latest step that is over at a moment. */
+  endUs(atUs: number): number {
     const stepUs = this.stepS * 1e6;
-    const at = Math.floor(atUs / stepUs) * stepUs;
+    return Math.floor(atUs / stepUs) * stepUs;
+  }
+
+  /** Take the figures of a second, in a window that has steps of a second. */
+  append(atUs: number, values: Readonly<Record<string, number | null>>): void {
+    if (this.stepS > 1) return;
+    const at = this.endUs(atUs);
     const last = this.atUs.at(-1);
     if (last !== undefined && at < last) return;
     if (at !== last) {

@@ -1,8 +1,9 @@
 /** The audit: who did what, when, from where and why; filtered, paged, and taken away as a file. */
 
 import { css, html, nothing, type TemplateResult } from "lit";
-import { keepFile, type Row, toCsv, toJsonLines } from "../models/export";
+import { type Row, toCsv, toJsonLines } from "../models/export";
 import { factText } from "../models/facts";
+import { keepFile } from "../models/files";
 import { typedMoment, utc } from "../models/times";
 import { CommandingPanel } from "./commanding";
 
@@ -103,8 +104,8 @@ class AuditPanel extends CommandingPanel {
         }}
       >
         ${text("account", "Account")} ${text("command", "Command")} ${text("target", "About")}
-        ${moment("Since", this.since, (value) => (this.since = value))}
-        ${moment("Until", this.until, (value) => (this.until = value))}
+        ${moment("Since (UTC)", this.since, (value) => (this.since = value))}
+        ${moment("Until (UTC)", this.until, (value) => (this.until = value))}
         <button type="submit">Filter</button>
       </form>
       <div class="row">
@@ -184,8 +185,8 @@ class AuditPanel extends CommandingPanel {
       account: account === "" ? undefined : account,
       command: command === "" ? undefined : command,
       target: target === "" ? undefined : target,
-      since_us: typedMoment(this.since) ?? undefined,
-      until_us: typedMoment(this.until) ?? undefined,
+      since_us: typedMoment(`${this.since}Z`) ?? undefined,
+      until_us: typedMoment(`${this.until}Z`) ?? undefined,
     };
   }
 

@@ -6,6 +6,7 @@ import { labelOf } from "../models/fields";
 import { clock } from "../models/times";
 import type { LiveMessage } from "../net/live";
 import { CommandingPanel } from "./commanding";
+import { searchField } from "./fields";
 
 class EventsPanel extends CommandingPanel {
   static override styles = [
@@ -58,17 +59,10 @@ class EventsPanel extends CommandingPanel {
     const shown = this.isHeld ? this.held : this.events.shown(this.kinds, this.who);
     return html`
       <div class="row">
-        <label class="field grow">
-          Who, or a word
-          <input
-            type="search"
-            .value=${this.who}
-            @input=${(event: Event) => {
-              this.who = (event.currentTarget as HTMLInputElement).value;
-              this.release();
-            }}
-          />
-        </label>
+        ${searchField("Who, or a word", this.who, (text) => {
+          this.who = text;
+          this.release();
+        })}
         <button
           aria-pressed=${this.isHeld}
           @click=${() => {

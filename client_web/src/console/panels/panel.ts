@@ -57,6 +57,16 @@ export abstract class Panel extends LitElement {
     this.stops.push(stop);
   }
 
+  /** Call again and again while the page is seen, until the panel goes. */
+  protected every(ms: number, call: () => void): void {
+    const timer = setInterval(() => {
+      if (!document.hidden) call();
+    }, ms);
+    this.atEnd(() => {
+      clearInterval(timer);
+    });
+  }
+
   /** Wait for something that may be refused, and tell the operator if it is. */
   protected async attempt<T>(asked: Promise<T>): Promise<T | undefined> {
     try {

@@ -2,7 +2,7 @@
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { comparing } from "../models/comparing";
-import { keepFile } from "../models/export";
+import { keepFile } from "../models/files";
 import { shown } from "../models/fields";
 import { type Preset, readPreset, toJson, toToml } from "../models/presetfiles";
 import { scopeName } from "../models/scopes";

@@ -7,6 +7,7 @@ import { commandsOf } from "../models/parameterwork";
 import { scopeName } from "../models/scopes";
 import type { Command } from "../net/types";
 import { CommandingPanel } from "./commanding";
+import { noteField } from "./fields";
 
 interface Schedule {
   id: string;
@@ -222,17 +223,9 @@ class SchedulesPanel extends CommandingPanel {
         ></textarea>
       </details>
       <div class="row">
-        <label class="grow">
-          <span class="visually-hidden">Why (kept in the audit)</span>
-          <input
-            maxlength="500"
-            placeholder="Why? (kept in the audit)"
-            .value=${this.why}
-            @input=${(event: Event) => {
-              this.why = (event.currentTarget as HTMLInputElement).value;
-            }}
-          />
-        </label>
+        ${noteField(this.why, (text) => {
+          this.why = text;
+        })}
         ${this.button("Schedule", "schedule", () => this.schedule(), { main: true, blocked })}
       </div>
     </fieldset>`;

@@ -35,12 +35,7 @@ class WorldPanel extends CommandingPanel {
       this.requestUpdate();
     });
     this.hearAbout(/pace|door|revert|actor/, () => void this.load());
-    const timer = setInterval(() => {
-      if (!document.hidden) void this.load();
-    }, REFRESH_MS);
-    this.atEnd(() => {
-      clearInterval(timer);
-    });
+    this.every(REFRESH_MS, () => void this.load());
     void this.load();
   }
 

@@ -119,11 +119,15 @@ describe("Trail", () => {
     const trail = new Trail();
     for (let tick = 0; tick <= 1000; tick++) trail.add(tick, 0, 0, tick * 0.1);
     const seen: number[] = [];
-    trail.each(90, (x) => seen.push(x));
+    trail.each(89.9, 100, (x) => seen.push(x));
     expect(seen[0]).toBe(1000);
     expect(seen).toHaveLength(21);
+    seen.length = 0;
+    trail.each(89.9, 95, (x) => seen.push(x));
+    expect(seen[0]).toBe(950);
+    expect(seen.at(-1)).toBe(900);
     const all: number[] = [];
-    trail.each(0, (x) => all.push(x));
+    trail.each(0, 100, (x) => all.push(x));
     expect(all).toHaveLength(120);
   });
 });

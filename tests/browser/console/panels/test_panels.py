@@ -1,20 +1,18 @@
 """Every panel of the operators' page, with what it shows of a real world; axe on all of them."""
 
 import re
-from pathlib import Path
 from typing import Any, Final
 
 import pytest
 from playwright.async_api import Browser, expect
 
 from esplanade.server.app import Running
-from tests.browser.console.panels.page import OperatorPage
+from tests.browser.console.visit import arrived
 from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.asyncio(loop_scope="package")
 expect.set_options(timeout=1e3 * PATIENCE_S)
 
-AXE: Final = Path(__file__).parents[4] / "client_web/node_modules/axe-core/axe.min.js"
 PANELS: Final = {
     "Parameters": "parameters",
     "Presets": "presets",
@@ -28,44 +26,33 @@ PANELS: Final = {
     "Changes": "changes",
     "Audit": "audit",
     "People": "people",
+    "Chat": "chat",
+    "Inbox": "reports",
+    "Bans": "bans",
     "Accounts": "accounts",
+    "Invitations": "invitations",
     "My account": "account",
 }
-"""Titles and tags of the panels that every server can fill."""
-
-
-async def _findings(olga: OperatorPage, tag: str) -> list[str]:
-    found = await olga.page.evaluate("axe.run(document, {resultTypes: ['violations']})")
-    return [
-        f"{tag}: {each['id']}: {node['html'][:160]} {node['failureSummary']}"
-        for each in found["violations"]
-        for node in each["nodes"]
-    ]
+"""Titles and tags of the panels beside the map."""
 
 
 @pytest.mark.parametrize(("scheme", "width"), [("light", 1280), ("dark", 360)])
 async def test_axe_finds_nothing_in_any_panel(
     server: Running, browser: Browser, scheme: Any, width: int
 ) -> None:
-    context = await browser.new_context(
-        viewport={"width": width, "height": 800}, color_scheme=scheme
-    )
-    olga = await OperatorPage.arrive(context, server, "olga")
-    await olga.page.evaluate(AXE.read_text())
+    olga = await arrived(browser, server, "olga", width=width, height=800, scheme=scheme)
     findings: list[str] = []
     for title, tag in PANELS.items():
         await olga.show(title)
         await expect(olga.panel(tag)).to_be_visible()
-        findings += await _findings(olga, tag)
-        wide = await olga.page.evaluate("document.documentElement.scrollWidth")
-        assert wide <= width, f"{title} is wider than the page"
+        findings += [f"{tag}: {each}" for each in await olga.findings()]
+        assert await olga.overflow_px() <= 0, f"{title} is wider than the page"
     assert not findings, "\n".join(findings)
-    await olga.check_nothing_went_wrong()
+    assert olga.complaints == []
 
 
 async def test_presets_actors_and_changes_work_together(server: Running, browser: Browser) -> None:
-    context = await browser.new_context(viewport={"width": 1280, "height": 800})
-    olga = await OperatorPage.arrive(context, server, "olga")
+    olga = await arrived(browser, server, "olga")
     await olga.show("Presets")
     presets = olga.panel("presets")
     await presets.get_by_role("button", name="Apply courteous to world").click()
@@ -89,24 +76,22 @@ async def test_presets_actors_and_changes_work_together(server: Running, browser
     await expect(rows.filter(has_text="Newcomer")).to_contain_text("held")
     await actors.get_by_role("button", name="Remove", exact=True).click()
     await expect(rows).to_have_count(before)
-    await olga.check_nothing_went_wrong()
+    assert olga.complaints == []
 
 
 async def test_a_viewer_is_told_why_buttons_do_nothing(server: Running, browser: Browser) -> None:
-    context = await browser.new_context(viewport={"width": 1280, "height": 800})
-    vera = await OperatorPage.arrive(context, server, "vera")
+    vera = await arrived(browser, server, "vera")
     await vera.show("Parameters")
     apply = vera.panel("parameters").get_by_role("button", name="Apply")
     await expect(apply).to_be_disabled()
     await expect(apply).to_have_attribute("title", "The role viewer may not change parameters.")
     await expect(vera.slider("risk_weight")).to_be_disabled()
     assert await vera.page.get_by_role("tab", name="Accounts").count() == 0
-    await vera.check_nothing_went_wrong()
+    assert vera.complaints == []
 
 
 async def test_a_token_is_shown_once(server: Running, browser: Browser) -> None:
-    context = await browser.new_context(viewport={"width": 1280, "height": 800})
-    olga = await OperatorPage.arrive(context, server, "olga")
+    olga = await arrived(browser, server, "olga")
     await olga.show("Accounts")
     accounts = olga.panel("accounts")
     vera = accounts.get_by_role("listitem").filter(has_text="vera").first
@@ -118,20 +103,17 @@ async def test_a_token_is_shown_once(server: Running, browser: Browser) -> None:
     await accounts.get_by_role("button", name="I have it").click()
     await expect(secret).to_have_count(0)
     await expect(vera).to_contain_text("report")
-    await olga.check_nothing_went_wrong()
+    assert olga.complaints == []
 
 
 async def test_nothing_typed_is_left_after_logging_out(server: Running, browser: Browser) -> None:
-    context = await browser.new_context(viewport={"width": 1280, "height": 800})
-    olga = await OperatorPage.arrive(context, server, "olga")
+    olga = await arrived(browser, server, "olga")
     await olga.show("Parameters")
     await olga.box("hurry_weight").fill("7")
     await expect(olga.page).to_have_url(re.compile("draft"))
-    await olga.page.locator("esp-topbar summary", has_text="olga").click()
-    await olga.page.get_by_role("button", name="Log out").click()
-    await expect(olga.page.get_by_label("Password", exact=True)).to_be_visible()
+    await olga.log_out()
     await expect(olga.page).not_to_have_url(re.compile("draft"))
-    olga.name = "otto"
+    olga.account = "otto"
     await olga.log_in()
     await olga.show("Parameters")
     await olga.box("catch_up").fill("0.5")
@@ -139,4 +121,4 @@ async def test_nothing_typed_is_left_after_logging_out(server: Running, browser:
     await expect(state).to_contain_text("takes effect at once")
     await expect(state).to_contain_text("1 edit")
     await expect(olga.box("hurry_weight")).to_have_value("0.2")
-    await olga.check_nothing_went_wrong()
+    assert olga.complaints == []

@@ -7,7 +7,7 @@ from playwright.async_api import Browser, Locator, expect
 
 from esplanade.protocol.messages import Bye, Chat, ChatLine, Notice, Report
 from esplanade.server.app import Running
-from tests.browser.console.panels.page import OperatorPage
+from tests.browser.console.visit import Visit, arrived
 from tests.patience import PATIENCE_S
 from tests.server.client import Client, joined
 
@@ -22,7 +22,7 @@ async def _heard(client: Client, notice: str) -> Notice:
     return found
 
 
-async def _choose(olga: OperatorPage, name: str) -> Locator:
+async def _choose(olga: Visit, name: str) -> Locator:
     await olga.show("People")
     people = olga.panel("people")
     await people.get_by_role("button", name=name, exact=True).click()
@@ -33,8 +33,7 @@ async def _choose(olga: OperatorPage, name: str) -> Locator:
 async def test_a_person_is_warned_muted_heard_again_and_sent_out(
     server: Running, browser: Browser
 ) -> None:
-    context = await browser.new_context(viewport={"width": 1280, "height": 900})
-    olga = await OperatorPage.arrive(context, server, "olga")
+    olga = await arrived(browser, server, "olga")
     async with joined(server.port, "Eve") as eve:
         people = await _choose(olga, "Eve")
         await expect(people.get_by_role("button", name="Warn")).to_be_disabled()
@@ -52,12 +51,11 @@ async def test_a_person_is_warned_muted_heard_again_and_sent_out(
         await people.get_by_role("button", name="Kick").click()
         assert (await eve.until(Bye)).reason == "kicked"
     await expect(people.get_by_role("button", name="Eve", exact=True)).to_have_count(0)
-    await olga.check_nothing_went_wrong()
+    assert olga.complaints == []
 
 
 async def test_a_person_is_banned_and_the_ban_lifted(server: Running, browser: Browser) -> None:
-    context = await browser.new_context(viewport={"width": 1280, "height": 900})
-    olga = await OperatorPage.arrive(context, server, "olga")
+    olga = await arrived(browser, server, "olga")
     async with joined(server.port, "Mallory") as mallory:
         people = await _choose(olga, "Mallory")
         await people.get_by_role("button", name="Ban", exact=True).click()
@@ -76,12 +74,11 @@ async def test_a_person_is_banned_and_the_ban_lifted(server: Running, browser: B
     await expect(newest).to_contain_text("for ever")
     await newest.get_by_role("button", name=re.compile("Lift")).click()
     await expect(newest).to_contain_text("lifted")
-    await olga.check_nothing_went_wrong()
+    assert olga.complaints == []
 
 
 async def test_reports_are_settled_and_lines_taken_away(server: Running, browser: Browser) -> None:
-    context = await browser.new_context(viewport={"width": 1280, "height": 900})
-    olga = await OperatorPage.arrive(context, server, "olga")
+    olga = await arrived(browser, server, "olga")
     async with joined(server.port, "Rude") as rude, joined(server.port, "Ann") as ann:
         await rude.send(ChatLine(text="Something rude"))
         line = await ann.until(Chat)
@@ -104,4 +101,4 @@ async def test_reports_are_settled_and_lines_taken_away(server: Running, browser
         await expect(olga.page.get_by_text("The words are noted.")).to_be_visible()
         await rude.send(ChatLine(text="Well, darn"))
         assert "darn" not in (await ann.until(Chat)).text
-    await olga.check_nothing_went_wrong()
+    assert olga.complaints == []

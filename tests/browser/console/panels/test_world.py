@@ -1,14 +1,17 @@
 """Clicks of directors and admins on their page: time, waves, ways in, a password, the audit."""
 
+import csv
+import json
 import re
 from pathlib import Path
 
 import pytest
 from playwright.async_api import Browser, expect
 
+from esplanade.server.accounts.identity import MACHINE
 from esplanade.server.app import Running
-from tests.browser.console.panels import page as pages
-from tests.browser.console.panels.page import OperatorPage, operator
+from tests.browser.console.stage_answers import PASSWORD
+from tests.browser.console.visit import arrived
 from tests.patience import PATIENCE_S
 
 pytestmark = pytest.mark.asyncio(loop_scope="package")
@@ -18,8 +21,7 @@ expect.set_options(timeout=1e3 * PATIENCE_S)
 async def test_time_stops_goes_on_by_ticks_and_runs_at_another_pace(
     server: Running, browser: Browser
 ) -> None:
-    context = await browser.new_context(viewport={"width": 1280, "height": 900})
-    olga = await OperatorPage.arrive(context, server, "olga")
+    olga = await arrived(browser, server, "olga")
     await olga.show("World")
     world = olga.panel("world")
     await world.get_by_role("button", name="Pause").click()
@@ -39,12 +41,11 @@ async def test_time_stops_goes_on_by_ticks_and_runs_at_another_pace(
     await world.get_by_role("button", name="Mark", exact=True).click()
     await olga.show("Events")
     await expect(olga.panel("events")).to_contain_text("a quiet moment")
-    await olga.check_nothing_went_wrong()
+    assert olga.complaints == []
 
 
 async def test_a_wave_comes_and_goes(server: Running, browser: Browser) -> None:
-    context = await browser.new_context(viewport={"width": 1280, "height": 900})
-    olga = await OperatorPage.arrive(context, server, "olga")
+    olga = await arrived(browser, server, "olga")
     await olga.show("Actors")
     actors = olga.panel("actors")
     rows = actors.locator("tbody tr")
@@ -62,12 +63,11 @@ async def test_a_wave_comes_and_goes(server: Running, browser: Browser) -> None:
     await newest.get_by_role("button", name=re.compile("Undo change")).click()
     await olga.show("Actors")
     await expect(rows).to_have_count(before)
-    await olga.check_nothing_went_wrong()
+    assert olga.complaints == []
 
 
 async def test_ways_in_are_shown_once_and_end(server: Running, browser: Browser) -> None:
-    context = await browser.new_context(viewport={"width": 1280, "height": 900})
-    olga = await OperatorPage.arrive(context, server, "olga")
+    olga = await arrived(browser, server, "olga")
     await olga.show("Invitations")
     ways = olga.panel("invitations")
     await ways.get_by_label("For whom, or why").fill("the press")
@@ -87,18 +87,17 @@ async def test_ways_in_are_shown_once_and_end(server: Running, browser: Browser)
     link = await account.get_by_role("link", name="Walk in").get_attribute("href")
     assert link is not None
     assert f":{server.port}/#pass=" in link
-    await olga.check_nothing_went_wrong()
+    assert olga.complaints == []
 
 
 async def test_a_password_is_changed_and_the_audit_taken_away(
     server: Running, browser: Browser, tmp_path: Path
 ) -> None:
-    await operator(server, "paula", "admin")
-    context = await browser.new_context(viewport={"width": 1280, "height": 900})
-    paula = await OperatorPage.arrive(context, server, "paula")
+    await server.kept.directory.add(MACHINE, "paula", "admin", PASSWORD)
+    paula = await arrived(browser, server, "paula")
     await paula.show("My account")
     account = paula.panel("account")
-    await account.get_by_label("The one until now").fill(pages.PASSWORD)
+    await account.get_by_label("The one until now").fill(PASSWORD)
     await account.get_by_label("The new one").fill("another one, long enough")
     await account.get_by_role("button", name="Change").click()
     await expect(paula.page.get_by_text("You have another password.")).to_be_visible()
@@ -110,6 +109,15 @@ async def test_a_password_is_changed_and_the_audit_taken_away(
     file = tmp_path / "audit.csv"
     await (await started.value).save_as(file)
     assert "password" in file.read_text()
+    async with paula.page.expect_download() as started:
+        await audit.get_by_role("button", name="as JSON lines").click()
+    download = await started.value
+    assert download.suggested_filename == "audit.jsonl"
+    await download.save_as(tmp_path / "audit.jsonl")
+    rows = [json.loads(line) for line in (tmp_path / "audit.jsonl").read_text().splitlines()]
+    assert ("paula", "user_password") in {(row["account"], row["command"]) for row in rows}
+    with file.open(newline="") as table:
+        assert [row["hash"] for row in csv.DictReader(table)] == [row["hash"] for row in rows]
     await audit.get_by_role("button", name="Verify the chains").click()
     await expect(paula.page.get_by_text("The audit is as it was written.")).to_be_visible()
-    await paula.check_nothing_went_wrong()
+    assert paula.complaints == []

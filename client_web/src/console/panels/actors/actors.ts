@@ -8,6 +8,7 @@ import type { Actor, Actors, Command } from "../../net/types";
 import { behaviourForm, type BehaviourWish } from "../behaviourform";
 import { pick } from "../pick";
 import { CommandingPanel } from "../commanding";
+import { searchField } from "../fields";
 import { newActors, type NewActors, newActorsForm, commandFor } from "./newactors";
 
 const REFRESH_MS = 2000;
@@ -41,12 +42,7 @@ class ActorsPanel extends CommandingPanel {
     this.watch(this.app.state.chosen);
     this.watch(this.app.state.world);
     this.hearAbout(/actor|behaviour|group|revert/, () => void this.load());
-    const timer = setInterval(() => {
-      if (!document.hidden) void this.load();
-    }, REFRESH_MS);
-    this.atEnd(() => {
-      clearInterval(timer);
-    });
+    this.every(REFRESH_MS, () => void this.load());
     void this.load();
     void this.ask<{ behaviours: JsonObject }>("/schema").then((schema) => {
       this.kinds = schema ? behaviourKinds(schema.behaviours) : [];
@@ -66,18 +62,7 @@ class ActorsPanel extends CommandingPanel {
     const shown = this.actors.filter((actor) => this.fits(actor));
     return html`
       <div class="row">
-        <label class="field grow">
-          Find
-          <input
-            type="search"
-            placeholder="name, group, behaviour, reason"
-            .value=${this.sought}
-            @input=${(event: Event) => {
-              this.sought = (event.currentTarget as HTMLInputElement).value;
-              this.requestUpdate();
-            }}
-          />
-        </label>
+        ${searchField("Find", this.sought, this.seek, "name, group, behaviour, reason")}
         <button
           @click=${() => {
             this.app.choose(shown.map((actor) => actor.id));
@@ -116,6 +101,11 @@ class ActorsPanel extends CommandingPanel {
       </div>
     `;
   }
+
+  private readonly seek = (text: string): void => {
+    this.sought = text;
+    this.requestUpdate();
+  };
 
   private deeds(chosen: readonly Listed[]): TemplateResult {
     const ids = chosen.map((actor) => actor.id);

@@ -6,6 +6,7 @@ import type { ParameterWork } from "../../models/parameterwork";
 import { scopeName } from "../../models/scopes";
 import type { ButtonLook } from "../commanding";
 import { type Manner, mannerForm } from "./manner";
+import { noteField } from "../fields";
 
 export interface Acts {
   button: (text: string, needs: string, press: () => unknown, look?: ButtonLook) => TemplateResult;
@@ -53,18 +54,9 @@ export function foot(work: ParameterWork, acts: Acts): TemplateResult {
     </p>
     ${work.faults.map((fault) => html`<p class="fault" role="alert">${fault.text}</p>`)}
     <div class="row">
-      <label class="grow">
-        <span class="visually-hidden">Why (kept in the audit)</span>
-        <input
-          class="note"
-          maxlength="500"
-          placeholder="Why? (kept in the audit)"
-          .value=${work.note}
-          @input=${(event: Event) => {
-            work.note = (event.currentTarget as HTMLInputElement).value;
-          }}
-        />
-      </label>
+      ${noteField(work.note, (text) => {
+        work.note = text;
+      })}
       ${acts.button("Apply", "set_parameters", () => acts.apply(), {
         ...{ main: true, blocked, keys: "Control+Enter" },
       })}

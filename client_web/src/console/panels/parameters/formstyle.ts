@@ -52,9 +52,6 @@ export const formStyle = css`
   .foot p {
     margin: 0 0 4px;
   }
-  .foot .note {
-    width: 100%;
-  }
   .state {
     min-height: 1.4em;
   }

@@ -3,6 +3,7 @@
 import { html, nothing, type TemplateResult } from "lit";
 import type { ParameterWork } from "../../models/parameterwork";
 import { groupsOf, scopeName, shortId } from "../../models/scopes";
+import { searchField } from "../fields";
 
 export interface Shown {
   /** The actors that are chosen on the map. */
@@ -51,16 +52,7 @@ export function head(work: ParameterWork, shown: Shown): TemplateResult {
         </optgroup>
       </select>
     </label>
-    <label class="field grow">
-      Find
-      <input
-        type="search"
-        .value=${shown.sought}
-        @input=${(event: Event) => {
-          shown.seek((event.currentTarget as HTMLInputElement).value);
-        }}
-      />
-    </label>
+    ${searchField("Find", shown.sought, shown.seek)}
     ${
       chosen !== undefined && work.scope !== `actor:${chosen}`
         ? html`<button

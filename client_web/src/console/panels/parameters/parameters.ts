@@ -2,18 +2,19 @@
 
 import { html, nothing, type TemplateResult } from "lit";
 import type { AppContext } from "../../context";
-import { byGroup, fromSlider, labelOf, parsed } from "../../models/fields";
+import { byGroup, labelOf } from "../../models/fields";
 import type { NumberField } from "../../models/fields";
 import { ParameterWork } from "../../models/parameterwork";
 import { scopeName } from "../../models/scopes";
 import { RefusedError } from "../../net/api";
 import type { LiveMessage } from "../../net/live";
 import { CommandingPanel } from "../commanding";
+import { Editing } from "./editing";
 import { type Acts, foot } from "./foot";
 import { formStyle } from "./formstyle";
 import { head } from "./head";
 import { manner, type Manner } from "./manner";
-import { row, rowStyle, type RowEvents } from "./row";
+import { row, rowStyle } from "./row";
 
 /** Values are asked for anew this often while the live interface is away. */
 const POLL_MS = 2000;
@@ -37,9 +38,9 @@ function workOf(app: AppContext): ParameterWork {
 class ParametersPanel extends CommandingPanel {
   static override styles = [...CommandingPanel.styles, rowStyle, formStyle];
   private work: ParameterWork | null = null;
-  private typing: { name: string; text: string } | null = null;
-  private dragged: string | null = null;
-  private liveDrag = false;
+  private readonly editing = new Editing(() => {
+    this.requestUpdate();
+  });
   private explained = false;
   private sought = "";
   private how: Manner = manner();
@@ -63,11 +64,10 @@ class ParametersPanel extends CommandingPanel {
       void work.refresh(by).catch(() => undefined);
       if (/actor|group/.test(message.change?.op ?? "")) void work.refreshActors().catch(() => null);
     });
-    const poll = setInterval(() => {
+    this.every(POLL_MS, () => {
       if (live.phase.value !== "on") void work.refresh().catch(() => undefined);
-    }, POLL_MS);
+    });
     this.atEnd(() => {
-      clearInterval(poll);
       work.stop();
     });
     const given = state.draft.value;
@@ -122,9 +122,9 @@ class ParametersPanel extends CommandingPanel {
       apply: () => this.apply(),
       undo: () => this.undo(),
       redo: () => this.redo(),
-      liveDrag: this.liveDrag,
+      liveDrag: this.editing.live,
       dragLive: (on) => {
-        this.liveDrag = on;
+        this.editing.live = on;
         this.requestUpdate();
       },
       how: this.how,
@@ -148,7 +148,7 @@ class ParametersPanel extends CommandingPanel {
       {
         field,
         value,
-        typed: this.typing?.name === name ? this.typing.text : null,
+        typed: this.editing.typed(name),
         edit,
         from: scopeName(source?.from ?? "default", work.actors),
         own: source?.from === work.scope,
@@ -158,59 +158,10 @@ class ParametersPanel extends CommandingPanel {
         explained: this.explained,
         locked: this.whyNot("set_parameters"),
       },
-      this.events(work, field, value, source?.from === work.scope),
+      this.editing.events(work, field, value, source?.from === work.scope, (name) => {
+        void this.attempt(work.clearShadows(name));
+      }),
     );
-  }
-
-  private events(work: ParameterWork, field: NumberField, value: number, own: boolean): RowEvents {
-    const { name } = field;
-    return {
-      slide: (place) => {
-        this.typing = null;
-        work.edit(name, fromSlider(field, place), this.dragged === name);
-        this.dragged = name;
-        if (this.liveDrag) work.drag();
-      },
-      slid: () => {
-        this.dragged = null;
-      },
-      type: (text) => {
-        const together = this.typing?.name === name;
-        this.typing = { name, text };
-        const typed = parsed(field, text);
-        if (typed !== null) work.edit(name, typed, together);
-        else work.draft.mistyped(name, "This is not a number yet.");
-        this.requestUpdate();
-      },
-      typedOut: () => {
-        const text = this.typing?.text;
-        if (this.typing?.name !== name || text === undefined) return;
-        this.typing = null;
-        if (parsed(field, text) === null) work.draft.mistyped(name, null);
-        this.requestUpdate();
-      },
-      step: (by) => {
-        this.typing = null;
-        const next = Number((value + by).toPrecision(10));
-        work.edit(name, Math.min(field.most, Math.max(field.least, next)), true);
-      },
-      reset: () => {
-        this.typing = null;
-        if (own) work.edit(name, null);
-        else this.drop(work, name);
-      },
-      drop: () => {
-        this.drop(work, name);
-      },
-      takeTheirs: () => {
-        this.drop(work, name);
-      },
-      keepMine: () => {
-        work.draft.keepMine(name);
-        work.touched();
-      },
-      clearShadows: () => void this.attempt(work.clearShadows(name)),
-    };
   }
 
   private readonly pressed = (event: KeyboardEvent): void => {
@@ -226,17 +177,11 @@ class ParametersPanel extends CommandingPanel {
         "field"
       ];
       if (field === undefined || work.draft.edit(field) === undefined) return;
-      this.drop(work, field);
+      this.editing.drop(work, field);
     } else return;
     event.preventDefault();
     event.stopPropagation();
   };
-
-  private drop(work: ParameterWork, name: string): void {
-    this.typing = null;
-    work.draft.drop(name);
-    work.touched();
-  }
 
   private async apply(): Promise<void> {
     const { work } = this;
@@ -248,6 +193,8 @@ class ParametersPanel extends CommandingPanel {
     }
     try {
       const answer = await work.apply();
+      this.editing.applied(work);
+      this.requestUpdate();
       if (answer) this.app.toast(appliedText(answer.tick), "done");
     } catch (error) {
       if (!(error instanceof RefusedError)) throw error;
@@ -259,7 +206,7 @@ class ParametersPanel extends CommandingPanel {
   private async undo(): Promise<void> {
     const { work } = this;
     if (!work) return;
-    this.typing = null;
+    this.editing.typedOut();
     if (work.draft.canUndo) {
       work.draft.undo();
       work.touched();
@@ -269,7 +216,7 @@ class ParametersPanel extends CommandingPanel {
   private async redo(): Promise<void> {
     const { work } = this;
     if (!work) return;
-    this.typing = null;
+    this.editing.typedOut();
     if (work.draft.canRedo) {
       work.draft.redo();
       work.touched();

@@ -52,12 +52,7 @@ class ChatPanel extends CommandingPanel {
   protected override begin(): void {
     this.hear("events", { kinds: ["chat"] }, () => void this.load());
     this.hearAbout(/line|slow|word|quiet|people|chat/, () => void this.load());
-    const timer = setInterval(() => {
-      if (!document.hidden) void this.load();
-    }, REFRESH_MS);
-    this.atEnd(() => {
-      clearInterval(timer);
-    });
+    this.every(REFRESH_MS, () => void this.load());
     void this.load();
   }
 

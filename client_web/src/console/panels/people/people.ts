@@ -3,6 +3,7 @@
 import { css, html, nothing, type TemplateResult } from "lit";
 import { clock, span } from "../../models/times";
 import { CommandingPanel } from "../commanding";
+import { searchField } from "../fields";
 import { pick } from "../pick";
 
 interface Person {
@@ -13,6 +14,8 @@ interface Person {
   delay_ms?: number | null;
   queue_bytes?: number | null;
   muted_s: number;
+  /** Whether somebody is being led to the way out. */
+  walked_out?: boolean;
   x?: number;
   y?: number;
   z?: number;
@@ -55,12 +58,7 @@ class PeoplePanel extends CommandingPanel {
     this.watch(this.app.state.chosen);
     this.watch(this.app.state.world);
     this.hearAbout(/mute|kick|ban|walk_out|people/, () => void this.load());
-    const timer = setInterval(() => {
-      if (!document.hidden) void this.load();
-    }, REFRESH_MS);
-    this.atEnd(() => {
-      clearInterval(timer);
-    });
+    this.every(REFRESH_MS, () => void this.load());
     void this.load();
   }
 
@@ -69,17 +67,10 @@ class PeoplePanel extends CommandingPanel {
     const shown = this.people.filter((one) => `${one.name} ${one.id}`.toLowerCase().includes(word));
     const chosen = this.people.find((one) => `person:${one.id}` === this.app.state.chosen.value[0]);
     return html`
-      <label class="field">
-        Name
-        <input
-          type="search"
-          .value=${this.sought}
-          @input=${(event: Event) => {
-            this.sought = (event.currentTarget as HTMLInputElement).value;
-            this.requestUpdate();
-          }}
-        />
-      </label>
+      ${searchField("Name", this.sought, (text) => {
+        this.sought = text;
+        this.requestUpdate();
+      })}
       ${this.refused()} ${this.deeds(chosen)}
       <div class="scroll" tabindex="0" role="region" aria-label="People in the world">
         <table>
@@ -114,6 +105,7 @@ class PeoplePanel extends CommandingPanel {
         >
           ${one.name}
         </button>
+        ${one.walked_out ? html`<span class="chip">led out</span>` : nothing}
       </td>
       <td>${one.since_us === undefined ? "—" : clock(one.since_us)}</td>
       <td><code>${one.address_hash ?? "—"}</code></td>

@@ -37,6 +37,8 @@ class SeriesPanel extends CommandingPanel {
   private names: readonly SeriesName[] = [];
   private chosen: string[] = USUAL;
   private step = 0;
+  /** Up to where the window has been asked for. */
+  private loadedUs = 0;
   private window = new SeriesWindow(STEPS[0].stepS, STEPS[0].spanS);
   private readonly charts = new Charts(this, {
     data: (name) => this.window.data([name]),
@@ -51,8 +53,11 @@ class SeriesPanel extends CommandingPanel {
     const { live, state } = this.app;
     void this.prepare();
     this.hear("series", {}, (message: Figures) => {
-      this.window.append(message.at_us, message.values);
-      this.draw();
+      // What seconds come to in a longer step, the server says once that step is over.
+      if (this.window.stepS === 1) {
+        this.window.append(message.at_us, message.values);
+        this.draw();
+      } else if (this.window.endUs(message.at_us) > this.loadedUs) void this.load(message.at_us);
     });
     this.hear("changes", {}, (message: LiveMessage & { change?: ChangeRow }) => {
       const { change } = message;
@@ -193,15 +198,18 @@ class SeriesPanel extends CommandingPanel {
     await this.load();
   }
 
-  private async load(): Promise<void> {
+  private async load(nowUs = Math.round(Date.now() * 1000)): Promise<void> {
     const { stepS, spanS } = STEPS[this.step] ?? STEPS[0];
     const window = new SeriesWindow(stepS, spanS);
     const names = this.chosen.filter((name) => !name.includes(" ")).join(",");
-    const from = Math.round(Date.now() * 1000 - spanS * 1e6);
-    const query = { names, step_s: stepS, from_us: from };
+    this.loadedUs = window.endUs(nowUs);
+    const query = {
+      ...{ names, step_s: stepS, from_us: nowUs - spanS * 1e6 },
+      to_us: stepS === 1 ? undefined : this.loadedUs - 1,
+    };
     const found = await this.ask<SeriesAnswer>("/series", query);
     if (!found) return;
-    window.load(found);
+    window.load(found, this.window);
     this.window = window;
     this.requestUpdate();
     this.draw();
