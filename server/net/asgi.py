@@ -102,6 +102,7 @@ class _BoundedConnection(H11Protocol):
     """A connection that is cut off when there are too many, or when its client does not go on."""
 
     _deadline: asyncio.TimerHandle | None = None
+    _is_web_socket = False
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         super().connection_made(transport)
@@ -117,6 +118,11 @@ class _BoundedConnection(H11Protocol):
     def data_received(self, data: bytes) -> None:
         super().data_received(data)
         self._watch()
+
+    def handle_websocket_upgrade(self, event: h11.Request) -> None:
+        # The library stops reading here, before the end of the request that it has read.
+        self._is_web_socket = True
+        super().handle_websocket_upgrade(event)
 
     def pause_writing(self) -> None:
         super().pause_writing()
@@ -136,7 +142,7 @@ class _BoundedConnection(H11Protocol):
         A WebSocket connection is watched by `_BoundedSocket` instead.
         """
         waiting = self.flow.write_paused or self.conn.their_state in _WAITING_FOR_REQUEST
-        if not waiting:
+        if not waiting or self._is_web_socket:
             self._forget()
         elif self._deadline is None:
             self._deadline = self.loop.call_later(PATIENCE_S, self.transport.abort)

@@ -14,6 +14,7 @@ from esplanade.server.checkpoint.seat_keeper import SeatKeeper
 from esplanade.server.metrics import Metrics
 from esplanade.server.net import frames
 from esplanade.server.net.names import Names, ReservedNameError
+from esplanade.server.net.newcomers import Newcomers
 from esplanade.server.net.pending_inputs import PendingInputs
 from esplanade.server.net.seats import Seat, Seats
 from esplanade.server.net.session import Session
@@ -24,8 +25,6 @@ from esplanade.server.world.frame import Frame
 from esplanade.server.world.inputs import Attach, Detach, Join, Leave
 from esplanade.server.world.zone import Zone
 
-MAX_JOINS_PER_TICK: Final = 16
-"""Each join costs every neighbour an enter message, so a crowd comes in over some ticks."""
 NAMELESS: Final = "Guest"
 """The name of somebody who comes back with one that nobody may bear any more."""
 
@@ -66,15 +65,12 @@ class Seating:
         self._leaving = leaving
         self._forget = forget
         self._names = Names(world.actor_names)
-        self._next_ticket = 1
-        self._joining: dict[int, tuple[Session, Hello]] = {}
-        self._asked: set[int] = set()
-        """Tickets of those who wait to join and have been sent to the zone."""
+        self._newcomers = Newcomers(world, anywhere=settings.crowd is not None)
         metrics.gauge("clients", "People connected", lambda: len(self.sessions))
         metrics.gauge(
             "clients_away", "Avatars that wait for a lost person", lambda: self.seats.vacant
         )
-        metrics.gauge("joining", "People who wait to join", lambda: len(self._joining))
+        metrics.gauge("joining", "People who wait to join", lambda: len(self._newcomers))
 
     # --- coming -------------------------------------------------------------------------------
 
@@ -90,7 +86,7 @@ class Seating:
         if seat is not None:
             self._resume(seat, session, hello.resume or "")
             return
-        if len(self.seats) + len(self._joining) >= self._settings.max_clients:
+        if len(self.seats) + len(self._newcomers) >= self._settings.max_clients:
             self._make_room()
         try:
             session.name = self._names.take(hello.name)
@@ -98,34 +94,24 @@ class Seating:
             raise ProtocolError(
                 ErrorCode.NAME_RESERVED, str(error), CloseCode.NAME_RESERVED
             ) from None
-        session.ticket = self._next_ticket
-        self._joining[session.ticket] = session, hello
-        self._next_ticket += 1
+        self._newcomers.add(session, hello)
 
     def is_at_the_door(self, session: Session) -> bool:
         """Whether somebody waits to join."""
-        return session.ticket in self._joining
+        return session in self._newcomers
 
     def joins(self) -> list[Join]:
         """Inputs by which a few of those at the door come in."""
-        found = []
-        at_the_door = [ticket for ticket in self._joining if ticket not in self._asked]
-        for ticket in at_the_door[: min(MAX_JOINS_PER_TICK, self._world.state.ids_left)]:
-            session, hello = self._joining[ticket]
-            anywhere = session.is_operator or self._settings.crowd is not None
-            found.append(Join(ticket, session.name, hello.at, anywhere))
-            self._asked.add(ticket)
-        return found
+        return self._newcomers.joins()
 
     def welcome(self, frame: Frame) -> None:
         """Welcome the people whom the tick has let in, before anything else is sent to them."""
         for ticket, avatar_id in frame.joined:
-            self._asked.discard(ticket)
-            if ticket not in self._joining:
+            session = self._newcomers.let_in(ticket)
+            if session is None:
                 # The person went while the zone made the avatar.
                 self._pending.come(Leave(avatar_id))
                 continue
-            session, _ = self._joining.pop(ticket)
             session.token = self.seats.issue(avatar_id, session.name, session.address, session)
             self.seats.walks_in(avatar_id, session.operator)
             session.avatar_id = avatar_id
@@ -156,8 +142,7 @@ class Seating:
         self.seats.walks_in(seat.avatar_id, session.operator)
         session.operator = session.operator or seat.operator
         session.token = self.seats.renew(seat, token)
-        session.ticket = self._next_ticket
-        self._next_ticket += 1
+        session.ticket = self._newcomers.new_ticket()
         session.resumes = True
         self._pending.come(Detach(seat.avatar_id))
         if self._keeper is None:
@@ -201,7 +186,7 @@ class Seating:
 
     def depart(self, session: Session, comes_back: bool, now_s: float) -> None:
         """Let go of a session that has ended; its avatar waits if the person may come back."""
-        if self._joining.pop(session.ticket, None) is not None:
+        if self._newcomers.drop(session):
             self._names.give_back(session.name)
         if session.avatar_id is None:
             return
@@ -224,7 +209,7 @@ class Seating:
 
     def everyone(self) -> list[Session]:
         """All who are in, and those at the door."""
-        return [*self.seats.occupants(), *(session for session, _ in self._joining.values())]
+        return [*self.seats.occupants(), *self._newcomers]
 
     def give_up(self, session: Session) -> None:
         """Give up the seat of a session: whoever had it comes back as somebody new."""

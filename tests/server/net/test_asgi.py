@@ -91,6 +91,20 @@ async def test_web_sockets_are_carried_and_bounded() -> None:
             await connection.recv()
 
 
+async def test_a_web_socket_stays_open_for_longer_than_a_request_may_take(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(asgi, "PATIENCE_S", 0.2)
+    async with (
+        asgi.serving(application(), "127.0.0.1", 0) as port,
+        asyncio.timeout(PATIENCE_S),
+        connect(f"ws://127.0.0.1:{port}/echo", proxy=None) as client,
+    ):
+        await asyncio.sleep(0.6)
+        await client.send("still here")
+        assert await client.recv() == "still here"
+
+
 async def test_an_open_web_socket_holds_no_stop_up() -> None:
     async with asgi.serving(application(), "127.0.0.1", 0) as port:
         connection = await connect(f"ws://127.0.0.1:{port}/echo")
