@@ -1,4 +1,4 @@
-"""What every written file says of the software that has made it."""
+"""The lines of every written file on the software that has made it."""
 
 import hashlib
 from functools import cache

@@ -30,7 +30,7 @@ def asked(options: Namespace, path: str, body: Any = None) -> Any:
 
 
 def refusal_text(error: OperatorError, token: str) -> str:
-    """What went wrong, and what helps where a login that is kept holds no more."""
+    """The fault in words, and what helps where a login that is kept holds no more."""
     ended = isinstance(error, RefusedError) and error.status == HTTPStatus.UNAUTHORIZED
     if ended and isinstance(token, SessionToken):
         return "your session has ended: call `esplanade op login` again"

@@ -117,7 +117,7 @@ def _check_bounds(path: Path, text: str, given: Given) -> None:
         return
     if text.find("\n", 0, MOST_OF_A_LINE) < 0:
         raise RecordingError(path, f"has more than {MOST_OF_A_LINE} characters in a line", 1)
-    # What is wrong with the beginning of a large file is found before all of it is taken apart.
+    # Faults at the beginning of a large file are found before all of it is taken apart.
     _read_text(path, text[: text.rindex("\n", 0, 4 * MOST_OF_A_LINE)], given)
 
 

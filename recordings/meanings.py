@@ -1,4 +1,4 @@
-"""What numbers mean by themselves: times since 1970, degrees on the globe, worlds with y up."""
+"""Meanings of numbers by themselves: times since 1970, degrees on the globe, worlds with y up."""
 
 from dataclasses import replace
 from typing import Final

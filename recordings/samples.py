@@ -50,7 +50,7 @@ class Note(NamedTuple):
 
 
 class Head(NamedTuple):
-    """What a file begins with: where it comes from, its rate, and the ground of its world."""
+    """The head of a file: where it comes from, its rate, and the ground of its world."""
 
     provenance: dict[str, str]
     fps: float

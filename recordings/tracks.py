@@ -139,7 +139,7 @@ def tracks_of(rows: Rows, places: Floats, steps: Steps, usual_mps: float) -> Fou
         times, own = rows.clock[start:end], places[start:end]
         if not steps.suspicious(number, usual_mps):
             track = _track(name, times, own)
-            # What a cached property would find out once more.
+            # This is kept, so that a cached property does not find it out once more.
             track.__dict__["max_speed_mps"] = max(0.0, float(steps.fastest[number]))
             found.append((track.start_s, int(rows.lines[start:end].min()), track))
             continue

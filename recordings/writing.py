@@ -95,7 +95,7 @@ def _check_frames(path: Path, samples: Samples, rate: float) -> None:
 
 
 def told(provenance: Mapping[str, str]) -> Iterator[str]:
-    """What a file comes from, as comments of one line each."""
+    """The origin of a file, as comments of one line each."""
     yield from (f"# {name}: {' '.join(text.split())}" for name, text in provenance.items())
 
 

@@ -41,7 +41,7 @@ def read_xml(path: Path, text: str) -> Rows:
 
 
 class _Reader:
-    """What has been read up to an element."""
+    """The state of reading up to an element."""
 
     def __init__(self, path: Path) -> None:
         self.path = path

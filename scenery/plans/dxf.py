@@ -143,7 +143,7 @@ class _Drawing:
                 raise ValueError(f"it has more than {MAX_ENTITIES} entities")
             own = entity.dxf.get("layer", "0")
             kind = entity.dxftype()
-            # What a block has on layer 0 is on the layer of the block's copy.
+            # Parts of a block on layer 0 are on the layer of the block's copy.
             own = layer if own == "0" else own
             if kind in ("INSERT", "MLINE"):
                 for copy in self._copies(entity, kind):

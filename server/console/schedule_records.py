@@ -1,4 +1,4 @@
-"""What is kept of schedules and guards, and who is told of those that came to nothing."""
+"""Rows that are kept of schedules and guards, and news of those that came to nothing."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, Final
@@ -77,7 +77,7 @@ class ScheduleRecords:
 
 
 def row_of(item: Schedule | Guard) -> OperatedRow:
-    """What is kept of a schedule or guard."""
+    """The row that is kept of a schedule or guard."""
     part = GUARDS if isinstance(item, Guard) else SCHEDULES
     return OperatedRow(part, item.id, item.plain())
 

@@ -131,7 +131,7 @@ class MapFeed:
         return self._columns().radii_m
 
     def _columns(self) -> _Columns:
-        """What hardly ever changes, by row; made anew after somebody came or went."""
+        """The facts that hardly ever change, by row; made anew after somebody came or went."""
         if self._made is None:
             everybody = [self.avatars[who] for who in self.ids.tolist()]
             is_actor = np.array([each.actor is not None for each in everybody], dtype=np.bool_)

@@ -1,4 +1,4 @@
-"""Who is here, where they are, and who has left lately."""
+"""People who are here, their places, and those who have left lately."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -83,7 +83,7 @@ class PeopleHere:
         return found
 
     def details(self, person: int) -> dict[str, Any]:
-        """What operators are shown of a connected person beside the place and the name."""
+        """The facts of a connected person that operators are shown beside place and name."""
         session = self._sessions[person]
         return {
             "since_us": session.since_us,

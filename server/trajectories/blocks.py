@@ -77,7 +77,7 @@ def _unusual(values: ActorParameters) -> dict[str, float | int]:
 
 
 def _told(command: Any) -> tuple[str, Any]:
-    """What a command has changed: parameters by actor, or what actors do."""
+    """The changes of a command: parameters by actor, or what actors do."""
     actors = list(command.actors)
     match command:
         case SetParameters(values=values):
@@ -110,7 +110,7 @@ def _told(command: Any) -> tuple[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """What JSON does not know."""
+    """Values that JSON does not know."""
     if hasattr(value, "model_dump"):
         return value.model_dump(mode="json")
     return value.tolist() if hasattr(value, "tolist") else str(value)

@@ -33,7 +33,7 @@ def files_of(settings: ServerSettings, scene: Path | None, mesh: Path | None) ->
 
 
 def provenance_of(origin: Origin, zone: Zone, fps: float) -> dict[str, str]:
-    """What is written at the head of a file."""
+    """The head of a file."""
     told = {**software(), "command": origin.command, "world": zone.scene.name}
     for name, path in origin.files.items():
         told[name] = path.name

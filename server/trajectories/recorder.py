@@ -44,7 +44,7 @@ class Recorder:
         return self._zone.tick // self._sampler.every
 
     def head(self, origin: Origin) -> Head:
-        """What a file begins with."""
+        """The head of a file."""
         scene, fps = self._zone.scene, self._sampler.fps
         told = provenance_of(origin, self._zone, fps)
         return Head(told, fps, scene.bounds, walkable_wkt(scene))

@@ -59,7 +59,7 @@ class TrajectoryWriter:
         self.fault: Ended | None = None
         self.written = 0
         """Blocks that were written."""
-        # What is opened belongs to the thread that writes; here it is only tried.
+        # An open file belongs to the thread that writes; here it is only tried.
         open_stream(path, head).close()
         # A daemon, so that a disk that hangs does not keep the process from ending.
         self._thread = threading.Thread(target=self._run, name="trajectories", daemon=True)

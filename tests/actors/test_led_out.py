@@ -33,7 +33,7 @@ def shortest(away: float, across: float, goal: float) -> float:
 
 
 def most(least: float, radius_m: float) -> float:
-    """What a way over anchors that keeps its radius from the wall may be long."""
+    """The greatest length of a way over anchors that keeps its radius from the wall."""
     return 1.25 * (least + math.pi * radius_m) + 0.5
 
 

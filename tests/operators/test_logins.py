@@ -128,7 +128,7 @@ async def test_a_token_is_kept_and_a_wrong_one_is_not(
         assert token not in shown
         assert "12 hours" not in shown
         assert "actor-1" in await told("get")
-        # What stands in the environment goes before it.
+        # A token in the environment goes before it.
         monkeypatch.setenv("ESPLANADE_TOKEN", "esplanade_wrong")
         await told("get", code=1)
         monkeypatch.delenv("ESPLANADE_TOKEN")

@@ -88,7 +88,7 @@ class Visit:
         await self.page.get_by_role("button", name="Done", exact=True).click()
 
     async def findings(self) -> list[str]:
-        """What axe finds in the page as it is now."""
+        """The findings of axe in the page as it is now."""
         await self.page.evaluate(AXE.read_text())
         found = await self.page.evaluate("axe.run(document, {resultTypes: ['violations']})")
         return [

@@ -66,7 +66,7 @@ def test_the_lines_of_the_documentation_work_as_written(tmp_path: Path) -> None:
 
 
 def parts(told: str) -> tuple[str, Any, Any, str]:
-    """What each line of the script has printed; answers of the server have no end of line."""
+    """The output of each line of the script; answers of the server have no end of line."""
     decoder = json.JSONDecoder()
     ready, _, rest = told.partition("{")
     actors, end = decoder.raw_decode("{" + rest)

@@ -31,7 +31,7 @@ def block(tick: int, people: int = 3) -> Block:
 
 
 class Heard:
-    """What a writer says when it ends, waited for."""
+    """The last words of a writer, waited for."""
 
     def __init__(self) -> None:
         self.faults: list[Ended] = []

@@ -56,7 +56,7 @@ export function comparedPaths(trace: Trace): CostColumn[] {
   return columns;
 }
 
-/** What the greatest risk is, which has the darkest colour if it is no mere trifle. */
+/** The greatest risk, which has the darkest colour if it is no mere trifle. */
 function riskText(most: number): string {
   return most < 0.005 ? "next to none" : `at most ${most.toFixed(2)}`;
 }

@@ -54,7 +54,7 @@ export const CHOICES = {
   Record<keyof MapOptions, readonly (readonly [string | number, string])[]>
 >;
 
-/** What the values of a heat map are counted in. */
+/** The unit of the values of a heat map. */
 export const HEAT_UNITS: Readonly<Record<Exclude<MapOptions["heat"], "none">, string>> = {
   density: "a m²",
   speed: "m/s",

@@ -1,4 +1,4 @@
-/** What the operator wants to see on the map: kept in the browser, and asked of the server. */
+/** The parts of the map that the operator wants to see: kept in the browser, and asked of the server. */
 
 import type { AppContext } from "../context";
 import type { Stop } from "../state/signal";

@@ -1,4 +1,4 @@
-"""What operators draw on the map: who hears an announcement, where it is quiet, a guide's tour."""
+"""Drawings of operators on the map: areas of an announcement and of quiet, a guide's tour."""
 
 import re
 from typing import Any, Final

@@ -1,4 +1,4 @@
-"""What must not be passed over in silence: extensions, units, parts of archives."""
+"""Things that must not be passed over in silence: extensions, units, parts of archives."""
 
 import io
 import json

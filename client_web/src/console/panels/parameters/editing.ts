@@ -1,4 +1,4 @@
-/** What is being typed or dragged in the form of parameters, and what becomes of it in the draft. */
+/** Typing and dragging in the form of parameters, and what becomes of it in the draft. */
 
 import { fromSlider, type NumberField, parsed } from "../../models/fields";
 import type { ParameterWork } from "../../models/parameterwork";
@@ -12,7 +12,7 @@ export class Editing {
 
   constructor(private readonly changed: () => void) {}
 
-  /** What stands in the box of a parameter while somebody types in it. */
+  /** The text in the box of a parameter while somebody types in it. */
   typed(name: string): string | null {
     return this.typing?.name === name ? this.typing.text : null;
   }
@@ -34,7 +34,7 @@ export class Editing {
     work.touched();
   }
 
-  /** What the controls of a row do. */
+  /** The effects of the controls of a row. */
   events(
     work: ParameterWork,
     field: NumberField,

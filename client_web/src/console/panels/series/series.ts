@@ -53,7 +53,7 @@ class SeriesPanel extends CommandingPanel {
     const { live, state } = this.app;
     void this.prepare();
     this.hear("series", {}, (message: Figures) => {
-      // What seconds come to in a longer step, the server says once that step is over.
+      // The server tells the value of a longer step once that step is over.
       if (this.window.stepS === 1) {
         this.window.append(message.at_us, message.values);
         this.draw();
