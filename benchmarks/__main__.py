@@ -14,6 +14,7 @@ NAMES = (
     "server",
     "live",
     "social",
+    "doorways",
     "walking",
     "steps",
     "gallery",
