@@ -20,14 +20,19 @@ STAYS: Final = 4.0
 """Whoever has stood for a second is expected to stand for this many more."""
 GAIN_S: Final = 0.5
 """A way has to be better by this much before an actor takes it rather than the one it goes."""
-PERSON_ROOM_M: Final = 0.15
-"""Room that a way leaves to people who stand; the last check before a step keeps as much."""
+PERSON_ROOM_M: Final = 0.25
+"""Room that a way leaves to people who stand; through narrower gaps hardly anybody presses."""
 ACTOR_ROOM_M: Final = 0.05
 AROUND_M: Final = 1.5
 """A way beside somebody that is longer by no more than this is left to the search."""
-STALLED_S: Final = 2.0
+STALLED_S: Final = 1.5
 """An actor that has not got on for so long is led around whoever stands in its way at all."""
-LEAST_M: Final = 0.3
+STUCK_S: Final = 2.5
+"""For an actor that has not got on for so long the gaps beside those who stand near are shut."""
+NEAR_M: Final = 2.5
+WIDER_M: Final = 0.35
+WIDEST_M: Final = 0.75
+"""A gap is shut by so much more room to whoever stands beside it."""
 MOST_DETOURS: Final = 16
 """No more goals than this have a way around people at once; other actors wait."""
 
@@ -178,9 +183,9 @@ class Detours:
         """Give up places where nobody stands any more, and goals that nobody has."""
         if not self._known:
             return
-        there = {_disc(disc) for disc in standing.discs[standing.stood_s > 0.0]}
+        there = {_disc(disc)[:3] for disc in standing.discs[standing.stood_s > 0.0]}
         for key, detour in list(self._known.items()):
-            wanted = tuple(disc for disc in detour.wanted if disc in there)
+            wanted = tuple(disc for disc in detour.wanted if disc[:3] in there)
             if not wanted or not self._potentials.used(key):
                 for row in self._led(table, key):
                     self._return(table, row)
@@ -221,30 +226,44 @@ class Detours:
         key = self._key(table, row)
         if key is None:
             return
-        shut = self._shut_by(table, row, int(table.trips.own_rows[row]), discs)
-        found = {_disc(disc) for disc in discs[shut]}
+        trips, own_row = table.trips, int(table.trips.own_rows[row])
         detour = self._known.get(key)
+        discs = _as_known(discs, () if detour is None else detour.wanted)
+        shut = self._shut_by(table, row, own_row, discs, AROUND_M)
+        trips.shut[row] = shut.any()
+        if trips.stalled_s[row] >= STALLED_S and not shut.any():
+            shut = self._shut_by(table, row, own_row, discs, 0.0)
+        found = {_disc(disc) for disc in discs[shut]}
+        if trips.stalled_s[row] >= STUCK_S:
+            away = np.hypot(*(discs[:, :2] - table.agents.positions[row]).T)
+            near = (away <= NEAR_M) & (np.abs(discs[:, 2] - table.agents.heights[row]) < NEAR_M)
+            found |= {_wider(disc) for disc in discs[near]}
+            shut |= near
         if table.trips.detours[row] and detour is not None and self._ready(detour.row):
             others = np.array([_disc(disc) not in detour.shut for disc in discs], dtype=np.bool_)
             more = discs[others]
-            found |= {_disc(disc) for disc in more[self._shut_by(table, row, detour.row, more)]}
+            marks = self._shut_by(table, row, detour.row, more, AROUND_M)
+            found |= {_disc(disc) for disc in more[marks]}
         if found:
-            wanted = found if detour is None else found | set(detour.wanted)
+            wanted = _widest(found | (set() if detour is None else set(detour.wanted)))
             if detour is None and len(self._known) >= MOST_DETOURS:
                 self.refused += 1
             elif detour is None or wanted != set(detour.wanted):
                 self._want(key, tuple(sorted(wanted)))
-        table.trips.shut[row] = shut.any()
         self._weigh(table, row, STAYS * float(stood_s[shut].max()) if shut.any() else 0.0)
 
     def _shut_by(
-        self, table: AgentTable, row: int, slot: int, discs: NDArray[np.float64]
+        self,
+        table: AgentTable,
+        row: int,
+        slot: int,
+        discs: NDArray[np.float64],
+        around_m: float,
     ) -> NDArray[np.bool_]:
         agents = table.agents
         if self._ways is None:
             self._ways = ShutWays(len(self._grid.layered.floors))
         x, y = agents.positions[row].tolist()
-        stalled = table.trips.stalled_s[row] >= STALLED_S
         return self._ways.shut_by(
             self._grid.arrays,
             int(agents.bodies[row]),
@@ -253,7 +272,7 @@ class Detours:
             (x, y),
             discs,
             float(agents.parameters["radius_m"][row]),
-            0.0 if stalled else AROUND_M,
+            around_m,
         )
 
     def _weigh(self, table: AgentTable, row: int, waits_s: float) -> None:
@@ -305,6 +324,32 @@ class Detours:
         left_m = self._left_m(table, row, slot)
         if np.isfinite(left_m):
             trips.nearest_m[row] = left_m
+
+
+def _wider(disc: NDArray[np.float64]) -> Disc:
+    """The same place with so much room that no gap beside it is left; it is widened once."""
+    x, y, z, radius = _disc(disc)
+    return x, y, z, round(min(radius + WIDER_M, WIDEST_M), 2)
+
+
+def _widest(discs: set[Disc]) -> set[Disc]:
+    """Of discs around one place the widest."""
+    best: dict[tuple[float, ...], Disc] = {}
+    for disc in discs:
+        if disc[3] > best.get(disc[:3], disc)[3] or disc[:3] not in best:
+            best[disc[:3]] = disc
+    return set(best.values())
+
+
+def _as_known(discs: NDArray[np.float64], known: Sequence[Disc]) -> NDArray[np.float64]:
+    """Discs (K, 4) with the room that those of them have which are known."""
+    if not known:
+        return discs
+    rooms = {disc[:3]: disc[3] for disc in known}
+    found = discs.copy()
+    for k, disc in enumerate(discs):
+        found[k, 3] = max(rooms.get(_disc(disc)[:3], 0.0), found[k, 3])
+    return found
 
 
 def _disc(disc: NDArray[np.float64]) -> Disc:

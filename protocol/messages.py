@@ -343,9 +343,9 @@ class Plan(FromServer):
     """For how long the reason has been that."""
     blocker: Blocker | None
     """The blocker of an actor that does not walk on, where it can be told."""
-    outcome: Annotated[Outcome | int, Field(union_mode="left_to_right")] | None
+    outcome: Annotated[Outcome | int, Field(union_mode="left_to_right")] | None = None
     """How the trip ended; None while it goes on, and without a goal."""
-    in_the_way: Blocker | None
+    in_the_way: Blocker | None = None
     """The one for whom the trip did not end at the goal."""
 
 

@@ -84,7 +84,7 @@ def test_of_actors_with_one_goal_one_arrives_and_the_others_end_beside_it(count:
 def test_an_actor_stands_beside_a_person_at_its_goal_and_goes_in_when_that_one_leaves() -> None:
     nav = navigator(Scene.open_space((0.0, 0.0, 10.0, 10.0)))
     nav.add_actor("a", (2.0, 5.0), (7.0, 5.0), BODY)
-    for _ in range(60):
+    for _ in range(100):
         nav.observe({"p": (7.0, 5.0)})
         state = nav.tick()["a"]
     assert state.outcome is None
@@ -204,7 +204,9 @@ def test_reasons_are_true_and_every_outcome_is_confirmed_in_seeded_worlds(block:
                     if name != who and math.hypot(*other.velocity) < 0.3
                 ]
                 goal, near_m = goals[str(who)], BODY.goal_tolerance_m
-                possible += judge.leads(starts[str(who)], goal, near_m, bodies, ROOM_M + 0.05)
+                free = state.outcome is not Outcome.NEAR
+                room_m = ROOM_M + 0.1
+                possible += free and judge.leads(starts[str(who)], goal, near_m, bodies, room_m)
                 case = f"seed {seed}, {who}: {state}"
                 match state.outcome:
                     case Outcome.ARRIVED:
@@ -224,7 +226,7 @@ def test_reasons_are_true_and_every_outcome_is_confirmed_in_seeded_worlds(block:
                 break
         nav.close()
         assert ended == set(starts), f"seed {seed}: {set(starts) - ended} have no outcome"
-    assert arrived >= 0.8 * possible
+    assert arrived >= 0.95 * possible
 
 
 def people_at(place: Point) -> dict[str, tuple[float, float, float]]:
