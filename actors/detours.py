@@ -65,6 +65,8 @@ class Detours:
         self._potentials = potentials
         self._known: dict[GoalKey, _Detour] = {}
         self._ways: ShutWays | None = None
+        self._rooms: dict[tuple[GoalKey, tuple[Disc, ...]], NDArray[np.float64]] = {}
+        """Of this tick: discs with the room that they have on the ways to each goal."""
         self.refused = 0
         """Goals for which there was no room among `MOST_DETOURS`."""
 
@@ -89,7 +91,8 @@ class Detours:
         trips.look_in_s[going] -= tick_s
         due = going & (trips.look_in_s <= 0.0)
         if due.any() and seen.any():
-            discs, stood_s = standing.discs[seen], standing.stood_s[seen]
+            discs, stood_s = np.round(standing.discs[seen], 2), standing.stood_s[seen]
+            self._rooms.clear()
             due &= ~self._potentials.provisional(trips.own_rows)
             for row in np.flatnonzero(due).tolist():
                 trips.look_in_s[row] = LOOK_EVERY_S
@@ -228,7 +231,11 @@ class Detours:
             return
         trips, own_row = table.trips, int(table.trips.own_rows[row])
         detour = self._known.get(key)
-        discs = _as_known(discs, () if detour is None else detour.wanted)
+        if detour is not None:
+            known = key, detour.wanted
+            if known not in self._rooms:
+                self._rooms[known] = _as_known(discs, detour.wanted)
+            discs = self._rooms[known]
         shut = self._shut_by(table, row, own_row, discs, AROUND_M)
         trips.shut[row] = shut.any()
         if trips.stalled_s[row] >= STALLED_S and not shut.any():
@@ -240,8 +247,8 @@ class Detours:
             found |= {_wider(disc) for disc in discs[near]}
             shut |= near
         if table.trips.detours[row] and detour is not None and self._ready(detour.row):
-            others = np.array([_disc(disc) not in detour.shut for disc in discs], dtype=np.bool_)
-            more = discs[others]
+            shut_off = np.array(detour.shut)[:, :3]
+            more = discs[~(discs[:, None, :3] == shut_off).all(axis=2).any(axis=1)]
             marks = self._shut_by(table, row, detour.row, more, AROUND_M)
             found |= {_disc(disc) for disc in more[marks]}
         if found:
@@ -343,12 +350,10 @@ def _widest(discs: set[Disc]) -> set[Disc]:
 
 def _as_known(discs: NDArray[np.float64], known: Sequence[Disc]) -> NDArray[np.float64]:
     """Discs (K, 4) with the room that those of them have which are known."""
-    if not known:
-        return discs
     rooms = {disc[:3]: disc[3] for disc in known}
     found = discs.copy()
-    for k, disc in enumerate(discs):
-        found[k, 3] = max(rooms.get(_disc(disc)[:3], 0.0), found[k, 3])
+    for k, (x, y, z, room) in enumerate(discs.tolist()):
+        found[k, 3] = max(rooms.get((x, y, z), 0.0), room)
     return found
 
 

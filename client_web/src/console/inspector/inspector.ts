@@ -209,7 +209,12 @@ class InspectorPanel extends Panel {
           }${blocker ? html`: ${blockerText(blocker)}` : nothing}
           ${details?.held ? html` <span class="warn">held by an operator</span>` : nothing}
         </dd>
-        ${ended === null ? nothing : html`<dt>Trip</dt><dd>${ended}</dd>`}
+        ${
+          ended === null
+            ? nothing
+            : html`<dt>Trip</dt>
+                <dd>${ended}</dd>`
+        }
         <dt>Place</dt>
         <dd>${at ? at.map((value) => value.toFixed(1)).join(", ") : "not in the world"}</dd>
         <dt>Speed</dt>
