@@ -32,6 +32,7 @@ _SOURCES: Final = (
     "planning",
     "actors/locomotion",
     "evaluation/policies",
+    "files",
     "pedestrians/compiled",
     "server/net/compiled",
     "server/world/compiled",
