@@ -10,7 +10,7 @@ from esplanade.operators.parts import add_part
 CHANNELS = ("events", "changes", "contacts", "series")
 EVENT_KINDS = (
     *("join", "leave", "contact", "stop", "no_path", "door", "plan_failure", "late_tick"),
-    *("chat", "command", "mark", "report", "pace", "schedule"),
+    *("chat", "command", "mark", "report", "pace", "schedule", "trajectories"),
 )
 _KINDS = f"only events of these kinds: {', '.join(EVENT_KINDS)}"
 

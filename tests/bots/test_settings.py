@@ -37,6 +37,7 @@ def test_defaults() -> None:
         "fps": None,
         "unit": None,
         "scale": None,
+        "columns": None,
         "strict": False,
         "fail_if": (),
         "json_file": None,
