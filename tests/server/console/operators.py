@@ -1,5 +1,6 @@
 """Operators for tests: real servers, real tokens, requests as a script sends them."""
 
+import asyncio
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -38,7 +39,14 @@ class Operator:
 
 
 async def operator(server: Running, name: str, role: str) -> Operator:
-    """A new account of that role, and its token."""
+    """A new account of that role, and its token, once consoles know who is in the world.
+
+    A world that is paused from its beginning is not waited for.
+    """
+    for _ in range(50):
+        if server.live.map.tick > 0:
+            break
+        await asyncio.sleep(0.02)
     await server.kept.directory.add(MACHINE, name, role, None)
     token = await server.kept.tokens.add(MACHINE, name, "script")
     return Operator(server.private_port, token)
