@@ -11,7 +11,7 @@ from esplanade.planning.grid.clearances import centres_of
 from esplanade.planning.scene.bodies import MOST_BODIES
 from tests.naive.geometry import point_segment_distance
 from tests.planning.storeys import SLAB_FROM, STAIRS_FROM, box, grid_of, storeyed
-from tests.planning.worlds import UPPER_M, scaled
+from tests.planning.worlds import UPPER_M, scaled, slow_if_plain
 
 ADULT, CHILD = Body.adult(), Body.child()
 LOW_M = 1.5
@@ -181,6 +181,7 @@ def followed(potential, start, step_m=0.05, most_m=60.0):
 BELOW, ABOVE = (12.0, 6.0, 0.0), (12.0, 6.0, UPPER_M)
 
 
+@slow_if_plain
 @pytest.mark.parametrize(("start", "goal"), [(BELOW, ABOVE), (ABOVE, BELOW)])
 @pytest.mark.parametrize("body", [ADULT, CHILD], ids=["adult", "child"])
 def test_straight_above_is_as_far_as_over_the_stairs(house, start, goal, body) -> None:
@@ -209,6 +210,7 @@ def test_without_stairs_there_is_no_way_up() -> None:
     assert potential.distance([(9.0, 3.0)], [UPPER_M])[0] == pytest.approx(math.hypot(3.0, 3.0))
 
 
+@slow_if_plain
 def test_steps_too_high_for_a_child_are_no_way_for_it() -> None:
     scene = storeyed()
     steep = scene.stairs[0].model_copy(update={"steps": 9})
@@ -230,6 +232,7 @@ def test_the_way_of_a_child_leads_where_an_adult_has_to_go_around() -> None:
     assert ways[ADULT] > 2.0 * math.hypot(2.0, 6.0)
 
 
+@slow_if_plain
 def test_a_goal_above_and_one_below_are_two_potentials(house) -> None:
     above = Potential(house, (12.0, 6.0), UPPER_M, 0.25)
     below = Potential(house, (12.0, 6.0), 0.0, 0.25)
@@ -275,6 +278,7 @@ def test_a_closed_door_stops_who_is_on_its_floor(floor_m) -> None:
         grid.set_door("trapdoor", True)
 
 
+@slow_if_plain
 @pytest.mark.parametrize("floor_m", [0.0, UPPER_M], ids=["ground", "upper"])
 def test_what_a_door_will_change_can_be_derived_while_nothing_changes(floor_m) -> None:
     grid = LayeredGrid.from_scene(doored(floor_m=floor_m))
@@ -313,6 +317,7 @@ def test_a_change_that_was_prepared_for_another_grid_is_derived_anew() -> None:
     assert np.array_equal(grid.arrays.clearance, other.arrays.clearance)
 
 
+@slow_if_plain
 @pytest.mark.parametrize("floor_m", [0.0, UPPER_M], ids=["ground", "upper"])
 def test_what_a_door_changes_is_what_is_derived_anew(floor_m) -> None:
     grid = LayeredGrid.from_scene(doored(floor_m=floor_m))
@@ -351,6 +356,7 @@ def test_on_bare_ground_too() -> None:
     assert (anew < 0.0).any()
 
 
+@slow_if_plain
 def test_a_way_through_a_closed_door_leads_around_it() -> None:
     grid = LayeredGrid.from_scene(doored())
     start, goal = (10.0, 5.75), (14.0, 5.75)

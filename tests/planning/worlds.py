@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numba
 import numpy as np
+import pytest
 from hypothesis import settings
 from hypothesis import strategies as st
 from numpy.typing import ArrayLike, NDArray
@@ -32,6 +33,10 @@ STEP_S = 0.4
 SLICES = PlanModel().slices
 
 Line = tuple[tuple[float, float], tuple[float, float]]
+
+
+slow_if_plain = pytest.mark.skipif(not COMPILED, reason="too slow where kernels are not compiled")
+"""For tests whose kernels others run uncompiled too."""
 
 
 def scaled(compiled: int, plain: int) -> int:
