@@ -18,7 +18,12 @@ from esplanade.planning.ground._barrier_kernels import (
     height_to_climb,
     segment_barrier_distance,
 )
-from esplanade.planning.ground._geometry_kernels import LOW_ROOM_M, crosses, nearest_on_segment
+from esplanade.planning.ground._geometry_kernels import (
+    LOW_ROOM_M,
+    crosses,
+    nearest_on_segment,
+    point_segment_distance,
+)
 from esplanade.planning.ground.layered import TILE, LayeredArrays
 from esplanade.planning.traversal.tiles import CellBox
 
@@ -30,10 +35,11 @@ PARTS = 254
 _MOST_PARTS = 126
 _HALF_DIAGONAL = 0.7072
 """Of a cell, in cells."""
-_AIM_M = 0.02
+_AIM_M = 0.04
 """A push aims at this much more room than the radius."""
+_WITHIN_M = 1e-6
 _PUSHES = 12
-_HALVINGS = 10
+_HALVINGS = 8
 _ALONG_M = 0.03
 """Length of a move along the middle between two barriers."""
 _LEVEL_M = 1e-4
@@ -58,15 +64,11 @@ def anchor_of(
 
 
 @inlined
-def room_at(
+def two_nearest(
     near: NearBarriers, body: Measures, cell: int, floor: float, x: float, y: float
-) -> tuple[float, float, float]:
-    """Distance from a point to the nearest barrier in the list of a cell, and its nearest point.
-
-    Low obstacles, up to leg length, count as further away, so that the body's radius suffices as
-    distance from all. `floor` is the height that they are seen from.
-    """
-    best, bx, by = np.inf, x, y
+) -> tuple[float, float, float, float]:
+    """`room_at`, and the distance to the second nearest barrier, metres."""
+    best, second, bx, by = np.inf, np.inf, x, y
     entry = near.first[cell]
     while entry >= 0:
         barrier = near.barriers[near.entries[entry]["barrier"]]
@@ -80,7 +82,22 @@ def room_at(
         if climb <= body.leg_length_m + TOLERANCE_M:
             d += max(0.0, body.radius_m - LOW_ROOM_M)
         if d < best:
-            best, bx, by = d, qx, qy
+            best, second, bx, by = d, best, qx, qy
+        elif d < second:
+            second = d
+    return best, bx, by, second
+
+
+@inlined
+def room_at(
+    near: NearBarriers, body: Measures, cell: int, floor: float, x: float, y: float
+) -> tuple[float, float, float]:
+    """Distance from a point to the nearest barrier in the list of a cell, and its nearest point.
+
+    Low obstacles, up to leg length, count as further away, so that the body's radius suffices as
+    distance from all. `floor` is the height that they are seen from.
+    """
+    best, bx, by, _ = two_nearest(near, body, cell, floor, x, y)
     return best, bx, by
 
 
@@ -197,21 +214,52 @@ def place_anchors(
                         offsets[entry, 1] = 0
                         x = arrays.x0 + (i + 0.5) * arrays.cell_m
                         y = arrays.y0 + (j + 0.5) * arrays.cell_m
-                        room = room_at(near, body, cell, floor, x, y)[0]
+                        room, qx, qy, second = two_nearest(near, body, cell, floor, x, y)
                         rooms[cell] = min(room, near.reach_m)
                         if not enough - _HALF_DIAGONAL * arrays.cell_m <= room < body.radius_m:
                             continue
-                        px, py, _ = pushed(near, body, cell, floor, x, y)
-                        u = int(np.round((px - x) / part_m))
-                        v = int(np.round((py - y) / part_m))
-                        if max(abs(u), abs(v)) > _MOST_PARTS:
-                            continue  # that is the neighbour's place
+                        dx, dy = _push(near, body, cell, floor, x, y, room, qx, qy, second)
+                        far = max(abs(dx), abs(dy)) / (_MOST_PARTS * part_m)
+                        if far > 1.0:  # it stays in its cell
+                            dx /= far
+                            dy /= far
+                        u, v = int(np.round(dx / part_m)), int(np.round(dy / part_m))
                         px, py = x + u * part_m, y + v * part_m
                         there = room_at(near, body, cell, floor, px, py)[0]
                         if there >= enough and there > room:
                             offsets[entry, 0] = u
                             offsets[entry, 1] = v
                             rooms[cell] = min(there, near.reach_m - np.hypot(px - x, py - y))
+
+
+@inlined
+def _push(
+    near: NearBarriers,
+    body: Measures,
+    cell: int,
+    floor: float,
+    x: float,
+    y: float,
+    room: float,
+    qx: float,
+    qy: float,
+    second: float,
+) -> tuple[float, float]:
+    """`pushed` as a displacement; cheap where only one barrier, nearest at (qx, qy), counts.
+
+    `room` is the distance from it, `second` that from the next.
+    """
+    away = body.radius_m + _AIM_M - room
+    apart = np.hypot(x - qx, y - qy)
+    if apart > 1e-6:
+        dx, dy = away * (x - qx) / apart, away * (y - qy) / apart
+        if (
+            second - away >= room + away
+            or room_at(near, body, cell, floor, x + dx, y + dy)[0] >= room + away - _WITHIN_M
+        ):
+            return dx, dy
+    px, py, _ = pushed(near, body, cell, floor, x, y)
+    return px - x, py - y
 
 
 @inlined
@@ -226,35 +274,55 @@ def way_through(
     bx: float,
     by: float,
     aside: float,
+    fits: bool,
+    but: int,
 ) -> int:
     """Whether a body can go straight from a to b, as far as the list of one cell tells.
 
     Barriers may not be crossed, seen from the `lowest` floor, and distance is kept from what is an
     obstacle even from the `highest` one: the other end of the way sees to its own. BLOCKED means
-    that a barrier is crossed whose ends are further than `aside` from the middle.
+    that a barrier is crossed whose ends are further than `aside` from the middle. With `fits` both
+    ends are known to be far enough from all; what the list of the cell `but` has is left out.
     """
     length = np.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay))
     found = CLEAR
     entry = near.first[cell]
     while entry >= 0:
-        barrier = near.barriers[near.entries[entry]["barrier"]]
+        row = near.entries[entry]["barrier"]
+        barrier = near.barriers[row]
         entry = near.entries[entry]["next"]
-        if height_to_climb(barrier, lowest, highest, body.height_m) <= body.step_on_m + TOLERANCE_M:
+        climb = height_to_climb(barrier, lowest, highest, body.height_m)
+        if climb <= body.step_on_m + TOLERANCE_M:
             continue
-        climb = height_to_climb(barrier, highest, highest, body.height_m)
+        if lowest < highest:
+            climb = height_to_climb(barrier, highest, highest, body.height_m)
         need = 0.0
         if climb > body.leg_length_m + TOLERANCE_M:
             need = body.radius_m - SLACK_M
         elif climb > body.step_on_m + TOLERANCE_M:
             need = min(body.radius_m, LOW_ROOM_M) - SLACK_M
         x0, y0, x1, y1 = barrier["x0"], barrier["y0"], barrier["x1"], barrier["y1"]
+        dx, dy = x1 - x0, y1 - y0
+        left_a = dx * (ay - y0) - dy * (ax - x0)
+        left_b = dx * (by - y0) - dy * (bx - x0)
+        least = min(abs(left_a), abs(left_b))
+        if left_a * left_b > 0.0 and least * least >= need * need * (dx * dx + dy * dy):
+            continue  # a and b are far enough from its line, on the same side
         if nearest_on_segment(ax, ay, x0, y0, x1, y1)[0] > need + length:
+            continue
+        if but >= 0 and is_listed(near, but, row):
             continue
         if crosses(barrier, ax, ay, bx, by):
             mx, my = 0.5 * (ax + bx), 0.5 * (ay + by)
             if min(np.hypot(x0 - mx, y0 - my), np.hypot(x1 - mx, y1 - my)) > aside:
                 return BLOCKED
             found = BARRED
+        elif fits:
+            if (
+                point_segment_distance(x0, y0, ax, ay, bx, by) < need
+                or point_segment_distance(x1, y1, ax, ay, bx, by) < need
+            ):
+                found = BARRED
         elif segment_barrier_distance(barrier, ax, ay, bx, by) < need:
             found = BARRED
     return found
@@ -273,7 +341,36 @@ def is_way_clear(
     by: float,
 ) -> bool:
     """Whether a body can go straight from a to b, as far as the list of one cell tells."""
-    return bool(way_through(near, body, cell, lowest, highest, ax, ay, bx, by, 0.0) == CLEAR)
+    return bool(
+        way_through(near, body, cell, lowest, highest, ax, ay, bx, by, 0.0, False, -1) == CLEAR
+    )
+
+
+@inlined
+def _straight_between(
+    arrays: LayeredArrays,
+    near: NearBarriers,
+    body: Measures,
+    offsets: NDArray[np.int8],
+    first: int,
+    second: int,
+    fit: bool,
+) -> int:
+    """Whether a body gets straight from the anchor of a cell to that of a neighbour.
+
+    `fit` tells that the body is known to fit at both.
+    """
+    a, b = float(arrays.floors[first]), float(arrays.floors[second])
+    lowest, highest = min(a, b), max(a, b)
+    ax, ay = anchor_of(arrays, near.first, offsets, first)
+    bx, by = anchor_of(arrays, near.first, offsets, second)
+    aside = max(arrays.cell_m, 0.5 * np.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay)))
+    fits = fit and highest - lowest < _LEVEL_M
+    found = way_through(near, body, first, lowest, highest, ax, ay, bx, by, aside, fits, -1)
+    if found != BLOCKED:
+        then = way_through(near, body, second, lowest, highest, ax, ay, bx, by, aside, fits, first)
+        found = max(found, then)
+    return found
 
 
 @kernel
@@ -293,29 +390,102 @@ def bend_between(
     if near.first[one] < 0 and near.first[two] < 0:
         return 1, 0.0, 0.0
     first, second = min(one, two), max(one, two)
-    a, b = float(arrays.floors[first]), float(arrays.floors[second])
-    lowest, highest = min(a, b), max(a, b)
-    ax, ay = anchor_of(arrays, near.first, offsets, first)
-    bx, by = anchor_of(arrays, near.first, offsets, second)
-    aside = max(arrays.cell_m, 0.5 * np.hypot(bx - ax, by - ay))
-    found = way_through(near, body, first, lowest, highest, ax, ay, bx, by, aside)
-    if found != BLOCKED:
-        found = max(found, way_through(near, body, second, lowest, highest, ax, ay, bx, by, aside))
+    found = _straight_between(arrays, near, body, offsets, first, second, False)
     if found == CLEAR:
         return 1, 0.0, 0.0
     if found == BLOCKED:
         return 0, 0.0, 0.0
+    leads, x, y = _bend_past(arrays, near, body, offsets, first, second)
+    return 2 if leads else 0, x, y
+
+
+@kernel
+def _bend_past(
+    arrays: LayeredArrays,
+    near: NearBarriers,
+    body: Measures,
+    offsets: NDArray[np.int8],
+    first: int,
+    second: int,
+) -> tuple[bool, float, float]:
+    """Whether one bend leads past barriers that are in the straight way between two anchors."""
+    a, b = float(arrays.floors[first]), float(arrays.floors[second])
+    lowest, highest = min(a, b), max(a, b)
+    ax, ay = anchor_of(arrays, near.first, offsets, first)
+    bx, by = anchor_of(arrays, near.first, offsets, second)
     mx, my = 0.5 * (ax + bx), 0.5 * (ay + by)
-    px, py, room = pushed(near, body, first, highest, mx, my)
-    if room < body.radius_m - SLACK_M or np.hypot(px - mx, py - my) > arrays.cell_m:
-        return 0, 0.0, 0.0
-    for cell in (first, second):
+    if not (
+        _has_two(near, body, first, lowest, mx, my) or _has_two(near, body, second, lowest, mx, my)
+    ):
+        return False, 0.0, 0.0  # it is open there, and other steps lead around the end
+    cells = (first, second)
+    heights = (lowest, highest)
+    ends = (ax, ay, bx, by)
+    leads, px, py = _bend_from(arrays, near, body, cells, heights, ends, mx, my)
+    if leads:
+        return True, px, py
+    # Past the end of what bars the way there may be a gap, such as a door beside its post.
+    for cell in cells:
+        entry = near.first[cell]
+        while entry >= 0:
+            row = near.entries[entry]["barrier"]
+            barrier = near.barriers[row]
+            entry = near.entries[entry]["next"]
+            climb = height_to_climb(barrier, lowest, highest, body.height_m)
+            if climb <= body.step_on_m + TOLERANCE_M:
+                continue
+            x0, y0, x1, y1 = barrier["x0"], barrier["y0"], barrier["x1"], barrier["y1"]
+            if np.hypot(x1 - mx, y1 - my) < np.hypot(x0 - mx, y0 - my):
+                x0, y0, x1, y1 = x1, y1, x0, y0
+            long = np.hypot(x1 - x0, y1 - y0)
+            if long < 1e-6 or point_segment_distance(x0, y0, ax, ay, bx, by) > body.radius_m:
+                continue
+            if cell == second and is_listed(near, first, row):
+                continue
+            part = body.radius_m / long
+            sx, sy = x0 + part * (x0 - x1), y0 + part * (y0 - y1)
+            if room_at(near, body, first, highest, sx, sy)[0] >= body.radius_m - _WITHIN_M:
+                continue  # it is open there, and other steps lead around the end
+            leads, px, py = _bend_from(arrays, near, body, cells, heights, ends, sx, sy)
+            if leads:
+                return True, px, py
+    return False, 0.0, 0.0
+
+
+@inlined
+def _has_two(
+    near: NearBarriers, body: Measures, cell: int, floor: float, x: float, y: float
+) -> bool:
+    """Whether the list of a cell has more than one barrier that stops a body."""
+    return bool(two_nearest(near, body, cell, floor, x, y)[3] < np.inf)
+
+
+@inlined
+def _bend_from(
+    arrays: LayeredArrays,
+    near: NearBarriers,
+    body: Measures,
+    cells: tuple[int, int],
+    heights: tuple[float, float],
+    ends: tuple[float, float, float, float],
+    x: float,
+    y: float,
+) -> tuple[bool, float, float]:
+    """Whether a body gets from one end to the other by the point that (x, y) is pushed to."""
+    lowest, highest = heights
+    ax, ay, bx, by = ends
+    px, py, room = pushed(near, body, cells[0], highest, x, y)
+    if room < body.radius_m - SLACK_M:
+        return False, px, py
+    if np.hypot(px - 0.5 * (ax + bx), py - 0.5 * (ay + by)) > arrays.cell_m:
+        return False, px, py
+    for cell in cells:
         if not (
             is_way_clear(near, body, cell, lowest, highest, ax, ay, px, py)
             and is_way_clear(near, body, cell, lowest, highest, px, py, bx, by)
         ):
-            return 0, 0.0, 0.0
-    return 2, px, py
+            return False, px, py
+    return True, px, py
 
 
 @inlined
@@ -336,12 +506,20 @@ def leads_on(
     if near.first[one] < 0 and near.first[two] < 0:
         return True
     enough = body.radius_m - SLACK_M
-    if min(rooms[one], rooms[two]) < enough:
+    least = min(rooms[one], rooms[two])
+    if least < enough:
         return False
-    both = rooms[one] + rooms[two] - 2.0 * enough
-    if both > arrays.cell_m and abs(arrays.floors[one] - arrays.floors[two]) < _LEVEL_M:
-        ax, ay = anchor_of(arrays, near.first, offsets, one)
-        bx, by = anchor_of(arrays, near.first, offsets, two)
-        if both >= np.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay)):
-            return True
-    return bend_between(arrays, near, body, offsets, one, two)[0] > 0
+    if abs(arrays.floors[one] - arrays.floors[two]) < _LEVEL_M:
+        if least >= enough + _HALF_DIAGONAL * arrays.cell_m:
+            return True  # neither anchor is off its centre
+        both = rooms[one] + rooms[two] - 2.0 * enough
+        if both > arrays.cell_m:
+            ax, ay = anchor_of(arrays, near.first, offsets, one)
+            bx, by = anchor_of(arrays, near.first, offsets, two)
+            if both >= np.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay)):
+                return True
+    first, second = min(one, two), max(one, two)
+    found = _straight_between(arrays, near, body, offsets, first, second, True)
+    if found == BARRED:
+        return bool(_bend_past(arrays, near, body, offsets, first, second)[0])
+    return bool(found == CLEAR)
