@@ -5,6 +5,7 @@ from esplanade.actors.behaviour import Behaviour, GoTo, Guide, Idle, Patrol, Per
 from esplanade.actors.behaviour_spec import BehaviourSpec
 from esplanade.actors.explanation import Explanation
 from esplanade.actors.navigator import Navigator
+from esplanade.actors.outcomes import InTheWay, Outcome
 from esplanade.actors.overrides import Overrides, Scope
 from esplanade.actors.parameter_records import ParameterError, ParameterFault
 from esplanade.actors.parameters import ActorParameters
@@ -23,9 +24,11 @@ __all__ = [
     "GoTo",
     "Guide",
     "Idle",
+    "InTheWay",
     "Navigator",
     "Newcomer",
     "ObservedPeople",
+    "Outcome",
     "Overrides",
     "ParameterError",
     "ParameterFault",

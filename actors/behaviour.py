@@ -21,6 +21,7 @@ from esplanade.actors.memory import (
     PLACE,
     Memory,
 )
+from esplanade.actors.outcomes import Outcome
 from esplanade.actors.sights import sight_at
 from esplanade.planning import Body, LayeredGrid, Scene
 from esplanade.planning.scene.heights import SAME_FLOOR_M
@@ -29,6 +30,8 @@ Goal = tuple[float, float, float]
 """x, y and the height of the floor, metres."""
 Target = str | Goal
 """A place's name or a point."""
+AGAIN_AFTER_S = 10.0
+"""An actor that had to stay near its goal tries again after so long."""
 BehaviourName = Literal["go_to", "wander", "patrol", "guide", "follow", "idle"]
 
 
@@ -40,9 +43,9 @@ class Perception:
     position: tuple[float, float]
     z_m: float
     arrived: bool
-    """The goal given last has been reached."""
+    """The goal given last has been reached, as nearly as whoever is there allows."""
     stuck: bool
-    """No path leads to the goal given last."""
+    """No way leads to the goal given last, or somebody blocks it."""
     people: Mapping[Hashable, Goal]
     scene: Scene
     grid: LayeredGrid
@@ -50,6 +53,8 @@ class Perception:
     rng: np.random.Generator
     actor_at: Callable[[str], Goal | None] = lambda _: None
     """Tells where an actor is, by its id; None for one that is not there."""
+    outcome: Outcome | None = None
+    """How the trip to the goal given last ended; None while it goes on."""
 
     def resolve(self, target: Target) -> Goal:
         """The point that a target means; KeyError for a place that the scene does not have."""
@@ -71,8 +76,11 @@ class Behaviour(ABC):
     ask_at_s: float = -math.inf
     """Time of the world, in seconds, when `update` wants to be called again; by default at once.
 
-    It is called before that when the actor has arrived, and while no path leads to its goal.
+    It is called before that when the actor's trip has ended, however that was.
     """
+    sets_out: bool = False
+    """Whether the goal of the last update is one to set out for, even if it is that of a trip that
+    has ended elsewhere."""
 
     @abstractmethod
     def update(self, view: Perception) -> Goal | None:
@@ -132,13 +140,15 @@ class Idle(Behaviour):
 
 
 class GoTo(Behaviour):
-    """Go to one place or point and stay there."""
+    """Go to one place or point and stay there; if somebody was in the way, try again later."""
 
     name = "go_to"
+    memory: ClassVar[Memory] = {"_again_at": PERHAPS_MOMENT}
 
     def __init__(self, target: Target, *, strict: bool = False) -> None:
         self._target = target
         self.strict = strict
+        self._again_at: float | None = None
 
     def targets(self) -> Sequence[Target]:
         """The one target."""
@@ -146,7 +156,15 @@ class GoTo(Behaviour):
 
     def update(self, view: Perception) -> Goal | None:
         """Always the same goal."""
-        self.ask_at_s = math.inf
+        self.ask_at_s, self.sets_out = math.inf, False
+        if view.outcome not in (Outcome.NEAR, Outcome.BLOCKED):
+            self._again_at = None
+        elif self._again_at is None:
+            self._again_at = self.ask_at_s = view.time_s + AGAIN_AFTER_S
+        elif view.time_s >= self._again_at:
+            self._again_at, self.sets_out = None, True
+        else:
+            self.ask_at_s = self._again_at
         return view.resolve(self._target)
 
 
@@ -163,7 +181,7 @@ class Wander(Behaviour):
 
     def update(self, view: Perception) -> Goal | None:
         """The place being walked to, or rested at."""
-        self.ask_at_s = math.inf
+        self.ask_at_s, self.sets_out = math.inf, False
         if self._goal is None or view.stuck:
             self._set_out(view)
         elif view.arrived:
@@ -179,7 +197,8 @@ class Wander(Behaviour):
 
     def _set_out(self, view: Perception) -> None:
         self._goal = self._choose(view)
-        self.ask_at_s = -math.inf
+        self._rest_until = None
+        self.ask_at_s, self.sets_out = -math.inf, True
 
     def _choose(self, view: Perception) -> Goal | None:
         here = np.array(view.position)
@@ -236,7 +255,7 @@ class Patrol(Behaviour):
 
     def update(self, view: Perception) -> Goal | None:
         """The stop being walked to, or rested at."""
-        self.ask_at_s = math.inf
+        self.ask_at_s, self.sets_out = math.inf, False
         if view.stuck:
             self._advance()
         elif view.arrived:
@@ -251,7 +270,7 @@ class Patrol(Behaviour):
     def _advance(self) -> None:
         self._rest_until = None
         self._next = (self._next + 1) % len(self._stops)
-        self.ask_at_s = -math.inf
+        self.ask_at_s, self.sets_out = -math.inf, True
 
 
 class Guide(Behaviour):
@@ -365,10 +384,11 @@ class Guide(Behaviour):
                 behind = set()
             if not behind:
                 self._waiting_since = None
-        self._explains = False
+        self._explains = self.sets_out = False
         if self._waiting_since is not None:
             return None
         stop = self._tour.update(view)
+        self.sets_out = self._tour.sets_out
         if stop is not None and self._tour.resting and self._followers:
             self._explains = True
             if stop != self._stop:

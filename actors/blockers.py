@@ -8,18 +8,15 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from esplanade.actors.bodies_near import nearest_on_way
 from esplanade.actors.navigator import Navigator
 from esplanade.actors.people import ObservedPeople
 from esplanade.actors.state import Reason
-from esplanade.planning.scene.heights import SAME_FLOOR_M
 
 Place = tuple[float, float, float]
 WITHIN_M: Final = 2.5
 """Nobody further away is named."""
-ASIDE_M: Final = 0.3
-"""Whoever stands beside the way by no more than this and both radii stands in it."""
 WALL_M: Final = 0.1
 _HELD: Final = frozenset({Reason.GIVING_WAY, Reason.WAITING, Reason.REPLANNING, Reason.NO_PATH})
 
@@ -53,45 +50,19 @@ def find_blocker(
         return Blocker("route")
     if reason == Reason.NO_PATH:
         return _door(navigator, row) or Blocker("wall")
-    here = np.array([*agents.positions[row], agents.heights[row]])
     ahead = None
     if slot >= 0 and cell >= 0:
         waypoint = navigator.potentials.arrays[slot, cell, 1:3].astype(np.float64)
-        ahead = waypoint - here[:2] if np.isfinite(waypoint).all() else None
-    radius_m = float(agents.parameters["radius_m"][row])
+        ahead = waypoint - agents.positions[row] if np.isfinite(waypoint).all() else None
     known = people if isinstance(people, ObservedPeople) else None
     ids: Sequence[Hashable] = list(people) if known is None else known.ids.tolist()
     places = np.array(list(people.values())) if known is None else known.places
-    others = np.concatenate(
-        [places.reshape(-1, 3), np.column_stack([agents.positions, agents.heights])]
-    )
-    bodies_m = radius_m + np.concatenate(
-        [np.full(len(ids), navigator.person_radius_m), agents.parameters["radius_m"]]
-    )
-    offsets = others[:, :2] - here[:2]
-    away_m = np.hypot(offsets[:, 0], offsets[:, 1]) - bodies_m
-    away_m[len(ids) + row] = np.inf
-    near = (away_m <= WITHIN_M) & (np.abs(others[:, 2] - here[2]) < SAME_FLOOR_M)
-    near &= _in_the_way(offsets, ahead, bodies_m)
-    if not near.any():
+    bodies = navigator.bodies(ids, places.reshape(-1, 3))
+    nearest = nearest_on_way(bodies, len(ids) + row, ahead, WITHIN_M)
+    if nearest is None:
         return _wall(navigator, row)
-    first = int(np.where(near, away_m, np.inf).argmin())
-    rounded_m = round(float(away_m[first]), 3)
-    if first < len(ids):
-        return Blocker("person", ids[first], rounded_m)
-    return Blocker("actor", table.ids[first - len(ids)], rounded_m)
-
-
-def _in_the_way(
-    offsets: NDArray[np.float64], ahead: NDArray[np.float64] | None, bodies_m: NDArray[np.float64]
-) -> NDArray[np.bool_]:
-    """Whether others at offsets (N, 2) are on the way, a line ahead; all of them without a way."""
-    if ahead is None or not (length := float(np.hypot(*ahead))):
-        return np.ones(len(offsets), dtype=np.bool_)
-    along = offsets @ ahead / length
-    aside = np.abs(offsets[:, 0] * ahead[1] - offsets[:, 1] * ahead[0]) / length
-    found: NDArray[np.bool_] = (along > -bodies_m) & (aside <= bodies_m + ASIDE_M)
-    return found
+    kind, who = bodies.who(nearest[0])
+    return Blocker(kind, who, round(nearest[1], 3))
 
 
 def _door(navigator: Navigator, row: int) -> Blocker | None:

@@ -53,7 +53,7 @@ class DerivedRows:
 
     def give_back(self, table: AgentTable) -> None:
         """Give back all rows of all actors."""
-        for slot in table.agents.potential_rows.tolist():
+        for slot in table.trips.own_rows.tolist():
             self._potentials.release(slot)
         self.release(table.agents.parameters)
 
@@ -64,9 +64,8 @@ class DerivedRows:
         agents.contacts[:] = self.contacts(agents.parameters)
         for row in range(len(table)):
             target = table.wanted(row)
-            agents.potential_rows[row] = (
-                -1 if target is None else self._potential(table, row, target)
-            )
+            slot = -1 if target is None else self._potential(table, row, target)
+            table.trips.own_rows[row] = agents.potential_rows[row] = slot
 
     def head_for(self, table: AgentTable, row: int, target: Goal | None) -> None:
         """Let an actor go by the potential of a goal, or by none."""
@@ -161,10 +160,11 @@ class DerivedRows:
 
     def _go_by(self, table: AgentTable, row: int, slot: int) -> None:
         """Let an actor go by a potential that was taken for it, and begin anew."""
-        agents = table.agents
-        old = int(agents.potential_rows[row])
-        agents.potential_rows[row] = slot
-        agents.known[row] = agents.known[row] and slot == old
+        agents, trips = table.agents, table.trips
+        old = int(trips.own_rows[row])
+        agents.known[row] = agents.known[row] and slot == agents.potential_rows[row]
+        trips.own_rows[row] = agents.potential_rows[row] = slot
+        trips.detours[row] = False
         agents.left_m[row] = np.nan
         agents.behind_s[row] = 0.0
         agents.passages[row] = 0.0

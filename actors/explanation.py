@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from esplanade.actors.behaviour import BehaviourName, Goal
 from esplanade.actors.blockers import Blocker
+from esplanade.actors.outcomes import InTheWay, Outcome
 from esplanade.actors.state import Reason
 from esplanade.planning import MovedEnd
 
@@ -28,5 +29,9 @@ class Explanation:
     """For how long the reason has been that, seconds."""
     blocker: Blocker | None = None
     """The blocker of the actor, as far as that can be told."""
+    outcome: Outcome | None = None
+    """How the trip ended; None while it goes on, and without a goal."""
+    in_the_way: InTheWay | None = None
+    """The person, actor, door or wall for which the trip did not end at the goal."""
     moved: MovedEnd | None = None
     """How the goal was moved to where the body fits; refused if the goal is strict."""

@@ -30,7 +30,7 @@ class Follow(Behaviour):
 
     def update(self, view: Perception) -> Goal | None:
         """Where the other one is, or was a moment ago; None when it is near, or nowhere."""
-        self.ask_at_s = view.time_s + LOOK_S
+        self.ask_at_s, self.sets_out = view.time_s + LOOK_S, False
         where = view.people.get(self._person) if self._actor is None else view.actor_at(self._actor)
         if where is None:
             self._goal = None
@@ -41,7 +41,7 @@ class Follow(Behaviour):
         if away_m <= self._distance_m * (1.25 if self._goal is None else 1.0):
             self._goal = None
         elif self._goal is None or view.stuck or self._strayed_m(where) > self._slack_m(away_m):
-            self._goal = where
+            self._goal, self.sets_out = where, True
         return self._goal
 
     def _strayed_m(self, where: Goal) -> float:

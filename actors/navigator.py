@@ -5,20 +5,25 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from functools import lru_cache
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from esplanade.actors.bodies_near import Bodies
 from esplanade.actors.derived_rows import DerivedRows
+from esplanade.actors.detours import ACTOR_ROOM_M, LOOK_EVERY_S, PERSON_ROOM_M, Detours, Standing
+from esplanade.actors.outcomes import InTheWay, Kind, Outcome
 from esplanade.actors.parameter_records import with_values
 from esplanade.actors.parameters import ActorParameters, body_of
 from esplanade.actors.people import ObservedPeople, People
 from esplanade.actors.potential_pool import Goal, GoalKey, PotentialPool, goal_key
 from esplanade.actors.saved_agents import check_saved
+from esplanade.actors.standing import StandingPeople, stand_on
 from esplanade.actors.state import ActorState, Reason
 from esplanade.actors.traces import Decided, Trace
 from esplanade.actors.tracing import Tracing
+from esplanade.actors.trip_ends import TripEnds
 from esplanade.planning import (
     AgentTable,
     Batch,
@@ -39,6 +44,8 @@ from esplanade.planning.scene.heights import SAME_FLOOR_M
 Point = tuple[float, float]
 
 _REASONS = tuple(Reason)
+_TURNS = 8
+"""Actors look for people in their way by turns, so many of them."""
 
 
 class Navigator:
@@ -76,6 +83,10 @@ class Navigator:
         self.potentials = PotentialPool(grid)
         """Of the goals that actors are on their way to."""
         self._rows = DerivedRows(grid, self._batch.field, self.potentials)
+        self.detours = Detours(grid, self.potentials)
+        """Ways around people who have stood in a narrow place for a while."""
+        self._ends = TripEnds(grid, self.potentials)
+        self._standing = StandingPeople()
         self.table = AgentTable(self.plan.slices)
         """Every actor's state; read it freely between two ticks."""
         self.tracing = Tracing(self._batch, self.plan, tick_s)
@@ -156,10 +167,11 @@ class Navigator:
 
     def remove_actors(self, ids: Sequence[Hashable]) -> None:
         """Take actors out; KeyError when one is not there, and nothing is changed then."""
-        agents, rows = self.table.agents, [self.table.row(each) for each in dict.fromkeys(ids)]
+        rows = [self.table.row(each) for each in dict.fromkeys(ids)]
+        agents, own_rows = self.table.agents, self.table.trips.own_rows
         self.table.remove(list(dict.fromkeys(ids)))
         for row in rows:
-            self.potentials.release(int(agents.potential_rows[row]))
+            self.potentials.release(int(own_rows[row]))
         self._rows.release(agents.parameters[rows])
         self._rank()
 
@@ -186,8 +198,17 @@ class Navigator:
         if target is None:
             trips.moved_m[row], trips.moved_why[row] = 0.0, 0
         trips.wanted[row] = np.nan if target is None else target
-        trips.arrived[row] = False
-        trips.no_path_s[row] = 0.0
+        turn = int(self.table.agents.ranks[row]) % _TURNS
+        trips.look_in_s[row], trips.shut[row] = LOOK_EVERY_S * turn / _TURNS, False
+        self.begin_trip(actor_id)
+
+    def begin_trip(self, actor_id: Hashable) -> None:
+        """Let an actor's trip to the goal that it has begin anew, without an outcome."""
+        row, agents, trips = self.table.row(actor_id), self.table.agents, self.table.trips
+        trips.outcomes[row], trips.nearest_m[row] = 0, np.nan
+        trips.stalled_s[row] = trips.queued_s[row] = trips.no_path_s[row] = 0.0
+        agents.waits[row], agents.cautions[row] = False, 1.0
+        self.table.in_the_way.pop(actor_id, None)
 
     def moved(self, actor_id: Hashable) -> MovedEnd | None:
         """How an actor's goal was moved, or would be if it is strict; None if by at most 0.25 m."""
@@ -312,13 +333,14 @@ class Navigator:
 
     def undo_point(self) -> Callable[[], None]:
         """Return a call that puts all actors back, if a tick or a change fails half-way."""
-        restore = self.table.undo_point()
+        restore, around = self.table.undo_point(), self.detours.undo_point()
 
         def undo() -> None:
             self._rows.give_back(self.table)
             restore()
             self.tracing.forget()
             self._rows.take_all(self.table)
+            self.detours.put_back(self.table, around)
             self._rank()
 
         return undo
@@ -338,6 +360,18 @@ class Navigator:
         """An actor's parameters."""
         return ActorParameters.of_row(self.table.agents.parameters[self.table.row(actor_id)])
 
+    def save(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+        """The table as `AgentTable.save` gives it, with where people stood and ways around them.
+
+        Raises
+        ------
+        TypeError
+            As of `AgentTable.save`.
+        """
+        header, arrays = self.table.save()
+        standing, around = self._standing.save(), self.detours.save(self.table)
+        return {**header, "standing": standing, "detours": around}, arrays
+
     def load(self, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> None:
         """Take the actors of a saved table (`AgentTable.save`) in the place of those here.
 
@@ -353,10 +387,20 @@ class Navigator:
                 f"this zone {self.plan.slices}"
             )
         check_saved(table, self.grid)
+        standing = StandingPeople()
+        try:
+            standing.load(header.get("standing", ()))
+        except (TypeError, ValueError, IndexError) as error:
+            raise SavedAgentsError(f"where people stood cannot be read: {error}") from error
         self._rows.give_back(self.table)
-        self.table = table
+        self.table, self._standing = table, standing
         self.tracing.forget()
         self._rows.take_all(table)
+        try:
+            self.detours.load(table, header.get("detours", ()))
+        except (TypeError, ValueError, IndexError) as error:
+            self.detours.clear()
+            raise SavedAgentsError(f"ways around people cannot be read: {error}") from error
         self._rank()
 
     # --- ticks ---------------------------------------------------------------------------
@@ -387,8 +431,43 @@ class Navigator:
             else:
                 self.tracing.forget()
             self._batch.tick(agents, self.potentials.arrays, self._prediction, self.tick_s)
-            self._batch.settle(self.tick_s)
+            self._batch.settle(self._prediction, self.tick_s)
             self._wait_for_potentials()
+            self._end_trips()
+
+    def bodies(self, people: Sequence[Hashable], places: NDArray[np.float64]) -> Bodies:
+        """The bodies of people at places (P, 3), and of all actors."""
+        agents = self.table.agents
+        actors = np.column_stack([agents.positions, agents.heights])
+        radii = agents.parameters["radius_m"]
+        return Bodies(
+            np.concatenate([places, actors]),
+            np.concatenate([np.full(len(people), self.person_radius_m), radii]),
+            people,
+            self.table.ids,
+        )
+
+    def _end_trips(self) -> None:
+        """Keep account of trips, of who stands where, and of ways around those who do."""
+        agents, trips, people = self.table.agents, self.table.trips, self._standing
+        people.observe(self._history.ids, self._history.places, self._history.version, self.tick_s)
+        bodies = self.bodies(people.ids, self._history.places)
+        self._ends.keep(self.table, bodies, people.stood_s, self.tick_s)
+        places = bodies.places[len(people.ids) :]
+        on_way = ~np.isnan(trips.wanted[:, 0]) & (trips.outcomes == 0)
+        stand_on(places, trips.stood_at, trips.stood_s, self.tick_s)
+        trips.stood_at[on_way], trips.stood_s[on_way] = places[on_way], 0.0
+        rooms = np.concatenate(
+            [
+                np.full(len(people.ids), self.person_radius_m + PERSON_ROOM_M),
+                agents.parameters["radius_m"] + ACTOR_ROOM_M,
+            ]
+        )
+        anchors = np.concatenate([people.anchors, trips.stood_at])
+        stood_s = np.concatenate([people.stood_s, trips.stood_s])
+        stands = stood_s > 0.0
+        standing = Standing(np.column_stack([anchors, rooms])[stands], stood_s[stands])
+        self.detours.keep(self.table, standing, self.tick_s)
 
     def _wait_for_potentials(self) -> None:
         """Those whose way is still being found stand and wait; it is not that there is none.
@@ -443,7 +522,19 @@ class Navigator:
             self.table.wanted(row),
             self.plan.slice_s,
             agents.planned[row].copy(),
+            outcome=self.outcome(row),
+            in_the_way=self.in_the_way(row),
         )
+
+    def outcome(self, row: int) -> Outcome | None:
+        """How the trip of the actor in a row ended; None while it goes on, and without a goal."""
+        code = int(self.table.trips.outcomes[row])
+        return Outcome(code) if code else None
+
+    def in_the_way(self, row: int) -> InTheWay | None:
+        """The person, actor, door or wall for which its trip did not end at the goal."""
+        by = self.table.in_the_way.get(self.table.ids[row]) if self.table.in_the_way else None
+        return None if by is None else InTheWay(cast(Kind, by[0]), by[1])
 
     def predicted_near(
         self, position: Point, z_m: float, within_m: float

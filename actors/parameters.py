@@ -214,6 +214,18 @@ class ActorParameters(BaseModel):
         ),
     ] = 64
 
+    patience_s: Annotated[
+        float,
+        _field(
+            "planning",
+            "s",
+            1.0,
+            600.0,
+            "Time for which the actor puts up with coming no nearer to its goal; then its trip "
+            "ends where it is, beside a goal that is taken or before a way that is blocked.",
+        ),
+    ] = 30.0
+
     @model_validator(mode="after")
     def _legs_reach(self) -> Self:
         if self.leg_length_m < self.step_on_m:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from contextlib import suppress
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,11 +14,12 @@ from esplanade.actors.behaviour import Behaviour, Goal, Perception
 from esplanade.actors.blockers import Blocker, find_blocker
 from esplanade.actors.explanation import Explanation
 from esplanade.actors.navigator import Navigator
+from esplanade.actors.outcomes import Outcome
 from esplanade.actors.parameters import ActorParameters, body_of
 from esplanade.actors.placing import Newcomer, Placing
 from esplanade.actors.potential_pool import GoalKey, RenewedPotential
 from esplanade.actors.saved_minds import SavedMinds, load_mind
-from esplanade.actors.state import ActorState, Reason
+from esplanade.actors.state import ActorState
 from esplanade.actors.warming import warm_up
 from esplanade.planning import (
     PARAMETERS,
@@ -30,11 +31,19 @@ from esplanade.planning import (
 )
 
 _EXPLAINED_WITHIN_M = 8.0
-_STUCK_AFTER_S = 3.0
+_AT_GOAL = (Outcome.ARRIVED, Outcome.NEAR)
+_STUCK = (Outcome.BLOCKED, Outcome.NO_WAY)
 _DERIVED_AT_ONCE = 32
 """If saved actors have more goals than this, their potentials are derived outside of ticks."""
 _SPARE_POTENTIALS = 64
 """Room for so many goals more is made beforehand; it takes memory only once they are there."""
+
+
+class _Before(NamedTuple):
+    """Reasons and outcomes (A,) of all actors as they were a tick ago."""
+
+    reasons: NDArray[np.int64]
+    outcomes: NDArray[np.int64]
 
 
 class Population:
@@ -57,8 +66,8 @@ class Population:
         self.navigator = Navigator(
             grid, tick_s, seed, risk=RiskModel(person_radius_m=person_radius_m)
         )
-        self.trips = 0
-        """Goals reached by all actors so far."""
+        self.ended = dict.fromkeys(Outcome, 0)
+        """Trips of all actors that have ended so far, by their outcome."""
         self.doors_wanted: dict[str, bool] = {}
         """Doors that behaviours wanted moved in the last tick; the actor added last prevails."""
         self._tick = 0
@@ -71,6 +80,11 @@ class Population:
         self._people: Mapping[Hashable, Goal] = {}
         self._placing = Placing(grid, scene)
         self._minds = SavedMinds()
+
+    @property
+    def trips(self) -> int:
+        """Goals reached by all actors so far."""
+        return self.ended[Outcome.ARRIVED]
 
     @property
     def table(self) -> AgentTable:
@@ -172,9 +186,8 @@ class Population:
         self._check_targets(behaviour)
         self._behaviours[actor_id] = behaviour
         self._minds.change([actor_id])
-        trips = self.table.trips
-        trips.arrived[row] = False
-        trips.ask_at_s[row] = -np.inf
+        self.navigator.begin_trip(actor_id)
+        self.table.trips.ask_at_s[row] = -np.inf
 
     def check_targets(self, behaviour: Behaviour) -> None:
         """KeyError for a place that the scene does not have, ValueError for a point outside."""
@@ -237,7 +250,7 @@ class Population:
         x, y, z_m = self._placing.near(body_of(self.table.agents.parameters[row]), place)
         self.navigator.place_actor(actor_id, (x, y), z_m=z_m)
         self.navigator.set_back(actor_id)
-        self.table.trips.arrived[row] = False
+        self.navigator.begin_trip(actor_id)
         self.table.trips.ask_at_s[row] = -np.inf
 
     def derive_outside(self) -> None:
@@ -248,12 +261,12 @@ class Population:
         """Return a call that puts all actors back, if a change fails half-way."""
         restore = self.navigator.undo_point()
         behaviours, generators = dict(self._behaviours), dict(self._generators)
-        held, trips = set(self._held), self.trips
+        held, ended = set(self._held), dict(self.ended)
 
         def undo() -> None:
             restore()
             self._behaviours, self._generators = behaviours, generators
-            self._held, self.trips = held, trips
+            self._held, self.ended = held, ended
             self._minds.change_all()
 
         return undo
@@ -269,10 +282,10 @@ class Population:
         TypeError
             An actor's id is neither text nor a whole number.
         """
-        header, columns = self.table.save()
+        header, columns = self.navigator.save()
         return {
             "time_s": self._tick * self.navigator.tick_s,
-            "trips": self.trips,
+            "trips": [self.ended[outcome] for outcome in Outcome],
             "held": list(self._held),
             "table": header,
             "columns": columns,
@@ -306,7 +319,8 @@ class Population:
             self.check_targets(behaviour)
             for x, y, z_m in behaviour.places():
                 self.navigator.check_place((x, y), z_m)
-        self._held, self.trips = held, int(saved["trips"])
+        self._held = held
+        self.ended = dict(zip(Outcome, map(int, saved["trips"]), strict=True))
         self._tick = round(saved["time_s"] / self.navigator.tick_s)
         self._minds.change_all()
 
@@ -349,23 +363,21 @@ class Population:
     def _plan(self) -> None:
         self.doors_wanted = {}
         trips, time_s = self.table.trips, self._tick * self.navigator.tick_s
-        stuck = trips.no_path_s >= _STUCK_AFTER_S
-        due = (time_s >= trips.ask_at_s) | stuck | (trips.arrived != trips.arrived_when_asked)
+        due = (time_s >= trips.ask_at_s) | (trips.outcomes != trips.outcome_when_asked)
         due[[self.table.row(actor_id) for actor_id in self._held]] = False
         rows = np.flatnonzero(due).tolist()
         if rows:
             ids = self.table.ids
             for row in rows:
-                self._ask(ids[row], row, bool(stuck[row]), self._people, time_s)
-        reasons = self.table.agents.reasons.copy()
+                self._ask(ids[row], row, self._people, time_s)
+        before = _Before(self.table.agents.reasons.copy(), trips.outcomes.copy())
         self.navigator.advance()
-        self._keep_account(reasons)
+        self._keep_account(before)
 
     def _ask(
         self,
         actor_id: Hashable,
         row: int,
-        stuck: bool,
         people: Mapping[Hashable, Goal],
         time_s: float,
     ) -> None:
@@ -374,32 +386,34 @@ class Population:
         self._asked.append((actor_id, behaviour.copy(), generator.bit_generator.state))
         self._minds.change([actor_id])
         agents, trips = self.table.agents, self.table.trips
-        arrived = bool(trips.arrived[row])
+        outcome = self.navigator.outcome(row)
         x, y = agents.positions[row].tolist()
         goal = behaviour.update(
             Perception(
                 time_s,
                 (x, y),
                 float(agents.heights[row]),
-                arrived,
-                stuck,
+                outcome in _AT_GOAL,
+                outcome in _STUCK,
                 people,
                 self.scene,
                 self.grid,
                 body_of(agents.parameters[row]),
                 generator,
                 self._place_of,
+                outcome,
             )
         )
         self.doors_wanted.update(behaviour.moves_doors)
-        if goal != self.table.wanted(row):
+        ended = outcome is not None and outcome is not Outcome.ARRIVED
+        if goal != self.table.wanted(row) or (ended and behaviour.sets_out):
             self.navigator.set_goal(
                 actor_id,
                 None if goal is None else goal[:2],
                 z_m=0.0 if goal is None else goal[2],
                 strict=behaviour.strict,
             )
-        trips.arrived_when_asked[row] = arrived
+        trips.outcome_when_asked[row] = trips.outcomes[row]
         trips.ask_at_s[row] = behaviour.ask_at_s
         trips.points_at[row] = np.nan if behaviour.points_at is None else behaviour.points_at
 
@@ -411,20 +425,18 @@ class Population:
         x, y = agents.positions[row].tolist()
         return x, y, float(agents.heights[row])
 
-    def _keep_account(self, before: NDArray[np.int64]) -> None:
+    def _keep_account(self, before: _Before) -> None:
         """Count the trips that ended in this tick, and for how long things are as they are.
 
-        `before` (A,) are the reasons of the tick before.
+        `before` is how things were a tick ago.
         """
         reasons, trips = self.table.agents.reasons, self.table.trips
         same_s = trips.reason_s + self.navigator.tick_s
-        trips.reason_s[:] = np.where(reasons == before, same_s, 0.0)
-        no_path = reasons == Reason.NO_PATH
-        trips.no_path_s[:] = np.where(no_path, trips.no_path_s + self.navigator.tick_s, 0.0)
-        going = ~np.isnan(trips.wanted[:, 0])
-        arrived = going & (reasons == Reason.ARRIVED) & ~trips.arrived
-        trips.arrived[:] |= arrived
-        self.trips += int(np.count_nonzero(arrived))
+        trips.reason_s[:] = np.where(reasons == before.reasons, same_s, 0.0)
+        ended = np.where(trips.outcomes != before.outcomes, trips.outcomes, 0)
+        counts = np.bincount(ended, minlength=max(Outcome) + 1)
+        for outcome in Outcome:
+            self.ended[outcome] += int(counts[outcome])
 
     def state(self, actor_id: Hashable) -> ActorState:
         """One actor's state; an actor that points at something is turned to it."""
@@ -483,6 +495,8 @@ class Population:
             near,
             float(self.table.trips.reason_s[row]),
             find_blocker(self.navigator, actor_id, self._people),
+            state.outcome,
+            state.in_the_way,
             self.navigator.moved(actor_id),
         )
 

@@ -6,18 +6,23 @@ from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning import Body, LayeredGrid, Potential
 from esplanade.planning.grid.clearances import kind_of
+from esplanade.planning.routes.shut_way import Disc
 from esplanade.planning.scene.bodies import LIMITS
 
 Goal = tuple[float, float, float]
 """x, y and height, metres."""
 GoalKey = tuple[float, float, float, Body]
 """x, y, height and kind of body, of `kind_for_ways`."""
+DetourKey = tuple[float, float, float, Body, tuple[Disc, ...]]
+"""The same, and places where somebody stands that ways lead around."""
+_DETOUR_LENGTH = 5
 _IDLE_KEPT = 32
 _NO_BOUND = int(LIMITS["edge_cells"][1])
 """For bodies whose M forbids nothing, where that of others may."""
@@ -29,7 +34,7 @@ _SLACK_M = 0.02
 class RenewedPotential:
     """The potential of a goal, derived anew outside of ticks."""
 
-    goal: GoalKey
+    goal: GoalKey | DetourKey
     changes: int
     """The number of changes of the ground when it was derived."""
     values: NDArray[np.float32]
@@ -50,17 +55,21 @@ class PotentialPool:
         self.arrays: NDArray[np.float32] = np.empty(
             (0, len(grid.layered.floors), 4), dtype=np.float32
         )
-        self._slots: dict[GoalKey, int] = {}
-        self._keys: list[GoalKey | None] = []
+        self._slots: dict[GoalKey | DetourKey, int] = {}
+        self._keys: list[GoalKey | DetourKey | None] = []
         self._users: list[int] = []
         self._idle: list[int] = []
+        self._spare: list[int] = []
+        """Rows of nothing."""
         self._stale: list[int] = []
         self._changes = 0
         self._outdated: dict[int, None] = {}
         """Rows that wait to be renewed outside of ticks, the longest out of date first."""
 
     def take(
-        self, key: GoalKey, prepared: Mapping[GoalKey, NDArray[np.float32]] | None = None
+        self,
+        key: GoalKey | DetourKey,
+        prepared: Mapping[GoalKey, NDArray[np.float32]] | None = None,
     ) -> int:
         """Row of a goal, for one more user.
 
@@ -70,8 +79,9 @@ class PotentialPool:
         """
         slot = self._slots.get(key)
         if slot is None:
-            if prepared is not None and key in prepared:
-                slot = self._keep(key, prepared[key])
+            ready: Mapping[Any, NDArray[np.float32]] = prepared or {}
+            if key in ready:
+                slot = self._keep(key, ready[key])
             elif self.derived_outside:
                 slot = self._keep_provisional(key)
             else:
@@ -81,7 +91,20 @@ class PotentialPool:
         self._users[slot] += 1
         return slot
 
-    def has(self, key: GoalKey) -> bool:
+    def key(self, slot: int) -> GoalKey | DetourKey | None:
+        """What the row is of; None for an empty one."""
+        return self._keys[slot]
+
+    def row(self, key: GoalKey | DetourKey) -> int:
+        """The row of a goal; -2 if it has none."""
+        return self._slots.get(key, -2)
+
+    def used(self, key: GoalKey | DetourKey) -> bool:
+        """Whether anybody uses the row of a goal."""
+        slot = self._slots.get(key)
+        return slot is not None and self._users[slot] > 0
+
+    def has(self, key: GoalKey | DetourKey) -> bool:
         """Whether the row of a goal is there, and not provisional."""
         slot = self._slots.get(key)
         return slot is not None and slot not in self._provisional
@@ -108,7 +131,7 @@ class PotentialPool:
             for key, values in zip(wanted, pool.map(derive, wanted), strict=True):
                 self._idle.append(self._keep(key, values))
 
-    def _keep(self, key: GoalKey, values: NDArray[np.float32] | np.float32) -> int:
+    def _keep(self, key: GoalKey | DetourKey, values: NDArray[np.float32] | np.float32) -> int:
         slot = self._fresh_slot()
         self.arrays[slot] = values
         self._outdated.pop(slot, None)
@@ -117,8 +140,12 @@ class PotentialPool:
         self._keys[slot] = key
         return slot
 
-    def _keep_provisional(self, key: GoalKey) -> int:
-        alike = [slot for each, slot in self._slots.items() if each[:3] == key[:3]]
+    def _keep_provisional(self, key: GoalKey | DetourKey) -> int:
+        alike = [
+            slot
+            for each, slot in self._slots.items()
+            if each[:3] == key[:3] and len(each) < _DETOUR_LENGTH
+        ]
         values = self.arrays[alike[0]].copy() if alike else np.float32(np.inf)
         slot = self._keep(key, values)
         self._outdated[slot] = None
@@ -132,6 +159,14 @@ class PotentialPool:
         self._users[slot] -= 1
         if self._users[slot] == 0:
             self._idle.append(slot)
+
+    def drop(self, slot: int) -> None:
+        """One user less of a row that nobody will come back to: it is the next to be used again."""
+        self.release(slot)
+        if self._users[slot] == 0:
+            self._idle.remove(slot)
+            self._empty(slot)
+            self._spare.append(slot)
 
     def forget(self) -> None:
         """The ground has changed: what is idle is dropped, what is in use is derived anew."""
@@ -198,7 +233,9 @@ class PotentialPool:
         if renewed.changes != self._changes:
             self._outdated[slot] = None
 
-    def _renewed(self, grid: LayeredGrid, key: GoalKey, changes: int) -> RenewedPotential:
+    def _renewed(
+        self, grid: LayeredGrid, key: GoalKey | DetourKey, changes: int
+    ) -> RenewedPotential:
         try:
             values = potential_of(grid, key)
         except ValueError:  # nobody can stand there any more
@@ -217,14 +254,21 @@ class PotentialPool:
             grown[:before] = self.arrays
             self.arrays = grown
 
+    def _empty(self, slot: int) -> None:
+        key = self._keys[slot]
+        if key is not None:
+            del self._slots[key]
+            self._keys[slot] = None
+        self._outdated.pop(slot, None)
+        self._provisional.discard(slot)
+        self._stale = [each for each in self._stale if each != slot]
+
     def _fresh_slot(self) -> int:
+        if self._spare:
+            return self._spare.pop()
         if len(self._idle) > _IDLE_KEPT:
             slot = self._idle.pop(0)
-            key = self._keys[slot]
-            if key is not None:
-                del self._slots[key]
-            self._outdated.pop(slot, None)
-            self._provisional.discard(slot)
+            self._empty(slot)
             return slot
         slot = len(self._keys)
         if slot == len(self.arrays):
@@ -234,10 +278,11 @@ class PotentialPool:
         return slot
 
 
-def potential_of(grid: LayeredGrid, key: GoalKey) -> NDArray[np.float32]:
+def potential_of(grid: LayeredGrid, key: GoalKey | DetourKey) -> NDArray[np.float32]:
     """The potential of a goal for a kind of body; heavy."""
-    x, y, z_m, kind = key
-    return Potential(grid, (x, y), z_m, kind.radius_m, body=kind).values
+    x, y, z_m, kind, *shut = key
+    discs = shut[0] if shut else ()
+    return Potential(grid, (x, y), z_m, kind.radius_m, body=kind, shut=discs).values
 
 
 def kind_for_ways(grid: LayeredGrid, body: Body) -> Body:

@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.actors.outcomes import Kind, Outcome
 from esplanade.actors.parameters import ActorParameters
 from esplanade.actors.state import Reason
 from esplanade.planning import AgentTable, LayeredGrid, SavedAgentsError
 
 MOST_M = 1_000_000.0
 _FINITE = ("velocities", "headings", "heights", "behind_s", "planned", "followed", "goals")
-_BOUNDED_TRIPS = ("no_path_s", "reason_s")
+_BOUNDED_TRIPS = (
+    "no_path_s",
+    "reason_s",
+    "stalled_s",
+    "queued_s",
+    "look_in_s",
+    "stood_at",
+    "stood_s",
+)
 _PERHAPS = ("wanted", "points_at")
 
 
@@ -42,6 +53,12 @@ def check_saved(table: AgentTable, grid: LayeredGrid) -> None:
     _hold("ask_at_s", ~np.isnan(trips.ask_at_s))
     _hold("left_m", np.isnan(agents.left_m) | (agents.left_m >= 0.0))
     _hold("reasons", (agents.reasons >= 0) & (agents.reasons <= max(Reason)))
+    _hold("outcomes", (trips.outcomes >= 0) & (trips.outcomes <= max(Outcome)))
+    for kind, _ in table.in_the_way.values():
+        if kind not in get_args(Kind):
+            raise SavedAgentsError(f"what is in the way of a saved agent is {kind!r}")
+    _hold("nearest_m", np.isnan(trips.nearest_m) | (trips.nearest_m >= 0.0))
+    _hold("cautions", (agents.cautions >= 0.0) & (agents.cautions <= 1.0))
     _hold("ages", (agents.ages >= 0) & (agents.ages <= 2**40))
     for field in agents.passages.dtype.names or ():
         _hold(f"passages.{field}", ~np.isnan(agents.passages[field]))

@@ -8,6 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.actors.outcomes import InTheWay, Outcome
+
 
 class Reason(IntEnum):
     """Why an actor does what it does."""
@@ -38,6 +40,10 @@ class ActorState(NamedTuple):
     tick."""
     points_at: tuple[float, float, float] | None = None
     """The place that it shows to people, if it explains something."""
+    outcome: Outcome | None = None
+    """How its trip ended; None while it goes on, and without a goal."""
+    in_the_way: InTheWay | None = None
+    """The person, actor, door or wall for which the trip did not end at the goal."""
 
     @property
     def path(self) -> NDArray[np.float64]:

@@ -15,6 +15,7 @@ NAMES = (
     "server",
     "live",
     "social",
+    "doorways",
     "walking",
     "steps",
     "gallery",

@@ -24,6 +24,7 @@ NAMES: Final = (
     "step_on_m",
     "leg_length_m",
     "edge_cells",
+    "patience_s",
     "risk.person_radius_m",
     "risk.contact_margin_m",
     "risk.influence_m",

@@ -18,6 +18,7 @@ from esplanade.protocol.codes import (
     ErrorCode,
     Kind,
     NoticeCode,
+    Outcome,
     Reason,
     ServerCode,
 )
@@ -32,6 +33,7 @@ __all__ = [
     "ErrorCode",
     "Kind",
     "NoticeCode",
+    "Outcome",
     "ProtocolError",
     "Reason",
     "ServerCode",

@@ -79,6 +79,15 @@ class Reason(IntEnum):
     ARRIVED = 6
 
 
+class Outcome(IntEnum):
+    """How the trip of an actor ended."""
+
+    ARRIVED = 1
+    NEAR = 2
+    BLOCKED = 3
+    NO_WAY = 4
+
+
 class ErrorCode(StrEnum):
     """Machine-readable name inside an `error` message."""
 

@@ -20,6 +20,7 @@ from esplanade.protocol.codes import (
     ErrorCode,
     Kind,
     NoticeCode,
+    Outcome,
     Reason,
     ServerCode,
 )
@@ -342,6 +343,10 @@ class Plan(FromServer):
     """For how long the reason has been that."""
     blocker: Blocker | None
     """The blocker of an actor that does not walk on, where it can be told."""
+    outcome: Annotated[Outcome | int, Field(union_mode="left_to_right")] | None = None
+    """How the trip ended; None while it goes on, and without a goal."""
+    in_the_way: Blocker | None = None
+    """The one for whom the trip did not end at the goal."""
 
 
 class Census(FromServer):

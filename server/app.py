@@ -7,6 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
 
+from esplanade.actors import Outcome
 from esplanade.actors.warming import tables_ahead
 from esplanade.server.assets import Assets
 from esplanade.server.building import build_world, with_roster
@@ -75,6 +76,11 @@ class Running:
             "tick_p99_ms": round(1e3 * ticks.percentile(99), 2),
             "people_seen": self.world.people_seen,
             "trips_completed": self.world.trips,
+            **{
+                f"trips_{outcome.name.lower()}": count
+                for outcome, count in self.world.ended.items()
+                if outcome is not Outcome.ARRIVED
+            },
             "contacts_actor_person": self.world.contacts.actor_person,
             "contacts_actor_actor": self.world.contacts.actor_actor,
         }

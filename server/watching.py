@@ -1,6 +1,8 @@
 """The metrics of a world, of searches for routes, and of operators' commands."""
 
-from esplanade.actors import Population
+from functools import partial
+
+from esplanade.actors import Outcome, Population
 from esplanade.server.console.console import Console
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.door_commands import DoorCommands
@@ -14,6 +16,23 @@ def watch_world(world: Zone, population: Population, metrics: Metrics) -> None:
     metrics.gauge("actors", "Actors in the world", lambda: world.count()[1])
     metrics.total("people_seen", "People who came in", lambda: world.people_seen)
     metrics.total("actor_trips", "Trips that actors completed", lambda: world.trips)
+    for outcome, meaning in (
+        (Outcome.NEAR, "beside their goal, since somebody was there"),
+        (Outcome.BLOCKED, "before somebody who stood in the way"),
+        (Outcome.NO_WAY, "since no way led to the goal"),
+    ):
+        metrics.total(
+            f"actor_trips_{outcome.name.lower()}",
+            f"Trips of actors that ended {meaning}",
+            partial(_ended, world, outcome),
+        )
+    detours = population.navigator.detours
+    metrics.gauge("detours", "Goals with a way around people who stand", lambda: len(detours))
+    metrics.total(
+        "detours_refused",
+        "Ways around people who stand that were not looked for, since there are too many",
+        lambda: detours.refused,
+    )
     contacts = world.contacts
     metrics.total("contacts_actor_person", "Actor-person contacts", lambda: contacts.actor_person)
     metrics.total("contacts_actor_actor", "Actor-actor contacts", lambda: contacts.actor_actor)
@@ -39,6 +58,10 @@ def watch_world(world: Zone, population: Population, metrics: Metrics) -> None:
         "Potentials of goals that wait to be derived anew since a door has moved",
         lambda: population.navigator.potentials.outdated_rows,
     )
+
+
+def _ended(world: Zone, outcome: Outcome) -> int:
+    return world.ended[outcome]
 
 
 def watch_routes(route_requests: RouteRequests, metrics: Metrics) -> None:

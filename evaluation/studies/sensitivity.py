@@ -30,8 +30,8 @@ BODY_PARAMETERS: Final = frozenset(
     }
 )
 """Parameters of the body, which are not varied by default."""
-MULTI_ACTOR_PARAMETERS: Final = frozenset({"keep_right_weight"})
-"""Parameters that have no effect on a single actor."""
+MULTI_ACTOR_PARAMETERS: Final = frozenset({"keep_right_weight", "patience_s"})
+"""Parameters that have no effect on a single actor among people who walk."""
 BEHAVIOUR_PARAMETERS: Final = tuple(
     name
     for name in ActorParameters.model_fields

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from esplanade.planning.agents._bottleneck_kernels import AFTER_M, OPPOSED, lane_of, see_passage
 from esplanade.planning.agents._perturb_kernels import path_cost, update_path
+from esplanade.planning.agents._reason_kernels import decided_reason
 from esplanade.planning.agents._search_kernels import FOUND, NO_PATH, Moves, Workspace, search
 from esplanade.planning.agents._step_kernels import control_toward, last_check, limited
 from esplanade.planning.agents._task_kernels import (
@@ -18,16 +19,7 @@ from esplanade.planning.agents._task_kernels import (
     metres_left,
     needed_clearance,
 )
-from esplanade.planning.agents.agents import (
-    ARRIVED,
-    BLOCKED,
-    GIVING_WAY,
-    MOVING,
-    REPLANNING,
-    WAITING,
-    Agents,
-    Decisions,
-)
+from esplanade.planning.agents.agents import BLOCKED, GIVING_WAY, MOVING, Agents, Decisions
 from esplanade.planning.compiled.jit import kernel
 from esplanade.planning.grid._grid_kernels import anchor_at, clearance_at, length
 from esplanade.planning.grid._side_kernels import is_cut_off
@@ -69,7 +61,9 @@ def make_task(
     tick_s: float,
     contested: bool,
 ) -> Task:
-    """The task of actor a's search in this tick; without a goal or a path to it, it stays around.
+    """The task of actor a's search in this tick.
+
+    Without a goal or a path to it, and while it waits, it stays around.
 
     `contested` tells whether its passage is contested. An actor that is about to arrive keeps to
     no lane, since it could not go to a goal that lies left of the lane.
@@ -81,7 +75,7 @@ def make_task(
     gx = agents.goals[a, 0]
     gy = agents.goals[a, 1]
     slot = agents.potential_rows[a]
-    hold = slot < 0
+    hold = slot < 0 or agents.waits[a]
     speed = p["speed_mps"]
     left = 0.0
     if not hold:
@@ -121,7 +115,7 @@ def make_task(
         p["max_acceleration_mps2"],
         p["goal_tolerance_m"],
         p["contact_closing_s"],
-        p["risk_weight"],
+        p["risk_weight"] * agents.cautions[a],
         p["foresight_s"],
         p["closing_weight"],
         p["turn_weight"],
@@ -212,7 +206,7 @@ def decide(
             lost = clearance_at(world.grid, task.body, task.cell, task.x, task.y) < 0.0
         if len(agents.passages) > OPPOSED:
             see_passage(world.grid, potential, agents, a, slot >= 0 and not task.hold, tick_s)
-        out.reasons[a] = _reason(
+        out.reasons[a] = decided_reason(
             agents, task, away, lost, path, status, switched, dodged, world.step_s
         )
 
@@ -287,39 +281,3 @@ def _improve(
             path[:] = bent
             return bent_cost, True
     return cost, False
-
-
-@kernel
-def _reason(
-    agents: Agents,
-    task: Task,
-    away: float,
-    lost: bool,
-    path: NDArray[np.float64],
-    status: int,
-    switched: bool,
-    dodged: bool,
-    step_s: float,
-) -> int:
-    """Why the actor does what it does; `lost` tells that no path leads to its goal."""
-    if lost:
-        return BLOCKED
-    if dodged:
-        return GIVING_WAY
-    if agents.potential_rows[task.me] < 0:
-        return WAITING
-    if task.hold:
-        return ARRIVED
-    if status == NO_PATH:  # a path leads there, but every first move is taken by somebody
-        return WAITING
-    ramp = 2 * SUB  # slices that it takes to get going from a stand
-    ahead = 2 * ramp
-    pace = np.hypot(path[ahead, 0] - path[ramp, 0], path[ahead, 1] - path[ramp, 1]) / (2.0 * step_s)
-    standing = np.hypot(task.vx, task.vy) < 0.15 * task.speed_mps
-    if standing and pace < 0.15 * task.speed_mps and away > 4.0 * task.speed_mps * step_s:
-        return WAITING
-    if pace < 0.6 * task.speed_mps and away > 4.0 * task.speed_mps * step_s:
-        return GIVING_WAY
-    if switched:
-        return REPLANNING
-    return MOVING

@@ -127,7 +127,7 @@ def _carry_on(
 ) -> tuple[float, float]:
     """Position of an agent some seconds after the end of its path, down the potential."""
     slot = agents.potential_rows[a]
-    if slot < 0:
+    if slot < 0 or agents.waits[a]:
         return x, y
     gx, gy, leg = direction_at(world.grid, potentials[slot], cell, x, y)
     way = min(leg, agents.parameters[a]["speed_mps"] * seconds)
@@ -141,12 +141,13 @@ def distances_left(
     """Fill `out` (A,) with the distance left of each agent, in metres: the least has priority.
 
     Two agents do not change their order while one lets the other pass, since only the other gets
-    nearer to its goal. Agents within `SETTLED_M` of their goal, or without a path, have inf.
+    nearer to its goal. Agents within `SETTLED_M` of their goal, without a path, or that wait, have
+    inf.
     """
     for a in range(len(out)):
         out[a] = np.inf
         slot = agents.potential_rows[a]
-        if slot >= 0:
+        if slot >= 0 and not agents.waits[a]:
             x, y = agents.positions[a]
             left = potential_at(potentials[slot], agents.cells[a], x, y)
             if left > SETTLED_M:

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from esplanade.planning.agents._decide_kernels import decide
 from esplanade.planning.agents._priority_kernels import prepare
+from esplanade.planning.agents._reason_kernels import match_reasons
 from esplanade.planning.agents._search_kernels import Moves, Workspace
 from esplanade.planning.agents._step_kernels import resolve, settle
 from esplanade.planning.agents._task_kernels import World
@@ -137,7 +138,7 @@ def plan_and_step(
 
 
 @kernel
-def settle_all(zone: Handle[Zone], tick_s: float) -> None:
+def settle_all(zone: Handle[Zone], prediction: Prediction, tick_s: float) -> None:
     """Take the tick over into the agents' own state: where they are, why, and their plans."""
     z = zone.value
     agents = z.agents
@@ -152,3 +153,4 @@ def settle_all(zone: Handle[Zone], tick_s: float) -> None:
         cell = agents.cells[a]
         agents.layers[a] = layered.places[cell]["layer"] if cell >= 0 else 0
         agents.heights[a] = floor_of(z.world.grid, cell)
+    match_reasons(agents, z.world.reservations.radii, prediction)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from esplanade.planning.agents._passage_kernels import PASSAGE
 from esplanade.planning.agents.agents import PARAMETERS, WAITING, Agents
 
-VERSION: Final = 3
+VERSION: Final = 4
 """Version of the data that `AgentTable.save` gives; `load` takes no other."""
 FORMAT: Final = "esplanade.agents"
 
@@ -25,29 +25,45 @@ class SavedAgentsError(ValueError):
 class Trips(NamedTuple):
     """The part of A agents' state that kernels do not need: where each wants to be, its progress.
 
-    `wanted` (A, 3) m is the goal as it was asked for, nan without one; `arrived` (A,) whether it
-    has been reached; `no_path_s` (A,) s for how long no path has led there; `points_at` (A, 3) m
-    the place that the agent shows to people, nan for none. Its behaviour is asked again at
-    `ask_at_s` (A,) s, and when `arrived` is no longer what it was when last asked,
-    `arrived_when_asked` (A,). For `reason_s` (A,) s its reason has been what it is now.
+    `wanted` (A, 3) m is the goal as it was asked for, nan without one; `no_path_s` (A,) s for how
+    long no path has led there; `points_at` (A, 3) m the place that the agent shows to people, nan
+    for none. Its behaviour is asked again at `ask_at_s` (A,) s, and when its outcome is no longer
+    what it was when last asked, `outcome_when_asked` (A,). For `reason_s` (A,) s its reason has
+    been what it is now.
     The goal was moved by `moved_m` (A,) m to where the body fits, for the reason `moved_why` (A,),
     a `MoveReason`, if by more than 0.25 m; both are 0 otherwise. An agent that is `strict` (A,)
     does not go to a goal that would have to be moved so.
+    The trip has the outcome `outcomes` (A,), 0 while it goes on. The agent has come as near as
+    `nearest_m` (A,) m, nan at first; for `stalled_s` (A,) s it has not come nearer by half a metre,
+    and for `queued_s` (A,) s it has waited for a place that is taken.
+    `own_rows` (A,) are the rows of the goals' own potentials, -1 without a goal; an agent that goes
+    around people who stand, `detours` (A,), has another in `potential_rows`. It looks for such
+    people again in `look_in_s` (A,) s; they have `shut` (A,) the way to its goal. An agent that is
+    not on its way has stood at `stood_at` (A, 3) m for `stood_s` (A,) s.
     """
 
     wanted: NDArray[np.float64]
-    arrived: NDArray[np.bool_]
     no_path_s: NDArray[np.float64]
     points_at: NDArray[np.float64]
     ask_at_s: NDArray[np.float64]
-    arrived_when_asked: NDArray[np.bool_]
+    outcome_when_asked: NDArray[np.int64]
     reason_s: NDArray[np.float64]
     moved_m: NDArray[np.float64]
     moved_why: NDArray[np.int64]
     strict: NDArray[np.bool_]
+    outcomes: NDArray[np.int64]
+    nearest_m: NDArray[np.float64]
+    stalled_s: NDArray[np.float64]
+    queued_s: NDArray[np.float64]
+    own_rows: NDArray[np.int64]
+    detours: NDArray[np.bool_]
+    look_in_s: NDArray[np.float64]
+    shut: NDArray[np.bool_]
+    stood_at: NDArray[np.float64]
+    stood_s: NDArray[np.float64]
 
 
-_DERIVED: Final = ("bodies", "contacts", "potential_rows", "ranks")
+_DERIVED: Final = ("bodies", "contacts", "potential_rows", "own_rows", "ranks")
 """Columns that point into what a zone derives of its own; they are derived anew after loading."""
 
 
@@ -64,6 +80,8 @@ class AgentTable:
         self.agents = _no_agents(slices + 1)
         self.trips = _no_trips()
         self.version = 0
+        self.in_the_way: dict[Hashable, tuple[str, Hashable]] = {}
+        """By agents whose trips did not end at the goal: the kind and id of what was in the way."""
         self._rows: dict[Hashable, int] = {}
 
     def __len__(self) -> int:
@@ -121,9 +139,17 @@ class AgentTable:
             "layers": layers,
             "reasons": WAITING,
             "planned": places[:, None],
+            "cautions": 1.0,
         }
         self.agents = Agents._make(_with_rows(self.agents, len(ids), known))
-        blank = {"wanted": np.nan, "points_at": np.nan, "ask_at_s": -np.inf}
+        blank = {
+            "wanted": np.nan,
+            "points_at": np.nan,
+            "ask_at_s": -np.inf,
+            "nearest_m": np.nan,
+            "own_rows": -1,
+            "stood_at": places,
+        }
         self.trips = Trips._make(_with_rows(self.trips, len(ids), blank))
         self._rows = rows
         self.version += 1
@@ -134,6 +160,7 @@ class AgentTable:
         self.agents = Agents._make(np.delete(column, rows, axis=0) for column in self.agents)
         self.trips = Trips._make(np.delete(column, rows, axis=0) for column in self.trips)
         gone = set(ids)
+        self.in_the_way = {who: by for who, by in self.in_the_way.items() if who not in gone}
         others = (each for each in self._rows if each not in gone)
         self._rows = {each: k for k, each in enumerate(others)}
         self.version += 1
@@ -141,6 +168,7 @@ class AgentTable:
     def undo_point(self) -> Callable[[], None]:
         """Return a call that puts the table back, its arrays in place; O(agents)."""
         agents, trips, rows, version = self.agents, self.trips, self._rows, self.version
+        in_the_way = dict(self.in_the_way)
         columns = (*agents, *trips)
         copies = [column.copy() for column in columns]
 
@@ -148,6 +176,7 @@ class AgentTable:
             for column, kept in zip(columns, copies, strict=True):
                 column[...] = kept
             self.agents, self.trips, self._rows, self.version = agents, trips, rows, version
+            self.in_the_way = in_the_way
 
         return undo
 
@@ -179,7 +208,13 @@ class AgentTable:
             if name not in _DERIVED
         }
         slices = self.agents.planned.shape[1] - 1
-        header = {"format": FORMAT, "version": VERSION, "slices": slices, "ids": self.ids}
+        header = {
+            "format": FORMAT,
+            "version": VERSION,
+            "slices": slices,
+            "ids": self.ids,
+            "in_the_way": [[who, *by] for who, by in self.in_the_way.items()],
+        }
         return json.loads(json.dumps(header)), arrays
 
     @classmethod
@@ -201,7 +236,7 @@ class AgentTable:
         for name, column in blank.items():
             shape = (len(ids), *column.shape[1:])
             if name in _DERIVED:
-                filled[name] = np.full(shape, -1 if name == "potential_rows" else 0, column.dtype)
+                filled[name] = np.full(shape, -1 if name.endswith("_rows") else 0, column.dtype)
                 continue
             if name not in arrays:
                 raise SavedAgentsError(f"saved agents lack the column {name!r}")
@@ -216,6 +251,7 @@ class AgentTable:
         table.trips = Trips(**{name: filled[name] for name in Trips._fields})
         table._rows = {agent_id: row for row, agent_id in enumerate(ids)}
         table.version = 1
+        table.in_the_way = _in_the_way(header, table)
         return table
 
 
@@ -234,6 +270,17 @@ def _checked(header: Mapping[str, Any]) -> tuple[int, Sequence[Hashable]]:
     if len(set(ids)) < len(ids):
         raise SavedAgentsError("ids of saved agents occur twice")
     return slices, ids
+
+
+def _in_the_way(
+    header: Mapping[str, Any], table: AgentTable
+) -> dict[Hashable, tuple[str, Hashable]]:
+    found: dict[Hashable, tuple[str, Hashable]] = {}
+    for entry in header.get("in_the_way", ()):
+        if not isinstance(entry, list | tuple) or len(entry) != 3 or entry[0] not in table:
+            raise SavedAgentsError(f"what is in the way of a saved agent is none: {entry!r}")
+        found[entry[0]] = str(entry[1]), entry[2]
+    return found
 
 
 def _place_or_none(place: NDArray[np.float64]) -> tuple[float, float, float] | None:
@@ -277,19 +324,30 @@ def _no_agents(instants: int) -> Agents:
         on_edges=np.zeros(0),
         reasons=np.zeros(0, dtype=np.int64),
         planned=np.zeros((0, instants, 3)),
+        waits=np.zeros(0, dtype=np.bool_),
+        cautions=np.zeros(0),
     )
 
 
 def _no_trips() -> Trips:
     return Trips(
         wanted=np.zeros((0, 3)),
-        arrived=np.zeros(0, dtype=np.bool_),
         no_path_s=np.zeros(0),
         points_at=np.zeros((0, 3)),
         ask_at_s=np.zeros(0),
-        arrived_when_asked=np.zeros(0, dtype=np.bool_),
+        outcome_when_asked=np.zeros(0, dtype=np.int64),
         reason_s=np.zeros(0),
         moved_m=np.zeros(0),
         moved_why=np.zeros(0, dtype=np.int64),
         strict=np.zeros(0, dtype=np.bool_),
+        outcomes=np.zeros(0, dtype=np.int64),
+        nearest_m=np.zeros(0),
+        stalled_s=np.zeros(0),
+        queued_s=np.zeros(0),
+        own_rows=np.zeros(0, dtype=np.int64),
+        detours=np.zeros(0, dtype=np.bool_),
+        look_in_s=np.zeros(0),
+        shut=np.zeros(0, dtype=np.bool_),
+        stood_at=np.zeros((0, 3)),
+        stood_s=np.zeros(0),
     )

@@ -35,6 +35,7 @@ PARAMETERS = np.dtype(
         ("step_on_m", "f8"),
         ("leg_length_m", "f8"),
         ("edge_cells", "f8"),
+        ("patience_s", "f8"),
     ]
 )
 """An agent's parameters as kernels know them, one field each, in the units of their names."""
@@ -59,7 +60,8 @@ class Agents(NamedTuple):
     `ages` (A,) ticks ago was. `left_m` (A,) is the distance that was left a tick ago, nan at first;
     `behind_s` (A,) the time lost since the goal was set and not made up yet; `passages`
     (A,) of `PASSAGE` are the narrow places ahead or just come through, and the progress there.
-    The kernels that decide write these three.
+    The kernels that decide write these three. An agent that `waits` (A,) stays where it is, goal or
+    not; the weight of risk of each is multiplied by its share of `cautions` (A,), 1 as a rule.
     """
 
     positions: NDArray[np.float64]
@@ -83,6 +85,8 @@ class Agents(NamedTuple):
     on_edges: NDArray[np.float64]
     reasons: NDArray[np.int64]
     planned: NDArray[np.float64]
+    waits: NDArray[np.bool_]
+    cautions: NDArray[np.float64]
 
 
 class Decisions(NamedTuple):

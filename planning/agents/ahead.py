@@ -113,7 +113,7 @@ def signatures() -> list[tuple[Callable[..., object], tuple[types.Type, ...]]]:
     return [
         (kernels.plan_and_step, (held, memory, count, people, number)),
         (kernels.decide_some, (held, people, number, count, count, memory)),
-        (kernels.settle_all, (held, number)),
+        (kernels.settle_all, (held, people, number)),
         (kernels.index_future, (held, people, count, count)),
         (kernels.put_in_order, (held, number)),
         (kernels.take_steps, (held, number)),

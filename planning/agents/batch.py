@@ -217,6 +217,6 @@ class Batch:
         """Nodes that a search makes of one, at most."""
         return self._branching
 
-    def settle(self, tick_s: float) -> None:
+    def settle(self, prediction: Prediction, tick_s: float) -> None:
         """Take the last tick over into the agents that it was made of."""
-        settle_all(self._held, tick_s)
+        settle_all(self._held, prediction, tick_s)

@@ -104,6 +104,8 @@ class TrackHistory:
         self._velocities = np.zeros((0, 2))
         self._newest = np.zeros((0, 2))
         self._ticks = -1
+        self.version = 0
+        """It grows when people come or leave."""
         self._array_ids: NDArray[np.int64] | None = None
         self._array_order = np.zeros(0, dtype=np.int64)
 
@@ -111,6 +113,11 @@ class TrackHistory:
     def ids(self) -> list[object]:
         """The ids of people present, in the order of `positions` and of all arrays made of them."""
         return list(self._ids)
+
+    @property
+    def places(self) -> NDArray[np.float64]:
+        """Newest positions with the heights of the feet, float64 (P, 3), metres."""
+        return self._places
 
     @property
     def positions(self) -> NDArray[np.float64]:
@@ -178,6 +185,7 @@ class TrackHistory:
             if who not in self._rows:
                 self._rows[who] = self._take_row()
         self._listed, self._ids = listed, ids
+        self.version += 1
         self._order = np.array([self._rows[who] for who in ids], dtype=np.int64)
 
     def _note(self, given: NDArray[np.float64]) -> None:

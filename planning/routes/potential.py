@@ -9,6 +9,7 @@ are shortest at any angle. `Wave.NF1` stays as the reference.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from esplanade.planning.grid._grid_kernels import GridArrays
 from esplanade.planning.grid.grid import LayeredGrid
 from esplanade.planning.routes import _potential_kernels as kernels
+from esplanade.planning.routes.shut_way import Disc
 from esplanade.planning.routes.wave_front import NO_TARGETS, Wave, WaveFront
 from esplanade.planning.scene.bodies import Body
 
@@ -44,7 +46,9 @@ class Potential:
         radius_m: float,
         wave: Wave = Wave.SIGHT,
         body: Body | None = None,
+        shut: Sequence[Disc] = (),
     ) -> None:
+        """`shut` are places where somebody stands, which ways lead around as if they were solid."""
         self.grid = grid
         self.height = height
         self.radius_m = radius_m
@@ -57,7 +61,7 @@ class Potential:
         cell = int(grid.on_ground([goal], [height])[1][0])
         if cell < 0:
             raise ValueError(f"nobody can stand at the goal {goal}, height {height:g} m")
-        front = WaveFront(grid, goal, cell, radius_m, wave, self.body)
+        front = WaveFront(grid, goal, cell, radius_m, wave, self.body, shut)
         front.grow(NO_TARGETS)
         self.values: NDArray[np.float32] = front.values
         self.reached_cells = front.reached_cells

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from enum import Enum
 from typing import Final
 
@@ -13,6 +14,7 @@ from esplanade.planning.grid.clearances import kind_of
 from esplanade.planning.grid.grid import LayeredGrid
 from esplanade.planning.routes import _potential_kernels as kernels
 from esplanade.planning.routes._edge_wave_kernels import spread_over_edges
+from esplanade.planning.routes.shut_way import Disc, without_places
 from esplanade.planning.scene.bodies import Body
 
 NO_TARGETS: Final = np.empty(0, dtype=np.int64)
@@ -47,11 +49,13 @@ class WaveFront:
         radius_m: float,
         wave: Wave,
         body: Body,
+        shut: Sequence[Disc] = (),
     ) -> None:
+        """`shut` are places that count as solid."""
         self.goal = goal
         self.cell = cell
         row = grid.row_of(body)
-        self.arrays = grid.arrays
+        self.arrays = without_places(grid.arrays, row, radius_m, shut) if shut else grid.arrays
         """The clearances that the wave goes by; those of the grid, until a door moves."""
         cells = len(self.arrays.layered.floors)
         self.values: NDArray[np.float32] = np.empty((cells, 4), dtype=np.float32)

@@ -86,6 +86,9 @@ def actor(console: Console, name: str) -> dict[str, Any]:
             }
         )
         held = why.blocker
+        by = why.in_the_way
+        found["outcome"] = None if why.outcome is None else why.outcome.name.lower()
+        found["in_the_way"] = None if by is None else {"kind": by.kind, "id": by.id}
         found["blocker"] = (
             None if held is None else {"kind": held.kind, "id": held.id, "away_m": held.away_m}
         )

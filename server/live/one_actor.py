@@ -58,6 +58,8 @@ def told(
         "reason": why.reason.name.lower(),
         "since_s": round(why.since_s, 2),
         "blocker": reasons.told_blocker(why.blocker, names=names),
+        "outcome": None if why.outcome is None else why.outcome.name.lower(),
+        "in_the_way": reasons.told_in_the_way(why.in_the_way, names=names),
         "behaviour": {} if spec is None else spec.behaviour.model_dump(mode="json"),
         "goal": None if why.goal is None else [round(v, 2) for v in why.goal],
         "path": np.round(why.path, 2).tolist(),

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
+from esplanade.actors import InTheWay
 from esplanade.actors.blockers import Blocker
 from esplanade.actors.state import Reason
 from esplanade.server.live.map_feed import MapFeed
@@ -145,6 +146,12 @@ class Reasons:
             if avatar is not None and avatar.actor is not None:
                 found["actor"] = avatar.actor
         return found
+
+    def told_in_the_way(self, by: InTheWay | None, *, names: bool) -> dict[str, Any] | None:
+        """Whom a trip did not end at its goal for, told as a blocker at no known distance."""
+        if by is None:
+            return None
+        return self.told_blocker(Blocker(by.kind, by.id), names=names)
 
     def _turn(self, who: int, reason: Reason) -> None:
         timeline = self.timelines.get(who)

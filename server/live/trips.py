@@ -6,6 +6,7 @@ from typing import Final, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from esplanade.actors import Outcome
 from esplanade.server.live.tap import Probe
 from esplanade.server.world.zone import Zone
 
@@ -41,7 +42,7 @@ def _progress(zone: Zone) -> Progress:
         zone.tick * zone.tick_s,
         tuple(table),
         table.trips.wanted.copy(),
-        table.trips.arrived.copy(),
+        table.trips.outcomes == Outcome.ARRIVED,
         table.agents.left_m.copy(),
         table.agents.parameters["speed_mps"].astype(np.float64),
     )

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from esplanade.actors import Explanation
-from esplanade.protocol import Reason
+from esplanade.protocol import Outcome, Reason
 from esplanade.protocol.messages import Blocker, Census, Circle, Doors, Plan, Point, Reshape
 from esplanade.server.net import frames
 from esplanade.server.net.lines import Lines
@@ -131,6 +131,8 @@ def plan(tick: int, actor: int, explanation: Explanation) -> Plan:
         ],
         since_s=round(explanation.since_s, 3),
         blocker=blocker(explanation),
+        outcome=None if explanation.outcome is None else Outcome(explanation.outcome),
+        in_the_way=in_the_way(explanation),
     )
 
 
@@ -142,3 +144,13 @@ def blocker(explanation: Explanation) -> Blocker | None:
     avatar = held.id if isinstance(held.id, int) else None
     door = held.id if isinstance(held.id, str) else None
     return Blocker(kind=held.kind, id=avatar, door=door, away=held.away_m)
+
+
+def in_the_way(explanation: Explanation) -> Blocker | None:
+    """Return whom a trip did not end at its goal for; the ids are those of avatars."""
+    by = explanation.in_the_way
+    if by is None:
+        return None
+    avatar = by.id if isinstance(by.id, int) else None
+    door = by.id if isinstance(by.id, str) else None
+    return Blocker(kind=by.kind, id=avatar, door=door)

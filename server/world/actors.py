@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from esplanade.actors import Explanation, ObservedPeople, Population
+from esplanade.actors import Explanation, ObservedPeople, Outcome, Population
 from esplanade.actors.blockers import Blocker
 from esplanade.actors.locomotion.footsteps.course import planned_places
 from esplanade.planning import Body
@@ -39,6 +39,11 @@ class ActorAvatars:
     @property
     def trips(self) -> int:
         return self._population.trips
+
+    @property
+    def ended(self) -> Mapping[Outcome, int]:
+        """Trips that have ended, by their outcome."""
+        return self._population.ended
 
     @property
     def doors_wanted(self) -> Mapping[str, bool]:
@@ -137,7 +142,10 @@ class ActorAvatars:
         Not while `plan` runs.
         """
         explanation = self._population.explain(self._actor_ids[avatar_id])
-        return replace(explanation, blocker=self._by_avatar(explanation.blocker))
+        by = explanation.in_the_way
+        if by is not None and by.kind == "actor":
+            by = by._replace(id=self._avatars.get(by.id))
+        return replace(explanation, blocker=self._by_avatar(explanation.blocker), in_the_way=by)
 
     def blocker(self, avatar_id: int) -> Blocker | None:
         """The blocker of this actor, an actor by the id of its avatar; not while `plan` runs."""

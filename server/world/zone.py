@@ -14,6 +14,7 @@ from esplanade.actors import (
 )
 from esplanade.actors.blockers import Blocker
 from esplanade.actors.locomotion.footsteps.ground import Ground
+from esplanade.actors.outcomes import Outcome as TripOutcome
 from esplanade.actors.people import NOBODY
 from esplanade.actors.potential_pool import RenewedPotential
 from esplanade.actors.traces import Decided, Trace
@@ -266,6 +267,11 @@ class Zone:
     def trips(self) -> int:
         """Trips that the actors have completed."""
         return self._actors.trips
+
+    @property
+    def ended(self) -> Mapping[TripOutcome, int]:
+        """Trips of actors that have ended, by their outcome."""
+        return self._actors.ended
 
     @property
     def grid(self) -> LayeredGrid:

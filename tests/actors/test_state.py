@@ -3,11 +3,15 @@
 import numpy as np
 
 from esplanade import protocol
-from esplanade.actors import ActorState, Reason
+from esplanade.actors import ActorState, Outcome, Reason
 
 
 def test_reasons_are_those_of_the_protocol() -> None:
     assert {r.name: r.value for r in Reason} == {r.name: r.value for r in protocol.Reason}
+
+
+def test_outcomes_are_those_of_the_protocol() -> None:
+    assert {o.name: o.value for o in Outcome} == {o.name: o.value for o in protocol.Outcome}
 
 
 def test_the_path_carries_heights_and_time() -> None:

@@ -18,6 +18,7 @@ from esplanade.protocol import (
     ErrorCode,
     Kind,
     NoticeCode,
+    Outcome,
     Reason,
     ServerCode,
     encode,
@@ -145,6 +146,8 @@ FROM_SERVER: Final[tuple[FromServer, ...]] = (
         people=[[Circle(x=2.0, y=3.0, z=3.5, radius=0.75)]],
         since_s=1.5,
         blocker=Blocker(kind="person", id=7, away=0.25),
+        outcome=Outcome.NEAR,
+        in_the_way=Blocker(kind="actor", id=9),
     ),
     Census(people=3, actors=10),
     Doors(doors={"Gate": False}),
@@ -161,7 +164,7 @@ def vectors() -> dict[str, Any]:
         "limits": {"MAX_NAME_CHARS": MAX_NAME_CHARS, "MAX_CHAT_CHARS": MAX_CHAT_CHARS},
         "codes": {
             table.__name__: {member.name: member.value for member in table}
-            for table in (ClientCode, ServerCode, Reason, CloseCode)
+            for table in (ClientCode, ServerCode, Reason, Outcome, CloseCode)
         },
         "kinds": _values(Kind),
         "client": [_vector(message) for message in FROM_CLIENT],

@@ -5,7 +5,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from esplanade.protocol import ByeCode, ErrorCode, Kind, NoticeCode, Reason
+from esplanade.protocol import ByeCode, ErrorCode, Kind, NoticeCode, Outcome, Reason
 from esplanade.protocol.codes import (
     MAX_CHAT_CHARS,
     MAX_DOOR_CHARS,
@@ -174,6 +174,8 @@ server_messages: st.SearchStrategy[FromServer] = st.one_of(
         people=st.lists(st.lists(circles, max_size=3), max_size=3),
         since_s=floats,
         blocker=st.none() | blockers,
+        outcome=st.none() | st.sampled_from(Outcome),
+        in_the_way=st.none() | blockers,
     ),
     st.builds(Census, people=u32, actors=u32),
     st.builds(Doors, doors=doors),

@@ -13,6 +13,7 @@ from esplanade.protocol.codes import (
     CloseCode,
     ErrorCode,
     Kind,
+    Outcome,
     Reason,
     ServerCode,
 )
@@ -27,7 +28,7 @@ def typescript_table(name: str) -> dict[str, int]:
     return {key: int(value) for key, value in re.findall(r"(\w+):\s*(\d+)", found[1])}
 
 
-@pytest.mark.parametrize("table", [ClientCode, ServerCode, Reason, CloseCode])
+@pytest.mark.parametrize("table", [ClientCode, ServerCode, Reason, Outcome, CloseCode])
 def test_the_browser_has_the_same_numbers(table: type[IntEnum]) -> None:
     assert typescript_table(table.__name__) == {entry.name: entry.value for entry in table}
 

@@ -17,6 +17,7 @@ from esplanade.protocol import (
     ByeCode,
     ErrorCode,
     Kind,
+    Outcome,
     Reason,
     decode_server,
     peek_snapshot,
@@ -154,6 +155,10 @@ def test_reasons_errors_and_close_codes() -> None:
     (reasons,) = tables(section("Reasons"))
     assert [(int(row["Value"]), row["Name"]) for row in reasons] == [
         (reason.value, reason.name.lower()) for reason in Reason
+    ]
+    (outcomes,) = tables(section("Outcomes"))
+    assert [(int(row["Value"]), row["Name"]) for row in outcomes] == [
+        (outcome.value, outcome.name.lower()) for outcome in Outcome
     ]
     errors, closes = tables(section("Errors"))
     assert {row["error"] for row in errors} == {code.value for code in ErrorCode}

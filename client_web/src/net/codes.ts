@@ -46,6 +46,14 @@ export const Reason = {
   ARRIVED: 6,
 } as const;
 
+/** How the trip of an actor ended. */
+export const Outcome = {
+  ARRIVED: 1,
+  NEAR: 2,
+  BLOCKED: 3,
+  NO_WAY: 4,
+} as const;
+
 export const CloseCode = {
   NORMAL: 1000,
   GOING_AWAY: 1001,

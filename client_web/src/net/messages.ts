@@ -189,6 +189,10 @@ export interface Plan {
   since_s: number;
   /** The person, actor or door that holds the actor. */
   blocker: PlanBlocker | null;
+  /** How its trip ended; null while it goes on, and without a goal. */
+  outcome: number | null;
+  /** The person, actor or door for which the trip did not end at the goal. */
+  in_the_way: PlanBlocker | null;
 }
 
 export interface ChatMessage {

@@ -1,6 +1,6 @@
 /** The panel of the chosen actor: its behaviour, its goal and the reason for its last step. */
 
-import { Reason } from "../net/codes";
+import { Outcome, Reason } from "../net/codes";
 import type { Plan } from "../net/messages";
 import { byId } from "./dom";
 
@@ -12,6 +12,13 @@ const REASONS: Record<number, string> = {
   [Reason.REPLANNING]: "looking for another way",
   [Reason.NO_PATH]: "finds no way to its goal",
   [Reason.ARRIVED]: "has arrived",
+};
+
+/** Of trips that did not end at the goal; the others are told by the reason. */
+const OUTCOMES: Record<number, string> = {
+  [Outcome.NEAR]: "is as near to its goal as it gets: somebody is there",
+  [Outcome.BLOCKED]: "has given up: somebody stands in its way",
+  [Outcome.NO_WAY]: "has given up: no way leads to its goal",
 };
 
 const BEHAVIOURS: Record<string, string> = {
@@ -41,7 +48,7 @@ export class PlanPanel {
       return;
     }
     set(this.behaviour, BEHAVIOURS[plan.behaviour] ?? plan.behaviour);
-    set(this.reason, reasonText(plan.reason));
+    set(this.reason, OUTCOMES[plan.outcome ?? 0] ?? reasonText(plan.reason));
     const seconds = plan.path.at(-1)?.[3] ?? 0;
     const path = plan.path.length > 1 ? `Path for ${seconds.toFixed(0)} s` : "No path";
     const people = plan.people.length === 1 ? "1 person" : `${plan.people.length} people`;

@@ -83,6 +83,8 @@ describe("World", () => {
       people: [],
       since_s: 0,
       blocker: null,
+      outcome: null,
+      in_the_way: null,
     };
     world.leave([8]);
     expect(world.avatars.has(8)).toBe(false);

@@ -107,7 +107,7 @@ def without(mapping, name):
 @pytest.mark.parametrize(
     ("spoil", "message"),
     [
-        (lambda h, a: ({**h, "version": 1}, a), "of version 1, this program reads 3"),
+        (lambda h, a: ({**h, "version": 1}, a), "of version 1, this program reads 4"),
         (lambda h, a: ({**h, "format": "x"}, a), "no saved agents: format is 'x'"),
         (lambda h, a: ({**h, "slices": 0}, a), "slices of saved agents"),
         (lambda h, a: ({**h, "ids": ["a", "a"]}, a), "occur twice"),

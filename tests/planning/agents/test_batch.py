@@ -48,6 +48,7 @@ BODY = {
     "step_on_m": 0.6,
     "leg_length_m": 0.9,
     "edge_cells": 24.0,
+    "patience_s": 30.0,
 }
 
 

@@ -10,7 +10,7 @@ import { costTable, parameterTable, whyBand } from "./parts";
 import { searchPart } from "./searchpart";
 import { traceOverlay, type TraceView } from "./tree";
 import { WatchedActor } from "./watching";
-import { blockerText, secondsText } from "./why";
+import { blockerText, outcomeText, secondsText } from "./why";
 
 const OVERLAY = "inspector";
 const TRACE = "trace";
@@ -91,6 +91,9 @@ class InspectorPanel extends Panel {
     const reason = now?.reason ?? details?.reason ?? "none";
     const blocker = now ? now.blocker : (details?.blocker ?? null);
     const { following } = this.app.state;
+    const ended = now
+      ? outcomeText(now.outcome, now.in_the_way)
+      : outcomeText(details?.outcome, details?.in_the_way);
     const sinceS = now?.since_s ?? details?.since_s;
     const at = now ? ([now.x, now.y, now.z] as const) : details?.position;
     return html`
@@ -115,6 +118,12 @@ class InspectorPanel extends Panel {
           }${blocker ? html`: ${blockerText(blocker)}` : nothing}
           ${details?.held ? html` <span class="warn">held by an operator</span>` : nothing}
         </dd>
+        ${
+          ended === null
+            ? nothing
+            : html`<dt>Trip</dt>
+                <dd>${ended}</dd>`
+        }
         <dt>Place</dt>
         <dd>${at ? at.map((value) => value.toFixed(1)).join(", ") : "not in the world"}</dd>
         <dt>Speed</dt>

@@ -27,6 +27,8 @@ export interface ActorMessage extends LiveMessage {
   reason: ReasonName;
   since_s?: number;
   blocker: Blocker | null;
+  outcome?: string | null;
+  in_the_way?: Blocker | null;
   behaviour: Readonly<Record<string, unknown>> | null;
   path: readonly PathPoint[] | null;
   cost: Cost | null;

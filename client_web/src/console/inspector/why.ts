@@ -43,6 +43,22 @@ export function blockerText({ kind, id, name, away_m }: Blocker): string {
   return Number.isFinite(away_m) ? `${what}, ${away_m.toFixed(1)} m away` : what;
 }
 
+const OUTCOMES: Readonly<Partial<Record<string, string>>> = {
+  near: "as near to its goal as it gets",
+  blocked: "given up, the way is blocked",
+  no_way: "given up, no way leads there",
+};
+
+/** How a trip ended that did not end at its goal, and for whom; null for any other. */
+export function outcomeText(
+  outcome: string | null | undefined,
+  inTheWay: Blocker | null | undefined,
+): string | null {
+  const text = OUTCOMES[outcome ?? ""];
+  if (text === undefined) return null;
+  return inTheWay ? `${text}: ${blockerText(inTheWay)}` : text;
+}
+
 export function spanText({ reason, blocker, seconds }: WhySpan): string {
   const held = blocker ? `, ${blockerText(blocker)}` : "";
   return `${reasonText(reason)} for ${secondsText(seconds)}${held}`;

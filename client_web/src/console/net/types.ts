@@ -98,6 +98,8 @@ export interface ActorDetails extends Omit<Actor, "behaviour"> {
   since_s?: number;
   goal?: Point | null;
   blocker?: Blocker | null;
+  outcome?: string | null;
+  in_the_way?: Blocker | null;
 }
 
 export interface Command {

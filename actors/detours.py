@@ -1,0 +1,362 @@
+"""Leads actors around people and actors who have stood in a narrow place for a while."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.actors.potential_pool import GoalKey, PotentialPool
+from esplanade.planning import AgentTable, LayeredGrid
+from esplanade.planning.routes.shut_way import Disc, ShutWays
+
+SEEN_S: Final = 0.5
+"""Whoever has stood for so long is looked for on the ways of actors."""
+LOOK_EVERY_S: Final = 0.5
+"""An actor looks along its way this often, while anybody stands."""
+STAYS: Final = 4.0
+"""Whoever has stood for a second is expected to stand for this many more."""
+GAIN_S: Final = 0.5
+"""A way has to be better by this much before an actor takes it rather than the one it goes."""
+PERSON_ROOM_M: Final = 0.25
+"""Room that a way leaves to people who stand; through narrower gaps hardly anybody presses."""
+ACTOR_ROOM_M: Final = 0.05
+AROUND_M: Final = 1.5
+"""A way beside somebody that is longer by no more than this is left to the search."""
+STALLED_S: Final = 1.5
+"""An actor that has not got on for so long is led around whoever stands in its way at all."""
+STUCK_S: Final = 2.5
+"""For an actor that has not got on for so long the gaps beside those who stand near are shut."""
+NEAR_M: Final = 2.5
+WIDER_M: Final = 0.35
+WIDEST_M: Final = 0.75
+"""A gap is shut by so much more room to whoever stands beside it."""
+MOST_DETOURS: Final = 16
+"""No more goals than this have a way around people at once; other actors wait."""
+
+
+class _Detour(NamedTuple):
+    """A way to a goal around `shut`, whose potential is in a row; another one may be on its way."""
+
+    shut: tuple[Disc, ...]
+    row: int
+    wanted: tuple[Disc, ...]
+    coming: tuple[tuple[Disc, ...], int] | None
+
+
+class Standing(NamedTuple):
+    """K bodies that stand: `discs` (K, 4) of `Disc`, with room, and `stood_s` (K,) seconds."""
+
+    discs: NDArray[np.float64]
+    stood_s: NDArray[np.float64]
+
+
+class Detours:
+    """Weighs, for each actor whose way is shut, waiting against another way.
+
+    All actors with a goal share one more potential, in which those who shut the ways of any of them
+    are solid. It is derived when such people are found, and given up when they have gone.
+    """
+
+    def __init__(self, grid: LayeredGrid, potentials: PotentialPool) -> None:
+        self._grid = grid
+        self._potentials = potentials
+        self._known: dict[GoalKey, _Detour] = {}
+        self._ways: ShutWays | None = None
+        self._rooms: dict[tuple[GoalKey, tuple[Disc, ...]], NDArray[np.float64]] = {}
+        """Of this tick: discs with the room that they have on the ways to each goal."""
+        self.refused = 0
+        """Goals for which there was no room among `MOST_DETOURS`."""
+
+    def __len__(self) -> int:
+        """Number of goals with a way around people."""
+        return len(self._known)
+
+    def keep(self, table: AgentTable, standing: Standing, tick_s: float) -> None:
+        """Let actors look along their ways, and send them where they get on sooner.
+
+        Nothing is done where nobody stands. Cost O(actors), and O(metres ahead × people who stand)
+        for each actor whose turn it is to look.
+        """
+        trips = table.trips
+        seen = standing.stood_s >= SEEN_S
+        if not self._known and not seen.any():
+            trips.shut[:] = False
+            return
+        self._forget(table, standing)
+        self._take_over(table)
+        going = (trips.own_rows >= 0) & (trips.outcomes == 0) & ~table.agents.waits
+        trips.look_in_s[going] -= tick_s
+        due = going & (trips.look_in_s <= 0.0)
+        if due.any() and seen.any():
+            discs, stood_s = np.round(standing.discs[seen], 2), standing.stood_s[seen]
+            self._rooms.clear()
+            due &= ~self._potentials.provisional(trips.own_rows)
+            for row in np.flatnonzero(due).tolist():
+                trips.look_in_s[row] = LOOK_EVERY_S
+                self._look(table, row, discs, stood_s)
+        elif due.any():
+            trips.shut[due] = False
+            for row in np.flatnonzero(due & trips.detours).tolist():
+                trips.look_in_s[row] = LOOK_EVERY_S
+                self._weigh(table, row, 0.0)
+        self._take_over(table)
+
+    def save(self, table: AgentTable) -> list[list[Any]]:
+        """Return the places that ways lead around, each with the row of an actor of that goal."""
+        found = []
+        for key, detour in self._known.items():
+            rows = np.flatnonzero(table.trips.own_rows == self._potentials.row(key))
+            if len(rows):
+                found.append([int(rows[0]), [list(disc) for disc in detour.wanted]])
+        return found
+
+    def load(self, table: AgentTable, saved: Sequence[Sequence[Any]]) -> None:
+        """Lead actors as when this was saved.
+
+        Raises
+        ------
+        ValueError, TypeError, IndexError
+            It is no such data.
+        """
+        self.clear()
+        for row, discs in saved:
+            key = self._key(table, int(row))
+            if key is None or not discs:
+                continue
+            places = [(float(x), float(y), float(z), float(r)) for x, y, z, r in discs]
+            if not np.isfinite(places).all() or len(self._known) >= MOST_DETOURS:
+                raise ValueError("a place that a way leads around is none")
+            self._want(key, tuple(places))
+        self.lead(table)
+
+    def lead(self, table: AgentTable) -> None:
+        """Let all actors that go around people go by those potentials, as far as they are there."""
+        for row in np.flatnonzero(table.trips.detours).tolist():
+            detour = self._detour(table, row)
+            if detour is not None and self._ready(detour.row):
+                table.agents.potential_rows[row] = detour.row
+
+    def undo_point(self) -> Mapping[GoalKey, tuple[Disc, ...]]:
+        """Return what `put_back` takes."""
+        return {key: detour.wanted for key, detour in self._known.items()}
+
+    def put_back(self, table: AgentTable, before: Mapping[GoalKey, tuple[Disc, ...]]) -> None:
+        """Lead actors around the same places as before."""
+        if {key: detour.wanted for key, detour in self._known.items()} != before:
+            self.clear()
+            for key, wanted in before.items():
+                self._want(key, wanted)
+        self.lead(table)
+
+    def clear(self) -> None:
+        """Give up all rows."""
+        for key in list(self._known):
+            self._end(key)
+
+    # --- the places of one goal ----------------------------------------------------------
+
+    def _want(self, key: GoalKey, wanted: tuple[Disc, ...]) -> None:
+        """Have a way of a goal derived that leads around places."""
+        detour = self._known.get(key)
+        if detour is None:
+            row = self._potentials.take((*key, wanted))
+            self._known[key] = _Detour(wanted, row, wanted, None)
+        elif detour.coming is not None or wanted == detour.shut:
+            self._known[key] = detour._replace(wanted=wanted)
+        else:
+            row = self._potentials.take((*key, wanted))
+            self._known[key] = detour._replace(wanted=wanted, coming=(wanted, row))
+
+    def _take_over(self, table: AgentTable) -> None:
+        """Take the ways that have been derived meanwhile."""
+        for key, detour in list(self._known.items()):
+            if detour.coming is None or not self._ready(detour.coming[1]):
+                continue
+            shut, row = detour.coming
+            self._potentials.drop(detour.row)
+            self._known[key] = _Detour(shut, row, detour.wanted, None)
+            self._want(key, detour.wanted)
+            for actor in self._led(table, key):
+                self._lead(table, actor)
+
+    def _forget(self, table: AgentTable, standing: Standing) -> None:
+        """Give up places where nobody stands any more, and goals that nobody has."""
+        if not self._known:
+            return
+        there = {_disc(disc)[:3] for disc in standing.discs[standing.stood_s > 0.0]}
+        for key, detour in list(self._known.items()):
+            wanted = tuple(disc for disc in detour.wanted if disc[:3] in there)
+            if not wanted or not self._potentials.used(key):
+                for row in self._led(table, key):
+                    self._return(table, row)
+                self._end(key)
+            elif wanted != detour.wanted:
+                self._want(key, wanted)
+
+    def _end(self, key: GoalKey) -> None:
+        detour = self._known.pop(key)
+        self._potentials.drop(detour.row)
+        if detour.coming is not None:
+            self._potentials.drop(detour.coming[1])
+
+    # --- one actor -----------------------------------------------------------------------
+
+    def _key(self, table: AgentTable, row: int) -> GoalKey | None:
+        slot = int(table.trips.own_rows[row])
+        key = None if slot < 0 else self._potentials.key(slot)
+        return None if key is None else (key[0], key[1], key[2], key[3])
+
+    def _led(self, table: AgentTable, key: GoalKey) -> list[int]:
+        """The rows of the actors with a goal that go around people."""
+        own = table.trips.own_rows == self._potentials.row(key)
+        rows: list[int] = np.flatnonzero(own & table.trips.detours).tolist()
+        return rows
+
+    def _ready(self, slot: int) -> bool:
+        return not self._potentials.provisional(np.array([slot]))[0]
+
+    def _look(
+        self,
+        table: AgentTable,
+        row: int,
+        discs: NDArray[np.float64],
+        stood_s: NDArray[np.float64],
+    ) -> None:
+        """Let an actor look along its own way, and along the one around people if it goes there."""
+        key = self._key(table, row)
+        if key is None:
+            return
+        trips, own_row = table.trips, int(table.trips.own_rows[row])
+        detour = self._known.get(key)
+        if detour is not None:
+            known = key, detour.wanted
+            if known not in self._rooms:
+                self._rooms[known] = _as_known(discs, detour.wanted)
+            discs = self._rooms[known]
+        shut = self._shut_by(table, row, own_row, discs, AROUND_M)
+        trips.shut[row] = shut.any()
+        if trips.stalled_s[row] >= STALLED_S and not shut.any():
+            shut = self._shut_by(table, row, own_row, discs, 0.0)
+        found = {_disc(disc) for disc in discs[shut]}
+        if trips.stalled_s[row] >= STUCK_S:
+            away = np.hypot(*(discs[:, :2] - table.agents.positions[row]).T)
+            near = (away <= NEAR_M) & (np.abs(discs[:, 2] - table.agents.heights[row]) < NEAR_M)
+            found |= {_wider(disc) for disc in discs[near]}
+            shut |= near
+        if table.trips.detours[row] and detour is not None and self._ready(detour.row):
+            shut_off = np.array(detour.shut)[:, :3]
+            more = discs[~(discs[:, None, :3] == shut_off).all(axis=2).any(axis=1)]
+            marks = self._shut_by(table, row, detour.row, more, AROUND_M)
+            found |= {_disc(disc) for disc in more[marks]}
+        if found:
+            wanted = _widest(found | (set() if detour is None else set(detour.wanted)))
+            if detour is None and len(self._known) >= MOST_DETOURS:
+                self.refused += 1
+            elif detour is None or wanted != set(detour.wanted):
+                self._want(key, tuple(sorted(wanted)))
+        self._weigh(table, row, STAYS * float(stood_s[shut].max()) if shut.any() else 0.0)
+
+    def _shut_by(
+        self,
+        table: AgentTable,
+        row: int,
+        slot: int,
+        discs: NDArray[np.float64],
+        around_m: float,
+    ) -> NDArray[np.bool_]:
+        agents = table.agents
+        if self._ways is None:
+            self._ways = ShutWays(len(self._grid.layered.floors))
+        x, y = agents.positions[row].tolist()
+        return self._ways.shut_by(
+            self._grid.arrays,
+            int(agents.bodies[row]),
+            self._potentials.arrays[slot],
+            int(agents.cells[row]),
+            (x, y),
+            discs,
+            float(agents.parameters["radius_m"][row]),
+            around_m,
+        )
+
+    def _weigh(self, table: AgentTable, row: int, waits_s: float) -> None:
+        """Send an actor the way on which it arrives sooner; it would wait so long on its own."""
+        agents, trips = table.agents, table.trips
+        detour = self._detour(table, row)
+        if detour is None or not self._ready(detour.row):
+            return
+        own_m = self._left_m(table, row, int(trips.own_rows[row]))
+        other_m = self._left_m(table, row, detour.row)
+        speed = float(agents.parameters["speed_mps"][row])
+        own_s, other_s = own_m / speed + waits_s, other_m / speed
+        if not trips.detours[row]:
+            if waits_s > 0.0 and other_s + GAIN_S < own_s:
+                trips.detours[row] = True
+                self._lead(table, row)
+        elif not np.isfinite(other_s) or own_s + GAIN_S < other_s:
+            self._return(table, row)
+
+    def _left_m(self, table: AgentTable, row: int, slot: int) -> float:
+        cell = int(table.agents.cells[row])
+        if cell < 0:
+            return float("inf")
+        left, x, y = self._potentials.arrays[slot, cell, :3].tolist()
+        here = table.agents.positions[row].tolist()
+        return float(left + np.hypot(x - here[0], y - here[1]))
+
+    def _detour(self, table: AgentTable, row: int) -> _Detour | None:
+        key = self._key(table, row)
+        return None if key is None else self._known.get(key)
+
+    def _lead(self, table: AgentTable, row: int) -> None:
+        detour = self._detour(table, row)
+        if detour is not None and self._ready(detour.row):
+            self._go_by(table, row, detour.row)
+
+    def _return(self, table: AgentTable, row: int) -> None:
+        table.trips.detours[row] = False
+        self._go_by(table, row, int(table.trips.own_rows[row]))
+
+    def _go_by(self, table: AgentTable, row: int, slot: int) -> None:
+        """Let an actor go by another potential of its goal; what it follows is weighed anew."""
+        agents, trips = table.agents, table.trips
+        if agents.potential_rows[row] == slot:
+            return
+        agents.potential_rows[row] = slot
+        agents.left_m[row] = np.nan
+        agents.passages[row] = 0.0
+        left_m = self._left_m(table, row, slot)
+        if np.isfinite(left_m):
+            trips.nearest_m[row] = left_m
+
+
+def _wider(disc: NDArray[np.float64]) -> Disc:
+    """The same place with so much room that no gap beside it is left; it is widened once."""
+    x, y, z, radius = _disc(disc)
+    return x, y, z, round(min(radius + WIDER_M, WIDEST_M), 2)
+
+
+def _widest(discs: set[Disc]) -> set[Disc]:
+    """Of discs around one place the widest."""
+    best: dict[tuple[float, ...], Disc] = {}
+    for disc in discs:
+        if disc[3] > best.get(disc[:3], disc)[3] or disc[:3] not in best:
+            best[disc[:3]] = disc
+    return set(best.values())
+
+
+def _as_known(discs: NDArray[np.float64], known: Sequence[Disc]) -> NDArray[np.float64]:
+    """Discs (K, 4) with the room that those of them have which are known."""
+    rooms = {disc[:3]: disc[3] for disc in known}
+    found = discs.copy()
+    for k, (x, y, z, room) in enumerate(discs.tolist()):
+        found[k, 3] = max(rooms.get((x, y, z), 0.0), room)
+    return found
+
+
+def _disc(disc: NDArray[np.float64]) -> Disc:
+    x, y, z, radius = np.round(disc, 2).tolist()
+    return x, y, z, radius

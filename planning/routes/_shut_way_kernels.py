@@ -1,0 +1,190 @@
+"""Looks along a route for bodies that stand in it and leave no room beside them, on bare arrays."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from esplanade.planning.compiled._heap_kernels import heap_pop, heap_push
+from esplanade.planning.compiled.jit import inlined, kernel
+from esplanade.planning.grid._grid_kernels import GridArrays, anchor_at, floor_of, follow, length
+from esplanade.planning.routes._potential_kernels import PotentialValues, direction_at
+from esplanade.planning.scene.heights import BODIES_OVERLAP_M
+
+SAMPLE_M = 0.25
+"""The route is looked at every so many metres."""
+AHEAD_M = 30.0
+"""Bodies further ahead than this are no concern yet."""
+BESIDE_M = 2.0
+"""A way around bodies leaves the route, and comes back to it, this far from them."""
+AROUND_M = 4.5
+"""A way around bodies is looked for within this distance of them."""
+OPEN, SHUT = range(2)
+
+
+class LookingSpace(NamedTuple):
+    """Memory for one look at a time; `left` (N,) m and `seen` (N,) are of cells."""
+
+    samples: NDArray[np.float64]
+    """(S, 2) m: the route."""
+    cells: NDArray[np.int64]
+    """(S,): the cell of each sample, and (S,) whether it is `taken` by somebody."""
+    taken: NDArray[np.bool_]
+    left: NDArray[np.float32]
+    seen: NDArray[np.int64]
+    stamp: NDArray[np.int64]
+    keys: NDArray[np.float64]
+    items: NDArray[np.int64]
+
+
+@inlined
+def _taken_by(
+    bodies: NDArray[np.float64], room_m: float, x: float, y: float, floor_m: float
+) -> int:
+    """The first of bodies (K, 4), x, y, z and radius, that a centre at a point would touch; -1."""
+    for k in range(len(bodies)):
+        dx = bodies[k, 0] - x
+        dy = bodies[k, 1] - y
+        reach = bodies[k, 3] + room_m
+        if dx * dx + dy * dy < reach * reach and abs(bodies[k, 2] - floor_m) < BODIES_OVERLAP_M:
+            return k
+    return -1
+
+
+@kernel
+def _sample_route(
+    grid: GridArrays,
+    potential: PotentialValues,
+    cell: int,
+    x: float,
+    y: float,
+    bodies: NDArray[np.float64],
+    room_m: float,
+    space: LookingSpace,
+) -> int:
+    """Fill the route from a point down a potential; returns the number of its samples."""
+    count = 0
+    while count < len(space.samples) and cell >= 0:
+        space.samples[count, 0] = x
+        space.samples[count, 1] = y
+        space.cells[count] = cell
+        space.taken[count] = _taken_by(bodies, room_m, x, y, floor_of(grid, cell)) >= 0
+        count += 1
+        ux, uy, leg = direction_at(grid, potential, cell, x, y)
+        if leg <= 1e-4:
+            break
+        way = min(leg, SAMPLE_M)
+        x += way * ux
+        y += way * uy
+        cell = follow(grid, cell, x, y)
+    return count
+
+
+@kernel
+def _leads_around(
+    grid: GridArrays,
+    body: int,
+    start: int,
+    end: int,
+    most_m: float,
+    bodies: NDArray[np.float64],
+    room_m: float,
+    space: LookingSpace,
+    bumped: NDArray[np.bool_],
+) -> bool:
+    """Whether a way of at most so many metres leads from cell to cell clear of all bodies.
+
+    The bodies that stand in its way are marked in `bumped` (K,).
+    """
+    space.stamp[0] += 1
+    stamp = space.stamp[0]
+    ax, ay = anchor_at(grid, body, start)
+    steps, links = grid.kinds.steps[body], grid.layered.links
+    space.seen[start] = stamp
+    space.left[start] = 0.0
+    size = heap_push(space.keys, space.items, 0, 0.0, start)
+    while size > 0:
+        way = space.keys[0]
+        cell = space.items[0]
+        size = heap_pop(space.keys, space.items, size)
+        if cell == end:
+            return True
+        if way > space.left[cell] + 1e-4:
+            continue
+        x, y = anchor_at(grid, body, cell)
+        for direction in range(8):
+            other = links[cell, direction]
+            if other < 0 or not steps[cell] >> direction & 1:
+                continue
+            ox, oy = anchor_at(grid, body, other)
+            further = way + length(ox - x, oy - y)
+            if further > most_m or length(ox - ax, oy - ay) > 2.0 * AROUND_M:
+                continue
+            if space.seen[other] == stamp and space.left[other] <= further + 1e-4:
+                continue
+            if other != end:
+                by = _taken_by(bodies, room_m, ox, oy, floor_of(grid, other))
+                if by >= 0:
+                    bumped[by] = True
+                    continue
+            if size + 1 >= len(space.keys):
+                return True  # it is wide open
+            space.seen[other] = stamp
+            space.left[other] = further
+            size = heap_push(space.keys, space.items, size, further, other)
+    return False
+
+
+@kernel
+def look_along(
+    grid: GridArrays,
+    body: int,
+    potential: PotentialValues,
+    cell: int,
+    x: float,
+    y: float,
+    bodies: NDArray[np.float64],
+    room_m: float,
+    detour_m: float,
+    space: LookingSpace,
+    shut_by: NDArray[np.bool_],
+) -> int:
+    """Tell whether standing bodies shut the route from a point, in a cell, down a potential.
+
+    They do where no way around them, longer than the route by at most `detour_m`, leads back to
+    it: `shut_by` (K,) then marks them among `bodies` (K, 4), x, y, z and radius in metres. The
+    goal itself being taken shuts no way. `room_m` is the radius of the body that goes there, with
+    the room that it keeps.
+    """
+    shut_by[:] = False
+    if cell < 0:
+        return OPEN
+    count = _sample_route(grid, potential, cell, x, y, bodies, room_m, space)
+    beside = int(BESIDE_M / SAMPLE_M)
+    bumped = np.zeros(len(bodies), dtype=np.bool_)
+    status = OPEN
+    k = 0
+    while k < count:
+        if not space.taken[k]:
+            k += 1
+            continue
+        first = k
+        while k < count and space.taken[k]:
+            k += 1
+        if k >= count:  # up to the goal, or to where nobody looks yet
+            break
+        start = max(0, first - beside)
+        end = min(count - 1, k + beside)
+        while space.taken[end] and end > k:
+            end -= 1
+        bumped[:] = False
+        way_m = (end - start) * SAMPLE_M + detour_m
+        if not _leads_around(
+            grid, body, space.cells[start], space.cells[end], way_m, bodies, room_m, space, bumped
+        ):
+            status = SHUT
+            shut_by |= bumped
+        k = end
+        if space.taken[k]:
+            k += 1
+    return status

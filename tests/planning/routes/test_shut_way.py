@@ -1,0 +1,67 @@
+"""Whether bodies that stand in a route shut it, and ways around their places."""
+
+import numpy as np
+import pytest
+
+from esplanade.planning import Body, LayeredGrid, Potential, Scene, Wall
+from esplanade.planning.routes.shut_way import ShutWays
+
+RADIUS_M = 0.25
+START, GOAL = (2.0, 5.0), (8.0, 5.0)
+
+
+def doorway(half_m: float) -> LayeredGrid:
+    ends = ((0.0, 5.0 - half_m), (5.0 + half_m, 10.0))
+    walls = tuple(Wall(start=(5.0, a), end=(5.0, b)) for a, b in ends)
+    return LayeredGrid.from_scene(Scene(bounds=(0.0, 0.0, 10.0, 10.0), walls=walls))
+
+
+def shut_by(grid: LayeredGrid, *discs, around_m: float = 1.5, goal=GOAL) -> list[bool]:
+    potential = Potential(grid, goal, 0.0, RADIUS_M)
+    cell = int(grid.on_ground([START], [0.0])[1][0])
+    bodies = np.array(discs, dtype=np.float64).reshape(-1, 4)
+    ways = ShutWays(len(grid.layered.floors))
+    row = grid.row_of(Body.adult())
+    return ways.shut_by(
+        grid.arrays, row, potential.values, cell, START, bodies, RADIUS_M, around_m
+    ).tolist()
+
+
+@pytest.mark.parametrize(("half_m", "shut"), [(0.45, True), (0.7, True), (1.2, False)])
+def test_one_body_shuts_a_doorway_if_it_leaves_no_room_beside(half_m: float, shut: bool) -> None:
+    assert shut_by(doorway(half_m), (5.0, 5.0, 0.0, 0.4)) == [shut]
+
+
+def test_several_bodies_shut_what_one_of_them_does_not() -> None:
+    row = [(5.0, 4.2, 0.0, 0.4), (5.0, 5.0, 0.0, 0.4), (5.0, 5.8, 0.0, 0.4)]
+    assert shut_by(doorway(1.2), *row) == [True] * 3
+    assert shut_by(doorway(1.2), *row[:1]) == [False]
+
+
+def test_bodies_beside_the_route_or_upstairs_shut_nothing() -> None:
+    assert shut_by(doorway(0.5), (2.0, 8.0, 0.0, 0.4), (5.0, 5.0, 3.0, 0.4)) == [False, False]
+
+
+def test_a_goal_that_is_taken_shuts_no_way() -> None:
+    assert shut_by(doorway(0.5), (8.0, 5.0, 0.0, 0.4)) == [False]
+
+
+def test_ways_lead_around_places_as_if_they_were_solid() -> None:
+    grid = LayeredGrid.from_scene(Scene.open_space((0.0, 0.0, 10.0, 10.0)))
+    disc = (5.0, 5.0, 0.0, 1.0)
+    free = Potential(grid, GOAL, 0.0, RADIUS_M)
+    around = Potential(grid, GOAL, 0.0, RADIUS_M, shut=[disc])
+    direct, detour = (float(p.distance([START], [0.0])[0]) for p in (free, around))
+    # The shortest way around a disc: two tangents and an arc.
+    reach = 1.0 + RADIUS_M
+    tangent, angle = np.sqrt(9.0 - reach**2), np.arccos(reach / 3.0)
+    shortest = 2.0 * tangent + (np.pi - 2.0 * angle) * reach
+    assert direct == pytest.approx(6.0, abs=0.05)
+    assert shortest - 0.1 <= detour <= shortest + 0.5
+
+
+def test_a_way_that_discs_shut_is_none() -> None:
+    grid = doorway(0.5)
+    shut = Potential(grid, GOAL, 0.0, RADIUS_M, shut=[(5.0, 5.0, 0.0, 0.4)])
+    assert not np.isfinite(shut.distance([START], [0.0])[0])
+    assert np.isfinite(shut.distance([(7.0, 5.0)], [0.0])[0])
