@@ -41,9 +41,6 @@ from esplanade.planning.compiled.jit import kernel
 
 SHIFT_S = 0.4
 """Duration of a shift of weight from foot to foot."""
-_RE_AIMED_ENOUGH = 0.6
-"""A step that was last re-aimed after this share of it is not re-aimed again, so that it lands: a
-body that turns every tick would get away from its feet."""
 _MOST_ELAPSED = 0.99
 """The rest above this share of a step is left, however often the step is re-aimed."""
 _ROOM = 0.4
@@ -93,7 +90,7 @@ def _triggered(
         trigger = Trigger(GOES_ON, False, 0, 0.0)
         if tick >= steps.start[slot] + steps.ticks[slot]:
             trigger = step_to_begin(tick, tick_s, steps, goals, slot, headings[i], ahead[i])
-        elif walkers.elapsed[slot] < _RE_AIMED_ENOUGH:
+        else:
             trigger = step_to_re_aim(tick, tick_s, steps, goals, slot, headings[i], ahead[i])
         if trigger.kind == SHIFTS:
             shifting[shifts] = i

@@ -41,8 +41,6 @@ Publish = Callable[[Steps, Ints], Steps]
 
 JUMP_M: Final = 1.5
 """A body this far from its feet, along any axis, stands anew where it is."""
-_RE_AIMED_ENOUGH: Final = 0.6
-"""A step that was last re-aimed after this share of it is not re-aimed again: it lands."""
 SHIFT_S: Final = 0.4
 """Duration of a shift of weight from foot to foot."""
 _MOST_ELAPSED: Final = 0.99
@@ -103,15 +101,7 @@ class Walkers:
         self._stand_where_lost(tick, slots, course)
         goals = StepGoals._make(column[slots] for column in self._goals)
         steps = self.steps.take(slots)
-        may_be = np.flatnonzero(self._elapsed[slots] < _RE_AIMED_ENOUGH)
-        re_aimed = steps_to_re_aim(
-            tick,
-            self._tick_s,
-            steps.take(may_be),
-            StepGoals._make(column[may_be] for column in goals),
-            course.take(may_be),
-        )
-        re_aimed = re_aimed._replace(rows=may_be[re_aimed.rows])
+        re_aimed = steps_to_re_aim(tick, self._tick_s, steps, goals, course)
         idle = np.flatnonzero(tick >= steps.start + steps.ticks)
         begun, shifting = steps_to_begin(
             tick,

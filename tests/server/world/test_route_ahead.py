@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from esplanade.actors.locomotion.footsteps.course import AHEAD, AHEAD_S
-from esplanade.server.world.inputs import Follow, Steer
+from esplanade.server.world.inputs import Follow
 from esplanade.server.world.route_ahead import CORNERS, RouteAhead
 from tests.server.worlds import FIELD, Trial
 
@@ -52,11 +52,3 @@ def test_feet_keep_up_with_a_body_that_walks_around_something() -> None:
         furthest = max(furthest, min(math.dist(trial.position(ann), foot) for foot in feet))
     assert trial.world.feet.lost == 0
     assert furthest < 0.6
-
-
-def test_feet_keep_up_with_a_body_that_turns_in_every_tick() -> None:
-    trial = Trial(scene=FIELD)
-    (ann,) = trial.join((50.0, 50.0))
-    for k in range(200):
-        trial.tick(Steer(ann, k, 1.6 + 0.5 * math.sin(1.1 * k), 1.2))
-    assert trial.world.feet.lost == 0
