@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from esplanade.planning.scene.heights import SAME_FLOOR_M
 
 ASIDE_M: Final = 0.3
-"""Whoever stands beside the way by no more than this and both radii stands in it."""
+"""A body that is beside the way by no more than this and both radii stands in it."""
 
 
 class Bodies(NamedTuple):

@@ -13,11 +13,11 @@ from esplanade.planning import AgentTable, LayeredGrid
 from esplanade.planning.routes.shut_way import Disc, ShutWays
 
 SEEN_S: Final = 0.5
-"""Whoever has stood for so long is looked for on the ways of actors."""
+"""A body that has stood for so long is looked for on the ways of actors."""
 LOOK_EVERY_S: Final = 0.5
 """An actor looks along its way this often, while anybody stands."""
 STAYS: Final = 4.0
-"""Whoever has stood for a second is expected to stand for this many more."""
+"""A body that has stood for a second is expected to stand for this many more."""
 GAIN_S: Final = 0.5
 """A way has to be better by this much before an actor takes it rather than the one it goes."""
 PERSON_ROOM_M: Final = 0.25

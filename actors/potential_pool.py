@@ -92,7 +92,7 @@ class PotentialPool:
         return slot
 
     def key(self, slot: int) -> GoalKey | DetourKey | None:
-        """What the row is of; None for an empty one."""
+        """The key of a row; None for an empty one."""
         return self._keys[slot]
 
     def row(self, key: GoalKey | DetourKey) -> int:

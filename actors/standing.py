@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 STRAY_M: Final = 0.4
-"""Whoever moves no further than this from where it stands goes on standing there."""
+"""A body that moves no further than this from where it stands goes on standing there."""
 LEVEL_M: Final = 0.5
 FADES_PER_S: Final = 2.0
 """A place that has cleared is forgotten this many times faster than it was remembered."""

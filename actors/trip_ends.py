@@ -195,7 +195,7 @@ class TripEnds:
         row: int,
         people: int,
     ) -> int | None:
-        """Who leaves an actor no place at its goal, the nearest to it; None if there is one."""
+        """Find the body nearest to a goal that takes an actor's place there, if there is one."""
         agents, own_rows = table.agents, table.trips.own_rows
         p = agents.parameters[row]
         goal, tolerance_m = agents.goals[row], float(p["goal_tolerance_m"])
@@ -247,7 +247,7 @@ class TripEnds:
             agents.cautions[row] = SQUEEZED if near else 1.0
 
     def _held_by(self, table: AgentTable, bodies: Bodies, row: int) -> tuple[str, Hashable]:
-        """Who is in the way of an actor, on its way first, and then anywhere near."""
+        """Find the body in the way of an actor: on its way first, and then anywhere near."""
         agents = table.agents
         slot, cell = int(agents.potential_rows[row]), int(agents.cells[row])
         own, ahead = len(bodies.people) + row, None

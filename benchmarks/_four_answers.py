@@ -17,9 +17,9 @@ TICK_S: Final = 0.05
 SPEED_MPS: Final = 1.4
 ACTOR_TICK_S: Final = 0.1
 NEAR_M: Final = 0.3
-"""Who ends so near to the goal has arrived."""
+"""A body that ends so near to the goal has arrived."""
 BLOCKED_TICKS: Final = 20
-"""Who gets nowhere for so long gives up, as people who follow a route do."""
+"""A body that gets nowhere for so long gives up, as people who follow a route do."""
 _STEP_SHARE: Final = 0.1
 
 

@@ -126,7 +126,7 @@ def turn(points: Floats, degrees: float) -> Floats:
 
 
 def row(before: list[Answer], after: list[Answer]) -> tuple[str, ...]:
-    """How many ways of before are found of how many, are lost and won, and ratios of lengths."""
+    """Counts of ways that are found, lost and won against before, and ratios of lengths."""
     both = [(a, b) for a, b in zip(before, after, strict=True) if a.found and b.found]
     ratios = [b.length_m / a.length_m for a, b in both if a.length_m >= SHORTEST_M] or [1.0]
     known = sum(a.found for a in before)

@@ -54,7 +54,7 @@ class Canvas:
         self._image = Image.new("RGB", self._camera.size, SKY)
         self._draw = ImageDraw.Draw(self._image)
         self.shapes: list[Shape] = []
-        """What was painted so far, in the order in which it was, in pixels of the camera."""
+        """The shapes painted so far, in their order, in pixels of the camera."""
 
     def picture(self) -> Image.Image:
         """The picture painted so far, in the size of the camera."""

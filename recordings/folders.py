@@ -16,7 +16,7 @@ MOST_BYTES: Final = 2**30
 _OTHERS: Final = frozenset(
     (".md", ".png", ".jpg", ".jpeg", ".gif", ".pdf", ".avi", ".mp4", ".yaml", ".yml", ".py", ".svg")
 )
-"""What lies beside recordings and is none."""
+"""Files that lie beside recordings and are none."""
 
 
 def read_folder(path: Path, read: Callable[[Path], Rows]) -> Rows:

@@ -56,7 +56,7 @@ class Rows:
     velocities: Floats | None = None
     """In metres a second, or in units of the file a second: which, is found by the rate."""
     z: Floats | None = None
-    """What the file has beside `x` and `y`: heights, unless the file has `y` for the height."""
+    """The coordinate beside `x` and `y`: heights, unless the file has `y` for the height."""
     times_named: bool = False
     """Whether the file says in which unit its times are."""
     fps: float | None = None

@@ -12,7 +12,7 @@ from esplanade.recordings.rows import Rows, number, people
 from esplanade.recordings.units import PIXELS
 
 MOST_IDLE: Final = 20_000
-"""So many elements without a person in them are of something else."""
+"""A file with more elements than this and no person in them is of something else."""
 _FRAMES_A_SECOND: Final = {"dataset": (7.0, "as PETS has")}
 """By the root of the annotations."""
 

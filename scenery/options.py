@@ -55,7 +55,7 @@ def _check(commands: "SubParsers[Parser]") -> Parser:
         description="Say what is wrong with a scene and where, or what it holds: its extent, "
         "layers,\ncells, and who gets where from its spawns.",
     )
-    made.add_argument("scene", metavar="FILE", type=InputFile(), help="scene, a JSON file")
+    _add_scene(made)
     made.add_argument("--json", action="store_true", help="print it as JSON")
     _add_cell(made)
     return made
@@ -69,7 +69,7 @@ def _render(commands: "SubParsers[Parser]") -> Parser:
         description="Draw every layer of a scene as a body finds it: heights, "
         "reachability,\nthe five classes, and potential and path between two points.",
     )
-    made.add_argument("scene", metavar="FILE", type=InputFile(), help="scene, a JSON file")
+    _add_scene(made)
     made.add_argument(
         "--out", metavar="DIR", type=Folder(), required=True, help="where the pictures go"
     )
@@ -168,7 +168,7 @@ def _export(commands: "SubParsers[Parser]") -> Parser:
         "(a ROS map of each\nstorey, with its image), .png, .svg or .pdf (a plan of each storey, "
         "to scale).",
     )
-    made.add_argument("scene", metavar="FILE", type=InputFile(), help="scene, a JSON file")
+    _add_scene(made)
     made.add_argument(
         "--out",
         metavar="FILE",
@@ -195,7 +195,7 @@ def _turn(commands: "SubParsers[Parser]") -> Parser:
         description="Write a scene turned to the left about the middle of its bounds, with all its "
         "parts and\nits mesh. What can be walked stays as it was.",
     )
-    made.add_argument("scene", metavar="FILE", type=InputFile(), help="scene, a JSON file")
+    _add_scene(made)
     made.add_argument(
         "--degrees", metavar="D", type=Number(-360.0, 360.0), required=True, help="the angle"
     )
@@ -226,6 +226,10 @@ def _schema(commands: "SubParsers[Parser]") -> Parser:
         help="the schema to write",
     )
     return made
+
+
+def _add_scene(parser: Parser) -> None:
+    parser.add_argument("scene", metavar="FILE", type=InputFile(), help="scene, a JSON file")
 
 
 def _add_cell(made: Parser) -> None:

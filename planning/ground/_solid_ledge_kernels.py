@@ -23,7 +23,7 @@ from esplanade.planning.ground.layered import LINK_M
 _SAME_M = 1e-4
 """Heights and lengths that differ by less are equal."""
 _BESIDE_M = 1e-3
-"""What lies beside an edge is looked up this far from it."""
+"""The ground beside an edge is looked up this far from it."""
 
 
 class SolidBuckets(NamedTuple):

@@ -18,7 +18,7 @@ TOLD_M: Final = 0.25
 """Nothing is said of a start or goal that is moved by no more than this."""
 
 _KNEES_M: Final = 0.4
-"""What ends below this above the ground is a step, not a wall."""
+"""A solid that ends below this above the ground is a step, not a wall."""
 
 
 class MoveReason(IntEnum):
@@ -62,7 +62,7 @@ def moved_end(
     asked: tuple[float, float, float],
     place: tuple[float, float, float],
 ) -> MovedEnd | None:
-    """How a start or goal was moved from the point asked for; None if by no more than `TOLD_M`."""
+    """The move of a start or goal from the point asked for; None if by no more than `TOLD_M`."""
     away_m = math.dist(asked[:2], place[:2])
     if away_m <= TOLD_M:
         return None

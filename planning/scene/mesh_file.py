@@ -62,11 +62,11 @@ class Mesh:
     """(T, 3, 3), metres, x east, y north, z up."""
     kind: str
     passed: Counter[str] = field(default_factory=Counter)
-    """What the file holds beside them, with its count."""
+    """The parts of the file beside them, with their counts."""
     offset_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """What was taken from every corner: x, y, z of the file's own origin."""
+    """The offset taken from every corner: x, y, z of the file's own origin."""
     told: tuple[str, ...] = ()
-    """What else the file says about itself, such as the names of its storeys."""
+    """Further facts that the file tells, such as the names of its storeys."""
 
 
 def read_triangles(path: str | Path, up: Up = "y") -> NDArray[np.float64]:

@@ -15,9 +15,9 @@ from esplanade.scenery.reach import reached_cells, spawn_cells
 
 Line = tuple[tuple[float, float], tuple[float, float]]
 _ABOVE_FLOOR_M = 0.6
-"""What ends lower above a floor is stepped over."""
+"""An obstacle that ends lower above a floor is stepped over."""
 _BODY_M = 1.8
-"""What begins higher above a floor is passed under."""
+"""An obstacle that begins higher above a floor is passed under."""
 _LOW_M = 0.1
 """Solids that are lower above a floor are not drawn."""
 _PLACE_M = 0.5

@@ -23,7 +23,7 @@ _DRAWN: Final = frozenset(
     ("LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE", "HELIX", "3DFACE",
      "SOLID", "TRACE")
 )  # fmt: skip
-"""What is drawn as a line; texts, dimensions, hatches and pictures are none."""
+"""Kinds of entities that are drawn as lines; texts, dimensions, hatches and pictures are not."""
 _FLATTENING: Final = 0.01
 _FLAT_M: Final = 1.0
 MAX_LINES: Final = 50_000

@@ -1,4 +1,4 @@
-"""Which reader a plan has: found by content and suffix."""
+"""The reader of a plan, found by content and suffix."""
 
 import math
 from collections.abc import Sequence

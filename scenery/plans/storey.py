@@ -26,7 +26,7 @@ class Storey:
     stairs: list[tuple[Line, float]] = field(default_factory=list)
     """Flights to the storey above, from foot to head, with their widths."""
     remarks: list[str] = field(default_factory=list)
-    """What was taken for granted or passed over, one sentence each."""
+    """Remarks on things taken for granted or passed over, one sentence each."""
 
     def add_path(self, points: list[Point]) -> None:
         """Add the walls of a line of many points."""

@@ -148,7 +148,7 @@ class Reasons:
         return found
 
     def told_in_the_way(self, by: InTheWay | None, *, names: bool) -> dict[str, Any] | None:
-        """Whom a trip did not end at its goal for, told as a blocker at no known distance."""
+        """The body that kept a trip from its goal, told as a blocker at no known distance."""
         if by is None:
             return None
         return self.told_blocker(Blocker(by.kind, by.id), names=names)

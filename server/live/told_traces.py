@@ -67,7 +67,7 @@ def _told_nodes(trace: Trace) -> list[list[float]]:
 
 
 def _told_why(trace: Trace) -> dict[str, Any]:
-    """Which path was taken, as a code with the costs that were compared, and a text beside."""
+    """The choice of a path, as a code with the costs that were compared, and a text beside."""
     taken_s = trace.decided.taken.total_s
     before_s = None if trace.perturbed is None else trace.perturbed.total_s
     margin_s = trace.hysteresis_s

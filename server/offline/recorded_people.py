@@ -37,7 +37,7 @@ class RecordedPeople:
         self._walking: dict[int, _Walker] = {}
         self._seq = 0
         self.names: dict[int, str] = {}
-        """What each avatar is called in the recording, also of those who have left."""
+        """The names of avatars in the recording, also of those who have left."""
         self.furthest_m = 0.0
         """The greatest distance of anybody from the track so far."""
 

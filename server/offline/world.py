@@ -23,7 +23,7 @@ from esplanade.server.world.frame import Frame
 from esplanade.server.world.inputs import ActorCommand, Input, MoveDoor, SetParameters
 
 FLUSH_TICKS: Final = 200
-"""What was written is handed over to the system after so many ticks."""
+"""Written rows are handed over to the system after so many ticks."""
 
 
 class OfflineWorld:

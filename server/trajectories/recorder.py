@@ -36,7 +36,7 @@ class Recorder:
         self._commands: dict[int, OneActorCommand | Batch] = {}
         self._began = False
         self.named: Mapping[int, str] = {}
-        """What recorded people are called in their recording, by their avatars' ids."""
+        """The names of recorded people in their recording, by their avatars' ids."""
 
     @property
     def last_frame(self) -> int:

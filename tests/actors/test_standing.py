@@ -1,4 +1,4 @@
-"""Who stands where is remembered, and fades once the place has cleared."""
+"""The memory of standing bodies fades once their place has cleared."""
 
 import numpy as np
 import pytest

@@ -11,7 +11,7 @@ from tests.recordings.data import recorded
 
 
 def crosses(here: np.ndarray, there: np.ndarray, walls: np.ndarray) -> np.ndarray:
-    """Which walls (M, 4) a step crosses, by the naive geometry of segments."""
+    """The walls (M, 4) that a step crosses, by the naive geometry of segments."""
     step = tuple(here), tuple(there)
     return np.array([segments_meet(*step, tuple(w[:2]), tuple(w[2:])) for w in walls], dtype=bool)
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 MAX_CORNERS: Final = 20_000
 """Most corners of one face: to cut it may take their square."""
 _AREA_SHARE: Final = 1e-6
-"""What is cut may differ from the area of the face by this share of it."""
+"""The triangles of a face may differ from its area by this share of it."""
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.int64]
@@ -30,7 +30,7 @@ class Faces:
     sizes: _Ints
     """(F,): corners of each face."""
     passed: Counter[str] = field(default_factory=Counter)
-    """What the file holds and is passed over, with its count."""
+    """The parts of the file that are passed over, with their counts."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Triangles:
     """(T, 3, 3)."""
     passed: Counter[str] = field(default_factory=Counter)
     told: tuple[str, ...] = ()
-    """What else the file says about itself, such as the names of its storeys."""
+    """Further facts that the file tells, such as the names of its storeys."""
 
 
 def cut(faces: Faces) -> Triangles:

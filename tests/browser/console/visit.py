@@ -98,7 +98,7 @@ class Visit:
         ]
 
     async def overflow_px(self) -> int:
-        """How much wider than its window the page is."""
+        """The width by which the page exceeds its window."""
         return int(await self.page.evaluate("document.documentElement.scrollWidth - innerWidth"))
 
 

@@ -75,7 +75,7 @@ def grid_of(steps: int, width: float, angle: float) -> tuple[LayeredGrid, Point,
 
 
 def agrees(grid: LayeredGrid, goal: Point, z_m: float, starts: list[Point], body: Body) -> int:
-    """How many starts lie where the potential is finite and no path is, or the other way round."""
+    """The number of starts where the potential is finite and no path is, or the other way round."""
     potential = Potential(grid, goal, z_m, body.radius_m, body=body)
     wrong = 0
     for start in starts:
