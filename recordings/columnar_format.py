@@ -10,6 +10,7 @@ import numpy as np
 
 from esplanade.recordings.columns import Columns, find_columns, named_by_hand
 from esplanade.recordings.errors import RecordingError
+from esplanade.recordings.kinds import is_person, others_among, told_others
 from esplanade.recordings.rows import Rows, numbered_people, people
 from esplanade.recordings.units import FRAMES, length_named, time_named
 
@@ -110,7 +111,6 @@ def _columns(path: Path, names: Sequence[str], named: Sequence[str]) -> Columns:
             f"expected the columns t,id,x,y or other names of these; none of "
             f"{', '.join(names)!r:.100} is {' or '.join(columns.missing)}; --columns names them",
         )
-    columns.places.pop("kind", None)
     return columns
 
 
@@ -135,6 +135,16 @@ def _rows(
     unit: str | None = None,
 ) -> Rows:
     numbers = {}
+    kinds = [_text(kind) for kind in found.get("kind", ())]
+    others = others_among(kinds)
+    of_people = np.array([is_person(kind) for kind in kinds] if others else ())
+    if others and not of_people.any():
+        raise RecordingError(path, f"holds no samples of people: {told_others(others)}")
+    found = {
+        role: np.asarray(values)[of_people] if others else values
+        for role, values in found.items()
+        if role != "kind"
+    }
     for role, values in found.items():
         if role != "id":
             if np.asarray(values).dtype.kind not in "iuf":
@@ -154,7 +164,7 @@ def _rows(
         velocities = np.stack([numbers["vx"], numbers["vy"]], axis=1)
     return Rows(
         format=form,
-        lines=np.arange(1, len(who) + 1),
+        lines=1 + (np.flatnonzero(of_people) if others else np.arange(len(who))),
         ids=ids,
         who=who,
         clock=numbers.get("frame", numbers.get("time"))  # type: ignore[arg-type]
@@ -169,4 +179,10 @@ def _rows(
         fps=fps,
         unit=said,
         unit_from="as its columns say" if said else "",
+        remarks=(told_others(others),) if others else (),
+        dropped=sum(others.values()),
     )
+
+
+def _text(value: Any) -> str:
+    return value.decode(errors="replace") if isinstance(value, bytes) else str(value)

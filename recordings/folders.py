@@ -68,8 +68,10 @@ def read_folder(path: Path, read: Callable[[Path], Rows]) -> Rows:
         velocities=joined([r.velocities for r in parts if r.velocities is not None])
         if whole
         else None,
-        z=None,
-        remarks=(*dict.fromkeys(text for rows in parts for text in rows.remarks), *remarks)[:12],
+        z=joined([r.z for r in parts if r.z is not None])
+        if all(rows.z is not None for rows in parts)
+        else None,
+        remarks=(*remarks, *dict.fromkeys(text for rows in parts for text in rows.remarks))[:12],
         dropped=sum(rows.dropped for rows in parts),
     )
 
@@ -97,13 +99,13 @@ def _form(rows: Rows) -> tuple[object, ...]:
 
 def _people(parts: Sequence[Rows], files: Sequence[Path]) -> tuple[list[str], Whole]:
     """Names of all people, and whose each sample is."""
-    one_frame = all(rows.clock[0] == rows.clock[-1] for rows in parts) and len(parts) > 1
+    one_frame = all(rows.clock.min() == rows.clock.max() for rows in parts) and len(parts) > 1
     times = Counter(name for rows in parts for name in rows.ids)
     shared = {name for name, count in times.items() if count > 1 and not one_frame}
     index: dict[str, int] = {}
     who = []
     for rows, file in zip(parts, files, strict=True):
-        alone = len(rows.ids) == 1
+        alone = len(rows.ids) == 1 and (file.stem not in times or file.stem in shared)
         own = [
             (file.stem if alone else f"{file.stem}/{name}") if name in shared else name
             for name in rows.ids

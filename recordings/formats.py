@@ -117,8 +117,13 @@ def _check_bounds(path: Path, text: str, given: Given) -> None:
         return
     if text.find("\n", 0, MOST_OF_A_LINE) < 0:
         raise RecordingError(path, f"has more than {MOST_OF_A_LINE} characters in a line", 1)
+    beginning = text[: text.rindex("\n", 0, 4 * MOST_OF_A_LINE)]
+    # Forms that count ahead cannot be cut.
+    lines = table_of(beginning).lines
+    if looks_like_splines(beginning) or all(line.text.isdecimal() for line in lines):
+        return
     # Faults at the beginning of a large file are found before all of it is taken apart.
-    _read_text(path, text[: text.rindex("\n", 0, 4 * MOST_OF_A_LINE)], given)
+    _read_text(path, beginning, given)
 
 
 def _read_cells(path: Path, table: Table, given: Given) -> Rows:

@@ -3,6 +3,7 @@
 import json
 import math
 from collections.abc import Iterator, Sequence
+from itertools import compress
 from pathlib import Path
 from typing import Any, Final
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from esplanade.recordings.columns import find_columns, named_by_hand
 from esplanade.recordings.errors import RecordingError
+from esplanade.recordings.kinds import is_person, others_among, told_others
 from esplanade.recordings.ndjson_format import read_ndjson
 from esplanade.recordings.rows import Floats, Rows, people
 from esplanade.recordings.units import FRAMES, length_named, time_named
@@ -171,11 +173,17 @@ def _by_person(content: _Record) -> Iterator[_Record] | None:
     if not all(isinstance(value, dict) for value in inner[0].values()) or not inner[0]:
         return None
     return (
-        {**at.get("position", at), "id": person, "t": float(time)}
+        _pathfinder_sample(person, time, at)
         for person, times in content.items()
         for time, at in times.items()
-        if isinstance(at, dict) and isinstance(at.get("position", at), dict) and _is_clock(time)
     )
+
+
+def _pathfinder_sample(person: str, time: str, at: Any) -> _Record:
+    place = at.get("position", at) if isinstance(at, dict) else None
+    if not isinstance(place, dict) or not _is_clock(time):
+        raise ValueError(f"{person!r:.40} at {time!r:.40} is no sample")
+    return {**place, "id": person, "t": float(time)}
 
 
 def _is_clock(key: str) -> bool:
@@ -203,7 +211,15 @@ def _rows(
             f"its JSON has samples of {', '.join(keys)!r:.100}; none of these is "
             f"{' or '.join(columns.missing)}; --columns names them",
         )
-    keyed = {role: keys[place] for role, place in columns.places.items() if role != "kind"}
+    keyed = {role: keys[place] for role, place in columns.places.items()}
+    kind = keyed.pop("kind", None)
+    count = len(records)
+    others = {} if kind is None else others_among(str(each.get(kind, "")) for each in records)
+    if kind is not None and others:
+        of_people = [is_person(str(each.get(kind, ""))) for each in records]
+        records, lines = [*compress(records, of_people)], [*compress(lines, of_people)]
+        if not records:
+            raise RecordingError(path, f"holds no samples of people: {told_others(others)}")
     numbers: dict[str, Floats] = {
         role: np.array(
             [_number(path, n, r, key) for n, r in zip(lines, records, strict=True)], np.float64
@@ -235,6 +251,8 @@ def _rows(
         unit=unit,
         unit_from="as its keys say" if unit else "",
         times_named=bool(columns.units.get("time")),
+        remarks=(told_others(others),) if others else (),
+        dropped=count - len(records),
     )
 
 

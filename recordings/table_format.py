@@ -1,7 +1,6 @@
 """Tables with named columns, in any dialect: comma, semicolon, tab or space between the cells."""
 
 import re
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -12,6 +11,7 @@ from esplanade.recordings.cells import Cells, read_cells
 from esplanade.recordings.columns import Columns, find_columns, named_by_hand
 from esplanade.recordings.dialect import Dialect, Line, Table, dialect_of
 from esplanade.recordings.errors import RecordingError
+from esplanade.recordings.kinds import is_person, others_among, told_others
 from esplanade.recordings.rows import Floats, Rows
 from esplanade.recordings.units import FRAMES, length_named, length_said, time_named
 
@@ -25,12 +25,6 @@ _RATES: Final = (
     re.compile(rf"{_NUMBER}\s*(?:fps|hz|frames?\s*(?:/|per)\s*s(?:ec(?:ond)?)?)\b", re.IGNORECASE),
 )
 """Ways to write frames a second, the surer first."""
-_PEOPLE: Final = frozenset(
-    ("ped", "peds", "pedestrian", "pedestrians", "person", "people", "human")
-)
-_OTHERS: Final = frozenset(
-    ("veh", "vehicle", "car", "cart", "biker", "bicycle", "skater", "bus", "truck")
-)
 _MOST_LINES_BEFORE: Final = 60
 _CITR: Final = ["frame", "id", "x", "y", "type"]
 
@@ -163,15 +157,14 @@ def read_table(path: Path, table: Table, dialect: Dialect, header: list[str] | N
     unit = _length(path, columns, table) or said.unit
     kinds = _kinds(dialect, lines, columns)
     cells, dropped = read_cells(
-        path, lines, dialect, columns.places, width, ",".join(header), _is_person if kinds else None
+        path, lines, dialect, columns.places, width, ",".join(header), is_person if kinds else None
     )
     if "id" not in columns.places:
         _check_one_person(path, columns, cells, header, table)
         cells.ids = [path.stem]
     remarks = []
     if dropped:
-        others = ", ".join(f"{count} of {kind!r}" for kind, count in kinds.items())
-        remarks.append(f"samples that are not people's are left out: {others}"[:300])
+        remarks.append(told_others(kinds))
     if repeats:
         remarks.append(f"{repeats} repeated headers are left out")
     in_frames, unit_s = _clock(columns)
@@ -257,17 +250,10 @@ def _velocities(numbers: Mapping[str, Floats]) -> Floats | None:
     return np.stack([numbers["vx"], numbers["vy"]], axis=1)
 
 
-def _is_person(cell: str) -> bool:
-    return cell.strip().lower() in _PEOPLE
-
-
 def _kinds(dialect: Dialect, lines: Sequence[Line], columns: Columns) -> dict[str, int]:
     """The kinds that are no people, with their counts, where a column tells kinds."""
     place = columns.places.get("kind")
     if place is None:
         return {}
     split = dialect.cells
-    found = Counter(cells[place] for line in lines if len(cells := split(line.text)) > place)
-    if not any(_is_person(kind) for kind in found):
-        return {} if not any(kind.lower() in _OTHERS for kind in found) else dict(found)
-    return {kind: count for kind, count in found.items() if not _is_person(kind)}
+    return others_among(cells[place] for line in lines if len(cells := split(line.text)) > place)

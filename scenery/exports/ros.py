@@ -1,5 +1,6 @@
 """A layer as a map of ROS: an image in PGM, and the YAML that names it."""
 
+import json
 import math
 
 import numpy as np
@@ -23,7 +24,8 @@ def layer_as_yaml(layer: LayerCells, image: str) -> str:
     """The YAML beside the image."""
     x, y = layer.corner
     return (
-        f"image: {image}\nresolution: {layer.cell_m:g}\norigin: [{x:g}, {y:g}, 0.0]\n"
+        f"image: {json.dumps(image)}\nresolution: {layer.cell_m:.10g}\n"
+        f"origin: [{x:.10g}, {y:.10g}, 0.0]\n"
         "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
     )
 

@@ -31,4 +31,4 @@ def layer_as_wkt(layer: LayerCells) -> str:
 
 def _line(line: Line) -> str:
     (ax, ay), (bx, by) = line
-    return f"LINESTRING ({ax:.6g} {ay:.6g}, {bx:.6g} {by:.6g})"
+    return f"LINESTRING ({ax:.10g} {ay:.10g}, {bx:.10g} {by:.10g})"

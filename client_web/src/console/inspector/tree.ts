@@ -48,9 +48,16 @@ export function traceOverlay(
   };
 }
 
+const mostRisks = new WeakMap<Trace, number>();
+
 /** The greatest value of all slices, so that one colour is the same at all times. */
-export function mostRisk({ risk }: Trace): number {
-  return Math.max(0, ...risk.map((slice) => Math.max(0, ...valuesOf(slice))));
+export function mostRisk(trace: Trace): number {
+  const known = mostRisks.get(trace);
+  if (known !== undefined) return known;
+  const greatest = (most: number, value: number): number => Math.max(most, value);
+  const most = trace.risk.reduce((found, slice) => valuesOf(slice).reduce(greatest, found), 0);
+  mostRisks.set(trace, most);
+  return most;
 }
 
 export function segmentsOf({ nodes }: Trace, by: ColourBy): Segments[] {

@@ -19,11 +19,15 @@ export class HeatMap {
   /** Becomes another with every picture. */
   version = 0;
   private shown: readonly Shown[] = [];
+  private asked = 0;
 
   constructor(private readonly api: Api) {}
 
   async ask(kind: string, windowS: number): Promise<void> {
+    const asked = ++this.asked;
     const heat = await this.api.get<Heat>("/heat", { kind, window_s: windowS });
+    // Another map may have been chosen meanwhile, or none.
+    if (asked !== this.asked) return;
     const values = heat.storeys.map(valuesOf);
     const most = Math.max(0, ...values.map(fullValue));
     this.most = most;
@@ -38,6 +42,7 @@ export class HeatMap {
   }
 
   clear(): void {
+    this.asked++;
     this.shown = [];
     this.most = null;
     this.version++;

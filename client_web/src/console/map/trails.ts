@@ -20,6 +20,8 @@ export class Trails {
   /** Where the trails of the picture end, by avatar. */
   private ends = new Map<number, Place>();
   private drawnS = Number.NEGATIVE_INFINITY;
+  /** The number of times that the picture had become too old. */
+  private turn = 0;
 
   draw(
     pen: CanvasRenderingContext2D,
@@ -32,8 +34,8 @@ export class Trails {
     scheme: Scheme,
   ): void {
     if (trailS === 0) return;
-    if (Math.abs(timeS - this.drawnS) > AGAIN_S) this.drawnS = timeS;
-    const of = [this.drawnS, trailS, scheme.dark, ...(avatars.size > MANY ? chosen : [])].join();
+    if (Math.abs(timeS - this.drawnS) > AGAIN_S) this.turn++;
+    const of = [this.turn, trailS, scheme.dark, ...(avatars.size > MANY ? chosen : [])].join();
     this.picture.show(pen, view, ratio, of, (own) => {
       // A map that was moved shows the trails up to now.
       this.drawnS = timeS;

@@ -78,7 +78,6 @@ export class SeriesWindow {
 
   /** Take the figures of a second, in a window that has steps of a second. */
   append(atUs: number, values: Readonly<Record<string, number | null>>): void {
-    if (this.stepS > 1) return;
     const at = this.endUs(atUs);
     const last = this.atUs.at(-1);
     if (last !== undefined && at < last) return;

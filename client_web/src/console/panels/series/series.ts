@@ -208,7 +208,8 @@ class SeriesPanel extends CommandingPanel {
       to_us: stepS === 1 ? undefined : this.loadedUs - 1,
     };
     const found = await this.ask<SeriesAnswer>("/series", query);
-    if (!found) return;
+    // Another window may have been chosen meanwhile.
+    if (!found || (STEPS[this.step] ?? STEPS[0]).stepS !== stepS) return;
     window.load(found, this.window);
     this.window = window;
     this.requestUpdate();
