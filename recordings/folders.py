@@ -30,7 +30,7 @@ def read_folder(path: Path, read: Callable[[Path], Rows]) -> Rows:
     RecordingError
         A file cannot be read, they are of different forms, or there are too many.
     """
-    files = _files(path)
+    files, other = _files(path)
     parts: list[Rows] = []
     kept: list[Path] = []
     empty = 0
@@ -52,9 +52,11 @@ def read_folder(path: Path, read: Callable[[Path], Rows]) -> Rows:
                 f"{rows.format} of other rate or unit",
             )
     names, who = _people(parts, kept)
-    told = f"{len(parts)} files of the folder are read as one recording, by one clock"
-    passed = f"{empty} files without people are passed over"
-    remarks = (told, passed) if empty else (told,)
+    remarks = [f"{len(parts)} files of the folder are read as one recording, by one clock"]
+    if empty:
+        remarks.append(f"{empty} files without people are passed over")
+    if other:
+        remarks.append(f"{other} files of other suffixes are passed over")
     joined = np.concatenate
     whole = all(rows.velocities is not None for rows in parts)
     return replace(
@@ -76,7 +78,8 @@ def read_folder(path: Path, read: Callable[[Path], Rows]) -> Rows:
     )
 
 
-def _files(path: Path) -> list[Path]:
+def _files(path: Path) -> tuple[list[Path], int]:
+    """The files of the most frequent suffix, and the number of others that may be recordings."""
     try:
         found = sorted(file for file in path.iterdir() if file.is_file() and file.name[0] != ".")
     except OSError as error:
@@ -87,10 +90,10 @@ def _files(path: Path) -> list[Path]:
     if len(found) > MOST_FILES:
         raise RecordingError(path, f"is a folder of {len(found)} files, {MOST_FILES} are possible")
     suffix = Counter(file.suffix.lower() for file in found).most_common(1)[0][0]
-    found = [file for file in found if file.suffix.lower() == suffix]
-    if sum(file.stat().st_size for file in found) > MOST_BYTES:
+    alike = [file for file in found if file.suffix.lower() == suffix]
+    if sum(file.stat().st_size for file in alike) > MOST_BYTES:
         raise RecordingError(path, f"is a folder of more than {MOST_BYTES // 2**20} MiB")
-    return found
+    return alike, len(found) - len(alike)
 
 
 def _form(rows: Rows) -> tuple[object, ...]:

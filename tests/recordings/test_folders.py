@@ -67,3 +67,32 @@ def test_people_without_ids_who_are_several_are_refused(tmp_path: Path) -> None:
     folder = write(tmp_path, {"a.csv": "t,x,y\n0,1,2\n0,5,5\n1,1,3\n"})
     with pytest.raises(RecordingError, match=r"none of 't, x, y' is id; --columns names them"):
         read_crowd(folder / "a.csv")
+
+
+def test_a_folder_keeps_heights_for_worlds_with_y_up(tmp_path: Path) -> None:
+    lines = [f"{0.4 * n:.1f},1,{0.5 * n:.1f},0.1,{0.2 * n:.1f}" for n in range(20)]
+    content = "\n".join(["t,id,x,y,z", *lines, ""])
+    alone = tmp_path / "alone.csv"
+    alone.write_text(content)
+    (tmp_path / "many").mkdir()
+    folder = write(tmp_path / "many", {"a.csv": content, "b.csv": content})
+    expected = read_crowd(alone).tracks[0].positions
+    for track in read_crowd(folder).tracks:
+        assert track.positions == pytest.approx(expected)
+    assert expected[-1] == pytest.approx([9.5, 3.8])
+
+
+def test_a_files_name_that_is_an_id_elsewhere_is_of_another_person(tmp_path: Path) -> None:
+    def of(who: int) -> str:
+        return "\n".join(["t,id,x,y", *[f"{0.4 * n:.1f},{who},{n},0" for n in range(5)], ""])
+
+    folder = write(tmp_path, {"1.csv": of(5), "2.csv": of(5), "3.csv": of(1)})
+    assert len(read_crowd(folder).tracks) == 3
+
+
+def test_files_of_a_rarer_suffix_are_told_of(tmp_path: Path) -> None:
+    day = CSV.decode()
+    folder = write(tmp_path, {"a.csv": day, "b.csv": day, "c.txt": day})
+    report = read_crowd(folder).report
+    assert report is not None
+    assert "1 files of other suffixes are passed over" in report.remarks

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from esplanade.recordings import RecordingError, read_crowd
+from esplanade.recordings import RecordingError, formats, read_crowd
 from tests.recordings.forms import FORMS, SAMPLES, SPEED_MPS, Form, jupedsim, parquet, text
 
 
@@ -13,6 +13,19 @@ def write(folder: Path, form: Form) -> Path:
     path = folder / form.name
     path.write_bytes(form.content)
     return path
+
+
+@pytest.mark.parametrize("name", ["splines", "grand central"])
+def test_large_files_of_forms_that_count_ahead_are_read(
+    tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Their beginning alone is no such file."""
+    form = FORMS[name]
+    path = write(tmp_path, form)
+    small = read_crowd(path, **form.given)
+    monkeypatch.setattr(formats, "LARGE_CHARACTERS", 0)
+    monkeypatch.setattr(formats, "MOST_OF_A_LINE", len(form.content) // 6)
+    assert read_crowd(path, **form.given).report == small.report
 
 
 @pytest.mark.parametrize("form", FORMS.values(), ids=list(FORMS))
@@ -108,3 +121,11 @@ def test_units_in_two_columns_must_agree(tmp_path: Path) -> None:
 def test_a_row_of_units_that_is_too_short_is_a_fault(tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match="expected 4 columns t,id,x,y, not 3"):
         read_crowd(write(tmp_path, Form("a.csv", text(["s,,m", "0,1,2,3"], "t,id,x,y"))))
+
+
+def test_a_sample_of_pathfinder_that_is_none_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "a.json"
+    ann, ben = '{"0.0": {"x": 0, "y": 0}}', '{"0.0": {"x": 2, "y": 0}, "0.4": [3, 0]}'
+    path.write_text(f'{{"ann": {ann}, "ben": {ben}}}')
+    with pytest.raises(RecordingError, match=r"'ben' at '0\.4' is no sample"):
+        read_crowd(path)

@@ -20,10 +20,11 @@ describe("a window of series", () => {
   it("leaves longer steps to the server, which knows whether seconds add up in them", () => {
     const window = new SeriesWindow(10, 30);
     window.load({ at_us: [40 * S, 50 * S], values: { contacts: [3, 1] } });
-    window.append(60 * S, { contacts: 1 });
-    expect(window.data(["contacts"])).toEqual([
+    window.append(60 * S, { contacts: 1, "speed of actor-1": 1.3 });
+    expect(window.data(["contacts", "speed of actor-1"])).toEqual([
       [40, 50],
       [3, 1],
+      [null, 1.3],
     ]);
     expect(window.endUs(69.5 * S)).toBe(60 * S);
   });

@@ -29,6 +29,8 @@ export class SeriesWindow {
   private atUs: number[] = [];
   private columns = new Map<string, (number | null)[]>();
   private found: Mark[] = [];
+  /** Names of the columns that the server keeps. */
+  private kept = new Set<string>();
 
   constructor(
     readonly stepS: number,
@@ -50,6 +52,7 @@ export class SeriesWindow {
   /** Take what the server has kept, and of the window before what the server does not know. */
   load(answer: SeriesAnswer, before?: SeriesWindow): void {
     this.atUs = [...answer.at_us];
+    this.kept = new Set(Object.keys(answer.values));
     this.columns = new Map(
       Object.entries(answer.values).map(([name, values]) => [name, [...values]]),
     );
@@ -76,16 +79,20 @@ export class SeriesWindow {
     return Math.floor(atUs / stepUs) * stepUs;
   }
 
-  /** Take the figures of a second, in a window that has steps of a second. */
+  /**
+   * Take the figures of a second. Of longer steps only columns that the server does not keep have
+   * them, at the latest step that it has told: the server tells of the others when a step is over.
+   */
   append(atUs: number, values: Readonly<Record<string, number | null>>): void {
-    const at = this.endUs(atUs);
     const last = this.atUs.at(-1);
-    if (last !== undefined && at < last) return;
+    const at = this.stepS > 1 ? last : this.endUs(atUs);
+    if (at === undefined || (last !== undefined && at < last)) return;
     if (at !== last) {
       this.atUs.push(at);
       for (const column of this.columns.values()) column.push(null);
     }
     for (const [name, value] of Object.entries(values)) {
+      if (this.stepS > 1 && this.kept.has(name)) continue;
       let column = this.columns.get(name);
       if (!column) {
         column = new Array<number | null>(this.atUs.length).fill(null);
