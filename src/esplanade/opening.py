@@ -1,6 +1,7 @@
 """Worlds of files that are no scenes: a mesh or a plan is imported before the world begins.
 
-What is made of a file is kept under a digest of it, so that the next start finds it.
+What is made of a file is kept under a digest of it, so that the next start finds it. `kept_scenes`
+says for how long.
 """
 
 import hashlib
@@ -9,11 +10,13 @@ import sys
 import tempfile
 from argparse import Namespace
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final
 
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.running import imported
+from esplanade.kept_scenes import make_room, mark_used
 
 PLANS: Final = (".wkt", ".geojson", ".xml", ".yaml", ".yml", ".dxf")
 MESHES: Final = (".obj", ".off", ".ply", ".stl", ".gltf", ".glb", ".3mf", ".ifc")
@@ -66,13 +69,20 @@ def _scene_of(path: Path) -> Path:
     """The scene of a file: one that was made before, or a new one, of which figures are told."""
     folder = _folder(path)
     made = folder / f"{path.stem}.json"
+    mark_used(folder)
+    make_room(scenes_folder(), folder)
     if made.exists() and path.suffix.lower() not in _HAS_OTHERS:
         sys.stderr.write(f"{path}: imported before, as {made}\n")
         return made
     parser: Any = imported("esplanade.scenery.options:parser")()
     import_: Callable[[Namespace], int] = imported("esplanade.scenery.cli:import_")
-    if import_(parser.parse_args(["import", str(path), "--out", str(made)])):
-        raise UsageError(f"{path}: no scene can be made of it")
+    try:
+        if import_(parser.parse_args(["import", str(path), "--out", str(made)])):
+            raise UsageError(f"{path}: no scene can be made of it")
+    finally:
+        with suppress(OSError):
+            folder.rmdir()  # nothing was made: there is nothing in it
+    make_room(scenes_folder(), folder)
     return made
 
 
