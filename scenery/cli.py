@@ -158,8 +158,8 @@ def _tell(scene: Scene, grid: LayeredGrid, options: Namespace) -> None:
     """Say what was made, with a picture of it where matplotlib is installed."""
     shown, out = console(), options.out
     if any(scene.origin_m):
-        x, y, z = scene.origin_m
-        shown.print(f"moved by {-x:g}, {-y:g}, {-z:g} m to the origin", highlight=False)
+        x, y, z = (0.0 - c for c in scene.origin_m)
+        shown.print(f"moved by {x:g}, {y:g}, {z:g} m to the origin", highlight=False)
     mesh_report.show_floors(shown, grid)
     try:
         pictures.require_matplotlib()

@@ -5,20 +5,22 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from pydantic import ValidationError
 
 from esplanade.commandline.errors import UsageError
 from esplanade.planning import Scene
 from esplanade.planning.scene.scene_file import scene_faults
-from esplanade.scenery.plans.storey import Line, Point, Storey, library
+from esplanade.scenery.plans.storey import Line, Point, Slope, Storey, library
 
 STOREY_M: Final = 3.2
 """From one floor to the next."""
 _SLAB_M: Final = 0.3
 _STEPS: Final = 19
 """Steps of a flight between storeys, of 17 cm each."""
+_STEP_M: Final = 0.17
+_HEADROOM_M: Final = 2.0
 _WALL_M: Final = 2.5
 _MOST_CORNERS: Final = 500
 _LEAST_AREA_M2: Final = 1e-4
@@ -30,13 +32,15 @@ def scene_of_plan(
     """The scene of the storeys, the first on the ground.
 
     Where a storey says what can be walked, all else within the bounds is solid on the ground and
-    open air above it.
+    open air above it. Storeys are as high as they say, the lowest at 0, else one above the other.
 
     Raises
     ------
     UsageError
         It is no scene: too large, or of too many parts.
     """
+    storeys = [each for storey in storeys for each in (storey, *storey.above)]
+    heights = _heights(storeys, scale)
     boxes = [storey.bounds() for storey in storeys]
     x0, y0 = (scale * min(box[k] for box in boxes) for k in (0, 1))
     x1, y1 = (scale * max(box[k] for box in boxes) for k in (2, 3))
@@ -50,17 +54,21 @@ def scene_of_plan(
     parts: dict[str, list[Any]] = {
         group: [] for group in ("polygons", "walls", "doors", "places", "stairs")
     }
-    mover = _Mover(scale, moved)
+    mover = _Mover(scale, moved, heights[0] if storeys[0].height_m is not None else 0.0)
+    slopes = [slope for storey in storeys for slope in storey.slopes]
     below: Storey | None = None
     for number, storey in enumerate(storeys):
-        _add_storey(parts, storey, number, bounds, mover, len(storeys) > 1, _shafts(below, mover))
+        floor_m = heights[number] - mover.lowest_m
+        place = _Place(number, floor_m, bounds, len(storeys) > 1)
+        sloping = _sloping(slopes, floor_m, mover)
+        _add_storey(parts, storey, place, mover, _shafts(below, mover), sloping)
         if number + 1 < len(storeys):
             parts["stairs"] += [
                 {
                     **mover.line(flight),
                     "width_m": width * scale,
-                    "bottom_m": number * STOREY_M,
-                    "top_m": (number + 1) * STOREY_M,
+                    "bottom_m": floor_m,
+                    "top_m": heights[number + 1] - mover.lowest_m,
                     "steps": _STEPS,
                 }
                 for flight, width in storey.stairs
@@ -68,15 +76,56 @@ def scene_of_plan(
         elif storey.stairs:
             storey.remarks.append("its stairs lead to no storey above: they are left out")
         below = storey
+    for slope in slopes:
+        _add_slope(parts, slope, mover)
     try:
         return Scene.model_validate(
-            {"name": name[:64], "bounds": bounds, "origin_m": (*moved, 0.0), **parts}
+            {"name": name[:64], "bounds": bounds, "origin_m": (*moved, mover.lowest_m), **parts}
         )
     except ValidationError as error:
         faults = scene_faults(error)
         more = f" and {len(faults) - 3} others" if len(faults) > 3 else ""
         hint = "; is its unit right? --scale says otherwise" if "may measure" in faults[0] else ""
         raise UsageError(f"it makes no scene: {'; '.join(faults[:3])}{more}{hint}") from None
+
+
+def _heights(storeys: Sequence[Storey], scale: float) -> list[float]:
+    """The heights of the floors, metres."""
+    return [
+        number * STOREY_M if storey.height_m is None else storey.height_m * scale
+        for number, storey in enumerate(storeys)
+    ]
+
+
+def _sloping(slopes: Sequence[Slope], floor_m: float, mover: _Mover) -> Any:
+    """The area that slopes take of a floor, for they rise from it or through it; None without."""
+    shapely = library("shapely", "plans")
+    taken = [
+        mover.area(slope.area)
+        for slope in slopes
+        if mover.height(slope.bottom_m) < floor_m + _WALL_M
+        and mover.height(slope.top_m) > floor_m - _HEADROOM_M
+    ]
+    return shapely.union_all(taken) if taken else None
+
+
+def _add_slope(parts: dict[str, list[Any]], slope: Slope, mover: _Mover) -> None:
+    """Add a flight of stairs, or a solid whose top is a ramp."""
+    bottom_m, top_m = mover.height(slope.bottom_m), mover.height(slope.top_m)
+    line = mover.line((slope.low, slope.high))
+    if slope.width_m:
+        steps = max(1, min(500, round((top_m - bottom_m) / _STEP_M)))
+        width = slope.width_m * mover.scale
+        flight = {"width_m": width, "bottom_m": bottom_m, "top_m": top_m, "steps": steps}
+        parts["stairs"].append({**line, **flight})
+        return
+    under_m = max(0.0, bottom_m - _SLAB_M)
+    ramp = {**line, "start_height_m": bottom_m - under_m}
+    parts["polygons"] += [
+        {"kind": "floor", "offset_m": under_m, "height_m": top_m - under_m, "points": ring,
+         "ramp": ramp}
+        for ring in rings_without_holes(mover.area(slope.area))
+    ]  # fmt: skip
 
 
 def _shafts(below: Storey | None, mover: _Mover) -> Any:
@@ -94,9 +143,13 @@ def _shafts(below: Storey | None, mover: _Mover) -> Any:
 class _Mover:
     """From the coordinates of the plan to those of the scene."""
 
-    def __init__(self, scale: float, moved: tuple[int, int]) -> None:
+    def __init__(self, scale: float, moved: tuple[int, int], lowest_m: float) -> None:
         self.scale = scale
+        self.lowest_m = lowest_m
         self._moved = moved
+
+    def height(self, z: float) -> float:
+        return round(z * self.scale - self.lowest_m, 6)
 
     def point(self, point: Point) -> Point:
         x, y = (round(self.scale * c - m, 6) for c, m in zip(point, self._moved, strict=True))
@@ -110,33 +163,43 @@ class _Mover:
         return shapely.transform(area, lambda c: c[:, :2] * self.scale - self._moved)
 
 
+class _Place(NamedTuple):
+    """Where a storey is in the scene."""
+
+    number: int
+    floor_m: float
+    bounds: tuple[int, int, int, int]
+    several: bool
+
+
 def _add_storey(
     parts: dict[str, list[Any]],
     storey: Storey,
-    number: int,
-    bounds: tuple[int, int, int, int],
+    place: _Place,
     mover: _Mover,
-    several: bool,
     shafts: Any,
+    sloping: Any,
 ) -> None:
-    floor_m = number * STOREY_M
+    number, floor_m, bounds, several = place
     prefix = f"{storey.name} " if several else ""
     area = None if storey.walkable is None else mover.area(storey.walkable)
     shapely = library("shapely", "plans")
     if area is None and number:
         area = shapely.box(*bounds)
     if number:
-        area = area if shafts is None or area is None else area.difference(shafts)
+        for opening in (shafts, sloping):
+            area = area if opening is None or area is None else area.difference(opening)
         parts["polygons"] += [
             {"kind": "floor", "offset_m": floor_m - _SLAB_M, "height_m": _SLAB_M, "points": ring}
             for ring in rings_without_holes(area)
         ]
     if area is not None and not number:
+        solid = shapely.box(*bounds).difference(area)
         parts["polygons"] += [
             {"kind": "wall", "height_m": _WALL_M, "points": ring}
-            for ring in rings_without_holes(shapely.box(*bounds).difference(area))
+            for ring in rings_without_holes(solid if sloping is None else solid.difference(sloping))
         ]
-    elif area is not None:
+    elif area is not None and storey.edged:
         storey.walls += _edges(storey.walkable)
     standing = {"offset_m": floor_m}
     parts["walls"] += [

@@ -5,12 +5,27 @@ from __future__ import annotations
 import itertools
 from dataclasses import dataclass, field
 from importlib import import_module
-from typing import Any
+from typing import Any, NamedTuple
 
 from esplanade.commandline.errors import UsageError
 
 Point = tuple[float, float]
 Line = tuple[Point, Point]
+
+
+class Slope(NamedTuple):
+    """A floor that rises evenly from one line to another."""
+
+    area: Any
+    """A polygon of shapely."""
+    low: Point
+    """The middle of its foot."""
+    high: Point
+    """The middle of its head."""
+    bottom_m: float
+    top_m: float
+    width_m: float
+    """Of a flight of stairs; 0 for a ramp."""
 
 
 @dataclass
@@ -25,6 +40,14 @@ class Storey:
     points: list[tuple[str, Point]] = field(default_factory=list)
     stairs: list[tuple[Line, float]] = field(default_factory=list)
     """Flights to the storey above, from foot to head, with their widths."""
+    height_m: float | None = None
+    """The height of its floor, where the plan says it."""
+    slopes: list[Slope] = field(default_factory=list)
+    """Floors that rise from this storey or any above it."""
+    above: list[Storey] = field(default_factory=list)
+    """Further storeys of the same plan, each higher than the one before."""
+    edged: bool = True
+    """Whether there are walls along the edges of what can be walked above the ground."""
     remarks: list[str] = field(default_factory=list)
     """Remarks on things taken for granted or passed over, one sentence each."""
 
@@ -44,9 +67,11 @@ class Storey:
         ends += [point for _, door in self.doors for point in door]
         ends += [point for _, point in self.points]
         ends += [point for flight, _ in self.stairs for point in flight]
-        if self.walkable is not None and not self.walkable.is_empty:
-            x0, y0, x1, y1 = self.walkable.bounds
-            ends += [(x0, y0), (x1, y1)]
+        areas = [*(slope.area for slope in self.slopes), self.walkable]
+        for area in areas:
+            if area is not None and not area.is_empty:
+                x0, y0, x1, y1 = area.bounds
+                ends += [(x0, y0), (x1, y1)]
         if not ends:
             raise ValueError("it draws nothing that can be read")
         xs, ys = zip(*ends, strict=True)

@@ -10,6 +10,7 @@ from PIL import Image
 from esplanade.cli import main
 from esplanade.commandline.errors import UsageError
 from esplanade.planning import LayeredGrid, Scene
+from esplanade.planning.routes.find_path import PathStatus, find_path
 from esplanade.planning.scene.rings import twice_area
 from esplanade.planning.scene.scene_file import read_scene
 from esplanade.scenery.plans.reading import read_plan
@@ -90,6 +91,60 @@ def test_jupedsim_geometry_has_walls_and_transitions(tmp_path: Path) -> None:
     assert [(door.name, door.start) for door in scene.doors] == [("exit", (10.0, 3.0))]
     centimetres = JUPEDSIM.replace('unit="m"', 'unit="cm"')
     assert scene_of(tmp_path / "small.xml", centimetres).bounds == (0.0, 0.0, 1.0, 1.0)
+
+
+def xml_of(*chains: str) -> str:
+    """Polygons of JuPedSim, each of vertices as in `0,0 10,0`."""
+    return "".join(
+        f"<polygon>{''.join(vertex(corner) for corner in chain.split())}</polygon>"
+        for chain in chains
+    )
+
+
+def vertex(corner: str) -> str:
+    x, y = corner.split(",")
+    return f'<vertex px="{x}" py="{y}"/>'
+
+
+@pytest.mark.parametrize("kind", ["stair", "subroom"], ids=["stairs", "ramp"])
+def test_jupedsim_rooms_lie_at_their_heights(tmp_path: Path, kind: str) -> None:
+    hall = xml_of("10,3 10,0 0,0 0,8 10,8 10,5") + "<obstacles><obstacle>"
+    hall += xml_of("4,4 5,4 5,5 4,5 4,4") + "</obstacle></obstacles>"
+    flight = xml_of("10,3 17,3", "10,5 17,5")
+    loft = xml_of("17,3 17,-1 24,-1 24,9 17,9 17,5")
+    text = f"""<geometry version="0.8" unit="m"><rooms><room id="0">
+    <subroom id="0" class="subroom" A_x="0" B_y="0" C_z="-3">{hall}</subroom>
+    <subroom id="1" class="{kind}" A_x="0.428571" B_y="0" C_z="-7.285714">{flight}</subroom>
+    <crossings><crossing id="0" subroom1_id="0" subroom2_id="1">{vertex("10,3")}{vertex("10,5")}
+    </crossing></crossings></room>
+    <room id="1"><subroom id="0" C_z="0">{loft}</subroom></room></rooms><transitions>
+    <transition id="3" caption="up" room1_id="0" subroom1_id="1" room2_id="1" subroom2_id="0">
+    {vertex("17,3")}{vertex("17,5")}</transition></transitions></geometry>"""
+    scene = scene_of(tmp_path / "house.xml", text)
+    assert scene.bounds == (0.0, -1.0, 24.0, 9.0)
+    assert scene.origin_m == (0.0, 0.0, -3.0)
+    assert [(door.name, door.offset_m) for door in scene.doors] == [("0 m up", 3.0)]
+    assert len(scene.stairs) == (kind == "stair")
+    floors = [wall.offset_m for wall in scene.walls if wall.start[0] > 17 or wall.end[0] > 17]
+    assert set(floors) == {3.0}
+    grid = LayeredGrid.from_scene(scene, 0.25)
+    known = np.isfinite(grid.layered.floors)
+    assert known.sum() * 0.0625 == pytest.approx(80 - 1 + 14 + 70, abs=0.5)
+    assert np.nanmax(grid.layered.floors) == pytest.approx(3.0)
+    path = find_path(grid, (2, 2, 0), (20, 4, 3))
+    assert path.status is PathStatus.FOUND
+
+
+def test_jupedsim_rooms_that_do_not_close_are_walls_on_open_ground(tmp_path: Path) -> None:
+    open_ = JUPEDSIM.replace("<transition ", "<crossing ").replace('px="10" py="5"/></t', 'px="9" py="5"/></t')  # noqa: E501  # fmt: skip
+    open_ = open_.replace("</transition>", "</crossing>").replace(
+        'id="0">', 'id="0" class="stair" A_x="0.5" C_z="1">'
+    )
+    path = tmp_path / "room.xml"
+    path.write_text(open_)
+    storey = read_plan(path)
+    assert storey.walkable is None
+    assert storey.remarks == ["its rooms do not close: stairs are read as level rooms"]
 
 
 def test_several_plans_are_storeys(tmp_path: Path) -> None:
