@@ -61,7 +61,7 @@ def read_folder(path: Path, read: Callable[[Path], Rows]) -> Rows:
     whole = all(rows.velocities is not None for rows in parts)
     return replace(
         first,
-        lines=joined([rows.lines for rows in parts]),
+        lines=joined([rows.lines_listed for rows in parts]),
         ids=names,
         who=who,
         clock=joined([rows.clock for rows in parts]),

@@ -4,6 +4,7 @@ Only what is sure to mean the same is read so: a header in the first line, one d
 comma, people with whole numbers. All else is read line by line, as far as that is bounded.
 """
 
+import re
 from collections.abc import Collection, Mapping
 from importlib import import_module
 from pathlib import Path
@@ -21,6 +22,8 @@ LARGE_BYTES: Final = 32 * 2**20
 MOST_BYTES: Final = 8 * 2**30
 _HEAD_BYTES: Final = 2**16
 _BLOCK_BYTES: Final = 2**18
+_COLUMN: Final = re.compile(r"column #(\d+)")
+"""How pyarrow names the column of a cell that is not as the others are."""
 _NOWHERE: Final = ["", "?", "NA", "N/A", "NaN", "nan", "null", "None", "none", "-"]
 _NEEDED: Final = ("time", "frame", "id")
 _PLAIN: Final = frozenset(("time", "frame", "id", "x", "y", "z"))
@@ -92,7 +95,7 @@ def read_large(path: Path) -> Rows | None:
     unit = length_named(units.get("x", ""))
     return Rows(
         format="table with named columns",
-        lines=np.arange(2, len(who) + 2, dtype=np.int32),
+        lines=range(2, len(who) + 2),
         ids=ids,
         who=who,
         clock=clock,
@@ -152,7 +155,8 @@ def _blocks(
                 found[role][count:end] = _values(batch.column(name), found[role].dtype)
             count = end
     except (pa.ArrowException, OSError) as error:
-        if whole:
+        column = _COLUMN.search(f"{error}")
+        if whole and (column is None or int(column[1]) == places["id"]):
             return _blocks(path, reader, delimiter, header, places, ())
         fault = _first_fault(path, count + 1, delimiter, header, places)
         if fault is None and path.stat().st_size <= MAX_FILE_BYTES:

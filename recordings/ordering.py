@@ -58,7 +58,7 @@ def _order(rows: Rows) -> Whole | None:
             who = rows.who[begin:end]
             by_person = bool(np.all((who[1:] > who[:-1]) | ((who[1:] == who[:-1]) & later)))
         if not (by_person or by_time):
-            return np.lexsort((rows.lines, rows.clock, rows.who))
+            return np.lexsort((rows.lines_listed, rows.clock, rows.who))
     if by_person:
         return None
     if len(rows.ids) < _MOST_BY_DIGITS and len(rows.who) < 2**31:
@@ -102,11 +102,17 @@ def _at_once(rows: Rows) -> Whole:
 def _taken(rows: Rows, order: Whole | None) -> Rows:
     """Rows in another order, one column after the other."""
     if order is None:
-        return rows
+        return replace(rows, lines=rows.lines_listed)
     made: dict[str, Any] = {"velocities": None, "z": None}
     spare = np.empty(len(order))
-    for name in ("lines", "who", "clock", "x", "y"):
+    for name in ("who", "clock", "x", "y", "lines"):
         column = getattr(rows, name)
+        if isinstance(column, range):
+            # Nothing needs the order any more.
+            order *= column.step
+            order += column.start
+            made[name] = order
+            continue
         if len(order) == len(column) and column.flags.writeable and column.itemsize <= 8:
             moved = spare.view(column.dtype)[: len(column)]
             for begin, end in _pieces(len(order)):

@@ -97,7 +97,7 @@ def _with_places(rows: Rows) -> Rows:
     remark = f"{count} {'sample' if count == 1 else 'samples'} without a place are left out"
     return replace(
         rows,
-        lines=rows.lines[there],
+        lines=rows.lines_listed[there],
         who=rows.who[there],
         clock=rows.clock[there],
         x=rows.x[there],

@@ -41,13 +41,13 @@ AS_IT_SAYS: Final = Given()
 class Rows:
     """The samples of a file in its order, with its own numbers.
 
-    `lines` (N,) is where each stands, `who` (N,) whose it is, an index into `ids`. `clock` (N,)
-    is seconds or, if `counts_frames`, numbers of frames. `x` and `y` (N,) are in units of the
-    file.
+    `lines` (N,) is where each stands, a range where they follow each other, `who` (N,) whose it
+    is, an index into `ids`. `clock` (N,) is seconds or, if `counts_frames`, numbers of frames. `x`
+    and `y` (N,) are in units of the file.
     """
 
     format: str
-    lines: Whole
+    lines: Whole | range
     ids: Sequence[str]
     who: Whole
     clock: Floats
@@ -73,6 +73,18 @@ class Rows:
     remarks: tuple[str, ...] = ()
     dropped: int = 0
     """Samples that the file itself marks as not those of people, or as not seen."""
+
+    @property
+    def lines_listed(self) -> Whole:
+        """The lines as an array (N,)."""
+        return listed(self.lines)
+
+
+def listed(lines: Whole | range) -> Whole:
+    """Lines as an array."""
+    if isinstance(lines, range):
+        return np.arange(lines.start, lines.stop, lines.step, dtype=np.int32)
+    return lines
 
 
 def number(path: Path, line: int, column: str, text: str) -> float:

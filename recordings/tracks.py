@@ -143,6 +143,7 @@ class Steps:
 def tracks_of(rows: Rows, places: Floats, steps: Steps, usual_mps: float) -> Found:
     """The tracks of rows in order, without glitches; those that jump for good are several."""
     found: list[tuple[float, int, Track]] = []
+    lines = rows.lines_listed
     glitches = divided = 0
     first_glitch = -1
     for number, (start, end) in enumerate(
@@ -154,7 +155,7 @@ def tracks_of(rows: Rows, places: Floats, steps: Steps, usual_mps: float) -> Fou
             track = _track(name, times, own)
             # This is kept, so that a cached property does not find it out once more.
             track.__dict__["max_speed_mps"] = max(0.0, float(steps.fastest[number]))
-            found.append((track.start_s, int(rows.lines[start:end].min()), track))
+            found.append((track.start_s, int(lines[start:end].min()), track))
             continue
         pieces = sound_part(times, own, usual_mps, float(steps.paces[number])).pieces
         bad = pieces < 0
@@ -166,7 +167,7 @@ def tracks_of(rows: Rows, places: Floats, steps: Steps, usual_mps: float) -> Fou
             if at.any():
                 divided += piece > 0
                 track = _track(f"{name}#{piece + 1}" if piece else name, times[at], own[at])
-                found.append((track.start_s, int(rows.lines[start:end][at].min()), track))
+                found.append((track.start_s, int(lines[start:end][at].min()), track))
     found.sort(key=lambda each: each[:2])
     tracks = [track for _, _, track in found]
     if glitches or divided:

@@ -14,13 +14,14 @@ from esplanade.recordings.rows import Rows, numbered_people
 SAMPLES = st.lists(st.tuples(st.integers(0, 6), st.integers(0, 40)), min_size=1, max_size=40)
 
 
-def rows_of(samples: list[tuple[int, int]], *, together: bool) -> Rows:
+def rows_of(samples: list[tuple[int, int]], *, together: bool, listed: bool = False) -> Rows:
     ids, who = numbered_people(np.array([10 * person for person, _ in samples], np.int32))
     places = np.array([[100.0 * person + t, 0.5 * t] for person, t in samples])
+    lines = range(2, len(samples) + 2)
     x, y = (places[:, 0], places[:, 1]) if together else places.T.copy()
     return Rows(
         format="table",
-        lines=np.arange(2, len(samples) + 2, dtype=np.int32),
+        lines=np.arange(2, len(samples) + 2, dtype=np.int32) if listed else lines,
         ids=ids,
         who=who,
         clock=np.array([0.4 * t for _, t in samples]),
@@ -37,15 +38,15 @@ def _small_pieces() -> object:
         yield
 
 
-@given(SAMPLES, st.booleans(), st.sampled_from(["as it comes", "by time", "by person"]))
+@given(SAMPLES, st.booleans(), st.booleans(), st.sampled_from(["as it comes", "by time", "by person"]))  # noqa: E501  # fmt: skip
 def test_samples_are_sorted_and_repeats_left_out(
-    samples: list[tuple[int, int]], together: bool, order: str
+    samples: list[tuple[int, int]], together: bool, listed: bool, order: str
 ) -> None:
     if order == "by time":
         samples = sorted(samples, key=lambda sample: sample[1])
     elif order == "by person":
         samples = sorted(samples)
-    found, repeats = in_order(Path("a"), rows_of(samples, together=together))
+    found, repeats = in_order(Path("a"), rows_of(samples, together=together, listed=listed))
     people = list(dict.fromkeys(person for person, _ in samples))
     wanted = sorted(set(samples), key=lambda sample: (people.index(sample[0]), sample[1]))
     assert repeats == len(samples) - len(wanted)
