@@ -123,7 +123,7 @@ def bots_arguments(options: Namespace) -> list[str]:
     if (crowd := getattr(options, "crowd", None)) is not None:
         reading = [
             f"--{name}={value}"
-            for name in ("fps", "unit", "scale")
+            for name in ("fps", "unit", "scale", "columns")
             if (value := getattr(options, name, None)) is not None
         ]
         return [f"--url={page_address(options)}", *trusted, f"--replay={crowd}", *reading]

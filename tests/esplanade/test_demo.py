@@ -14,6 +14,7 @@ import pytest
 
 from esplanade import demo
 from esplanade import options as demo_options
+from esplanade.bots import options as bots_options
 from esplanade.cli import main
 from esplanade.commandline import exit_codes
 from esplanade.commandline.settings import given_settings
@@ -117,6 +118,18 @@ def test_variables_of_the_server_count_but_for_what_the_demo_sets(
     monkeypatch.setenv("ESPLANADE_ACTORS", "7")
     options = demo_options.demo().parse_args([])
     assert (options.tick_rate, options.actors) == (30, 12)
+
+
+def test_whoever_replays_reads_the_crowd_as_the_server_does(tmp_path: Path) -> None:
+    crowd = tmp_path / "crowd.txt"
+    crowd.write_text("1 0 0 0\n")
+    said = {"fps": 12.5, "unit": "cm", "columns": "id,frame,x,y"}
+    words = [f"--crowd={crowd}", "--fps=12.5", "--unit=cm", "--columns=id,frame,x,y"]
+    options = demo_options.demo().parse_args(words)
+    assert {name: getattr(options, name) for name in said} == said
+    replaying = bots_options.parser().parse_args(demo.bots_arguments(options))
+    assert Path(replaying.replay) == crowd
+    assert {name: getattr(replaying, name) for name in said} == said
 
 
 def test_no_visitors_before_the_world_is_ready() -> None:
