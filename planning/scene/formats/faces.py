@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 MAX_CORNERS: Final = 20_000
 """Most corners of one face: to cut it may take their square."""
+_PIECE: Final = 65_536
+"""Corners that are looked at together: they stay near the processor."""
 _AREA_SHARE: Final = 1e-6
 """The triangles of a face may differ from its area by this share of it."""
 
@@ -63,9 +65,12 @@ def cut(faces: Faces) -> Triangles:
     starts = np.cumsum(sizes) - sizes
     parts = [np.empty((0, 3, 3))]
     for size in np.unique(sizes[sizes >= 3]).tolist():
-        places = starts[sizes == size][:, None] + np.arange(size)
-        rings = faces.vertices[faces.corners[places]]
-        parts.append(rings if size == 3 else _cut_rings(rings, passed))
+        begins = starts[sizes == size]
+        each = max(1, _PIECE // size)
+        for first in range(0, len(begins), each):
+            places = begins[first : first + each, None] + np.arange(size)
+            rings = faces.vertices[faces.corners[places]]
+            parts.append(rings if size == 3 else _cut_rings(rings, passed))
     return Triangles(np.concatenate(parts), +passed)
 
 

@@ -9,9 +9,10 @@ from typing import Final
 
 import numpy as np
 
-from esplanade.files.text import lines_of, shown
+from esplanade.files.text import shown
 from esplanade.planning.scene.formats.faces import Faces
 from esplanade.planning.scene.formats.mesh_text import text_of_mesh
+from esplanade.planning.scene.formats.obj_runs import Run, run_at
 
 MAX_ELEMENTS: Final = 15_000_000
 """Most corners of all faces, and most numbers of all vertices."""
@@ -44,6 +45,15 @@ def read_obj(data: bytes) -> Faces:
     lines_of_faces = array("q")
     passed: Counter[str] = Counter()
     for line, words in _statements(text_of_mesh(data)):
+        if isinstance(words, Run):
+            if words.corners:
+                corners.frombytes((words.numbers.astype(np.int64) - 1).tobytes())
+                sizes.extend(array("q", [words.corners]) * words.lines)
+                lines_of_faces.extend(range(line, line + words.lines))
+            else:
+                numbers.frombytes(words.numbers.tobytes())
+            _check_count(line, numbers, corners)
+            continue
         key = words[0]
         if key == "v":
             _add_vertex(line, words, numbers)
@@ -57,8 +67,7 @@ def read_obj(data: bytes) -> Faces:
             passed["curves and curved surfaces"] += 1
         elif key not in _LOOKS:
             passed[f"lines that are no statement of OBJ, as line {line}"] += 1
-        if max(len(numbers), len(corners)) > MAX_ELEMENTS:
-            raise ValueError(f"line {line}: it has more vertices or faces than are possible")
+        _check_count(line, numbers, corners)
     vertices = np.frombuffer(numbers, dtype=np.float64).reshape(-1, 3) if numbers else _none()
     faces = np.frombuffer(corners, dtype=np.int64) if corners else np.empty(0, dtype=np.int64)
     counts = np.frombuffer(sizes, dtype=np.int64) if sizes else np.empty(0, dtype=np.int64)
@@ -72,27 +81,44 @@ def read_obj(data: bytes) -> Faces:
     return Faces(vertices, faces, counts, _one_line_of_unknown(passed))
 
 
+def _check_count(line: int, numbers: array[float], corners: array[int]) -> None:
+    if max(len(numbers), len(corners)) > MAX_ELEMENTS:
+        raise ValueError(f"line {line}: it has more vertices or faces than are possible")
+
+
 def _none() -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     return np.empty((0, 3))
 
 
-def _statements(text: str) -> Iterator[tuple[int, list[str]]]:
-    """The words of each statement, with the number of its last line."""
+def _statements(text: str) -> Iterator[tuple[int, list[str] | Run]]:
+    """The words of each statement, with the number of its last line.
+
+    Runs of plain lines come as one, with the number of the first.
+    """
     begun = ""
     continued = "\\" in text
-    for number, line in enumerate(lines_of(text), 1):
+    begin, number = 0, 1
+    while begin <= len(text):
+        if not continued and (run := run_at(text, begin)) is not None:
+            yield number, run
+            begin, number = run.end, number + run.lines
+            continue
+        end = text.find("\n", begin)
+        end = len(text) if end < 0 else end
+        line = text[begin:end]
+        begin, number = end + 1, number + 1
         if "#" in line:
-            line = line[: line.index("#")]  # noqa: PLW2901
+            line = line[: line.index("#")]
         elif continued and line.rstrip().endswith("\\"):
             begun += line.rstrip()[:-1] + " "
             continue
         if begun:
-            line, begun = begun + line, ""  # noqa: PLW2901
+            line, begun = begun + line, ""
         words = line.split()
         if words:
-            yield number, words
+            yield number - 1, words
     if begun.split():
-        yield number, begun.split()
+        yield number - 1, begun.split()
 
 
 def _add_vertex(line: int, words: list[str], numbers: array[float]) -> None:
