@@ -48,7 +48,7 @@ def test_each_episode_has_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[s
 def test_where_no_file_can_come_of_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     plaza = str(write_csv(tmp_path, busy_plaza()))
     for words, fault in (
-        (["--trajectories", "a.doc"], "a file ends in one of .csv, .txt, .sqlite, .parquet"),
+        (["--trajectories", "a.doc"], "a.doc ends in none of .csv, .txt, .sqlite, .parquet"),
         (["--trajectories", "a.csv", "--prediction"], "episodes that are walked once"),
     ):
         with pytest.raises(SystemExit):
