@@ -5,6 +5,8 @@ What is made of a file is kept under a digest of it, so that the next start find
 
 import hashlib
 import json
+import os
+import shutil
 import sys
 import tempfile
 from argparse import Namespace
@@ -19,6 +21,8 @@ PLANS: Final = (".wkt", ".geojson", ".xml", ".yaml", ".yml", ".dxf")
 MESHES: Final = (".obj", ".off", ".ply", ".stl", ".gltf", ".glb", ".3mf", ".ifc")
 _HAS_OTHERS: Final = (".yaml", ".yml", ".gltf")
 """Files that name other files: whether those are the same, their own digest does not tell."""
+_UNFINISHED: Final = "unfinished-"
+"""Folders in which something is still being made begin so."""
 
 
 def serve(options: Namespace) -> int:
@@ -64,16 +68,45 @@ def is_made_into_a_scene(path: Path) -> bool:
 
 def _scene_of(path: Path) -> Path:
     """The scene of a file: one that was made before, or a new one, of which figures are told."""
-    folder = _folder(path)
-    made = folder / f"{path.stem}.json"
-    if made.exists() and path.suffix.lower() not in _HAS_OTHERS:
+    made = _folder(path) / f"{path.stem}.json"
+    has_others = path.suffix.lower() in _HAS_OTHERS
+    if made.exists() and not has_others:
         sys.stderr.write(f"{path}: imported before, as {made}\n")
         return made
+    try:
+        made.parent.parent.mkdir(parents=True, exist_ok=True)
+        new = Path(tempfile.mkdtemp(prefix=_UNFINISHED, dir=made.parent.parent))
+    except OSError:
+        elsewhere = Path(tempfile.mkdtemp(prefix="esplanade-"))
+        made = elsewhere / made.parent.name / made.name
+        new = Path(tempfile.mkdtemp(prefix=_UNFINISHED, dir=elsewhere))
+    try:
+        _import(path, new, made.parent)
+        if has_others:
+            shutil.rmtree(made.parent, ignore_errors=True)
+        _put(new, made)
+    finally:
+        shutil.rmtree(new, ignore_errors=True)
+    return made
+
+
+def _import(path: Path, new: Path, folder: Path) -> None:
+    """Make a scene in a folder that has another name once it is whole."""
     parser: Any = imported("esplanade.scenery.options:parser")()
     import_: Callable[[Namespace], int] = imported("esplanade.scenery.cli:import_")
-    if import_(parser.parse_args(["import", str(path), "--out", str(made)])):
+    options = parser.parse_args(["import", str(path), "--out", str(new / f"{path.stem}.json")])
+    options.kept_in = folder
+    if import_(options):
         raise UsageError(f"{path}: no scene can be made of it")
-    return made
+
+
+def _put(new: Path, made: Path) -> None:
+    """Give a folder its name; what somebody else has put there meanwhile is as good."""
+    try:
+        new.rename(made.parent)
+    except OSError as error:
+        if not made.exists():
+            raise UsageError(f"{made}: cannot be made: {error.strerror or error}") from None
 
 
 def scenes_folder() -> Path:
@@ -89,10 +122,9 @@ def _folder(path: Path) -> Path:
         content = path.read_bytes()
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror or error}") from None
-    digest = hashlib.sha256(sources_digest().encode() + content).hexdigest()[:16]
+    known = sources_digest().encode() + os.fsencode(path.name) + b"\0" + content
     try:
-        folder = scenes_folder() / digest
-        folder.mkdir(parents=True, exist_ok=True)
-    except (OSError, RuntimeError):
+        folder = scenes_folder()
+    except RuntimeError:  # nobody knows of a home
         folder = Path(tempfile.mkdtemp(prefix="esplanade-"))
-    return folder
+    return folder / hashlib.sha256(known).hexdigest()[:16]
