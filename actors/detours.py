@@ -9,8 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.actors.potential_pool import GoalKey, PotentialPool
+from esplanade.actors.saved_detours import MOST_DETOURS, SavedDetour
+from esplanade.actors.standing_discs import (
+    WIDEST_M,
+    Standing,
+    as_known,
+    disc_of,
+    still_there,
+    wider,
+    widest,
+)
 from esplanade.planning import AgentTable, LayeredGrid
-from esplanade.planning.routes.shut_way import Disc, ShutWays
+from esplanade.planning.routes.shut_way import REACH_M, Disc, ShutWays
 
 SEEN_S: Final = 0.5
 """A body that has stood for so long is looked for on the ways of actors."""
@@ -20,9 +30,6 @@ STAYS: Final = 4.0
 """A body that has stood for a second is expected to stand for this many more."""
 GAIN_S: Final = 0.5
 """A way has to be better by this much before an actor takes it rather than the one it goes."""
-PERSON_ROOM_M: Final = 0.25
-"""Room that a way leaves to people who stand; through narrower gaps hardly anybody presses."""
-ACTOR_ROOM_M: Final = 0.05
 AROUND_M: Final = 1.5
 """A way beside somebody that is longer by no more than this is left to the search."""
 STALLED_S: Final = 1.5
@@ -30,11 +37,9 @@ STALLED_S: Final = 1.5
 STUCK_S: Final = 2.5
 """For an actor that has not got on for so long the gaps beside those who stand near are shut."""
 NEAR_M: Final = 2.5
-WIDER_M: Final = 0.35
-WIDEST_M: Final = 0.75
-"""A gap is shut by so much more room to whoever stands beside it."""
-MOST_DETOURS: Final = 16
-"""No more goals than this have a way around people at once; other actors wait."""
+
+Places = tuple[tuple[Disc, ...], tuple[Disc, ...]]
+"""Places that a way leads around, and those that it is to lead around."""
 
 
 class _Detour(NamedTuple):
@@ -44,13 +49,6 @@ class _Detour(NamedTuple):
     row: int
     wanted: tuple[Disc, ...]
     coming: tuple[tuple[Disc, ...], int] | None
-
-
-class Standing(NamedTuple):
-    """K bodies that stand: `discs` (K, 4) of `Disc`, with room, and `stood_s` (K,) seconds."""
-
-    discs: NDArray[np.float64]
-    stood_s: NDArray[np.float64]
 
 
 class Detours:
@@ -68,7 +66,7 @@ class Detours:
         self._rooms: dict[tuple[GoalKey, tuple[Disc, ...]], NDArray[np.float64]] = {}
         """Of this tick: discs with the room that they have on the ways to each goal."""
         self.refused = 0
-        """Goals for which there was no room among `MOST_DETOURS`."""
+        """Looks at a way that was shut, for whose goal there was no room among `MOST_DETOURS`."""
 
     def __len__(self) -> int:
         """Number of goals with a way around people."""
@@ -77,8 +75,8 @@ class Detours:
     def keep(self, table: AgentTable, standing: Standing, tick_s: float) -> None:
         """Let actors look along their ways, and send them where they get on sooner.
 
-        Nothing is done where nobody stands. Cost O(actors), and O(metres ahead × people who stand)
-        for each actor whose turn it is to look.
+        Nothing is done where nobody stands. Cost O(actors), and for each actor whose turn it is to
+        look O(people who stand), and O(metres ahead × those of them in reach).
         """
         trips = table.trips
         seen = standing.stood_s >= SEEN_S
@@ -110,26 +108,17 @@ class Detours:
         for key, detour in self._known.items():
             rows = np.flatnonzero(table.trips.own_rows == self._potentials.row(key))
             if len(rows):
-                found.append([int(rows[0]), [list(disc) for disc in detour.wanted]])
+                found.append(SavedDetour(int(rows[0]), detour.shut, detour.wanted).plain())
         return found
 
-    def load(self, table: AgentTable, saved: Sequence[Sequence[Any]]) -> None:
-        """Lead actors as when this was saved.
-
-        Raises
-        ------
-        ValueError, TypeError, IndexError
-            It is no such data.
-        """
+    def load(self, table: AgentTable, saved: Sequence[SavedDetour]) -> None:
+        """Lead actors as when this was saved."""
         self.clear()
-        for row, discs in saved:
-            key = self._key(table, int(row))
-            if key is None or not discs:
-                continue
-            places = [(float(x), float(y), float(z), float(r)) for x, y, z, r in discs]
-            if not np.isfinite(places).all() or len(self._known) >= MOST_DETOURS:
-                raise ValueError("a place that a way leads around is none")
-            self._want(key, tuple(places))
+        for row, shut, wanted in saved:
+            key = self._key(table, row)
+            if key is not None and key not in self._known:
+                self._want(key, shut)
+                self._want(key, wanted)
         self.lead(table)
 
     def lead(self, table: AgentTable) -> None:
@@ -139,15 +128,16 @@ class Detours:
             if detour is not None and self._ready(detour.row):
                 table.agents.potential_rows[row] = detour.row
 
-    def undo_point(self) -> Mapping[GoalKey, tuple[Disc, ...]]:
+    def undo_point(self) -> Mapping[GoalKey, Places]:
         """Return what `put_back` takes."""
-        return {key: detour.wanted for key, detour in self._known.items()}
+        return {key: (detour.shut, detour.wanted) for key, detour in self._known.items()}
 
-    def put_back(self, table: AgentTable, before: Mapping[GoalKey, tuple[Disc, ...]]) -> None:
+    def put_back(self, table: AgentTable, before: Mapping[GoalKey, Places]) -> None:
         """Lead actors around the same places as before."""
-        if {key: detour.wanted for key, detour in self._known.items()} != before:
+        if self.undo_point() != before:
             self.clear()
-            for key, wanted in before.items():
+            for key, (shut, wanted) in before.items():
+                self._want(key, shut)
                 self._want(key, wanted)
         self.lead(table)
 
@@ -186,9 +176,8 @@ class Detours:
         """Give up places where nobody stands any more, and goals that nobody has."""
         if not self._known:
             return
-        there = {_disc(disc)[:3] for disc in standing.discs[standing.stood_s > 0.0]}
         for key, detour in list(self._known.items()):
-            wanted = tuple(disc for disc in detour.wanted if disc[:3] in there)
+            wanted = still_there(detour.wanted, standing.discs)
             if not wanted or not self._potentials.used(key):
                 for row in self._led(table, key):
                     self._return(table, row)
@@ -230,29 +219,31 @@ class Detours:
         if key is None:
             return
         trips, own_row = table.trips, int(table.trips.own_rows[row])
-        detour = self._known.get(key)
+        away = np.hypot(*(discs[:, :2] - table.agents.positions[row]).T)
+        reached = away <= REACH_M + discs[:, 3].max() + 2.0 * WIDEST_M
+        detour, narrow = self._known.get(key), discs[reached]
         if detour is not None:
             known = key, detour.wanted
             if known not in self._rooms:
-                self._rooms[known] = _as_known(discs, detour.wanted)
+                self._rooms[known] = as_known(discs, detour.wanted)
             discs = self._rooms[known]
+        discs, stood_s, away = discs[reached], stood_s[reached], away[reached]
         shut = self._shut_by(table, row, own_row, discs, AROUND_M)
         trips.shut[row] = shut.any()
         if trips.stalled_s[row] >= STALLED_S and not shut.any():
             shut = self._shut_by(table, row, own_row, discs, 0.0)
-        found = {_disc(disc) for disc in discs[shut]}
+        found = {disc_of(disc) for disc in discs[shut]}
         if trips.stalled_s[row] >= STUCK_S:
-            away = np.hypot(*(discs[:, :2] - table.agents.positions[row]).T)
             near = (away <= NEAR_M) & (np.abs(discs[:, 2] - table.agents.heights[row]) < NEAR_M)
-            found |= {_wider(disc) for disc in discs[near]}
+            found |= {wider(disc) for disc in narrow[near]}
             shut |= near
         if table.trips.detours[row] and detour is not None and self._ready(detour.row):
             shut_off = np.array(detour.shut)[:, :3]
             more = discs[~(discs[:, None, :3] == shut_off).all(axis=2).any(axis=1)]
             marks = self._shut_by(table, row, detour.row, more, AROUND_M)
-            found |= {_disc(disc) for disc in more[marks]}
+            found |= {disc_of(disc) for disc in more[marks]}
         if found:
-            wanted = _widest(found | (set() if detour is None else set(detour.wanted)))
+            wanted = widest(found | (set() if detour is None else set(detour.wanted)))
             if detour is None and len(self._known) >= MOST_DETOURS:
                 self.refused += 1
             elif detour is None or wanted != set(detour.wanted):
@@ -298,6 +289,8 @@ class Detours:
                 self._lead(table, row)
         elif not np.isfinite(other_s) or own_s + GAIN_S < other_s:
             self._return(table, row)
+        else:  # its potential may have been derived only now
+            self._lead(table, row)
 
     def _left_m(self, table: AgentTable, row: int, slot: int) -> float:
         cell = int(table.agents.cells[row])
@@ -331,32 +324,3 @@ class Detours:
         left_m = self._left_m(table, row, slot)
         if np.isfinite(left_m):
             trips.nearest_m[row] = left_m
-
-
-def _wider(disc: NDArray[np.float64]) -> Disc:
-    """The same place with so much room that no gap beside it is left; it is widened once."""
-    x, y, z, radius = _disc(disc)
-    return x, y, z, round(min(radius + WIDER_M, WIDEST_M), 2)
-
-
-def _widest(discs: set[Disc]) -> set[Disc]:
-    """Of discs around one place the widest."""
-    best: dict[tuple[float, ...], Disc] = {}
-    for disc in discs:
-        if disc[3] > best.get(disc[:3], disc)[3] or disc[:3] not in best:
-            best[disc[:3]] = disc
-    return set(best.values())
-
-
-def _as_known(discs: NDArray[np.float64], known: Sequence[Disc]) -> NDArray[np.float64]:
-    """Discs (K, 4) with the room that those of them have which are known."""
-    rooms = {disc[:3]: disc[3] for disc in known}
-    found = discs.copy()
-    for k, (x, y, z, room) in enumerate(discs.tolist()):
-        found[k, 3] = max(rooms.get((x, y, z), 0.0), room)
-    return found
-
-
-def _disc(disc: NDArray[np.float64]) -> Disc:
-    x, y, z, radius = np.round(disc, 2).tolist()
-    return x, y, z, radius

@@ -67,10 +67,20 @@ class Potential:
         self.reached_cells = front.reached_cells
         if wave is Wave.SIGHT:
             if grid.bounds_edges(self.body):
-                # No way leads over edges that are too wide, least of all one past obstacles.
-                on_edge = grid.arrays.edges[row]
-                front.settled[on_edge & (front.settled == 0)] = _LEFT_ALONE
+                front.settled[self._too_far_on_edges(front, row)] = _LEFT_ALONE
             kernels.extend_into_obstacles(front.arrays, row, self.values, front.settled)
+
+    def _too_far_on_edges(self, front: WaveFront, row: int) -> NDArray[np.bool_]:
+        """Mark cells that steps lead from, but no way, since it would be on edges for too long.
+
+        Least of all one leads past obstacles there.
+        """
+        regions = self.grid.traversability.regions_of(self.body)
+        unsettled = front.settled == 0
+        reached = np.isin(regions, np.unique(regions[~unsettled])) & (regions >= 0)
+        walkable = reached & (front.arrays.kinds.steps[row] != 0)
+        left_alone: NDArray[np.bool_] = unsettled & (self.grid.arrays.edges[row] | walkable)
+        return left_alone
 
     def distance(self, positions: ArrayLike, heights: ArrayLike) -> NDArray[np.float64]:
         """Metres to the goal, float64 (N,), inf where no path leads, for (N, 2) and (N,)."""

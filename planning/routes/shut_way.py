@@ -14,6 +14,8 @@ from esplanade.planning.scene.heights import BODIES_OVERLAP_M
 
 Disc = tuple[float, float, float, float]
 """x, y, the height of the feet and a radius, metres: a place where somebody stands."""
+REACH_M: Final = kernels.AHEAD_M + 2.0 * kernels.AROUND_M
+"""Bodies whose discs are further away than this from where a look begins shut nothing."""
 _NEVER_M: Final = -3.0
 """The clearance of a cell where nobody fits; it outweighs those of its neighbours."""
 _SLACK_M: Final = 0.007
