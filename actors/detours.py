@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Final, NamedTuple
 
@@ -20,7 +21,7 @@ from esplanade.actors.standing_discs import (
     widest,
 )
 from esplanade.planning import AgentTable, LayeredGrid
-from esplanade.planning.routes.shut_way import REACH_M, Disc, ShutWays
+from esplanade.planning.routes.shut_way import REACH_M, Around, Disc, ShutWays
 
 SEEN_S: Final = 0.5
 """A body that has stood for so long is looked for on the ways of actors."""
@@ -37,25 +38,39 @@ STALLED_S: Final = 1.5
 STUCK_S: Final = 2.5
 """For an actor that has not got on for so long the gaps beside those who stand near are shut."""
 NEAR_M: Final = 2.5
+AGAIN_S: Final = 1.5
+"""The way of a goal is derived anew no sooner than this after the last time, so that people who
+come and go cost little. In one tick it is done for one goal only."""
 
-Places = tuple[tuple[Disc, ...], tuple[Disc, ...]]
-"""Places that a way leads around, and those that it is to lead around."""
+LEAST_M: Final = 8.0
+MOST_M: Final = 256.0
+FURTHER: Final = 1.5
+"""A way around people is derived for cells no further from the goal than the least distance, times
+a power of `FURTHER`, up to the most; for all cells beyond that."""
+SPARE_M: Final = 6.0
+"""It is derived for so much more than where it may pay."""
+
+State = tuple[Around, Around, float]
+"""What the way of a goal leads around, what it is to lead around, and `_Detour.derived_s`."""
 
 
 class _Detour(NamedTuple):
     """A way to a goal around `shut`, whose potential is in a row; another one may be on its way."""
 
-    shut: tuple[Disc, ...]
+    shut: Around
     row: int
-    wanted: tuple[Disc, ...]
-    coming: tuple[tuple[Disc, ...], int] | None
+    wanted: Around
+    coming: tuple[Around, int] | None
+    derived_s: float
+    """Time since the latest potential was asked for."""
 
 
 class Detours:
     """Weighs, for each actor whose way is shut, waiting against another way.
 
     All actors with a goal share one more potential, in which those who shut the ways of any of them
-    are solid. It is derived when such people are found, and given up when they have gone.
+    are solid. It is derived when such people are found, as far from the goal as it may pay, and
+    given up when they have gone.
     """
 
     def __init__(self, grid: LayeredGrid, potentials: PotentialPool) -> None:
@@ -63,8 +78,10 @@ class Detours:
         self._potentials = potentials
         self._known: dict[GoalKey, _Detour] = {}
         self._ways: ShutWays | None = None
-        self._rooms: dict[tuple[GoalKey, tuple[Disc, ...]], NDArray[np.float64]] = {}
+        self._rooms: dict[tuple[GoalKey, Around], NDArray[np.float64]] = {}
         """Of this tick: discs with the room that they have on the ways to each goal."""
+        self._has_derived = False
+        """Whether a potential was asked for in this tick."""
         self.refused = 0
         """Looks at a way that was shut, for whose goal there was no room among `MOST_DETOURS`."""
 
@@ -83,6 +100,9 @@ class Detours:
         if not self._known and not seen.any():
             trips.shut[:] = False
             return
+        self._has_derived = False
+        for key, detour in self._known.items():
+            self._known[key] = detour._replace(derived_s=detour.derived_s + tick_s)
         self._forget(table, standing)
         self._take_over(table)
         going = (trips.own_rows >= 0) & (trips.outcomes == 0) & ~table.agents.waits
@@ -100,6 +120,7 @@ class Detours:
             for row in np.flatnonzero(due & trips.detours).tolist():
                 trips.look_in_s[row] = LOOK_EVERY_S
                 self._weigh(table, row, 0.0)
+        self._derive_next()
         self._take_over(table)
 
     def save(self, table: AgentTable) -> list[list[Any]]:
@@ -108,17 +129,17 @@ class Detours:
         for key, detour in self._known.items():
             rows = np.flatnonzero(table.trips.own_rows == self._potentials.row(key))
             if len(rows):
-                found.append(SavedDetour(int(rows[0]), detour.shut, detour.wanted).plain())
+                around = detour.shut, detour.wanted, detour.derived_s
+                found.append(SavedDetour(int(rows[0]), *around).plain())
         return found
 
     def load(self, table: AgentTable, saved: Sequence[SavedDetour]) -> None:
         """Lead actors as when this was saved."""
         self.clear()
-        for row, shut, wanted in saved:
+        for row, shut, wanted, derived_s in saved:
             key = self._key(table, row)
             if key is not None and key not in self._known:
-                self._want(key, shut)
-                self._want(key, wanted)
+                self._restore(key, shut, wanted, derived_s)
         self.lead(table)
 
     def lead(self, table: AgentTable) -> None:
@@ -128,17 +149,19 @@ class Detours:
             if detour is not None and self._ready(detour.row):
                 table.agents.potential_rows[row] = detour.row
 
-    def undo_point(self) -> Mapping[GoalKey, Places]:
+    def undo_point(self) -> Mapping[GoalKey, State]:
         """Return what `put_back` takes."""
-        return {key: (detour.shut, detour.wanted) for key, detour in self._known.items()}
+        return {
+            key: (detour.shut, detour.wanted, detour.derived_s)
+            for key, detour in self._known.items()
+        }
 
-    def put_back(self, table: AgentTable, before: Mapping[GoalKey, Places]) -> None:
+    def put_back(self, table: AgentTable, before: Mapping[GoalKey, State]) -> None:
         """Lead actors around the same places as before."""
         if self.undo_point() != before:
             self.clear()
-            for key, (shut, wanted) in before.items():
-                self._want(key, shut)
-                self._want(key, wanted)
+            for key, state in before.items():
+                self._restore(key, *state)
         self.lead(table)
 
     def clear(self) -> None:
@@ -148,17 +171,38 @@ class Detours:
 
     # --- the places of one goal ----------------------------------------------------------
 
-    def _want(self, key: GoalKey, wanted: tuple[Disc, ...]) -> None:
-        """Have a way of a goal derived that leads around places."""
+    def _restore(self, key: GoalKey, shut: Around, wanted: Around, derived_s: float) -> None:
+        """Have a way derived as it was, around `shut`; that around `wanted` follows in its turn."""
+        row = self._potentials.take((*key, shut))
+        self._known[key] = _Detour(shut, row, wanted, None, derived_s)
+
+    def _want(self, key: GoalKey, wanted: Around) -> bool:
+        """Have the way of a goal lead around places soon; False if it has none and has to wait."""
         detour = self._known.get(key)
-        if detour is None:
-            row = self._potentials.take((*key, wanted))
-            self._known[key] = _Detour(wanted, row, wanted, None)
-        elif detour.coming is not None or wanted == detour.shut:
+        if detour is not None:
             self._known[key] = detour._replace(wanted=wanted)
+        elif self._has_derived:
+            return False
         else:
-            row = self._potentials.take((*key, wanted))
-            self._known[key] = detour._replace(wanted=wanted, coming=(wanted, row))
+            self._has_derived = True
+            self._restore(key, wanted, wanted, 0.0)
+        return True
+
+    def _derive_next(self) -> None:
+        """Have the way derived that has to lead around other places for longest, if any is due."""
+        due = [
+            (-detour.derived_s, number, key)
+            for number, (key, detour) in enumerate(self._known.items())
+            if detour.coming is None
+            and detour.wanted != detour.shut
+            and detour.derived_s >= AGAIN_S
+        ]
+        if due and not self._has_derived:
+            _, _, key = min(due, key=lambda each: each[:2])
+            detour = self._known[key]
+            coming = detour.wanted, self._potentials.take((*key, detour.wanted))
+            self._known[key] = detour._replace(coming=coming, derived_s=0.0)
+            self._has_derived = True
 
     def _take_over(self, table: AgentTable) -> None:
         """Take the ways that have been derived meanwhile."""
@@ -167,8 +211,7 @@ class Detours:
                 continue
             shut, row = detour.coming
             self._potentials.drop(detour.row)
-            self._known[key] = _Detour(shut, row, detour.wanted, None)
-            self._want(key, detour.wanted)
+            self._known[key] = detour._replace(shut=shut, row=row, coming=None)
             for actor in self._led(table, key):
                 self._lead(table, actor)
 
@@ -177,13 +220,13 @@ class Detours:
         if not self._known:
             return
         for key, detour in list(self._known.items()):
-            wanted = still_there(detour.wanted, standing.discs)
-            if not wanted or not self._potentials.used(key):
+            places = still_there(detour.wanted.places, standing.discs)
+            if not places or not self._potentials.used(key):
                 for row in self._led(table, key):
                     self._return(table, row)
                 self._end(key)
-            elif wanted != detour.wanted:
-                self._want(key, wanted)
+            elif places != detour.wanted.places:
+                self._want(key, detour.wanted._replace(places=places))
 
     def _end(self, key: GoalKey) -> None:
         detour = self._known.pop(key)
@@ -225,7 +268,7 @@ class Detours:
         if detour is not None:
             known = key, detour.wanted
             if known not in self._rooms:
-                self._rooms[known] = as_known(discs, detour.wanted)
+                self._rooms[known] = as_known(discs, detour.wanted.places)
             discs = self._rooms[known]
         discs, stood_s, away = discs[reached], stood_s[reached], away[reached]
         shut = self._shut_by(table, row, own_row, discs, AROUND_M)
@@ -238,17 +281,32 @@ class Detours:
             found |= {wider(disc) for disc in narrow[near]}
             shut |= near
         if table.trips.detours[row] and detour is not None and self._ready(detour.row):
-            shut_off = np.array(detour.shut)[:, :3]
+            shut_off = np.array(detour.shut.places)[:, :3]
             more = discs[~(discs[:, None, :3] == shut_off).all(axis=2).any(axis=1)]
             marks = self._shut_by(table, row, detour.row, more, AROUND_M)
             found |= {disc_of(disc) for disc in more[marks]}
+        waits_s = STAYS * float(stood_s[shut].max()) if shut.any() else 0.0
         if found:
-            wanted = widest(found | (set() if detour is None else set(detour.wanted)))
-            if detour is None and len(self._known) >= MOST_DETOURS:
-                self.refused += 1
-            elif detour is None or wanted != set(detour.wanted):
-                self._want(key, tuple(sorted(wanted)))
-        self._weigh(table, row, STAYS * float(stood_s[shut].max()) if shut.any() else 0.0)
+            self._lead_around(table, row, key, found, waits_s)
+        self._weigh(table, row, waits_s)
+
+    def _lead_around(
+        self, table: AgentTable, row: int, key: GoalKey, found: set[Disc], waits_s: float
+    ) -> None:
+        """Have the way of an actor's goal lead around more places, from as far as it may pay."""
+        detour = self._known.get(key)
+        if detour is None and len(self._known) >= MOST_DETOURS:
+            self.refused += 1
+            return
+        places = tuple(sorted(widest(found | (set(detour.wanted.places) if detour else set()))))
+        within_m = 0.0 if detour is None else detour.wanted.within_m
+        if detour is None or np.isinf(self._left_m(table, row, detour.row)):
+            speed_mps = float(table.agents.parameters["speed_mps"][row])
+            own_m = self._left_m(table, row, int(table.trips.own_rows[row]))
+            within_m = max(within_m, _enough_m(own_m + waits_s * speed_mps + SPARE_M))
+        wanted = Around(places, within_m)
+        if (detour is None or wanted != detour.wanted) and not self._want(key, wanted):
+            table.trips.look_in_s[row] = 0.0  # another goal was first in this tick
 
     def _shut_by(
         self,
@@ -324,3 +382,11 @@ class Detours:
         left_m = self._left_m(table, row, slot)
         if np.isfinite(left_m):
             trips.nearest_m[row] = left_m
+
+
+def _enough_m(needed_m: float) -> float:
+    """The least of the distances that ways are derived for which is enough."""
+    within_m = LEAST_M
+    while within_m < min(needed_m, MOST_M):
+        within_m *= FURTHER
+    return math.inf if needed_m > MOST_M else within_m

@@ -121,6 +121,7 @@ def grow_wave(
     state: NDArray[np.int64],
     targets: NDArray[np.int64],
     margin: float,
+    within: float,
     most: int,
 ) -> bool:
     """Let a wave spread on; returns whether it has gone as far as it is wanted, or is over.
@@ -131,14 +132,15 @@ def grow_wave(
     it leaves the heap. `keys` and `items` hold 8 entries a cell plus one.
 
     It is wanted up to `margin` metres further than the nearest of the cells `targets` (K,); without
-    any it spreads over all cells. At most `most` cells are settled in one call. Wherever a wave is
+    any it spreads over all cells. It is never wanted further than `within` metres from the goal. At
+    most `most` cells are settled in one call. Wherever a wave is
     stopped, the cells that it has settled are as they will be when it is over.
     """
     steps, links = grid.kinds.steps[body], grid.layered.links
     enough = radius - SLACK_M
     size = state[0]
     reached = state[1]
-    until = np.inf
+    until = within
     for k in range(len(targets)):
         target = targets[k]
         if settled[target]:

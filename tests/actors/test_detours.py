@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
 import pytest
 
 from esplanade.actors import Navigator, Outcome
+from esplanade.actors.detours import AGAIN_S
 from esplanade.planning import AgentTable, PlanModel, Scene, Wall
 from esplanade.planning.routes.shut_way import ShutWays
 from tests.actors.worlds import navigator
@@ -179,8 +181,9 @@ def test_both_the_way_around_that_is_gone_and_the_one_that_follows_are_saved() -
         nav.observe({"p": DOOR})
         nav.tick()
     undo = nav.undo_point()
-    ((key, (shut, _)),) = nav.detours.undo_point().items()
-    both = shut, (*shut, (10.0, 8.6, 0.0, 0.5))
+    ((key, (shut, _, derived_s)),) = nav.detours.undo_point().items()
+    wanted = shut._replace(places=(*shut.places, (10.0, 8.6, 0.0, 0.5)))
+    both = shut, wanted, derived_s
     nav.detours.put_back(nav.table, {key: both})
     assert nav.detours.undo_point() == {key: both}
     other = Navigator(TWO, plan=PlanModel(threads=1))
@@ -193,7 +196,37 @@ def test_both_the_way_around_that_is_gone_and_the_one_that_follows_are_saved() -
     )
     assert np.array_equal(ours, theirs)
     undo()
-    assert nav.detours.undo_point() == {key: (shut, shut)}
+    assert nav.detours.undo_point() == {key: (shut, shut, derived_s)}
+
+
+def test_the_way_of_a_goal_is_derived_anew_at_most_once_in_a_while() -> None:
+    nav = navigator(TWO)
+    nav.add_actor("a", START, GOAL)
+    derived = []
+    for tick in range(60):
+        # One person stands in the door all the time, and beside it others come every half second.
+        there = (10.3, DOOR[1] + 0.1 * (tick // 10))
+        nav.observe({"p": DOOR, f"q{tick // 10}": there})
+        nav.tick()
+        ways = [state[0] for state in nav.detours.undo_point().values()]
+        if ways and (not derived or derived[-1][1] != ways[0]):
+            derived.append((tick, ways[0]))
+    assert len(derived) >= 2
+    ticks = [tick for tick, _ in derived]
+    assert min(b - a for a, b in itertools.pairwise(ticks)) * nav.tick_s >= AGAIN_S - 1e-9
+
+
+def test_ways_of_two_goals_are_derived_in_two_ticks() -> None:
+    nav = navigator(TWO)
+    nav.add_actor("a", START, GOAL)
+    nav.add_actor("b", (START[0] - 1.0, START[1]), (GOAL[0], GOAL[1] + 1.0))
+    known = [0]
+    for _ in range(20):
+        nav.observe({"p": DOOR})
+        nav.tick()
+        known.append(len(nav.detours))
+    assert known[-1] == 2
+    assert max(after - before for before, after in itertools.pairwise(known)) == 1
 
 
 def test_the_gap_beside_an_actor_is_shut_by_the_same_room_however_often_it_is_seen() -> None:
@@ -206,7 +239,7 @@ def test_the_gap_beside_an_actor_is_shut_by_the_same_room_however_often_it_is_se
         nav.table.agents.positions[0] = 8.6, 4.6
         nav.observe({})
         nav.tick()
-        for _, wanted, _ in nav.detours.save(nav.table):
+        for _, wanted, *_ in nav.detours.save(nav.table):
             rooms |= {disc[3] for disc in wanted}
     assert 0.65 in rooms
     assert rooms <= {0.3, 0.65}

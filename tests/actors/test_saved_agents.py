@@ -34,7 +34,9 @@ def test_a_way_on_edges_that_cannot_be_is_refused(value: float) -> None:
     [
         [[0, [[np.nan, 4.0, 0.0, 0.5]]]],
         [[0, [[4.0, 4.0, 0.5]]]],
-        [[0, [DISC], [[4.0, 4.0, 0.0, np.inf]]]],
+        [[0, [DISC], None, [[4.0, 4.0, 0.0, np.inf]], None, 0.0]],
+        [[0, [DISC], -1.0, [DISC], None, 0.0]],
+        [[0, [DISC], None, [DISC], None, np.nan]],
         [[1, [DISC]]],
         [[-1, [DISC]]],
         [[0, [DISC]]] * 17,
