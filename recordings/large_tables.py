@@ -149,7 +149,7 @@ def _blocks(
                     grown[role][:count] = column[:count]
                 found = grown
             for role, name in used.items():
-                found[role][count:end] = batch.column(name).to_numpy(zero_copy_only=False)
+                found[role][count:end] = _values(batch.column(name), found[role].dtype)
             count = end
     except (pa.ArrowException, OSError) as error:
         if whole:
@@ -159,6 +159,13 @@ def _blocks(
             return None
         raise RecordingError(path, *(fault or (f"{error}"[:300], None))) from None
     return {role: column[:count] for role, column in found.items()}
+
+
+def _values(column: Any, dtype: Any) -> Any:
+    """The values of a column, NaN where there is none; pyarrow's own way loads pandas first."""
+    if column.null_count:
+        column = column.fill_null(float("nan"))
+    return np.frombuffer(column.buffers()[1], dtype, len(column), column.offset * dtype.itemsize)
 
 
 def _columns(used: Collection[str], kinds: Mapping[str, Any], room: int) -> dict[str, Any]:

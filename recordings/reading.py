@@ -7,7 +7,7 @@ in seconds and metres, and the checks that apply to all recordings, are here.
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from esplanade.recordings.crowd import Crowd
 from esplanade.recordings.errors import RecordingError
 from esplanade.recordings.formats import read_rows
 from esplanade.recordings.meanings import on_the_ground, since_1970
+from esplanade.recordings.ordering import in_order
 from esplanade.recordings.plausibility import (
     Report,
     advice,
@@ -22,12 +23,9 @@ from esplanade.recordings.plausibility import (
     warnings_of,
 )
 from esplanade.recordings.rates import Rate, frame_rate, likely_rates, pairs_of
-from esplanade.recordings.rows import Floats, Given, Rows, Whole
+from esplanade.recordings.rows import Floats, Given, Rows
 from esplanade.recordings.tracks import Steps, tracks_of
 from esplanade.recordings.units import DEGREES, MAX_METRES, PIXELS, UNITS
-
-MIN_STEP_S: Final = 1e-3
-"""Two samples of one pedestrian that are closer in time than this count as simultaneous."""
 
 MOST_PEOPLE: Final = 500_000
 MAX_SECONDS: Final = 1e10
@@ -83,7 +81,7 @@ def read_crowd(
     if metres != 1.0:
         rows = replace(rows, x=rows.x * metres, y=rows.y * metres)
     _check_range(path, rows, unit_known=bool(rows.unit or given.unit or given.scale))
-    rows, repeats = _in_order(path, rows)
+    rows, repeats = in_order(path, rows)
     return _crowd(path, rows, repeats, given, rate, unit_source)
 
 
@@ -187,51 +185,6 @@ def _check_range(path: Path, rows: Rows, *, unit_known: bool) -> None:
         if len(wrong):
             text = f"{column} is {values[wrong[0]]:g}, expected at most {limit:g} either way"
             raise RecordingError(path, text + hints[column], int(rows.lines[wrong[0]]))
-
-
-def _order(rows: Rows) -> Whole | None:
-    """The samples by person and time; None for files that are in this order already."""
-    people, times = np.diff(rows.who), np.diff(rows.clock)
-    if np.all((people > 0) | ((people == 0) & (times >= 0.0))):
-        return None
-    if np.all(times >= 0.0) and len(rows.ids) < 2**16:
-        return np.argsort(rows.who.astype(np.uint16), kind="stable")  # by digits, not comparisons
-    return np.lexsort((rows.lines, rows.clock, rows.who))
-
-
-def _in_order(path: Path, rows: Rows) -> tuple[Rows, int]:
-    """The samples by person and time, without exact repeats, and how many of these there are."""
-    rows = _taken(rows, _order(rows))
-    at_once = (rows.who[1:] == rows.who[:-1]) & (np.diff(rows.clock) < MIN_STEP_S)
-    if not at_once.any():
-        return rows, 0
-    first = np.flatnonzero(at_once)
-    moved = (rows.x[first] != rows.x[first + 1]) | (rows.y[first] != rows.y[first + 1])
-    if moved.any():
-        here = int(first[np.argmax(moved)])
-        here, there = sorted((here, here + 1), key=lambda i: int(rows.lines[i]))
-        raise RecordingError(
-            path,
-            f"pedestrian {rows.ids[rows.who[here]]!r} is already at t={rows.clock[here]:g} in line "
-            f"{rows.lines[here]}, elsewhere; expected one sample",
-            int(rows.lines[there]),
-        )
-    kept = np.flatnonzero(np.append(True, ~at_once))
-    return _taken(rows, kept), int(np.count_nonzero(at_once))
-
-
-def _taken(rows: Rows, order: Whole | None) -> Rows:
-    """Rows in another order, one column after the other, so that few are there twice."""
-    if order is None:
-        return rows
-    made: dict[str, Any] = {"velocities": None, "z": None}
-    for name in ("lines", "who", "clock", "x", "y"):
-        column = getattr(rows, name)
-        if len(order) == len(column) and column.flags.writeable:
-            column[:] = column[order]
-        else:
-            made[name] = column[order]
-    return replace(rows, **made)
 
 
 def _places(rows: Rows) -> Floats:

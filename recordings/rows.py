@@ -14,6 +14,7 @@ Floats = npt.NDArray[np.float64]
 Whole = npt.NDArray[np.signedinteger]
 
 _MOST_DIGITS: Final = 400
+_PIECE: Final = 65_536
 EXACT_WHOLE: Final = 2.0**53
 """Greater whole numbers are not told apart as floating-point numbers."""
 
@@ -97,8 +98,11 @@ def people(names: Sequence[str]) -> tuple[list[str], Whole]:
     return list(index), who
 
 
-def numbered_people(numbers: Floats) -> tuple[list[str], Whole]:
-    """The same of ids that are numbers; 1 and 1.0 are the same one."""
+def numbered_people(numbers: Floats | Whole) -> tuple[list[str], Whole]:
+    """The same of ids that are numbers; 1 and 1.0 are the same one.
+
+    The indices take the place of ids that are int32.
+    """
     close = _close_people(numbers)
     if close is not None:
         return close
@@ -106,11 +110,12 @@ def numbered_people(numbers: Floats) -> tuple[list[str], Whole]:
     order = np.argsort(first, kind="stable")
     rank = np.empty(len(order), np.int64)
     rank[order] = np.arange(len(order))
-    names = [str(int(v)) if v.is_integer() else f"{v:.15g}" for v in found[order].tolist()]
+    firsts = found[order].astype(np.float64).tolist()
+    names = [str(int(v)) if v.is_integer() else f"{v:.15g}" for v in firsts]
     return names, rank[inverse.reshape(-1)]
 
 
-def _close_people(numbers: Floats) -> tuple[list[str], Whole] | None:
+def _close_people(numbers: Floats | Whole) -> tuple[list[str], Whole] | None:
     """The same, without sorting, where ids are whole and not far apart."""
     if not len(numbers):
         return None
@@ -118,13 +123,22 @@ def _close_people(numbers: Floats) -> tuple[list[str], Whole] | None:
     if not high - low <= min(4 * len(numbers), 2**31 - 1) or not abs(low) < EXACT_WHOLE:
         return None
     base = int(low)
-    marks = np.subtract(numbers, base, dtype=np.int32, casting="unsafe")
-    if numbers.dtype.kind == "f" and not np.array_equal(marks, numbers - base):
-        return None
-    first = np.full(int(high) - base + 1, -1, np.int32)
-    first[marks[::-1]] = np.arange(len(marks) - 1, -1, -1, dtype=np.int32)
-    there = np.flatnonzero(first >= 0)
-    there = there[np.argsort(first[there])]
-    rank = first  # its values are not needed any more
-    rank[there] = np.arange(len(there))
-    return [str(mark + base) for mark in there.tolist()], rank[marks]
+    rank = np.full(int(high) - base + 1, -1, np.int32)
+    kept = numbers.dtype == np.int32
+    who: Whole = numbers.view(np.int32) if kept else np.empty(len(numbers), np.int32)
+    names: list[str] = []
+    for begin in range(0, len(numbers), _PIECE):
+        away = numbers[begin : begin + _PIECE].astype(np.int64, copy=False) - base
+        if numbers.dtype.kind == "f" and not np.array_equal(
+            away, numbers[begin : begin + _PIECE] - base
+        ):
+            return None
+        own = rank[away]
+        if own.min() < 0:
+            newcomers, first = np.unique(away[own < 0], return_index=True)
+            newcomers = newcomers[np.argsort(first)]
+            rank[newcomers] = np.arange(len(names), len(names) + len(newcomers))
+            names += [str(mark + base) for mark in newcomers.tolist()]
+            own = rank[away]
+        who[begin : begin + _PIECE] = own
+    return names, who

@@ -54,6 +54,7 @@ class Steps:
         self._aside = np.zeros(len(self.starts), bool)
         self._speeds: list[Floats] = []
         self._each = max(1, len(rows.who) // _MANY_STEPS)
+        self._seen = 0
         for first, last in self._pieces():
             self._take(first, last)
 
@@ -88,31 +89,43 @@ class Steps:
     def _take(self, first: int, last: int) -> None:
         """Look at the steps of the tracks from `first` on."""
         begin, end = int(self.starts[first]), int(self.ends[last - 1])
-        lasts = self.ends[first:last] - 1 - begin
-        gaps = np.diff(self._times[begin:end])
-        ways = np.diff(self._places[begin:end], axis=0)
+        starts, lasts = self.starts[first:last] - begin, self.ends[first:last] - 1 - begin
+        times, x, y = self._times[begin:end], *self._places[begin:end].T
+        gaps, along_x, along_y = times[1:] - times[:-1], x[1:] - x[:-1], y[1:] - y[:-1]
+        gaps[lasts[:-1]] = 1.0
+        speeds = np.zeros(end - begin)
+        # Places are bounded: squares neither overflow, nor do they lose what matters.
+        speeds[:-1] = np.sqrt(along_x * along_x + along_y * along_y) / gaps
+        speeds[lasts] = 0.0
+        self.fastest[first:last] = np.maximum.reduceat(speeds, starts)
+        self._take_paces(first, starts, lasts, speeds)
         own = np.ones(end - begin, bool)
         own[lasts] = False
-        gaps[~own[:-1]] = 1.0
-        speeds = np.zeros(end - begin)
-        np.divide(np.hypot(ways[:, 0], ways[:, 1]), gaps, out=speeds[:-1])
-        speeds[lasts] = 0.0
-        self._speeds.append(speeds[own][:: self._each])
-        self.fastest[first:last] = np.maximum.reduceat(speeds, self.starts[first:last] - begin)
-        spans = zip((self.starts[first:last] - begin).tolist(), lasts.tolist(), strict=True)
-        self.paces[first:last] = [own_pace_of(speeds[a:b]) for a, b in spans]
         self._count(gaps[own[:-1]])
         if len(gaps) < 2:
             return
         before, after = gaps[:-1], gaps[1:]
         share = before / (before + after)
-        aside = np.hypot(*(ways[:-1, k] - share * (ways[:-1, k] + ways[1:, k]) for k in (0, 1)))
-        least = np.maximum(LEAST_SPIKE_M, 0.5 * GREATEST_ACCELERATION_MPS2 * before * after)
-        found = np.flatnonzero((aside > least) & own[:-2] & own[1:-1])
+        aside_x = along_x[:-1] - share * (x[2:] - x[:-2])
+        aside_y = along_y[:-1] - share * (y[2:] - y[:-2])
+        aside = aside_x * aside_x + aside_y * aside_y
+        found = np.flatnonzero((aside > LEAST_SPIKE_M**2) & own[:-2] & own[1:-1])
+        least = 0.5 * GREATEST_ACCELERATION_MPS2 * before[found] * after[found]
+        found = found[aside[found] > np.maximum(LEAST_SPIKE_M, least) ** 2]
         if len(found):
             # The sample in the middle of three tells whose they are.
             owners = np.searchsorted(self.starts, begin + found + 1, side="right") - 1
             self._aside[owners] = True
+
+    def _take_paces(self, first: int, starts: Whole, lasts: Whole, speeds: Floats) -> None:
+        """The own pace of each of these tracks; and of every so many steps the speed."""
+        for number, (start, end) in enumerate(
+            zip(starts.tolist(), lasts.tolist(), strict=True), first
+        ):
+            self.paces[number] = own_pace_of(speeds[start:end])
+            skipped = -self._seen % self._each
+            self._seen += end - start
+            self._speeds.append(speeds[start + skipped : end : self._each].copy())
 
     def _count(self, gaps: Floats) -> None:
         ticks = np.rint(gaps * _TICKS_A_SECOND)

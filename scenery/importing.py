@@ -158,8 +158,9 @@ def _spawn_cell(traversability: Traversability, spawn: Point | None) -> int:
     if not region.any():
         raise UsageError("an adult can stand nowhere in it; is --up or --scale right?")
     cells = np.flatnonzero(region)
-    points = centres(traversability)[cells]
-    return int(cells[np.linalg.norm(points - points.mean(axis=0), axis=1).argmin()])
+    points = centres(traversability, cells)
+    points -= points.mean(axis=0)
+    return int(cells[np.einsum("nk,nk->n", points, points).argmin()])
 
 
 def _places(
@@ -184,7 +185,8 @@ def _places(
 
 def _namer(grid: LayeredGrid, traversability: Traversability, start: int) -> PlaceNamer:
     reached = spread_wave(traversability, start) != UNREACHED
-    return PlaceNamer(centres(traversability)[reached], storeys_of(grid, reached))
+    points = centres(traversability, np.flatnonzero(reached))
+    return PlaceNamer(points, storeys_of(grid, reached))
 
 
 def _path_lengths(traversability: Traversability, cell: int) -> NDArray[np.float32]:
@@ -199,5 +201,6 @@ def _path_lengths(traversability: Traversability, cell: int) -> NDArray[np.float
 
 
 def _rounded(traversability: Traversability, cell: int) -> Point:
-    x, y, z = (round(float(value), 3) for value in centres(traversability)[cell])
+    centre = centres(traversability, np.array([cell]))[0]
+    x, y, z = (round(float(value), 3) for value in centre)
     return x, y, z

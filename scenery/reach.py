@@ -5,8 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from esplanade.planning import LayeredGrid, Scene
 from esplanade.planning.routes.find_path import LayeredPath, PathStatus, find_path
@@ -14,7 +12,7 @@ from esplanade.planning.scene.bodies import Body
 from esplanade.planning.scene.heights import SAME_SURFACE_M
 from esplanade.planning.traversal.stability import Stability
 from esplanade.planning.traversal.traversability import Traversability
-from esplanade.planning.traversal.wavefront import UNREACHED, spread_wave
+from esplanade.planning.traversal.wavefront import UNREACHED, number_regions, spread_wave
 from esplanade.scenery.values import Point
 
 _ROOFED_CELL_WEIGHT = 4.0
@@ -48,7 +46,7 @@ def reach_of(grid: LayeredGrid, scene: Scene, body: Body) -> Reach:
     reached = reached_cells(traversability, seeds)
     if not seeds and reached.any():
         seeds = (int(reached.argmax()),)
-    starts = centres(traversability)[[seed for seed in seeds if seed >= 0]]
+    starts = centres(traversability, np.array([seed for seed in seeds if seed >= 0], np.int64))
     missed, moved = [], {}
     for place in scene.places:
         path = _path_from_any(grid, starts, (*place.position, place.z_m), body)
@@ -97,17 +95,20 @@ def _path_from_any(
     return None
 
 
-def centres(traversability: Traversability) -> NDArray[np.float64]:
-    """The centres of all cells, float64 (N, 3), metres; z is nan where there is no floor."""
+def centres(
+    traversability: Traversability, cells: NDArray[np.integer] | None = None
+) -> NDArray[np.float64]:
+    """The centres of some cells (M,), or of all N, float64 (M, 3) or (N, 3), metres.
+
+    z is nan where there is no floor.
+    """
     a = traversability.arrays
-    return np.stack(
-        [
-            a.x0 + (a.places["column"] + 0.5) * a.cell_m,
-            a.y0 + (a.places["row"] + 0.5) * a.cell_m,
-            a.floors.astype(np.float64),
-        ],
-        axis=1,
-    )
+    places, floors = (a.places, a.floors) if cells is None else (a.places[cells], a.floors[cells])
+    found = np.empty((len(floors), 3))
+    found[:, 0] = a.x0 + (places["column"] + 0.5) * a.cell_m
+    found[:, 1] = a.y0 + (places["row"] + 0.5) * a.cell_m
+    found[:, 2] = floors
+    return found
 
 
 def cell_near(traversability: Traversability, point: Point, within_m: float) -> int:
@@ -138,16 +139,9 @@ def largest_region(traversability: Traversability) -> NDArray[np.bool_]:
     Cells under a roof have a greater weight, so that the rooms of a building are preferred to its
     roof. No cell is set if the body cannot stand anywhere.
     """
-    stands, links = can_stand(traversability), traversability.arrays.links
-    steps = (traversability.steps[:, None] >> np.arange(8)) & 1 == 1
-    steps &= stands[:, None] & stands[links]
-    starts, directions = np.nonzero(steps)
-    count = len(stands)
-    graph = coo_matrix(
-        (np.ones(len(starts), dtype=np.bool_), (starts, links[starts, directions])),
-        shape=(count, count),
-    )
-    labels = connected_components(graph, directed=False)[1]
-    worth = np.where(np.isfinite(traversability.arrays.ceilings), _ROOFED_CELL_WEIGHT, 1.0) * stands
-    sizes = np.bincount(labels, weights=worth, minlength=1)
-    return np.asarray(stands & (labels == sizes.argmax()))
+    regions = number_regions(traversability)
+    stands = np.flatnonzero(regions >= 0)
+    roofed = np.isfinite(traversability.arrays.ceilings[stands])
+    worth = np.where(roofed, _ROOFED_CELL_WEIGHT, 1.0)
+    sizes = np.bincount(regions[stands], weights=worth, minlength=1)
+    return np.asarray(regions == sizes.argmax())

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.grid.grid import ADULT, LayeredGrid
+from esplanade.planning.ground.layered import TILE, LayeredArrays
 from esplanade.planning.scene.bodies import Body
 from esplanade.planning.scene.heights import LEVEL_M, STOREYS_APART_M
 from esplanade.planning.traversal.wavefront import UNREACHED, spread_wave
@@ -28,13 +29,8 @@ def storeys_of(grid: LayeredGrid, ground: NDArray[np.bool_]) -> tuple[float, ...
     floors = a.floors[cells].astype(np.float64)
     if not len(floors):
         return (0.0,)
-    columns = a.places["row"][cells].astype(np.int64) * a.nx + a.places["column"][cells]
-    order = np.lexsort((floors, columns))
-    over = (np.diff(columns[order]) == 0) & (np.diff(floors[order]) >= STOREYS_APART_M)
-    stacked = np.zeros(len(cells), dtype=np.bool_)
-    stacked[order[:-1][over]] = stacked[order[1:][over]] = True
+    left = _stacked_floors(a, cells)
     found: list[float] = []
-    left = np.sort(floors[stacked])
     while len(left):
         within = np.searchsorted(left, left + LEVEL_M, side="right") - np.arange(len(left))
         fullest = int(within.argmax())
@@ -44,6 +40,22 @@ def storeys_of(grid: LayeredGrid, ground: NDArray[np.bool_]) -> tuple[float, ...
         found.append(height)
         left = left[np.abs(left - height) >= STOREYS_APART_M]
     return tuple(sorted(found)) or (float(np.median(floors)),)
+
+
+def _stacked_floors(a: LayeredArrays, cells: NDArray[np.intp]) -> NDArray[np.float64]:
+    """The floors, sorted, of those of some cells that lie above or below others of them."""
+    several = (a.pages >= 0).sum(axis=0, dtype=np.int16) > 1
+    if not several.any():
+        return np.empty(0)
+    places = a.places[cells]
+    near = several[places["row"] // TILE, places["column"] // TILE]
+    places, floors = places[near], a.floors[cells[near]].astype(np.float64)
+    columns = places["row"].astype(np.int64) * a.nx + places["column"]
+    order = np.lexsort((floors, columns))
+    over = (np.diff(columns[order]) == 0) & (np.diff(floors[order]) >= STOREYS_APART_M)
+    stacked = np.zeros(len(floors), dtype=np.bool_)
+    stacked[order[:-1][over]] = stacked[order[1:][over]] = True
+    return np.sort(floors[stacked])
 
 
 def reached_from(

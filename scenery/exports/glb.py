@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from esplanade.planning import Scene
 from esplanade.planning.scene.mesh_file import read_triangles
 from esplanade.scenery.exports.layers import LayerCells
+from esplanade.scenery.exports.plugs import plugs_of
 from esplanade.scenery.exports.slopes import slopes_of
 from esplanade.scenery.meshes import as_glb
 
@@ -18,8 +19,9 @@ _STEEPEST = 0.7071
 
 def scene_as_glb(scene: Scene, layers: Iterable[LayerCells]) -> bytes:
     """GLB, y up and in metres. Floors are as their cells, ramps are slopes and stairs
-    are steps; what is solid has sides and no top.
+    are steps; what is solid has sides and no top, and in a hole of one cell an underside.
     """
+    layers = list(layers)
     parts = {f"layer {layer.number}": _floors(scene, layer) for layer in layers}
     sides = [
         _upright(start, end, solid.offset_m, solid.height_m)
@@ -27,7 +29,7 @@ def scene_as_glb(scene: Scene, layers: Iterable[LayerCells]) -> bytes:
         if not solid.carries
         for start, end in zip(solid.points, (*solid.points[1:], solid.points[0]), strict=True)
     ]
-    parts["solids"] = _joined(sides)
+    parts["solids"] = _joined([*sides, _undersides(layers)])
     walls = [_upright(wall.start, wall.end, wall.offset_m, wall.height_m) for wall in scene.walls]
     if scene.mesh is not None:
         walls.append(_steep(read_triangles(scene.mesh)))
@@ -64,6 +66,16 @@ def _floors(scene: Scene, layer: LayerCells) -> Floats:
             ),
         ]
     )
+
+
+def _undersides(layers: list[LayerCells]) -> Floats:
+    """Rectangles that look down, in holes of one cell."""
+    plugs = plugs_of(layers)
+    if not len(plugs):
+        return np.empty((0, 3, 3))
+    rows, columns, heights = plugs.T
+    runs = np.stack([rows, columns, columns + 1.0, heights], axis=1)
+    return _rectangles(layers[0], runs)[:, ::-1]
 
 
 def _rectangles(

@@ -1,6 +1,7 @@
 """Worlds of files that are no scenes: a mesh or a plan is imported before the world begins.
 
-What is made of a file is kept under a digest of it, so that the next start finds it.
+What is made of a file is kept under a digest of it, so that the next start finds it. `kept_scenes`
+says for how long.
 """
 
 import hashlib
@@ -16,13 +17,12 @@ from typing import Any, Final
 
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.running import imported
+from esplanade.kept_scenes import UNFINISHED, make_room, mark_used
 
 PLANS: Final = (".wkt", ".geojson", ".xml", ".yaml", ".yml", ".dxf")
 MESHES: Final = (".obj", ".off", ".ply", ".stl", ".gltf", ".glb", ".3mf", ".ifc")
 _HAS_OTHERS: Final = (".yaml", ".yml", ".gltf")
 """Files that name other files: whether those are the same, their own digest does not tell."""
-_UNFINISHED: Final = "unfinished-"
-"""Folders in which something is still being made begin so."""
 
 
 def serve(options: Namespace) -> int:
@@ -68,25 +68,30 @@ def is_made_into_a_scene(path: Path) -> bool:
 
 def _scene_of(path: Path) -> Path:
     """The scene of a file: one that was made before, or a new one, of which figures are told."""
-    made = _folder(path) / f"{path.stem}.json"
+    folder = _folder(path)
+    made = folder / f"{path.stem}.json"
     has_others = path.suffix.lower() in _HAS_OTHERS
+    mark_used(folder)
+    make_room(folder.parent, folder)
     if made.exists() and not has_others:
         sys.stderr.write(f"{path}: imported before, as {made}\n")
         return made
     try:
-        made.parent.parent.mkdir(parents=True, exist_ok=True)
-        new = Path(tempfile.mkdtemp(prefix=_UNFINISHED, dir=made.parent.parent))
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        new = Path(tempfile.mkdtemp(prefix=UNFINISHED, dir=folder.parent))
     except OSError:
         elsewhere = Path(tempfile.mkdtemp(prefix="esplanade-"))
-        made = elsewhere / made.parent.name / made.name
-        new = Path(tempfile.mkdtemp(prefix=_UNFINISHED, dir=elsewhere))
+        folder = elsewhere / folder.name
+        made = folder / made.name
+        new = Path(tempfile.mkdtemp(prefix=UNFINISHED, dir=elsewhere))
     try:
-        _import(path, new, made.parent)
+        _import(path, new, folder)
         if has_others:
-            shutil.rmtree(made.parent, ignore_errors=True)
+            shutil.rmtree(folder, ignore_errors=True)
         _put(new, made)
     finally:
         shutil.rmtree(new, ignore_errors=True)
+    make_room(folder.parent, folder)
     return made
 
 

@@ -1,6 +1,7 @@
 """Worlds of files that are no scenes: made into scenes once, and then run as any other."""
 
 import json
+import os
 from argparse import Namespace
 from pathlib import Path
 from typing import Any
@@ -88,11 +89,28 @@ def test_who_comes_second_takes_what_is_there(
     assert other.scene.exists()
 
 
-def test_what_cannot_be_imported_is_named(tmp_path: Path) -> None:
+def test_what_cannot_be_imported_is_named_and_leaves_nothing(tmp_path: Path, kept: Path) -> None:
     plan = tmp_path / "hall.wkt"
     plan.write_text("POLYGON ((0 0, 1 1")
     with pytest.raises(UsageError, match=r"hall\.wkt: .*bracket"):
         opening.with_scene(Namespace(scene=plan))
+    assert list(kept.iterdir()) == []
+
+
+def test_what_was_not_used_for_long_goes_when_another_is_opened(
+    tmp_path: Path, kept: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    old = kept / "0123456789abcdef"
+    old.mkdir(parents=True)
+    os.utime(old, (0.0, 0.0))
+    plan = tmp_path / "hall.wkt"
+    plan.write_text(HALL)
+    for _ in range(2):
+        options = Namespace(scene=plan)
+        opening.with_scene(options)
+        assert options.scene.exists()
+    assert "imported before" in capsys.readouterr().err
+    assert not old.exists()
 
 
 @pytest.mark.parametrize(
