@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Final, NamedTuple
 
@@ -9,8 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.actors.potential_pool import GoalKey, PotentialPool
+from esplanade.actors.saved_detours import MOST_DETOURS, SavedDetour
+from esplanade.actors.standing_discs import (
+    WIDEST_M,
+    Standing,
+    as_known,
+    disc_of,
+    still_there,
+    wider,
+    widest,
+)
 from esplanade.planning import AgentTable, LayeredGrid
-from esplanade.planning.routes.shut_way import Disc, ShutWays
+from esplanade.planning.routes.shut_way import REACH_M, Around, Disc, ShutWays
 
 SEEN_S: Final = 0.5
 """A body that has stood for so long is looked for on the ways of actors."""
@@ -20,9 +31,6 @@ STAYS: Final = 4.0
 """A body that has stood for a second is expected to stand for this many more."""
 GAIN_S: Final = 0.5
 """A way has to be better by this much before an actor takes it rather than the one it goes."""
-PERSON_ROOM_M: Final = 0.25
-"""Room that a way leaves to people who stand; through narrower gaps hardly anybody presses."""
-ACTOR_ROOM_M: Final = 0.05
 AROUND_M: Final = 1.5
 """A way beside somebody that is longer by no more than this is left to the search."""
 STALLED_S: Final = 1.5
@@ -30,34 +38,39 @@ STALLED_S: Final = 1.5
 STUCK_S: Final = 2.5
 """For an actor that has not got on for so long the gaps beside those who stand near are shut."""
 NEAR_M: Final = 2.5
-WIDER_M: Final = 0.35
-WIDEST_M: Final = 0.75
-"""A gap is shut by so much more room to whoever stands beside it."""
-MOST_DETOURS: Final = 16
-"""No more goals than this have a way around people at once; other actors wait."""
+AGAIN_S: Final = 1.5
+"""The way of a goal is derived anew no sooner than this after the last time, so that people who
+come and go cost little. In one tick it is done for one goal only."""
+
+LEAST_M: Final = 8.0
+MOST_M: Final = 256.0
+FURTHER: Final = 1.5
+"""A way around people is derived for cells no further from the goal than the least distance, times
+a power of `FURTHER`, up to the most; for all cells beyond that."""
+SPARE_M: Final = 6.0
+"""It is derived for so much more than where it may pay."""
+
+State = tuple[Around, Around, float]
+"""What the way of a goal leads around, what it is to lead around, and `_Detour.derived_s`."""
 
 
 class _Detour(NamedTuple):
     """A way to a goal around `shut`, whose potential is in a row; another one may be on its way."""
 
-    shut: tuple[Disc, ...]
+    shut: Around
     row: int
-    wanted: tuple[Disc, ...]
-    coming: tuple[tuple[Disc, ...], int] | None
-
-
-class Standing(NamedTuple):
-    """K bodies that stand: `discs` (K, 4) of `Disc`, with room, and `stood_s` (K,) seconds."""
-
-    discs: NDArray[np.float64]
-    stood_s: NDArray[np.float64]
+    wanted: Around
+    coming: tuple[Around, int] | None
+    derived_s: float
+    """Time since the latest potential was asked for."""
 
 
 class Detours:
     """Weighs, for each actor whose way is shut, waiting against another way.
 
     All actors with a goal share one more potential, in which those who shut the ways of any of them
-    are solid. It is derived when such people are found, and given up when they have gone.
+    are solid. It is derived when such people are found, as far from the goal as it may pay, and
+    given up when they have gone.
     """
 
     def __init__(self, grid: LayeredGrid, potentials: PotentialPool) -> None:
@@ -65,10 +78,12 @@ class Detours:
         self._potentials = potentials
         self._known: dict[GoalKey, _Detour] = {}
         self._ways: ShutWays | None = None
-        self._rooms: dict[tuple[GoalKey, tuple[Disc, ...]], NDArray[np.float64]] = {}
+        self._rooms: dict[tuple[GoalKey, Around], NDArray[np.float64]] = {}
         """Of this tick: discs with the room that they have on the ways to each goal."""
+        self._has_derived = False
+        """Whether a potential was asked for in this tick."""
         self.refused = 0
-        """Goals for which there was no room among `MOST_DETOURS`."""
+        """Looks at a way that was shut, for whose goal there was no room among `MOST_DETOURS`."""
 
     def __len__(self) -> int:
         """Number of goals with a way around people."""
@@ -77,14 +92,17 @@ class Detours:
     def keep(self, table: AgentTable, standing: Standing, tick_s: float) -> None:
         """Let actors look along their ways, and send them where they get on sooner.
 
-        Nothing is done where nobody stands. Cost O(actors), and O(metres ahead × people who stand)
-        for each actor whose turn it is to look.
+        Nothing is done where nobody stands. Cost O(actors), and for each actor whose turn it is to
+        look O(people who stand), and O(metres ahead × those of them in reach).
         """
         trips = table.trips
         seen = standing.stood_s >= SEEN_S
         if not self._known and not seen.any():
             trips.shut[:] = False
             return
+        self._has_derived = False
+        for key, detour in self._known.items():
+            self._known[key] = detour._replace(derived_s=detour.derived_s + tick_s)
         self._forget(table, standing)
         self._take_over(table)
         going = (trips.own_rows >= 0) & (trips.outcomes == 0) & ~table.agents.waits
@@ -102,6 +120,7 @@ class Detours:
             for row in np.flatnonzero(due & trips.detours).tolist():
                 trips.look_in_s[row] = LOOK_EVERY_S
                 self._weigh(table, row, 0.0)
+        self._derive_next()
         self._take_over(table)
 
     def save(self, table: AgentTable) -> list[list[Any]]:
@@ -110,26 +129,17 @@ class Detours:
         for key, detour in self._known.items():
             rows = np.flatnonzero(table.trips.own_rows == self._potentials.row(key))
             if len(rows):
-                found.append([int(rows[0]), [list(disc) for disc in detour.wanted]])
+                around = detour.shut, detour.wanted, detour.derived_s
+                found.append(SavedDetour(int(rows[0]), *around).plain())
         return found
 
-    def load(self, table: AgentTable, saved: Sequence[Sequence[Any]]) -> None:
-        """Lead actors as when this was saved.
-
-        Raises
-        ------
-        ValueError, TypeError, IndexError
-            It is no such data.
-        """
+    def load(self, table: AgentTable, saved: Sequence[SavedDetour]) -> None:
+        """Lead actors as when this was saved."""
         self.clear()
-        for row, discs in saved:
-            key = self._key(table, int(row))
-            if key is None or not discs:
-                continue
-            places = [(float(x), float(y), float(z), float(r)) for x, y, z, r in discs]
-            if not np.isfinite(places).all() or len(self._known) >= MOST_DETOURS:
-                raise ValueError("a place that a way leads around is none")
-            self._want(key, tuple(places))
+        for row, shut, wanted, derived_s in saved:
+            key = self._key(table, row)
+            if key is not None and key not in self._known:
+                self._restore(key, shut, wanted, derived_s)
         self.lead(table)
 
     def lead(self, table: AgentTable) -> None:
@@ -139,16 +149,19 @@ class Detours:
             if detour is not None and self._ready(detour.row):
                 table.agents.potential_rows[row] = detour.row
 
-    def undo_point(self) -> Mapping[GoalKey, tuple[Disc, ...]]:
+    def undo_point(self) -> Mapping[GoalKey, State]:
         """Return what `put_back` takes."""
-        return {key: detour.wanted for key, detour in self._known.items()}
+        return {
+            key: (detour.shut, detour.wanted, detour.derived_s)
+            for key, detour in self._known.items()
+        }
 
-    def put_back(self, table: AgentTable, before: Mapping[GoalKey, tuple[Disc, ...]]) -> None:
+    def put_back(self, table: AgentTable, before: Mapping[GoalKey, State]) -> None:
         """Lead actors around the same places as before."""
-        if {key: detour.wanted for key, detour in self._known.items()} != before:
+        if self.undo_point() != before:
             self.clear()
-            for key, wanted in before.items():
-                self._want(key, wanted)
+            for key, state in before.items():
+                self._restore(key, *state)
         self.lead(table)
 
     def clear(self) -> None:
@@ -158,17 +171,38 @@ class Detours:
 
     # --- the places of one goal ----------------------------------------------------------
 
-    def _want(self, key: GoalKey, wanted: tuple[Disc, ...]) -> None:
-        """Have a way of a goal derived that leads around places."""
+    def _restore(self, key: GoalKey, shut: Around, wanted: Around, derived_s: float) -> None:
+        """Have a way derived as it was, around `shut`; that around `wanted` follows in its turn."""
+        row = self._potentials.take((*key, shut))
+        self._known[key] = _Detour(shut, row, wanted, None, derived_s)
+
+    def _want(self, key: GoalKey, wanted: Around) -> bool:
+        """Have the way of a goal lead around places soon; False if it has none and has to wait."""
         detour = self._known.get(key)
-        if detour is None:
-            row = self._potentials.take((*key, wanted))
-            self._known[key] = _Detour(wanted, row, wanted, None)
-        elif detour.coming is not None or wanted == detour.shut:
+        if detour is not None:
             self._known[key] = detour._replace(wanted=wanted)
+        elif self._has_derived:
+            return False
         else:
-            row = self._potentials.take((*key, wanted))
-            self._known[key] = detour._replace(wanted=wanted, coming=(wanted, row))
+            self._has_derived = True
+            self._restore(key, wanted, wanted, 0.0)
+        return True
+
+    def _derive_next(self) -> None:
+        """Have the way derived that has to lead around other places for longest, if any is due."""
+        due = [
+            (-detour.derived_s, number, key)
+            for number, (key, detour) in enumerate(self._known.items())
+            if detour.coming is None
+            and detour.wanted != detour.shut
+            and detour.derived_s >= AGAIN_S
+        ]
+        if due and not self._has_derived:
+            _, _, key = min(due, key=lambda each: each[:2])
+            detour = self._known[key]
+            coming = detour.wanted, self._potentials.take((*key, detour.wanted))
+            self._known[key] = detour._replace(coming=coming, derived_s=0.0)
+            self._has_derived = True
 
     def _take_over(self, table: AgentTable) -> None:
         """Take the ways that have been derived meanwhile."""
@@ -177,8 +211,7 @@ class Detours:
                 continue
             shut, row = detour.coming
             self._potentials.drop(detour.row)
-            self._known[key] = _Detour(shut, row, detour.wanted, None)
-            self._want(key, detour.wanted)
+            self._known[key] = detour._replace(shut=shut, row=row, coming=None)
             for actor in self._led(table, key):
                 self._lead(table, actor)
 
@@ -186,15 +219,14 @@ class Detours:
         """Give up places where nobody stands any more, and goals that nobody has."""
         if not self._known:
             return
-        there = {_disc(disc)[:3] for disc in standing.discs[standing.stood_s > 0.0]}
         for key, detour in list(self._known.items()):
-            wanted = tuple(disc for disc in detour.wanted if disc[:3] in there)
-            if not wanted or not self._potentials.used(key):
+            places = still_there(detour.wanted.places, standing.discs)
+            if not places or not self._potentials.used(key):
                 for row in self._led(table, key):
                     self._return(table, row)
                 self._end(key)
-            elif wanted != detour.wanted:
-                self._want(key, wanted)
+            elif places != detour.wanted.places:
+                self._want(key, detour.wanted._replace(places=places))
 
     def _end(self, key: GoalKey) -> None:
         detour = self._known.pop(key)
@@ -230,34 +262,51 @@ class Detours:
         if key is None:
             return
         trips, own_row = table.trips, int(table.trips.own_rows[row])
-        detour = self._known.get(key)
+        away = np.hypot(*(discs[:, :2] - table.agents.positions[row]).T)
+        reached = away <= REACH_M + discs[:, 3].max() + 2.0 * WIDEST_M
+        detour, narrow = self._known.get(key), discs[reached]
         if detour is not None:
             known = key, detour.wanted
             if known not in self._rooms:
-                self._rooms[known] = _as_known(discs, detour.wanted)
+                self._rooms[known] = as_known(discs, detour.wanted.places)
             discs = self._rooms[known]
+        discs, stood_s, away = discs[reached], stood_s[reached], away[reached]
         shut = self._shut_by(table, row, own_row, discs, AROUND_M)
         trips.shut[row] = shut.any()
         if trips.stalled_s[row] >= STALLED_S and not shut.any():
             shut = self._shut_by(table, row, own_row, discs, 0.0)
-        found = {_disc(disc) for disc in discs[shut]}
+        found = {disc_of(disc) for disc in discs[shut]}
         if trips.stalled_s[row] >= STUCK_S:
-            away = np.hypot(*(discs[:, :2] - table.agents.positions[row]).T)
             near = (away <= NEAR_M) & (np.abs(discs[:, 2] - table.agents.heights[row]) < NEAR_M)
-            found |= {_wider(disc) for disc in discs[near]}
+            found |= {wider(disc) for disc in narrow[near]}
             shut |= near
         if table.trips.detours[row] and detour is not None and self._ready(detour.row):
-            shut_off = np.array(detour.shut)[:, :3]
+            shut_off = np.array(detour.shut.places)[:, :3]
             more = discs[~(discs[:, None, :3] == shut_off).all(axis=2).any(axis=1)]
             marks = self._shut_by(table, row, detour.row, more, AROUND_M)
-            found |= {_disc(disc) for disc in more[marks]}
+            found |= {disc_of(disc) for disc in more[marks]}
+        waits_s = STAYS * float(stood_s[shut].max()) if shut.any() else 0.0
         if found:
-            wanted = _widest(found | (set() if detour is None else set(detour.wanted)))
-            if detour is None and len(self._known) >= MOST_DETOURS:
-                self.refused += 1
-            elif detour is None or wanted != set(detour.wanted):
-                self._want(key, tuple(sorted(wanted)))
-        self._weigh(table, row, STAYS * float(stood_s[shut].max()) if shut.any() else 0.0)
+            self._lead_around(table, row, key, found, waits_s)
+        self._weigh(table, row, waits_s)
+
+    def _lead_around(
+        self, table: AgentTable, row: int, key: GoalKey, found: set[Disc], waits_s: float
+    ) -> None:
+        """Have the way of an actor's goal lead around more places, from as far as it may pay."""
+        detour = self._known.get(key)
+        if detour is None and len(self._known) >= MOST_DETOURS:
+            self.refused += 1
+            return
+        places = tuple(sorted(widest(found | (set(detour.wanted.places) if detour else set()))))
+        within_m = 0.0 if detour is None else detour.wanted.within_m
+        if detour is None or np.isinf(self._left_m(table, row, detour.row)):
+            speed_mps = float(table.agents.parameters["speed_mps"][row])
+            own_m = self._left_m(table, row, int(table.trips.own_rows[row]))
+            within_m = max(within_m, _enough_m(own_m + waits_s * speed_mps + SPARE_M))
+        wanted = Around(places, within_m)
+        if (detour is None or wanted != detour.wanted) and not self._want(key, wanted):
+            table.trips.look_in_s[row] = 0.0  # another goal was first in this tick
 
     def _shut_by(
         self,
@@ -298,6 +347,8 @@ class Detours:
                 self._lead(table, row)
         elif not np.isfinite(other_s) or own_s + GAIN_S < other_s:
             self._return(table, row)
+        else:  # its potential may have been derived only now
+            self._lead(table, row)
 
     def _left_m(self, table: AgentTable, row: int, slot: int) -> float:
         cell = int(table.agents.cells[row])
@@ -333,30 +384,9 @@ class Detours:
             trips.nearest_m[row] = left_m
 
 
-def _wider(disc: NDArray[np.float64]) -> Disc:
-    """The same place with so much room that no gap beside it is left; it is widened once."""
-    x, y, z, radius = _disc(disc)
-    return x, y, z, round(min(radius + WIDER_M, WIDEST_M), 2)
-
-
-def _widest(discs: set[Disc]) -> set[Disc]:
-    """Of discs around one place the widest."""
-    best: dict[tuple[float, ...], Disc] = {}
-    for disc in discs:
-        if disc[3] > best.get(disc[:3], disc)[3] or disc[:3] not in best:
-            best[disc[:3]] = disc
-    return set(best.values())
-
-
-def _as_known(discs: NDArray[np.float64], known: Sequence[Disc]) -> NDArray[np.float64]:
-    """Discs (K, 4) with the room that those of them have which are known."""
-    rooms = {disc[:3]: disc[3] for disc in known}
-    found = discs.copy()
-    for k, (x, y, z, room) in enumerate(discs.tolist()):
-        found[k, 3] = max(rooms.get((x, y, z), 0.0), room)
-    return found
-
-
-def _disc(disc: NDArray[np.float64]) -> Disc:
-    x, y, z, radius = np.round(disc, 2).tolist()
-    return x, y, z, radius
+def _enough_m(needed_m: float) -> float:
+    """The least of the distances that ways are derived for which is enough."""
+    within_m = LEAST_M
+    while within_m < min(needed_m, MOST_M):
+        within_m *= FURTHER
+    return math.inf if needed_m > MOST_M else within_m

@@ -12,14 +12,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from esplanade.actors.bodies_near import Bodies
 from esplanade.actors.derived_rows import DerivedRows
-from esplanade.actors.detours import ACTOR_ROOM_M, LOOK_EVERY_S, PERSON_ROOM_M, Detours, Standing
+from esplanade.actors.detours import LOOK_EVERY_S, Detours
 from esplanade.actors.outcomes import InTheWay, Kind, Outcome
 from esplanade.actors.parameter_records import with_values
 from esplanade.actors.parameters import ActorParameters, body_of
 from esplanade.actors.people import ObservedPeople, People
 from esplanade.actors.potential_pool import Goal, GoalKey, PotentialPool, goal_key
 from esplanade.actors.saved_agents import check_saved
+from esplanade.actors.saved_detours import read_detours
 from esplanade.actors.standing import StandingPeople, stand_on
+from esplanade.actors.standing_discs import ACTOR_ROOM_M, PERSON_ROOM_M, Standing
 from esplanade.actors.state import ActorState, Reason
 from esplanade.actors.traces import Decided, Trace
 from esplanade.actors.tracing import Tracing
@@ -392,15 +394,15 @@ class Navigator:
             standing.load(header.get("standing", ()))
         except (TypeError, ValueError, IndexError) as error:
             raise SavedAgentsError(f"where people stood cannot be read: {error}") from error
+        try:
+            detours = read_detours(header.get("detours", ()), len(table))
+        except (TypeError, ValueError) as error:
+            raise SavedAgentsError(f"ways around people cannot be read: {error}") from error
         self._rows.give_back(self.table)
         self.table, self._standing = table, standing
         self.tracing.forget()
         self._rows.take_all(table)
-        try:
-            self.detours.load(table, header.get("detours", ()))
-        except (TypeError, ValueError, IndexError) as error:
-            self.detours.clear()
-            raise SavedAgentsError(f"ways around people cannot be read: {error}") from error
+        self.detours.load(table, detours)
         self._rank()
 
     # --- ticks ---------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -13,15 +14,15 @@ from numpy.typing import NDArray
 
 from esplanade.planning import Body, LayeredGrid, Potential
 from esplanade.planning.grid.clearances import kind_of
-from esplanade.planning.routes.shut_way import Disc
+from esplanade.planning.routes.shut_way import Around
 from esplanade.planning.scene.bodies import LIMITS
 
 Goal = tuple[float, float, float]
 """x, y and height, metres."""
 GoalKey = tuple[float, float, float, Body]
 """x, y, height and kind of body, of `kind_for_ways`."""
-DetourKey = tuple[float, float, float, Body, tuple[Disc, ...]]
-"""The same, and places where somebody stands that ways lead around."""
+DetourKey = tuple[float, float, float, Body, Around]
+"""The same, and what ways lead around."""
 _DETOUR_LENGTH = 5
 _IDLE_KEPT = 32
 _NO_BOUND = int(LIMITS["edge_cells"][1])
@@ -280,9 +281,11 @@ class PotentialPool:
 
 def potential_of(grid: LayeredGrid, key: GoalKey | DetourKey) -> NDArray[np.float32]:
     """The potential of a goal for a kind of body; heavy."""
-    x, y, z_m, kind, *shut = key
-    discs = shut[0] if shut else ()
-    return Potential(grid, (x, y), z_m, kind.radius_m, body=kind, shut=discs).values
+    x, y, z_m, kind, *more = key
+    places, within_m = more[0] if more else Around((), math.inf)
+    return Potential(
+        grid, (x, y), z_m, kind.radius_m, body=kind, shut=places, within_m=within_m
+    ).values
 
 
 def kind_for_ways(grid: LayeredGrid, body: Body) -> Body:

@@ -59,6 +59,7 @@ def check_saved(table: AgentTable, grid: LayeredGrid) -> None:
             raise SavedAgentsError(f"what is in the way of a saved agent is {kind!r}")
     _hold("nearest_m", np.isnan(trips.nearest_m) | (trips.nearest_m >= 0.0))
     _hold("cautions", (agents.cautions >= 0.0) & (agents.cautions <= 1.0))
+    _hold("on_edges", (agents.on_edges >= 0.0) & (agents.on_edges <= MOST_M))
     _hold("ages", (agents.ages >= 0) & (agents.ages <= 2**40))
     for field in agents.passages.dtype.names or ():
         _hold(f"passages.{field}", ~np.isnan(agents.passages[field]))

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Final
 
 import numpy as np
 
 from esplanade.actors.navigator import Navigator
 from esplanade.actors.parameter_records import RADII_M
 from esplanade.planning import Body, Polygon, Potential, Scene
-
-RADIUS_STEP_M: Final = 0.05
-"""Tables of risk are for radii rounded up to this."""
+from esplanade.planning.people.risk import RADIUS_STEP_M
 
 
 def tables_ahead(navigator: Navigator) -> list[Callable[[], None]]:

@@ -30,10 +30,29 @@ def sources_digest() -> str:
     return digest.hexdigest()
 
 
-def digest_of_file(path: Path) -> str:
-    """SHA-256 of a file; empty where it cannot be read any more."""
-    try:
+def digest_of(path: Path) -> str:
+    """SHA-256 of a file; of a folder that of its files, by name and content.
+
+    Folders and hidden files in a folder do not count: they are read as no part of a recording.
+
+    Raises
+    ------
+    OSError
+        It cannot be read.
+    """
+    if not path.is_dir():
         with path.open("rb") as file:
             return hashlib.file_digest(file, "sha256").hexdigest()
+    digest = hashlib.sha256()
+    for part in sorted(path.iterdir()):
+        if part.is_file() and not part.name.startswith("."):
+            digest.update(part.name.encode() + b"\0" + bytes.fromhex(digest_of(part)))
+    return digest.hexdigest()
+
+
+def digest_if_there(path: Path) -> str:
+    """The same; empty where it cannot be read any more."""
+    try:
+        return digest_of(path)
     except OSError:
         return ""

@@ -15,9 +15,9 @@ from esplanade.commandline.readers import (
     Whole,
 )
 from esplanade.commandline.recording_settings import add_reading, check_reading
+from esplanade.commandline.trajectory_files import check_suffix
 from esplanade.evaluation.setting_names import NAMES
 
-_TRAJECTORIES: Final = (".csv", ".txt", ".sqlite", ".parquet")
 POLICIES: Final = {
     "esplanade": "the project's own actor",
     "straight": "straight on, ignoring people",
@@ -229,8 +229,10 @@ def check(options: Namespace) -> None:
     if options.trajectories is not None:
         if studies or options.prediction or options.fit:
             raise UsageError("--trajectories is for episodes that are walked once")
-        if options.trajectories.suffix.lower() not in _TRAJECTORIES:
-            raise UsageError(f"--trajectories: a file ends in one of {', '.join(_TRAJECTORIES)}")
+        try:
+            check_suffix(options.trajectories)
+        except ValueError as error:
+            raise UsageError(f"--trajectories: {error}") from None
     if options.vary and not studies:
         raise UsageError("--vary is for --sensitivity and --tune")
     if options.candidates is not None and not options.tune:

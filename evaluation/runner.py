@@ -122,6 +122,6 @@ def _run(part: Trial, files: EpisodeFiles | None = None) -> list[Score]:
     for episode in part.episodes:
         result = run_episode(environment, episode, _last[key], part.rules)
         if files is not None:
-            files.write(part, episode, result.trajectory)
+            files.write(part, episode, result.trajectory, result.people)
         scores.append(result.score)
     return scores

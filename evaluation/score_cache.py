@@ -157,9 +157,9 @@ def _digest_of(trial: Trial) -> str:
 def _recording_digest(source: Source) -> str:
     """A digest of the recording, its walls, and how they are read."""
     walls = source.walls or walls_beside(source.path)
-    parts = [source.path.read_bytes(), b"" if walls is None else walls.read_bytes()]
     how = repr((source.path.suffix, tuple(source.given), source.interpolation)).encode()
-    return _digest([*parts, how])
+    read = source.digest(), _digest_of_bytes(b"" if walls is None else walls.read_bytes())
+    return _joined([*read, _digest_of_bytes(how)])
 
 
 @cache
@@ -168,7 +168,7 @@ def _code_digest() -> str:
 
     It is cached because the code that runs is the code that was imported.
     """
-    return _digest(path.read_bytes() for path in sorted(_sources()))
+    return _joined(_digest_of_bytes(path.read_bytes()) for path in sorted(_sources()))
 
 
 def _sources() -> Iterator[Path]:
@@ -179,8 +179,10 @@ def _sources() -> Iterator[Path]:
                 yield path
 
 
-def _digest(parts: Iterable[bytes]) -> str:
-    found = hashlib.sha256()
-    for part in parts:
-        found.update(hashlib.sha256(part).digest())
-    return found.hexdigest()
+def _digest_of_bytes(part: bytes) -> str:
+    return hashlib.sha256(part).hexdigest()
+
+
+def _joined(digests: Iterable[str]) -> str:
+    """The digest of parts that have these digests."""
+    return _digest_of_bytes(b"".join(map(bytes.fromhex, digests)))

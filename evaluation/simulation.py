@@ -38,6 +38,8 @@ class EpisodeResult:
 
     score: Score
     trajectory: Floats
+    people: People
+    """The people around it, up to the last tick: as they were recorded, or as they reacted."""
 
 
 DecisionCallback = Callable[[Observation, Policy], None]
@@ -99,7 +101,7 @@ def run_episode(
     )  # fmt: skip
     if reacting is not None:
         result = replace(result, displacement_m=reacting.displacement_m)
-    return EpisodeResult(result, walked)
+    return EpisodeResult(result, walked, everyone)
 
 
 def limit_velocity(rules: Rules, before: Floats, wanted: Floats) -> Floats:

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from esplanade.commandline.provenance import digest_of_file, software
+from esplanade.commandline.provenance import software
 from esplanade.evaluation.episodes import Episode
+from esplanade.evaluation.people import People
 from esplanade.evaluation.replay import Floats, Replay
 from esplanade.evaluation.trials import Trial
 from esplanade.recordings.jupedsim_tables import box
@@ -33,8 +34,10 @@ class EpisodeFiles:
             f"{self.pattern.stem}-{name}-{trial.policy}-{episode.number:03d}"
         )
 
-    def write(self, trial: Trial, episode: Episode, walked: Floats) -> None:
+    def write(self, trial: Trial, episode: Episode, walked: Floats, people: People) -> None:
         """Write an episode in which the robot was at `walked`, (T + 1, 2), metres.
+
+        `people` are those of the episode, who may have left their recorded places.
 
         Raises
         ------
@@ -59,7 +62,7 @@ class EpisodeFiles:
                     recorded = {"kind": "person", "recorded": replay.ids[number]}
                     stream.note(_note(first, "avatar", person | recorded))
             for n in range(len(walked)):
-                stream.add(_samples(replay, episode, walked, n))
+                stream.add(_samples(replay, episode, walked, people, n))
             stream.note(_note(first + len(walked) - 1, "end", {}))
         finally:
             stream.close()
@@ -67,7 +70,7 @@ class EpisodeFiles:
     def _provenance(self, trial: Trial, episode: Episode, replay: Replay) -> dict[str, str]:
         source = trial.source
         told = {**software(), "command": self.command, "recording": source.path.name}
-        told["recording sha256"] = digest_of_file(source.path)
+        told["recording sha256"] = source.digest()
         told["policy"], told["settings"] = trial.policy, json.dumps(dict(trial.settings))
         told["rules"] = json.dumps(asdict(trial.rules))
         told["episode"] = f"{episode.number}, in place of {replay.ids[episode.pedestrian]}"
@@ -80,15 +83,15 @@ def robot_id(replay: Replay) -> int:
     return len(replay.ids) + 1
 
 
-def _samples(replay: Replay, episode: Episode, walked: Floats, n: int) -> Samples:
+def _samples(replay: Replay, episode: Episode, walked: Floats, people: People, n: int) -> Samples:
     """Everybody at the n-th tick of an episode; velocities are those that led there."""
     tick = episode.first_tick + n
-    present = replay.present(tick)
+    present = people.present(tick)
     present = present[present != episode.pedestrian]
     before = np.array(
-        [replay.at(int(j), max(tick - 1, int(replay.first[j]))) for j in present]
+        [people.at(int(j), max(tick - 1, int(people.first[j]))) for j in present]
     ).reshape(-1, 2)
-    places = np.vstack([replay.positions(present, tick), walked[n]])
+    places = np.vstack([people.positions(present, tick), walked[n]])
     velocities = (places - np.vstack([before, walked[max(n - 1, 0)]])) / replay.tick_s
     found = np.zeros(len(places), dtype=SAMPLE)
     found["frame"], found["t"] = tick, tick * replay.tick_s

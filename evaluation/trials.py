@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
+from esplanade.commandline.provenance import digest_of
 from esplanade.evaluation.episodes import Episode, choose_episodes
 from esplanade.evaluation.policies import make_policy
 from esplanade.evaluation.replay import Interpolation, Replay
@@ -38,6 +39,16 @@ class Source:
         """
         return _read(self)
 
+    def digest(self) -> str:
+        """SHA-256 of the recording, a file or a folder; it is read for that once in each process.
+
+        Raises
+        ------
+        OSError
+            It cannot be read.
+        """
+        return _digest(self.path)
+
     def episodes(self, rules: Rules, count: int, seed: int) -> tuple[Episode, ...]:
         """The episodes of the recording, as `choose_episodes` chooses them."""
         return _episodes(self, rules, count, seed)
@@ -59,6 +70,11 @@ def _read(source: Source) -> tuple[Crowd, Obstacles]:
         columns=source.given.columns,
     )
     return crowd, Obstacles() if walls is None else read_obstacles(walls)
+
+
+@cache
+def _digest(path: Path) -> str:
+    return digest_of(path)
 
 
 @cache

@@ -41,9 +41,12 @@ def logout(options: Namespace) -> int:
         if found is None:
             raise CommandError(f"there is no login to {options.url}")
         drop_login(options.url)
+    except LoginsError as error:
+        raise CommandError(str(error)) from None
+    try:
         if isinstance(found.token, SessionToken):
             ask(options.url, found.token, "/logout", method="POST")
-    except (OperatorError, LoginsError) as error:
+    except OperatorError as error:
         raise CommandError(f"it is kept no more, but the server says: {error}") from None
     print(f"{options.url}: logged out")
     return exit_codes.OK

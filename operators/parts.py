@@ -4,11 +4,14 @@ import os
 from argparse import ArgumentTypeError, Namespace
 from argparse import _SubParsersAction as SubParsers  # argparse names the type nowhere else
 from collections.abc import Callable
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.parser import Parser
 from esplanade.commandline.readers import Text
+
+if TYPE_CHECKING:
+    from esplanade.operators.logins import Login
 
 URL: Final = "http://localhost:8081"
 
@@ -96,7 +99,8 @@ def _add_server(
         "--url",
         metavar="URL",
         type=Text(),
-        help=f"its private port [or ESPLANADE_URL; default: that of `op login`, or {URL}]",
+        help=f"its private port [or ESPLANADE_URL; default: that of the latest `op login`; "
+        f"with ESPLANADE_TOKEN, or without a login, {URL}]",
     )
 
     def check(found: Namespace) -> None:
@@ -107,7 +111,8 @@ def _add_server(
         if before_login:
             found.url = (found.url or _latest_url()).rstrip("/")
         elif found.token:
-            found.url = found.url or _latest_url()
+            # A token is for one server, which need not be that of the login that is kept.
+            found.url = found.url or URL
         else:
             _take_login(found)
 
@@ -116,23 +121,13 @@ def _add_server(
 
 def _latest_url() -> str:
     """The address of the latest login, or the one that a server has by default."""
-    from esplanade.operators.logins import LoginsError, kept_login  # noqa: PLC0415 (only if needed)
-
-    try:
-        login = kept_login()
-    except LoginsError:
-        return URL
+    login = _kept_login(None)
     return URL if login is None else login.url
 
 
 def _take_login(found: Namespace) -> None:
     """Let a command act by the login that is kept."""
-    from esplanade.operators.logins import LoginsError, kept_login  # noqa: PLC0415 (only if needed)
-
-    try:
-        login = kept_login(found.url)
-    except LoginsError as error:
-        raise UsageError(str(error)) from None
+    login = _kept_login(found.url)
     if login is None:
         where = "" if found.url is None else f" to {found.url}"
         raise UsageError(
@@ -140,3 +135,13 @@ def _take_login(found: Namespace) -> None:
             "ESPLANADE_TOKEN, which `esplanade op token add` makes"
         )
     found.url, found.token = login.url, login.token
+
+
+def _kept_login(url: str | None) -> "Login | None":
+    """The login to a server that is kept, or the latest of all."""
+    from esplanade.operators.logins import LoginsError, kept_login  # noqa: PLC0415 (only if needed)
+
+    try:
+        return kept_login(url)
+    except LoginsError as error:
+        raise UsageError(str(error)) from None

@@ -157,6 +157,7 @@ def schema(options: Namespace) -> int:
 def _tell(scene: Scene, grid: LayeredGrid, options: Namespace) -> None:
     """Say what was made, with a picture of it where matplotlib is installed."""
     shown, out = console(), options.out
+    told = out if options.kept_in is None else options.kept_in / out.name
     if any(scene.origin_m):
         x, y, z = (0.0 - c for c in scene.origin_m)
         shown.print(f"moved by {x:g}, {y:g}, {z:g} m to the origin", highlight=False)
@@ -171,8 +172,8 @@ def _tell(scene: Scene, grid: LayeredGrid, options: Namespace) -> None:
             pictures.draw_heights(grid, scene.name, picture)
         except OSError as error:
             raise UsageError(f"{picture}: cannot be written: {error.strerror or error}") from None
-        print(f"{picture}: a picture of it")
-    print(f"{out}: {len(scene.places)} places; run it: esplanade serve --scene {out}")
+        print(f"{told.with_suffix(picture.suffix)}: a picture of it")
+    print(f"{told}: {len(scene.places)} places; run it: esplanade serve --scene {told}")
 
 
 def _read(path: Path) -> Scene:

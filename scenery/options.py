@@ -155,6 +155,8 @@ def _import(commands: "SubParsers[Parser]") -> Parser:
     )
     add_picture(made)
     _add_cell(made)
+    # The folder that the one of --out is renamed to afterwards, for callers from code.
+    made.set_defaults(kept_in=None)
     return made
 
 

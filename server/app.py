@@ -21,7 +21,7 @@ from esplanade.server.kept import Kept
 from esplanade.server.link.local import LocalLink
 from esplanade.server.live.bulletin import Bulletin
 from esplanade.server.live.live import Live
-from esplanade.server.loading import LoadedScene, load_scene
+from esplanade.server.loading import LoadedScene, load_scene, tell_crowd
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.delivery import Delivery
 from esplanade.server.net.descriptors import places_for_people
@@ -105,7 +105,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     # A lack of the machine is told now, not after a minute of building the world.
     places = places_for_people(connections_wanted(settings))
     tls = _tls(settings)
-    loaded, presets = with_roster(load_scene(settings), settings), shipped_presets(settings)
+    loaded, presets = _loaded(settings), shipped_presets(settings)
     assets, mesh = _with_mesh(assets or Assets.load(), loaded)
     metrics = Metrics()
     loop = asyncio.get_running_loop()
@@ -206,6 +206,14 @@ async def _stop(ticker: Ticker, ticking: "asyncio.Task[None]", hub: Hub, gate: G
     finally:
         await ticker.keep(in_order=in_order)
         await hub.close()
+
+
+def _loaded(settings: ServerSettings) -> LoadedScene:
+    """What the settings name, with actors; the log says how a recorded crowd was understood."""
+    loaded = load_scene(settings)
+    if settings.crowd is not None and loaded.crowd is not None:
+        tell_crowd(settings.crowd, loaded.crowd)
+    return with_roster(loaded, settings)
 
 
 def _tls(settings: ServerSettings) -> Tls | None:

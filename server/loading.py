@@ -1,14 +1,16 @@
 """Loads the world that the settings ask for: a scene file, or ground around a recorded crowd."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import structlog
 from pydantic import ValidationError
 
+from esplanade.commandline.recording_settings import READING
 from esplanade.planning import Place, Scene, Wall
 from esplanade.planning.scene.mesh_file import MeshError, read_triangles
 from esplanade.planning.scene.scene_file import SceneError, read_scene, scene_faults
@@ -55,6 +57,8 @@ class LoadedScene:
     """The actors that walk in it from the beginning; None for those that it usually has."""
     triangles: bytes | None = None
     """The triangles of a mesh: nine little-endian 32-bit floats each, metres, z up."""
+    crowd: Crowd | None = None
+    """The recorded crowd that was read."""
 
 
 @told_of("reading the scene")
@@ -83,15 +87,8 @@ def load_scene(settings: ServerSettings) -> LoadedScene:
         scene = _read_scene(settings.scene or DEFAULT_SCENE)
         triangles = None if scene.mesh is None else _triangles(scene.mesh)
         return LoadedScene(scene, rules, roster, triangles)
+    crowd = read_recording(settings.crowd, {name: getattr(settings, name) for name in READING})
     try:
-        crowd = read_crowd(
-            settings.crowd,
-            settings.fps,
-            unit=settings.unit,
-            scale=settings.scale,
-            strict=settings.strict,
-            columns=settings.columns or (),
-        )
         path = settings.walls or walls_beside(settings.crowd)
         walls = open_doorways(read_walls(path), crowd, DOORWAY_M) if path else []
         scene = _scene_around(crowd, walls)
@@ -99,22 +96,40 @@ def load_scene(settings: ServerSettings) -> LoadedScene:
         raise LoadingError(str(error)) from None
     except ValidationError as error:
         raise LoadingError(str(SceneError(settings.crowd, scene_faults(error)))) from None
-    _tell(settings.crowd, crowd)
+    return LoadedScene(scene, rules_for(rules, crowd), roster, crowd=crowd)
+
+
+def read_recording(path: Path, reading: Mapping[str, Any]) -> Crowd:
+    """Read a recorded crowd, by those of the settings `READING` that are given.
+
+    Raises
+    ------
+    LoadingError
+        The file cannot be read, or holds no crowd.
+    """
+    try:
+        return read_crowd(
+            path,
+            reading.get("fps"),
+            unit=reading.get("unit"),
+            scale=reading.get("scale"),
+            strict=bool(reading.get("strict")),
+            columns=reading.get("columns") or (),
+        )
+    except RecordingError as error:
+        raise LoadingError(str(error)) from None
+
+
+def rules_for(rules: Rules, crowd: Crowd) -> Rules:
+    """The rules by which recorded people can go where they went."""
+    # They brush along walls: they are held to their tracks, not to a clearance.
     needed_mps = CATCH_UP * crowd.max_speed_mps
-    # Recorded people brush along walls: they are held to their tracks, not to a clearance.
-    return LoadedScene(
-        scene,
-        replace(
-            rules,
-            person_clearance_m=0.0,
-            person_max_speed_mps=max(rules.person_max_speed_mps, needed_mps),
-        ),
-        roster,
-    )
+    fastest_mps = max(rules.person_max_speed_mps, needed_mps)
+    return replace(rules, person_clearance_m=0.0, person_max_speed_mps=fastest_mps)
 
 
-def _tell(path: Path, crowd: Crowd) -> None:
-    """Say how the crowd was understood, and what of it is not as crowds are."""
+def tell_crowd(path: Path, crowd: Crowd) -> None:
+    """Say in the log how a crowd was understood, and what of it is not as crowds are."""
     if (report := crowd.report) is None:
         return
     log.info("read the crowd", file=str(path), told=report.line)

@@ -19,9 +19,9 @@ from esplanade.commandline.readers import (
 )
 from esplanade.commandline.recording_settings import READING, check_reading, misplaced
 from esplanade.commandline.settings import Setting, Settings, settings_parser
+from esplanade.commandline.trajectory_files import check_suffix
 from esplanade.server.trajectories.rates import ticks_between
 
-_TRAJECTORIES: Final = (".csv", ".txt", ".sqlite", ".parquet")
 _PORT: Final = Whole(0, 65535)
 _ROOT_PATH: Final = re.compile(r"(/(?!\.\.?(/|$))[A-Za-z0-9._~-]+)*/?")
 _SPEED: Final = Number(0.0, 100.0, above=True)
@@ -350,8 +350,11 @@ def _check_trajectories(given: Mapping[str, Any]) -> None:
     path, hz = given.get("trajectories"), given.get("trajectories_hz")
     if hz is not None and path is None:
         raise ValueError("trajectories_hz: it belongs to --trajectories, but none is given")
-    if path is not None and path.suffix.lower() not in _TRAJECTORIES:
-        raise ValueError(f"trajectories: {path.name} ends in none of {', '.join(_TRAJECTORIES)}")
+    try:
+        if path is not None:
+            check_suffix(path)
+    except ValueError as error:
+        raise ValueError(f"trajectories: {error}") from None
     try:
         ticks_between(given.get("tick_rate", _WORLD["tick_rate"].default), hz)
     except ValueError as error:

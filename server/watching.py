@@ -30,7 +30,7 @@ def watch_world(world: Zone, population: Population, metrics: Metrics) -> None:
     metrics.gauge("detours", "Goals with a way around people who stand", lambda: len(detours))
     metrics.total(
         "detours_refused",
-        "Ways around people who stand that were not looked for, since there are too many",
+        "Looks at a way that was shut, for which none around was derived: there are too many",
         lambda: detours.refused,
     )
     contacts = world.contacts

@@ -30,7 +30,8 @@ Box = tuple[float, float, float, float]
 EVERYWHERE: Box = (-math.inf, -math.inf, math.inf, math.inf)
 _SIGMA_POINTS = 9
 _RADIUS_M = 0.25
-_RADIUS_STEP_M = 0.05
+RADIUS_STEP_M = 0.05
+"""Tables are for radii rounded up to this."""
 _WIDEST_M = 0.5
 """Tables have room for agents up to this radius, so that those of others stay as they are."""
 _SIGMA_SPAN = 2.5
@@ -199,7 +200,7 @@ class RiskField:
                 radial_tables(self.model, tuple(contacts_m), self._spread)
 
     def _contact_m(self, radius_m: float) -> float:
-        rounded = math.ceil(radius_m / _RADIUS_STEP_M - 1e-9) * _RADIUS_STEP_M
+        rounded = math.ceil(radius_m / RADIUS_STEP_M - 1e-9) * RADIUS_STEP_M
         return self.model.contact_m(rounded)
 
     def _room_for(self, people: int, slack_m: float) -> RiskArrays:

@@ -17,7 +17,13 @@ from esplanade.planning.grid._grid_kernels import (
     follow,
     length,
 )
-from esplanade.planning.routes._potential_kernels import EDGES, PotentialValues, potential_at
+from esplanade.planning.routes._potential_kernels import (
+    EDGES,
+    PotentialValues,
+    potential_at,
+    sees_goal,
+)
+from esplanade.planning.traversal._anchor_kernels import SLACK_M
 from esplanade.planning.traversal._edge_run_kernels import cells_in
 from esplanade.planning.traversal._stability_kernels import FORBIDDEN, STABLE
 
@@ -28,7 +34,7 @@ to the goal, and the waypoint."""
 _REACHED = 1
 """A cell from which a legal way leads to the goal for whoever comes there from stable ground."""
 _BEGUN_AT = 2
-"""A cell from which one does only for a body that begins there."""
+"""A cell from which one does only for a body that begins there; a mark of this wave alone."""
 
 _EDGE_COST = 1.02
 """A metre on edges counts so many: of ways about as long, the one that leaves them soon is taken,
@@ -81,10 +87,12 @@ def spread_over_edges(
     `settled` (N,) must be as `begin_wave` leaves them. A way is legal in a cell
     if the cells on edges from stable ground to it and from it to stable ground are fewer than
     `most_edges` together; the first legal way to reach a cell is its potential. A cell without one
-    has the first that is legal for a body that begins there. Lines of sight, of at most
-    `longest_sight` metres, lead over stable ground only.
+    has the first that is legal for a body that begins there; `settled` is 1 in both. Lines of
+    sight, of at most `longest_sight` metres, lead over stable ground only; the goal's cell is left
+    by sight if its anchor has no step at all.
     """
     steps, links = grid.kinds.steps[body], grid.layered.links
+    enough = radius - SLACK_M
     edges = (classes != STABLE) & (classes != FORBIDDEN)
     inside = cells_in(links, steps, edges)
     nearest = np.full(len(edges), np.inf)
@@ -153,10 +161,12 @@ def spread_over_edges(
             keys = np.concatenate((keys, np.empty_like(keys)))
             items = np.concatenate((items, np.empty_like(items)))
         own = left + length(wx - x, wy - y)
+        sighted = now == 0 and longest_sight > 0.0 and steps[cell] == 0
         for d in range(8):
-            if not steps[cell] >> d & 1:
-                continue
             other = links[cell, d]
+            by_step = steps[cell] >> d & 1
+            if other < 0 or not (by_step or sighted):
+                continue
             then = 0
             if edges[other]:
                 then = row + 1
@@ -168,7 +178,12 @@ def spread_over_edges(
             ox = wx
             oy = wy
             there = left
-            if row > 0 or then > 0 or length(wx - cx, wy - cy) > longest_sight:
+            if not by_step:
+                if not sees_goal(grid, body, cell, wx, wy, other, cx, cy, enough):
+                    continue
+                if row > 0 or then > 0:
+                    there += (_EDGE_COST - 1.0) * length(wx - cx, wy - cy)
+            elif row > 0 or then > 0 or length(wx - cx, wy - cy) > longest_sight:
                 ox = x
                 oy = y
                 there = own
@@ -186,4 +201,7 @@ def spread_over_edges(
             labels[made]["y"] = oy
             size = heap_push(keys, items, size, key, made)
             made += 1
+    for cell in range(len(settled)):
+        if settled[cell] == _BEGUN_AT:
+            settled[cell] = _REACHED
     return reached

@@ -59,6 +59,30 @@ def direction_at(
     return (wx - x) / leg, (wy - y) / leg, leg
 
 
+@inlined
+def sees_goal(
+    grid: GridArrays,
+    body: int,
+    goal_cell: int,
+    goal_x: float,
+    goal_y: float,
+    cell: int,
+    x: float,
+    y: float,
+    enough: float,
+) -> bool:
+    """Whether a goal is seen from the anchor of a cell beside its own, at a height to step from.
+
+    A goal may be where the body fits, in a cell whose anchor is elsewhere and has no step: a wave
+    leaves the goal's cell by sight as well.
+    """
+    rise = abs(grid.layered.floors[cell] - grid.layered.floors[goal_cell])
+    return bool(
+        rise <= grid.kinds.measures[body]["step_on_m"]
+        and line_is_clear(grid, body, cell, x, y, goal_x, goal_y, enough)
+    )
+
+
 @kernel
 def begin_wave(
     goal_cell: int,
@@ -97,6 +121,7 @@ def grow_wave(
     state: NDArray[np.int64],
     targets: NDArray[np.int64],
     margin: float,
+    within: float,
     most: int,
 ) -> bool:
     """Let a wave spread on; returns whether it has gone as far as it is wanted, or is over.
@@ -107,14 +132,15 @@ def grow_wave(
     it leaves the heap. `keys` and `items` hold 8 entries a cell plus one.
 
     It is wanted up to `margin` metres further than the nearest of the cells `targets` (K,); without
-    any it spreads over all cells. At most `most` cells are settled in one call. Wherever a wave is
+    any it spreads over all cells. It is never wanted further than `within` metres from the goal. At
+    most `most` cells are settled in one call. Wherever a wave is
     stopped, the cells that it has settled are as they will be when it is over.
     """
     steps, links = grid.kinds.steps[body], grid.layered.links
     enough = radius - SLACK_M
     size = state[0]
     reached = state[1]
-    until = np.inf
+    until = within
     for k in range(len(targets)):
         target = targets[k]
         if settled[target]:
@@ -158,11 +184,9 @@ def grow_wave(
             if not steps[cell] >> direction & 1 and not (
                 reached == 1
                 and longest_sight > 0.0
-                and abs(grid.layered.floors[other] - grid.layered.floors[cell])
-                <= grid.kinds.measures[body]["step_on_m"]
-                and line_is_clear(grid, body, other, cx, cy, own[1], own[2], enough)
+                and sees_goal(grid, body, cell, own[1], own[2], other, cx, cy, enough)
             ):
-                continue  # a goal may be where the body fits, in a cell whose anchor is elsewhere
+                continue
             left = own[0]
             wx = own[1]
             wy = own[2]

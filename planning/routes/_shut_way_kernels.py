@@ -19,7 +19,6 @@ BESIDE_M = 2.0
 """A way around bodies leaves the route, and comes back to it, this far from them."""
 AROUND_M = 4.5
 """A way around bodies is looked for within this distance of them."""
-OPEN, SHUT = range(2)
 
 
 class LookingSpace(NamedTuple):
@@ -148,21 +147,20 @@ def look_along(
     detour_m: float,
     space: LookingSpace,
     shut_by: NDArray[np.bool_],
-) -> int:
-    """Tell whether standing bodies shut the route from a point, in a cell, down a potential.
+) -> None:
+    """Mark the standing bodies that shut the route from a point, in a cell, down a potential.
 
     They do where no way around them, longer than the route by at most `detour_m`, leads back to
-    it: `shut_by` (K,) then marks them among `bodies` (K, 4), x, y, z and radius in metres. The
-    goal itself being taken shuts no way. `room_m` is the radius of the body that goes there, with
-    the room that it keeps.
+    it: `shut_by` (K,) marks them among `bodies` (K, 4), x, y, z and radius in metres. The goal
+    itself being taken shuts no way. `room_m` is the radius of the body that goes there, with the
+    room that it keeps.
     """
     shut_by[:] = False
     if cell < 0:
-        return OPEN
+        return
     count = _sample_route(grid, potential, cell, x, y, bodies, room_m, space)
     beside = int(BESIDE_M / SAMPLE_M)
     bumped = np.zeros(len(bodies), dtype=np.bool_)
-    status = OPEN
     k = 0
     while k < count:
         if not space.taken[k]:
@@ -182,9 +180,7 @@ def look_along(
         if not _leads_around(
             grid, body, space.cells[start], space.cells[end], way_m, bodies, room_m, space, bumped
         ):
-            status = SHUT
             shut_by |= bumped
         k = end
         if space.taken[k]:
             k += 1
-    return status

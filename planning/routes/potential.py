@@ -47,8 +47,13 @@ class Potential:
         wave: Wave = Wave.SIGHT,
         body: Body | None = None,
         shut: Sequence[Disc] = (),
+        within_m: float = math.inf,
     ) -> None:
-        """`shut` are places where somebody stands, which ways lead around as if they were solid."""
+        """`shut` are places where somebody stands, which ways lead around as if they were solid.
+
+        No path leads from cells further than `within_m` from the goal, which costs less; where
+        cells on edges are counted it may.
+        """
         self.grid = grid
         self.height = height
         self.radius_m = radius_m
@@ -62,15 +67,30 @@ class Potential:
         if cell < 0:
             raise ValueError(f"nobody can stand at the goal {goal}, height {height:g} m")
         front = WaveFront(grid, goal, cell, radius_m, wave, self.body, shut)
-        front.grow(NO_TARGETS)
+        front.grow(NO_TARGETS, within_m=within_m)
         self.values: NDArray[np.float32] = front.values
+        if within_m < math.inf:
+            self.values[front.settled == 0, 0] = np.inf
         self.reached_cells = front.reached_cells
         if wave is Wave.SIGHT:
+            if within_m < math.inf:
+                further = (front.settled == 0) & (front.arrays.kinds.steps[row] != 0)
+                front.settled[further] = _LEFT_ALONE
             if grid.bounds_edges(self.body):
-                # No way leads over edges that are too wide, least of all one past obstacles.
-                on_edge = grid.arrays.edges[row]
-                front.settled[on_edge & (front.settled == 0)] = _LEFT_ALONE
+                front.settled[self._too_far_on_edges(front, row)] = _LEFT_ALONE
             kernels.extend_into_obstacles(front.arrays, row, self.values, front.settled)
+
+    def _too_far_on_edges(self, front: WaveFront, row: int) -> NDArray[np.bool_]:
+        """Mark cells that steps lead from, but no way, since it would be on edges for too long.
+
+        Least of all one leads past obstacles there.
+        """
+        regions = self.grid.traversability.regions_of(self.body)
+        unsettled = front.settled == 0
+        reached = np.isin(regions, np.unique(regions[~unsettled])) & (regions >= 0)
+        walkable = reached & (front.arrays.kinds.steps[row] != 0)
+        left_alone: NDArray[np.bool_] = unsettled & (self.grid.arrays.edges[row] | walkable)
+        return left_alone
 
     def distance(self, positions: ArrayLike, heights: ArrayLike) -> NDArray[np.float64]:
         """Metres to the goal, float64 (N,), inf where no path leads, for (N, 2) and (N,)."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,17 @@ from esplanade.planning.scene.heights import BODIES_OVERLAP_M
 
 Disc = tuple[float, float, float, float]
 """x, y, the height of the feet and a radius, metres: a place where somebody stands."""
+
+
+class Around(NamedTuple):
+    """A way around places where somebody stands, to a goal from no further than `within_m`."""
+
+    places: tuple[Disc, ...]
+    within_m: float
+
+
+REACH_M: Final = kernels.AHEAD_M + 2.0 * kernels.AROUND_M
+"""Bodies whose discs are further away than this from where a look begins shut nothing."""
 _NEVER_M: Final = -3.0
 """The clearance of a cell where nobody fits; it outweighs those of its neighbours."""
 _SLACK_M: Final = 0.007

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from enum import Enum
 from typing import Final
@@ -84,9 +85,14 @@ class WaveFront:
         return int(self._state[1])
 
     def grow(
-        self, targets: NDArray[np.int64], margin_m: float = 0.0, most_cells: int = _ALL_CELLS
+        self,
+        targets: NDArray[np.int64],
+        margin_m: float = 0.0,
+        most_cells: int = _ALL_CELLS,
+        within_m: float = math.inf,
     ) -> bool:
-        """Spread until `margin_m` beyond the nearest of some cells (K,), or everywhere without any.
+        """Spread until `margin_m` beyond the nearest of some cells (K,), or everywhere without any,
+        and no further than `within_m` from the goal, unless cells on edges are counted.
 
         Returns whether that is done, or the wave is over. At most `most_cells` cells are settled in
         one call, in some 3 µs each; no interpreter lock is held. However far it has got, what is
@@ -116,5 +122,6 @@ class WaveFront:
             self._state,
             targets,
             margin_m,
+            within_m,
             most_cells,
         )

@@ -16,10 +16,11 @@ from esplanade.server.console.moderating import Moderating
 from esplanade.server.console.planned import Planned
 from esplanade.server.console.preparation import Preparation
 from esplanade.server.console.records import Records
-from esplanade.server.console.refusals import RefusedError, of_world
+from esplanade.server.console.refusals import RefusedError, of_world, unwritable
 from esplanade.server.console.settling import Settling
 from esplanade.server.console.state import PACE, parameters_of
 from esplanade.server.console.tick_inputs import TickInputs
+from esplanade.server.store.store import StoreError
 from esplanade.server.world.inputs import ActorCommand
 
 if TYPE_CHECKING:
@@ -85,7 +86,7 @@ class CommandPath:
             facts = together([one.after for one in planned if not is_ramp(one.command)])
             inputs, doors = inputs_for(facts, console.state, console.new_number)
         numbers = await self._records.intents(by, planned, console.zone.tick)
-        await self._moderating.carry_out(planned, by.account)
+        await self._moderate(by, planned, numbers)
         began = perf_counter()
         tick, faults = await self._tick_inputs.carry_out(inputs, doors, facts.get(PACE, {}))
         if faults:
@@ -98,6 +99,17 @@ class CommandPath:
             self._answer(one, number=number, tick=tick, price=price, prepare_s=prepare_s)
             for number, one in zip(numbers, planned, strict=True)
         ]
+
+    async def _moderate(self, by: Identity, planned: list[Planned], numbers: list[int]) -> None:
+        """Do for people what was planned; if that cannot be kept, nothing of the list is done."""
+        try:
+            await self._moderating.carry_out(planned, by.account)
+        except StoreError as error:
+            # Without an outcome the next start would take the list for done.
+            fault = unwritable(error)
+            await self._records.outcomes(by, planned, numbers, self._console.zone.tick, [fault])
+            self._console.settled = numbers[-1]
+            raise
 
     async def go_on(self, change: Change, facts: Facts) -> tuple[int, Price]:
         """Let a change that was made go further; see `Console.go_on`."""

@@ -111,8 +111,11 @@ class Console:
         ------
         RefusedError
             Nothing was changed; a path begins with the command's place in the list.
+        UnkeptError
+            The world has carried them out, but presets, schedules or guards cannot be written;
+            presets and schedules are as they were.
         StoreError
-            Nothing was changed, since the audit cannot be written.
+            Nothing was changed, since the store cannot be written.
         """
         return await self._path.carry_out(by, commands)
 

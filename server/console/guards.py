@@ -65,6 +65,10 @@ class Guards:
         for name in ended[: max(0, len(ended) - MOST_ENDED)]:
             del self._guards[name]
 
+    def act(self, guard: Guard) -> None:
+        """A guard takes its changes back: its figure is looked at no more until it has ended."""
+        self._held.pop(guard.id, None)
+
     def end(self, guard: Guard, state: Literal["taken_back", "ended", "refused"]) -> None:
         """A guard watches no more."""
         guard.state = state

@@ -17,6 +17,10 @@ from esplanade.server.live.live import Live
 MOST_STEPS: Final = 10_200
 """Steps of one answer about series."""
 MOST_NAMES: Final = 40
+WAIT_S: Final = 3.0
+"""A tick that has begun is waited for no longer."""
+_LOOK_S: Final = 0.03
+"""Whether it has come is looked so often."""
 _AT_A_TIME: Final = 8
 """Parts of a heat map that are summed up before others have a turn."""
 
@@ -62,7 +66,7 @@ async def series(
     first = max(last - MOST_STEPS * step * 1_000_000, 0 if from_us is None else from_us)
     values: dict[str, Any] = {}
     if actor is not None:
-        avatar = live.map.avatar_of(str(full_id(actor)))
+        avatar = await avatar_of(live, str(full_id(actor)))
         if avatar is None:
             raise unknown_actor(str(full_id(actor)))
         step = 1
@@ -114,19 +118,44 @@ async def heat(
 
 @router.get("/actors/{actor_id:path}/why")
 async def why(request: Request, actor_id: str, from_us: Moment = None) -> Response:
-    """The reasons of an actor over the last ten minutes, and who or what held it."""
+    """The reasons of an actor over the last ten minutes, and who or what held it.
+
+    The minutes are those of the world, in which a pause takes no time; `moments` are ticks with
+    the times at which they were, between which time passed evenly.
+    """
     live, actor = live_of(request), str(full_id(actor_id))
-    avatar = live.map.avatar_of(actor)
+    avatar = await avatar_of(live, actor)
     if avatar is None:
         return _json(unknown_actor(actor), HTTPStatus.NOT_FOUND)
     names = live.sees_names(caller(request))
-    from_tick = 0
-    if from_us is not None:
-        ago_s = max(0.0, time.time() - from_us / 1e6)
-        from_tick = live.map.tick - round(ago_s / live.zone.tick_s)
+    from_tick = 0 if from_us is None else live.moments.tick_at(from_us)
     spans = live.reasons.told(avatar, from_tick, names=names)
-    found = {"actor": actor, "tick": live.map.tick, "tick_s": live.zone.tick_s, "spans": spans}
+    found = {
+        "actor": actor,
+        "tick": live.map.tick,
+        "tick_s": live.zone.tick_s,
+        "spans": spans,
+        "moments": live.moments.told(spans[0]["from_tick"] if spans else live.map.tick),
+    }
     return _json(json.dumps(found))
+
+
+async def avatar_of(live: Live, actor: str) -> int | None:
+    """The avatar of an actor; None if there was none in the tick that had begun at the question.
+
+    That tick is waited for: it reaches the map with a beat.
+
+    Raises
+    ------
+    RefusedError
+        No tick has come.
+    """
+    tick, until_s = max(1, live.zone.tick), time.monotonic() + WAIT_S
+    while (avatar := live.map.avatar_of(actor)) is None and live.map.tick < tick:
+        if time.monotonic() > until_s:
+            raise RefusedError.of("busy", f"the world has run no tick in {WAIT_S:g} s")
+        await asyncio.sleep(_LOOK_S)
+    return avatar
 
 
 def live_of(request: Request) -> Live:

@@ -5,6 +5,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
+import structlog
+
 from esplanade.actors.overrides import DEFAULTS, WORLD
 from esplanade.protocol.commands import Facts, SetParameters
 from esplanade.server.accounts.identity import Identity
@@ -12,7 +14,7 @@ from esplanade.server.console.changes import Change
 from esplanade.server.console.going_on import Ongoing
 from esplanade.server.console.planned import Planned
 from esplanade.server.console.records import Records
-from esplanade.server.console.refusals import RefusedError
+from esplanade.server.console.refusals import RefusedError, failed
 from esplanade.server.console.state import OperatedState, each, scope_of
 
 if TYPE_CHECKING:
@@ -22,6 +24,8 @@ STEP_S: Final = 0.25
 """A ramp goes on so often, in time of the world."""
 MOST: Final = 64
 """No more ramps may be under way."""
+
+log = structlog.get_logger(__name__)
 
 First = dict[str, dict[str, float]]
 
@@ -105,13 +109,16 @@ class Ramps:
         due, last = ramp.tick, ramp.begun + ticks
         part = 0.0
         try:
-            while part < 1.0 and not ramp.faults:
+            while part < 1.0:
                 due = min(due + period, last)
                 part = min(1.0, (await console.after_tick(due) - ramp.begun) / ticks)
                 if not await self._further(ramp, between(ramp.first, ramp.planned.after, part)):
                     break
         except RefusedError as error:
             ramp.faults = error.faults
+        except Exception as error:
+            log.exception("a ramp has failed", change=ramp.change.number)
+            ramp.faults = [failed(error)]
         await ramp.end(console, self._records)
 
     async def _further(self, ramp: Ramp, facts: Facts) -> bool:

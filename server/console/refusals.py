@@ -26,6 +26,16 @@ class RefusedError(Exception):
         )
 
 
+def unwritable(error: Exception) -> CommandFault:
+    """The fault of what cannot be done because the store cannot be written."""
+    return CommandFault(code="unwritable", text=f"it cannot be written: {error}")
+
+
+def failed(error: Exception) -> CommandFault:
+    """The fault of what ends by an error that nobody has foreseen."""
+    return CommandFault(code="failed", text=f"it has failed: {error}")
+
+
 def of_world(fault: Fault) -> list[CommandFault]:
     """A fault that the world has found; those of values one by one, each with its field."""
     if fault.code is FaultCode.VALUES:

@@ -14,7 +14,7 @@ from esplanade.server.console.authority import Authority
 from esplanade.server.console.figures import ContactRate, Figures
 from esplanade.server.console.guards import Guard, Guards
 from esplanade.server.console.operated_rows import GUARDS, PRESETS, SCHEDULES, read_rows
-from esplanade.server.console.refusals import RefusedError
+from esplanade.server.console.refusals import RefusedError, failed, unwritable
 from esplanade.server.console.schedule_records import (
     ScheduleRecords,
     guard_of,
@@ -22,6 +22,7 @@ from esplanade.server.console.schedule_records import (
     why_missed,
 )
 from esplanade.server.console.schedules import LATE_S, Schedule
+from esplanade.server.console.settling import UnkeptError
 from esplanade.server.store.sql_store import SqlStore
 from esplanade.server.store.store import StoreError
 
@@ -31,7 +32,9 @@ if TYPE_CHECKING:
 LOOK_S: Final = 0.5
 """Figures are looked at so often."""
 TRIES: Final = 5
-"""A schedule that finds too much waiting is tried so often, with a second between."""
+"""What finds too much waiting, or a store that cannot be used, is tried so often."""
+PAUSE_S: Final = 1.0
+"""Time between two tries."""
 
 log = structlog.get_logger(__name__)
 
@@ -104,7 +107,7 @@ class Scheduler:
                 self.guards.end(guard, "ended")
                 self._do(self._rows.keep(guard))
         for guard in self.guards.held(values, now_s):
-            self.guards.end(guard, "taken_back")
+            self.guards.act(guard)
             self._do(self._guarded(guard, values[guard.condition["name"]]))
         return schedules.held(values, now_s)
 
@@ -150,11 +153,12 @@ class Scheduler:
                 await self._work.popleft()
             except StoreError:
                 log.exception("what became of a schedule or guard is not kept")
+            except Exception:
+                log.exception("a schedule or guard has failed")
 
     async def _fire(self, schedule: Schedule, tick: int) -> None:
-        await self._rows.keep(schedule)
-        commands = [_with_note(each, schedule) for each in schedule.commands]
-        changes, faults = await self._carried_out(schedule, commands)
+        await self._keep(schedule)
+        changes, faults = await self._carried_out(schedule, lambda: self._due_commands(schedule))
         schedule.changes, schedule.faults = changes, faults
         now_us = self._clock_us()
         schedule.fired = {"at_us": now_us, "tick": tick}
@@ -165,56 +169,84 @@ class Scheduler:
             schedule.back_us = now_us + round(1e6 * schedule.again_after_s)
         else:
             schedule.state = "done"
-        await self._kept(schedule)
+        await self._keep(schedule)
         if changes and schedule.guard is not None:
             given = GuardCondition.model_validate(schedule.guard)
             guard = guard_of(given, changes, schedule.by, schedule.rights, now_us)
             self.guards.add(guard)
-            await self._rows.keep(guard)
+            await self._keep(guard)
+
+    def _due_commands(self, schedule: Schedule) -> list[Command]:
+        """The commands of a schedule; refused if no guard could watch over what they change."""
+        if schedule.guard is not None:
+            self.guards.check_room()
+        return [_with_note(each, schedule) for each in schedule.commands]
 
     async def _take_back(self, schedule: Schedule) -> None:
-        commands = [
-            Revert(op="revert", change=number, note=f"schedule {schedule.id}: its time is over")
-            for number in reversed(schedule.changes)
-            if self._is_a_change(number)
-        ]
-        _, faults = await self._carried_out(schedule, commands) if commands else ([], [])
+        faults = await self._reverted(
+            schedule, schedule.changes, f"schedule {schedule.id}: its time is over"
+        )
         schedule.state, schedule.faults = ("refused", faults) if faults else ("undone", [])
-        await self._kept(schedule)
+        await self._keep(schedule)
 
     async def _guarded(self, guard: Guard, value: float | None) -> None:
         condition = guard.condition
         side = "above" if condition.get("above") is not None else "below"
         why = f"guard {guard.id}: {condition['name']} is {value:g}, {side} {condition[side]:g}"
-        commands = [
-            Revert(op="revert", change=number, note=why)
-            for number in reversed(guard.changes)
-            if self._is_a_change(number)
-        ]
-        _, faults = await self._carried_out(guard, commands) if commands else ([], [])
-        if faults:
-            guard.state, guard.faults = "refused", faults
-        await self._kept(guard)
+        guard.faults = await self._reverted(guard, guard.changes, why)
+        self.guards.end(guard, "refused" if guard.faults else "taken_back")
+        await self._keep(guard)
+
+    async def _reverted(
+        self, item: Schedule | Guard, changes: Sequence[int], why: str
+    ) -> list[dict[str, Any]]:
+        """Take back what still holds of some changes; the faults."""
+
+        def reverts() -> list[Command]:
+            return [
+                Revert(op="revert", change=number, note=why)
+                for number in reversed(changes)
+                if self._is_a_change(number)
+            ]
+
+        _, faults = await self._carried_out(item, reverts)
+        return faults
 
     async def _carried_out(
-        self, item: Schedule | Guard, commands: Sequence[Command]
+        self, item: Schedule | Guard, commands: Callable[[], list[Command]]
     ) -> tuple[list[int], list[dict[str, Any]]]:
         """Carry commands out with the rights of the account now; the changes, and faults."""
+        faults: list[CommandFault] = []
+        for number in range(TRIES):
+            if number:
+                await asyncio.sleep(PAUSE_S)
+            try:
+                return await self._tried(item, commands()), []
+            except RefusedError as error:
+                faults = error.faults
+                if faults[0].code != "busy":
+                    break
+            except UnkeptError as error:  # what the world has carried out is not done twice
+                faults = [unwritable(error)]
+                break
+            except StoreError as error:
+                faults = [unwritable(error)]
+            except Exception as error:
+                log.exception("a schedule or guard has failed", id=item.id)
+                faults = [failed(error)]
+                break
+        return [], [fault.model_dump(mode="json") for fault in faults]
+
+    async def _tried(self, item: Schedule | Guard, commands: list[Command]) -> list[int]:
+        """The changes that commands make; a refusal if the account is gone."""
+        if not commands:
+            return []
         kind = "guard" if isinstance(item, Guard) else "schedule"
         by = await self._authority.identity(item.by, item.rights, f"{kind} {item.id}")
         if by is None:
-            fault = CommandFault(code="forbidden", text=f"there is no account {item.by} any more")
-            return [], [fault.model_dump(mode="json")]
-        for left in reversed(range(TRIES)):
-            try:
-                answers = await self._console.carry_out(by, commands)
-            except RefusedError as error:
-                if left and error.faults[0].code == "busy":
-                    await asyncio.sleep(1.0)
-                    continue
-                return [], [fault.model_dump(mode="json") for fault in error.faults]
-            return [answer.command for answer in answers if answer.command is not None], []
-        raise AssertionError("the last try returns")
+            raise RefusedError.of("forbidden", f"there is no account {item.by} any more")
+        answers = await self._console.carry_out(by, commands)
+        return [answer.command for answer in answers if answer.command is not None]
 
     def _is_a_change(self, number: int) -> bool:
         change = self._console.changes.get(number)
@@ -224,9 +256,15 @@ class Scheduler:
         schedule.state, schedule.faults = "missed", [why.model_dump(mode="json")]
         self._do(self._rows.failed(schedule))
 
-    def _kept(self, item: Schedule | Guard) -> Coroutine[Any, Any, None]:
-        """The work of keeping something as it is now."""
-        return self._rows.failed(item) if item.state == "refused" else self._rows.keep(item)
+    async def _keep(self, item: Schedule | Guard) -> None:
+        """Keep something as it is now; if that cannot be, it goes on all the same."""
+        try:
+            if item.state == "refused":
+                await self._rows.failed(item)
+            else:
+                await self._rows.keep(item)
+        except StoreError:
+            log.exception("a schedule or guard is not kept", id=item.id, state=item.state)
 
 
 def _with_note(given: dict[str, Any], schedule: Schedule) -> Command:

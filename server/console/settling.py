@@ -1,10 +1,10 @@
 """The traces of commands that the world has carried out: facts, rows, changes, guards."""
 
 import copy
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING
 
-from esplanade.protocol.commands import ApplyPreset, Facts, Mark, SetParameters
+from esplanade.protocol.commands import ApplyPreset, CommandFault, Facts, Mark, SetParameters
 from esplanade.server.accounts.identity import Identity
 from esplanade.server.accounts.rights import as_text
 from esplanade.server.console.changes import Change
@@ -15,12 +15,17 @@ from esplanade.server.console.moderation_intents import MODERATING, REVERTIBLE
 from esplanade.server.console.operated_rows import rows_of
 from esplanade.server.console.planned import Planned
 from esplanade.server.console.records import Records
+from esplanade.server.console.refusals import unwritable
 from esplanade.server.console.schedule_records import guard_of, row_of
 from esplanade.server.console.state import PACE, STEPPED
 from esplanade.server.store.store import StoreError
 
 if TYPE_CHECKING:
     from esplanade.server.console.console import Console
+
+
+class UnkeptError(StoreError):
+    """The world has carried out commands, but what they keep in the store is not written."""
 
 
 class Settling:
@@ -43,8 +48,9 @@ class Settling:
 
         Raises
         ------
-        StoreError
-            Presets or schedules cannot be written; they are as they were.
+        UnkeptError
+            Presets, schedules or guards cannot be written. Presets and schedules are as they were;
+            all else is done, and guards watch until the server ends.
         """
         state, numbered = self._console.state, list(zip(planned, numbers, strict=True))
         stored = {s: f for s, f in facts.items() if s.startswith(("preset:", "schedule:"))}
@@ -52,12 +58,17 @@ class Settling:
         guards = self._guards(by, numbered)
         rows = [*rows_of(stored, state), *map(row_of, guards)]
         begun = {number for one, number in numbered if goes_on(one.command)}
+        unkept: StoreError | None = None
         try:
             await self._records.outcomes(by, planned, numbers, tick, [], rows=rows, begun=begun)
-        except StoreError:
+        except StoreError as error:
+            unkept = error
             before = together([one.before for one in reversed(planned)])
             state.take({subject: before[subject] for subject in stored})
-            raise
+            undone = [pair for pair in numbered if stored.keys() & pair[0].after.keys()]
+            numbered = [pair for pair in numbered if pair not in undone]
+            await self._outcomes(by, undone, tick, [unwritable(error)])
+            await self._outcomes(by, numbered, tick, [], begun)
         state.take({s: f for s, f in facts.items() if s not in stored})
         self._console.settled = numbers[-1]
         for one, number in numbered:
@@ -65,6 +76,21 @@ class Settling:
                 self._remember(by, one, number, tick)
         for guard in guards:
             self._console.scheduler.guards.add(guard)
+        if unkept is not None:
+            raise UnkeptError(str(unkept)) from unkept
+
+    async def _outcomes(
+        self,
+        by: Identity,
+        numbered: list[tuple[Planned, int]],
+        tick: int | None,
+        faults: list[CommandFault],
+        begun: Collection[int] = (),
+    ) -> None:
+        """Write down what came of some commands of a list, without what is kept of them."""
+        planned, numbers = [one for one, _ in numbered], [number for _, number in numbered]
+        if planned:
+            await self._records.outcomes(by, planned, numbers, tick, faults, begun=begun)
 
     def _remember(self, by: Identity, one: Planned, number: int, tick: int | None) -> None:
         """Remember a change, so that it can be taken back, and let it go on if it does."""

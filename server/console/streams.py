@@ -59,6 +59,8 @@ class Streams:
         ongoing = self._found(by, command) if command.stream and not command.dry_run else None
         if ongoing is None:
             return None
+        key = by.account, command.scope
+        self._cancel(key)  # while the world prepares the value, the stream has not ended
         try:
             facts: Facts = {command.scope: checked_values(command.values, "values")}
             console.changes.check_revision(command.if_revision, facts, console.state)
@@ -66,8 +68,10 @@ class Streams:
             ongoing.tick, price = await console.go_on(ongoing.change, facts)
         except RefusedError as error:
             raise error.within(0) from None
+        finally:
+            if self._streams.get(key) is ongoing:
+                self._await_end(key)
         ongoing.steps += 1
-        self._await_end((by.account, command.scope))
         found = {"price": price, "number": ongoing.change.number, "tick": ongoing.tick}
         return Dragged(Planned(command, before, facts), found)
 

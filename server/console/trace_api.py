@@ -12,7 +12,7 @@ from fastapi.responses import JSONResponse
 from esplanade.protocol.commands import full_id
 from esplanade.server.accounts.identity import Identity
 from esplanade.server.console.brakes import REMEMBERED, Window
-from esplanade.server.console.live_api import live_of, unknown_actor
+from esplanade.server.console.live_api import avatar_of, live_of, unknown_actor
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.console.routing import PREFIX, REFUSALS, Guarded, caller, told
 from esplanade.server.live.live import Live
@@ -56,7 +56,7 @@ class TraceBrakes:
 async def trace(request: Request, actor_id: str) -> Response:
     """The last decision of an actor, made once more: its search, its paths and what they cost."""
     live, actor = live_of(request), str(full_id(actor_id))
-    avatar = live.map.avatar_of(actor)
+    avatar = await avatar_of(live, actor)
     if avatar is None:
         return JSONResponse(told(unknown_actor(actor)), 404)
     _brakes_of(request).take(caller(request))

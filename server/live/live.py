@@ -18,6 +18,7 @@ from esplanade.server.live.heat import Heat
 from esplanade.server.live.history import History
 from esplanade.server.live.map_feed import MapFeed
 from esplanade.server.live.measures import FIGURES, NEAR_EVERY, Measures
+from esplanade.server.live.moments import Moments
 from esplanade.server.live.names import sees_names
 from esplanade.server.live.reasons import Reasons
 from esplanade.server.live.series import Series
@@ -55,6 +56,7 @@ class Live:
         self.bulletin = bulletin
         self.tap = Tap(zone)
         self.map = MapFeed(zone.origin_m, zone.tick_s, groups)
+        self.moments = Moments()
         self.reasons = Reasons(self.map, self.tap, zone.tick_s)
         self.events = Events()
         self.series = Series(FIGURES)
@@ -126,6 +128,7 @@ class Live:
     def _take(self, tick: Tick) -> None:
         self._happenings.before(tick)
         self.map.take(tick)
+        self.moments.take(tick.frame.tick, tick.at_us)
         contacts = self._contacts.take(tick.touching)
         self.reasons.take(tick)
         self._happenings.after(tick, contacts)

@@ -95,8 +95,9 @@ class Traces:
         return bool(self._waiting)
 
     def make_one(self) -> None:
-        """Make the trace of the actor that was asked for first, for all who asked for it."""
-        waiting = [self._waiting.popleft() for _ in range(len(self._waiting))]
+        """Make the trace of the actor that was asked for first, for all who still wait for it."""
+        asked_for = [self._waiting.popleft() for _ in range(len(self._waiting))]
+        waiting = [each for each in asked_for if not each[1].cancelled()]
         if not waiting:
             return
         avatar_id, _ = waiting[0]

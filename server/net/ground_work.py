@@ -4,12 +4,13 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from concurrent.futures import Executor, Future
 from functools import partial
-from time import perf_counter, thread_time
+from time import perf_counter
 from typing import Final
 
 import structlog
 
 from esplanade.actors.potential_pool import RenewedPotential
+from esplanade.server.world.helped import taken_s
 from esplanade.server.world.inputs import DerivedInput, DoorDerived, PotentialDerived
 from esplanade.server.world.zone import Zone
 
@@ -107,5 +108,5 @@ def _potential(derive: Callable[[], RenewedPotential]) -> DerivedInput:
 
 def _timed(work: Callable[[], DerivedInput | None]) -> tuple[DerivedInput | None, float]:
     """The result of some work, and the seconds of processor time that it took."""
-    start = thread_time()
-    return work(), thread_time() - start
+    start = taken_s()
+    return work(), taken_s() - start

@@ -17,6 +17,7 @@ from esplanade.commandline import exit_codes
 from esplanade.commandline.errors import CommandError, UsageError
 from esplanade.commandline.output import console
 from esplanade.commandline.progress import progress
+from esplanade.commandline.recording_settings import READING, tell_recording
 from esplanade.recordings.writing import WritingError
 from esplanade.server import logs
 from esplanade.server.loading import LoadingError
@@ -24,7 +25,7 @@ from esplanade.server.offline.options import SECONDS
 from esplanade.server.offline.settings import OfflineSettings
 from esplanade.server.offline.world import OfflineWorld
 
-_SETTINGS = ("roster", "walls", "tick_rate", "fps", "unit", "scale", "strict")
+_SETTINGS = ("roster", "walls", "tick_rate", *READING)
 
 
 def run(options: Namespace) -> int:
@@ -35,6 +36,7 @@ def run(options: Namespace) -> int:
         except LoadingError as error:
             raise UsageError(str(error)) from None
         with world:
+            tell_recording(options.prog, str(options.people), world.report)
             try:
                 world.write(options.out, options.hz)
             except WritingError as error:

@@ -12,9 +12,9 @@ from esplanade.commandline.recording_settings import (
     check_reading,
     misplaced,
 )
+from esplanade.commandline.trajectory_files import check_suffix
 from esplanade.server.trajectories.rates import ticks_between
 
-SUFFIXES: Final = (".csv", ".txt", ".sqlite", ".parquet")
 SECONDS: Final = 60.0
 
 EPILOG: Final = """\
@@ -133,8 +133,10 @@ def check(options: Namespace) -> None:
         raise UsageError("--walls: they belong to people without a scene")
     if options.roster is not None and options.actors is not None:
         raise UsageError("--roster and --actors: give one of them, not both")
-    if options.out.suffix.lower() not in SUFFIXES:
-        raise UsageError(f"--out: {options.out.name} ends in none of {', '.join(SUFFIXES)}")
+    try:
+        check_suffix(options.out)
+    except ValueError as error:
+        raise UsageError(f"--out: {error}") from None
     try:
         ticks_between(options.tick_rate, options.hz)
     except ValueError as error:

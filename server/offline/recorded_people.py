@@ -2,7 +2,6 @@
 
 import heapq
 import math
-from collections.abc import Mapping
 from typing import NamedTuple
 
 from esplanade.recordings import Crowd, Track
@@ -41,11 +40,6 @@ class RecordedPeople:
         self.furthest_m = 0.0
         """The greatest distance of anybody from the track so far."""
 
-    @property
-    def left(self) -> int:
-        """People who have not come in yet."""
-        return len(self._coming)
-
     def inputs(self, tick: int, state: State) -> list[Input]:
         """The inputs of a tick."""
         found: list[Input] = []
@@ -64,20 +58,18 @@ class RecordedPeople:
                 found.append(Join(number, name, (*self._at(track, tick), 0.0)))
         return found
 
-    def take(self, frame: Frame, state: State) -> Mapping[int, str]:
-        """Learn who came in, and how far off everybody is; the names of those who came in."""
-        new = {}
+    def take(self, frame: Frame, state: State) -> None:
+        """Learn who came in, and how far off everybody is."""
         for ticket, avatar in frame.joined:
             walker = self._joining.pop(ticket, None)
             if walker is not None:
                 self._walking[avatar] = walker
-                self.names[avatar] = new[avatar] = walker.track.id
+                self.names[avatar] = walker.track.id
         for avatar, walker in self._walking.items():
             if avatar in state and frame.tick <= walker.last_tick:
                 place = state.positions[state.slot(avatar)].tolist()
                 off_m = math.dist(place, self._at(walker.track, frame.tick))
                 self.furthest_m = max(self.furthest_m, off_m)
-        return new
 
     def _at(self, track: Track, tick: int) -> tuple[float, float]:
         return track.at(self._start_s + tick * self._tick_s)

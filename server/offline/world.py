@@ -1,6 +1,7 @@
 """A world without a server: the same zone, its actors and recorded people, tick by tick."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
@@ -9,11 +10,13 @@ from typing import Any, Final, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.recordings import Crowd, RecordingError, read_crowd
+from esplanade.commandline.recording_settings import READING
+from esplanade.recordings import Crowd
 from esplanade.recordings.samples import Note
 from esplanade.recordings.streams import Stream, open_stream
+from esplanade.recordings.writing import WritingError
 from esplanade.server.building import build_world
-from esplanade.server.loading import CATCH_UP, DEFAULT_SCENE, LoadedScene, LoadingError, load_scene
+from esplanade.server.loading import DEFAULT_SCENE, load_scene, read_recording, rules_for
 from esplanade.server.offline.recorded_people import RecordedPeople
 from esplanade.server.offline.settings import OfflineSettings
 from esplanade.server.trajectories.blocks import write_block
@@ -45,7 +48,7 @@ class OfflineWorld:
         """`scene` is a scene file; without one the ground is fitted to the people, a recording.
 
         `settings` are others of `esplanade serve` on world and people, such as `roster`,
-        `tick_rate`, `fps` or `person_radius_m`.
+        `tick_rate`, `fps`, `columns` or `person_radius_m`.
 
         Raises
         ------
@@ -55,22 +58,24 @@ class OfflineWorld:
         given: dict[str, Any] = {**settings, "seed": seed}
         if "roster" not in settings:
             given["actors"] = actors
-        reading = {name: given.get(name) for name in ("fps", "unit", "scale", "strict")}
-        own_ground = people is not None and scene is None
-        if own_ground:
-            given["crowd"] = Path(str(people))
+        if people is not None and scene is None:
+            given["crowd"] = Path(people)
+            loaded = load_scene(OfflineSettings(**given))
         else:
-            given = {name: value for name, value in given.items() if name not in reading}
+            reading = {name: given.pop(name) for name in READING if name in given}
             given["scene"] = Path(scene or DEFAULT_SCENE)
-        crowd = None if people is None else _crowd(Path(people), reading)
+            loaded = load_scene(OfflineSettings(**given))
+            if people is not None:
+                walking = read_recording(Path(people), reading)
+                loaded = replace(loaded, rules=rules_for(loaded.rules, walking), crowd=walking)
+        crowd = loaded.crowd
         given["max_clients"] = 1 if crowd is None else _room_for(crowd)
         self.settings = OfflineSettings(**given)
-        loaded = load_scene(self.settings)
-        if crowd is not None:
-            loaded = _with_room_to_catch_up(loaded, crowd)
         self._population, self.zone, _ = build_world(loaded, self.settings)
         """The zone, whose state is read between two steps."""
         self.people = None if crowd is None else RecordedPeople(crowd, self.zone.tick_s)
+        self.report = None if crowd is None else crowd.report
+        """The remarks of the reader on the recording."""
         self._origin = Origin(
             command or "from Python",
             self.settings,
@@ -121,6 +126,8 @@ class OfflineWorld:
             Samples at this rate would lie between ticks.
         """
         recorder = Recorder(self.zone, hz)
+        if self.people is not None:
+            recorder.named = self.people.names
         self._end_file()
         self._stream = open_stream(Path(path), recorder.head(self._origin))
         self._recorder = recorder
@@ -131,7 +138,7 @@ class OfflineWorld:
         Raises
         ------
         WritingError
-            The file of trajectories cannot be written any more; the world has gone on.
+            The file of trajectories cannot be written any more and ends; the world has gone on.
         """
         zone = self.zone
         given = [*self._inputs, *inputs]
@@ -140,16 +147,18 @@ class OfflineWorld:
             given += self.people.inputs(zone.tick + 1, zone.state)
         zone.begin(given)
         frame = zone.finish(zone.think())
-        named: Mapping[int, str] = {}
         if self.people is not None:
-            named = self.people.take(frame, zone.state)
+            self.people.take(frame, zone.state)
         if self._recorder is not None and self._stream is not None:
-            self._recorder.named = named
             block = self._recorder.take(frame, given)
-            if block is not None:
-                write_block(self._stream, block)
-            if frame.tick % FLUSH_TICKS == 0:
-                self._stream.flush()
+            try:
+                if block is not None:
+                    write_block(self._stream, block)
+                if frame.tick % FLUSH_TICKS == 0:
+                    self._stream.flush()
+            except WritingError:
+                self._drop_file()
+                raise
         return frame
 
     def set_parameters(self, *actors: str, **values: float) -> None:
@@ -182,40 +191,37 @@ class OfflineWorld:
         self._inputs.append(MoveDoor(name, is_open))
 
     def close(self) -> None:
-        """Complete the file that is being written, and end the world."""
+        """Complete the file that is being written, and end the world.
+
+        Raises
+        ------
+        WritingError
+            The file cannot be completed; the world has ended.
+        """
         try:
             self._end_file()
         finally:
             self._population.close()
 
     def _end_file(self) -> None:
-        stream, recorder = self._stream, self._recorder
+        if self._stream is None or self._recorder is None:
+            return
+        try:
+            self._stream.note(Note(self._recorder.last_frame, self.zone.tick, "end", "{}"))
+            self._stream.close()
+        except WritingError:
+            self._drop_file()
+            raise
         self._stream = self._recorder = None
-        if stream is not None and recorder is not None:
-            stream.note(Note(recorder.last_frame, self.zone.tick, "end", "{}"))
-            stream.close()
 
-
-def _crowd(path: Path, reading: Mapping[str, Any]) -> Crowd:
-    try:
-        return read_crowd(
-            path,
-            reading["fps"],
-            unit=reading["unit"],
-            scale=reading["scale"],
-            strict=bool(reading["strict"]),
-        )
-    except RecordingError as error:
-        raise LoadingError(str(error)) from None
+    def _drop_file(self) -> None:
+        """Leave a file as far as it came: there is nothing more to be written into it."""
+        stream, self._stream, self._recorder = self._stream, None, None
+        if stream is not None:
+            with suppress(WritingError):
+                stream.close()
 
 
 def _room_for(crowd: Crowd) -> int:
     """Seats for the most people at once, and for those who leave in the same tick."""
     return min(4000, 2 * crowd.max_present + 8)
-
-
-def _with_room_to_catch_up(loaded: LoadedScene, crowd: Crowd) -> LoadedScene:
-    """The scene, with rules by which recorded people can go where they went."""
-    fastest_mps = max(loaded.rules.person_max_speed_mps, CATCH_UP * crowd.max_speed_mps)
-    rules = replace(loaded.rules, person_clearance_m=0.0, person_max_speed_mps=fastest_mps)
-    return replace(loaded, rules=rules)

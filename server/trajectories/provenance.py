@@ -6,7 +6,7 @@ There is no time of day in it: the same world gives the same file.
 from pathlib import Path
 from typing import NamedTuple
 
-from esplanade.commandline.provenance import digest_of_file, software
+from esplanade.commandline.provenance import digest_if_there, software
 from esplanade.server.settings import ServerSettings
 from esplanade.server.world.zone import Zone
 
@@ -37,7 +37,7 @@ def provenance_of(origin: Origin, zone: Zone, fps: float) -> dict[str, str]:
     told = {**software(), "command": origin.command, "world": zone.scene.name}
     for name, path in origin.files.items():
         told[name] = path.name
-        told[f"{name} sha256"] = digest_of_file(path)
+        told[f"{name} sha256"] = digest_if_there(path)
     told["seed"] = str(origin.settings.seed)
     told["ticks a second"] = f"{1.0 / zone.tick_s:.10g}"
     told["time"] = f"seconds of the world; frame k is at k / {fps:.10g} s"

@@ -1,5 +1,7 @@
 """Derives what a command on actors needs before a tick can carry it out."""
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -7,6 +9,7 @@ from esplanade.actors import Newcomer, Population
 from esplanade.actors.placing import Placing
 from esplanade.actors.potential_pool import Goal, GoalKey, goal_key, potential_of
 from esplanade.planning import Body, Scene
+from esplanade.server.world.helped import each_of
 from esplanade.server.world.inputs import (
     ActorCommand,
     ActorsDerived,
@@ -62,14 +65,12 @@ class Derivation:
         return ActorsDerived(self._command.command, bodies, potentials, tuple(places))
 
     def _potentials(self) -> dict[GoalKey, NDArray[np.float32]]:
-        population, fork = self._population, self._fork
-        potentials: dict[GoalKey, NDArray[np.float32]] = {}
-        for goal, body in self._changes:
-            key = None if goal is None else goal_key(fork, goal, body)
-            if key is None or key in potentials or population.navigator.potentials.has(key):
-                continue
-            potentials[key] = potential_of(fork, key)
-        return potentials
+        fork, there = self._fork, self._population.navigator.potentials
+        found = [goal_key(fork, goal, body) for goal, body in self._changes if goal is not None]
+        keys = [key for key in dict.fromkeys(found) if key is not None and not there.has(key)]
+        for *_, body in keys:
+            fork.row_of(body)  # derived here, since two threads share the fork
+        return dict(zip(keys, each_of(partial(potential_of, fork), keys), strict=True))
 
     def _places(self) -> list[Point]:
         """Places of all newcomers, in the order of the commands that bring them."""

@@ -20,6 +20,7 @@ from rich.console import Console
 from rich.panel import Panel
 
 from esplanade.commandline.errors import CommandError
+from esplanade.commandline.recording_settings import READING
 from esplanade.commandline.running import imported
 from esplanade.opening import with_scene
 
@@ -122,9 +123,9 @@ def bots_arguments(options: Namespace) -> list[str]:
     trusted = [] if certificate is None else [f"--trust={certificate}"]
     if (crowd := getattr(options, "crowd", None)) is not None:
         reading = [
-            f"--{name}={value}"
-            for name in ("fps", "unit", "scale", "columns")
-            if (value := getattr(options, name, None)) is not None
+            f"--{name}={'yes' if value is True else value}"
+            for name in READING
+            if (value := getattr(options, name, None)) not in {None, False}
         ]
         return [f"--url={page_address(options)}", *trusted, f"--replay={crowd}", *reading]
     return [

@@ -6,17 +6,18 @@ says for how long.
 
 import hashlib
 import json
+import os
+import shutil
 import sys
 import tempfile
 from argparse import Namespace
 from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final
 
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.running import imported
-from esplanade.kept_scenes import make_room, mark_used
+from esplanade.kept_scenes import UNFINISHED, make_room, mark_used
 
 PLANS: Final = (".wkt", ".geojson", ".xml", ".yaml", ".yml", ".dxf")
 MESHES: Final = (".obj", ".off", ".ply", ".stl", ".gltf", ".glb", ".3mf", ".ifc")
@@ -69,21 +70,48 @@ def _scene_of(path: Path) -> Path:
     """The scene of a file: one that was made before, or a new one, of which figures are told."""
     folder = _folder(path)
     made = folder / f"{path.stem}.json"
+    has_others = path.suffix.lower() in _HAS_OTHERS
     mark_used(folder)
-    make_room(scenes_folder(), folder)
-    if made.exists() and path.suffix.lower() not in _HAS_OTHERS:
+    make_room(folder.parent, folder)
+    if made.exists() and not has_others:
         sys.stderr.write(f"{path}: imported before, as {made}\n")
         return made
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        new = Path(tempfile.mkdtemp(prefix=UNFINISHED, dir=folder.parent))
+    except OSError:
+        elsewhere = Path(tempfile.mkdtemp(prefix="esplanade-"))
+        folder = elsewhere / folder.name
+        made = folder / made.name
+        new = Path(tempfile.mkdtemp(prefix=UNFINISHED, dir=elsewhere))
+    try:
+        _import(path, new, folder)
+        if has_others:
+            shutil.rmtree(folder, ignore_errors=True)
+        _put(new, made)
+    finally:
+        shutil.rmtree(new, ignore_errors=True)
+    make_room(folder.parent, folder)
+    return made
+
+
+def _import(path: Path, new: Path, folder: Path) -> None:
+    """Make a scene in a folder that has another name once it is whole."""
     parser: Any = imported("esplanade.scenery.options:parser")()
     import_: Callable[[Namespace], int] = imported("esplanade.scenery.cli:import_")
+    options = parser.parse_args(["import", str(path), "--out", str(new / f"{path.stem}.json")])
+    options.kept_in = folder
+    if import_(options):
+        raise UsageError(f"{path}: no scene can be made of it")
+
+
+def _put(new: Path, made: Path) -> None:
+    """Give a folder its name; what somebody else has put there meanwhile is as good."""
     try:
-        if import_(parser.parse_args(["import", str(path), "--out", str(made)])):
-            raise UsageError(f"{path}: no scene can be made of it")
-    finally:
-        with suppress(OSError):
-            folder.rmdir()  # nothing was made: there is nothing in it
-    make_room(scenes_folder(), folder)
-    return made
+        new.rename(made.parent)
+    except OSError as error:
+        if not made.exists():
+            raise UsageError(f"{made}: cannot be made: {error.strerror or error}") from None
 
 
 def scenes_folder() -> Path:
@@ -99,10 +127,9 @@ def _folder(path: Path) -> Path:
         content = path.read_bytes()
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror or error}") from None
-    digest = hashlib.sha256(sources_digest().encode() + content).hexdigest()[:16]
+    known = sources_digest().encode() + os.fsencode(path.name) + b"\0" + content
     try:
-        folder = scenes_folder() / digest
-        folder.mkdir(parents=True, exist_ok=True)
-    except (OSError, RuntimeError):
+        folder = scenes_folder()
+    except RuntimeError:  # nobody knows of a home
         folder = Path(tempfile.mkdtemp(prefix="esplanade-"))
-    return folder
+    return folder / hashlib.sha256(known).hexdigest()[:16]

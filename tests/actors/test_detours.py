@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
 import pytest
 
 from esplanade.actors import Navigator, Outcome
+from esplanade.actors.detours import AGAIN_S
 from esplanade.planning import AgentTable, PlanModel, Scene, Wall
+from esplanade.planning.routes.shut_way import ShutWays
 from tests.actors.worlds import navigator
 from tests.planning.worlds import scaled
 
@@ -148,3 +151,128 @@ def test_what_was_undone_happens_again_in_the_same_way() -> None:
     undo()
     assert np.array_equal(nav.table.agents.potential_rows, before)
     assert isinstance(nav.table, AgentTable)
+
+
+def test_a_way_around_that_is_derived_after_loading_is_taken() -> None:
+    nav = navigator(TWO)
+    nav.add_actor("a", START, GOAL)
+    for _ in range(12):
+        nav.observe({"p": DOOR})
+        nav.tick()
+    other = Navigator(TWO, plan=PlanModel(threads=1))
+    other.potentials.derived_outside = True
+    other.load(*nav.save())
+    trips, agents = other.table.trips, other.table.agents
+    assert trips.detours[0]
+    assert agents.potential_rows[0] == trips.own_rows[0]
+    while (derive := other.potentials.outdated()) is not None:
+        other.potentials.renew(derive())
+    for _ in range(6):
+        other.observe({"p": DOOR})
+        other.tick()
+    assert trips.detours[0]
+    assert agents.potential_rows[0] != trips.own_rows[0]
+
+
+def test_both_the_way_around_that_is_gone_and_the_one_that_follows_are_saved() -> None:
+    nav = navigator(TWO)
+    nav.add_actor("a", START, GOAL)
+    for _ in range(12):
+        nav.observe({"p": DOOR})
+        nav.tick()
+    undo = nav.undo_point()
+    ((key, (shut, _, derived_s)),) = nav.detours.undo_point().items()
+    wanted = shut._replace(places=(*shut.places, (10.0, 8.6, 0.0, 0.5)))
+    both = shut, wanted, derived_s
+    nav.detours.put_back(nav.table, {key: both})
+    assert nav.detours.undo_point() == {key: both}
+    other = Navigator(TWO, plan=PlanModel(threads=1))
+    other.load(*nav.save())
+    assert other.detours.undo_point() == {key: both}
+    for one in (nav, other):
+        assert one.table.trips.detours[0]
+    ours, theirs = (
+        one.potentials.arrays[one.table.agents.potential_rows[0]] for one in (nav, other)
+    )
+    assert np.array_equal(ours, theirs)
+    undo()
+    assert nav.detours.undo_point() == {key: (shut, shut, derived_s)}
+
+
+def test_the_way_of_a_goal_is_derived_anew_at_most_once_in_a_while() -> None:
+    nav = navigator(TWO)
+    nav.add_actor("a", START, GOAL)
+    derived = []
+    for tick in range(60):
+        # One person stands in the door all the time, and beside it others come every half second.
+        there = (10.3, DOOR[1] + 0.1 * (tick // 10))
+        nav.observe({"p": DOOR, f"q{tick // 10}": there})
+        nav.tick()
+        ways = [state[0] for state in nav.detours.undo_point().values()]
+        if ways and (not derived or derived[-1][1] != ways[0]):
+            derived.append((tick, ways[0]))
+    assert len(derived) >= 2
+    ticks = [tick for tick, _ in derived]
+    assert min(b - a for a, b in itertools.pairwise(ticks)) * nav.tick_s >= AGAIN_S - 1e-9
+
+
+def test_ways_of_two_goals_are_derived_in_two_ticks() -> None:
+    nav = navigator(TWO)
+    nav.add_actor("a", START, GOAL)
+    nav.add_actor("b", (START[0] - 1.0, START[1]), (GOAL[0], GOAL[1] + 1.0))
+    known = [0]
+    for _ in range(20):
+        nav.observe({"p": DOOR})
+        nav.tick()
+        known.append(len(nav.detours))
+    assert known[-1] == 2
+    assert max(after - before for before, after in itertools.pairwise(known)) == 1
+
+
+def test_the_gap_beside_an_actor_is_shut_by_the_same_room_however_often_it_is_seen() -> None:
+    nav = navigator(scene((4.0, 5.2)))
+    nav.add_actor("a", (8.6, 4.6), GOAL)
+    nav.add_actor("idle", DOOR)
+    rooms = set()
+    for _ in range(20):
+        nav.table.trips.stalled_s[0] = 3.0
+        nav.table.agents.positions[0] = 8.6, 4.6
+        nav.observe({})
+        nav.tick()
+        for _, wanted, *_ in nav.detours.save(nav.table):
+            rooms |= {disc[3] for disc in wanted}
+    assert 0.65 in rooms
+    assert rooms <= {0.3, 0.65}
+
+
+def test_bodies_out_of_reach_are_not_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    looked_at: list[int] = []
+    shut_by = ShutWays.shut_by
+
+    def spy(self: ShutWays, *given):
+        looked_at.append(len(given[5]))
+        return shut_by(self, *given)
+
+    monkeypatch.setattr(ShutWays, "shut_by", spy)
+    walls = tuple(Wall(start=(10.0, a), end=(10.0, b)) for a, b in ((0.0, 4.0), (5.2, 8.0)))
+    nav = navigator(Scene(bounds=(0.0, 0.0, 70.0, 8.0), walls=walls))
+    nav.add_actor("a", START, GOAL)
+    for _ in range(12):
+        nav.observe({"p": DOOR, "near": (40.0, 4.0), "far": (66.0, 4.0)})
+        nav.tick()
+    assert set(looked_at) == {2}
+
+
+def test_goals_beyond_the_bound_have_no_way_around_and_are_counted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("esplanade.actors.detours.MOST_DETOURS", 1)
+    nav = navigator(TWO)
+    nav.add_actor("a", START, GOAL)
+    nav.add_actor("b", (5.0, 3.0), (14.0, 5.4))
+    for _ in range(30):
+        nav.observe({"p": DOOR})
+        nav.tick()
+    assert len(nav.detours) == 1
+    assert nav.table.trips.detours.sum() == 1
+    assert nav.detours.refused >= 2

@@ -62,7 +62,11 @@ WRONG = [
     ("esplanade run", "run --out a.csv", "give a SCENE, or --people"),
     ("esplanade run", "run no.json --out a.csv", "SCENE: no.json: cannot be read"),
     ("esplanade run", "run README.md --out a.csv --hz 7", "7 samples a second lie between"),
-    ("esplanade evaluate", "evaluate README.md --trajectories a.doc", "ends in one of .csv, .txt,"),
+    (
+        "esplanade evaluate",
+        "evaluate README.md --trajectories a.doc",
+        "ends in none of .csv,",
+    ),
     (
         "esplanade scene render",
         "scene render README.md --out x --picture gif",

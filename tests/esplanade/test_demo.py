@@ -14,9 +14,10 @@ import pytest
 
 from esplanade import demo
 from esplanade import options as demo_options
-from esplanade.bots import options as bots_options
+from esplanade.bots.options import parser as bots_parser
 from esplanade.cli import main
 from esplanade.commandline import exit_codes
+from esplanade.commandline.recording_settings import READING
 from esplanade.commandline.settings import given_settings
 from esplanade.server.options import SETTINGS
 from tests.patience import COMPILING_PATIENCE_S, PATIENCE_S
@@ -120,16 +121,17 @@ def test_variables_of_the_server_count_but_for_what_the_demo_sets(
     assert (options.tick_rate, options.actors) == (30, 12)
 
 
-def test_whoever_replays_reads_the_crowd_as_the_server_does(tmp_path: Path) -> None:
-    crowd = tmp_path / "crowd.txt"
-    crowd.write_text("1 0 0 0\n")
-    said = {"fps": 12.5, "unit": "cm", "columns": "id,frame,x,y"}
-    words = [f"--crowd={crowd}", "--fps=12.5", "--unit=cm", "--columns=id,frame,x,y"]
-    options = demo_options.demo().parse_args(words)
-    assert {name: getattr(options, name) for name in said} == said
-    replaying = bots_options.parser().parse_args(demo.bots_arguments(options))
-    assert Path(replaying.replay) == crowd
-    assert {name: getattr(replaying, name) for name in said} == said
+def test_bots_read_a_recording_as_the_server_does(tmp_path: Path) -> None:
+    crowd = tmp_path / "a.txt"
+    crowd.touch()
+    given = ["--fps=25", "--unit=cm", "--columns=frame,id,x,y", "--strict=yes"]
+    options = demo_options.demo().parse_args([f"--crowd={crowd}", *given])
+    words = demo.bots_arguments(options)
+    assert words[1] == f"--replay={crowd}"
+    bots = bots_parser().parse_args(words)
+    read = [getattr(bots, name, None) for name in READING]
+    assert read == [getattr(options, name, None) for name in READING]
+    assert read == [25.0, "cm", None, "frame,id,x,y", True]
 
 
 def test_no_visitors_before_the_world_is_ready() -> None:

@@ -4,13 +4,16 @@ import json
 import os
 from argparse import Namespace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from esplanade import opening
 from esplanade.cli import main
 from esplanade.commandline.errors import UsageError
+from esplanade.planning import Scene
 from esplanade.recordings import read_crowd
+from esplanade.scenery import pictures
 
 pytest.importorskip("shapely")
 HALL = "POLYGON ((0 0, 12 0, 12 8, 0 8, 0 0), (5 3, 7 3, 7 5, 5 5, 5 3))"
@@ -39,6 +42,51 @@ def test_a_plan_is_run_with_one_command_and_imported_once(
     shown = capsys.readouterr()
     assert "of floor" not in shown.out
     assert f"imported before, as {scene}" in shown.err
+
+
+def test_an_import_that_is_interrupted_is_made_anew(
+    tmp_path: Path, kept: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plan = tmp_path / "hall.wkt"
+    plan.write_text(HALL)
+
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr(pictures, "draw_heights", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            opening.with_scene(Namespace(scene=plan))
+    assert list(kept.iterdir()) == []
+    options = Namespace(scene=plan)
+    opening.with_scene(options)
+    assert Scene.model_validate_json(options.scene.read_text()).polygons
+    assert list(kept.glob("*/hall.json")) == [options.scene]
+
+
+def test_who_comes_second_takes_what_is_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plan, twin = tmp_path / "hall.wkt", tmp_path / "twin.wkt"
+    plan.write_text(HALL)
+    twin.write_text(HALL)
+    draw, first = pictures.draw_heights, Namespace(scene=plan)
+
+    def other_is_faster(*given: Any) -> None:
+        monkeypatch.setattr(pictures, "draw_heights", draw)
+        opening.with_scene(first)
+        draw(*given)
+
+    monkeypatch.setattr(pictures, "draw_heights", other_is_faster)
+    second, other = Namespace(scene=plan), Namespace(scene=twin)
+    opening.with_scene(second)
+    assert first.scene == second.scene
+    assert second.scene.exists()
+    told = capsys.readouterr().out
+    assert told.count(f"run it: esplanade serve --scene {second.scene}\n") == 2
+    opening.with_scene(other)
+    assert other.scene.name == "twin.json"
+    assert other.scene.exists()
 
 
 def test_what_cannot_be_imported_is_named_and_leaves_nothing(tmp_path: Path, kept: Path) -> None:

@@ -77,6 +77,30 @@ def test_another_recording_of_the_same_name_is_not_found(
     assert found(path, replace(trial, source=Source(changed))) == 0
 
 
+def test_a_folder_is_a_recording_that_is_known_by_all_its_files(
+    trial: Trial, tmp_path: Path
+) -> None:
+    folder, other = tmp_path / "folder", tmp_path / "other"
+    for each in (folder, other):
+        each.mkdir()
+        write_csv(each, busy_plaza())
+    (other / "second.csv").write_text((other / "plaza.csv").read_text())
+    path = tmp_path / "scores.jsonl"
+    of_folder = replace(trial, source=Source(folder))
+    with ScoreCache(path) as score_cache:
+        run_trials([of_folder], 1, lambda _: None, score_cache)
+    assert found(path, of_folder) == 6
+    assert found(path, replace(trial, source=Source(other))) == 0
+
+
+def test_a_recording_is_read_once_for_its_digest(
+    trial: Trial, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    digest = trial.source.digest()
+    monkeypatch.setattr(Path, "open", None)
+    assert trial.source.digest() == digest
+
+
 def test_scores_without_arrival_have_no_time_and_are_found_again(path: Path, trial: Trial) -> None:
     lines = path.read_text().splitlines()
     entry = json.loads(lines[0])

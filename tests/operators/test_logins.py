@@ -9,14 +9,18 @@ import stat
 import subprocess
 import sys
 import termios
+from argparse import Namespace
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
+from esplanade.operators import login_commands
 from esplanade.operators.http import SessionToken
 from esplanade.operators.logins import Login, LoginsError, drop_login, keep_login, kept_login
+from esplanade.operators.parts import URL
+from esplanade.options import op
 from esplanade.server.accounts.identity import MACHINE
 from tests.operators.test_commands import Told, told
 from tests.patience import PATIENCE_S
@@ -181,3 +185,38 @@ def test_a_file_that_others_may_read_is_not_used(configuration: Path) -> None:
     file.write_text("{")
     with pytest.raises(LoginsError, match="log in again"):
         kept_login()
+
+
+def parsed(*words: str) -> Namespace:
+    return op().parse_args(list(words))
+
+
+def test_which_server_is_meant(
+    configuration: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = keep_login(Login("http://one:1", "olga", "esplanade_a"))
+    assert parsed("login", "olga").url == "http://one:1"
+    assert (parsed("get").url, parsed("get").token) == ("http://one:1", "esplanade_a")
+    # A token is not handed to a server only because it was that of the latest login.
+    monkeypatch.setenv("ESPLANADE_TOKEN", "esplanade_b")
+    assert (parsed("get").url, parsed("get").token) == (URL, "esplanade_b")
+    monkeypatch.delenv("ESPLANADE_TOKEN")
+    file.chmod(0o640)
+    assert configuration in file.parents
+    for words in (["get"], ["login", "olga"], ["logout"]):
+        with pytest.raises(SystemExit, match="2"):
+            parsed(*words)
+        assert "chmod 600" in capsys.readouterr().err
+
+
+async def test_a_login_that_cannot_be_dropped_is_kept(
+    told: Told, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def unwritable(_: str) -> None:
+        raise LoginsError("the disk is full")
+
+    keep_login(Login("http://one:1", "olga", "esplanade_a"))
+    monkeypatch.setattr(login_commands, "drop_login", unwritable)
+    said = await told("logout", code=1)
+    assert "the disk is full" in said
+    assert "kept no more" not in said

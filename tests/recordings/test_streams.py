@@ -11,6 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from esplanade.commandline import trajectory_files
 from esplanade.recordings import read_crowd
 from esplanade.recordings.jupedsim_tables import box
 from esplanade.recordings.samples import SAMPLE, Head, Note, Samples
@@ -145,6 +146,10 @@ def test_jupedsim_opens_the_sqlite(tmp_path: Path) -> None:
     with sqlite3.connect(path) as connection:
         notes = connection.execute("SELECT frame, tick, kind FROM esplanade_notes").fetchall()
     assert notes == [(3, 6, "parameters")]
+
+
+def test_commands_know_the_same_forms() -> None:
+    assert trajectory_files.SUFFIXES == SUFFIXES
 
 
 def test_files_that_cannot_be_written(tmp_path: Path) -> None:

@@ -45,6 +45,7 @@ def read_gltf(path: Path, data: bytes) -> Triangles:
     _check_count(container, accessors, [nodes[place] for place, _ in shown])
     meshes: dict[int, _Floats] = {}
     parts = [np.empty((0, 3, 3))]
+    triangles = 0
     for place, transform in shown:
         node = nodes[place]
         mesh = node.get("mesh")
@@ -55,6 +56,8 @@ def read_gltf(path: Path, data: bytes) -> Triangles:
             meshes[mesh] = _mesh(container, accessors, mesh, weights, passed)
         passed["skinned meshes, taken as they rest"] += "skin" in node
         copies = instances(node.get("extensions", {}).get(INSTANCING), accessors)
+        triangles += len(meshes[mesh]) * len(copies)
+        _check_shown(triangles)  # packed meshes may hold more than the file tells
         parts.append(placed(meshes[mesh], transform @ copies))
         if weights is not None:
             del meshes[mesh]
@@ -78,9 +81,13 @@ def _check_count(container: Container, accessors: Accessors, nodes: list[Any]) -
         shown += triangles[mesh] * max(
             [accessors.count(accessor) for accessor in attributes.values()], default=1
         )
-    if shown > MAX_TRIANGLES:
+    _check_shown(shown)
+
+
+def _check_shown(triangles: int) -> None:
+    if triangles > MAX_TRIANGLES:
         raise ValueError(
-            f"its nodes show {shown} triangles in all, {MAX_TRIANGLES} are possible: "
+            f"its nodes show {triangles} triangles in all, {MAX_TRIANGLES} are possible: "
             "make simpler meshes of it, or export fewer copies"
         )
 

@@ -141,7 +141,13 @@ def _binary_element(
 def _count(body: bytes, place: int, kind: np.dtype[np.generic]) -> int:
     if place + kind.itemsize > len(body):
         raise ValueError("it ends within its faces")
-    return int(np.frombuffer(body, dtype=kind, count=1, offset=place)[0])
+    return _length(int(np.frombuffer(body, dtype=kind, count=1, offset=place)[0]))
+
+
+def _length(count: int) -> int:
+    if count < 0:
+        raise ValueError(f"a list of {count} values cannot be")
+    return count
 
 
 def _row_by_row(
@@ -161,7 +167,7 @@ def _row_by_row(
                 count_type = np.dtype(count_kind)
                 count = _count(body, place, count_type)
                 place += count_type.itemsize
-            if count < 0 or place + count * kind.itemsize > len(body):
+            if place + count * kind.itemsize > len(body):
                 raise ValueError(f"it ends within its {element.name}s")
             if count_kind:
                 sizes[name].append(count)
@@ -191,7 +197,7 @@ def _ascii(body: bytes, elements: list[_Element]) -> dict[str, dict[str, Any]]:
                 for part in element.properties:
                     values = single[part.name]
                     if part.count_kind:
-                        count = int(next(words))
+                        count = _length(int(next(words)))
                         sizes[part.name].append(count)
                         values.extend([float(next(words)) for _ in range(count)])
                     else:

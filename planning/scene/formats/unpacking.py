@@ -68,10 +68,8 @@ def _filtered(
         # Each word is a mantissa of 24 and an exponent of 8 bits, both signed.
         words = np.frombuffer(found.tobytes(), dtype="<i4")
         mantissa = (words << 8) >> 8
-        undone_bytes: bytes = (
-            np.ldexp(mantissa.astype(np.float64), words >> 24).astype("<f4").tobytes()
-        )
-    return undone_bytes
+        values = np.ldexp(mantissa.astype(np.float64), words >> 24)
+        return bytes(values.astype("<f4").tobytes())
     if name not in _FILTERS:
         raise ValueError(f"filter {name!r} of EXT_meshopt_compression is unknown")
     undone = getattr(library, _FILTERS[name])(found, count, stride)

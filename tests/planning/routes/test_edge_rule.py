@@ -8,7 +8,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from esplanade.planning import Body, LayeredGrid, PathStatus, Polygon, Potential, Scene, find_path
+from esplanade.planning import (
+    Body,
+    LayeredGrid,
+    PathStatus,
+    Polygon,
+    Potential,
+    Scene,
+    Wall,
+    Wave,
+    find_path,
+)
+from esplanade.planning.routes.wave_front import NO_TARGETS, WaveFront
 from tests.planning.worlds import holds
 
 Point = tuple[float, float]
@@ -127,3 +138,39 @@ def test_a_body_that_may_be_on_edges_briefly_goes_around_a_kerb() -> None:
 def test_level_ground_bounds_nobody() -> None:
     grid = LayeredGrid.from_scene(Scene(bounds=(0, 0, 5, 5)))
     assert not grid.bounds_edges(Body(edge_cells=1))
+
+
+def test_a_goal_beside_the_anchor_of_its_cell_is_reached() -> None:
+    scene, start, _ = kerb(10.0, 0.5, 2.0)
+    goal = (1.22404717, 4.00056280)
+    along = np.array([math.cos(0.28876245), math.sin(0.28876245)])
+    across = 0.5 * 0.55256903 * np.array([-along[1], along[0]])
+    middle = np.array([1.52322427, 4.08943800])
+    walls = tuple(
+        Wall(start=tuple(middle + side - 0.4 * along), end=tuple(middle + side + 0.4 * along))
+        for side in (across, -across)
+    )
+    grid = LayeredGrid.from_scene(Scene(bounds=scene.bounds, polygons=scene.polygons, walls=walls))
+    bodies = Body(edge_cells=200), Body(edge_cells=4)
+    assert [grid.bounds_edges(body) for body in bodies] == [False, True]
+    cell = int(grid.on_ground([goal], [0.0])[1][0])
+    assert grid.arrays.kinds.steps[grid.row_of(bodies[1]), cell] == 0
+    for body in bodies:
+        potential = Potential(grid, goal, 0.0, 0.25, body=body)
+        assert potential.goal == goal
+        left_m = potential.distance([start], [0.0])[0]
+        assert left_m == pytest.approx(math.dist(start, goal), abs=0.5)
+
+
+def test_cells_that_a_way_may_only_begin_at_count_as_settled_like_others() -> None:
+    grid, below, above = grid_of(24, 1.6, 0.0)
+    body = Body(edge_cells=20)
+    cell = int(grid.on_ground([above], [2.4])[1][0])
+    front = WaveFront(grid, above, cell, body.radius_m, Wave.SIGHT, body)
+    front.grow(NO_TARGETS)
+    halfway = 0.5 * below[0] + 0.5 * above[0], below[1]
+    # No way leads up from below, but one from within the flight.
+    potential = Potential(grid, above, 2.4, body.radius_m, body=body)
+    left_m = potential.distance([below, halfway], [0.0, grid.floor_at(halfway, 1.0)])
+    assert np.isfinite(left_m).tolist() == [False, True]
+    assert set(front.settled.tolist()) == {0, 1}

@@ -65,3 +65,17 @@ def test_a_way_that_discs_shut_is_none() -> None:
     shut = Potential(grid, GOAL, 0.0, RADIUS_M, shut=[(5.0, 5.0, 0.0, 0.4)])
     assert not np.isfinite(shut.distance([START], [0.0])[0])
     assert np.isfinite(shut.distance([(7.0, 5.0)], [0.0])[0])
+
+
+def test_a_potential_from_no_further_than_wanted_is_the_whole_one_there() -> None:
+    grid = doorway(0.7)
+    whole = Potential(grid, GOAL, 0.0, RADIUS_M).values[:, 0]
+    part = Potential(grid, GOAL, 0.0, RADIUS_M, within_m=4.0)
+    walkable = grid.arrays.kinds.steps[grid.row_of(Body.adult())] != 0
+    reached = walkable & np.isfinite(part.values[:, 0])
+    assert 0.1 < reached.mean() < 0.9
+    assert np.array_equal(part.values[reached, 0], whole[reached])
+    far_m = Potential(grid, GOAL, 0.0, RADIUS_M).distance([(1.0, 1.0)], [0.0])[0]
+    assert far_m > 4.0
+    assert not np.isfinite(part.distance([(1.0, 1.0)], [0.0])[0])
+    assert part.distance([(6.0, 5.0)], [0.0])[0] == pytest.approx(2.0, abs=0.05)

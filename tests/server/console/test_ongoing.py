@@ -1,7 +1,14 @@
 """Changes that go on: dragged values, and ramps."""
 
+import asyncio
+from typing import Any
+
+import pytest
+
+from esplanade.protocol.commands import Facts, Price
 from esplanade.server.audit.log import Filter
-from esplanade.server.console import ramps
+from esplanade.server.console import ramps, streams
+from esplanade.server.console.changes import Change
 from esplanade.server.store.sql_store import SqlStore
 from tests.server.console.consoles import Desk, desk
 from tests.server.populated import Populated
@@ -48,6 +55,37 @@ async def test_what_is_dragged_is_one_change_with_the_first_and_last_value(
         assert (last["after"], last["steps"]) == ({"world": {"risk_weight": 12.0}}, 3)
 
 
+async def test_a_stream_does_not_end_while_the_world_prepares_its_next_value(
+    world: Populated, memory: SqlStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    endings: list[asyncio.TimerHandle] = []
+    loop = asyncio.get_running_loop()
+    call_later = loop.call_later
+
+    def noted(delay: float, *given: Any, **more: Any) -> asyncio.TimerHandle:
+        handle = call_later(delay, *given, **more)
+        if delay == streams.GAP_S:
+            endings.append(handle)
+        return handle
+
+    monkeypatch.setattr(loop, "call_later", noted)
+    async with desk(world, memory) as at:
+        go_on = at.console.go_on
+
+        async def prepared(change: Change, facts: Facts) -> tuple[int, Price]:
+            assert [ending.cancelled() for ending in endings] == [True]
+            return await go_on(change, facts)
+
+        monkeypatch.setattr(at.console, "go_on", prepared)
+        await at.send(DRAG)
+        await at.send({**DRAG, "values": {"risk_weight": 12}})
+        assert [ending.cancelled() for ending in endings] == [True, False]
+        await at.console.ongoing.close()
+        (_, _, (outcome, body)) = await _rows(at)
+        assert isinstance(body, dict)
+        assert (outcome, body["after"]) == ("done", {"world": {"risk_weight": 12.0}})
+
+
 async def test_somebody_else_ends_a_stream(world: Populated, memory: SqlStore) -> None:
     async with desk(world, memory) as at:
         (mine,) = await at.send(DRAG)
@@ -73,6 +111,21 @@ async def test_a_ramp_goes_there_evenly(world: Populated, memory: SqlStore) -> N
         assert [outcome for outcome, _ in rows] == ["", "begun", "done"]
         await at.send({"op": "revert"})
         assert at.value("main/a1", "risk_weight") == 9.5
+
+
+async def test_a_ramp_that_fails_ends(
+    world: Populated, memory: SqlStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def failing(*_: Any) -> tuple[int, Price]:
+        raise ZeroDivisionError("by nought")
+
+    async with desk(world, memory) as at:
+        monkeypatch.setattr(at.console, "go_on", failing)
+        await at.send(RAMP)
+        await at.until(lambda: at.console.ongoing.under_way == 0)
+        outcome, body = (await _rows(at))[-1]
+        assert isinstance(body, dict)
+        assert (outcome, body["faults"][0]["code"]) == ("refused", "failed")
 
 
 async def test_a_ramp_ends_where_it_is_taken_back_or_somebody_else_sets_the_value(

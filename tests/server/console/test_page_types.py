@@ -48,6 +48,7 @@ def test_the_page_knows_all_rights_and_reasons() -> None:
         ("/actors/actor-1", ("parameters", "risk_weight"), "Source"),
         ("/map", (), "MapData"),
         ("/heat", ("storeys", 0), "Raster"),
+        ("/actors/actor-1/why", (), "Why"),
         ("/actors/actor-1/why", ("spans", 0), "WhySpan"),
         ("/actors/actor-1/trace", (), "Trace"),
         ("/actors/actor-1/trace", ("cost",), "Cost"),

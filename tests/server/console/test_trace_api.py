@@ -7,13 +7,20 @@ from typing import Any
 import numpy as np
 import pytest
 
+from esplanade.server.console import live_api
+from esplanade.server.console.live_api import avatar_of
+from esplanade.server.console.refusals import RefusedError
 from esplanade.server.live import traces
+from esplanade.server.live.bulletin import Bulletin
+from esplanade.server.live.live import Live
+from esplanade.server.metrics import Traffic
 from tests.patience import PATIENCE_S
 from tests.server.client import joined
 from tests.server.conftest import Serving
 from tests.server.console.browsers import codes
 from tests.server.console.operators import Operator, operator
 from tests.server.live.consoles import live_console
+from tests.server.populated import Populated, spec
 
 PARTS = {"time", "risk", "others", "turn", "wall", "hurry", "keep_right"}
 
@@ -99,6 +106,26 @@ async def test_in_a_pause_the_last_decision_is_told_if_it_was_kept(serving: Serv
         assert found["exact"]
         again = await traced(dora)
         assert {**again, "seconds": 0} == {**found, "seconds": 0}
+
+
+async def test_a_world_that_has_just_begun_knows_its_actors_at_once() -> None:
+    world = Populated([spec(1)])
+    live = Live(world.zone, [0.0], Bulletin(), Traffic(), hide_names=False)
+    asked = [asyncio.create_task(avatar_of(live, f"main/{name}")) for name in ("a1", "a2")]
+    await asyncio.sleep(0.05)
+    assert not any(each.done() for each in asked)
+    live.tap.take(world.frame(), 0.001, 0)
+    live.beat()
+    assert await asyncio.gather(*asked) == [world.zone.avatar_of("main/a1"), None]
+
+
+async def test_a_world_that_never_begins_is_not_waited_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(live_api, "WAIT_S", 0.05)
+    live = Live(Populated([spec(1)]).zone, [0.0], Bulletin(), Traffic(), hide_names=False)
+    with pytest.raises(RefusedError, match="has run no tick"):
+        await avatar_of(live, "main/a1")
 
 
 async def test_hostile_questions_get_an_answer(serving: Serving) -> None:

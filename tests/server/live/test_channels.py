@@ -199,6 +199,11 @@ async def test_why_says_who_holds_an_actor_and_for_how_long(serving: Serving) ->
         ends = [span["to_tick"] for span in body["spans"]]
         begins = [span["from_tick"] for span in body["spans"]]
         assert begins[1:] == ends[:-1], "spans follow each other without a gap"
+        first, *_, last = body["moments"]
+        assert first[0] <= begins[0] < last[0] <= body["tick"]
+        _, later = await olga.get(f"/actors/actor-1/why?from_us={last[1] - 1}")
+        assert isinstance(later, dict)
+        assert [span["to_tick"] >= last[0] for span in later["spans"]] == [True]
         assert (await olga.get("/actors/nobody/why"))[0] == 404
 
 

@@ -81,6 +81,15 @@ def test_what_is_not_known_is_answered_all_the_same(monkeypatch: pytest.MonkeyPa
     assert failing.result() is None
 
 
+def test_what_nobody_waits_for_any_more_is_not_made() -> None:
+    asked = Asked()
+    gone, stays = asked.ask(0), asked.ask(1)
+    gone.cancel()
+    asked.traces.make_one()
+    assert stays.result() is not None
+    assert (asked.traces.made, asked.traces.waiting) == (1, 0)
+
+
 def test_a_world_that_stands_and_has_kept_nothing_says_so_at_once() -> None:
     asked = Asked(kept=False)
     answer = asked.ask(0)

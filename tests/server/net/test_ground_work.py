@@ -52,7 +52,7 @@ class AtOnce:
 @pytest.fixture
 def at_once(monkeypatch: pytest.MonkeyPatch) -> AtOnce:
     # Without the time that work takes there is no rest after it.
-    monkeypatch.setattr("esplanade.server.net.ground_work.thread_time", lambda: 0.0)
+    monkeypatch.setattr("esplanade.server.net.ground_work.taken_s", lambda: 0.0)
     return AtOnce()
 
 
@@ -149,7 +149,7 @@ def test_a_rest_after_what_is_ahead_holds_up_nothing_else(
     ahead = [lambda name=name: done.append(name) for name in ("one", "two")]
     work = GroundWork(trial.world, cast(ThreadPoolExecutor, at_once), ahead)
     seconds = count()
-    monkeypatch.setattr("esplanade.server.net.ground_work.thread_time", lambda: 60 * next(seconds))
+    monkeypatch.setattr("esplanade.server.net.ground_work.taken_s", lambda: 60 * next(seconds))
     moves_of(trial, work, [[]] * 10)
     assert done == ["one"], "it rests for a minute"
     assert {"gate": False} in moves_of(trial, work, [[MoveDoor("gate", is_open=False)], [], [], []])

@@ -41,6 +41,29 @@ def test_a_world_becomes_a_file(
     assert "# seed: 7\n" in text
 
 
+def test_the_reader_of_people_is_heard_and_their_columns_named(
+    room: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    people, out = tmp_path / "odd.csv", tmp_path / "a.csv"
+    rows = "\n".join(f"{t / 10},7,{1 + t / 10},2" for t in range(20))
+    people.write_text(f"wann,wer,wo,wie\n{rows}\n")
+    words = ["run", str(room), "--people", str(people), "--columns", "t,id,x,y"]
+    assert main([*words, "--actors", "0", "--out", str(out)]) == 0
+    assert f"esplanade run: {people}: " in capsys.readouterr().err
+    assert '"recorded":"7"' in out.read_text().replace(" ", "")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no full disk to try")
+def test_a_full_disk_is_one_line(
+    room: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    full = tmp_path / "full.csv"
+    full.symlink_to("/dev/full")
+    assert main(["run", str(room), "--actors", "1", "--seconds", "1", "--out", str(full)]) == 1
+    (line,) = capsys.readouterr().err.strip().splitlines()
+    assert "No space left on device; it ends at 1.00 s of the world" in line
+
+
 @pytest.mark.parametrize(
     ("words", "fault"),
     [

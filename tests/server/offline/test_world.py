@@ -3,6 +3,7 @@
 import json
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,9 +11,11 @@ import pytest
 from esplanade.planning import Scene
 from esplanade.recordings import read_crowd
 from esplanade.recordings.crowd import Crowd, Track
-from esplanade.recordings.writing import write_crowd
+from esplanade.recordings.writing import WritingError, write_crowd
+from esplanade.server import loading
 from esplanade.server.loading import LoadingError
 from esplanade.server.offline import OfflineWorld
+from esplanade.server.offline.world import FLUSH_TICKS
 
 ROOM = Scene.open_space((0.0, 0.0, 20.0, 12.0), walls=[((10.0, 0.0), (10.0, 5.0))])
 
@@ -100,6 +103,59 @@ def test_recorded_people_walk_their_tracks_among_actors(
             assert found[numbers[track.id]].at(float(t)) == pytest.approx(
                 track.at(float(t)), abs=0.01
             )
+
+
+def test_people_keep_their_names_in_files_that_begin_after_they_came(
+    room: Path, recording: Path, tmp_path: Path
+) -> None:
+    with OfflineWorld(room, people=recording, actors=0) as world:
+        assert world.report is not None
+        for _ in range(10):
+            world.step()
+        assert world.people is not None
+        numbers = {name: avatar for avatar, name in world.people.names.items()}
+        world.write(tmp_path / "a.csv")
+        while world.time_s < 3.0:
+            world.step()
+    told = [content for _, kind, content in notes(tmp_path / "a.csv") if kind == "avatar"]
+    assert {each["recorded"] for each in told} == {"7", "8"}
+    assert next(each for each in told if each["id"] == numbers["7"])["recorded"] == "7"
+
+
+@pytest.mark.parametrize("among", ["a scene", "open ground"])
+def test_columns_of_a_recording_are_named_and_it_is_read_once(
+    room: Path, recording: Path, monkeypatch: pytest.MonkeyPatch, among: str
+) -> None:
+    rows = [line for line in recording.read_text().splitlines() if line[:1].isdigit()]
+    odd = recording.with_name("odd.csv")
+    odd.write_text("\n".join(["was,wann,wo,wie", *rows]))
+    read: list[Path] = []
+
+    def noted(path: Path, *given: Any, **more: Any) -> Crowd:
+        read.append(path)
+        return read_crowd(path, *given, **more)
+
+    monkeypatch.setattr(loading, "read_crowd", noted)
+    scene = room if among == "a scene" else None
+    with OfflineWorld(scene, people=odd, actors=0, columns="t,id,x,y") as world:
+        world.step()
+        assert len(world.positions) == 1
+    assert read == [odd]
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no full disk to try")
+def test_a_world_goes_on_where_its_file_cannot(room: Path, tmp_path: Path) -> None:
+    full = tmp_path / "full.csv"
+    full.symlink_to("/dev/full")
+    with OfflineWorld(room, actors=1) as world:
+        world.write(full)
+        with pytest.raises(WritingError, match="No space left on device"):  # noqa: PT012
+            for _ in range(2 * FLUSH_TICKS):
+                world.step()
+        ended = world.zone.tick
+        world.write(tmp_path / "b.csv")
+        world.step()
+    assert notes(tmp_path / "b.csv")[-1][:2] == (ended + 1, "end")
 
 
 def test_without_a_scene_the_ground_is_fitted_to_the_people(

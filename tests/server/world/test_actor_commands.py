@@ -40,7 +40,7 @@ def world() -> Iterator[Populated]:
 @pytest.fixture
 def served(monkeypatch: pytest.MonkeyPatch) -> Iterator[Populated]:
     # Without the time that work takes there is no rest after it.
-    monkeypatch.setattr("esplanade.server.net.ground_work.thread_time", lambda: 0.0)
+    monkeypatch.setattr("esplanade.server.net.ground_work.taken_s", lambda: 0.0)
     populated = Populated([spec(1), spec(2)], outside=True)
     populated.frame()
     yield populated

@@ -70,7 +70,7 @@ def test_all_of_a_batch_is_done_in_one_tick() -> None:
 
 
 def test_a_batch_waits_as_a_whole_for_what_is_derived(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("esplanade.server.net.ground_work.thread_time", lambda: 0.0)
+    monkeypatch.setattr("esplanade.server.net.ground_work.taken_s", lambda: 0.0)
     world = world_of_three(outside=True)
     world.frame()
     going = BEHAVIOUR_SPEC.validate_python({"kind": "go_to", "target": "east"})
@@ -224,7 +224,7 @@ def test_a_replay_is_the_same_also_without_the_batches_that_were_refused(
     script: list[Batch],
 ) -> None:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("esplanade.server.net.ground_work.thread_time", lambda: 0.0)
+        patch.setattr("esplanade.server.net.ground_work.taken_s", lambda: 0.0)
         first = world_of_three(outside=True)
         refused: set[int] = set()
         digests = []

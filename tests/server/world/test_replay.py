@@ -73,7 +73,7 @@ def recorded() -> tuple[list[list[Input]], list[tuple[bytes, str]]]:
 
     with pytest.MonkeyPatch.context() as patch:
         # Without the time that work takes there is no rest after it.
-        patch.setattr("esplanade.server.net.ground_work.thread_time", lambda: 0.0)
+        patch.setattr("esplanade.server.net.ground_work.taken_s", lambda: 0.0)
         work = GroundWork(world.zone, cast(ThreadPoolExecutor, AtOnce()))
         for tick in range(160):
             given: list[Input] = [*at.get(tick, []), *work.drain()]

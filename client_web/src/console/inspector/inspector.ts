@@ -10,7 +10,7 @@ import { costTable, parameterTable, whyBand } from "./parts";
 import { searchPart } from "./searchpart";
 import { traceOverlay, type TraceView } from "./tree";
 import { WatchedActor } from "./watching";
-import { blockerText, outcomeText, secondsText } from "./why";
+import { blockerText, momentOf, outcomeText, secondsText } from "./why";
 
 const OVERLAY = "inspector";
 const TRACE = "trace";
@@ -65,9 +65,9 @@ class InspectorPanel extends Panel {
       ${
         this.watched.length > 1
           ? nothing
-          : whyBand(first.spans, tick, tickS, this.app.scheme.value.dark, (agoS) => {
+          : whyBand(first.why.spans, tick, tickS, this.app.scheme.value.dark, (agoS) => {
               this.app.state.hovered.value =
-                agoS === null ? null : (Date.now() - agoS * 1000) * 1000;
+                agoS === null ? null : momentOf(first.why.moments, tick - agoS / tickS);
             })
       }
       ${costTable(first)} ${parameterTable(this.watched)}

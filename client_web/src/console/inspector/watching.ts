@@ -11,7 +11,7 @@ import type {
   Point,
   ReasonName,
   Trace,
-  WhySpan,
+  Why,
 } from "../net/types";
 import type { Stop } from "../state/signal";
 
@@ -39,7 +39,7 @@ export interface ActorMessage extends LiveMessage {
 export class WatchedActor {
   details: ActorDetails | null = null;
   now: ActorMessage | null = null;
-  spans: readonly WhySpan[] = [];
+  why: Why = { spans: [], moments: [] };
   trace: Trace | null = null;
   private readonly stops: Stop[] = [];
   private ended = false;
@@ -83,9 +83,9 @@ export class WatchedActor {
 
   private async askWhy(): Promise<void> {
     if (document.hidden) return;
-    const why = await this.ask<{ spans: readonly WhySpan[] }>("/why");
+    const why = await this.ask<Why>("/why");
     if (!why) return;
-    this.spans = why.spans;
+    this.why = why;
     this.changed();
   }
 

@@ -1,6 +1,6 @@
 /** The last ten minutes of an actor: what it did and why, and who or what held it for how long. */
 
-import type { Blocker, WhySpan } from "../net/types";
+import type { Blocker, Moment, WhySpan } from "../net/types";
 import { reasonText } from "../state/reasons";
 
 export const SHOWN_S = 600;
@@ -26,6 +26,16 @@ export function piecesOf(spans: readonly WhySpan[], tick: number, tickS: number)
     }))
     .filter(({ from, to }) => to > from)
     .map(({ from, to, span }) => ({ from, length: to - from, span }));
+}
+
+/** When a tick was, microseconds since 1970: in a pause no time of the world passes. */
+export function momentOf(moments: readonly Moment[], tick: number): number | null {
+  const after = moments.findIndex(([each]) => each > tick);
+  const before = moments[after < 0 ? moments.length - 1 : Math.max(0, after - 1)];
+  if (!before) return null;
+  const next = moments[after];
+  if (!next || tick < before[0]) return before[1];
+  return before[1] + ((next[1] - before[1]) * (tick - before[0])) / (next[0] - before[0]);
 }
 
 /** The spans in which something held the actor, the newest first. */

@@ -27,6 +27,8 @@ export interface ContactsMessage extends LiveMessage {
 
 const CONTACT_S = 60;
 const MOST_CONTACTS = 500;
+/** Alphas are rounded to such a part, so that all marks of one are drawn at once. */
+const FADES = 10;
 /** Predictions beyond this many seconds are no darker. */
 const FAR_S = 4;
 
@@ -44,20 +46,24 @@ export class Contacts {
   draw(pen: CanvasRenderingContext2D, view: MapView, nowS: number, scheme: Scheme): void {
     this.marks = this.marks.filter(({ timeS }) => nowS - timeS < CONTACT_S);
     pen.lineWidth = 2;
-    for (const { at, withPerson, timeS } of this.marks) {
-      const storey = view.storeyOf(at[2]);
-      if (!view.isShown(storey)) continue;
-      const [x, y] = view.toCanvas(at[0], at[1], storey);
-      pen.globalAlpha = 1 - (nowS - timeS) / CONTACT_S;
+    for (const withPerson of [false, true]) {
       pen.strokeStyle = scheme.colour(withPerson ? "fault" : "warn");
-      pen.beginPath();
-      pen.moveTo(x - 5, y - 5);
-      pen.lineTo(x + 5, y + 5);
-      pen.moveTo(x + 5, y - 5);
-      pen.lineTo(x - 5, y + 5);
-      pen.stroke();
+      const marks = this.marks.filter((mark) => mark.withPerson === withPerson);
+      strokeByAlpha(
+        pen,
+        marks,
+        ({ timeS }) => 1 - (nowS - timeS) / CONTACT_S,
+        ({ at }) => {
+          const storey = view.storeyOf(at[2]);
+          if (!view.isShown(storey)) return;
+          const [x, y] = view.toCanvas(at[0], at[1], storey);
+          pen.moveTo(x - 5, y - 5);
+          pen.lineTo(x + 5, y + 5);
+          pen.moveTo(x + 5, y - 5);
+          pen.lineTo(x - 5, y + 5);
+        },
+      );
     }
-    pen.globalAlpha = 1;
   }
 }
 
@@ -79,14 +85,40 @@ export function drawLayers(
     const [px, py] = view.toCanvas(x, y, storey);
     pen.strokeRect(px - 4, py - 4, 8, 8);
   }
-  for (const [x, y, z, radius, aheadS] of Object.values(circles ?? {}).flat()) {
-    const storey = view.storeyOf(z);
-    if (!view.isShown(storey)) continue;
-    const [px, py] = view.toCanvas(x, y, storey);
-    pen.globalAlpha = 0.7 - 0.5 * Math.min(1, aheadS / FAR_S);
-    pen.strokeStyle = scheme.colour("fault");
+  pen.strokeStyle = scheme.colour("fault");
+  pen.lineWidth = 1;
+  strokeByAlpha(
+    pen,
+    Object.values(circles ?? {}).flat(),
+    ([, , , , aheadS]) => 0.7 - 0.5 * Math.min(1, aheadS / FAR_S),
+    ([x, y, z, radius]) => {
+      const storey = view.storeyOf(z);
+      if (!view.isShown(storey)) return;
+      const [px, py] = view.toCanvas(x, y, storey);
+      pen.moveTo(px + radius * view.scale, py);
+      pen.arc(px, py, radius * view.scale, 0, 2 * Math.PI);
+    },
+  );
+}
+
+/** Stroke marks that are traced one by one; those that are about as dark become one path. */
+function strokeByAlpha<Mark>(
+  pen: CanvasRenderingContext2D,
+  marks: readonly Mark[],
+  alphaOf: (mark: Mark) => number,
+  trace: (mark: Mark) => void,
+): void {
+  const alike = new Map<number, Mark[]>();
+  for (const mark of marks) {
+    const step = Math.ceil(FADES * alphaOf(mark));
+    const same = alike.get(step);
+    if (same) same.push(mark);
+    else alike.set(step, [mark]);
+  }
+  for (const [step, same] of alike) {
+    pen.globalAlpha = Math.max(0, Math.min(1, step / FADES));
     pen.beginPath();
-    pen.arc(px, py, radius * view.scale, 0, 2 * Math.PI);
+    same.forEach(trace);
     pen.stroke();
   }
   pen.globalAlpha = 1;

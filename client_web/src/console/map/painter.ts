@@ -21,10 +21,13 @@ export class Painter {
   ring: readonly Pixel[] | null = null;
   map: MapData | null = null;
   doors: Readonly<Record<string, boolean>> = {};
-  layers: LayersMessage | null = null;
   /** Milliseconds that the last pictures took, on average. */
   tookMs = 0;
   private readonly still = new Offscreen();
+  /** Ways, goals and predictions, which come twice a second. */
+  private readonly planned = new Offscreen();
+  private planning: LayersMessage | null = null;
+  private plannings = 0;
   private readonly trails = new Trails();
   private readonly overlays = new OverlayPainter();
   /** Where names of places are, which those of avatars keep away from. */
@@ -54,7 +57,7 @@ export class Painter {
     this.overlays.draw(pen, view, ratio, app.state.overlays.value.values());
     this.drawPicking(pen);
     this.trails.draw(pen, view, ratio, all, drawnS, options.trailS, chosen, scheme);
-    if (this.layers) drawLayers(pen, view, this.layers, scheme);
+    this.drawPlanned(pen, ratio);
     if (options.contacts) this.contacts.draw(pen, view, nowS, scheme);
     this.drawn = placed(all.values(), view, drawnS);
     drawPeople(pen, view, this.drawn, chosen, scheme);
@@ -80,6 +83,21 @@ export class Painter {
       if (heat !== "none") this.heat.draw(own, view);
       drawDoors(own, view, map, doors, scheme);
       this.names = places ? drawPlaces(own, view, map, scheme) : [];
+    });
+  }
+
+  /** The ways, goals and predictions that are shown, if any. */
+  set layers(message: LayersMessage | null) {
+    this.planning = message;
+    this.plannings++;
+  }
+
+  private drawPlanned(pen: CanvasRenderingContext2D, ratio: number): void {
+    const { view, planning, plannings } = this;
+    if (!planning) return;
+    const scheme = this.app.scheme.value;
+    this.planned.show(pen, view, ratio, `${plannings} ${scheme.dark}`, (own) => {
+      drawLayers(own, view, planning, scheme);
     });
   }
 

@@ -11,6 +11,9 @@ const LEAST_RADIUS_PX = 3;
 /** With more tags than this nobody could read one. */
 const MOST_TAGS = 120;
 const TURN = 2 * Math.PI;
+const TAG_FONT = "11px system-ui, sans-serif";
+/** Of more texts the widths are measured anew. */
+const MOST_WIDTHS = 4096;
 
 /** An avatar where it is drawn. */
 export interface Drawn {
@@ -20,6 +23,8 @@ export interface Drawn {
   heading: number;
 }
 
+/** The widths of tags, which take longer to measure than to draw. */
+const widths = new Map<string, number>();
 const place: Place = { x: 0, y: 0, z: 0, heading: 0 };
 
 /** Where everybody within the canvas is at a moment. */
@@ -103,7 +108,7 @@ export function drawTags(
   // Those who are chosen get room first.
   const first = drawn.filter((one) => chosen.has(one.avatar.key));
   const rest = drawn.length <= MOST_TAGS ? drawn.filter((one) => !first.includes(one)) : [];
-  pen.font = "11px system-ui, sans-serif";
+  pen.font = TAG_FONT;
   pen.textAlign = "left";
   pen.lineWidth = 3;
   pen.lineJoin = "round";
@@ -113,13 +118,23 @@ export function drawTags(
     .slice(0, MOST_TAGS)
     .map(({ avatar, px, py }) => ({ text: tagOf(avatar, tags), x: px, y: py }))
     .filter(({ text }) => text !== "");
-  const wishes = told.map(({ text, x, y }) => ({ x, y, width: pen.measureText(text).width }));
+  const wishes = told.map(({ text, x, y }) => ({ x, y, width: widthOf(pen, text) }));
   for (const [index, spot] of spots(wishes, places).entries()) {
     const text = told[index]?.text;
     if (!spot || text === undefined) continue;
     pen.strokeText(text, spot.x, spot.y);
     pen.fillText(text, spot.x, spot.y);
   }
+}
+
+function widthOf(pen: CanvasRenderingContext2D, text: string): number {
+  let width = widths.get(text);
+  if (width === undefined) {
+    if (widths.size >= MOST_WIDTHS) widths.clear();
+    width = pen.measureText(text).width;
+    widths.set(text, width);
+  }
+  return width;
 }
 
 export function tagOf(avatar: Avatar, tags: MapOptions["tags"]): string {

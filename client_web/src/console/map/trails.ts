@@ -8,7 +8,8 @@ import type { MapView } from "./views";
 /** The picture of trails is drawn anew this often, and whenever the map is moved. */
 const AGAIN_S = 0.25;
 const ALPHA = 0.55;
-const WIDTH_PX = 1.25;
+/** Lines that are no wider than a pixel are drawn in a fraction of the time of wider ones. */
+const WIDTH_PX = 1;
 /** With more avatars only the chosen ones have the long trails. */
 const MANY = 100;
 const SHORT_S = 10;

@@ -175,6 +175,15 @@ export interface WhySpan {
   seconds: number;
 }
 
+/** A tick, and when it was: microseconds since 1970. */
+export type Moment = readonly [tick: number, atUs: number];
+
+/** What an actor has done and why; between two of the moments time passed evenly. */
+export interface Why {
+  spans: readonly WhySpan[];
+  moments: readonly Moment[];
+}
+
 /** The parts of the cost of a path, in seconds of walking; null for what has no end. */
 export interface Cost {
   time: number | null;

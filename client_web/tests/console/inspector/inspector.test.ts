@@ -3,7 +3,7 @@ import { compare, valueText } from "../../../src/console/inspector/compare";
 import { barPart, secondsOf } from "../../../src/console/inspector/costs";
 import { comparedPaths } from "../../../src/console/inspector/searchpart";
 import { countNodes, segmentsOf, traceOverlay } from "../../../src/console/inspector/tree";
-import { piecesOf, shares, spanText, stopsOf } from "../../../src/console/inspector/why";
+import { momentOf, piecesOf, shares, spanText, stopsOf } from "../../../src/console/inspector/why";
 import type { Cost, PricedPath, Trace, WhySpan } from "../../../src/console/net/types";
 import { reasonColour, REASONS, reasonText } from "../../../src/console/state/reasons";
 
@@ -22,6 +22,20 @@ describe("why", () => {
     expect(pieces.map(({ from }) => from)).toEqual([0, 0.98]);
     expect(pieces[1]?.length).toBeCloseTo(0.02);
     expect(piecesOf(SPANS, 60_000, 0.05)).toEqual([]);
+  });
+
+  it("passes pauses over, and knows when a tick was", () => {
+    // A second, a pause of a minute, another second at half the pace.
+    const moments = [
+      [100, 5e6],
+      [120, 6e6],
+      [121, 66e6],
+      [141, 68e6],
+    ] as const;
+    expect([90, 110, 120, 131, 150].map((tick) => momentOf(moments, tick))).toEqual([
+      5e6, 5.5e6, 6e6, 67e6, 68e6,
+    ]);
+    expect(momentOf([], 5)).toBeNull();
   });
 
   it("names who held it and for how long", () => {

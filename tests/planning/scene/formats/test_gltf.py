@@ -10,6 +10,7 @@ from urllib.parse import quote
 import numpy as np
 import pytest
 
+from esplanade.planning.scene.formats import gltf
 from esplanade.planning.scene.formats.gltf import read_gltf
 from tests.planning.scene.formats.test_faces import area
 
@@ -272,6 +273,24 @@ def test_what_is_no_gltf_is_refused(tmp_path: Path, change: Any, message: str) -
     made = Made()
     made.content.update(change)
     with pytest.raises(ValueError, match=message):
+        made.read(tmp_path)
+
+
+def test_packed_meshes_are_counted_as_they_are(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = Made()
+    made.content["accessors"][1]["count"] = 3  # one triangle is declared, two are packed
+    made.primitive["extensions"] = {"KHR_draco_mesh_compression": {"bufferView": 0}}
+    made.content["extensionsRequired"] = ["KHR_draco_mesh_compression"]
+    made.content["nodes"] = [{"mesh": 0}] * 2
+    made.content["scenes"] = []
+    unpacked = SQUARE.astype(np.float64), FACES.astype(np.int64).reshape(-1, 3)
+    monkeypatch.setattr(gltf, "unpacked_draco", lambda _: unpacked)
+    monkeypatch.setattr(gltf, "MAX_TRIANGLES", 4)
+    assert len(made.read(tmp_path).points) == 4
+    monkeypatch.setattr(gltf, "MAX_TRIANGLES", 3)
+    with pytest.raises(ValueError, match="show 4 triangles in all, 3 are possible"):
         made.read(tmp_path)
 
 

@@ -61,6 +61,22 @@ def test_ply_fills_concave_faces_of_any_number_of_corners(kind: str) -> None:
         read_ply(ply(kind)[:-2])
 
 
+def test_ply_refuses_lists_of_less_than_nothing() -> None:
+    head = (
+        "ply\nformat {} 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+        "property float z\nelement face {}\nproperty list char int vertex_indices\nend_header\n"
+    )
+    negative = struct.pack("<b", -1)
+    whole = struct.pack("<b3i", 3, 0, 0, 0)
+    for kind, faces, body in (
+        ("ascii", 2, b"0 0 0 -2 3 0 0 0"),
+        ("binary_little_endian", 1, bytes(12) + negative),
+        ("binary_little_endian", 2, bytes(12) + whole + negative + bytes(12)),
+    ):
+        with pytest.raises(ValueError, match=r"a list of -\d values cannot be"):
+            read_ply(head.format(kind, faces).encode() + body)
+
+
 def test_stl_is_read_as_text_and_as_bytes() -> None:
     corners = cut(read_off(off_text().encode())).points
     loops = "".join(

@@ -1,0 +1,29 @@
+"""The room that discs around those who stand get."""
+
+import numpy as np
+import pytest
+
+from esplanade.actors.standing_discs import as_known, still_there, wider, widest
+
+
+@pytest.mark.parametrize(
+    ("room_m", "widened_m"), [(0.3, 0.65), (0.5, 0.75), (0.72, 0.75), (0.9, 0.9)]
+)
+def test_a_disc_is_widened_up_to_a_bound_and_never_narrowed(
+    room_m: float, widened_m: float
+) -> None:
+    assert wider(np.array([1.0, 2.0, 0.0, room_m])) == (1.0, 2.0, 0.0, widened_m)
+
+
+def test_of_discs_around_a_place_the_widest_counts() -> None:
+    near, far = (1.0, 2.0, 0.0, 0.5), (3.0, 2.0, 0.0, 0.5)
+    wide = (1.0, 2.0, 0.0, 0.7)
+    assert widest({near, wide, far}) == {wide, far}
+    assert as_known(np.array([near, far]), [wide])[:, 3].tolist() == [0.7, 0.5]
+
+
+def test_a_place_is_known_while_one_stands_there_whatever_room_it_gets() -> None:
+    near, far = (1.0, 2.0, 0.0, 0.5), (3.0, 2.0, 0.0, 0.5)
+    standing = np.array([(1.001, 1.999, 0.0, 0.3), (3.0, 2.02, 0.0, 0.5)])
+    assert still_there((near, far), standing) == (near,)
+    assert still_there((near, far), np.empty((0, 4))) == ()
