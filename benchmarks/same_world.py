@@ -189,9 +189,9 @@ async def run(ticks: int, clients: int) -> str:
             {"storeys": storeys},
             ModerationState(cast(Store, None)),
         )
-        delivery = Delivery(audience, hub.sessions, settings.tick_rate, hub.stop_watching)
+        delivery = Delivery(audience, hub.sessions, settings.tick_rate, hub.wishes.stop_watching)
         visitors = Visitors(hub, world, settings, clients)
-        finding = asyncio.create_task(requests.run(hub.route_found))
+        finding = asyncio.create_task(requests.run(hub.wishes.route_found))
         for tick in shown.track(range(ticks), description="ticks"):
             now = tick * world.tick_s
             visitors.act(tick)

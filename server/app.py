@@ -151,7 +151,11 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             persistence.seats,
         )
         delivery = Delivery(
-            audience, hub.sessions, settings.tick_rate, hub.stop_watching, hub.moderation.lines
+            audience,
+            hub.sessions,
+            settings.tick_rate,
+            hub.wishes.stop_watching,
+            hub.moderation.lines,
         )
         link, bulletin = LocalLink(), Bulletin()
         console = await resume(
@@ -181,7 +185,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             Listener(hub, assets, settings, metrics, places).listening(sockets, tls)
         )
         ticking = asyncio.create_task(ticker.run())
-        guiding = asyncio.create_task(route_requests.run(hub.route_found))
+        guiding = asyncio.create_task(route_requests.run(hub.wishes.route_found))
         readiness.open()
         try:
             yield Running(_port_of(sockets), private, world, metrics, kept, gate, console, ticking)

@@ -40,7 +40,7 @@ async def commanding(
     """
     overrides = None if loaded.roster is None else loaded.roster.overrides
     console = Console(world, hub.moderation, kept.store, kept.audit, overrides, presets, pace)
-    hub.by_commands = doors = DoorCommands(console, kept.directory.again)
+    hub.wishes.by_commands = doors = DoorCommands(console, kept.directory.again)
     watch_console(console, doors, metrics)
     console.figures.add(
         "tick_p99_ms",

@@ -1,36 +1,20 @@
-"""The hub joins sessions and the world: it collects people's wishes, and passes chat on."""
+"""The hub joins sessions and the world: who comes and goes, and what the next tick is given."""
 
 import asyncio
 from collections.abc import Callable, Mapping
 from typing import Any
 
-import structlog
-
-from esplanade.planning import MovedEnd
 from esplanade.protocol import ByeCode, CloseCode, ErrorCode, ProtocolError
-from esplanade.protocol.messages import (
-    Bye,
-    Hello,
-    Move,
-    MutePerson,
-    Report,
-    SetDoor,
-    WalkTo,
-)
+from esplanade.protocol.messages import Bye, Hello
 from esplanade.server.checkpoint.returning import Left
 from esplanade.server.checkpoint.seat_keeper import SeatKeeper
 from esplanade.server.metrics import Metrics
 from esplanade.server.moderation.state import ModerationState
 from esplanade.server.net import frames
 from esplanade.server.net.chat_gate import ChatGate
-from esplanade.server.net.door_commands import DoorCommands
 from esplanade.server.net.entrance import Entrance
-from esplanade.server.net.fair_queue import Asker
-from esplanade.server.net.ground_work import DOOR_PAUSE_S
 from esplanade.server.net.leases import ANSWER_S, PING_S, Leases
-from esplanade.server.net.lines import MOST_MUTED
 from esplanade.server.net.moderation import PeopleModeration
-from esplanade.server.net.moved_goals import notice_of, refusal_of
 from esplanade.server.net.operator_keys import SERVICE, OperatorKeys, TooManyKeysError
 from esplanade.server.net.pace_notices import PaceNotices
 from esplanade.server.net.pending_inputs import PendingInputs
@@ -41,23 +25,21 @@ from esplanade.server.net.session import Session
 from esplanade.server.net.waiting_lines import WaitingLines
 from esplanade.server.net.walk_outs import WalkOuts
 from esplanade.server.net.welcomes import Welcomes
+from esplanade.server.net.wishes import Wishes
 from esplanade.server.settings import ServerSettings
 from esplanade.server.world.audience import Audience
 from esplanade.server.world.frame import Frame
-from esplanade.server.world.inputs import Follow, Input, MoveDoor, Movement, Steer, Watch
+from esplanade.server.world.inputs import Input
 from esplanade.server.world.pace import Pace
-from esplanade.server.world.routes import Route
 from esplanade.server.world.zone import Zone
-
-log = structlog.get_logger(__name__)
 
 
 class Hub:
     """All sessions of a zone.
 
-    Who has a seat is the business of `Seating`; what waits for the next tick is in `PendingInputs`,
-    which `drain` hands to the tick. `derived` holds the facts about the scene that a welcome adds
-    to those in the scene's file.
+    Who has a seat is the business of `Seating`, what they want that of `Wishes`; what waits for the
+    next tick is in `PendingInputs`, which `drain` hands to the tick. `derived` holds the facts of
+    the scene that a welcome adds to those in the scene's file.
     """
 
     def __init__(  # noqa: PLR0913, PLR0917 (every part of the network meets here)
@@ -110,20 +92,31 @@ class Hub:
             lambda: asyncio.get_running_loop().time(),
         )
         self._entrance = entrance
-        self.by_commands: DoorCommands | None = None
-        """Carries out what operators want who have walked in by a pass."""
         self._pace = pace or Pace()
         self._pace_notices = PaceNotices(self.sessions, server_time)
         self._pace.changed.append(self._pace_notices.tell_all)
         self._walk_outs = self.moderation.walk_outs = WalkOuts(
-            world, self.sessions, route_requests, self._want, self.moderation.has_walked_out
+            world,
+            self.sessions,
+            route_requests,
+            lambda movement: self.wishes.want(movement),  # noqa: PLW0108 - made below
+            self.moderation.has_walked_out,
         )
         self._lines = WaitingLines(
             self.moderation, ChatGate(moderated, storeys), self._seating.is_at_the_door, metrics
         )
-        self._reporting = Reporting(moderated, self._reportable, self.moderation.where)
-        self._door_lines: dict[str, float] = {}
-        """Wishes for a door are logged as often as it may move: from when on, by its name."""
+        self.wishes = Wishes(
+            world,
+            audience,
+            route_requests,
+            self._pending,
+            self.sessions,
+            self.moderation,
+            self._walk_outs,
+            self._lines,
+            Reporting(moderated, self.moderation.reportable, self.moderation.where),
+        )
+        """What people want who have a seat."""
         metrics.gauge("frames_waiting", "Frames that wait for slow clients", self._frames_waiting)
 
     # --- coming and going ---------------------------------------------------------------------
@@ -220,122 +213,6 @@ class Hub:
     def _run_for_s(self, now: float) -> float:
         """A clock that stands while the world does: nobody's seat is lost in a pause."""
         return now - self._pace.standing_s(now)
-
-    # --- wishes of people ---------------------------------------------------------------------
-
-    def move(self, session: Session, wish: Move | WalkTo) -> None:
-        """Keep the wish for the next tick; it takes the place of an earlier one."""
-        avatar_id = session.avatar_id
-        if avatar_id is None or avatar_id in self._walk_outs:
-            return
-        if isinstance(wish, Move):
-            self._want(Steer(avatar_id, wish.seq, wish.direction, wish.speed))
-            return
-        try:
-            self._routes.ask(Asker(session.address, avatar_id), wish)
-        except ProtocolError as refusal:
-            session.tell(refusal)
-
-    def route_found(
-        self, avatar_id: int, wish: WalkTo, route: Route | None, moved: MovedEnd | None
-    ) -> None:
-        """Send a person along the route that was found, or tell them that there is none.
-
-        They are also told where it leads instead, if nobody can stand where they wanted to go.
-        """
-        session = self.sessions.get(avatar_id)
-        if session is None:
-            return
-        if avatar_id in self._walk_outs:
-            self._walk_outs.route_found(avatar_id, route)
-        elif route is not None:
-            self._want(Follow(avatar_id, wish.seq, route))
-            if moved is not None:
-                session.outbox.post(frames.message(notice_of(wish, moved)))
-        elif moved is not None and wish.strict:
-            session.tell(refusal_of(wish, moved))
-        else:
-            text = f"no way leads to ({wish.x:.2f}, {wish.y:.2f}, {wish.z:.2f})"
-            session.tell(ProtocolError(ErrorCode.NO_PATH, text, None))
-
-    def say(self, session: Session, text: str) -> None:
-        """Say a line in the next tick; that of somebody at the door waits until they are in."""
-        self._lines.put(session, text)
-
-    def watch(self, session: Session, actor_id: int | None) -> None:
-        """Send the plans of an actor from now on, or of none."""
-        if actor_id is not None and not (
-            session.avatar_id is not None
-            and self._audience.is_actor(actor_id)
-            and self._audience.sees(session.avatar_id, actor_id)
-        ):
-            session.tell(
-                ProtocolError(ErrorCode.INVALID, f"watch: {actor_id} is no actor in view", None)
-            )
-            actor_id = None
-        self._watch(session, actor_id)
-
-    def stop_watching(self, session: Session) -> None:
-        """Send no more plans: the actor is out of view."""
-        self._watch(session, None)
-
-    def _watch(self, session: Session, actor_id: int | None) -> None:
-        session.watching = actor_id
-        if session.avatar_id is not None:
-            self._pending.watch(Watch(session.avatar_id, actor_id))
-
-    def set_door(self, session: Session, wish: SetDoor) -> None:
-        """Open or close a door soon, if the session may; the latest wish for a door wins."""
-        if not session.is_operator:
-            fault = ErrorCode.FORBIDDEN, "only operators open and close doors"
-        elif wish.name not in self._world.doors.states():
-            fault = ErrorCode.INVALID, f"set_door: the scene has no door {wish.name!r}"
-        else:
-            if self.by_commands:
-                self.by_commands.ask(session, wish)
-                return
-            now = asyncio.get_running_loop().time()
-            if now >= self._door_lines.get(wish.name, now):
-                self._door_lines[wish.name] = now + DOOR_PAUSE_S
-                log.info("door", name=wish.name, open=wish.open, id=session.avatar_id)
-            self._pending.move_door(MoveDoor(wish.name, wish.open))
-            return
-        session.tell(ProtocolError(*fault, None))
-
-    def report(self, session: Session, report: Report) -> None:
-        """Put a report about somebody before moderators, and tell the person so."""
-        made = self._reporting.take(session, report, asyncio.get_running_loop().time())
-        if made is not None:
-            log.info("person reported", report=made.id, id=made.person, by=made.reporter)
-            about = {
-                "report": made.id,
-                "who": made.reporter,
-                "other": made.person,
-                "name": made.name,
-                "text": made.text,
-                "place": made.place,
-            }
-            self.moderation.happened("report", about)
-
-    def mute(self, session: Session, wish: MutePerson) -> None:
-        """Send no lines of somebody to the session any more, or send them again."""
-        avatar_id = session.avatar_id
-        if avatar_id is None:
-            return
-        if not self.moderation.lines.mute(avatar_id, wish.id, muted=wish.muted):
-            text = f"you have muted {MOST_MUTED} people, no more can be at once"
-            session.tell(ProtocolError(ErrorCode.FLOODING, text, None))
-
-    def _reportable(self, avatar_id: int) -> str | None:
-        """The name of a person or an actor who is here, or of a person who has just left."""
-        if avatar_id in self._world.state:
-            return self._world.state.names[self._world.state.slot(avatar_id)]
-        known = self.moderation.known(avatar_id)
-        return None if known is None else known.name
-
-    def _want(self, movement: Movement) -> None:
-        self._pending.move(movement)
-        self._routes.forget(movement.id)
 
     # --- requests of the tick -----------------------------------------------------------------
 

@@ -38,6 +38,13 @@ class PeopleHere:
         session = self._sessions.get(person)
         return None if session is None else session.name
 
+    def reportable(self, avatar_id: int) -> str | None:
+        """The name of a person or an actor who is here, or of a person who has just left."""
+        if avatar_id in self._world.state:
+            return self._world.state.names[self._world.state.slot(avatar_id)]
+        known = self.known(avatar_id)
+        return None if known is None else known.name
+
     def known(self, person: int) -> KnownPerson | None:
         """A person who is connected, or has left within the last minutes."""
         session = self._sessions.get(person)

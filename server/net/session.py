@@ -54,15 +54,8 @@ _LINE: Final = _PAIR + msgpack.packb(int(ClientCode.CHAT))
 _CODES_OF_OURS: Final = frozenset(code for code in CloseCode if code >= 4000)
 
 
-class SessionRequests(Protocol):
-    """The requests that a session passes on; the hub fulfils them."""
-
-    @property
-    def server_time(self) -> Callable[[], float]:
-        """Returns the seconds of the world's clock."""
-
-    async def receive(self, session: "Session", hello: Hello) -> None:
-        """Give the person a place in the world, or raise ProtocolError."""
+class SessionWishes(Protocol):
+    """What a person wants who is in."""
 
     def move(self, session: "Session", wish: Move | WalkTo) -> None:
         """Move the person's avatar in the next tick."""
@@ -81,6 +74,21 @@ class SessionRequests(Protocol):
 
     def mute(self, session: "Session", wish: MutePerson) -> None:
         """Send no lines of somebody to the session any more, or send them again."""
+
+
+class SessionRequests(Protocol):
+    """The requests that a session passes on; the hub fulfils them."""
+
+    @property
+    def server_time(self) -> Callable[[], float]:
+        """Returns the seconds of the world's clock."""
+
+    @property
+    def wishes(self) -> SessionWishes:
+        """Takes what the person wants."""
+
+    async def receive(self, session: "Session", hello: Hello) -> None:
+        """Give the person a place in the world, or raise ProtocolError."""
 
     def confirm(self, session: "Session") -> None:
         """Note that the client has read its welcome: it has sent something since."""
@@ -273,23 +281,23 @@ class Session:
         match message:
             case Move() | WalkTo():
                 self.last_seq = message.seq
-                self._hub.move(self, message)
+                self._hub.wishes.move(self, message)
             case Ping():
                 now_s = self._hub.server_time()
                 self.outbox.post(frames.message(Pong(nonce=message.nonce, server_time=now_s)))
             case ChatLine():
                 if self._lines.take(asyncio.get_running_loop().time()):
-                    self._hub.say(self, message.text)
+                    self._hub.wishes.say(self, message.text)
                 else:
                     self.refuse_line("rate", "you talk too fast")
             case Watch():
-                self._hub.watch(self, message.id)
+                self._hub.wishes.watch(self, message.id)
             case SetDoor():
-                self._hub.set_door(self, message)
+                self._hub.wishes.set_door(self, message)
             case Report():
-                self._hub.report(self, message)
+                self._hub.wishes.report(self, message)
             case MutePerson():
-                self._hub.mute(self, message)
+                self._hub.wishes.mute(self, message)
             case Hello():
                 raise ProtocolError(ErrorCode.INVALID, "hello comes only once", CloseCode.INVALID)
 

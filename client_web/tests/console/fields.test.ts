@@ -4,10 +4,12 @@ import {
   SLIDER_STEPS,
   byGroup,
   fromSlider,
+  labelOf,
   numberFields,
   outOfRange,
   parsed,
   toSlider,
+  unitIn,
 } from "../../src/console/models/fields";
 import type { NumberField } from "../../src/console/models/fields";
 
@@ -102,5 +104,15 @@ describe("typing", () => {
     expect(outOfRange(field("speed_mps"), 9)).toBe("must not be above 3 m/s");
     expect(outOfRange(field("speed_mps"), 0)).toBe("must not be below 0.1 m/s");
     expect(outOfRange(field("speed_mps"), 1)).toBeNull();
+  });
+});
+
+describe("names of the wire", () => {
+  it("are words with a unit", () => {
+    const told = ["least_pause_s", "speed_mps", "tick_p99_ms", "target"].map(
+      (name) => `${labelOf(name)} ${unitIn(name)}`,
+    );
+    expect(told).toEqual(["Least pause s", "Speed m/s", "Tick p99 ms", "Target "]);
+    expect(labelOf("tick_p99_ms")).toBe("Tick p99");
   });
 });

@@ -26,11 +26,11 @@ async def test_axe_finds_nothing(
     assert await visit.findings() == []
     await page.click("summary:has-text('Layers')")
     await page.keyboard.press("]")
-    if size[0] < 760:
+    if size[0] < 900:
         await page.get_by_role("tab", name="Inspector").click()
     await page.wait_for_selector("text=keeping right")
     assert await visit.findings() == []
-    if size[0] < 760:
+    if size[0] < 900:
         await page.get_by_role("tab", name="Everybody").click()
         assert await visit.findings() == []
     await page.keyboard.press("?")

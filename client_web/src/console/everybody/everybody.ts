@@ -25,6 +25,10 @@ class EverybodyPanel extends Panel {
         width: 100%;
       }
 
+      p {
+        margin: 6px 0 0;
+      }
+
       [role="listbox"] {
         flex: 1;
         min-height: 0;

@@ -35,7 +35,7 @@ import "./topbar";
 import { watchWorld } from "./worldwatch";
 
 /** Below this width there are tabs instead of columns. */
-const NARROW = "(max-width: 759px)";
+const NARROW = "(max-width: 899px)";
 
 export class Console extends LitElement {
   static override styles = [controls, frame];

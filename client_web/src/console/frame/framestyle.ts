@@ -37,7 +37,7 @@ export const frame = css`
 
   esp-area.left {
     grid-area: left;
-    width: min(var(--left), 40vw);
+    width: min(var(--left), 36vw);
   }
 
   esp-area.centre {
@@ -46,7 +46,7 @@ export const frame = css`
 
   esp-area.right {
     grid-area: right;
-    width: min(var(--right), 45vw);
+    width: min(var(--right), 36vw);
   }
 
   esp-area.bottom {

@@ -1,6 +1,7 @@
 /** The panel on whom is chosen: what an actor does and why, or several beside each other. */
 
 import { html, nothing, type TemplateResult } from "lit";
+import { labelOf, unitIn } from "../models/fields";
 import { Panel } from "../panels/panel";
 import { reasonText } from "../state/reasons";
 import { controls } from "../style/controls";
@@ -132,8 +133,8 @@ class InspectorPanel extends Panel {
         <dd>${details?.tags.join(", ") || "none"}</dd>
         ${Object.entries(now?.behaviour ?? details?.behaviour ?? {}).map(
           ([name, value]) =>
-            html`<dt>${name === "kind" ? "Behaviour" : name.replaceAll("_", " ")}</dt>
-              <dd>${valueText(value)}</dd>`,
+            html`<dt>${name === "kind" ? "Behaviour" : labelOf(name)}</dt>
+              <dd>${valueText(value)} ${value === null ? nothing : unitIn(name)}</dd>`,
         )}
       </dl>
     `;

@@ -7,6 +7,10 @@ export const inspectorStyle = css`
     font-size: 16px;
   }
 
+  .row {
+    margin-bottom: 6px;
+  }
+
   section {
     margin-top: 14px;
   }
@@ -49,8 +53,23 @@ export const inspectorStyle = css`
     overflow: auto;
   }
 
+  .stops li {
+    display: flex;
+    gap: 5px;
+    align-items: baseline;
+    padding: 1px 0;
+  }
+
+  .stops .grow {
+    flex: 1;
+  }
+
+  .stops .soft {
+    white-space: nowrap;
+  }
+
   .dot {
-    display: inline-block;
+    flex: none;
     width: 9px;
     height: 9px;
   }
@@ -65,8 +84,13 @@ export const inspectorStyle = css`
     font-weight: 600;
   }
 
-  .costs td {
-    min-width: 56px;
+  /* Bars of all columns are as long as their values. */
+  .costs {
+    table-layout: fixed;
+  }
+
+  .costs th:first-child {
+    width: 40%;
   }
 
   .bar {

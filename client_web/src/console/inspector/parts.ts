@@ -1,6 +1,7 @@
 /** The parts of the inspector: the band of reasons, costs, parameters. */
 
 import { html, nothing, type TemplateResult } from "lit";
+import { labelOf, unitIn } from "../models/fields";
 import type { WhySpan } from "../net/types";
 import { reasonColour, reasonText } from "../state/reasons";
 import { styled } from "../style/styled";
@@ -51,7 +52,7 @@ export function whyBand(
         (span) =>
           html`<li>
             <span class="dot" ${styled({ background: reasonColour(span.reason, dark) })}></span>
-            ${spanText(span)}
+            <span class="grow">${spanText(span)}</span>
             <span class="soft">${secondsText(Math.max(0, (tick - span.to_tick) * tickS))} ago</span>
           </li>`,
       )}
@@ -64,7 +65,7 @@ export function costTable({ now }: WatchedActor): TemplateResult | typeof nothin
   if (!now?.cost) return nothing;
   const columns = [{ title: "now", cost: now.cost }];
   const before = now.previous?.cost;
-  if (before) columns.push({ title: "the one before", cost: before });
+  if (before) columns.push({ title: "before", cost: before });
   return costBars("cost", "Cost of the path", columns);
 }
 
@@ -89,7 +90,9 @@ export function parameterTable(actors: readonly WatchedActor[]): TemplateResult 
         ${shown.map(
           ({ name, values }) =>
             html`<tr>
-              <th scope="row" class="name">${name.replaceAll("_", " ")}</th>
+              <th scope="row" class="name">
+                ${labelOf(name)} <span class="soft">${unitIn(name)}</span>
+              </th>
               ${values.map(
                 (source) =>
                   html`<td>

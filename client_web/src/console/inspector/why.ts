@@ -4,6 +4,7 @@ import type { Blocker, Moment, WhySpan } from "../net/types";
 import { reasonText } from "../state/reasons";
 
 export const SHOWN_S = 600;
+const BRIEF_S = 0.3;
 /** Reasons for which an actor is held up. */
 const HELD: ReadonlySet<string> = new Set(["giving_way", "waiting", "replanning", "no_path"]);
 
@@ -38,10 +39,13 @@ export function momentOf(moments: readonly Moment[], tick: number): number | nul
   return before[1] + ((next[1] - before[1]) * (tick - before[0])) / (next[0] - before[0]);
 }
 
-/** The spans in which something held the actor, the newest first. */
+/**
+ * The spans in which something held the actor, the newest first. Those that are over before the
+ * server asks who it was are left out: most are, in a crowd.
+ */
 export function stopsOf(spans: readonly WhySpan[], most: number): WhySpan[] {
   return spans
-    .filter(({ reason }) => HELD.has(reason))
+    .filter(({ reason, seconds }) => HELD.has(reason) && seconds > BRIEF_S)
     .slice(-most)
     .reverse();
 }

@@ -15,19 +15,26 @@ export interface Spot {
   y: number;
 }
 
+const EVERYWHERE: Box = [-Infinity, -Infinity, Infinity, Infinity];
 const HEIGHT_PX = 12;
 const BESIDE_PX = 8;
 
 /**
  * A spot for each name, in their order: to the right of its point, to its left, above, or below.
  * A name for which no room is left has none. Names keep away from each other, and where they can
- * from `avoided` too.
+ * they keep within `within`, and away from `avoided` too.
  */
-export function spots(wishes: readonly Wish[], avoided: readonly Box[] = []): (Spot | null)[] {
+export function spots(
+  wishes: readonly Wish[],
+  avoided: readonly Box[] = [],
+  within: Box = EVERYWHERE,
+): (Spot | null)[] {
   const taken: Box[] = [];
   return wishes.map((wish) => {
     const free = sides(wish).filter((spot) => !hits(boxAt(spot, wish.width), taken));
-    const spot = free.find((one) => !hits(boxAt(one, wish.width), avoided)) ?? free[0] ?? null;
+    const whole = free.filter((spot) => lies(boxAt(spot, wish.width), within));
+    const best = whole.length > 0 ? whole : free;
+    const spot = best.find((one) => !hits(boxAt(one, wish.width), avoided)) ?? best[0] ?? null;
     if (spot) taken.push(boxAt(spot, wish.width));
     return spot;
   });
@@ -49,4 +56,8 @@ function sides({ x, y, width }: Wish): Spot[] {
 
 function hits([left, top, right, bottom]: Box, others: readonly Box[]): boolean {
   return others.some(([l, t, r, b]) => left < r && right > l && top < b && bottom > t);
+}
+
+function lies([left, top, right, bottom]: Box, [l, t, r, b]: Box): boolean {
+  return left >= l && top >= t && right <= r && bottom <= b;
 }

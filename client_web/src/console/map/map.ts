@@ -19,8 +19,8 @@ import { legend, toolbar } from "./toolbar";
 import { MapView } from "./views";
 
 const HEAT_MS = 10_000;
-/** The legend lies over this part of the map. */
-const LEGEND_PX = 30;
+/** Room below the legend. */
+const BELOW_PX = 6;
 const FOLLOW_PX_PER_M = 18;
 /** The page tells once in so many frames how long it draws. */
 const TOLD_FRAMES = 15;
@@ -201,7 +201,9 @@ class MapPanel extends Panel {
 
   private fit(): void {
     this.app.state.following.value = false;
-    this.view.fit(LEGEND_PX);
+    // The legend lies over the map, in as many lines as it needs.
+    const legend = this.renderRoot.querySelector<HTMLElement>(".legend");
+    this.view.fit(legend ? Math.min(legend.offsetHeight + BELOW_PX, this.view.height / 3) : 0);
     this.isFitted = this.view.width > 1;
   }
 

@@ -61,7 +61,7 @@ export class Painter {
     if (options.contacts) this.contacts.draw(pen, view, nowS, scheme);
     this.drawn = placed(all.values(), view, drawnS);
     drawPeople(pen, view, this.drawn, chosen, scheme);
-    drawTags(pen, this.drawn, chosen, options.tags, scheme, this.names);
+    drawTags(pen, this.drawn, chosen, options.tags, scheme, this.names, view);
     this.drawRing(pen);
     this.tookMs += 0.1 * (performance.now() - beganMs - this.tookMs);
   }

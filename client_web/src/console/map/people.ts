@@ -103,6 +103,7 @@ export function drawTags(
   tags: MapOptions["tags"],
   scheme: Scheme,
   places: readonly Box[],
+  { width, height }: MapView,
 ): void {
   if (tags === "none") return;
   // Those who are chosen get room first.
@@ -119,7 +120,7 @@ export function drawTags(
     .map(({ avatar, px, py }) => ({ text: tagOf(avatar, tags), x: px, y: py }))
     .filter(({ text }) => text !== "");
   const wishes = told.map(({ text, x, y }) => ({ x, y, width: widthOf(pen, text) }));
-  for (const [index, spot] of spots(wishes, places).entries()) {
+  for (const [index, spot] of spots(wishes, places, [0, 0, width, height]).entries()) {
     const text = told[index]?.text;
     if (!spot || text === undefined) continue;
     pen.strokeText(text, spot.x, spot.y);

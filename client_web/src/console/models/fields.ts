@@ -26,7 +26,8 @@ const LOG_ABOVE = 50;
 /** Steps of a slider from one end to the other. */
 export const SLIDER_STEPS = 1000;
 /** The suffixes of names that repeat the unit. */
-const UNIT_SUFFIX = /_(m|s|mps2?|rad|hz|px|cells)$/;
+const UNIT_SUFFIX = /_(m|s|ms|mps2?|rad|hz|px|cells)$/;
+const UNITS: Readonly<Partial<Record<string, string>>> = { mps: "m/s", mps2: "m/s²", hz: "Hz" };
 
 export function isObject(value: unknown): value is JsonObject {
   return typeof value === "object" && value !== null && !Array.isArray(value);
@@ -44,6 +45,12 @@ function number(value: Json | undefined, otherwise: number): number {
 export function labelOf(name: string): string {
   const words = name.replace(UNIT_SUFFIX, "").replaceAll("_", " ");
   return words.charAt(0).toUpperCase() + words.slice(1);
+}
+
+/** The unit that a name of the wire ends in, as people read it; empty without one. */
+export function unitIn(name: string): string {
+  const unit = UNIT_SUFFIX.exec(name)?.[1] ?? "";
+  return UNITS[unit] ?? unit;
 }
 
 /** All numbers of a schema of an object, in its order; what is no number is left out. */

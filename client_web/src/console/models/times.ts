@@ -16,6 +16,16 @@ export function day(us: number): string {
   return `${date.getFullYear()}-${two(date.getMonth() + 1)}-${two(date.getDate())}`;
 }
 
+/** Moments at even steps, in seconds since 1970, as short as the step allows. */
+export function tickTexts(atS: readonly number[]): string[] {
+  const stepS = (atS[1] ?? Number.POSITIVE_INFINITY) - (atS[0] ?? 0);
+  return atS.map((each) => {
+    const time = clock(each * 1e6, each * 1e3);
+    if (stepS < 60) return time;
+    return stepS < 86_400 ? time.slice(0, 5) : day(each * 1e6).slice(5);
+  });
+}
+
 /** The same in universal time, as the audit has it. */
 export function utc(us: number): string {
   return new Date(us / 1000).toISOString().replace("T", " ").slice(0, 19);

@@ -69,6 +69,9 @@ export abstract class CommandingPanel extends Panel {
       .row {
         margin-bottom: 6px;
       }
+      .row > .row {
+        margin-bottom: 0;
+      }
       .row:has(> label.field) {
         align-items: end;
       }

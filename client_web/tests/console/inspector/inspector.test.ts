@@ -40,6 +40,7 @@ describe("why", () => {
 
   it("names who held it and for how long", () => {
     const [stop] = stopsOf(SPANS, 5);
+    expect(stopsOf([...SPANS, span(13_240, 13_245, "waiting")], 5)).toEqual([stop]);
     expect(stop && spanText(stop)).toBe("waiting for 12 s, Anna, 0.8 m away");
     expect(spanText(SPANS[0] ?? span(0, 0, ""))).toBe("moving for 10 min 50 s");
     expect(shares(SPANS)[0]).toEqual(["moving", 650]);

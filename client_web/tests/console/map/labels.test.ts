@@ -18,6 +18,14 @@ describe("spots", () => {
     }
   });
 
+  it("keeps whole names within the map where there is room", () => {
+    const wish = { x: 370, y: 100, width: 40 };
+    expect(spots([wish], [], [0, 0, 390, 800])).toEqual([{ x: 322, y: 94 }]);
+    expect(spots([wish], [], [0, 0, 39, 800])).toEqual([{ x: 378, y: 94 }]);
+    // Places are rather printed over than names cut.
+    expect(spots([wish], [[0, 0, 370, 300]], [0, 0, 390, 800])).toEqual([{ x: 322, y: 94 }]);
+  });
+
   it("keeps away from names of places only where it can", () => {
     const wish = { x: 100, y: 100, width: 40 };
     const right = boxAt({ x: 108, y: 94 }, 40);

@@ -3,6 +3,7 @@
 import uPlot from "uplot";
 import { shown } from "../../models/fields";
 import type { Mark } from "../../models/series";
+import { tickTexts } from "../../models/times";
 
 export interface ChartLook {
   readonly line: string;
@@ -41,7 +42,13 @@ export class Chart {
         scales: { x: { time: true }, y: { range: (_, low, high) => around(low, high) } },
         series: [{}, { stroke: look.line, width: 1.5, spanGaps: false, points: { show: false } }],
         axes: [
-          { ...axis, size: 24, font: "11px system-ui" },
+          {
+            ...axis,
+            size: 24,
+            space: 70,
+            font: "11px system-ui",
+            values: (_, splits) => tickTexts(splits),
+          },
           {
             ...axis,
             size: 52,

@@ -245,7 +245,8 @@ class SeriesPanel extends CommandingPanel {
 
 /** The unit as people read it; of a mere number there is none. */
 function unitOf(one: SeriesName | undefined): string {
-  return one === undefined || one.unit === "1" ? "" : one.unit;
+  if (one === undefined || one.unit === "1") return "";
+  return one.unit.replace(/^1\//, "per ");
 }
 
 function keptNames(): string[] {
