@@ -7,7 +7,7 @@ in any order and on any number of threads; only `resolve` runs through the actor
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.planning.agents._bottleneck_kernels import AFTER_M, OPPOSED, lane_of, see_passage
+from esplanade.planning.agents._bottleneck_kernels import lane_of, see_passage
 from esplanade.planning.agents._perturb_kernels import path_cost, update_path
 from esplanade.planning.agents._reason_kernels import decided_reason
 from esplanade.planning.agents._search_kernels import FOUND, NO_PATH, Moves, Workspace, search
@@ -20,17 +20,9 @@ from esplanade.planning.grid._side_kernels import is_cut_off
 from esplanade.planning.people._prediction_kernels import Prediction
 from esplanade.planning.routes._potential_kernels import EDGES, potential_at, way_out
 
-MOST_BEHIND_S = 5.0
-"""More lost time than this is not made up."""
-DODGE_CELLS = 3
-"""An actor that others have made go to and fro on edges, so that it has used up M, may still go on
-to where its way leaves them, and so many cells out of somebody's way."""
-EASE_S = 0.5
-"""An agent that is behind by less than this makes it up more slowly."""
-
 
 @kernel
-def keep_account(agents: Agents, a: int, left: float, tick_s: float) -> float:
+def keep_account(agents: Agents, rules: np.void, a: int, left: float, tick_s: float) -> float:
     """Book the time that an actor lost or made up in the last tick; return its speed from now on.
 
     The time lost is the length of a tick less the time that the progress made in it takes at the
@@ -41,8 +33,8 @@ def keep_account(agents: Agents, a: int, left: float, tick_s: float) -> float:
     agents.left_m[a] = left
     if np.isfinite(before) and np.isfinite(left):
         lost = tick_s - (before - left) / p["speed_mps"]
-        agents.behind_s[a] = min(MOST_BEHIND_S, max(0.0, agents.behind_s[a] + lost))
-    faster = 1.0 + p["catch_up"] * min(1.0, agents.behind_s[a] / EASE_S)
+        agents.behind_s[a] = min(rules["most_behind_s"], max(0.0, agents.behind_s[a] + lost))
+    faster = 1.0 + p["catch_up"] * min(1.0, agents.behind_s[a] / rules["ease_s"])
     return float(min(p["max_speed_mps"], p["speed_mps"] * faster))
 
 
@@ -50,6 +42,7 @@ def keep_account(agents: Agents, a: int, left: float, tick_s: float) -> float:
 def make_task(
     potentials: NDArray[np.float32],
     agents: Agents,
+    rules: np.void,
     a: int,
     max_hold_m: float,
     tick_s: float,
@@ -81,17 +74,17 @@ def make_task(
         elif left <= max_hold_m:
             hold = True
         else:
-            speed = keep_account(agents, a, left, tick_s)
+            speed = keep_account(agents, rules, a, left, tick_s)
     else:
         gx = x
         gy = y
-    keeps_right = contested and left > AFTER_M
+    keeps_right = contested and left > rules["lane_after_m"]
     on_edges = agents.on_edges[a]
     most_edges = p["edge_cells"]
     if not hold and cell >= 0:
         ahead = float(potentials[slot, cell, EDGES])
         if on_edges + ahead - 0.5 >= most_edges:
-            most_edges = on_edges + ahead + DODGE_CELLS
+            most_edges = on_edges + ahead + rules["dodge_cells"]
     return Task(
         a,
         agents.bodies[a],
@@ -114,11 +107,12 @@ def make_task(
         p["closing_weight"],
         p["turn_weight"],
         p["wall_weight"],
+        rules["wall_room_m"],
         p["hurry_weight"],
         int(p["max_expansions"]),
         on_edges,
         most_edges,
-        lane_of(agents.passages[a], p["keep_right_weight"] if keeps_right else 0.0),
+        lane_of(agents.passages[a], rules, p["keep_right_weight"] if keeps_right else 0.0),
         hold,
     )
 
@@ -155,7 +149,9 @@ def decide(
         a = world.reservations.members[0, n]
         p = agents.parameters[a]
         contested = world.reservations.contested[a]
-        task = make_task(potentials, agents, a, p["goal_tolerance_m"], tick_s, contested)
+        task = make_task(
+            potentials, agents, world.rules[0], a, p["goal_tolerance_m"], tick_s, contested
+        )
         slot = agents.potential_rows[a]
         potential = potentials[slot] if slot >= 0 else no_potential
         if slot >= 0 and is_cut_off(world.grid, task.body, task.cell, task.x, task.y):
@@ -198,8 +194,16 @@ def decide(
         lost = slot >= 0 and not np.isfinite(potential_at(potential, task.cell, task.x, task.y))
         if status == NO_PATH and not lost:  # inside something no path leads out of
             lost = clearance_at(world.grid, task.body, task.cell, task.x, task.y) < 0.0
-        if len(agents.passages) > OPPOSED:
-            see_passage(world.grid, potential, agents, a, slot >= 0 and not task.hold, tick_s)
+        if len(agents.passages) > world.rules[0]["contested_actors"]:
+            see_passage(
+                world.grid,
+                potential,
+                world.rules[0],
+                agents,
+                a,
+                slot >= 0 and not task.hold,
+                tick_s,
+            )
         out.reasons[a] = decided_reason(
             agents, task, away, lost, path, status, switched, dodged, world.step_s
         )

@@ -29,15 +29,7 @@ from esplanade.planning.grid._grid_kernels import (
 from esplanade.planning.people._risk_kernels import risk_at
 from esplanade.planning.routes._potential_kernels import PotentialValues, potential_at
 
-SHORTEST_STRETCH = 4
-"""Stretches of fewer slices are not split further."""
-OFFSETS = 3
-"""Candidates m' on either side of the middle."""
-OFFSET_M = 0.2
-"""Distance between candidates, metres."""
 _MOST_EDGES = 1e9
-LEAST_RISK = 1e-3
-"""A bend has to lower the mean risk of a stretch by so much."""
 
 
 @inlined
@@ -246,19 +238,20 @@ def perturb_path(
     trial: NDArray[np.float64],
     trial_risks: NDArray[np.float64],
 ) -> bool:
-    """Replace a stretch by the first bend that is legal and less risky by `LEAST_RISK`; fig. 8.
+    """Replace a stretch by the first bend that is legal and less risky by `least_risk`; fig. 8.
 
     Candidates lie on the normal through the chord's midpoint, nearest first, either side in turn.
     The printed test accepts equal risk too, with which the recursion need not settle. `cells` (K,)
     are those that the path is in.
     """
+    rules = world.rules[0]
     if last - first < 2:  # there is nothing between its ends
         return False
     begin = cells[first]
     total = 0.0
     for k in range(first + 1, last + 1):
         total += risks[k]
-    least = (last - first) * LEAST_RISK
+    least = (last - first) * rules["least_risk"]
     if total <= least:
         return False
     cx = path[last, 0] - path[first, 0]
@@ -269,8 +262,8 @@ def perturb_path(
     middle = (first + last) // 2
     edges = _edges_at(world.grid, potential, task, path, cells, first)
     most_edges = _edges_at(world.grid, potential, task, path, cells, last)
-    for n in range(2 * OFFSETS):
-        offset = OFFSET_M * (n // 2 + 1) * (1.0 if n % 2 == 0 else -1.0)
+    for n in range(2 * rules["offsets"]):
+        offset = rules["offset_m"] * (n // 2 + 1) * (1.0 if n % 2 == 0 else -1.0)
         mx = path[first, 0] + 0.5 * cx - offset * cy / chord
         my = path[first, 1] + 0.5 * cy + offset * cx / chord
         _bend(path, trial, first, middle, last, mx, my)
@@ -335,7 +328,7 @@ def update_path(
             world, potential, task, need, path, cells, first, last, risks, trial, trial_risks
         ):
             bends += 1
-        elif last - first >= SHORTEST_STRETCH:
+        elif last - first >= world.rules[0]["shortest_stretch"]:
             middle = (first + last) // 2
             stack[height, 0] = middle
             stack[height, 1] = last

@@ -3,27 +3,14 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.planning.agents._bottleneck_kernels import OPPOSED, find_contested, order_at_passages
-from esplanade.planning.agents._reservation_kernels import (
-    AGAINST,
-    Reservations,
-    index_paths,
-)
+from esplanade.planning.agents._bottleneck_kernels import find_contested, order_at_passages
+from esplanade.planning.agents._reservation_kernels import Reservations, index_paths
 from esplanade.planning.agents._task_kernels import SUB, World
 from esplanade.planning.agents.agents import Agents
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.grid._grid_kernels import GridArrays, floor_of, follow
 from esplanade.planning.routes._potential_kernels import direction_at, potential_at
 from esplanade.planning.scene.heights import BODIES_OVERLAP_M
-
-HELD_UP_PART = 0.3
-"""An agent that is slower than this part of its preferred speed is held up."""
-SETTLED_M = 1.0
-"""Agents within this distance of their goal get the lowest priority."""
-JAM_M = 8.0
-"""Agents that are held up within this distance belong to the same jam."""
-JAM_ACTORS = 8
-"""Number of agents held up that makes a jam for an agent that goes in the opposite direction."""
 
 
 @kernel
@@ -39,16 +26,17 @@ def prepare(
     Of two agents with equal distances left, the one of smaller rank goes first.
     """
     r = world.reservations
+    rules = world.rules[0]
     actors = len(order)
     continue_paths(world, potentials, agents, tick_s, r.paths, r.heights)
     index_paths(r)
     left_m = np.empty(actors)
-    distances_left(potentials, agents, left_m)
+    distances_left(potentials, agents, rules["settled_m"], left_m)
     find_courses(world.grid, potentials, agents, left_m, r)
     empty_jams(left_m, r)
-    if actors > OPPOSED:
-        find_contested(agents, r.contested)
-        order_at_passages(agents, r.contested, left_m)
+    if actors > rules["contested_actors"]:
+        find_contested(agents, rules, r.contested)
+        order_at_passages(agents, rules, r.contested, left_m)
     by_rank = np.argsort(agents.ranks, kind="mergesort")
     order[:] = by_rank[np.argsort(left_m[by_rank], kind="mergesort")]
     for n in range(actors):
@@ -136,12 +124,15 @@ def _carry_on(
 
 @kernel
 def distances_left(
-    potentials: NDArray[np.float32], agents: Agents, out: NDArray[np.float64]
+    potentials: NDArray[np.float32],
+    agents: Agents,
+    settled_m: float,
+    out: NDArray[np.float64],
 ) -> None:
     """Fill `out` (A,) with the distance left of each agent, in metres: the least has priority.
 
     Two agents do not change their order while one lets the other pass, since only the other gets
-    nearer to its goal. Agents within `SETTLED_M` of their goal, without a path, or that wait, have
+    nearer to its goal. Agents within `settled_m` of their goal, without a path, or that wait, have
     inf.
     """
     for a in range(len(out)):
@@ -150,7 +141,7 @@ def distances_left(
         if slot >= 0 and not agents.waits[a]:
             x, y = agents.positions[a]
             left = potential_at(potentials[slot], agents.cells[a], x, y)
-            if left > SETTLED_M:
+            if left > settled_m:
                 out[a] = left
 
 
@@ -164,6 +155,7 @@ def find_courses(
 ) -> None:
     """Fill `courses` and `held_up` of the reservations; `left_m` (A,) is of `distances_left`."""
     r = reservations
+    rules = r.rules[0]
     for a in range(len(left_m)):
         r.courses[a] = 0.0
         r.held_up[a] = False
@@ -174,7 +166,7 @@ def find_courses(
                 grid, potential, agents.cells[a], x, y
             )
             speed = np.hypot(agents.velocities[a, 0], agents.velocities[a, 1])
-            r.held_up[a] = speed < HELD_UP_PART * agents.parameters[a]["speed_mps"]
+            r.held_up[a] = speed < rules["held_up_part"] * agents.parameters[a]["speed_mps"]
 
 
 @kernel
@@ -188,13 +180,14 @@ def empty_jams(left_m: NDArray[np.float64], reservations: Reservations) -> None:
     depend on the order of agents.
     """
     r = reservations
+    rules = r.rules[0]
     held_up = np.flatnonzero(r.held_up)
-    if len(held_up) < JAM_ACTORS:
+    if len(held_up) < rules["jam_actors"]:
         return
     for a in range(len(left_m)):
         if left_m[a] == np.inf:
             continue
-        left_m[a] += JAM_M
+        left_m[a] += rules["jam_m"]
         count = np.zeros(2, dtype=np.int64)  # in the same direction, in the opposite direction
         place = np.zeros((2, 2), dtype=np.int64)
         count[0] = 1
@@ -203,17 +196,17 @@ def empty_jams(left_m: NDArray[np.float64], reservations: Reservations) -> None:
             dy = r.paths[o, 0, 1] - r.paths[a, 0, 1]
             if (
                 o == a
-                or dx * dx + dy * dy > JAM_M * JAM_M
+                or dx * dx + dy * dy > rules["jam_m"] * rules["jam_m"]
                 or abs(r.heights[o, 0] - r.heights[a, 0]) >= BODIES_OVERLAP_M
             ):
                 continue
             along = r.courses[a, 0] * r.courses[o, 0] + r.courses[a, 1] * r.courses[o, 1]
-            if abs(along) > -AGAINST:
+            if abs(along) > rules["against_cosine"]:
                 side = 0 if along > 0.0 else 1
                 count[side] += 1
                 place[side, 0] += int(np.round(1e6 * dx))
                 place[side, 1] += int(np.round(1e6 * dy))
-        if count[1] < JAM_ACTORS:
+        if count[1] < rules["jam_actors"]:
             continue
         mx = 0.5e-6 * (place[0, 0] / count[0] + place[1, 0] / count[1])
         my = 0.5e-6 * (place[0, 1] / count[0] + place[1, 1] / count[1])

@@ -9,7 +9,6 @@ from esplanade.planning.agents._reservation_kernels import meetings, others_near
 from esplanade.planning.agents._task_kernels import (
     SUB,
     TOO_MANY,
-    WALL_COST_M,
     Task,
     World,
     count_edges,
@@ -32,11 +31,6 @@ PARTIAL = 1
 NO_PATH = 2
 """Statuses of a search, those of `SearchStatus`."""
 
-DEPTH_BONUS_S = 0.01
-"""Least bonus of a node for each step of its depth: the path may cost this much more a step than
-the best, and the search looks at a fraction of the nodes."""
-LIKELY_PART = 0.7
-"""Part of the cost of the followed path beyond its time that any other path is expected to have."""
 
 NODE = np.dtype(
     [
@@ -109,15 +103,15 @@ class Outcome(NamedTuple):
 
 
 @inlined
-def depth_bonus(excess: float, steps: int) -> float:
+def depth_bonus(rules: np.void, excess: float, steps: int) -> float:
     """Seconds that each step ahead is expected to cost beyond its time.
 
     The excess of a known path over its bare time tells how crowded the route is. Since a part of it
     is expected of every other path, the search ignores most nodes that merely begin well.
     """
     if excess < np.inf:
-        return max(DEPTH_BONUS_S, LIKELY_PART * excess / steps)
-    return DEPTH_BONUS_S
+        return float(max(rules["depth_bonus_s"], rules["likely_part"] * excess / steps))
+    return float(rules["depth_bonus_s"])
 
 
 @inlined
@@ -166,7 +160,7 @@ def search(
     per_a = 1.0 / a_max
     per_s = 1.0 / step_s
     most_m = task.max_speed_mps * step_s
-    open_m = task.radius_m + WALL_COST_M + most_m + 1.5 * grid.layered.cell_m
+    open_m = task.radius_m + task.wall_room_m + most_m + 1.5 * grid.layered.cell_m
     node = workspace.node_state
     others = workspace.others
     capacity = len(node)
@@ -188,7 +182,7 @@ def search(
     start = way_left(task, metres_left(potential, task, task.cell, task.x, task.y), speed)
     if not np.isfinite(start):
         return Outcome(NO_PATH, 0, np.inf)
-    bonus = depth_bonus(bound - start, steps)
+    bonus = depth_bonus(world.rules[0], bound - start, steps)
     count = 1
     size = heap_push(workspace.heap_keys, workspace.heap_items, 0, start, 0)
     expansions = 0

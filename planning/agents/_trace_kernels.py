@@ -48,7 +48,7 @@ def price_paths(
     behind_s = agents.behind_s[a]
     contested = z.world.reservations.contested[a]
     tolerance_m = agents.parameters[a]["goal_tolerance_m"]
-    task = make_task(z.potentials, agents, a, tolerance_m, tick_s, contested)
+    task = make_task(z.potentials, agents, z.world.rules[0], a, tolerance_m, tick_s, contested)
     agents.left_m[a] = left_m
     agents.behind_s[a] = behind_s
     slot = agents.potential_rows[a]

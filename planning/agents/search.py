@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import Enum, IntEnum
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,10 +14,12 @@ from esplanade.planning.agents import _search_kernels as kernels
 from esplanade.planning.agents._reservation_kernels import Reservations
 from esplanade.planning.agents._search_kernels import Moves, Workspace
 from esplanade.planning.agents._task_kernels import SUB, Task, World
+from esplanade.planning.agents.rules import RuleModel
 from esplanade.planning.grid.grid import LayeredGrid
 from esplanade.planning.people.risk import RiskField
 from esplanade.planning.routes.potential import Potential
 
+_RULES: Final = RuleModel()
 _MOST_NEAR = 64
 """Room for the actors near a node; that many discs never fit around it."""
 _LEAST_BUCKET_M = 1.2
@@ -108,6 +111,7 @@ def make_reservations(
     radii_m: NDArray[np.float64],
     ranks: NDArray[np.int64],
     fastest_m: float,
+    rules: RuleModel = _RULES,
 ) -> Reservations:
     """Room for the planned paths of A actors, (A, K, 2) and (A, K); `index_paths` fills its index.
 
@@ -122,6 +126,7 @@ def make_reservations(
     ny = max(1, math.ceil((y1 - y0) / bucket))
     actors, slices = paths.shape[:2]
     return Reservations(
+        rules.row,
         paths,
         heights,
         radii_m,
@@ -189,7 +194,12 @@ def uncertain_bfp(
     if not (math.isfinite(task.x) and math.isfinite(task.y)):
         raise ValueError(f"the start must be finite, got ({task.x}, {task.y})")
     world = World(
-        field.grid.arrays, field.arrays, reservations, step_s, field.model.person_radius_m
+        field.grid.arrays,
+        field.arrays,
+        reservations,
+        reservations.rules,
+        step_s,
+        field.model.person_radius_m,
     )
     path = np.zeros((slices + 1, 2))
     workspace = make_workspace(task.max_expansions, len(moves.speeds) + 1)
