@@ -10,7 +10,14 @@ from numpy.typing import NDArray
 from esplanade.planning.agents._bottleneck_kernels import lane_of, see_passage
 from esplanade.planning.agents._perturb_kernels import path_cost, update_path
 from esplanade.planning.agents._reason_kernels import decided_reason
-from esplanade.planning.agents._search_kernels import FOUND, NO_PATH, Moves, Workspace, search
+from esplanade.planning.agents._search_kernels import (
+    FOUND,
+    NO_PATH,
+    PARTIAL,
+    Moves,
+    Workspace,
+    search,
+)
 from esplanade.planning.agents._step_kernels import control_toward, last_check, limited
 from esplanade.planning.agents._task_kernels import SUB, Task, World, metres_left, needed_clearance
 from esplanade.planning.agents.agents import BLOCKED, GIVING_WAY, MOVING, Agents, Decisions
@@ -171,9 +178,10 @@ def decide(
         status = found.status
         better = True
         if bound < np.inf:
-            better = (
-                status != NO_PATH and path_cost(world, potential, task, out.paths[a])[0] < bound
-            )
+            cost = found.cost
+            if status == PARTIAL:  # it stays where it ends, up to the horizon
+                cost = path_cost(world, potential, task, out.paths[a])[0]
+            better = status != NO_PATH and cost < bound
             if not better:
                 out.paths[a] = kept
                 status = FOUND

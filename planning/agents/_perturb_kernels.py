@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.planning.agents._cost_kernels import room_for_near, step_parts
 from esplanade.planning.agents._reservation_kernels import conflict
 from esplanade.planning.agents._task_kernels import (
     SUB,
@@ -13,8 +14,6 @@ from esplanade.planning.agents._task_kernels import (
     metres_left,
     needed_clearance,
     risk_price,
-    time_cost,
-    wall_cost,
     way_left,
 )
 from esplanade.planning.compiled.jit import inlined, kernel
@@ -157,12 +156,16 @@ def stretch_edges(
 def path_cost(
     world: World, potential: PotentialValues, task: Task, path: NDArray[np.float64]
 ) -> tuple[float, float, bool]:
-    """Cost of a whole path as the search counts it (its length and time among it), mean risk, and
-    whether it is legal: all of it as `stretch_edges` of a stretch."""
+    """Cost of a whole path, mean risk, and whether it is legal: all of it as `stretch_edges` of a
+    stretch.
+
+    The cost is that of its steps, and of the way that is left: for the same path it is what the
+    search adds up.
+    """
     grid = world.grid
     need = needed_clearance(world, task)
     ds = world.step_s / SUB
-    slices = len(path) - 1
+    near = room_for_near()
     cell = task.cell
     vx = task.vx
     vy = task.vy
@@ -171,35 +174,34 @@ def path_cost(
     left_m = 0.0
     edges = task.on_edges
     legal = True
-    for k in range(slices):
-        ax = path[k, 0]
-        ay = path[k, 1]
-        bx = path[k + 1, 0]
-        by = path[k + 1, 1]
-        moved = length(bx - ax, by - ay)
-        ux = (bx - ax) / ds
-        uy = (by - ay) / ds
-        feet_m = floor_of(grid, cell)
-        before = cell
-        cell = follow(grid, cell, bx, by)
-        left_m = metres_left(potential, task, cell, bx, by)
-        r = slice_risk(world, task, k + 1, cell, ax, ay, bx, by)
-        room = clearance_at(grid, task.body, cell, bx, by)
-        edges = count_edges(grid, potential, task, before, cell, bx - ax, by - ay, edges)
-        blocked, soft = conflict(world.reservations, task.me, feet_m, k, ax, ay, bx, by)
-        if blocked or edges == TOO_MANY or not _may_go(task, need, moved, room, left_m, ds):
+    steps = (len(path) - 1) // SUB
+    for step in range(steps):
+        k = step * SUB
+        parts = step_parts(world, potential, task, path, step, cell, vx, vy, near)
+        price = risk_price(task, step * world.step_s) * ds
+        cost += parts.seconds + parts.turning + parts.wall + price * (parts.soft + parts.risk)
+        risk += parts.risk
+        left_m = parts.left_m
+        half_x = path[k + 1, 0] - path[k, 0]
+        half_y = path[k + 1, 1] - path[k, 1]
+        end_x = path[k + 2, 0] - path[k + 1, 0]
+        end_y = path[k + 2, 1] - path[k + 1, 1]
+        half_m = metres_left(potential, task, parts.half, path[k + 1, 0], path[k + 1, 1])
+        edges = count_edges(grid, potential, task, cell, parts.half, half_x, half_y, edges)
+        if edges != TOO_MANY:
+            edges = count_edges(grid, potential, task, parts.half, parts.end, end_x, end_y, edges)
+        if (
+            edges == TOO_MANY
+            or parts.blocked
+            or not _may_go(task, need, length(half_x, half_y), parts.half_room, half_m, ds)
+            or not _may_go(task, need, length(end_x, end_y), parts.end_room, left_m, ds)
+        ):
             legal = False
-        risk += r
-        cost += (
-            time_cost(task, left_m, moved / ds, ds)
-            + risk_price(task, (k // SUB) * world.step_s) * ds * (r + soft)
-            + task.turn_weight * length(ux - vx, uy - vy)
-            + wall_cost(task, room, ds)
-        )
-        vx = ux
-        vy = uy
+        cell = parts.end
+        vx = end_x / ds
+        vy = end_y / ds
     cost += way_left(task, left_m, length(vx, vy))
-    return cost, risk / slices, legal
+    return cost, risk / (steps * SUB), legal
 
 
 @kernel

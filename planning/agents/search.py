@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.agents import _search_kernels as kernels
+from esplanade.planning.agents._cost_kernels import room_for_near
 from esplanade.planning.agents._reservation_kernels import Reservations
 from esplanade.planning.agents._search_kernels import Moves, Workspace
 from esplanade.planning.agents._task_kernels import SUB, Task, World
@@ -20,13 +21,9 @@ from esplanade.planning.people.risk import RiskField
 from esplanade.planning.routes.potential import Potential
 
 _RULES: Final = RuleModel()
-_MOST_NEAR = 64
-"""Room for the actors near a node; that many discs never fit around it."""
 _LEAST_BUCKET_M = 1.2
 _BUCKETS_AN_ACTOR = 4
 """Clearing many more buckets than that would cost more than they save."""
-_MOST_PEOPLE = 256
-"""Room for the people who matter near a node. A place with more of them is risky enough."""
 
 
 class SearchStatus(IntEnum):
@@ -97,9 +94,7 @@ def make_workspace(max_expansions: int, branching: int) -> Workspace:
         np.zeros(table),
         np.zeros(table, dtype=np.int64),
         np.zeros(1, dtype=np.int64),
-        np.zeros(_MOST_NEAR, dtype=np.int64),
-        np.zeros(_MOST_PEOPLE, dtype=np.int64),
-        np.zeros(_MOST_PEOPLE, dtype=np.int64),
+        room_for_near(),
         np.zeros(3, dtype=np.int64),
     )
 
@@ -154,6 +149,8 @@ class SearchResult:
     path: NDArray[np.float64]
     """(K, 2) positions, `step_s` / 2 apart, beginning with the start; metres."""
     expansions: int
+    cost_s: float
+    """What the search added up for the path; the key of its last node in the printed form."""
 
 
 def uncertain_bfp(
@@ -213,4 +210,4 @@ def uncertain_bfp(
         workspace,
         path,
     )
-    return SearchResult(SearchStatus(outcome.status), path, outcome.expansions)
+    return SearchResult(SearchStatus(outcome.status), path, outcome.expansions, outcome.cost)
