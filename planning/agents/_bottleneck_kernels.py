@@ -11,9 +11,13 @@ from esplanade.planning.agents._passage_kernels import (
     find_passage,
 )
 from esplanade.planning.agents.agents import Agents
+from esplanade.planning.agents.priorities import Priorities, Turn
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.grid._grid_kernels import GridArrays, length
 from esplanade.planning.routes._potential_kernels import PotentialValues
+
+LEAVES_PASSAGE, ENTERS_PASSAGE = int(Turn.LEAVES_PASSAGE), int(Turn.ENTERS_PASSAGE)
+SETTLED = int(Turn.SETTLED)
 
 
 class Lane(NamedTuple):
@@ -209,30 +213,23 @@ def find_contested(agents: Agents, rules: np.void, out: NDArray[np.bool_]) -> No
 
 @kernel
 def order_at_passages(
-    agents: Agents,
-    rules: np.void,
-    contested: NDArray[np.bool_],
-    left_m: NDArray[np.float64],
+    agents: Agents, rules: np.void, contested: NDArray[np.bool_], priorities: Priorities
 ) -> None:
-    """Replace distances left in `left_m` (A,), which give priority, where a passage is contested.
+    """Give agents whose passage is contested the priority of those who leave or enter it.
 
-    Agents that have come through go first, the furthest of them before all, since nobody can enter
-    before the exit is free; this holds up to the goal, which may lie among those that wait. Then
-    follow the agents that still have to come there, the nearest first. Their waiting without
-    progress counts in their favour, since agents that were crowded out to the side would otherwise
-    stay there until all others are through. All other agents follow. An agent that is about to
-    arrive on this side goes last, as everywhere.
+    Those that leave keep it up to the goal, which may lie among those that wait. Waiting without
+    progress counts in favour of those that enter, since agents that were crowded out to the side
+    would otherwise stay there until all others are through. An agent that is about to arrive on
+    this side goes last, as everywhere.
     """
-    if not contested.any():
-        return
-    for a in range(len(left_m)):
+    for a in range(len(contested)):
         if not contested[a]:
-            # further than any contested agent is, even in a jam
-            left_m[a] += 2.0 * rules["ahead_m"]
             continue
         p = agents.passages[a]
         beyond, away = _beyond(agents, a)
         if beyond:
-            left_m[a] = -away
-        elif left_m[a] < np.inf:
-            left_m[a] = max(0.0, p["nearest_m"] - rules["waiting_mps"] * p["waited_s"])
+            priorities.turns[a] = LEAVES_PASSAGE
+            priorities.keys_m[a] = -away
+        elif priorities.turns[a] != SETTLED:
+            priorities.turns[a] = ENTERS_PASSAGE
+            priorities.keys_m[a] = max(0.0, p["nearest_m"] - rules["waiting_mps"] * p["waited_s"])

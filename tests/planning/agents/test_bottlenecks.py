@@ -16,6 +16,7 @@ from esplanade.planning.agents._bottleneck_kernels import (
     see_passage,
 )
 from esplanade.planning.agents._decide_kernels import make_task
+from esplanade.planning.agents.priorities import Priorities, Turn
 from esplanade.planning.grid.grid import LayeredGrid
 from esplanade.planning.routes.potential import Potential
 from esplanade.planning.scene.scene import Scene
@@ -61,6 +62,11 @@ def _facing(west: int, east: int):
     return crowd
 
 
+def _walking(actors, left_m):
+    """Everyone with the priority of the same distance left."""
+    return Priorities(np.full(actors, int(Turn.WALKS)), np.full(actors, left_m))
+
+
 def test_a_passage_is_contested_by_enough_who_come_against_one() -> None:
     crowd = _facing(OPPOSED - 1, OPPOSED)
     contested = np.ones(len(crowd.positions), dtype=bool)
@@ -104,18 +110,19 @@ def test_agents_that_have_come_through_go_first() -> None:
     find_contested(crowd, RULES, contested)
     assert contested.all()
     contested[0] = False
-    left_m = np.full(2 * OPPOSED + 1, 7.0)
-    order_at_passages(crowd, RULES, contested, left_m)
+    who = _walking(2 * OPPOSED + 1, 7.0)
+    order_at_passages(crowd, RULES, contested, who)
     away = np.hypot(*(crowd.positions - 8.0).T)
-    assert left_m[-1] == pytest.approx(-3.0)
-    assert left_m[1:-1] == pytest.approx(away[1:-1])
-    assert left_m[0] == 7.0 + 2.0 * BEFORE_M
-    left_m[1] = np.inf
-    order_at_passages(crowd, RULES, contested, left_m)
-    assert left_m[1] == np.inf, "an agent about to arrive on this side goes last"
-    left_m[-1] = np.inf
-    order_at_passages(crowd, RULES, contested, left_m)
-    assert left_m[-1] == pytest.approx(-3.0), "on the other side it goes up to the goal first"
+    assert (who.turns[-1], who.keys_m[-1]) == (Turn.LEAVES_PASSAGE, pytest.approx(-3.0))
+    assert (who.turns[1:-1] == Turn.ENTERS_PASSAGE).all()
+    assert who.keys_m[1:-1] == pytest.approx(away[1:-1])
+    assert (who.turns[0], who.keys_m[0]) == (Turn.WALKS, 7.0)
+    who.turns[1] = Turn.SETTLED
+    order_at_passages(crowd, RULES, contested, who)
+    assert who.turns[1] == Turn.SETTLED, "an agent about to arrive on this side goes last"
+    who.turns[-1] = Turn.SETTLED
+    order_at_passages(crowd, RULES, contested, who)
+    assert who.turns[-1] == Turn.LEAVES_PASSAGE, "on the other side it goes up to the goal first"
 
 
 def test_waiting_in_vain_gives_priority() -> None:
@@ -123,14 +130,14 @@ def test_waiting_in_vain_gives_priority() -> None:
     crowd.passages["nearest_m"] = 5.0
     crowd.passages["waited_s"] = np.random.default_rng(0).permutation(2 * OPPOSED)
     crowd.passages["nearest_m"][0] = 4.0
-    left_m = np.full(2 * OPPOSED, 30.0)
-    order_at_passages(crowd, RULES, np.ones(2 * OPPOSED, dtype=bool), left_m)
+    who = _walking(2 * OPPOSED, 30.0)
+    order_at_passages(crowd, RULES, np.ones(2 * OPPOSED, dtype=bool), who)
     waited_s = crowd.passages["waited_s"]
-    assert left_m[1:] == pytest.approx(5.0 - WAITING_MPS * waited_s[1:])
-    assert left_m[0] == pytest.approx(4.0 - WAITING_MPS * waited_s[0])
+    assert who.keys_m[1:] == pytest.approx(5.0 - WAITING_MPS * waited_s[1:])
+    assert who.keys_m[0] == pytest.approx(4.0 - WAITING_MPS * waited_s[0])
     waited_s[:] = 1e3
-    order_at_passages(crowd, RULES, np.ones(2 * OPPOSED, dtype=bool), left_m)
-    assert not left_m.any(), "however long they wait, agents that have come through go first"
+    order_at_passages(crowd, RULES, np.ones(2 * OPPOSED, dtype=bool), who)
+    assert not who.keys_m.any(), "those who have waited for long enough go by their ranks"
 
 
 def test_to_come_nearer_by_enough_ends_the_waiting() -> None:
@@ -201,18 +208,18 @@ def test_neither_lanes_nor_order_depend_on_the_order_of_actors() -> None:
         crowd = crowd_of(places[rows], np.array(goals)[slots[rows]], ranks=ranks[rows])
         crowd.potential_rows[:] = slots[rows]
         crowd.cells[:] = grid.on_ground(crowd.positions, np.zeros(40))[1]
-        left_m = np.hypot(*(crowd.goals - crowd.positions).T)
+        who = Priorities(np.full(40, int(Turn.WALKS)), np.hypot(*(crowd.goals - crowd.positions).T))
         contested = np.zeros(40, dtype=bool)
         for a in range(40):
             potential = potentials[crowd.potential_rows[a]]
             see_passage(grid.arrays, potential, RULES, crowd, a, True, 0.1)
         find_contested(crowd, RULES, contested)
-        order_at_passages(crowd, RULES, contested, left_m)
-        return np.column_stack([crowd.passages.tolist(), contested, left_m])
+        order_at_passages(crowd, RULES, contested, who)
+        return np.column_stack([crowd.passages.tolist(), *who, contested])
 
     rows = random.permutation(40)
     once, again = decided(np.arange(40)), decided(rows)
-    assert once[:, -2].any()
+    assert once[:, -1].any()
     assert (once[rows] == again).all()
 
 
