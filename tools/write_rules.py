@@ -38,6 +38,9 @@ def page() -> str:
 
 def row(name: str, field: dict[str, object]) -> str:
     """One line of a table."""
+    if field["type"] == "boolean":
+        default = "yes" if field["default"] else "no"
+        return f"| `{name}` | {default} | yes or no | {field['description']} |\n"
     unit = "" if field["unit"] == "1" else f" {field['unit']}"
     default, least, most = (f"{field[key]:g}" for key in ("default", "minimum", "maximum"))
     return f"| `{name}` | {default}{unit} | {least} to {most} | {field['description']} |\n"

@@ -146,6 +146,7 @@ def decide(
     Their followed paths, seen from now, are `world.reservations.paths`. The speeds of `moves` are
     parts of each actor's own.
     """
+    rules = world.rules[0]
     slices = out.paths.shape[1]
     speeds = np.empty(len(moves.speeds))
     kept = np.empty((slices, 2))
@@ -156,9 +157,7 @@ def decide(
         a = world.reservations.members[0, n]
         p = agents.parameters[a]
         contested = world.reservations.contested[a]
-        task = make_task(
-            potentials, agents, world.rules[0], a, p["goal_tolerance_m"], tick_s, contested
-        )
+        task = make_task(potentials, agents, rules, a, p["goal_tolerance_m"], tick_s, contested)
         slot = agents.potential_rows[a]
         potential = potentials[slot] if slot >= 0 else no_potential
         if slot >= 0 and is_cut_off(world.grid, task.body, task.cell, task.x, task.y):
@@ -174,14 +173,16 @@ def decide(
             kept[:] = world.reservations.paths[a]
             cost, changed = _improve(world, potential, task, kept, bent, cells, trial)
             bound = cost - p["hysteresis_s"]
-        found = search(world, potential, own, task, True, bound, workspace, out.paths[a])
+        found = search(
+            world, potential, own, task, not rules["greedy"], bound, workspace, out.paths[a]
+        )
         status = found.status
         better = True
         if bound < np.inf:
             cost = found.cost
-            if status == PARTIAL:  # it stays where it ends, up to the horizon
+            if status == PARTIAL or rules["greedy"]:  # it stays where it ends, up to the horizon
                 cost = path_cost(world, potential, task, out.paths[a])[0]
-            better = status != NO_PATH and cost < bound
+            better = status != NO_PATH and (cost < bound or not rules["weighs_paths"])
             if not better:
                 out.paths[a] = kept
                 status = FOUND
@@ -192,9 +193,11 @@ def decide(
         path = out.paths[a]
         ux, uy = control_toward(task, path[SUB, 0], path[SUB, 1], world.step_s)
         contact = p["radius_m"] + (world.person_radius_m + p["person_room_m"])
-        ux, uy, dodged = last_check(
-            world, prediction, task, needed_clearance(world, task), contact, ux, uy
-        )
+        dodged = False
+        if rules["checks_steps"]:
+            ux, uy, dodged = last_check(
+                world, prediction, task, needed_clearance(world, task), contact, ux, uy
+            )
         wx, wy = limited(task, ux, uy, tick_s)
         out.wishes[a, 0] = wx
         out.wishes[a, 1] = wy
@@ -202,11 +205,11 @@ def decide(
         lost = slot >= 0 and not np.isfinite(potential_at(potential, task.cell, task.x, task.y))
         if status == NO_PATH and not lost:  # inside something no path leads out of
             lost = clearance_at(world.grid, task.body, task.cell, task.x, task.y) < 0.0
-        if len(agents.passages) > world.rules[0]["contested_actors"]:
+        if len(agents.passages) > rules["contested_actors"]:
             see_passage(
                 world.grid,
                 potential,
-                world.rules[0],
+                rules,
                 agents,
                 a,
                 slot >= 0 and not task.hold,
@@ -280,6 +283,8 @@ def _improve(
     cost, risk, legal = path_cost(world, potential, task, path)
     if not legal:
         return np.inf, False
+    if not world.rules[0]["perturbs"]:
+        return cost, False
     bent[:] = path
     if update_path(world, potential, task, bent, cells, trial) > 0:
         bent_cost, bent_risk, _ = path_cost(world, potential, task, bent)

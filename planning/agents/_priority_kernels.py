@@ -37,6 +37,7 @@ def prepare(
     order_in_jams(priorities, r)
     if actors > rules["contested_actors"]:
         find_contested(agents, rules, r.contested)
+    if actors > rules["contested_actors"] and rules["orders_passages"]:
         order_at_passages(agents, rules, r.contested, priorities)
     put_in_order(priorities, agents.ranks, order)
     for n in range(actors):

@@ -138,12 +138,13 @@ def conflict(
     a meeting. `feet_m` is the height of the agent's feet; agents on another floor are not met.
     """
     r = reservations
-    rules = r.rules[0]
     soft = 0.0
+    if not r.rules[0]["reserves"]:
+        return False, soft
     # An agent further away than this at the end was not met in the move and is not crowded.
     moved_m = np.sqrt((bx - ax) ** 2 + (by - ay) ** 2)
     far = max(_most_room_m(r), moved_m + r.fastest_m)
-    j0, j1, i0, i1 = buckets_within(r, bx, by, 2.0 * r.widest_m + rules["margin_m"] + far)
+    j0, j1, i0, i1 = buckets_within(r, bx, by, 2.0 * r.widest_m + r.rules[0]["margin_m"] + far)
     for j in range(j0, j1 + 1):
         row = j * r.nx  # buckets of a row are listed one after the other
         for m in range(r.starts[k + 1, row + i0], r.starts[k + 1, row + i1 + 1]):
@@ -152,7 +153,7 @@ def conflict(
                 continue
             dx = bx - r.paths[other, k + 1, 0]
             dy = by - r.paths[other, k + 1, 1]
-            most = r.radii[me] + r.radii[other] + rules["margin_m"] + far
+            most = r.radii[me] + r.radii[other] + r.rules[0]["margin_m"] + far
             if dx * dx + dy * dy > most * most:
                 continue
             weight = _meeting(r, me, other, k, ax, ay, bx, by)
@@ -188,6 +189,8 @@ def others_near(
     j0, j1, i0, i1 = buckets_within(r, x, y, 2.0 * r.widest_m + apart_m + room_m)
     met = 0
     crowded = 0
+    if not rules["reserves"]:
+        return met, crowded
     for j in range(j0, j1 + 1):
         row = j * r.nx  # buckets of a row are listed one after the other
         for m in range(r.starts[k + 1, row + i0], r.starts[k + 1, row + i1 + 1]):

@@ -74,6 +74,7 @@ def _separation(
     seconds: float,
     touching_m: float,
     closing_s: float,
+    minds_turns: bool,
     ax: float,
     ay: float,
     bx: float,
@@ -89,7 +90,7 @@ def _separation(
     best = np.inf
     for n in range(len(near)):
         p = near[n]
-        for turned in range(2):
+        for turned in range(2 if minds_turns else 1):
             vx = prediction.newest[p, 0] if turned else prediction.velocities[p, 0, 0]
             vy = prediction.newest[p, 1] if turned else prediction.velocities[p, 0, 1]
             rx = ax - prediction.means[p, 0, 0] - vx * since
@@ -131,9 +132,11 @@ def _gap(
         or clearance_at(grid, task.body, end, ex, ey) < need
     ):
         return -np.inf
+    turns = bool(rules["minds_turns"])
+    x, y = task.x, task.y
     return min(
-        _separation(prediction, near, 0.0, half, touching_m, closing_s, task.x, task.y, hx, hy),
-        _separation(prediction, near, half, half, touching_m, closing_s, hx, hy, ex, ey),
+        _separation(prediction, near, 0.0, half, touching_m, closing_s, turns, x, y, hx, hy),
+        _separation(prediction, near, half, half, touching_m, closing_s, turns, hx, hy, ex, ey),
     )
 
 
@@ -196,6 +199,7 @@ def resolve(
     Each actor keeps clear of the steps already taken and of the places of those still to move,
     so that standing still remains possible for everyone who comes after.
     """
+    sidesteps = world.rules[0]["sidesteps"]
     moved = np.zeros(len(order), dtype=np.bool_)
     new_positions[:] = agents.positions
     new_cells[:] = agents.cells
@@ -213,6 +217,8 @@ def resolve(
         if wx == 0.0 and wy == 0.0:
             continue
         for trial in range(7):
+            if 0 < trial < 6 and not sidesteps:
+                continue
             vx, vy = _alternative(wx, wy, trial)
             cell, ex, ey = walk(
                 world.grid,

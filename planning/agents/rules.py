@@ -8,7 +8,7 @@ rules, and they stay as they are while a world runs.
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Annotated, Final, Literal
+from typing import Annotated, Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,10 +39,27 @@ def _rule(group: Group, unit: str, least: float, most: float, description: str) 
     )
 
 
+def _switch(group: Group, description: str) -> object:
+    return Field(description=description, json_schema_extra={"unit": "yes or no", "group": group})
+
+
 class RuleModel(BaseModel):
-    """The numbers of the rules by which actors plan among people and among each other."""
+    """The numbers of the rules by which actors plan among people and among each other.
+
+    A rule is switched off by its switch, by a weight of 0, or by a number of actors that never come
+    together; `python -m benchmarks.ablations` shows what each is for.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
+
+    reserves: Annotated[
+        bool,
+        _switch(
+            "clearances",
+            "Whether paths keep clear of those that other actors have planned. Without, actors "
+            "still do not touch: each step is checked.",
+        ),
+    ] = True
 
     margin_m: Annotated[
         float,
@@ -195,6 +212,13 @@ class RuleModel(BaseModel):
         ),
     ] = 8
 
+    orders_passages: Annotated[
+        bool,
+        _switch(
+            "narrow places",
+            "Whether actors at a contested passage go in the order of who leaves and enters it.",
+        ),
+    ] = True
     narrow_m: Annotated[
         float,
         _rule(
@@ -380,6 +404,22 @@ class RuleModel(BaseModel):
         ),
     ] = 0.5
 
+    greedy: Annotated[
+        bool,
+        _switch(
+            "search",
+            "Whether actors search by the printed key of fig. 5, which forgets the risk already "
+            "taken.",
+        ),
+    ] = False
+    weighs_paths: Annotated[
+        bool,
+        _switch(
+            "search",
+            "Whether a path that was found replaces the followed one only if it costs less; "
+            "otherwise it always does.",
+        ),
+    ] = True
     depth_bonus_s: Annotated[
         float,
         _rule(
@@ -415,6 +455,9 @@ class RuleModel(BaseModel):
         ),
     ] = 3
 
+    perturbs: Annotated[
+        bool, _switch("perturbation", "Whether followed paths are bent away from risk, figs. 7-9.")
+    ] = True
     shortest_stretch: Annotated[
         int,
         _rule(
@@ -442,6 +485,25 @@ class RuleModel(BaseModel):
         ),
     ] = 1e-3
 
+    checks_steps: Annotated[
+        bool, _switch("steps", "Whether the next step is checked once more against people.")
+    ] = True
+    minds_turns: Annotated[
+        bool,
+        _switch(
+            "steps",
+            "Whether the last check takes people to go on at their newest velocity too, not only "
+            "as predicted.",
+        ),
+    ] = True
+    sidesteps: Annotated[
+        bool,
+        _switch(
+            "steps",
+            "Whether an actor whose step would touch another one tries half of it and sidesteps "
+            "before it stands.",
+        ),
+    ] = True
     step_margin_m: Annotated[
         float,
         _rule("steps", "m", 0.0, 0.5, "No step brings the bodies of two actors closer than this."),
@@ -500,10 +562,8 @@ class RuleModel(BaseModel):
         return np.array([values], dtype=RULES)
 
 
+_TYPES: Final[dict[Any, str]] = {bool: "?", int: "i8", float: "f8"}
 RULES: Final = np.dtype(
-    [
-        (name, "i8" if field.annotation is int else "f8")
-        for name, field in RuleModel.model_fields.items()
-    ]
+    [(name, _TYPES[field.annotation]) for name, field in RuleModel.model_fields.items()]
 )
 """The rules as kernels know them, one field each, in the units of their names."""
