@@ -37,6 +37,7 @@ from esplanade.planning import (
     Prediction,
     PredictionModel,
     RiskModel,
+    RuleModel,
     SavedAgentsError,
     Scene,
     TrackHistory,
@@ -69,6 +70,7 @@ class Navigator:
         plan: PlanModel | None = None,
         risk: RiskModel | None = None,
         prediction: PredictionModel | None = None,
+        rules: RuleModel | None = None,
     ) -> None:
         if not 0.0 < tick_s <= 0.5:
             raise ValueError(f"tick_s must lie in (0, 0.5], got {tick_s}")
@@ -79,7 +81,7 @@ class Navigator:
         self.plan = plan or PlanModel()
         self._seed = seed
         people = prediction or PredictionModel()
-        self._batch = Batch(grid, self.plan, risk or RiskModel(), people.spread)
+        self._batch = Batch(grid, self.plan, risk or RiskModel(), people.spread, rules)
         self._history = TrackHistory(people, tick_s)
         self._prediction = self._history.predict(grid, self.plan.slices, self.plan.slice_s)
         self.potentials = PotentialPool(grid)

@@ -13,11 +13,11 @@ import argparse
 import json
 import sys
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import asdict
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, replace
 from importlib import import_module
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from benchmarks._swaps import SWAPS, Swap
@@ -27,8 +27,9 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from esplanade.actors import ActorParameters, Navigator
-from esplanade.planning import LayeredGrid, PlanModel
+from esplanade.actors import Navigator
+from esplanade.evaluation.settings import models_of, parameters_of
+from esplanade.planning import LayeredGrid
 
 TICK_S: Final = 0.05
 CELL_M: Final = 0.25
@@ -105,15 +106,19 @@ def walk(
     until_s: float,
     threads: int = 1,
     report: Callable[[float, int], None] | None = None,
+    settings: Mapping[str, Any] | None = None,
 ) -> tuple[Walks, Floats]:
     """Simulate until all actors have arrived, and a little longer.
 
     Returns the walks and the milliseconds of every tick. `report` is called after every tick with
-    the simulated seconds and the number of actors that have arrived.
+    the simulated seconds and the number of actors that have arrived. `settings` are as those of
+    `esplanade evaluate --set`.
     """
-    body = ActorParameters()
+    models = models_of(settings or {})
+    body = parameters_of(settings or {}, {})
     grid = LayeredGrid.from_scene(swap.scene, CELL_M)
-    nav = Navigator(grid, TICK_S, seed, plan=PlanModel(threads=threads))
+    plan = replace(models.plan, threads=threads)
+    nav = Navigator(grid, TICK_S, seed, plan=plan, risk=models.risk, rules=models.rules)
     for k, (start, goal) in enumerate(zip(swap.starts.tolist(), swap.goals.tolist(), strict=True)):
         nav.add_actor(k, tuple(start), tuple(goal), body)
     track, tick_ms = [swap.starts], []

@@ -125,8 +125,8 @@ def parser() -> Parser:
         type=_change,
         action="append",
         default=[],
-        help="change a setting of our actor: a parameter, risk.NAME, prediction.NAME or plan.NAME; "
-        "may be given several times",
+        help="change a setting of our actor: a parameter, risk.NAME, prediction.NAME, plan.NAME or "
+        "rules.NAME; may be given several times",
     )
     trips.add_argument(
         "--processes",

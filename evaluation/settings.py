@@ -5,30 +5,38 @@ from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from typing import Any, Final
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from esplanade.actors import ActorParameters
 from esplanade.commandline.fields import in_words
 from esplanade.commandline.parser import suggestion
-from esplanade.planning import PlanModel, PredictionModel, RiskModel
+from esplanade.planning import PlanModel, PredictionModel, RiskModel, RuleModel
 
 MODELS: Final[Mapping[str, type]] = {
     "risk": RiskModel,
     "prediction": PredictionModel,
     "plan": PlanModel,
+    "rules": RuleModel,
 }
 """A model's field is called by this name, a point, and its own; a parameter by its own alone."""
 
 NOT_SET: Final = frozenset({"plan.threads", "prediction.spread"})
 """Threads change no result: processes share the work already. A spread is no single value."""
 
+
+def _defaults(kind: Any) -> dict[str, Any]:
+    if issubclass(kind, BaseModel):
+        return {name: field.default for name, field in kind.model_fields.items()}
+    return {field.name: field.default for field in fields(kind)}
+
+
 DEFAULTS: Final[Mapping[str, Any]] = {
-    **{name: field.default for name, field in ActorParameters.model_fields.items()},
+    **_defaults(ActorParameters),
     **{
-        f"{model}.{field.name}": field.default
+        f"{model}.{name}": default
         for model, kind in MODELS.items()
-        for field in fields(kind)
-        if isinstance(field.default, int | float) and f"{model}.{field.name}" not in NOT_SET
+        for name, default in _defaults(kind).items()
+        if isinstance(default, int | float) and f"{model}.{name}" not in NOT_SET
     },
 }
 """Every setting there is, with its default: all that is a number, or yes or no."""
@@ -45,6 +53,7 @@ class Models:
     risk: RiskModel
     prediction: PredictionModel
     plan: PlanModel
+    rules: RuleModel
 
 
 def read_changes(texts: Sequence[str]) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from esplanade.planning.agents._passage_kernels import PASSAGE
 from esplanade.planning.agents.agent_table import AgentTable, SavedAgentsError
 from esplanade.planning.agents.agents import PARAMETERS, Agents, Decisions
 from esplanade.planning.agents.batch import Batch, PlanModel
+from esplanade.planning.agents.rules import RuleModel
 from esplanade.planning.agents.search import SearchForm, SearchResult, SearchStatus, uncertain_bfp
 from esplanade.planning.grid.grid import LayeredGrid
 from esplanade.planning.people._prediction_kernels import Prediction
@@ -45,6 +46,7 @@ __all__ = [
     "Ramp",
     "RiskField",
     "RiskModel",
+    "RuleModel",
     "SavedAgentsError",
     "Scene",
     "SearchForm",

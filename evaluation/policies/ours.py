@@ -55,6 +55,7 @@ class Esplanade(Policy):
             plan=replace(self._models.plan, threads=1),
             risk=self._models.risk,
             prediction=self._models.prediction,
+            rules=self._models.rules,
         )
         self._navigator.add_actor(
             _ACTOR, task.episode.start, task.episode.goal, _parameters(task.rules, self._settings)

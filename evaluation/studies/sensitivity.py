@@ -16,6 +16,7 @@ from esplanade.evaluation.studies.measures import (
     percentile_interval,
 )
 from esplanade.evaluation.studies.variants import Tables, Variant
+from esplanade.planning import RuleModel
 
 BODY_PARAMETERS: Final = frozenset(
     {
@@ -37,6 +38,7 @@ BEHAVIOUR_PARAMETERS: Final = tuple(
     for name in ActorParameters.model_fields
     if name not in BODY_PARAMETERS | MULTI_ACTOR_PARAMETERS
 )
+RULES_PREFIX: Final = "rules."
 VALUES_EACH_SIDE: Final = 2
 FACTOR: Final = 2.0
 """By default a setting takes `VALUES_EACH_SIDE` values below and above its own, each `FACTOR` times
@@ -156,6 +158,9 @@ def _baseline(name: str, base: Mapping[str, Any]) -> Any:
 
 
 def _schema(name: str) -> dict[str, Any]:
-    """The JSON schema of a parameter; it is empty for a field of a model."""
-    found: dict[str, Any] = ActorParameters.model_json_schema()["properties"].get(name, {})
+    """The JSON schema of a parameter or a rule; it is empty for a field of another model."""
+    of_rules = name.startswith(RULES_PREFIX)
+    kind = RuleModel if of_rules else ActorParameters
+    known = kind.model_json_schema()["properties"]
+    found: dict[str, Any] = known.get(name.removeprefix(RULES_PREFIX) if of_rules else name, {})
     return found

@@ -6,40 +6,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.agents._passage_kernels import (
-    BEFORE_M,
     NO_PASSAGE,
     PassageShape,
     find_passage,
 )
 from esplanade.planning.agents.agents import Agents
+from esplanade.planning.agents.priorities import Priorities, Turn
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.grid._grid_kernels import GridArrays, length
 from esplanade.planning.routes._potential_kernels import PotentialValues
 
-OPPOSED = 8
-"""Number of agents that want to go through a passage against an agent and make it keep right."""
-SAME_M = 1.0
-"""Two passages may be the two ends of one if they are no further apart than this, both across the
-direction through them and in height."""
-LONG_M = 6.0
-"""Greatest distance between the two ends of one passage, in the direction through it."""
-LOOK_S = 1.0
-"""Least time between two looks for passages. It is up to twice as long, depending on the rank, so
-that agents do not all look in the same tick."""
-AFTER_M = 4.0
-"""Distance behind a passage up to which agents that have come through keep right."""
-PASSED_M = 8.0
-"""Distance behind a passage up to which agents that have come through have priority over those that
-still have to come there."""
-SHIFT_M = 0.2
-"""Greatest distance from the middle of a passage to the left border of a lane; in a narrow passage
-the border is half-way between the middle and the side."""
-NEARER_M = 0.5
-"""An agent makes progress when it comes nearer to a passage by this distance."""
-WAITING_MPS = 0.2
-"""A second without progress counts like this distance to a passage."""
-LEFT_RAD = 1.0
-"""An agent is wholly on the left of a lane if it is seen at this angle from its beginning."""
+LEAVES_PASSAGE, ENTERS_PASSAGE = int(Turn.LEAVES_PASSAGE), int(Turn.ENTERS_PASSAGE)
+SETTLED = int(Turn.SETTLED)
 
 
 class Lane(NamedTuple):
@@ -55,12 +33,18 @@ class Lane(NamedTuple):
     """Distance from the middle of the passage to the left border of the lane, to the right."""
     weight: float
     """Cost, in metres of path, of a metre wholly on the left; 0 if the agent keeps to no lane."""
+    before_m: float
+    """Distance before the passage from which the lane leads to it."""
+    after_m: float
+    """Distance behind it up to which the lane goes on."""
+    left_rad: float
+    """Seen at this angle from the lane's beginning an agent is wholly on the left."""
 
 
 @inlined
-def lane_of(passage: np.void, weight: float) -> Lane:
+def lane_of(passage: np.void, rules: np.void, weight: float) -> Lane:
     """The lane through a passage, one row of `PASSAGE`."""
-    shift_m = min(SHIFT_M, 0.5 * passage["half_m"])
+    shift_m = min(rules["lane_shift_m"], 0.5 * passage["half_m"])
     return Lane(
         passage["middle_x"],
         passage["middle_y"],
@@ -68,6 +52,9 @@ def lane_of(passage: np.void, weight: float) -> Lane:
         passage["along_y"],
         shift_m,
         weight,
+        rules["ahead_m"],
+        rules["lane_after_m"],
+        rules["left_rad"],
     )
 
 
@@ -117,11 +104,11 @@ def off_lane_m(lane: Lane, x: float, y: float) -> float:
     dy = y - lane.y
     along = dx * lane.along_x + dy * lane.along_y
     left = lane.shift_m - (dx * lane.along_y - dy * lane.along_x)
-    near = (AFTER_M if along > 0.0 else BEFORE_M) - length(dx, dy)
+    near = (lane.after_m if along > 0.0 else lane.before_m) - length(dx, dy)
     if near <= 0.0 or left <= 0.0:
         return 0.0
     angle = np.arctan2(left, abs(along))
-    return float(lane.weight * near * min(1.0, angle / LEFT_RAD))
+    return float(lane.weight * near * min(1.0, angle / lane.left_rad))
 
 
 @inlined
@@ -141,16 +128,16 @@ def _has_passage(agents: Agents, a: int) -> bool:
 
 
 @inlined
-def _alike(one: PassageShape, other: PassageShape) -> float:
+def _alike(rules: np.void, one: PassageShape, other: PassageShape) -> float:
     """Cosine between the directions through two passages if they are the same one, else 0."""
     ux = one.along_x
     uy = one.along_y
     dx = other.middle_x - one.middle_x
     dy = other.middle_y - one.middle_y
     if (
-        abs(dx * uy - dy * ux) < SAME_M
-        and abs(dx * ux + dy * uy) < LONG_M
-        and abs(other.floor_m - one.floor_m) < SAME_M
+        abs(dx * uy - dy * ux) < rules["same_passage_m"]
+        and abs(dx * ux + dy * uy) < rules["long_passage_m"]
+        and abs(other.floor_m - one.floor_m) < rules["same_passage_m"]
     ):
         return float(ux * other.along_x + uy * other.along_y)
     return 0.0
@@ -158,7 +145,13 @@ def _alike(one: PassageShape, other: PassageShape) -> float:
 
 @kernel
 def see_passage(
-    grid: GridArrays, potential: PotentialValues, agents: Agents, a: int, going: bool, tick_s: float
+    grid: GridArrays,
+    potential: PotentialValues,
+    rules: np.void,
+    agents: Agents,
+    a: int,
+    going: bool,
+    tick_s: float,
 ) -> None:
     """Renew an agent's passage and its progress there.
 
@@ -171,30 +164,30 @@ def see_passage(
     p["look_in_s"] -= tick_s
     p["waited_s"] += tick_s
     beyond, away = _beyond(agents, a)
-    if beyond and away > PASSED_M:
+    if beyond and away > rules["passed_m"]:
         _clear(p)
     elif not beyond and p["look_in_s"] <= 0.0:
         x, y = agents.positions[a]
         radius = agents.parameters[a]["radius_m"]
         before = _shape_of(p)
         found, shape = find_passage(
-            grid, potential, agents.bodies[a], radius, agents.cells[a], x, y
+            grid, potential, rules, agents.bodies[a], radius, agents.cells[a], x, y
         )
         if not found:
             _clear(p)
         else:
             _set_passage(p, shape)
-            if _alike(before, shape) <= 0.0:
+            if _alike(rules, before, shape) <= 0.0:
                 p["nearest_m"] = np.inf
-        p["look_in_s"] = LOOK_S * (1.0 + agents.ranks[a] / len(agents.ranks))
+        p["look_in_s"] = rules["look_s"] * (1.0 + agents.ranks[a] / len(agents.ranks))
         away = _beyond(agents, a)[1]
-    if away < p["nearest_m"] - NEARER_M:
+    if away < p["nearest_m"] - rules["progress_m"]:
         p["nearest_m"] = away
         p["waited_s"] = 0.0
 
 
 @kernel
-def find_contested(agents: Agents, out: NDArray[np.bool_]) -> None:
+def find_contested(agents: Agents, rules: np.void, out: NDArray[np.bool_]) -> None:
     """Fill `out` (A,): whether enough others still have to come through an agent's passage against
     it."""
     out[:] = False
@@ -204,42 +197,39 @@ def find_contested(agents: Agents, out: NDArray[np.bool_]) -> None:
         if _has_passage(agents, a) and not _beyond(agents, a)[0]:
             coming[count] = a
             count += 1
-    if count < OPPOSED:
+    if count < rules["contested_actors"]:
         return
     for a in range(len(out)):
         against = 0
         if _has_passage(agents, a):
             own = _shape_of(agents.passages[a])
             for n in range(count):
-                if _alike(own, _shape_of(agents.passages[coming[n]])) < 0.0:
+                if _alike(rules, own, _shape_of(agents.passages[coming[n]])) < 0.0:
                     against += 1
-                    if against == OPPOSED:
+                    if against == rules["contested_actors"]:
                         break
-        out[a] = against == OPPOSED
+        out[a] = against == rules["contested_actors"]
 
 
 @kernel
 def order_at_passages(
-    agents: Agents, contested: NDArray[np.bool_], left_m: NDArray[np.float64]
+    agents: Agents, rules: np.void, contested: NDArray[np.bool_], priorities: Priorities
 ) -> None:
-    """Replace distances left in `left_m` (A,), which give priority, where a passage is contested.
+    """Give agents whose passage is contested the priority of those who leave or enter it.
 
-    Agents that have come through go first, the furthest of them before all, since nobody can enter
-    before the exit is free; this holds up to the goal, which may lie among those that wait. Then
-    follow the agents that still have to come there, the nearest first. Their waiting without
-    progress counts in their favour, since agents that were crowded out to the side would otherwise
-    stay there until all others are through. All other agents follow. An agent that is about to
-    arrive on this side goes last, as everywhere.
+    Those that leave keep it up to the goal, which may lie among those that wait. Waiting without
+    progress counts in favour of those that enter, since agents that were crowded out to the side
+    would otherwise stay there until all others are through. An agent that is about to arrive on
+    this side goes last, as everywhere.
     """
-    if not contested.any():
-        return
-    for a in range(len(left_m)):
+    for a in range(len(contested)):
         if not contested[a]:
-            left_m[a] += 2.0 * BEFORE_M  # further than any contested agent is, even in a jam
             continue
         p = agents.passages[a]
         beyond, away = _beyond(agents, a)
         if beyond:
-            left_m[a] = -away
-        elif left_m[a] < np.inf:
-            left_m[a] = max(0.0, p["nearest_m"] - WAITING_MPS * p["waited_s"])
+            priorities.turns[a] = LEAVES_PASSAGE
+            priorities.keys_m[a] = -away
+        elif priorities.turns[a] != SETTLED:
+            priorities.turns[a] = ENTERS_PASSAGE
+            priorities.keys_m[a] = max(0.0, p["nearest_m"] - rules["waiting_mps"] * p["waited_s"])

@@ -7,10 +7,17 @@ in any order and on any number of threads; only `resolve` runs through the actor
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.planning.agents._bottleneck_kernels import AFTER_M, OPPOSED, lane_of, see_passage
+from esplanade.planning.agents._bottleneck_kernels import lane_of, see_passage
 from esplanade.planning.agents._perturb_kernels import path_cost, update_path
 from esplanade.planning.agents._reason_kernels import decided_reason
-from esplanade.planning.agents._search_kernels import FOUND, NO_PATH, Moves, Workspace, search
+from esplanade.planning.agents._search_kernels import (
+    FOUND,
+    NO_PATH,
+    PARTIAL,
+    Moves,
+    Workspace,
+    search,
+)
 from esplanade.planning.agents._step_kernels import control_toward, last_check, limited
 from esplanade.planning.agents._task_kernels import SUB, Task, World, metres_left, needed_clearance
 from esplanade.planning.agents.agents import BLOCKED, GIVING_WAY, MOVING, Agents, Decisions
@@ -20,17 +27,9 @@ from esplanade.planning.grid._side_kernels import is_cut_off
 from esplanade.planning.people._prediction_kernels import Prediction
 from esplanade.planning.routes._potential_kernels import EDGES, potential_at, way_out
 
-MOST_BEHIND_S = 5.0
-"""More lost time than this is not made up."""
-DODGE_CELLS = 3
-"""An actor that others have made go to and fro on edges, so that it has used up M, may still go on
-to where its way leaves them, and so many cells out of somebody's way."""
-EASE_S = 0.5
-"""An agent that is behind by less than this makes it up more slowly."""
-
 
 @kernel
-def keep_account(agents: Agents, a: int, left: float, tick_s: float) -> float:
+def keep_account(agents: Agents, rules: np.void, a: int, left: float, tick_s: float) -> float:
     """Book the time that an actor lost or made up in the last tick; return its speed from now on.
 
     The time lost is the length of a tick less the time that the progress made in it takes at the
@@ -41,8 +40,8 @@ def keep_account(agents: Agents, a: int, left: float, tick_s: float) -> float:
     agents.left_m[a] = left
     if np.isfinite(before) and np.isfinite(left):
         lost = tick_s - (before - left) / p["speed_mps"]
-        agents.behind_s[a] = min(MOST_BEHIND_S, max(0.0, agents.behind_s[a] + lost))
-    faster = 1.0 + p["catch_up"] * min(1.0, agents.behind_s[a] / EASE_S)
+        agents.behind_s[a] = min(rules["most_behind_s"], max(0.0, agents.behind_s[a] + lost))
+    faster = 1.0 + p["catch_up"] * min(1.0, agents.behind_s[a] / rules["ease_s"])
     return float(min(p["max_speed_mps"], p["speed_mps"] * faster))
 
 
@@ -50,6 +49,7 @@ def keep_account(agents: Agents, a: int, left: float, tick_s: float) -> float:
 def make_task(
     potentials: NDArray[np.float32],
     agents: Agents,
+    rules: np.void,
     a: int,
     max_hold_m: float,
     tick_s: float,
@@ -81,17 +81,17 @@ def make_task(
         elif left <= max_hold_m:
             hold = True
         else:
-            speed = keep_account(agents, a, left, tick_s)
+            speed = keep_account(agents, rules, a, left, tick_s)
     else:
         gx = x
         gy = y
-    keeps_right = contested and left > AFTER_M
+    keeps_right = contested and left > rules["lane_after_m"]
     on_edges = agents.on_edges[a]
     most_edges = p["edge_cells"]
     if not hold and cell >= 0:
         ahead = float(potentials[slot, cell, EDGES])
         if on_edges + ahead - 0.5 >= most_edges:
-            most_edges = on_edges + ahead + DODGE_CELLS
+            most_edges = on_edges + ahead + rules["dodge_cells"]
     return Task(
         a,
         agents.bodies[a],
@@ -114,11 +114,12 @@ def make_task(
         p["closing_weight"],
         p["turn_weight"],
         p["wall_weight"],
+        rules["wall_room_m"],
         p["hurry_weight"],
         int(p["max_expansions"]),
         on_edges,
         most_edges,
-        lane_of(agents.passages[a], p["keep_right_weight"] if keeps_right else 0.0),
+        lane_of(agents.passages[a], rules, p["keep_right_weight"] if keeps_right else 0.0),
         hold,
     )
 
@@ -145,6 +146,7 @@ def decide(
     Their followed paths, seen from now, are `world.reservations.paths`. The speeds of `moves` are
     parts of each actor's own.
     """
+    rules = world.rules[0]
     slices = out.paths.shape[1]
     speeds = np.empty(len(moves.speeds))
     kept = np.empty((slices, 2))
@@ -155,7 +157,7 @@ def decide(
         a = world.reservations.members[0, n]
         p = agents.parameters[a]
         contested = world.reservations.contested[a]
-        task = make_task(potentials, agents, a, p["goal_tolerance_m"], tick_s, contested)
+        task = make_task(potentials, agents, rules, a, p["goal_tolerance_m"], tick_s, contested)
         slot = agents.potential_rows[a]
         potential = potentials[slot] if slot >= 0 else no_potential
         if slot >= 0 and is_cut_off(world.grid, task.body, task.cell, task.x, task.y):
@@ -171,13 +173,16 @@ def decide(
             kept[:] = world.reservations.paths[a]
             cost, changed = _improve(world, potential, task, kept, bent, cells, trial)
             bound = cost - p["hysteresis_s"]
-        found = search(world, potential, own, task, True, bound, workspace, out.paths[a])
+        found = search(
+            world, potential, own, task, not rules["greedy"], bound, workspace, out.paths[a]
+        )
         status = found.status
         better = True
         if bound < np.inf:
-            better = (
-                status != NO_PATH and path_cost(world, potential, task, out.paths[a])[0] < bound
-            )
+            cost = found.cost
+            if status == PARTIAL or rules["greedy"]:  # it stays where it ends, up to the horizon
+                cost = path_cost(world, potential, task, out.paths[a])[0]
+            better = status != NO_PATH and (cost < bound or not rules["weighs_paths"])
             if not better:
                 out.paths[a] = kept
                 status = FOUND
@@ -188,9 +193,11 @@ def decide(
         path = out.paths[a]
         ux, uy = control_toward(task, path[SUB, 0], path[SUB, 1], world.step_s)
         contact = p["radius_m"] + (world.person_radius_m + p["person_room_m"])
-        ux, uy, dodged = last_check(
-            world, prediction, task, needed_clearance(world, task), contact, ux, uy
-        )
+        dodged = False
+        if rules["checks_steps"]:
+            ux, uy, dodged = last_check(
+                world, prediction, task, needed_clearance(world, task), contact, ux, uy
+            )
         wx, wy = limited(task, ux, uy, tick_s)
         out.wishes[a, 0] = wx
         out.wishes[a, 1] = wy
@@ -198,8 +205,16 @@ def decide(
         lost = slot >= 0 and not np.isfinite(potential_at(potential, task.cell, task.x, task.y))
         if status == NO_PATH and not lost:  # inside something no path leads out of
             lost = clearance_at(world.grid, task.body, task.cell, task.x, task.y) < 0.0
-        if len(agents.passages) > OPPOSED:
-            see_passage(world.grid, potential, agents, a, slot >= 0 and not task.hold, tick_s)
+        if len(agents.passages) > rules["contested_actors"]:
+            see_passage(
+                world.grid,
+                potential,
+                rules,
+                agents,
+                a,
+                slot >= 0 and not task.hold,
+                tick_s,
+            )
         out.reasons[a] = decided_reason(
             agents, task, away, lost, path, status, switched, dodged, world.step_s
         )
@@ -268,6 +283,8 @@ def _improve(
     cost, risk, legal = path_cost(world, potential, task, path)
     if not legal:
         return np.inf, False
+    if not world.rules[0]["perturbs"]:
+        return cost, False
     bent[:] = path
     if update_path(world, potential, task, bent, cells, trial) > 0:
         bent_cost, bent_risk, _ = path_cost(world, potential, task, bent)

@@ -26,19 +26,6 @@ PASSAGE = np.dtype(
 The progress is the time until the agent looks for passages again (`look_in_s`), how near to the
 middle it has come (`nearest_m`), and how long ago that was (`waited_s`); metres and seconds.
 """
-NARROW_M = 2.2
-"""Greatest width of a passage, between obstacles that leave less than `WALL_PART` of the radius."""
-BEFORE_M = 20.0
-"""Distance ahead along the path within which passages are looked for."""
-STRAIGHT = 0.9
-"""Least part of the distance along the path to a passage that the straight line to it has to be: a
-passage around a corner leads nobody to one side of it yet."""
-WALL_PART = 0.8
-"""Places with a clearance of less than this part of the radius are the sides of a passage."""
-DEEP_M = 1.0
-"""The narrowest place within this distance of a passage's entrance is its middle."""
-RAYS = 8
-"""Number of lines along which the width of a passage is measured before the best is refined."""
 
 
 class PassageShape(NamedTuple):
@@ -70,20 +57,21 @@ def _free_distance(
     room_m: float,
     here_m: float,
     most_m: float,
+    narrow_m: float,
 ) -> float:
     """Distance that a point with a clearance of at least `room_m` may move in a direction, metres.
 
     `here_m` is the clearance at its start beyond `room_m`. Distances of more than `most_m` are not
-    measured; the result is then `NARROW_M`.
+    measured; the result is then `narrow_m`.
     """
     shortest = 0.5 * grid.layered.cell_m
-    last = min(NARROW_M, most_m + shortest)  # a side is noticed up to a shortest step beyond it
+    last = min(narrow_m, most_m + shortest)  # a side is noticed up to a shortest step beyond it
     room = here_m
     way = 0.0
     while True:
         way += max(room, shortest) if grid.flat else min(max(room, shortest), 2.0 * shortest)
         if way >= last:
-            return NARROW_M
+            return narrow_m
         cell = follow(grid, cell, x + way * ux, y + way * uy)
         room = clearance_at(grid, body, cell, x + way * ux, y + way * uy) - room_m
         if room < 0.0:
@@ -101,13 +89,14 @@ def _narrowest(
     first: float,
     apart: float,
     lines: int,
+    narrow_m: float,
 ) -> tuple[float, float, float]:
     """The shortest line from side to side through a point: its length, angle and middle.
 
     Lines at the angles first, first + apart, ... are tried; the middle is given as a distance along
-    the line. Only lines shorter than `NARROW_M` count; without any the length is `NARROW_M`.
+    the line. Only lines shorter than `narrow_m` count; without any the length is `narrow_m`.
     """
-    best = NARROW_M
+    best = narrow_m
     turn = 0.0
     aside = 0.0
     here_m = clearance_at(grid, body, cell, x, y) - room_m
@@ -117,8 +106,10 @@ def _narrowest(
         angle = first + n * apart
         ux = np.cos(angle)
         uy = np.sin(angle)
-        ahead = _free_distance(grid, body, cell, x, y, ux, uy, room_m, here_m, best)
-        behind = _free_distance(grid, body, cell, x, y, -ux, -uy, room_m, here_m, best - ahead)
+        ahead = _free_distance(grid, body, cell, x, y, ux, uy, room_m, here_m, best, narrow_m)
+        behind = _free_distance(
+            grid, body, cell, x, y, -ux, -uy, room_m, here_m, best - ahead, narrow_m
+        )
         if ahead + behind < best:
             best = ahead + behind
             turn = angle
@@ -128,25 +119,33 @@ def _narrowest(
 
 @kernel
 def measure_passage(
-    grid: GridArrays, body: int, radius: float, cell: int, x: float, y: float
+    grid: GridArrays,
+    rules: np.void,
+    body: int,
+    radius: float,
+    cell: int,
+    x: float,
+    y: float,
 ) -> tuple[bool, PassageShape]:
     """Whether a point is in a passage, and the shape of the passage.
 
     The shortest line through the point from side to side is found first, then the shortest line
     through the middle of that line.
     """
-    room_m = WALL_PART * radius
+    narrow_m = rules["narrow_m"]
+    rays = rules["rays"]
+    room_m = rules["wall_part"] * radius
     if clearance_at(grid, body, cell, x, y) < room_m:
         return False, NO_PASSAGE
-    apart = np.pi / RAYS
-    width, turn, aside = _narrowest(grid, body, cell, x, y, room_m, 0.0, apart, RAYS)
-    if width >= NARROW_M:
+    apart = np.pi / rays
+    width, turn, aside = _narrowest(grid, body, cell, x, y, room_m, 0.0, apart, rays, narrow_m)
+    if width >= narrow_m:
         return False, NO_PASSAGE
     x += aside * np.cos(turn)
     y += aside * np.sin(turn)
     cell = follow(grid, cell, x, y)
     width, turn, aside = _narrowest(
-        grid, body, cell, x, y, room_m, turn - 0.5 * apart, 0.25 * apart, 5
+        grid, body, cell, x, y, room_m, turn - 0.5 * apart, 0.25 * apart, 5, narrow_m
     )
     shape = PassageShape(
         x + aside * np.cos(turn),
@@ -156,13 +155,14 @@ def measure_passage(
         max(0.0, 0.5 * width - (radius - room_m)),
         floor_of(grid, cell),
     )
-    return width < NARROW_M, shape
+    return width < narrow_m, shape
 
 
 @kernel
 def find_passage(
     grid: GridArrays,
     potential: PotentialValues,
+    rules: np.void,
     body: int,
     radius: float,
     cell: int,
@@ -173,13 +173,13 @@ def find_passage(
 
     The unit vector of the shape points in the direction of the path.
     """
-    wide = 0.5 * NARROW_M + radius
+    wide = 0.5 * rules["narrow_m"] + radius
     start_x = x
     start_y = y
     way = 0.0
     last_dx = 0.0
     last_dy = 0.0
-    most = BEFORE_M
+    most = rules["ahead_m"]
     narrowest = np.inf
     passage = NO_PASSAGE
     while way < most and cell >= 0:
@@ -188,12 +188,13 @@ def find_passage(
         narrow = False
         here = NO_PASSAGE
         if room < wide:
-            narrow, here = measure_passage(grid, body, radius, cell, x, y)
+            narrow, here = measure_passage(grid, rules, body, radius, cell, x, y)
         if narrow:
             if narrowest == np.inf:
-                if length(x - start_x, y - start_y) < STRAIGHT * way - grid.layered.cell_m:
+                straight_m = rules["straight_part"] * way
+                if length(x - start_x, y - start_y) < straight_m - grid.layered.cell_m:
                     return False, NO_PASSAGE
-                most = way + DEEP_M
+                most = way + rules["deep_m"]
             if here.half_m < narrowest:
                 narrowest = here.half_m
                 # Paths turn at its corners: both directions together lead through the passage.

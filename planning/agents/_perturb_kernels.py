@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.planning.agents._cost_kernels import room_for_near, step_parts
 from esplanade.planning.agents._reservation_kernels import conflict
 from esplanade.planning.agents._task_kernels import (
     SUB,
@@ -13,8 +14,6 @@ from esplanade.planning.agents._task_kernels import (
     metres_left,
     needed_clearance,
     risk_price,
-    time_cost,
-    wall_cost,
     way_left,
 )
 from esplanade.planning.compiled.jit import inlined, kernel
@@ -29,15 +28,7 @@ from esplanade.planning.grid._grid_kernels import (
 from esplanade.planning.people._risk_kernels import risk_at
 from esplanade.planning.routes._potential_kernels import PotentialValues, potential_at
 
-SHORTEST_STRETCH = 4
-"""Stretches of fewer slices are not split further."""
-OFFSETS = 3
-"""Candidates m' on either side of the middle."""
-OFFSET_M = 0.2
-"""Distance between candidates, metres."""
 _MOST_EDGES = 1e9
-LEAST_RISK = 1e-3
-"""A bend has to lower the mean risk of a stretch by so much."""
 
 
 @inlined
@@ -165,12 +156,16 @@ def stretch_edges(
 def path_cost(
     world: World, potential: PotentialValues, task: Task, path: NDArray[np.float64]
 ) -> tuple[float, float, bool]:
-    """Cost of a whole path as the search counts it (its length and time among it), mean risk, and
-    whether it is legal: all of it as `stretch_edges` of a stretch."""
+    """Cost of a whole path, mean risk, and whether it is legal: all of it as `stretch_edges` of a
+    stretch.
+
+    The cost is that of its steps, and of the way that is left: for the same path it is what the
+    search adds up.
+    """
     grid = world.grid
     need = needed_clearance(world, task)
     ds = world.step_s / SUB
-    slices = len(path) - 1
+    near = room_for_near()
     cell = task.cell
     vx = task.vx
     vy = task.vy
@@ -179,35 +174,34 @@ def path_cost(
     left_m = 0.0
     edges = task.on_edges
     legal = True
-    for k in range(slices):
-        ax = path[k, 0]
-        ay = path[k, 1]
-        bx = path[k + 1, 0]
-        by = path[k + 1, 1]
-        moved = length(bx - ax, by - ay)
-        ux = (bx - ax) / ds
-        uy = (by - ay) / ds
-        feet_m = floor_of(grid, cell)
-        before = cell
-        cell = follow(grid, cell, bx, by)
-        left_m = metres_left(potential, task, cell, bx, by)
-        r = slice_risk(world, task, k + 1, cell, ax, ay, bx, by)
-        room = clearance_at(grid, task.body, cell, bx, by)
-        edges = count_edges(grid, potential, task, before, cell, bx - ax, by - ay, edges)
-        blocked, soft = conflict(world.reservations, task.me, feet_m, k, ax, ay, bx, by)
-        if blocked or edges == TOO_MANY or not _may_go(task, need, moved, room, left_m, ds):
+    steps = (len(path) - 1) // SUB
+    for step in range(steps):
+        k = step * SUB
+        parts = step_parts(world, potential, task, path, step, cell, vx, vy, near)
+        price = risk_price(task, step * world.step_s) * ds
+        cost += parts.seconds + parts.turning + parts.wall + price * (parts.soft + parts.risk)
+        risk += parts.risk
+        left_m = parts.left_m
+        half_x = path[k + 1, 0] - path[k, 0]
+        half_y = path[k + 1, 1] - path[k, 1]
+        end_x = path[k + 2, 0] - path[k + 1, 0]
+        end_y = path[k + 2, 1] - path[k + 1, 1]
+        half_m = metres_left(potential, task, parts.half, path[k + 1, 0], path[k + 1, 1])
+        edges = count_edges(grid, potential, task, cell, parts.half, half_x, half_y, edges)
+        if edges != TOO_MANY:
+            edges = count_edges(grid, potential, task, parts.half, parts.end, end_x, end_y, edges)
+        if (
+            edges == TOO_MANY
+            or parts.blocked
+            or not _may_go(task, need, length(half_x, half_y), parts.half_room, half_m, ds)
+            or not _may_go(task, need, length(end_x, end_y), parts.end_room, left_m, ds)
+        ):
             legal = False
-        risk += r
-        cost += (
-            time_cost(task, left_m, moved / ds, ds)
-            + risk_price(task, (k // SUB) * world.step_s) * ds * (r + soft)
-            + task.turn_weight * length(ux - vx, uy - vy)
-            + wall_cost(task, room, ds)
-        )
-        vx = ux
-        vy = uy
+        cell = parts.end
+        vx = end_x / ds
+        vy = end_y / ds
     cost += way_left(task, left_m, length(vx, vy))
-    return cost, risk / slices, legal
+    return cost, risk / (steps * SUB), legal
 
 
 @kernel
@@ -246,19 +240,20 @@ def perturb_path(
     trial: NDArray[np.float64],
     trial_risks: NDArray[np.float64],
 ) -> bool:
-    """Replace a stretch by the first bend that is legal and less risky by `LEAST_RISK`; fig. 8.
+    """Replace a stretch by the first bend that is legal and less risky by `least_risk`; fig. 8.
 
     Candidates lie on the normal through the chord's midpoint, nearest first, either side in turn.
     The printed test accepts equal risk too, with which the recursion need not settle. `cells` (K,)
     are those that the path is in.
     """
+    rules = world.rules[0]
     if last - first < 2:  # there is nothing between its ends
         return False
     begin = cells[first]
     total = 0.0
     for k in range(first + 1, last + 1):
         total += risks[k]
-    least = (last - first) * LEAST_RISK
+    least = (last - first) * rules["least_risk"]
     if total <= least:
         return False
     cx = path[last, 0] - path[first, 0]
@@ -269,8 +264,8 @@ def perturb_path(
     middle = (first + last) // 2
     edges = _edges_at(world.grid, potential, task, path, cells, first)
     most_edges = _edges_at(world.grid, potential, task, path, cells, last)
-    for n in range(2 * OFFSETS):
-        offset = OFFSET_M * (n // 2 + 1) * (1.0 if n % 2 == 0 else -1.0)
+    for n in range(2 * rules["offsets"]):
+        offset = rules["offset_m"] * (n // 2 + 1) * (1.0 if n % 2 == 0 else -1.0)
         mx = path[first, 0] + 0.5 * cx - offset * cy / chord
         my = path[first, 1] + 0.5 * cy + offset * cx / chord
         _bend(path, trial, first, middle, last, mx, my)
@@ -335,7 +330,7 @@ def update_path(
             world, potential, task, need, path, cells, first, last, risks, trial, trial_risks
         ):
             bends += 1
-        elif last - first >= SHORTEST_STRETCH:
+        elif last - first >= world.rules[0]["shortest_stretch"]:
             middle = (first + last) // 2
             stack[height, 0] = middle
             stack[height, 1] = last

@@ -3,27 +3,18 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.planning.agents._bottleneck_kernels import OPPOSED, find_contested, order_at_passages
-from esplanade.planning.agents._reservation_kernels import (
-    AGAINST,
-    Reservations,
-    index_paths,
-)
+from esplanade.planning.agents._bottleneck_kernels import find_contested, order_at_passages
+from esplanade.planning.agents._reservation_kernels import Reservations, index_paths
 from esplanade.planning.agents._task_kernels import SUB, World
 from esplanade.planning.agents.agents import Agents
+from esplanade.planning.agents.priorities import Priorities, Turn
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.grid._grid_kernels import GridArrays, floor_of, follow
 from esplanade.planning.routes._potential_kernels import direction_at, potential_at
 from esplanade.planning.scene.heights import BODIES_OVERLAP_M
 
-HELD_UP_PART = 0.3
-"""An agent that is slower than this part of its preferred speed is held up."""
-SETTLED_M = 1.0
-"""Agents within this distance of their goal get the lowest priority."""
-JAM_M = 8.0
-"""Agents that are held up within this distance belong to the same jam."""
-JAM_ACTORS = 8
-"""Number of agents held up that makes a jam for an agent that goes in the opposite direction."""
+SETTLED, WALKS = int(Turn.SETTLED), int(Turn.WALKS)
+LEAVES_JAM, ENTERS_JAM = int(Turn.LEAVES_JAM), int(Turn.ENTERS_JAM)
 
 
 @kernel
@@ -34,25 +25,38 @@ def prepare(
     tick_s: float,
     order: NDArray[np.int64],
 ) -> None:
-    """Fill the reservations of a tick, and `order` (A,) with the agents by descending priority.
-
-    Of two agents with equal distances left, the one of smaller rank goes first.
-    """
+    """Fill the reservations of a tick, and `order` (A,) with the agents by descending priority."""
     r = world.reservations
+    rules = world.rules[0]
     actors = len(order)
     continue_paths(world, potentials, agents, tick_s, r.paths, r.heights)
     index_paths(r)
-    left_m = np.empty(actors)
-    distances_left(potentials, agents, left_m)
-    find_courses(world.grid, potentials, agents, left_m, r)
-    empty_jams(left_m, r)
-    if actors > OPPOSED:
-        find_contested(agents, r.contested)
-        order_at_passages(agents, r.contested, left_m)
-    by_rank = np.argsort(agents.ranks, kind="mergesort")
-    order[:] = by_rank[np.argsort(left_m[by_rank], kind="mergesort")]
+    priorities = Priorities(np.empty(actors, dtype=np.int64), np.empty(actors))
+    order_by_distance(potentials, agents, rules["settled_m"], priorities)
+    find_courses(world.grid, potentials, agents, priorities, r)
+    order_in_jams(priorities, r)
+    if actors > rules["contested_actors"]:
+        find_contested(agents, rules, r.contested)
+    if actors > rules["contested_actors"] and rules["orders_passages"]:
+        order_at_passages(agents, rules, r.contested, priorities)
+    put_in_order(priorities, agents.ranks, order)
     for n in range(actors):
         r.ranks[order[n]] = n
+
+
+@kernel
+def put_in_order(
+    priorities: Priorities, ranks: NDArray[np.int64], order: NDArray[np.int64]
+) -> None:
+    """Fill `order` (A,) with the agents as `Priorities` compares them, the first first."""
+    by_rank = np.argsort(ranks, kind="mergesort")
+    by_key = by_rank[np.argsort(priorities.keys_m[by_rank], kind="mergesort")]
+    n = 0
+    for turn in range(SETTLED + 1):
+        for a in by_key:
+            if priorities.turns[a] == turn:
+                order[n] = a
+                n += 1
 
 
 @kernel
@@ -135,23 +139,23 @@ def _carry_on(
 
 
 @kernel
-def distances_left(
-    potentials: NDArray[np.float32], agents: Agents, out: NDArray[np.float64]
+def order_by_distance(
+    potentials: NDArray[np.float32], agents: Agents, settled_m: float, out: Priorities
 ) -> None:
-    """Fill `out` (A,) with the distance left of each agent, in metres: the least has priority.
+    """Give everyone the priority of its distance left, or that of agents that are settled.
 
-    Two agents do not change their order while one lets the other pass, since only the other gets
-    nearer to its goal. Agents within `SETTLED_M` of their goal, without a path, or that wait, have
-    inf.
+    Those are agents within `settled_m` of their goal, without a path, or that wait.
     """
-    for a in range(len(out)):
-        out[a] = np.inf
+    for a in range(len(out.turns)):
+        out.turns[a] = SETTLED
+        out.keys_m[a] = 0.0
         slot = agents.potential_rows[a]
         if slot >= 0 and not agents.waits[a]:
             x, y = agents.positions[a]
             left = potential_at(potentials[slot], agents.cells[a], x, y)
-            if left > SETTLED_M:
-                out[a] = left
+            if settled_m < left < np.inf:
+                out.turns[a] = WALKS
+                out.keys_m[a] = left
 
 
 @kernel
@@ -159,42 +163,41 @@ def find_courses(
     grid: GridArrays,
     potentials: NDArray[np.float32],
     agents: Agents,
-    left_m: NDArray[np.float64],
+    priorities: Priorities,
     reservations: Reservations,
 ) -> None:
-    """Fill `courses` and `held_up` of the reservations; `left_m` (A,) is of `distances_left`."""
+    """Fill `courses` and `held_up` of the reservations for all agents that are not settled."""
     r = reservations
-    for a in range(len(left_m)):
+    rules = r.rules[0]
+    for a in range(len(priorities.turns)):
         r.courses[a] = 0.0
         r.held_up[a] = False
-        if left_m[a] < np.inf:
+        if priorities.turns[a] != SETTLED:
             x, y = agents.positions[a]
             potential = potentials[agents.potential_rows[a]]
             r.courses[a, 0], r.courses[a, 1], _ = direction_at(
                 grid, potential, agents.cells[a], x, y
             )
             speed = np.hypot(agents.velocities[a, 0], agents.velocities[a, 1])
-            r.held_up[a] = speed < HELD_UP_PART * agents.parameters[a]["speed_mps"]
+            r.held_up[a] = speed < rules["held_up_part"] * agents.parameters[a]["speed_mps"]
 
 
 @kernel
-def empty_jams(left_m: NDArray[np.float64], reservations: Reservations) -> None:
-    """Replace distances left in `left_m` (A,), which give priority, for agents in a jam.
+def order_in_jams(priorities: Priorities, reservations: Reservations) -> None:
+    """Give agents in a jam the priority of those who leave or enter it.
 
     The middle of a jam lies half-way between the agents held up that go in an agent's direction,
-    itself included, and those that go in the opposite direction. Agents beyond the middle go
-    first, the furthest of them before all; then those that still have to come there, the nearest
-    first; then all others. Positions are summed in whole micrometres, so that the result does not
-    depend on the order of agents.
+    itself included, and those that go in the opposite direction. Positions are summed in whole
+    micrometres, so that the result does not depend on the order of agents.
     """
     r = reservations
+    rules = r.rules[0]
     held_up = np.flatnonzero(r.held_up)
-    if len(held_up) < JAM_ACTORS:
+    if len(held_up) < rules["jam_actors"]:
         return
-    for a in range(len(left_m)):
-        if left_m[a] == np.inf:
+    for a in range(len(priorities.turns)):
+        if priorities.turns[a] == SETTLED:
             continue
-        left_m[a] += JAM_M
         count = np.zeros(2, dtype=np.int64)  # in the same direction, in the opposite direction
         place = np.zeros((2, 2), dtype=np.int64)
         count[0] = 1
@@ -203,19 +206,21 @@ def empty_jams(left_m: NDArray[np.float64], reservations: Reservations) -> None:
             dy = r.paths[o, 0, 1] - r.paths[a, 0, 1]
             if (
                 o == a
-                or dx * dx + dy * dy > JAM_M * JAM_M
+                or dx * dx + dy * dy > rules["jam_m"] * rules["jam_m"]
                 or abs(r.heights[o, 0] - r.heights[a, 0]) >= BODIES_OVERLAP_M
             ):
                 continue
             along = r.courses[a, 0] * r.courses[o, 0] + r.courses[a, 1] * r.courses[o, 1]
-            if abs(along) > -AGAINST:
+            if abs(along) > rules["against_cosine"]:
                 side = 0 if along > 0.0 else 1
                 count[side] += 1
                 place[side, 0] += int(np.round(1e6 * dx))
                 place[side, 1] += int(np.round(1e6 * dy))
-        if count[1] < JAM_ACTORS:
+        if count[1] < rules["jam_actors"]:
             continue
         mx = 0.5e-6 * (place[0, 0] / count[0] + place[1, 0] / count[1])
         my = 0.5e-6 * (place[0, 1] / count[0] + place[1, 1] / count[1])
         beyond = mx * r.courses[a, 0] + my * r.courses[a, 1] < 0.0
-        left_m[a] = np.sqrt(mx * mx + my * my) * (-1.0 if beyond else 1.0)
+        away = np.sqrt(mx * mx + my * my)
+        priorities.turns[a] = LEAVES_JAM if beyond else ENTERS_JAM
+        priorities.keys_m[a] = -away if beyond else away

@@ -18,13 +18,6 @@ from esplanade.planning.compiled.jit import kernel
 from esplanade.planning.people._prediction_kernels import Prediction
 from esplanade.planning.scene.heights import BODIES_OVERLAP_M
 
-STANDS_MPS = 0.05
-"""An agent that is slower than this stands."""
-WALKS_MPS = 0.3
-"""An agent that is faster than this does not wait."""
-SOMEBODY_M = 2.5
-"""Way is given only to bodies that are no further away than this."""
-
 
 @kernel
 def decided_reason(
@@ -63,7 +56,9 @@ def decided_reason(
 
 
 @kernel
-def _somebody_near(agents: Agents, radii: NDArray[np.float64], people: Prediction, a: int) -> bool:
+def _somebody_near(
+    agents: Agents, radii: NDArray[np.float64], people: Prediction, somebody_m: float, a: int
+) -> bool:
     """Whether a body of anybody's is near enough to give way to."""
     x = agents.positions[a, 0]
     y = agents.positions[a, 1]
@@ -71,13 +66,13 @@ def _somebody_near(agents: Agents, radii: NDArray[np.float64], people: Predictio
     for p in range(len(people.means)):
         dx = people.means[p, 0, 0] - x
         dy = people.means[p, 0, 1] - y
-        reach = radii[a] + SOMEBODY_M
+        reach = radii[a] + somebody_m
         if dx * dx + dy * dy <= reach * reach and abs(people.heights[p, 0] - z) < BODIES_OVERLAP_M:
             return True
     for o in range(len(radii)):
         dx = agents.positions[o, 0] - x
         dy = agents.positions[o, 1] - y
-        reach = radii[a] + radii[o] + SOMEBODY_M
+        reach = radii[a] + radii[o] + somebody_m
         if (
             o != a
             and dx * dx + dy * dy <= reach * reach
@@ -88,7 +83,9 @@ def _somebody_near(agents: Agents, radii: NDArray[np.float64], people: Predictio
 
 
 @kernel
-def match_reasons(agents: Agents, radii: NDArray[np.float64], people: Prediction) -> None:
+def match_reasons(
+    agents: Agents, radii: NDArray[np.float64], people: Prediction, rules: np.void
+) -> None:
     """Bring the reasons of agents in line with what one sees of them after their step.
 
     Nobody moves along its path or takes up another one while it stands, waits while it walks, or
@@ -97,9 +94,9 @@ def match_reasons(agents: Agents, radii: NDArray[np.float64], people: Prediction
     for a in range(len(radii)):
         reason = agents.reasons[a]
         speed = np.hypot(agents.velocities[a, 0], agents.velocities[a, 1])
-        if speed < STANDS_MPS:
+        if speed < rules["stands_mps"]:
             if reason in (MOVING, REPLANNING, GIVING_WAY):
                 agents.reasons[a] = WAITING
-        elif reason == GIVING_WAY or (reason == WAITING and speed >= WALKS_MPS):
-            near = _somebody_near(agents, radii, people, a)
+        elif reason == GIVING_WAY or (reason == WAITING and speed >= rules["walks_mps"]):
+            near = _somebody_near(agents, radii, people, rules["somebody_m"], a)
             agents.reasons[a] = GIVING_WAY if near else MOVING

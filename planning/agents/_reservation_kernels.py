@@ -9,30 +9,6 @@ from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.ground._geometry_kernels import closest_approach
 from esplanade.planning.scene.heights import BODIES_OVERLAP_M
 
-MARGIN_M = 0.03
-"""Planned paths keep this much more than the sum of the radii."""
-SOFT = 0.25
-"""A meeting with an agent that will yield weighs this many certain contacts with a person. If it
-were as dear as one, everyone would rather wait than go where others stand, and nobody would make
-way."""
-EVADING_SLICES = 2
-"""In the first slices, up to this number, an agent may have no time left to get out of the way."""
-EVADING_M = 0.005
-"""In those slices a move is allowed that gains this much room over standing, even if it ends in a
-meeting."""
-MEETING_ROOM_M = 0.8
-"""Room that two agents with opposite courses would like, if one of them is held up."""
-MEETING_ROOM = 0.2
-"""Weight of having none of `MEETING_ROOM_M`, in certain contacts with a person. Half of it counts
-when the two face each other, more with the other on the right, nothing with the other on the left.
-So both keep to the right, and two streams form where there was a crowd."""
-QUEUE_ROOM_M = 0.5
-"""Room that two agents who are both held up would like. Coming closer gains a little once, but
-costs as long as both stay: agents that wait leave gaps, through which others come out."""
-QUEUE_ROOM = 0.2
-AGAINST = -0.2
-"""Courses whose angle has a smaller cosine than this are against each other."""
-
 
 class Reservations(NamedTuple):
     """The planned paths of all agents, and an index of them by bucket, slice by slice.
@@ -44,6 +20,8 @@ class Reservations(NamedTuple):
     bucket.
     """
 
+    rules: NDArray[np.void]
+    """The one record (1,) of `RULES`."""
     paths: NDArray[np.float64]
     heights: NDArray[np.float64]
     radii: NDArray[np.float64]
@@ -91,7 +69,7 @@ def index_paths(reservations: Reservations) -> None:
 def _against(r: Reservations, me: int, other: int) -> bool:
     """Whether the courses of two agents are against each other."""
     along = r.courses[me, 0] * r.courses[other, 0] + r.courses[me, 1] * r.courses[other, 1]
-    return bool(along < AGAINST)
+    return bool(along < -r.rules[0]["against_cosine"])
 
 
 @inlined
@@ -100,8 +78,14 @@ def room_wanted(r: Reservations, me: int, other: int) -> float:
     if not (r.held_up[me] or r.held_up[other]):
         return 0.0
     if _against(r, me, other):
-        return MEETING_ROOM_M
-    return QUEUE_ROOM_M if r.held_up[me] and r.held_up[other] else 0.0
+        return float(r.rules[0]["meeting_room_m"])
+    return float(r.rules[0]["queue_room_m"]) if r.held_up[me] and r.held_up[other] else 0.0
+
+
+@inlined
+def _most_room_m(r: Reservations) -> float:
+    """The most that `room_wanted` may be."""
+    return float(max(r.rules[0]["meeting_room_m"], r.rules[0]["queue_room_m"]))
 
 
 @inlined
@@ -110,16 +94,17 @@ def crowding(r: Reservations, me: int, other: int, k: int, x: float, y: float) -
     room_m = room_wanted(r, me, other)
     if room_m == 0.0:
         return 0.0
+    rules = r.rules[0]
     ex = x - r.paths[other, k, 0]
     ey = y - r.paths[other, k, 1]
     apart = np.sqrt(ex * ex + ey * ey)
-    lacking = 1.0 - max(0.0, apart - r.radii[me] - r.radii[other] - MARGIN_M) / room_m
+    lacking = 1.0 - max(0.0, apart - r.radii[me] - r.radii[other] - rules["margin_m"]) / room_m
     if lacking <= 0.0:
         return 0.0
     if not _against(r, me, other):
-        return float(QUEUE_ROOM * lacking)
+        return float(rules["queue_weight"] * lacking)
     to_the_right = (r.courses[me, 0] * ey - r.courses[me, 1] * ex) / max(apart, 1e-9)
-    return float(MEETING_ROOM * lacking * max(0.0, 0.5 + to_the_right))
+    return float(rules["meeting_weight"] * lacking * max(0.0, 0.5 + to_the_right))
 
 
 @inlined
@@ -154,9 +139,12 @@ def conflict(
     """
     r = reservations
     soft = 0.0
+    if not r.rules[0]["reserves"]:
+        return False, soft
     # An agent further away than this at the end was not met in the move and is not crowded.
-    far = max(MEETING_ROOM_M, np.sqrt((bx - ax) ** 2 + (by - ay) ** 2) + r.fastest_m)
-    j0, j1, i0, i1 = buckets_within(r, bx, by, 2.0 * r.widest_m + MARGIN_M + far)
+    moved_m = np.sqrt((bx - ax) ** 2 + (by - ay) ** 2)
+    far = max(_most_room_m(r), moved_m + r.fastest_m)
+    j0, j1, i0, i1 = buckets_within(r, bx, by, 2.0 * r.widest_m + r.rules[0]["margin_m"] + far)
     for j in range(j0, j1 + 1):
         row = j * r.nx  # buckets of a row are listed one after the other
         for m in range(r.starts[k + 1, row + i0], r.starts[k + 1, row + i1 + 1]):
@@ -165,7 +153,7 @@ def conflict(
                 continue
             dx = bx - r.paths[other, k + 1, 0]
             dy = by - r.paths[other, k + 1, 1]
-            most = r.radii[me] + r.radii[other] + MARGIN_M + far
+            most = r.radii[me] + r.radii[other] + r.rules[0]["margin_m"] + far
             if dx * dx + dy * dy > most * most:
                 continue
             weight = _meeting(r, me, other, k, ax, ay, bx, by)
@@ -195,10 +183,14 @@ def others_near(
     `others` takes as many as it has room for.
     """
     r = reservations
-    room_m = MEETING_ROOM_M + r.fastest_m
-    j0, j1, i0, i1 = buckets_within(r, x, y, 2.0 * r.widest_m + MARGIN_M + 2.0 * slice_m + room_m)
+    rules = r.rules[0]
+    apart_m = rules["margin_m"] + 2.0 * slice_m
+    room_m = _most_room_m(r) + r.fastest_m
+    j0, j1, i0, i1 = buckets_within(r, x, y, 2.0 * r.widest_m + apart_m + room_m)
     met = 0
     crowded = 0
+    if not rules["reserves"]:
+        return met, crowded
     for j in range(j0, j1 + 1):
         row = j * r.nx  # buckets of a row are listed one after the other
         for m in range(r.starts[k + 1, row + i0], r.starts[k + 1, row + i1 + 1]):
@@ -207,7 +199,7 @@ def others_near(
                 continue
             if met + crowded == len(others):
                 return met, crowded
-            reach = r.radii[me] + r.radii[o] + MARGIN_M + 2.0 * slice_m
+            reach = r.radii[me] + r.radii[o] + apart_m
             room_m = room_wanted(r, me, o)
             dx = x - r.paths[o, k + 1, 0]
             dy = y - r.paths[o, k + 1, 1]
@@ -282,11 +274,12 @@ def _meeting(
     that cannot get out of the way in time has to begin with it.
     """
     r = reservations
+    rules = r.rules[0]
     rx = ax - r.paths[other, k, 0]
     ry = ay - r.paths[other, k, 1]
     ex = bx - r.paths[other, k + 1, 0]
     ey = by - r.paths[other, k + 1, 1]
-    reach = r.radii[me] + r.radii[other] + MARGIN_M
+    reach = r.radii[me] + r.radii[other] + rules["margin_m"]
     d = closest_approach(rx, ry, ex - rx, ey - ry)
     if d >= reach:
         return 0.0
@@ -294,10 +287,10 @@ def _meeting(
     if d >= before - 1e-9 and np.sqrt(ex * ex + ey * ey) > before:
         return 0.0
     if r.ranks[other] > r.ranks[me]:
-        return SOFT
+        return float(rules["yielding_weight"])
     if (
-        k < EVADING_SLICES
-        and d > closest_approach(rx, ry, ex + ax - bx - rx, ey + ay - by - ry) + EVADING_M
+        k < rules["evading_slices"]
+        and d > closest_approach(rx, ry, ex + ax - bx - rx, ey + ay - by - ry) + rules["evading_m"]
     ):
-        return SOFT
+        return float(rules["yielding_weight"])
     return np.inf

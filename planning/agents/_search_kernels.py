@@ -5,11 +5,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.planning.agents._reservation_kernels import meetings, others_near
+from esplanade.planning.agents._cost_kernels import (
+    Near,
+    look_around,
+    motion_cost,
+    others_weight,
+    people_risk,
+)
 from esplanade.planning.agents._task_kernels import (
     SUB,
     TOO_MANY,
-    WALL_COST_M,
     Task,
     World,
     count_edges,
@@ -17,14 +22,12 @@ from esplanade.planning.agents._task_kernels import (
     needed_clearance,
     on_ramp,
     risk_price,
-    time_cost,
     wall_cost,
     way_left,
 )
 from esplanade.planning.compiled._heap_kernels import heap_pop, heap_push
 from esplanade.planning.compiled.jit import inlined
 from esplanade.planning.grid._grid_kernels import clearance_at, follow, length
-from esplanade.planning.people._risk_kernels import people_near, risk_among
 from esplanade.planning.routes._potential_kernels import PotentialValues, direction_at
 
 FOUND = 0
@@ -32,11 +35,6 @@ PARTIAL = 1
 NO_PATH = 2
 """Statuses of a search, those of `SearchStatus`."""
 
-DEPTH_BONUS_S = 0.01
-"""Least bonus of a node for each step of its depth: the path may cost this much more a step than
-the best, and the search looks at a fraction of the nodes."""
-LIKELY_PART = 0.7
-"""Part of the cost of the followed path beyond its time that any other path is expected to have."""
 
 NODE = np.dtype(
     [
@@ -91,17 +89,18 @@ class Workspace(NamedTuple):
     table_worth: NDArray[np.float64]
     table_stamp: NDArray[np.int64]
     stamp: NDArray[np.int64]
-    others: NDArray[np.int64]
-    """Agents near the node that is expanded."""
-    halfway: NDArray[np.int64]
-    ahead: NDArray[np.int64]
-    """People near it in the middle and at the end of its moves."""
+    near: Near
+    """Those near the node that is expanded."""
     ends: NDArray[np.int64]
     """(3,): nodes that were made, those of them left in the queue, and the last one of the path."""
 
 
 class Outcome(NamedTuple):
-    """Result of a search: a status, its expansions, and the key of the last node in seconds."""
+    """Result of a search: a status, its expansions, and what the path costs in seconds.
+
+    The cost is that of `path_cost` if the path reaches the horizon, and the key of its last node in
+    the printed form.
+    """
 
     status: int
     expansions: int
@@ -109,15 +108,15 @@ class Outcome(NamedTuple):
 
 
 @inlined
-def depth_bonus(excess: float, steps: int) -> float:
+def depth_bonus(rules: np.void, excess: float, steps: int) -> float:
     """Seconds that each step ahead is expected to cost beyond its time.
 
     The excess of a known path over its bare time tells how crowded the route is. Since a part of it
     is expected of every other path, the search ignores most nodes that merely begin well.
     """
     if excess < np.inf:
-        return max(DEPTH_BONUS_S, LIKELY_PART * excess / steps)
-    return DEPTH_BONUS_S
+        return float(max(rules["depth_bonus_s"], rules["likely_part"] * excess / steps))
+    return float(rules["depth_bonus_s"])
 
 
 @inlined
@@ -156,19 +155,16 @@ def search(
     Risk(q'). Nodes that cannot end below `bound`, in seconds, are left out.
     """
     grid = world.grid
-    risk = world.risk
-    reservations = world.reservations
     steps = (len(path) - 1) // SUB
     step_s = world.step_s
     ds = step_s / SUB
     need = needed_clearance(world, task)
     a_max = task.max_acceleration_mps2
     per_a = 1.0 / a_max
-    per_s = 1.0 / step_s
     most_m = task.max_speed_mps * step_s
-    open_m = task.radius_m + WALL_COST_M + most_m + 1.5 * grid.layered.cell_m
+    open_m = task.radius_m + task.wall_room_m + most_m + 1.5 * grid.layered.cell_m
     node = workspace.node_state
-    others = workspace.others
+    near = workspace.near
     capacity = len(node)
     cells = len(grid.layered.floors)
     workspace.stamp[0] += 1
@@ -188,7 +184,7 @@ def search(
     start = way_left(task, metres_left(potential, task, task.cell, task.x, task.y), speed)
     if not np.isfinite(start):
         return Outcome(NO_PATH, 0, np.inf)
-    bonus = depth_bonus(bound - start, steps)
+    bonus = depth_bonus(world.rules[0], bound - start, steps)
     count = 1
     size = heap_push(workspace.heap_keys, workspace.heap_items, 0, start, 0)
     expansions = 0
@@ -240,11 +236,9 @@ def search(
             gy = 0.0
         price = risk_price(task, step * step_s) * ds
         k = step * SUB
-        floor_m = 0.0 if grid.flat else float(grid.layered.floors[cell])
-        slice_m = max(task.max_speed_mps, length(vx, vy)) * ds
-        met, crowded = others_near(reservations, task.me, floor_m, k, x, y, slice_m, others)
-        halfway = people_near(risk, grid.flat, floor_m, k + 1, x, y, slice_m, workspace.halfway)
-        ahead = people_near(risk, grid.flat, floor_m, k + 2, x, y, 2.0 * slice_m, workspace.ahead)
+        counts = look_around(world, task, k, cell, x, y, length(vx, vy), near)
+        before_x = vx if n == 0 else (x - node[n]["half_x"]) / ds
+        before_y = vy if n == 0 else (y - node[n]["half_y"]) / ds
         # Clearance falls by no more than the distance: far from walls no child is checked.
         in_the_open = clearance_at(grid, task.body, cell, x, y) >= open_m
         # The rest of the path is expected to cost as much beyond its time as the known path.
@@ -262,21 +256,24 @@ def search(
             dvy = uy - vy
             ramp = length(dvx, dvy) * per_a
             ex, ey, evx, evy = on_ramp(x, y, vx, vy, dvx, dvy, ramp, step_s)
-            end_speed = length(evx, evy) if accumulate else task.speed_mps
+            hx, hy, _, _ = on_ramp(x, y, vx, vy, dvx, dvy, ramp, ds)
+            to_x = (hx - x) / ds
+            to_y = (hy - y) / ds
+            on_x = (ex - hx) / ds
+            on_y = (ey - hy) / ds
             if grid.flat:
                 half = -1
                 end = follow(grid, cell, ex, ey)
             else:
-                hx, hy, hvx, hvy = on_ramp(x, y, vx, vy, dvx, dvy, ramp, ds)
                 half = follow(grid, cell, hx, hy)
                 end = follow(grid, half, ex, ey)
             left_m = metres_left(potential, task, end, ex, ey)
-            left = way_left(task, left_m, end_speed)
-            cost = (
-                node[n]["cost_s"]
-                + time_cost(task, left_m, length(ex - x, ey - y) * per_s, step_s)
-                + task.turn_weight * a_max * min(ramp, step_s)
+            left = way_left(task, left_m, length(on_x, on_y) if accumulate else task.speed_mps)
+            stride = length(ex - x, ey - y)
+            seconds, turning = motion_cost(
+                task, left_m, stride, before_x, before_y, to_x, to_y, on_x, on_y, step_s
             )
+            cost = node[n]["cost_s"] + seconds + turning
             if not cost + left < room_s or end < 0:
                 continue
             edge = count_edges(
@@ -290,7 +287,6 @@ def search(
             least = workspace.table_worth[slot] - 1e-12
             if accumulate and cost + left >= least:
                 continue
-            hx, hy, hvx, hvy = on_ramp(x, y, vx, vy, dvx, dvy, ramp, ds)
             if grid.flat:
                 half = follow(grid, cell, hx, hy)
                 if half < 0:  # bounds without a wall do not show in the clearance
@@ -306,45 +302,30 @@ def search(
             worth = cost + left if accumulate else 0.0
             if worth >= least:
                 continue
-            soft = 0.0
-            if met + crowded > 0:
-                blocked, soft = meetings(
-                    reservations, others, met, crowded, task.me, k, x, y, hx, hy, ex, ey
-                )
-                if blocked:
-                    continue
             # Risk is never negative, so a node that already costs too much is given up at once.
-            most = min(room_s, least) - worth if accumulate else np.inf
-            if price * soft >= most:
+            most = (min(room_s, least) - worth) / price if accumulate and price > 0.0 else np.inf
+            blocked, soft = others_weight(world, task, near, counts, k, x, y, hx, hy, ex, ey)
+            if blocked or soft >= most:
                 continue
-            minded = soft + risk_among(
-                risk,
-                task.contact,
-                workspace.ahead,
-                ahead,
-                k + 2,
-                ex,
-                ey,
-                evx,
-                evy,
-                task.closing_weight,
-            )
-            if price * minded >= most:
-                continue
-            minded += risk_among(
-                risk,
-                task.contact,
-                workspace.halfway,
-                halfway,
-                k + 1,
+            risk = people_risk(
+                world,
+                task,
+                near,
+                counts,
+                k,
                 hx,
                 hy,
-                hvx,
-                hvy,
-                task.closing_weight,
+                ex,
+                ey,
+                to_x,
+                to_y,
+                on_x,
+                on_y,
+                most - soft,
             )
-            if price * minded >= most:
+            if risk == np.inf:
                 continue
+            minded = soft + risk
             if accumulate:
                 cost += price * minded
                 worth += price * minded
@@ -374,7 +355,7 @@ def search(
     workspace.ends[1] = size
     workspace.ends[2] = best
     _trace(workspace, best, path)
-    return Outcome(status, expansions, best_key)
+    return Outcome(status, expansions, best_key + bonus * best_step if accumulate else best_key)
 
 
 @inlined

@@ -49,28 +49,17 @@ def limited(task: Task, ux: float, uy: float, tick_s: float) -> tuple[float, flo
     return task.vx + dx * most / change, task.vy + dy * most / change
 
 
-MARGIN_M = 0.01
-"""No step brings the bodies of two actors closer than this."""
-HEADING_MPS = 0.1
-"""An agent that is slower than this keeps its heading."""
-LOOK_AHEAD_S = 0.6
-"""The last check before a step looks this far ahead, in two halves."""
-NEAR_M = 4.0
-"""People further away than this cannot be met in that time."""
-SWAY_M = 0.05
-"""A person's body sways by this much beyond its radius."""
-
-
 @kernel
 def _people_near(world: World, prediction: Prediction, task: Task, near: NDArray[np.int64]) -> int:
     """List the people near an actor into `near`; returns how many they are."""
     count = 0
+    near_m = world.rules[0]["people_near_m"]
     feet_m = floor_of(world.grid, task.cell)
     for p in range(len(prediction.means)):
         if (
             abs(prediction.heights[p, 0] - feet_m) < BODIES_OVERLAP_M
-            and abs(prediction.means[p, 0, 0] - task.x) <= NEAR_M
-            and abs(prediction.means[p, 0, 1] - task.y) <= NEAR_M
+            and abs(prediction.means[p, 0, 0] - task.x) <= near_m
+            and abs(prediction.means[p, 0, 1] - task.y) <= near_m
         ):
             near[count] = p
             count += 1
@@ -85,6 +74,7 @@ def _separation(
     seconds: float,
     touching_m: float,
     closing_s: float,
+    minds_turns: bool,
     ax: float,
     ay: float,
     bx: float,
@@ -100,7 +90,7 @@ def _separation(
     best = np.inf
     for n in range(len(near)):
         p = near[n]
-        for turned in range(2):
+        for turned in range(2 if minds_turns else 1):
             vx = prediction.newest[p, 0] if turned else prediction.velocities[p, 0, 0]
             vy = prediction.newest[p, 1] if turned else prediction.velocities[p, 0, 1]
             rx = ax - prediction.means[p, 0, 0] - vx * since
@@ -127,8 +117,9 @@ def _gap(
     uy: float,
 ) -> float:
     """`_separation` while turning to velocity u; -inf where a wall is."""
-    half = 0.5 * LOOK_AHEAD_S
-    touching_m = task.radius_m + (world.person_radius_m + SWAY_M)
+    rules = world.rules[0]
+    half = 0.5 * rules["look_ahead_s"]
+    touching_m = task.radius_m + (world.person_radius_m + rules["sway_m"])
     closing_s = task.contact_closing_s
     a = task.max_acceleration_mps2
     hx, hy, hvx, hvy = advance(task.x, task.y, task.vx, task.vy, ux, uy, a, half)
@@ -141,9 +132,11 @@ def _gap(
         or clearance_at(grid, task.body, end, ex, ey) < need
     ):
         return -np.inf
+    turns = bool(rules["minds_turns"])
+    x, y = task.x, task.y
     return min(
-        _separation(prediction, near, 0.0, half, touching_m, closing_s, task.x, task.y, hx, hy),
-        _separation(prediction, near, half, half, touching_m, closing_s, hx, hy, ex, ey),
+        _separation(prediction, near, 0.0, half, touching_m, closing_s, turns, x, y, hx, hy),
+        _separation(prediction, near, half, half, touching_m, closing_s, turns, hx, hy, ex, ey),
     )
 
 
@@ -206,6 +199,7 @@ def resolve(
     Each actor keeps clear of the steps already taken and of the places of those still to move,
     so that standing still remains possible for everyone who comes after.
     """
+    sidesteps = world.rules[0]["sidesteps"]
     moved = np.zeros(len(order), dtype=np.bool_)
     new_positions[:] = agents.positions
     new_cells[:] = agents.cells
@@ -223,6 +217,8 @@ def resolve(
         if wx == 0.0 and wy == 0.0:
             continue
         for trial in range(7):
+            if 0 < trial < 6 and not sidesteps:
+                continue
             vx, vy = _alternative(wx, wy, trial)
             cell, ex, ey = walk(
                 world.grid,
@@ -250,6 +246,7 @@ def resolve(
 @kernel
 def settle(
     grid: GridArrays,
+    rules: np.void,
     agents: Agents,
     decisions: Decisions,
     positions: NDArray[np.float64],
@@ -278,7 +275,7 @@ def settle(
             agents.ages[a] = 0
         agents.ages[a] += 1
         agents.known[a] = True
-        if np.hypot(vx, vy) > HEADING_MPS:
+        if np.hypot(vx, vy) > rules["heading_mps"]:
             agents.headings[a] = np.arctan2(vy, vx)
 
 
@@ -310,7 +307,8 @@ def _touches(
     r = world.reservations
     x = agents.positions[a, 0]
     y = agents.positions[a, 1]
-    j0, j1, i0, i1 = buckets_within(r, x, y, 2.0 * (r.widest_m + r.fastest_m) + MARGIN_M)
+    margin_m = world.rules[0]["step_margin_m"]
+    j0, j1, i0, i1 = buckets_within(r, x, y, 2.0 * (r.widest_m + r.fastest_m) + margin_m)
     for j in range(j0, j1 + 1):
         row = j * r.nx  # buckets of a row are listed one after the other
         for m in range(r.starts[0, row + i0], r.starts[0, row + i1 + 1]):
@@ -325,6 +323,6 @@ def _touches(
                 dx -= new_positions[o, 0] - agents.positions[o, 0]
                 dy -= new_positions[o, 1] - agents.positions[o, 1]
             d = closest_approach(rx, ry, dx, dy)
-            if d < r.radii[a] + r.radii[o] + MARGIN_M and d < np.hypot(rx, ry) - 1e-9:
+            if d < r.radii[a] + r.radii[o] + margin_m and d < np.hypot(rx, ry) - 1e-9:
                 return True
     return False

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from esplanade.planning.agents._bottleneck_kernels import Lane, off_lane_m
 from esplanade.planning.agents._reservation_kernels import Reservations
@@ -16,8 +17,6 @@ SUB = 2
 """Slices of the risk field in one step: a move is looked at half-way and at its end."""
 TOO_MANY = np.inf
 """More cells on edges in a row than any body bears."""
-WALL_COST_M = 0.15
-"""A wall nearer to the body than this has a cost."""
 
 
 class Task(NamedTuple):
@@ -47,6 +46,8 @@ class Task(NamedTuple):
     closing_weight: float
     turn_weight: float
     wall_weight: float
+    wall_room_m: float
+    """A wall nearer to the body than this has a cost."""
     hurry_weight: float
     max_expansions: int
     on_edges: float
@@ -66,6 +67,8 @@ class World(NamedTuple):
     grid: GridArrays
     risk: RiskArrays
     reservations: Reservations
+    rules: NDArray[np.void]
+    """The one record (1,) of `RULES`."""
     step_s: float
     person_radius_m: float
 
@@ -191,8 +194,8 @@ def way_left(task: Task, left_m: float, speed: float) -> float:
 @inlined
 def wall_cost(task: Task, clearance: float, seconds: float) -> float:
     """Cost of brushing along a wall."""
-    lacking = max(0.0, task.radius_m + WALL_COST_M - clearance)
-    return task.wall_weight * seconds * lacking / WALL_COST_M
+    lacking = max(0.0, task.radius_m + task.wall_room_m - clearance)
+    return task.wall_weight * seconds * lacking / task.wall_room_m
 
 
 @inlined

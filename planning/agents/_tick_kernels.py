@@ -142,7 +142,7 @@ def settle_all(zone: Handle[Zone], prediction: Prediction, tick_s: float) -> Non
     """Take the tick over into the agents' own state: where they are, why, and their plans."""
     z = zone.value
     agents = z.agents
-    settle(z.world.grid, agents, z.decisions, z.positions, z.cells, tick_s)
+    settle(z.world.grid, z.world.rules[0], agents, z.decisions, z.positions, z.cells, tick_s)
     agents.reasons[:] = z.decisions.reasons
     agents.planned[:, :, :2] = z.decisions.paths
     agents.planned[:, :, 2] = 0.0
@@ -153,4 +153,4 @@ def settle_all(zone: Handle[Zone], prediction: Prediction, tick_s: float) -> Non
         cell = agents.cells[a]
         agents.layers[a] = layered.places[cell]["layer"] if cell >= 0 else 0
         agents.heights[a] = floor_of(z.world.grid, cell)
-    match_reasons(agents, z.world.reservations.radii, prediction)
+    match_reasons(agents, z.world.reservations.radii, prediction, z.world.rules[0])

@@ -3,23 +3,20 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.planning.agents._cost_kernels import room_for_near, step_parts
 from esplanade.planning.agents._decide_kernels import make_task
-from esplanade.planning.agents._perturb_kernels import path_cost, slice_risk
-from esplanade.planning.agents._reservation_kernels import conflict
+from esplanade.planning.agents._perturb_kernels import path_cost
 from esplanade.planning.agents._task_kernels import (
     SUB,
     Task,
     World,
-    metres_left,
     risk_price,
-    time_cost,
-    wall_cost,
     way_left,
 )
 from esplanade.planning.agents._tick_kernels import Zone
 from esplanade.planning.compiled.handle import Handle
 from esplanade.planning.compiled.jit import kernel
-from esplanade.planning.grid._grid_kernels import clearance_at, floor_of, follow, length
+from esplanade.planning.grid._grid_kernels import floor_of, length
 from esplanade.planning.people._prediction_kernels import Prediction
 from esplanade.planning.people._risk_kernels import RiskArrays, index_people, risk_at
 from esplanade.planning.routes._potential_kernels import PotentialValues, potential_at
@@ -48,7 +45,7 @@ def price_paths(
     behind_s = agents.behind_s[a]
     contested = z.world.reservations.contested[a]
     tolerance_m = agents.parameters[a]["goal_tolerance_m"]
-    task = make_task(z.potentials, agents, a, tolerance_m, tick_s, contested)
+    task = make_task(z.potentials, agents, z.world.rules[0], a, tolerance_m, tick_s, contested)
     agents.left_m[a] = left_m
     agents.behind_s[a] = behind_s
     slot = agents.potential_rows[a]
@@ -74,40 +71,38 @@ def _price(
     places: NDArray[np.float64],
     out: NDArray[np.float64],
 ) -> None:
-    """The parts of `path_cost`, which this follows line by line, and the heights of a path."""
+    """The parts of `path_cost`, which this follows step by step, and the heights of a path."""
     grid = world.grid
     ds = world.step_s / SUB
+    near = room_for_near()
     cell = task.cell
     vx = task.vx
     vy = task.vy
     left_m = 0.0
     bare_m = 0.0
     places[0, 2] = floor_of(grid, cell)
-    for k in range(len(path) - 1):
-        ax, ay = path[k]
-        bx, by = path[k + 1]
-        ux = (bx - ax) / ds
-        uy = (by - ay) / ds
-        speed = length(bx - ax, by - ay) / ds
-        feet_m = floor_of(grid, cell)
-        cell = follow(grid, cell, bx, by)
-        places[k + 1, 2] = floor_of(grid, cell) if cell >= 0 else feet_m
-        left_m = metres_left(potential, task, cell, bx, by)
-        bare_m = left_m if task.hold else potential_at(potential, cell, bx, by)
-        price = risk_price(task, (k // SUB) * world.step_s) * ds
-        seconds = time_cost(task, left_m, speed, ds)
+    for step in range((len(path) - 1) // SUB):
+        k = step * SUB
+        parts = step_parts(world, potential, task, path, step, cell, vx, vy, near)
+        for s, on in ((1, parts.half), (2, parts.end)):
+            places[k + s, 2] = floor_of(grid, on) if on >= 0 else places[k + s - 1, 2]
+        left_m = parts.left_m
+        ex, ey = path[k + 2]
+        bare_m = left_m if task.hold else potential_at(potential, parts.end, ex, ey)
+        price = risk_price(task, step * world.step_s) * ds
+        speed = length(ex - path[k, 0], ey - path[k, 1]) / world.step_s
         hurried = 0.0
         if not (task.hold or (speed < 0.2 and left_m <= task.goal_tolerance_m)):
-            hurried = seconds - ds
-        out[TIME] += seconds - hurried
+            hurried = parts.seconds - world.step_s
+        out[TIME] += parts.seconds - hurried
         out[HURRY] += hurried
-        out[RISK] += price * slice_risk(world, task, k + 1, cell, ax, ay, bx, by)
-        _, soft = conflict(world.reservations, task.me, feet_m, k, ax, ay, bx, by)
-        out[OTHERS] += price * soft
-        out[TURN] += task.turn_weight * length(ux - vx, uy - vy)
-        out[WALL] += wall_cost(task, clearance_at(grid, task.body, cell, bx, by), ds)
-        vx = ux
-        vy = uy
+        out[RISK] += price * parts.risk
+        out[OTHERS] += price * parts.soft
+        out[TURN] += parts.turning
+        out[WALL] += parts.wall
+        cell = parts.end
+        vx = (ex - path[k + 1, 0]) / ds
+        vy = (ey - path[k + 1, 1]) / ds
     speed = length(vx, vy)
     bare = way_left(task, bare_m, speed)
     out[TIME] += bare

@@ -17,6 +17,7 @@ from esplanade.planning.agents._reservation_kernels import Reservations
 from esplanade.planning.agents._task_kernels import World
 from esplanade.planning.agents.agent_table import AgentTable
 from esplanade.planning.agents.agents import Decisions
+from esplanade.planning.agents.rules import RuleModel
 from esplanade.planning.agents.search import compass_moves, make_workspace
 from esplanade.planning.compiled.handle import hold_for
 from esplanade.planning.compiled.jit import compile_for
@@ -65,6 +66,7 @@ def _risk() -> RiskArrays:
 def _reservations() -> Reservations:
     flags, index = _array(1, np.bool_), _array(2, np.int64)
     return Reservations(
+        RuleModel().row,
         _array(3),
         _array(2),
         _array(1),
@@ -90,7 +92,7 @@ def zone() -> kernels.Zone:
     integers, places = _array(1, np.int64), _array(2)
     decisions = Decisions(_array(3), places, integers, integers, integers, _array(1, np.bool_))
     return kernels.Zone(
-        World(grid, _risk(), _reservations(), 0.4, 0.25),
+        World(grid, _risk(), _reservations(), RuleModel().row, 0.4, 0.25),
         barriers,
         _array(3, np.float32),
         _array(2, np.float32),

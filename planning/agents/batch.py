@@ -23,6 +23,7 @@ from esplanade.planning.agents._tick_kernels import (
     take_steps,
 )
 from esplanade.planning.agents.agents import Agents, Decisions
+from esplanade.planning.agents.rules import RuleModel
 from esplanade.planning.agents.search import compass_moves, make_reservations, make_workspace
 from esplanade.planning.compiled.handle import Handle, make_handle
 from esplanade.planning.grid.grid import LayeredGrid
@@ -67,10 +68,16 @@ class Batch:
     """
 
     def __init__(
-        self, grid: LayeredGrid, plan: PlanModel, risk: RiskModel, spread: Spread = GAUSSIAN
+        self,
+        grid: LayeredGrid,
+        plan: PlanModel,
+        risk: RiskModel,
+        spread: Spread = GAUSSIAN,
+        rules: RuleModel | None = None,
     ) -> None:
         self.grid = grid
         self.plan = plan
+        self.rules = rules or RuleModel()
         self.field = RiskField(grid, risk, plan.slices, spread)
         self._moves = compass_moves()
         self._branching = len(self._moves.speeds) + 1
@@ -124,12 +131,14 @@ class Batch:
             agents.parameters["radius_m"].copy(),
             np.empty(actors, dtype=np.int64),
             fastest_mps * max(tick_s, self.plan.slice_s),
+            self.rules,
         )
         return Zone(
             World(
                 self.grid.arrays,
                 risk,
                 reservations,
+                self.rules.row,
                 self.plan.step_s,
                 self.field.model.person_radius_m,
             ),

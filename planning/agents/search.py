@@ -5,25 +5,25 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import Enum, IntEnum
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.agents import _search_kernels as kernels
+from esplanade.planning.agents._cost_kernels import room_for_near
 from esplanade.planning.agents._reservation_kernels import Reservations
 from esplanade.planning.agents._search_kernels import Moves, Workspace
 from esplanade.planning.agents._task_kernels import SUB, Task, World
+from esplanade.planning.agents.rules import RuleModel
 from esplanade.planning.grid.grid import LayeredGrid
 from esplanade.planning.people.risk import RiskField
 from esplanade.planning.routes.potential import Potential
 
-_MOST_NEAR = 64
-"""Room for the actors near a node; that many discs never fit around it."""
+_RULES: Final = RuleModel()
 _LEAST_BUCKET_M = 1.2
 _BUCKETS_AN_ACTOR = 4
 """Clearing many more buckets than that would cost more than they save."""
-_MOST_PEOPLE = 256
-"""Room for the people who matter near a node. A place with more of them is risky enough."""
 
 
 class SearchStatus(IntEnum):
@@ -94,9 +94,7 @@ def make_workspace(max_expansions: int, branching: int) -> Workspace:
         np.zeros(table),
         np.zeros(table, dtype=np.int64),
         np.zeros(1, dtype=np.int64),
-        np.zeros(_MOST_NEAR, dtype=np.int64),
-        np.zeros(_MOST_PEOPLE, dtype=np.int64),
-        np.zeros(_MOST_PEOPLE, dtype=np.int64),
+        room_for_near(),
         np.zeros(3, dtype=np.int64),
     )
 
@@ -108,6 +106,7 @@ def make_reservations(
     radii_m: NDArray[np.float64],
     ranks: NDArray[np.int64],
     fastest_m: float,
+    rules: RuleModel = _RULES,
 ) -> Reservations:
     """Room for the planned paths of A actors, (A, K, 2) and (A, K); `index_paths` fills its index.
 
@@ -122,6 +121,7 @@ def make_reservations(
     ny = max(1, math.ceil((y1 - y0) / bucket))
     actors, slices = paths.shape[:2]
     return Reservations(
+        rules.row,
         paths,
         heights,
         radii_m,
@@ -149,6 +149,8 @@ class SearchResult:
     path: NDArray[np.float64]
     """(K, 2) positions, `step_s` / 2 apart, beginning with the start; metres."""
     expansions: int
+    cost_s: float
+    """What the search added up for the path; the key of its last node in the printed form."""
 
 
 def uncertain_bfp(
@@ -189,7 +191,12 @@ def uncertain_bfp(
     if not (math.isfinite(task.x) and math.isfinite(task.y)):
         raise ValueError(f"the start must be finite, got ({task.x}, {task.y})")
     world = World(
-        field.grid.arrays, field.arrays, reservations, step_s, field.model.person_radius_m
+        field.grid.arrays,
+        field.arrays,
+        reservations,
+        reservations.rules,
+        step_s,
+        field.model.person_radius_m,
     )
     path = np.zeros((slices + 1, 2))
     workspace = make_workspace(task.max_expansions, len(moves.speeds) + 1)
@@ -203,4 +210,4 @@ def uncertain_bfp(
         workspace,
         path,
     )
-    return SearchResult(SearchStatus(outcome.status), path, outcome.expansions)
+    return SearchResult(SearchStatus(outcome.status), path, outcome.expansions, outcome.cost)

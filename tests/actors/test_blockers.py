@@ -34,12 +34,14 @@ def test_a_person_in_the_gap_holds_the_actor_and_is_named(population) -> None:
     population.add("b", Idle(), position=(1.0, 3.5))
     people = {7: (6.0, 2.0, 0.0), 8: (6.0, 1.2, 3.5), 9: (2.0, 0.5, 0.0)}
     until(population, {Reason.WAITING, Reason.GIVING_WAY}, people)
-    for _ in range(20):
+    named = []
+    for _ in range(120):
         population.tick(people)
-    told = population.explain("a")
-    assert told.reason in {Reason.WAITING, Reason.GIVING_WAY, Reason.REPLANNING}
-    assert told.blocker is not None
-    assert (told.blocker.kind, told.blocker.id) == ("person", 7)
+        told = population.explain("a")
+        assert told.reason in {Reason.WAITING, Reason.GIVING_WAY, Reason.REPLANNING}
+        named += [(told.blocker.kind, told.blocker.id)] if told.blocker else []
+    assert set(named) == {("person", 7)}
+    assert len(named) > 60, "while it passes to and fro, its way may lead past everyone"
 
 
 def test_an_actor_that_walks_is_held_by_nobody_and_says_for_how_long(population) -> None:

@@ -7,10 +7,11 @@ import math
 
 import numpy as np
 import pytest
+from tools.paper_scenes import FIG_10, FIG_11
 
 from esplanade.actors import Reason
 from esplanade.planning import Scene
-from tests.actors.worlds import BODY, TICK_S, along, block, navigator, run
+from tests.actors.worlds import BODY, TICK_S, along, navigator, run
 
 CONTACT_M = 0.5
 """Sum of the radii of an actor and a person."""
@@ -63,26 +64,36 @@ def test_fig_6_walked_to_the_end() -> None:
         assert record.arrival_s("a") < straight_s(start, goal) + 3.0, name
 
 
+def seen_and_unseen(figure):
+    """The same experiment with people in sight, and with an actor that is blind to them."""
+    seen = one(figure.scene, figure.start, figure.goal, figure.seconds, figure.people)
+    blind = one(figure.scene, figure.start, figure.goal, figure.seconds)
+    blind.people = seen.people
+    return seen, blind
+
+
+def sideways(record, figure) -> float:
+    """Largest distance from the straight way, metres."""
+    way = np.subtract(figure.goal, figure.start)
+    across = np.array([-way[1], way[0]]) / math.hypot(*way)
+    return float(np.abs((record.positions["a"] - figure.start) @ across).max())
+
+
 def test_fig_10_one_person_changes_its_goal_on_the_way() -> None:
-    scene = open_space(20.0, 16.0, polygons=[block(3, 10, 7, 13), block(13, 3, 16, 6)])
-    start, goal = (10.0, 2.0), (10.0, 14.0)
-    person = along((2.0, 8.0), (8.5, 8.0), (12.0, 13.0), (18.0, 13.0), speed_mps=1.1)
-    record = one(scene, start, goal, 16.0, {"p": person})
-    assert record.nearest_person("a") > CONTACT_M + 0.2
-    assert record.arrival_s("a") < straight_s(start, goal) + 3.0
+    seen, blind = seen_and_unseen(FIG_10)
+    assert blind.nearest_person("a") < CONTACT_M, "whoever does not look runs into somebody"
+    assert seen.nearest_person("a") > CONTACT_M + 0.2
+    assert sideways(blind, FIG_10) < 0.05
+    assert sideways(seen, FIG_10) > 0.3, "it makes a bend"
+    assert seen.arrival_s("a") < straight_s(FIG_10.start, FIG_10.goal) + 3.0
 
 
 def test_fig_11_three_people_change_their_goals_among_obstacles() -> None:
-    buildings = [block(3, 10, 6, 13), block(9, 7, 11, 9), block(14, 3, 16, 5)]
-    people = {
-        "p0": along((2.0, 3.0), (8.0, 4.0), (17.0, 8.0), speed_mps=1.1),
-        "p1": along((18.0, 12.0), (12.0, 11.0), (12.0, 4.0), (4.0, 2.0), speed_mps=1.2),
-        "p2": along((7.0, 14.0), (8.0, 10.5), (15.0, 12.0), speed_mps=1.0),
-    }
-    start, goal = (18.0, 2.0), (3.0, 15.0)
-    record = one(open_space(20.0, 16.0, polygons=buildings), start, goal, 25.0, people)
-    assert record.nearest_person("a") > CONTACT_M + 0.1
-    assert record.arrival_s("a") < straight_s(start, goal) + 5.0
+    seen, blind = seen_and_unseen(FIG_11)
+    assert blind.nearest_person("a") < CONTACT_M
+    assert seen.nearest_person("a") > CONTACT_M + 0.1
+    assert sideways(seen, FIG_11) > sideways(blind, FIG_11) + 0.2
+    assert seen.arrival_s("a") < straight_s(FIG_11.start, FIG_11.goal) + 5.0
 
 
 @pytest.mark.parametrize("lag", [-0.6, -0.3, 0.0, 0.3, 0.6])

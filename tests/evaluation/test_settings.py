@@ -16,7 +16,7 @@ from esplanade.evaluation.settings import (
     read_changes,
     read_choices,
 )
-from esplanade.planning import PlanModel, PredictionModel, RiskModel
+from esplanade.planning import PlanModel, PredictionModel, RiskModel, RuleModel
 
 
 def test_every_parameter_and_every_number_of_a_model_is_a_setting_with_its_default() -> None:
@@ -24,6 +24,7 @@ def test_every_parameter_and_every_number_of_a_model_is_a_setting_with_its_defau
     assert DEFAULTS["risk.contact_margin_m"] == RiskModel().contact_margin_m
     assert DEFAULTS["prediction.samples"] == PredictionModel().samples
     assert DEFAULTS["plan.steps"] == PlanModel().steps
+    assert DEFAULTS["rules.margin_m"] == RuleModel().margin_m
     assert not {"plan.threads", "prediction.spread"} & set(DEFAULTS)
     assert check(DEFAULTS) == DEFAULTS
 
@@ -62,6 +63,7 @@ def test_choices_are_several_values_or_a_mere_name() -> None:
         ("risk.contact_margin_m=-1", "--set risk.contact_margin_m: -1.0 is negative"),
         ("risk.contact_margin_m=nan", "--set risk.contact_margin_m: nan is negative, or no number"),
         ("plan.steps=1.5", "--set plan.steps: Input should be a valid integer"),
+        ("rules.margin_m=2", "--set rules.margin_m: Input should be less than or equal to 0.5"),
         ("speed_mps=3", "max_speed_mps (1.7) must not be below speed_mps (3.0)"),
         ("risk_weight", "--set 'risk_weight' is not NAME=VALUE"),
     ],
@@ -85,6 +87,7 @@ def test_models_and_parameters_are_made_of_settings() -> None:
     settings = {
         "risk.contact_margin_m": 0.05,
         "plan.steps": 8,
+        "rules.jam_actors": 20,
         "risk_weight": 12.0,
         "radius_m": 0.3,
     }
@@ -92,6 +95,7 @@ def test_models_and_parameters_are_made_of_settings() -> None:
     assert models.risk == RiskModel(contact_margin_m=0.05)
     assert models.plan == PlanModel(steps=8)
     assert models.prediction == PredictionModel()
+    assert models.rules == RuleModel(jam_actors=20)
     made = parameters_of(settings, {"radius_m": 0.25, "speed_mps": 1.1})
     assert made == ActorParameters(risk_weight=12.0, radius_m=0.3, speed_mps=1.1)
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from esplanade.planning.agents._reservation_kernels import Reservations
+from esplanade.planning.agents.priorities import Priorities, Turn
 from tests.naive.geometry import Point, closest_approach
 
 BODIES_OVERLAP_M = 1.8
@@ -70,18 +71,18 @@ def _nearest(a: Point, b: Point, c: Point, d: Point) -> float:
     return closest_approach(tuple(before), tuple(after - before))
 
 
-def jam_order(r: Reservations, left_m: list[float]) -> list[float]:
-    """The distances that decide priority, the least first, by listing everyone held up.
-
-    In a jam it is the distance to the middle of the jam, and below zero beyond the middle.
-    """
-    held_up = [o for o in range(len(left_m)) if r.held_up[o]]
+def jam_order(r: Reservations, who: Priorities) -> list[tuple[int, float]]:
+    """Turns and keys of all agents, by listing everyone held up."""
+    held_up = [o for o in range(len(who.turns)) if r.held_up[o]]
+    walking = list(zip(who.turns.tolist(), who.keys_m.tolist(), strict=True))
     if len(held_up) < JAM_ACTORS:
-        return left_m
-    return [_in_jam(r, a, left, held_up) for a, left in enumerate(left_m)]
+        return walking
+    return [_in_jam(r, a, each, held_up) for a, each in enumerate(walking)]
 
 
-def _in_jam(r: Reservations, me: int, left_m: float, held_up: list[int]) -> float:
+def _in_jam(
+    r: Reservations, me: int, walking: tuple[int, float], held_up: list[int]
+) -> tuple[int, float]:
     here, course = r.paths[me, 0], r.courses[me]
     near = [
         o
@@ -91,8 +92,10 @@ def _in_jam(r: Reservations, me: int, left_m: float, held_up: list[int]) -> floa
         and abs(r.heights[o, 0] - r.heights[me, 0]) < BODIES_OVERLAP_M
     ]
     against = [r.paths[o, 0] for o in near if course @ r.courses[o] < AGAINST]
-    if left_m == math.inf or len(against) < JAM_ACTORS:
-        return left_m + JAM_M
+    if walking[0] == Turn.SETTLED or len(against) < JAM_ACTORS:
+        return walking
     alike = [r.paths[o, 0] for o in near if course @ r.courses[o] > -AGAINST]
     middle = (np.mean([here, *alike], axis=0) + np.mean(against, axis=0)) / 2.0 - here
-    return math.copysign(math.hypot(*middle), middle @ course)
+    if middle @ course < 0.0:
+        return Turn.LEAVES_JAM, -math.hypot(*middle)
+    return Turn.ENTERS_JAM, math.hypot(*middle)

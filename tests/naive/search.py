@@ -151,12 +151,13 @@ def _move(
     """The node after one step and its key; None when the move is not possible."""
     task, half = ground.task, ground.step_s / 2
     a_max = task.max_acceleration_mps2
-    *middle, vx, vy = advance(*node.place, *node.velocity, *wish, a_max, half)
+    *middle, _, _ = advance(*node.place, *node.velocity, *wish, a_max, half)
     *end, ux, uy = advance(*node.place, *node.velocity, *wish, a_max, ground.step_s)
     room = min(ground.clearance(tuple(middle)), ground.clearance(tuple(end)))
     if room < ground.needed() or math.isinf(left := ground.seconds_left(tuple(end))):
         return None
     k = 2 * node.step
+    (bx, by), (vx, vy), (wx, wy) = _velocities(ground, node, tuple(middle), tuple(end))
     meetings = [
         ground.meeting(k, node.place, tuple(middle)),
         ground.meeting(k + 1, tuple(middle), tuple(end)),
@@ -164,7 +165,7 @@ def _move(
     if any(blocked for blocked, _ in meetings):
         return None
     minded = sum(soft for _, soft in meetings)
-    minded += ground.risk(k + 1, tuple(middle), (vx, vy)) + ground.risk(k + 2, tuple(end), (ux, uy))
+    minded += ground.risk(k + 1, tuple(middle), (vx, vy)) + ground.risk(k + 2, tuple(end), (wx, wy))
     priced = risk_price(task, node.step * ground.step_s) * half * minded
     made = (node.step + 1, tuple(end), (ux, uy))
     if not accumulate:
@@ -174,11 +175,18 @@ def _move(
         node.cost
         + time_cost(task, ground.metres_left(tuple(end)), speed, ground.step_s)
         + priced
-        + task.turn_weight * math.dist((ux, uy), node.velocity)
+        + task.turn_weight * (math.dist((bx, by), (vx, vy)) + math.dist((vx, vy), (wx, wy)))
         + wall_cost(task, room, ground.step_s)
     )
-    worth = cost + ground.seconds_left(tuple(end), math.hypot(ux, uy))
+    worth = cost + ground.seconds_left(tuple(end), math.hypot(wx, wy))
     return Node(*made, cost, worth, n, tuple(middle)), worth
+
+
+def _velocities(ground: Ground, node: Node, middle: Point, end: Point) -> list[Point]:
+    """Those before a step, in its first half, and in its second, as places tell them."""
+    places = [node.middle, node.place, middle, end]
+    found = [tuple(np.subtract(b, a) / (ground.step_s / 2)) for a, b in pairwise(places)]
+    return found if node.step else [node.velocity, *found[1:]]
 
 
 def _trace(nodes: list[Node], n: int, steps: int) -> NDArray[np.float64]:
@@ -191,17 +199,19 @@ def _trace(nodes: list[Node], n: int, steps: int) -> NDArray[np.float64]:
 
 
 def path_cost(ground: Ground, path: NDArray[np.float64]) -> tuple[float, float]:
-    """Cost of a whole path as the search counts it, slice by slice, and its mean risk."""
+    """Cost of a whole path as the search counts it, and its mean risk."""
     task, ds = ground.task, ground.step_s / 2
     velocities = [(task.vx, task.vy), *map(tuple, np.diff(path, axis=0) / ds)]
     cost, risks = 0.0, []
     for k, (a, b) in enumerate(pairwise(path)):
         risks.append(ground.risk(k + 1, tuple(b), velocities[k + 1]))
         soft = ground.meeting(k, tuple(a), tuple(b))[1]
-        cost += time_cost(task, ground.metres_left(tuple(b)), math.dist(a, b) / ds, ds)
         cost += risk_price(task, (k // 2) * ground.step_s) * ds * (risks[-1] + soft)
         cost += task.turn_weight * math.dist(velocities[k], velocities[k + 1])
-        cost += wall_cost(task, ground.clearance(tuple(b)), ds)
+    for a, h, b in zip(path[::2], path[1::2], path[2::2], strict=False):
+        room = min(ground.clearance(tuple(h)), ground.clearance(tuple(b)))
+        cost += time_cost(task, ground.metres_left(tuple(b)), math.dist(a, b) / (2 * ds), 2 * ds)
+        cost += wall_cost(task, room, 2 * ds)
     left = ground.seconds_left(tuple(path[-1]), math.hypot(*velocities[-1]))
     return cost + left, math.fsum(risks) / len(risks)
 

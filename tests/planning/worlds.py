@@ -19,6 +19,7 @@ from esplanade.planning import (
     Prediction,
     RiskField,
     RiskModel,
+    RuleModel,
     Scene,
     Spawn,
 )
@@ -30,6 +31,8 @@ from esplanade.planning.agents.search import make_reservations
 COMPILED = not numba.config.DISABLE_JIT
 """False in the leg that runs kernels as plain Python, a hundred times slower."""
 STEP_S = 0.4
+RULES = RuleModel().row[0]
+"""The rules as they are by default, for kernels."""
 SLICES = PlanModel().slices
 
 Line = tuple[tuple[float, float], tuple[float, float]]
@@ -134,7 +137,8 @@ def reserved(
 
 def world_of(grid: LayeredGrid, field: RiskField, reservations: Reservations) -> World:
     """The world that kernels look things up in."""
-    return World(grid.arrays, field.arrays, reservations, STEP_S, field.model.person_radius_m)
+    rules, person_m = reservations.rules, field.model.person_radius_m
+    return World(grid.arrays, field.arrays, reservations, rules, STEP_S, person_m)
 
 
 def task(
@@ -166,11 +170,12 @@ def task(
         closing_weight=0.1,
         turn_weight=0.1,
         wall_weight=0.3,
+        wall_room_m=0.15,
         hurry_weight=2.0,
         max_expansions=400,
         on_edges=0.0,
         edge_cells=24.0,
-        lane=Lane(0.0, 0.0, 1.0, 0.0, 0.0, 0.0),
+        lane=Lane(0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 20.0, 4.0, 1.0),
         hold=False,
     )._replace(**changes)
 

@@ -267,11 +267,11 @@ def test_to_walk_into_somebody_is_worse_than_to_be_walked_into(closing_s) -> Non
     ahead = walking([(4.8, 4.0)], [(0.0, 0.0)])
     coming = walking([(4.8, 4.0)], [(-1.0, 0.0)])
     near = np.array([0])
-    going = _separation(ahead, near, 0.0, 0.4, 0.55, closing_s, 4.0, 4.0, 4.4, 4.0)
-    standing = _separation(coming, near, 0.0, 0.4, 0.55, closing_s, 4.0, 4.0, 4.0, 4.0)
+    going = _separation(ahead, near, 0.0, 0.4, 0.55, closing_s, True, 4.0, 4.0, 4.4, 4.0)
+    standing = _separation(coming, near, 0.0, 0.4, 0.55, closing_s, True, 4.0, 4.0, 4.0, 4.0)
     assert standing == pytest.approx(0.4)
     assert going == pytest.approx(0.4 - closing_s)
-    clear = _separation(ahead, near, 0.0, 0.2, 0.55, closing_s, 4.0, 4.0, 4.2, 4.0)
+    clear = _separation(ahead, near, 0.0, 0.2, 0.55, closing_s, True, 4.0, 4.0, 4.2, 4.0)
     assert clear == pytest.approx(0.6)
 
 

@@ -16,11 +16,12 @@ from esplanade.planning.agents._bottleneck_kernels import (
     see_passage,
 )
 from esplanade.planning.agents._decide_kernels import make_task
+from esplanade.planning.agents.priorities import Priorities, Turn
 from esplanade.planning.grid.grid import LayeredGrid
 from esplanade.planning.routes.potential import Potential
 from esplanade.planning.scene.scene import Scene
 from tests.planning.agents.test_batch import crowd_of
-from tests.planning.worlds import holds, open_grid
+from tests.planning.worlds import RULES, holds, open_grid
 
 OPPOSED = 8
 BEFORE_M = 20.0
@@ -30,7 +31,7 @@ NEARER_M = 0.5
 WAITING_MPS = 0.2
 LEFT_RAD = 1.0
 
-EAST = Lane(8.0, 8.0, 1.0, 0.0, 0.3, 0.8)
+EAST = Lane(8.0, 8.0, 1.0, 0.0, 0.3, 0.8, BEFORE_M, AFTER_M, 1.0)
 
 
 def _naive_off_lane_m(lane: Lane, x: float, y: float) -> float:
@@ -61,10 +62,15 @@ def _facing(west: int, east: int):
     return crowd
 
 
+def _walking(actors, left_m):
+    """Everyone with the priority of the same distance left."""
+    return Priorities(np.full(actors, int(Turn.WALKS)), np.full(actors, left_m))
+
+
 def test_a_passage_is_contested_by_enough_who_come_against_one() -> None:
     crowd = _facing(OPPOSED - 1, OPPOSED)
     contested = np.ones(len(crowd.positions), dtype=bool)
-    find_contested(crowd, contested)
+    find_contested(crowd, RULES, contested)
     assert contested[: OPPOSED - 1].all(), "eight come against the west"
     assert not contested[OPPOSED - 1 :].any(), "seven come against the east"
 
@@ -73,7 +79,7 @@ def test_agents_that_have_come_through_contest_nothing() -> None:
     crowd = _facing(OPPOSED, OPPOSED)
     crowd.positions[-1] = (5.0, 8.0)
     contested = np.zeros(2 * OPPOSED, dtype=bool)
-    find_contested(crowd, contested)
+    find_contested(crowd, RULES, contested)
     assert not contested[:OPPOSED].any(), "seven still come against the west"
     assert contested[OPPOSED:].all()
 
@@ -82,7 +88,7 @@ def test_the_two_ends_of_a_long_passage_are_one() -> None:
     crowd = _facing(OPPOSED, OPPOSED)
     crowd.passages["middle_x"][:OPPOSED] -= 3.0
     contested = np.zeros(2 * OPPOSED, dtype=bool)
-    find_contested(crowd, contested)
+    find_contested(crowd, RULES, contested)
     assert contested.all()
 
 
@@ -93,7 +99,7 @@ def test_another_passage_or_floor_is_not_contested(field, apart_m) -> None:
     crowd = _facing(OPPOSED, OPPOSED)
     crowd.passages[field][:OPPOSED] -= apart_m
     contested = np.ones(2 * OPPOSED, dtype=bool)
-    find_contested(crowd, contested)
+    find_contested(crowd, RULES, contested)
     assert not contested.any()
 
 
@@ -101,21 +107,22 @@ def test_agents_that_have_come_through_go_first() -> None:
     crowd = _facing(OPPOSED, OPPOSED + 1)
     crowd.positions[-1] = (5.0, 8.0)
     contested = np.zeros(2 * OPPOSED + 1, dtype=bool)
-    find_contested(crowd, contested)
+    find_contested(crowd, RULES, contested)
     assert contested.all()
     contested[0] = False
-    left_m = np.full(2 * OPPOSED + 1, 7.0)
-    order_at_passages(crowd, contested, left_m)
+    who = _walking(2 * OPPOSED + 1, 7.0)
+    order_at_passages(crowd, RULES, contested, who)
     away = np.hypot(*(crowd.positions - 8.0).T)
-    assert left_m[-1] == pytest.approx(-3.0)
-    assert left_m[1:-1] == pytest.approx(away[1:-1])
-    assert left_m[0] == 7.0 + 2.0 * BEFORE_M
-    left_m[1] = np.inf
-    order_at_passages(crowd, contested, left_m)
-    assert left_m[1] == np.inf, "an agent about to arrive on this side goes last"
-    left_m[-1] = np.inf
-    order_at_passages(crowd, contested, left_m)
-    assert left_m[-1] == pytest.approx(-3.0), "on the other side it goes up to the goal first"
+    assert (who.turns[-1], who.keys_m[-1]) == (Turn.LEAVES_PASSAGE, pytest.approx(-3.0))
+    assert (who.turns[1:-1] == Turn.ENTERS_PASSAGE).all()
+    assert who.keys_m[1:-1] == pytest.approx(away[1:-1])
+    assert (who.turns[0], who.keys_m[0]) == (Turn.WALKS, 7.0)
+    who.turns[1] = Turn.SETTLED
+    order_at_passages(crowd, RULES, contested, who)
+    assert who.turns[1] == Turn.SETTLED, "an agent about to arrive on this side goes last"
+    who.turns[-1] = Turn.SETTLED
+    order_at_passages(crowd, RULES, contested, who)
+    assert who.turns[-1] == Turn.LEAVES_PASSAGE, "on the other side it goes up to the goal first"
 
 
 def test_waiting_in_vain_gives_priority() -> None:
@@ -123,14 +130,14 @@ def test_waiting_in_vain_gives_priority() -> None:
     crowd.passages["nearest_m"] = 5.0
     crowd.passages["waited_s"] = np.random.default_rng(0).permutation(2 * OPPOSED)
     crowd.passages["nearest_m"][0] = 4.0
-    left_m = np.full(2 * OPPOSED, 30.0)
-    order_at_passages(crowd, np.ones(2 * OPPOSED, dtype=bool), left_m)
+    who = _walking(2 * OPPOSED, 30.0)
+    order_at_passages(crowd, RULES, np.ones(2 * OPPOSED, dtype=bool), who)
     waited_s = crowd.passages["waited_s"]
-    assert left_m[1:] == pytest.approx(5.0 - WAITING_MPS * waited_s[1:])
-    assert left_m[0] == pytest.approx(4.0 - WAITING_MPS * waited_s[0])
+    assert who.keys_m[1:] == pytest.approx(5.0 - WAITING_MPS * waited_s[1:])
+    assert who.keys_m[0] == pytest.approx(4.0 - WAITING_MPS * waited_s[0])
     waited_s[:] = 1e3
-    order_at_passages(crowd, np.ones(2 * OPPOSED, dtype=bool), left_m)
-    assert not left_m.any(), "however long they wait, agents that have come through go first"
+    order_at_passages(crowd, RULES, np.ones(2 * OPPOSED, dtype=bool), who)
+    assert not who.keys_m.any(), "those who have waited for long enough go by their ranks"
 
 
 def test_to_come_nearer_by_enough_ends_the_waiting() -> None:
@@ -145,7 +152,7 @@ def test_to_come_nearer_by_enough_ends_the_waiting() -> None:
     for _ in range(60):
         crowd.positions[0] = random.uniform((2.0, 6.0), (7.5, 10.0))
         crowd.cells[:] = grid.on_ground(crowd.positions, [0.0])[1]
-        see_passage(grid.arrays, potential, crowd, 0, True, 0.1)
+        see_passage(grid.arrays, potential, RULES, crowd, 0, True, 0.1)
         away = math.dist(
             crowd.positions[0], (crowd.passages["middle_x"][0], crowd.passages["middle_y"][0])
         )
@@ -167,11 +174,11 @@ def test_a_passage_is_kept_until_one_is_well_beyond() -> None:
     for x in (3.0, 7.0, 9.0, 8.0 + PASSED_M - 0.5, 8.0 + PASSED_M + 0.5):
         crowd.positions[0, 0] = x
         crowd.cells[:] = grid.on_ground(crowd.positions, [0.0])[1]
-        see_passage(grid.arrays, potentials[0], crowd, 0, True, 3.0)
+        see_passage(grid.arrays, potentials[0], RULES, crowd, 0, True, 3.0)
         seen.append(bool(crowd.passages["along_x"][0]))
     assert seen == [True, True, True, True, False]
     crowd.positions[0, 0] = 3.0
-    see_passage(grid.arrays, potentials[0], crowd, 0, False, 3.0)
+    see_passage(grid.arrays, potentials[0], RULES, crowd, 0, False, 3.0)
     assert (crowd.passages == np.zeros(1, dtype=PASSAGE)).all()
 
 
@@ -182,7 +189,7 @@ def test_on_open_ground_nobody_has_a_passage() -> None:
     crowd.cells[:] = grid.on_ground(crowd.positions, [0.0, 0.0])[1]
     potentials = Potential(grid, (12.0, 8.0), 0, 0.25).values[None]
     for a in range(2):
-        see_passage(grid.arrays, potentials[0], crowd, a, True, 0.1)
+        see_passage(grid.arrays, potentials[0], RULES, crowd, a, True, 0.1)
     for field in ("middle_x", "middle_y", "along_x", "along_y", "half_m", "floor_m"):
         assert not crowd.passages[field].any()
 
@@ -201,17 +208,18 @@ def test_neither_lanes_nor_order_depend_on_the_order_of_actors() -> None:
         crowd = crowd_of(places[rows], np.array(goals)[slots[rows]], ranks=ranks[rows])
         crowd.potential_rows[:] = slots[rows]
         crowd.cells[:] = grid.on_ground(crowd.positions, np.zeros(40))[1]
-        left_m = np.hypot(*(crowd.goals - crowd.positions).T)
+        who = Priorities(np.full(40, int(Turn.WALKS)), np.hypot(*(crowd.goals - crowd.positions).T))
         contested = np.zeros(40, dtype=bool)
         for a in range(40):
-            see_passage(grid.arrays, potentials[crowd.potential_rows[a]], crowd, a, True, 0.1)
-        find_contested(crowd, contested)
-        order_at_passages(crowd, contested, left_m)
-        return np.column_stack([crowd.passages.tolist(), contested, left_m])
+            potential = potentials[crowd.potential_rows[a]]
+            see_passage(grid.arrays, potential, RULES, crowd, a, True, 0.1)
+        find_contested(crowd, RULES, contested)
+        order_at_passages(crowd, RULES, contested, who)
+        return np.column_stack([crowd.passages.tolist(), *who, contested])
 
     rows = random.permutation(40)
     once, again = decided(np.arange(40)), decided(rows)
-    assert once[:, -2].any()
+    assert once[:, -1].any()
     assert (once[rows] == again).all()
 
 
@@ -224,7 +232,7 @@ def test_an_agent_about_to_arrive_keeps_to_no_lane(x, weight) -> None:
     for field, value in (("middle_x", 8.0), ("middle_y", 8.0), ("along_x", 1.0)):
         crowd.passages[field][0] = value
     potentials = Potential(grid, (12.0, 8.0), 0, 0.25).values[None]
-    assert make_task(potentials, crowd, 0, 0.3, 0.1, True).lane.weight == weight
-    assert make_task(potentials, crowd, 0, 0.3, 0.1, False).lane.weight == 0.0
+    assert make_task(potentials, crowd, RULES, 0, 0.3, 0.1, True).lane.weight == weight
+    assert make_task(potentials, crowd, RULES, 0, 0.3, 0.1, False).lane.weight == 0.0
     crowd.parameters["keep_right_weight"] = 0.0
-    assert make_task(potentials, crowd, 0, 0.3, 0.1, True).lane.weight == 0.0
+    assert make_task(potentials, crowd, RULES, 0, 0.3, 0.1, True).lane.weight == 0.0

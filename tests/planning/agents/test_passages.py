@@ -11,7 +11,7 @@ from esplanade.planning.agents._passage_kernels import find_passage, measure_pas
 from esplanade.planning.grid.grid import LayeredGrid
 from esplanade.planning.routes.potential import Potential
 from esplanade.planning.scene.scene import Scene
-from tests.planning.worlds import holds, lines, open_grid, scaled
+from tests.planning.worlds import RULES, holds, lines, open_grid, scaled
 
 RADIUS_M = 0.25
 NARROW_M = 2.2
@@ -33,7 +33,7 @@ def _found(grid, start, goal):
     """The passage on the way between two points, None without one."""
     cell = int(grid.on_ground([start], [0.0])[1][0])
     potential = Potential(grid, goal, 0, RADIUS_M).values
-    found, passage = find_passage(grid.arrays, potential, 0, RADIUS_M, cell, *start)
+    found, passage = find_passage(grid.arrays, potential, RULES, 0, RADIUS_M, cell, *start)
     return passage if found else None
 
 
@@ -86,7 +86,7 @@ def test_wide_gaps_lone_walls_and_open_ground_are_no_passages() -> None:
 def test_a_point_without_room_is_in_no_passage() -> None:
     grid = _wall(2.0, math.pi / 2)
     cell = int(grid.on_ground([(8.0, 3.0)], [0.0])[1][0])
-    assert not measure_passage(grid.arrays, 0, RADIUS_M, cell, 8.0, 3.0)[0]
+    assert not measure_passage(grid.arrays, RULES, 0, RADIUS_M, cell, 8.0, 3.0)[0]
 
 
 def _naive_narrowest(grid, x, y, angles):
@@ -122,7 +122,7 @@ def test_no_more_is_looked_for_than_counts_and_no_less(walls, x, y) -> None:
         width, angle, middle = _naive_narrowest(grid, *middle, finer)
         expected = width < NARROW_M
     cell = int(grid.on_ground([(x, y)], [0.0])[1][0])
-    found, passage = measure_passage(grid.arrays, 0, RADIUS_M, cell, x, y)
+    found, passage = measure_passage(grid.arrays, RULES, 0, RADIUS_M, cell, x, y)
     assert found == expected
     if expected:
         assert (passage.middle_x, passage.middle_y) == pytest.approx(middle, abs=1e-6)

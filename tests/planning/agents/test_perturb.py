@@ -9,7 +9,7 @@ from esplanade.planning.agents import _perturb_kernels as kernels
 from esplanade.planning.agents._task_kernels import TOO_MANY, needed_clearance
 from tests.naive import search as naive
 from tests.planning.agents.test_search import ground_of, people
-from tests.planning.worlds import holds, lines, open_grid, reserved, task, world_of
+from tests.planning.worlds import RULES, holds, lines, open_grid, reserved, task, world_of
 
 
 def path_between(start, goal, speed=1.3):
@@ -79,7 +79,7 @@ def test_perturbation_is_its_twin(start, goal, crowd) -> None:
     ours, theirs = path_between(start, goal), path_between(start, goal)
     bends = kernels.update_path(world, potential, ground.task, ours, *room(ours))
     assert bends == naive.update_path(
-        ground, theirs, kernels.OFFSETS, kernels.OFFSET_M, kernels.LEAST_RISK
+        ground, theirs, RULES["offsets"], RULES["offset_m"], RULES["least_risk"]
     )
     assert ours == pytest.approx(theirs, abs=1e-9)
 
@@ -127,7 +127,7 @@ def test_a_stretch_without_a_middle_is_left_alone() -> None:
     straight = path_between(start, goal)
     question = task(start, goal)
     path, bends, before, *_ = bent([((4.3, 4.1), (0.0, 0.0))], straight.copy(), question=question)
-    assert before > kernels.LEAST_RISK
+    assert before > RULES["least_risk"]
     assert bends == 0
     assert np.array_equal(path, straight)
 

@@ -116,9 +116,28 @@ def test_a_bound_holds_and_saves_work(start, goal, crowd, slack) -> None:
     bound = cost(free.path) + slack
     bounded = found(ground, bound=bound)
     assert bounded.expansions <= free.expansions or free.status is not SearchStatus.FOUND
-    # The search adds up changes of velocity by steps, a path's cost does by slices.
     if bounded.status is SearchStatus.FOUND:
-        assert cost(bounded.path) < bound + 0.2
+        assert cost(bounded.path) < bound
+
+
+@given(
+    start=spots, goal=ends, crowd=people, walled=st.booleans(), v=speeds, seed=st.integers(0, 99)
+)
+@holds(60, 5)
+def test_a_path_costs_what_the_search_added_up(start, goal, crowd, walled, v, seed) -> None:
+    rng = np.random.default_rng(seed)
+    others = rng.uniform(1.0, 7.0, (4, 1, 2)) + 0.2 * np.arange(11)[None, :, None] * rng.uniform(
+        -1.0, 1.0, (4, 1, 2)
+    )
+    held = reserved(open_grid(8.0), others, [0.25] * 4, rng.permutation(4))
+    held.held_up[:], held.courses[:] = True, ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.6, 0.8))
+    question = task(start, goal, v)
+    ground = ground_of(question, 5, WALLS if walled else (), crowd, held)
+    world = world_of(ground.field.grid, ground.field, ground.reservations)
+    result = found(ground)
+    if result.status is SearchStatus.FOUND:
+        again = path_cost(world, ground.potential.values, ground.task, result.path)[0]
+        assert result.cost_s == pytest.approx(again, abs=1e-12)
 
 
 @given(start=spots, goal=ends, crowd=people, slack=st.floats(-0.5, 3.0))
