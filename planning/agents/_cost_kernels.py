@@ -75,23 +75,19 @@ def look_around(
 
 
 @inlined
+def turned_mps(ux: float, uy: float, vx: float, vy: float, wx: float, wy: float) -> float:
+    """The change of velocity from u before a step to v in its first half and w in its second."""
+    return length(vx - ux, vy - uy) + length(wx - vx, wy - vy)
+
+
+@inlined
 def motion_cost(
-    task: Task,
-    left_m: float,
-    stride: float,
-    ux: float,
-    uy: float,
-    vx: float,
-    vy: float,
-    wx: float,
-    wy: float,
-    seconds: float,
+    task: Task, left_m: float, stride: float, turned: float, seconds: float
 ) -> tuple[float, float]:
     """Time and turning of a step of a length `stride`, after which `left_m` are left.
 
-    The velocity was u before it, is v in its first half and w in its second.
+    The velocity changes by `turned` m/s in it, as `turned_mps` says.
     """
-    turned = length(vx - ux, vy - uy) + length(wx - vx, wy - vy)
     return time_cost(task, left_m, stride / seconds, seconds), task.turn_weight * turned
 
 
@@ -225,7 +221,7 @@ def step_parts(
     end = follow(grid, half, ex, ey)
     left_m = metres_left(potential, task, end, ex, ey)
     seconds, turning = motion_cost(
-        task, left_m, length(ex - x, ey - y), ux, uy, vx, vy, wx, wy, world.step_s
+        task, left_m, length(ex - x, ey - y), turned_mps(ux, uy, vx, vy, wx, wy), world.step_s
     )
     half_room = clearance_at(grid, task.body, half, hx, hy)
     end_room = clearance_at(grid, task.body, end, ex, ey)

@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.agents._bottleneck_kernels import lane_of, see_passage
+from esplanade.planning.agents._branch_kernels import Moves
 from esplanade.planning.agents._perturb_kernels import path_cost, update_path
 from esplanade.planning.agents._reason_kernels import decided_reason
 from esplanade.planning.agents._search_kernels import (
     FOUND,
     NO_PATH,
     PARTIAL,
-    Moves,
     Workspace,
     search,
 )

@@ -5,6 +5,21 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.planning.agents._branch_kernels import (
+    HALF_X,
+    HALF_Y,
+    LEFT,
+    SPEED,
+    STRIDE,
+    TURNED,
+    VX,
+    VY,
+    Moves,
+    X,
+    Y,
+    branch_out,
+    look_up,
+)
 from esplanade.planning.agents._cost_kernels import (
     Near,
     look_around,
@@ -20,7 +35,6 @@ from esplanade.planning.agents._task_kernels import (
     count_edges,
     metres_left,
     needed_clearance,
-    on_ramp,
     risk_price,
     wall_cost,
     way_left,
@@ -51,21 +65,6 @@ NODE = np.dtype(
 metres, metres a second."""
 
 
-class Moves(NamedTuple):
-    """The M moves that a node branches into, besides standing still.
-
-    `cosines` and `sines` (M,) are those of the heading, relative to the descent of the potential
-    if `relative`, else to +x; `speeds` (M,) are in metres a second. The first `straight` moves
-    descend the potential and stop at the goal rather than beyond it.
-    """
-
-    cosines: NDArray[np.float64]
-    sines: NDArray[np.float64]
-    speeds: NDArray[np.float64]
-    straight: int
-    relative: bool
-
-
 class Workspace(NamedTuple):
     """Memory of one search at a time; `node_*` (N,) are nodes in the order they were made.
 
@@ -91,6 +90,10 @@ class Workspace(NamedTuple):
     stamp: NDArray[np.int64]
     near: Near
     """Those near the node that is expanded."""
+    branches: NDArray[np.float64]
+    """(`BRANCH_ROWS`, M + 1): the steps that it branches into."""
+    branch_cells: NDArray[np.int64]
+    """(2, M + 1): the cells half-way and at the end of them."""
     ends: NDArray[np.int64]
     """(3,): nodes that were made, those of them left in the queue, and the last one of the path."""
 
@@ -243,35 +246,22 @@ def search(
         in_the_open = clearance_at(grid, task.body, cell, x, y) >= open_m
         # The rest of the path is expected to cost as much beyond its time as the known path.
         room_s = bound - bonus * (steps - step - 1) if accumulate else bound
+        branches = workspace.branches
+        branch_out(
+            moves, per_a, step_s, ds, gx, gy, away, x, y, vx, vy, before_x, before_y, branches
+        )
+        look_up(grid, potential, task, cell, branches, workspace.branch_cells)
         for m in range(len(moves.speeds) + 1):
-            ux = 0.0
-            uy = 0.0
-            if m < len(moves.speeds):
-                speed = moves.speeds[m]
-                if moves.relative and m < moves.straight and away < speed * step_s:
-                    speed = away / step_s
-                ux = speed * (gx * moves.cosines[m] - gy * moves.sines[m])
-                uy = speed * (gx * moves.sines[m] + gy * moves.cosines[m])
-            dvx = ux - vx
-            dvy = uy - vy
-            ramp = length(dvx, dvy) * per_a
-            ex, ey, evx, evy = on_ramp(x, y, vx, vy, dvx, dvy, ramp, step_s)
-            hx, hy, _, _ = on_ramp(x, y, vx, vy, dvx, dvy, ramp, ds)
-            to_x = (hx - x) / ds
-            to_y = (hy - y) / ds
-            on_x = (ex - hx) / ds
-            on_y = (ey - hy) / ds
-            if grid.flat:
-                half = -1
-                end = follow(grid, cell, ex, ey)
-            else:
-                half = follow(grid, cell, hx, hy)
-                end = follow(grid, half, ex, ey)
-            left_m = metres_left(potential, task, end, ex, ey)
-            left = way_left(task, left_m, length(on_x, on_y) if accumulate else task.speed_mps)
-            stride = length(ex - x, ey - y)
+            hx = branches[HALF_X, m]
+            hy = branches[HALF_Y, m]
+            ex = branches[X, m]
+            ey = branches[Y, m]
+            half = workspace.branch_cells[0, m]
+            end = workspace.branch_cells[1, m]
+            left_m = branches[LEFT, m]
+            left = way_left(task, left_m, branches[SPEED, m] if accumulate else task.speed_mps)
             seconds, turning = motion_cost(
-                task, left_m, stride, before_x, before_y, to_x, to_y, on_x, on_y, step_s
+                task, left_m, branches[STRIDE, m], branches[TURNED, m], step_s
             )
             cost = node[n]["cost_s"] + seconds + turning
             if not cost + left < room_s or end < 0:
@@ -317,10 +307,10 @@ def search(
                 hy,
                 ex,
                 ey,
-                to_x,
-                to_y,
-                on_x,
-                on_y,
+                (hx - x) / ds,
+                (hy - y) / ds,
+                (ex - hx) / ds,
+                (ey - hy) / ds,
                 most - soft,
             )
             if risk == np.inf:
@@ -338,8 +328,8 @@ def search(
             new = node[count]
             new["x"] = ex
             new["y"] = ey
-            new["vx"] = evx
-            new["vy"] = evy
+            new["vx"] = branches[VX, m]
+            new["vy"] = branches[VY, m]
             new["cost_s"] = cost
             new["half_x"] = hx
             new["half_y"] = hy

@@ -5,10 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.planning.agents._branch_kernels import Moves
 from esplanade.planning.agents._decide_kernels import decide
 from esplanade.planning.agents._priority_kernels import prepare
 from esplanade.planning.agents._reason_kernels import match_reasons
-from esplanade.planning.agents._search_kernels import Moves, Workspace
+from esplanade.planning.agents._search_kernels import Workspace
 from esplanade.planning.agents._step_kernels import resolve, settle
 from esplanade.planning.agents._task_kernels import World
 from esplanade.planning.agents.agents import Agents, Decisions

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.agents import _search_kernels as kernels
+from esplanade.planning.agents._branch_kernels import BRANCH_ROWS, Moves
 from esplanade.planning.agents._cost_kernels import room_for_near
 from esplanade.planning.agents._reservation_kernels import Reservations
-from esplanade.planning.agents._search_kernels import Moves, Workspace
+from esplanade.planning.agents._search_kernels import Workspace
 from esplanade.planning.agents._task_kernels import SUB, Task, World
 from esplanade.planning.agents.rules import RuleModel
 from esplanade.planning.grid.grid import LayeredGrid
@@ -95,6 +96,8 @@ def make_workspace(max_expansions: int, branching: int) -> Workspace:
         np.zeros(table, dtype=np.int64),
         np.zeros(1, dtype=np.int64),
         room_for_near(),
+        np.zeros((BRANCH_ROWS, branching)),
+        np.zeros((2, branching), dtype=np.int64),
         np.zeros(3, dtype=np.int64),
     )
 

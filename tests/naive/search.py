@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning import LayeredGrid, Potential, RiskField, SearchStatus
+from esplanade.planning.agents._branch_kernels import Moves
 from esplanade.planning.agents._reservation_kernels import Reservations
-from esplanade.planning.agents._search_kernels import Moves
 from esplanade.planning.agents._task_kernels import Task, advance, risk_price, time_cost, wall_cost
 from tests.naive.floors import SLACK_M
 from tests.naive.geometry import Point

@@ -9,8 +9,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from esplanade.planning import SearchForm, SearchStatus, uncertain_bfp
+from esplanade.planning.agents._branch_kernels import Moves
 from esplanade.planning.agents._perturb_kernels import path_cost
-from esplanade.planning.agents._search_kernels import Moves
 from esplanade.planning.agents._task_kernels import advance
 from esplanade.planning.agents.search import compass_moves, lattice_moves
 from esplanade.planning.routes.potential import Potential
