@@ -7,6 +7,7 @@ from typing import Final
 from esplanade.actors import ActorParameters, GoTo, Population
 from esplanade.planning import Door, LayeredGrid, Polygon, Scene
 from esplanade.server.net.packing import Packing
+from esplanade.server.net.sockets.warming import rehearse_sockets
 from esplanade.server.world.audience import Audience
 from esplanade.server.world.inputs import Detach, Follow, Input, Join, Leave, MoveDoor, Steer
 from esplanade.server.world.routes import find_route
@@ -38,6 +39,7 @@ WAYS: Final = (((1.0, 1.0, 0.0), (5.0, 1.0, 0.0)), ((2.9, 1.0, 0.0), (3.05, 1.0,
 
 def rehearse(rules: Rules, tick_s: float) -> None:
     """Let an actor and a person of a world of their own walk, stand, find a way, and leave."""
+    rehearse_sockets()
     grid = LayeredGrid.from_scene(SCENE)
     world, population = _world(grid, rules, tick_s)
     population.add("a", GoTo((5.0, 3.0, 0.0)), ActorParameters(), position=START)
@@ -56,6 +58,7 @@ def rehearse_walking(rules: Rules, tick_s: float) -> None:
 
     On a first start this is compiled while another process still compiles what plans.
     """
+    rehearse_sockets()
     world, population = _world(LayeredGrid.from_scene(SCENE), rules, tick_s)
     world.state.add(ACTOR, "A", (*START, 0.0), 0, ActorParameters().radius_m)
     audience, packing = Audience(rules, world.origin_m, world.times), Packing()

@@ -68,7 +68,10 @@ class PlaceLookup:
 
     def layers_at(self, positions: ArrayLike, heights: ArrayLike) -> NDArray[np.int64]:
         """`layer_at` for (N, 2), (N,): int64 (N,)."""
-        _, cells = self.on_ground(positions, heights)
+        return self.layers_of(self.on_ground(positions, heights)[1])
+
+    def layers_of(self, cells: NDArray[np.int64]) -> NDArray[np.int64]:
+        """The layers of cells (N,); 0 for -1."""
         return np.where(cells >= 0, self.layered.places[cells]["layer"], 0).astype(np.int64)
 
     def layer_at(self, position: tuple[float, float], height: float) -> int:

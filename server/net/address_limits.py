@@ -14,6 +14,9 @@ WINDOW_S: Final = 10.0
 FRAMES_BURST_S: Final = 0.25
 """An address may send at once what it may send in this time: all of it is parsed within a tick."""
 
+PREPAID: Final = 0.5
+"""Frames are paid for in advance while this part of a burst is left; else each has to wait."""
+
 MAX_REMEMBERED: Final = 4096
 """Addresses without a connection whose rates are remembered, the latest ones."""
 
@@ -104,6 +107,17 @@ class AddressLimits:
         if key in LOCAL_KEYS:
             return 0.0
         return self._account(key, now).frames.borrow(now, frames)
+
+    def prepay(self, key: str, frames: int, now: float) -> bool:
+        """Count frames of an address that are to come; only while it has sent few of late."""
+        if key in LOCAL_KEYS:
+            return True
+        return self._account(key, now).frames.spare(now, frames, PREPAID)
+
+    def pay_back(self, key: str, frames: int, now: float) -> None:
+        """Take back frames that have not come."""
+        if key not in LOCAL_KEYS:
+            self._account(key, now).frames.give(now, frames)
 
     def _account(self, key: str, now: float) -> _Account:
         account = self._busy.get(key)

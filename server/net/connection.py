@@ -18,6 +18,8 @@ from esplanade.server.net.connections import Place
 from esplanade.server.net.leases import HeardConnection
 from esplanade.server.net.metering import Meter
 from esplanade.server.net.refusals import Refusals
+from esplanade.server.net.sockets.reading import FRAME_BYTES, Reading
+from esplanade.server.net.sockets.system import NONE, descriptor_of
 from esplanade.server.net.whole_frames import payload_of
 
 CLOSE_S: Final = 2.0
@@ -45,18 +47,36 @@ _FORGOTTEN: Final = Request("", Headers())
 """The library takes what comes as a request for as long as there is none."""
 
 
+class WatchedProtocol(ServerProtocol):
+    """Tells when it is no longer open."""
+
+    when_closing: Callable[[], None] | None = None
+
+    @property
+    def state(self) -> State:
+        return self._state
+
+    @state.setter
+    def state(self, state: State) -> None:
+        self._state = state
+        if self.when_closing is not None and state is not State.OPEN:
+            self.when_closing()
+
+
 class Connection(HeardConnection):
     """Charges every chunk before the library sees it, and ends a client that sends too much."""
 
     def __init__(
         self,
-        protocol: ServerProtocol,
+        protocol: WatchedProtocol,
         server: Server,
         place: Place,
         meter: Meter,
         metrics: Metrics,
         refusals: Refusals,
+        reading: Reading | None = None,
     ) -> None:
+        """With `reading`, its socket may be read there while it sends nothing but movements."""
         # Leases ping those who are silent, and end them.
         super().__init__(protocol, server, ping_interval=None, close_timeout=CLOSE_S)
         self.place = place
@@ -66,11 +86,17 @@ class Connection(HeardConnection):
         """Takes the payload of a frame that was read whole, or says that it is for the parser."""
         self.identity: str | None = None
         """What a trusted proxy calls the client, if it has checked that."""
+        self.descriptor = NONE
+        """That of the socket, if the system may be called with it."""
         self._answered = False
         self._client_ended = False
         self._meter = meter
         self._metrics = metrics
         self._refusals = refusals
+        self._reading = reading
+        self.closing: list[Callable[[], None]] = []
+        """Called, maybe more than once, when nothing more is to be written but a farewell."""
+        protocol.when_closing = self._close
         self._deaf = False
         self._held = b""
         self._held_frames = 0
@@ -108,6 +134,7 @@ class Connection(HeardConnection):
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         super().connection_made(transport)
+        self.descriptor = descriptor_of(self.transport)
         self.place.cut = self.transport.abort
         if not self.place.present:  # it was given to somebody else while this one was opening
             self.transport.abort()
@@ -117,7 +144,37 @@ class Connection(HeardConnection):
             if timer is not None:
                 timer.cancel()
         super().connection_lost(exc)
+        self._close()
         self.place.leave()
+
+    def read_at_once(self, avatar_id: int) -> None:
+        """Read the socket together with others, as long as movements of that avatar come."""
+        if self._reading is not None and not self._deaf:
+            self._reading.enter(self, avatar_id)
+
+    def read_alone(self) -> None:
+        """Let the event loop read the socket."""
+        if self._reading is not None:
+            self._reading.leave(self)
+
+    def prepay(self, frames: int, now: float) -> bool:
+        """Charge frames that are to come; whether there was credit for them."""
+        if not self._meter.prepay(frames, FRAME_BYTES, now):
+            return False
+        if self.place.prepay(frames, now):
+            return True
+        self._meter.pay_back(frames, FRAME_BYTES, now)
+        return False
+
+    def pay_back(self, frames: int, now: float) -> None:
+        """Give the credit back for frames that have not come."""
+        self._meter.pay_back(frames, FRAME_BYTES, now)
+        self.place.pay_back(frames, now)
+
+    def _close(self) -> None:
+        self.read_alone()
+        for each in self.closing:
+            each()
 
     def data_received(self, data: bytes) -> None:
         if self._deaf:

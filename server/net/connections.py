@@ -50,6 +50,14 @@ class Place:
         """Seconds to wait with frames that came; they are counted where the result is 0."""
         return self._connections.delay(self, frames, now)
 
+    def prepay(self, frames: int, now: float) -> bool:
+        """Count frames that are to come; False if each has to wait for its turn."""
+        return self._connections.prepay(self, frames, now)
+
+    def pay_back(self, frames: int, now: float) -> None:
+        """Take back frames that have not come."""
+        self._connections.pay_back(self, frames, now)
+
     def settle(self) -> None:
         """Keep the place from now on, whoever comes."""
         if self.present and not self.settled:
@@ -134,6 +142,15 @@ class Connections:
     def delay(self, place: Place, frames: int, now: float) -> float:
         """See `Place.delay`."""
         return self._limits.delay(place.address, frames, now) if place.charged else 0.0
+
+    def prepay(self, place: Place, frames: int, now: float) -> bool:
+        """See `Place.prepay`."""
+        return not place.charged or self._limits.prepay(place.address, frames, now)
+
+    def pay_back(self, place: Place, frames: int, now: float) -> None:
+        """See `Place.pay_back`."""
+        if place.charged and place.present:
+            self._limits.pay_back(place.address, frames, now)
 
     def settle(self, place: Place) -> None:
         """See `Place.settle`."""

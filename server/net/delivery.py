@@ -3,14 +3,18 @@
 from collections.abc import Callable, Mapping
 
 import numpy as np
+import numpy.typing as npt
 
 from esplanade.actors import Explanation
 from esplanade.protocol import Outcome, Reason
 from esplanade.protocol.messages import Blocker, Census, Circle, Doors, Plan, Point, Reshape
 from esplanade.server.net import frames
 from esplanade.server.net.lines import Lines
+from esplanade.server.net.outbox import Outbox
 from esplanade.server.net.packing import Packing
 from esplanade.server.net.session import Session
+from esplanade.server.net.sockets.sending import send_to_all
+from esplanade.server.net.sockets.system import NONE
 from esplanade.server.world.audience import Audience, News, Snapshots
 
 
@@ -81,18 +85,37 @@ class Delivery:
         self, snapshots: Snapshots, first: Mapping[int, list[bytes]], now: float
     ) -> None:
         packed, ends = self._packing.pack(snapshots)
-        sessions = self._sessions
+        begins, step_begins = _begins(ends), _begins(snapshots.step_ends)
+        steps = snapshots.step_ends - step_begins
         written: list[int] = []
-        begin = steps_before = 0
-        places = zip(snapshots.viewers, ends, snapshots.step_ends.tolist(), strict=True)
-        for place, (viewer, end, steps_until) in enumerate(places):
-            session = sessions.get(viewer)
-            if session is not None and session.outbox.snapshot(
-                packed[begin:end], steps_until - steps_before, now, first.get(viewer, ())
-            ):
+        free: list[int] = []
+        outboxes: list[Outbox] = []
+        for place, session in enumerate(map(self._sessions.get, snapshots.viewers)):
+            if session is None:
+                continue
+            outbox = session.outbox
+            if outbox.direct != NONE and not outbox.unsent() and not outbox.closing():
+                free.append(place)
+                outboxes.append(outbox)
+                continue
+            block = packed[begins[place] : ends[place]].tobytes()
+            before = first.get(snapshots.viewers[place], ())
+            if outbox.snapshot(block, int(steps[place]), now, before):
                 written.append(place)
-            begin, steps_before = end, steps_until
-        self._audience.wrote(snapshots, written)
+        if free:
+            firsts = [first.get(snapshots.viewers[place], ()) for place in free]
+            heads = [b"".join(frames) for frames in firsts]
+            left = send_to_all(
+                [outbox.direct for outbox in outboxes], packed, begins[free], ends[free], heads
+            )
+            for k, rest in left.items():
+                outboxes[k].send_rest(rest)
+            outboxes[0].count(
+                len(free) + int(np.count_nonzero(steps[free])) + sum(map(len, firsts)),
+                int((ends - begins)[free].sum()) + sum(map(len, heads)),
+                int(steps[free].sum()),
+            )
+        self._audience.wrote(snapshots, written + free)
 
     def _plans(self, news: News) -> None:
         """Offer the plans in the news, each packed once, to those who watch and see the actor."""
@@ -110,6 +133,13 @@ class Delivery:
             if actor not in packed:
                 packed[actor] = frames.message(plan(news.tick, actor, plans[actor]))
             session.outbox.offer(packed[actor])
+
+
+def _begins(ends: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+    """Where parts begin that end there, one after the other."""
+    begins = np.zeros_like(ends)
+    begins[1:] = ends[:-1]
+    return begins
 
 
 def plan(tick: int, actor: int, explanation: Explanation) -> Plan:

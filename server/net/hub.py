@@ -22,6 +22,7 @@ from esplanade.server.net.reporting import Reporting
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.seating import Seating
 from esplanade.server.net.session import Session
+from esplanade.server.net.sockets.reading import Reading
 from esplanade.server.net.waiting_lines import WaitingLines
 from esplanade.server.net.walk_outs import WalkOuts
 from esplanade.server.net.welcomes import Welcomes
@@ -80,6 +81,8 @@ class Hub:
         self.sessions = self._seating.sessions
         """Sessions that have been welcomed, by their avatar's id."""
         self._leases = Leases(world.moves)
+        self.reading: Reading | None = None
+        """Reads what people send, where the event loop alone does not."""
         self._operator_keys = OperatorKeys(settings.operator_key.get_secret_value(), metrics)
         storeys = _storeys(derived)
         self.moderation = PeopleModeration(
@@ -221,6 +224,8 @@ class Hub:
 
         For a `still` tick, in which nobody moves, movements wait for the next one.
         """
+        if self.reading is not None:
+            self.reading.poll()
         self._seating.end_waiting(self._run_for_s(now))
         self._check_leases(now)
         self._walk_outs.check(now)

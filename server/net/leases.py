@@ -79,9 +79,11 @@ class Leases:
         self._checked_s = now
         listened_s = min(elapsed_s, 2.0 * CHECK_S)
         for avatar_id, lease in leases:
-            if lease.connection.heard:
-                lease.connection.heard = False
-                lease.silent_s, lease.pinged_s, lease.lapsed = 0.0, None, False
+            connection = lease.connection
+            if connection.heard:
+                connection.heard = False
+                if lease.silent_s:
+                    lease.silent_s, lease.pinged_s, lease.lapsed = 0.0, None, False
                 continue
             lease.silent_s += listened_s
             if lease.silent_s < PING_S:

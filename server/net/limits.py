@@ -27,6 +27,17 @@ class TokenBucket:
         self._tokens -= tokens
         return True
 
+    def give(self, now: float, tokens: float) -> None:
+        """Give tokens back that were taken in vain."""
+        self._tokens = min(self._burst, self.available(now) + tokens)
+
+    def spare(self, now: float, tokens: float, kept: float) -> bool:
+        """Take some tokens, if that leaves the given part of a burst."""
+        if self.available(now) - tokens < kept * self._burst:
+            return False
+        self._tokens -= tokens
+        return True
+
     def borrow(self, now: float, tokens: float) -> float:
         """Take tokens, even more than there are, or say how many seconds it is until that may be.
 

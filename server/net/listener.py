@@ -13,7 +13,6 @@ import structlog
 from websockets.asyncio.server import Server, ServerConnection
 from websockets.http11 import Request, Response
 from websockets.protocol import State
-from websockets.server import ServerProtocol
 from websockets.typing import Origin
 
 from esplanade.server.assets import Assets, path_of, respond
@@ -22,7 +21,7 @@ from esplanade.server.net.address_limits import AddressBounds, AddressLimits
 from esplanade.server.net.addresses import TrustedProxies
 from esplanade.server.net.answers import Answers, busy
 from esplanade.server.net.checked_identities import CheckedIdentities
-from esplanade.server.net.connection import Connection
+from esplanade.server.net.connection import Connection, WatchedProtocol
 from esplanade.server.net.connections import Connections, Place
 from esplanade.server.net.door import Door
 from esplanade.server.net.hub import Hub
@@ -30,6 +29,7 @@ from esplanade.server.net.metering import MAX_FRAME_BYTES, Meter
 from esplanade.server.net.refusals import Refusals
 from esplanade.server.net.root_path import RootPath
 from esplanade.server.net.session import Session
+from esplanade.server.net.sockets.reading import reading
 from esplanade.server.net.tls import Tls
 from esplanade.server.settings import ServerSettings
 
@@ -105,11 +105,13 @@ class Listener:
         # The library hands over the connections that `_connect` makes.
         handler = cast(Callable[[ServerConnection], Coroutine[Any, Any, None]], self._handle)
         server = Server(lambda: self._open(server, sockets, tls), handler, self._logger)
-        await server
-        try:
-            yield server
-        finally:
-            await self._connections.shut(server)
+        with reading(self._hub.wishes.moved, self._metrics.traffic) as self._hub.reading:
+            await server
+            try:
+                yield server
+            finally:
+                await self._connections.shut(server)
+        self._hub.reading = None
 
     async def _open(
         self, server: Server, sockets: list[socket.socket], tls: Tls | None
@@ -120,14 +122,16 @@ class Listener:
 
     def _connect(self, server: Server, place: Place) -> Connection:
         origins = cast(Sequence[Origin] | None, self._settings.origins)
-        protocol = ServerProtocol(
+        protocol = WatchedProtocol(
             origins=None if origins is None else [*origins, None],
             max_size=MAX_FRAME_BYTES,
             logger=self._logger,
         )
         now = asyncio.get_running_loop().time()
         meter = Meter(self._settings.message_rate, now)
-        return Connection(protocol, server, place, meter, self._metrics, self._refusals)
+        return Connection(
+            protocol, server, place, meter, self._metrics, self._refusals, self._hub.reading
+        )
 
     async def _handle(self, connection: Connection) -> None:
         """Run a connection from its first byte to its end."""

@@ -101,6 +101,20 @@ class Meter:
         """Whether the last chunk ended within a frame."""
         return self._walk.within_frame
 
+    def prepay(self, frames: int, frame_bytes: int, now: float) -> bool:
+        """Charge frames that are to come, if there is credit for them."""
+        if not self._frames.take(now, frames):
+            return False
+        if self._bytes.take(now, frames * frame_bytes):
+            return True
+        self._frames.give(now, frames)
+        return False
+
+    def pay_back(self, frames: int, frame_bytes: int, now: float) -> None:
+        """Give the credit back for frames that have not come."""
+        self._frames.give(now, frames)
+        self._bytes.give(now, frames * frame_bytes)
+
     def charge(self, chunk: bytes, now: float) -> str | None:
         """Charge a chunk as it came; the name of the limit that it breaks, if it breaks one."""
         if not self._bytes.take(now, len(chunk)):

@@ -18,6 +18,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.protocol import State
 
 from esplanade.server.metrics import Traffic
+from esplanade.server.net.sockets.system import NONE
 from esplanade.server.settings import ServerSettings
 from esplanade.server.world.audience import STEP_BYTES
 
@@ -45,8 +46,25 @@ class SlowPolicy:
 class Outbox:
     """Writes frames to one connection, in order, never waiting."""
 
-    def __init__(self, connection: ServerConnection, policy: SlowPolicy, traffic: Traffic) -> None:
+    def __init__(
+        self,
+        connection: ServerConnection,
+        policy: SlowPolicy,
+        traffic: Traffic,
+        descriptor: int = NONE,
+    ) -> None:
+        """`descriptor` is that of the connection's socket, if the system may be called with it."""
         self._connection = connection
+        self._transport = connection.transport
+        self._descriptor = descriptor
+        self.direct = NONE
+        """The descriptor to which the next snapshot may be sent, past the transport, as long as
+        that holds nothing back (`unsent`) and is not closing (`closing`); `NONE` where anything is
+        unusual. A snapshot that was written as usual sets it."""
+        self.unsent = connection.transport.get_write_buffer_size
+        """Returns the bytes that were written and that the client has not taken yet."""
+        self.closing = connection.transport.is_closing
+        """Returns whether the transport is closing."""
         self._policy = policy
         self._traffic = traffic
         self._waiting: deque[bytes] = deque()
@@ -63,16 +81,21 @@ class Outbox:
         return len(self._waiting)
 
     @property
-    def unsent(self) -> int:
-        """Bytes that were written and that the client has not taken yet."""
-        return self._unsent()
-
-    @property
     def open(self) -> bool:
+        """Whether anything may be written."""
         return self._connection.state is State.OPEN and self.dropped is None
+
+    def use_transport(self) -> None:
+        """Write everything by the transport from now on, as the connection is closing."""
+        self._descriptor = self.direct = NONE
+
+    def send_rest(self, rest: bytes) -> None:
+        """Write what the system did not take at once of a snapshot that was sent."""
+        self._transport.write(rest)
 
     def welcome(self, frame: bytes) -> None:
         """The first frame, however large: its size and the time to read it are granted."""
+        self.direct = NONE
         self._allowance_bytes = len(frame)
         self._patience_s = max(self._policy.drop_seconds, JOINING_PATIENCE_S)
         if self.open:
@@ -82,16 +105,17 @@ class Outbox:
         """Send a frame that must not be lost; it waits while the client is slow."""
         if not self.open:
             return
-        if not self._waiting and self._unsent() <= self._policy.slow_bytes:
+        if not self._waiting and self.unsent() <= self._policy.slow_bytes:
             self._write(frame)
         elif len(self._waiting) < MAX_WAITING_FRAMES:
+            self.direct = NONE
             self._waiting.append(frame)
         else:
             self._drop("waiting")
 
     def offer(self, frame: bytes) -> bool:
         """Send a frame that a later one replaces; False if a slow client does not get it."""
-        if not self.open or self._waiting or self._unsent() > self._policy.slow_bytes:
+        if not self.open or self._waiting or self.unsent() > self._policy.slow_bytes:
             return False
         self._write(frame)
         return True
@@ -103,10 +127,10 @@ class Outbox:
         called once a tick. The frames in `first` must not be lost; they wait while the client is
         slow. False if steps and snapshot were left out, both together.
         """
-        connection = self._connection
-        if connection.state is not State.OPEN or self.dropped is not None:
+        self.direct = NONE
+        if not self.open:
             return False
-        unsent = connection.transport.get_write_buffer_size()
+        unsent = self.unsent()
         if self._waiting or self._slow_since is not None or unsent > self._policy.slow_bytes:
             return self._snapshot_when_slow(block, steps, now, first, unsent)
         if self._allowance_bytes:
@@ -130,7 +154,7 @@ class Outbox:
             return False
         self._slow_since = None
         self._patience_s, self._allowance_bytes = self._policy.drop_seconds, 0
-        while self._waiting and self._unsent() <= self._policy.slow_bytes:
+        while self._waiting and self.unsent() <= self._policy.slow_bytes:
             self._write(self._waiting.popleft())
         if self._waiting:
             self._traffic.snapshots_skipped += 1
@@ -140,17 +164,23 @@ class Outbox:
 
     def _write_snapshot(self, block: bytes, steps: int, first: Sequence[bytes]) -> None:
         """Write everything of a tick at once."""
-        traffic, messages = self._traffic, 1
+        messages = 1
         if first:
             block = b"".join((*first, block))
             messages += len(first)
         if steps:
             messages += 1
-            traffic.steps_out += steps
-            traffic.step_bytes_out += steps * STEP_BYTES
-        self._connection.transport.write(block)
+        self._transport.write(block)
+        self.count(messages, len(block), steps)
+        self.direct = self._descriptor
+
+    def count(self, messages: int, size: int, steps: int) -> None:
+        """Count what was sent, to whomever, of so many bytes."""
+        traffic = self._traffic
         traffic.messages_out += messages
-        traffic.bytes_out += len(block)
+        traffic.bytes_out += size
+        traffic.steps_out += steps
+        traffic.step_bytes_out += steps * STEP_BYTES
 
     def flush(self) -> None:
         """Send all frames that wait, before the end of the connection."""
@@ -168,14 +198,12 @@ class Outbox:
     def _drop(self, why: str) -> None:
         # Closing would wait for a client that does not read; only abort ends it.
         self.dropped = why
+        self.use_transport()
         self._waiting.clear()
-        self._connection.transport.abort()
-
-    def _unsent(self) -> int:
-        return self._connection.transport.get_write_buffer_size()
+        self._transport.abort()
 
     def _write(self, frame: bytes) -> None:
-        self._connection.transport.write(frame)
+        self._transport.write(frame)
         self._traffic.messages_out += 1
         self._traffic.bytes_out += len(frame)
 

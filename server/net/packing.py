@@ -19,10 +19,11 @@ class Packing:
         self._ack_at = encode_snapshot(0, _ACK_MARK, b"").index(_ACK_MARK.to_bytes(4))
         self._room = np.empty(0, dtype=np.uint8)
 
-    def pack(self, snapshots: Snapshots) -> tuple[bytes, list[int]]:
+    def pack(self, snapshots: Snapshots) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.int64]]:
         """The frames of all viewers one after the other, and where those of each end.
 
-        A viewer with steps gets two frames, that of the steps first; the others one.
+        A viewer with steps gets two frames, that of the steps first; the others one. The frames are
+        good until the next ones are packed.
         """
         news = snapshots
         snapshot_head = _bytes(encode_snapshot(news.tick, 0, b""))
@@ -53,7 +54,7 @@ class Packing:
             self._ack_at,
             self._room,
         )
-        return self._room[:size].tobytes(), ends.tolist()
+        return self._room[:size], ends
 
 
 def _bytes(head: bytes) -> npt.NDArray[np.uint8]:

@@ -1,6 +1,8 @@
 """Inputs of people until the next tick: movements, doors, plans to watch, comings and goings."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+
+import numpy as np
 
 from esplanade.server.metrics import Metrics
 from esplanade.server.world.inputs import (
@@ -11,6 +13,7 @@ from esplanade.server.world.inputs import (
     MoveDoor,
     Movement,
     Stand,
+    SteerMany,
     Watch,
 )
 
@@ -25,12 +28,13 @@ class PendingInputs:
         self._metrics = metrics
         self._comings: list[Attach | Detach | Leave | Stand] = []
         self._movements: dict[int, Movement] = {}
+        self._steers: dict[int, tuple[int, float, float]] = {}
         self._doors: dict[str, MoveDoor] = {}
         self._watches: dict[int, Watch] = {}
         metrics.gauge(
             "movements_waiting",
             "Movements that wait for the next tick",
-            lambda: len(self._movements),
+            lambda: len(self._movements) + len(self._steers),
         )
 
     def come(self, *comings: Attach | Detach | Leave | Stand) -> None:
@@ -39,9 +43,19 @@ class PendingInputs:
 
     def move(self, movement: Movement) -> None:
         """Keep a movement; it takes the place of an earlier one."""
-        if movement.id in self._movements:
+        if self._drop(movement.id):
             self._metrics.traffic.movements_superseded += 1
         self._movements[movement.id] = movement
+
+    def steer(self, wishes: Mapping[int, tuple[int, float, float]]) -> None:
+        """Keep movements by the avatar's id; they take the places of earlier ones."""
+        before = len(self._movements) + len(self._steers)
+        if self._movements:
+            for avatar_id in self._movements.keys() & wishes.keys():
+                del self._movements[avatar_id]
+        self._steers.update(wishes)
+        now = len(self._movements) + len(self._steers)
+        self._metrics.traffic.movements_superseded += before + len(wishes) - now
 
     def move_door(self, wish: MoveDoor) -> None:
         """Keep a wish for a door; the latest wins."""
@@ -53,13 +67,18 @@ class PendingInputs:
 
     def stand(self, avatar_id: int) -> None:
         """Let an avatar stand; a movement that waits is void."""
-        self._movements.pop(avatar_id, None)
+        self._drop(avatar_id)
         self.come(Stand(avatar_id))
 
     def forget(self, avatar_id: int) -> None:
         """Forget what somebody wants whose connection has ended."""
-        self._movements.pop(avatar_id, None)
+        self._drop(avatar_id)
         self._watches.pop(avatar_id, None)
+
+    def _drop(self, avatar_id: int) -> bool:
+        """Forget a movement; whether there was one."""
+        gone = self._movements.pop(avatar_id, None), self._steers.pop(avatar_id, None)
+        return gone != (None, None)
 
     def drain(self, lines: Sequence[Input], joins: Sequence[Input], *, still: bool) -> list[Input]:
         """Return everything for the next tick, with the lines of chat and those who join.
@@ -70,7 +89,17 @@ class PendingInputs:
         inputs: list[Input] = [*lines, *self._comings, *joins]
         if not still:
             inputs.extend(self._movements.values())
-            self._movements = {}
+            if self._steers:
+                numbers, directions, speeds = zip(*self._steers.values(), strict=True)
+                inputs.append(
+                    SteerMany(
+                        tuple(self._steers),
+                        numbers,
+                        np.array(directions, dtype=np.float64),
+                        np.array(speeds, dtype=np.float64),
+                    )
+                )
+            self._movements, self._steers = {}, {}
         inputs.extend(self._doors.values())
         inputs.extend(self._watches.values())
         self._comings, self._doors, self._watches = [], {}, {}

@@ -96,7 +96,7 @@ class PeopleHere:
             "since_us": session.since_us,
             "address_hash": self._hashes.of(session.address),
             "delay_ms": None,
-            "queue_bytes": session.outbox.unsent,
+            "queue_bytes": session.outbox.unsent(),
             "operator": session.is_operator,
             "walked_out": self.walk_outs is not None and person in self.walk_outs,
         }

@@ -3,7 +3,7 @@
 import asyncio
 import math
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Set
 from concurrent.futures import Executor
 from time import thread_time
 from typing import Final, NamedTuple
@@ -94,6 +94,11 @@ class RouteRequests:
         self._latest.pop(avatar_id, None)
         self._wishes.discard(avatar_id)
         self._long.discard(avatar_id)
+
+    def forget_all(self, avatar_ids: Set[int]) -> None:
+        """Drop the wishes of many people."""
+        for avatar_id in self._latest.keys() & avatar_ids:
+            self.forget(avatar_id)
 
     async def run(self, found: Found) -> None:
         """Find routes until cancelled."""

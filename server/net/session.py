@@ -109,7 +109,10 @@ class Session:
         refusals: Refusals,
     ) -> None:
         now = asyncio.get_running_loop().time()
-        self.outbox = Outbox(connection, SlowPolicy.of(settings), metrics.traffic)
+        self.outbox = Outbox(
+            connection, SlowPolicy.of(settings), metrics.traffic, connection.descriptor
+        )
+        connection.closing.append(self.outbox.use_transport)
         self.address = connection.client_address
         """The key by which limits of the client's address go."""
         self.lease = Lease(connection)
@@ -202,6 +205,7 @@ class Session:
     def dismiss(self, farewell: bytes, code: CloseCode, reason: str) -> asyncio.Task[None]:
         """End the connection in good order, with a last frame."""
         if self._dismissal is None:
+            self._connection.read_alone()
             self.outbox.post(farewell)
             self._dismissal = asyncio.create_task(self._close(code, reason))
         return self._dismissal
@@ -255,6 +259,8 @@ class Session:
             return False
         self._count(frame)
         self._take(message)
+        if self.avatar_id is not None and isinstance(message, Move):
+            self._connection.read_at_once(self.avatar_id)
         return True
 
     def _talks_too_fast(self, frame: bytes | str) -> bool:

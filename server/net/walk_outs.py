@@ -1,7 +1,7 @@
 """People whose avatars are walked to a place of arrival, where they leave."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Set
 from dataclasses import dataclass
 from typing import Final
 
@@ -56,6 +56,10 @@ class WalkOuts:
 
     def __contains__(self, avatar_id: int | None) -> bool:
         return avatar_id in self._under_way
+
+    def among(self, avatar_ids: Set[int]) -> Set[int]:
+        """Those of some people who are walked out."""
+        return self._under_way.keys() & avatar_ids
 
     def way_out(self, avatar_id: int) -> Place | None:
         """The place of arrival that is nearest to an avatar; None where the scene has none."""

@@ -1,7 +1,7 @@
 """What people want while they are in: to move, to talk, to watch, doors, reports, silence."""
 
 import asyncio
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import structlog
 
@@ -75,6 +75,27 @@ class Wishes:
             self._routes.ask(Asker(session.address, avatar_id), wish)
         except ProtocolError as refusal:
             session.tell(refusal)
+
+    def moved(
+        self,
+        avatar_ids: Sequence[int],
+        numbers: Sequence[int],
+        directions_rad: Sequence[float],
+        speeds_mps: Sequence[float],
+    ) -> None:
+        """Keep movements of many people for the next tick, the latest of each."""
+        all_of_each = zip(numbers, directions_rad, speeds_mps, strict=True)
+        wishes = dict(zip(avatar_ids, all_of_each, strict=True))
+        for avatar_id, number in zip(avatar_ids, numbers, strict=True):
+            session = self._sessions.get(avatar_id)
+            if session is None:
+                wishes.pop(avatar_id, None)
+            else:
+                session.last_seq = number
+        for avatar_id in self._walk_outs.among(wishes.keys()):
+            del wishes[avatar_id]
+        self._pending.steer(wishes)
+        self._routes.forget_all(wishes.keys())
 
     def route_found(
         self, avatar_id: int, wish: WalkTo, route: Route | None, moved: MovedEnd | None

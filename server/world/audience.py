@@ -174,8 +174,8 @@ class Audience:
             interest.attach(avatar_id, steps=avatar_id not in self._stepless)
             left.pop(avatar_id, None)
         self._stepless.clear()
-        for avatar_id, seq in frame.acks.items():
-            interest.acknowledge(avatar_id, seq)
+        if frame.acks:
+            interest.acknowledge(frame.acks)
         return left
 
     def _look(self, frame: Frame, left: dict[int, list[int]]) -> dict[int, list[bytes]]:

@@ -68,6 +68,16 @@ class Steer:
     speed_mps: float
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class SteerMany:
+    """What as many `Steer` are, one after the other, of as many people."""
+
+    ids: tuple[int, ...]
+    seqs: tuple[int, ...]
+    directions_rad: NDArray[np.float64]
+    speeds_mps: NDArray[np.float64]
+
+
 @dataclass(frozen=True, slots=True)
 class Follow:
     """Walk along a route that was found, to its end."""
@@ -270,4 +280,14 @@ def parts_of(command: ActorCommand) -> tuple[OneActorCommand, ...]:
 
 
 DerivedInput = DoorDerived | PotentialDerived | ActorsDerived
-Input = Join | MoveDoor | OfPerson | DerivedInput | ActorCommand | ActorsStood | Still | IdsReserved
+Input = (
+    Join
+    | SteerMany
+    | MoveDoor
+    | OfPerson
+    | DerivedInput
+    | ActorCommand
+    | ActorsStood
+    | Still
+    | IdsReserved
+)

@@ -3,7 +3,7 @@
 Of those in view, the steps of the nearest are sent too, likewise with hysteresis.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Final
 
 import numpy as np
@@ -110,11 +110,11 @@ class Interest:
         """Ids of the avatars through whose eyes these viewers look."""
         return self._avatars.ids[self.views.avatar[viewers]]
 
-    def acknowledge(self, avatar_id: int, seq: int) -> None:
-        """The avatar has begun this movement; its viewer, if there is one, is told so."""
-        place = self._places.get(avatar_id)
-        if place is not None:
-            self.views.ack[place] = seq
+    def acknowledge(self, begun: Mapping[int, int]) -> None:
+        """Avatars have begun these movements; their viewers, if there are any, are told so."""
+        here = self._places.keys() & begun.keys()
+        places = [self._places[avatar_id] for avatar_id in here]
+        self.views.ack[places] = [begun[avatar_id] for avatar_id in here]
 
     def sees(self, viewer_id: int, avatar_id: int) -> bool:
         """Whether that viewer has that avatar in view."""

@@ -52,6 +52,16 @@ class People:
         angle = wish.direction_rad
         self._velocities[slot] = speed * np.cos(angle), speed * np.sin(angle)
 
+    def steer_many(self, slots: Slots, directions_rad: Floats, speeds_mps: Floats) -> None:
+        """The same for many people, all different."""
+        self._following[slots] = False
+        if self._routes:
+            for slot in self._routes.keys() & set(slots.tolist()):
+                del self._routes[slot]
+        speeds = np.minimum(speeds_mps, self._rules.person_max_speed_mps)
+        self._velocities[slots, 0] = speeds * np.cos(directions_rad)
+        self._velocities[slots, 1] = speeds * np.sin(directions_rad)
+
     def follow(self, slot: int, wish: Follow) -> None:
         """Walk along a route to its end."""
         self.stop(slot)
@@ -87,15 +97,19 @@ class People:
         state.positions[moving], state.heights[moving] = self._grid.walk(
             before, state.heights[moving], wanted * self._tick_s, self._rules.person_clearance_m
         )
-        state.layers[moving] = self._grid.layers_at(state.positions[moving], state.heights[moving])
+        cells = self._grid.on_ground(state.positions[moving], state.heights[moving])[1]
+        state.layers[moving] = self._grid.layers_of(cells)
         state.headings[moving] = np.arctan2(wanted[:, 1], wanted[:, 0])
         moved_m = state.positions[moving] - before
         state.speeds[moving] = np.hypot(moved_m[:, 0], moved_m[:, 1]) / self._tick_s
-        self._look_ahead(moving, moved_m)
+        self._look_ahead(moving, moved_m, cells)
         self._pass_targets()
 
-    def _look_ahead(self, moving: Slots, moved_m: Floats) -> None:
-        """Write the places of people who go on by (N, 2) a tick, or along their routes."""
+    def _look_ahead(self, moving: Slots, moved_m: Floats, cells: Slots) -> None:
+        """Write the places of people who go on by (N, 2) a tick, or along their routes.
+
+        They are in these cells.
+        """
         state = self._state
         here = state.positions[moving]
         places = here[:, None] + (AHEAD_S / self._tick_s * moved_m)[:, None] * _TIMES
@@ -107,7 +121,6 @@ class People:
             arrived = np.hypot(left[:, 0], left[:, 1]) < AT_CORNER_M
             speeds = np.where(arrived, self._walk_speed_mps, state.speeds[slots])
             places[on_route] = self._route_ahead.places(slots, here[on_route], speeds)
-        cells = self._grid.on_ground(here, state.heights[moving])[1]
         state.ahead[moving] = self._grid.with_heights(places, cells)
 
     def _head_for_targets(self) -> None:

@@ -1,6 +1,7 @@
 """The effects of people's inputs on a zone, and what its frame tells of them."""
 
 from collections.abc import Collection
+from itertools import compress
 
 from esplanade.planning import LayeredGrid
 from esplanade.server.world.frame import Line, Tickets
@@ -14,6 +15,7 @@ from esplanade.server.world.inputs import (
     Say,
     Stand,
     Steer,
+    SteerMany,
     Watch,
 )
 from esplanade.server.world.people import People
@@ -95,6 +97,13 @@ class PersonInputs:
                 self.chat.append(Line(item.id, item.text))
             case Watch():
                 self._watch(item)
+
+    def steer(self, wish: SteerMany) -> None:
+        """Take in which ways people want to walk; those who are gone are left out."""
+        slots = self._state.slots_of(wish.ids)
+        here = slots >= 0
+        self._people.steer_many(slots[here], wish.directions_rad[here], wish.speeds_mps[here])
+        self.acks.update(zip(compress(wish.ids, here), compress(wish.seqs, here), strict=True))
 
     def gone(self, avatars: list[int]) -> None:
         """Actors' avatars have left the world: nobody watches them any more."""

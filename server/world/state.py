@@ -1,5 +1,6 @@
 """The avatars of a zone: one dense table, a slot each."""
 
+from collections.abc import Iterable
 from typing import Final
 
 import numpy as np
@@ -82,6 +83,11 @@ class State:
 
     def slot(self, avatar_id: int) -> int:
         return self._slots[avatar_id]
+
+    def slots_of(self, avatar_ids: Iterable[int]) -> Slots:
+        """The slots of avatars, int (N,); -1 of those who are not here."""
+        slots = self._slots
+        return np.array([slots.get(avatar_id, -1) for avatar_id in avatar_ids], dtype=np.int64)
 
     def live(self) -> Slots:
         """Slots of everyone, ascending, int (N,)."""

@@ -38,6 +38,7 @@ from esplanade.server.world.inputs import (
     OfPerson,
     PotentialDerived,
     SetParameters,
+    SteerMany,
     Still,
 )
 from esplanade.server.world.latest_steps import LatestSteps
@@ -414,6 +415,8 @@ class Zone:
             case Join():
                 self._persons.join(item)
                 self.people_seen += 1
+            case SteerMany():
+                self._persons.steer(item)
             case MoveDoor():
                 self.doors.want(item.name, item.is_open)
             case DoorDerived():

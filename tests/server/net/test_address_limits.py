@@ -76,3 +76,16 @@ def test_defaults_admit_a_classroom_behind_one_address() -> None:
         assert limits.connect("192.0.2.7", 0.0) is None
     for _ in range(people):
         assert limits.join("192.0.2.7", 0.0) is None
+
+
+def test_frames_are_paid_for_in_advance_only_while_there_is_plenty() -> None:
+    limits = AddressLimits(AddressBounds(sockets=3, connects=5, joins=2, frames=64))
+    assert limits.connect("a", 0.0) is None
+    assert limits.prepay("a", 8, 0.0)
+    assert not limits.prepay("a", 1, 0.0)
+    assert limits.delay("a", 8, 0.0) == 0.0
+    assert limits.delay("a", 1, 0.0) > 0.0
+    limits.pay_back("a", 8, 0.0)
+    assert limits.delay("a", 8, 0.0) == 0.0
+    assert limits.prepay("127.0.0.1", 1000, 0.0)
+    limits.pay_back("127.0.0.1", 1000, 0.0)

@@ -1,3 +1,6 @@
+import socket
+from contextlib import ExitStack
+from itertools import chain
 from typing import Any, cast
 
 import numpy as np
@@ -23,6 +26,8 @@ from esplanade.protocol.steps import new_step_records, step_records
 from esplanade.server.metrics import Traffic
 from esplanade.server.net.delivery import Delivery, plan
 from esplanade.server.net.outbox import Outbox, SlowPolicy
+from esplanade.server.net.sockets.system import AVAILABLE
+from esplanade.server.world.inputs import Input, Say, Steer
 from esplanade.server.world.interest import PERIOD_TICKS
 from esplanade.server.world.state import ACTOR
 from esplanade.server.world.walking import Feet
@@ -199,3 +204,84 @@ def test_pointing_is_told_to_those_who_see_it(
     trial.population.pointed_at["oak"] = (1.0, 2.0, 3.0)
     delivery.deliver(trial.tick(writing=False), now=0.15)
     assert [type(message) for message in listener.heard()] == [Snapshot]
+
+
+class Wire(StuffedConnection):
+    """A connection whose transport writes to a socket at once."""
+
+    def __init__(self, sock: socket.socket) -> None:
+        super().__init__()
+        self._sock = sock
+
+    def write(self, frame: bytes) -> None:
+        self._sock.sendall(frame)
+
+
+class Direct:
+    """A session whose snapshots may be sent past its transport."""
+
+    def __init__(self, here: socket.socket, there: socket.socket) -> None:
+        policy = SlowPolicy(slow_bytes=1000, drop_bytes=4000, drop_seconds=5.0)
+        here.setblocking(False)
+        there.setblocking(False)
+        self._there = there
+        self.line = Wire(here)
+        self.outbox = Outbox(cast(ServerConnection, self.line), policy, Traffic(), here.fileno())
+        self.watching = None
+
+    def bytes_received(self) -> bytes:
+        """What came at the other end since the last call."""
+        try:
+            return self._there.recv(1 << 20)
+        except BlockingIOError:
+            return b""
+
+
+@pytest.mark.skipif(not AVAILABLE, reason="kernels call the system on Linux only")
+def test_bytes_are_the_same_whether_transports_write_them_or_all_are_sent_at_once() -> None:
+    people, random = 12, np.random.default_rng(3)
+    trials, deliveries, heard, traffic = [], [], [], []
+    with ExitStack() as stack:
+        pairs = [socket.socketpair() for _ in range(people)]
+        for each in chain.from_iterable(pairs):
+            stack.enter_context(each)
+        sessions: list[list[Any]] = [
+            [Listener() for _ in range(people)],
+            [Direct(*pair) for pair in pairs],
+        ]
+        places = random.uniform(10.0, 90.0, (people, 2)).tolist()
+        for kind in sessions:
+            trial = Trial(scene=FIELD, view_radius_m=25.0)
+            ids = trial.join(*((x, y) for x, y in places))
+            by_id = dict(zip(ids, kind, strict=True))
+            trials.append(trial)
+            deliveries.append(Delivery(trial.audience, by_id, 20, lambda _: None))
+        direct = 0
+        for tick in range(60):
+            wishes: list[Input] = [
+                Steer(ids[k], tick, float(random.uniform(-3.0, 3.0)), 2.0)
+                for k in range(people)
+                if random.random() < 0.2
+            ]
+            if tick == 20:
+                wishes.append(Say(ids[0], "hello"))
+            for k in random.integers(0, people, 2).tolist():
+                for kind in sessions:
+                    kind[k].line.unsent = 1001 if tick % 7 < 3 else 0
+            for trial, delivery in zip(trials, deliveries, strict=True):
+                delivery.deliver(trial.tick(*wishes, writing=False), now=0.05 * tick)
+            for usual, quick in zip(*sessions, strict=True):
+                frames, usual.line.frames = usual.line.frames, []
+                assert quick.bytes_received() == b"".join(frames)
+                direct += quick.outbox.direct >= 0
+            heard.append(sum(map(len, frames)))
+        traffic = [
+            [
+                sum(getattr(each.outbox._traffic, name) for each in kind)
+                for name in ("messages_out", "bytes_out", "steps_out", "snapshots_skipped")
+            ]
+            for kind in sessions
+        ]
+    assert traffic[0] == traffic[1]
+    assert traffic[0][3] > 0
+    assert direct > 300

@@ -134,3 +134,15 @@ def test_a_request_is_bounded() -> None:
     assert excess == "request"
     assert MAX_HEAD_BYTES - len(line) < taken <= MAX_HEAD_BYTES
     assert Meter(1000.0, now=0.0).charge(line * 20 + b"\r\n\r\n", 0.0) == "request"
+
+
+def test_frames_that_are_paid_for_in_advance_are_charged_and_given_back() -> None:
+    meter = Meter(message_rate=5.0, now=0.0)
+    assert meter.charge(REQUEST, 0.0) is None
+    # The request has cost as much as a frame.
+    assert meter.prepay(19, 100, 0.0)
+    assert not meter.prepay(1, 100, 0.0)
+    meter.pay_back(19, 100, 0.0)
+    assert not meter.prepay(1, 10**9, 0.0)
+    assert meter.charge(19 * EMPTY_PING, 0.0) is None
+    assert meter.charge(EMPTY_PING, 0.0) == "frames"

@@ -40,6 +40,9 @@ class StuffedConnection:
     def get_write_buffer_size(self) -> int:
         return self.unsent
 
+    def is_closing(self) -> bool:
+        return self.aborted
+
     def write(self, frame: bytes) -> None:
         self.frames.append(frame)
 

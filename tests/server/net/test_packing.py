@@ -27,7 +27,9 @@ def test_frames_that_are_packed_at_once_are_what_the_protocol_says(most: int) ->
     packed, ends = Packing().pack(snapshots)
     assert len(packed) == ends[-1]
     for i, end in enumerate(ends):
-        heard = [decode_server(p) for p in payloads_of(packed[ends[i - 1] if i else 0 : end])]
+        heard = [
+            decode_server(p) for p in payloads_of(packed[ends[i - 1] if i else 0 : end].tobytes())
+        ]
         first, last = snapshots.record_ends[i] - records[i], snapshots.record_ends[i]
         block = snapshots.records[first:last].tobytes()
         ack = int(snapshots.acks[i])
@@ -42,4 +44,5 @@ def test_a_tick_without_viewers_is_nothing() -> None:
     empty = np.zeros((0, RECORD_BYTES), dtype=np.uint8)
     steps = np.zeros((0, STEP_BYTES), dtype=np.uint8)
     snapshots = Snapshots(1, nobody, [], nobody, nobody, nobody, empty, steps)
-    assert Packing().pack(snapshots) == (b"", [])
+    packed, ends = Packing().pack(snapshots)
+    assert (len(packed), len(ends)) == (0, 0)

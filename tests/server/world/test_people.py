@@ -1,8 +1,11 @@
 import math
 
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from esplanade.server.world.inputs import Detach, Follow, Steer
+from esplanade.server.world.inputs import Detach, Follow, Steer, SteerMany
 from esplanade.server.world.people import BLOCKED_TICKS
 from tests.server.worlds import FIELD, TICK_S, Trial
 
@@ -93,3 +96,32 @@ def test_people_pass_through_each_other() -> None:
     trial.ticks(19)
     assert trial.position(ann) == pytest.approx((12.0, 10.0))
     assert trial.position(ben) == pytest.approx((9.0, 10.0))
+
+
+WISHES = st.tuples(st.floats(-1000.0, 1000.0), st.floats(0.0, 100.0))
+
+
+@given(st.lists(WISHES, min_size=4, max_size=4), st.sets(st.integers(0, 3)))
+def test_many_steer_as_each_would_alone(wishes: list[tuple[float, float]], some: set[int]) -> None:
+    apart, together = Trial(), Trial()
+    for trial in (apart, together):
+        ids = trial.join(*((2.0 + k, 5.0) for k in range(4)))
+        trial.tick(Follow(ids[1], 1, ((8.0, 8.0, 0.0),)))
+    steers = [Steer(ids[k], 2 + k, *wishes[k]) for k in sorted(some)]
+    news = [
+        apart.frame(*steers),
+        together.frame(
+            SteerMany(
+                (*(each.id for each in steers), 999),
+                (*(each.seq for each in steers), 1),
+                np.array([*(each.direction_rad for each in steers), 0.0]),
+                np.array([*(each.speed_mps for each in steers), 1.0]),
+            )
+        ),
+    ]
+    assert news[0].acks == news[1].acks == {each.id: each.seq for each in steers}
+    for trial in (apart, together):
+        trial.ticks(2)
+    states = [trial.world.state for trial in (apart, together)]
+    assert states[0].positions.tobytes() == states[1].positions.tobytes()
+    assert states[0].headings.tobytes() == states[1].headings.tobytes()
