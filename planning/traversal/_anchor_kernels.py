@@ -30,7 +30,7 @@ PARTS = 254
 _MOST_PARTS = 126
 _HALF_DIAGONAL = 0.7072
 """Of a cell, in cells."""
-_AIM_M = 0.04
+AIM_M = 0.04
 """A push aims at this much more room than the radius."""
 WITHIN_M = 1e-6
 _PUSHES = 12
@@ -96,7 +96,7 @@ def pushed(
     near: NearBarriers, body: Measures, cell: int, floor: float, x: float, y: float
 ) -> tuple[float, float, float]:
     """A point with more room than a given one, reached without crossing a barrier, and its room."""
-    want = body.radius_m + _AIM_M
+    want = body.radius_m + AIM_M
     best, best_x, best_y = -1.0, x, y
     for _ in range(_PUSHES):
         d, qx, qy = room_at(near, body, cell, floor, x, y)
@@ -200,6 +200,8 @@ def place_anchors(
                             ax, ay = anchor_of(arrays, near.first, offsets, cell)
                             there = room_at(near, body, cell, floor, ax, ay)[0]
                             rooms[cell] = min(there, near.reach_m - np.hypot(u, v))
+                            if u != 0.0 or v != 0.0:
+                                rooms[cell] = min(rooms[cell], body.radius_m + AIM_M)
                             continue
                         offsets[entry, 0] = 0
                         offsets[entry, 1] = 0
@@ -224,7 +226,12 @@ def place_anchors(
                         if there >= least and there > room:
                             offsets[entry, 0] = u
                             offsets[entry, 1] = v
-                            rooms[cell] = min(there, near.reach_m - np.hypot(px - x, py - y))
+                            there = min(
+                                there,
+                                body.radius_m + AIM_M,
+                                near.reach_m - np.hypot(px - x, py - y),
+                            )
+                            rooms[cell] = there
 
 
 @inlined
@@ -269,7 +276,7 @@ def _push(
 
     `room` is the distance from it, `second` that from the next.
     """
-    away = body.radius_m + _AIM_M - room
+    away = body.radius_m + AIM_M - room
     apart = np.sqrt((x - qx) * (x - qx) + (y - qy) * (y - qy))
     if apart > WITHIN_M:
         dx, dy = away * (x - qx) / apart, away * (y - qy) / apart

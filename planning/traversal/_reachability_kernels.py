@@ -57,9 +57,11 @@ def step_bits(
                                     if not bits >> d & 1:
                                         continue
                                     other = arrays.links[cell, d]
+                                    if near.first[cell] < 0 and near.first[other] < 0:
+                                        continue
                                     if own or is_listed(near, other, row):
                                         leads = leads_on(
-                                            arrays, near, body, offsets, rooms, cell, other
+                                            arrays, near, body, offsets, rooms, cell, other, d % 2
                                         )
                                     else:
                                         leads = out[cell] >> d & 1 > 0

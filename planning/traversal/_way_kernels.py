@@ -23,6 +23,7 @@ from esplanade.planning.ground._geometry_kernels import (
 )
 from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.traversal._anchor_kernels import (
+    AIM_M,
     SLACK_M,
     WITHIN_M,
     anchor_of,
@@ -32,7 +33,7 @@ from esplanade.planning.traversal._anchor_kernels import (
     two_nearest,
 )
 
-_HALF_DIAGONAL = 0.7072
+_DIAGONAL = 1.41422
 """Of a cell, in cells."""
 _LEVEL_M = 1e-4
 """Floors that differ by less see the same barriers."""
@@ -276,23 +277,24 @@ def leads_on(
     rooms: NDArray[np.float32],
     one: int,
     two: int,
+    aslant: int,
 ) -> bool:
     """Whether a body gets from the anchor of a cell to that of a neighbour; cheap in the open.
 
+    `aslant` is 1 if the neighbour is in another row and column, else 0.
     Nowhere between two points does a body have less room than half of what it has at both, less
     the way between them.
     """
-    if near.first[one] < 0 and near.first[two] < 0:
-        return True
     enough = body.radius_m - SLACK_M
     least = min(rooms[one], rooms[two])
     if least < enough:
         return False
     if abs(arrays.floors[one] - arrays.floors[two]) < _LEVEL_M:
-        if least >= enough + _HALF_DIAGONAL * arrays.cell_m:
-            return True  # neither anchor is off its centre
         both = rooms[one] + rooms[two] - 2.0 * enough
-        if both > arrays.cell_m:
+        if least > body.radius_m + AIM_M + WITHIN_M:  # neither anchor is off its centre
+            if both >= (_DIAGONAL if aslant else 1.0) * arrays.cell_m:
+                return True
+        elif both > arrays.cell_m:
             ax, ay = anchor_of(arrays, near.first, offsets, one)
             bx, by = anchor_of(arrays, near.first, offsets, two)
             if both >= np.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay)):
