@@ -227,15 +227,16 @@ def clearance_at(grid: GridArrays, body: int, cell: int, x: float, y: float) -> 
     c = grid.clearance[body]
     own = c[cell]
     half_m = _HALF_DIAGONAL * grid.layered.cell_m
-    least = own - half_m
-    if 0.0 <= own < grid.kinds.measures[body]["radius_m"] + half_m:
+    beside, over, across, u, v = corners(grid, cell, x, y)
+    away = length(u, v) * grid.layered.cell_m
+    least = own - away
+    if 0.0 <= own < grid.kinds.measures[body]["radius_m"] + away:
         exact_m = grid.kinds.measures[body]["reach_m"] - half_m
         low_m = max(0.0, grid.kinds.measures[body]["radius_m"] - LOW_ROOM_M)
         exact = _exact_clearance(grid, body, cell, x, y, own < half_m + low_m)
         if exact < exact_m:
             return exact
         least = exact_m
-    beside, over, across, u, v = corners(grid, cell, x, y)
     lower = (1.0 - u) * own + u * c[beside]
     upper = (1.0 - u) * c[over] + u * c[across]
     room = float((1.0 - v) * lower + v * upper)

@@ -8,12 +8,9 @@ from numpy.typing import NDArray
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.ground._barrier_kernels import TOLERANCE_M
 from esplanade.planning.ground.layered import LayeredArrays
-from esplanade.planning.traversal._anchor_kernels import (
-    anchor_of,
-    bend_between,
-    is_way_clear,
-)
+from esplanade.planning.traversal._anchor_kernels import anchor_of
 from esplanade.planning.traversal._stability_kernels import STABLE
+from esplanade.planning.traversal._way_kernels import bend_between, is_way_clear
 from esplanade.planning.traversal.traversability import Traversability
 
 _CORNER_M = 1e-9

@@ -16,9 +16,9 @@ from esplanade.planning.ground._barrier_kernels import (
     Measures,
     NearBarriers,
     height_to_climb,
-    segment_barrier_distance,
+    point_barrier_distance,
 )
-from esplanade.planning.ground._geometry_kernels import LOW_ROOM_M, crosses, nearest_on_segment
+from esplanade.planning.ground._geometry_kernels import LOW_ROOM_M, nearest_on_segment
 from esplanade.planning.ground.layered import TILE, LayeredArrays
 from esplanade.planning.traversal.tiles import CellBox
 
@@ -30,17 +30,13 @@ PARTS = 254
 _MOST_PARTS = 126
 _HALF_DIAGONAL = 0.7072
 """Of a cell, in cells."""
-_AIM_M = 0.02
+AIM_M = 0.04
 """A push aims at this much more room than the radius."""
+WITHIN_M = 1e-6
 _PUSHES = 12
-_HALVINGS = 10
+_HALVINGS = 8
 _ALONG_M = 0.03
 """Length of a move along the middle between two barriers."""
-_LEVEL_M = 1e-4
-"""Floors that differ by less see the same barriers."""
-
-CLEAR, BARRED, BLOCKED = range(3)
-"""A way is clear, too near a barrier or past the end of one, or blocked by a long barrier."""
 
 
 @inlined
@@ -58,15 +54,11 @@ def anchor_of(
 
 
 @inlined
-def room_at(
+def two_nearest(
     near: NearBarriers, body: Measures, cell: int, floor: float, x: float, y: float
-) -> tuple[float, float, float]:
-    """Distance from a point to the nearest barrier in the list of a cell, and its nearest point.
-
-    Low obstacles, up to leg length, count as further away, so that the body's radius suffices as
-    distance from all. `floor` is the height that they are seen from.
-    """
-    best, bx, by = np.inf, x, y
+) -> tuple[float, float, float, float]:
+    """`room_at`, and the distance to the second nearest barrier, metres."""
+    best, second, bx, by = np.inf, np.inf, x, y
     entry = near.first[cell]
     while entry >= 0:
         barrier = near.barriers[near.entries[entry]["barrier"]]
@@ -80,7 +72,22 @@ def room_at(
         if climb <= body.leg_length_m + TOLERANCE_M:
             d += max(0.0, body.radius_m - LOW_ROOM_M)
         if d < best:
-            best, bx, by = d, qx, qy
+            best, second, bx, by = d, best, qx, qy
+        elif d < second:
+            second = d
+    return best, bx, by, second
+
+
+@inlined
+def room_at(
+    near: NearBarriers, body: Measures, cell: int, floor: float, x: float, y: float
+) -> tuple[float, float, float]:
+    """Distance from a point to the nearest barrier in the list of a cell, and its nearest point.
+
+    Low obstacles, up to leg length, count as further away, so that the body's radius suffices as
+    distance from all. `floor` is the height that they are seen from.
+    """
+    best, bx, by, _ = two_nearest(near, body, cell, floor, x, y)
     return best, bx, by
 
 
@@ -89,7 +96,7 @@ def pushed(
     near: NearBarriers, body: Measures, cell: int, floor: float, x: float, y: float
 ) -> tuple[float, float, float]:
     """A point with more room than a given one, reached without crossing a barrier, and its room."""
-    want = body.radius_m + _AIM_M
+    want = body.radius_m + AIM_M
     best, best_x, best_y = -1.0, x, y
     for _ in range(_PUSHES):
         d, qx, qy = room_at(near, body, cell, floor, x, y)
@@ -170,6 +177,7 @@ def place_anchors(
     Anchors stay where they are in cells that do not list the barrier `row`, unless it is `ANY`.
     """
     part_m = arrays.cell_m / PARTS
+    most_m = _MOST_PARTS * part_m
     reach = np.float32(near.reach_m)
     enough = body.radius_m - SLACK_M
     for layer in range(arrays.pages.shape[0]):
@@ -192,156 +200,90 @@ def place_anchors(
                             ax, ay = anchor_of(arrays, near.first, offsets, cell)
                             there = room_at(near, body, cell, floor, ax, ay)[0]
                             rooms[cell] = min(there, near.reach_m - np.hypot(u, v))
+                            if u != 0.0 or v != 0.0:
+                                rooms[cell] = min(rooms[cell], body.radius_m + AIM_M)
                             continue
                         offsets[entry, 0] = 0
                         offsets[entry, 1] = 0
                         x = arrays.x0 + (i + 0.5) * arrays.cell_m
                         y = arrays.y0 + (j + 0.5) * arrays.cell_m
-                        room = room_at(near, body, cell, floor, x, y)[0]
+                        room, qx, qy, second = two_nearest(near, body, cell, floor, x, y)
                         rooms[cell] = min(room, near.reach_m)
                         if not enough - _HALF_DIAGONAL * arrays.cell_m <= room < body.radius_m:
                             continue
-                        px, py, _ = pushed(near, body, cell, floor, x, y)
-                        u = int(np.round((px - x) / part_m))
-                        v = int(np.round((py - y) / part_m))
-                        if max(abs(u), abs(v)) > _MOST_PARTS:
-                            continue  # that is the neighbour's place
+                        if not _may_fit(near, body, cell, floor, x, y, most_m):
+                            continue
+                        dx, dy = _push(near, body, cell, floor, x, y, room, qx, qy, second)
+                        far = max(abs(dx), abs(dy)) / most_m
+                        least = enough
+                        if far > 1.0:  # it stays in its cell, where the body fits exactly
+                            dx /= far
+                            dy /= far
+                            least = body.radius_m
+                        u, v = int(np.round(dx / part_m)), int(np.round(dy / part_m))
                         px, py = x + u * part_m, y + v * part_m
                         there = room_at(near, body, cell, floor, px, py)[0]
-                        if there >= enough and there > room:
+                        if there >= least and there > room:
                             offsets[entry, 0] = u
                             offsets[entry, 1] = v
-                            rooms[cell] = min(there, near.reach_m - np.hypot(px - x, py - y))
+                            there = min(
+                                there,
+                                body.radius_m + AIM_M,
+                                near.reach_m - np.hypot(px - x, py - y),
+                            )
+                            rooms[cell] = there
 
 
 @inlined
-def way_through(
-    near: NearBarriers,
-    body: Measures,
-    cell: int,
-    lowest: float,
-    highest: float,
-    ax: float,
-    ay: float,
-    bx: float,
-    by: float,
-    aside: float,
-) -> int:
-    """Whether a body can go straight from a to b, as far as the list of one cell tells.
-
-    Barriers may not be crossed, seen from the `lowest` floor, and distance is kept from what is an
-    obstacle even from the `highest` one: the other end of the way sees to its own. BLOCKED means
-    that a barrier is crossed whose ends are further than `aside` from the middle.
-    """
-    length = np.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay))
-    found = CLEAR
+def _may_fit(
+    near: NearBarriers, body: Measures, cell: int, floor: float, x: float, y: float, most: float
+) -> bool:
+    """Whether no single barrier takes up a whole square around a point, `most` to each side."""
     entry = near.first[cell]
     while entry >= 0:
         barrier = near.barriers[near.entries[entry]["barrier"]]
         entry = near.entries[entry]["next"]
-        if height_to_climb(barrier, lowest, highest, body.height_m) <= body.step_on_m + TOLERANCE_M:
+        climb = height_to_climb(barrier, floor, floor, body.height_m)
+        if climb <= body.step_on_m + TOLERANCE_M:
             continue
-        climb = height_to_climb(barrier, highest, highest, body.height_m)
-        need = 0.0
-        if climb > body.leg_length_m + TOLERANCE_M:
-            need = body.radius_m - SLACK_M
-        elif climb > body.step_on_m + TOLERANCE_M:
-            need = min(body.radius_m, LOW_ROOM_M) - SLACK_M
-        x0, y0, x1, y1 = barrier["x0"], barrier["y0"], barrier["x1"], barrier["y1"]
-        if nearest_on_segment(ax, ay, x0, y0, x1, y1)[0] > need + length:
-            continue
-        if crosses(barrier, ax, ay, bx, by):
-            mx, my = 0.5 * (ax + bx), 0.5 * (ay + by)
-            if min(np.hypot(x0 - mx, y0 - my), np.hypot(x1 - mx, y1 - my)) > aside:
-                return BLOCKED
-            found = BARRED
-        elif segment_barrier_distance(barrier, ax, ay, bx, by) < need:
-            found = BARRED
-    return found
+        need = body.radius_m
+        if climb <= body.leg_length_m + TOLERANCE_M:
+            need = min(need, LOW_ROOM_M)
+        if (
+            point_barrier_distance(barrier, x - most, y - most) < need
+            and point_barrier_distance(barrier, x + most, y + most) < need
+            and point_barrier_distance(barrier, x - most, y + most) < need
+            and point_barrier_distance(barrier, x + most, y - most) < need
+        ):
+            return False  # distances from a barrier are greatest in a corner
+    return True
 
 
 @inlined
-def is_way_clear(
+def _push(
     near: NearBarriers,
     body: Measures,
     cell: int,
-    lowest: float,
-    highest: float,
-    ax: float,
-    ay: float,
-    bx: float,
-    by: float,
-) -> bool:
-    """Whether a body can go straight from a to b, as far as the list of one cell tells."""
-    return bool(way_through(near, body, cell, lowest, highest, ax, ay, bx, by, 0.0) == CLEAR)
+    floor: float,
+    x: float,
+    y: float,
+    room: float,
+    qx: float,
+    qy: float,
+    second: float,
+) -> tuple[float, float]:
+    """`pushed` as a displacement; cheap where only one barrier, nearest at (qx, qy), counts.
 
-
-@kernel
-def bend_between(
-    arrays: LayeredArrays,
-    near: NearBarriers,
-    body: Measures,
-    offsets: NDArray[np.int8],
-    one: int,
-    two: int,
-) -> tuple[int, float, float]:
-    """Whether and how a body gets from the anchor of a cell to that of a neighbour.
-
-    0: it does not; 1: straight; 2: by way of the point that is returned too. The result is the same
-    in both directions.
+    `room` is the distance from it, `second` that from the next.
     """
-    if near.first[one] < 0 and near.first[two] < 0:
-        return 1, 0.0, 0.0
-    first, second = min(one, two), max(one, two)
-    a, b = float(arrays.floors[first]), float(arrays.floors[second])
-    lowest, highest = min(a, b), max(a, b)
-    ax, ay = anchor_of(arrays, near.first, offsets, first)
-    bx, by = anchor_of(arrays, near.first, offsets, second)
-    aside = max(arrays.cell_m, 0.5 * np.hypot(bx - ax, by - ay))
-    found = way_through(near, body, first, lowest, highest, ax, ay, bx, by, aside)
-    if found != BLOCKED:
-        found = max(found, way_through(near, body, second, lowest, highest, ax, ay, bx, by, aside))
-    if found == CLEAR:
-        return 1, 0.0, 0.0
-    if found == BLOCKED:
-        return 0, 0.0, 0.0
-    mx, my = 0.5 * (ax + bx), 0.5 * (ay + by)
-    px, py, room = pushed(near, body, first, highest, mx, my)
-    if room < body.radius_m - SLACK_M or np.hypot(px - mx, py - my) > arrays.cell_m:
-        return 0, 0.0, 0.0
-    for cell in (first, second):
-        if not (
-            is_way_clear(near, body, cell, lowest, highest, ax, ay, px, py)
-            and is_way_clear(near, body, cell, lowest, highest, px, py, bx, by)
+    away = body.radius_m + AIM_M - room
+    apart = np.sqrt((x - qx) * (x - qx) + (y - qy) * (y - qy))
+    if apart > WITHIN_M:
+        dx, dy = away * (x - qx) / apart, away * (y - qy) / apart
+        if (
+            second - away >= room + away
+            or room_at(near, body, cell, floor, x + dx, y + dy)[0] >= room + away - WITHIN_M
         ):
-            return 0, 0.0, 0.0
-    return 2, px, py
-
-
-@inlined
-def leads_on(
-    arrays: LayeredArrays,
-    near: NearBarriers,
-    body: Measures,
-    offsets: NDArray[np.int8],
-    rooms: NDArray[np.float32],
-    one: int,
-    two: int,
-) -> bool:
-    """Whether a body gets from the anchor of a cell to that of a neighbour; cheap in the open.
-
-    Nowhere between two points does a body have less room than half of what it has at both, less
-    the way between them.
-    """
-    if near.first[one] < 0 and near.first[two] < 0:
-        return True
-    enough = body.radius_m - SLACK_M
-    if min(rooms[one], rooms[two]) < enough:
-        return False
-    both = rooms[one] + rooms[two] - 2.0 * enough
-    if both > arrays.cell_m and abs(arrays.floors[one] - arrays.floors[two]) < _LEVEL_M:
-        ax, ay = anchor_of(arrays, near.first, offsets, one)
-        bx, by = anchor_of(arrays, near.first, offsets, two)
-        if both >= np.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay)):
-            return True
-    return bend_between(arrays, near, body, offsets, one, two)[0] > 0
+            return dx, dy
+    px, py, _ = pushed(near, body, cell, floor, x, y)
+    return px - x, py - y

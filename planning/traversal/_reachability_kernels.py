@@ -6,7 +6,8 @@ from numpy.typing import NDArray
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.ground._barrier_kernels import TOLERANCE_M, Measures, NearBarriers
 from esplanade.planning.ground.layered import TILE, LayeredArrays
-from esplanade.planning.traversal._anchor_kernels import is_listed, leads_on
+from esplanade.planning.traversal._anchor_kernels import is_listed
+from esplanade.planning.traversal._way_kernels import leads_on
 from esplanade.planning.traversal.tiles import CellBox
 
 
@@ -56,9 +57,11 @@ def step_bits(
                                     if not bits >> d & 1:
                                         continue
                                     other = arrays.links[cell, d]
+                                    if near.first[cell] < 0 and near.first[other] < 0:
+                                        continue
                                     if own or is_listed(near, other, row):
                                         leads = leads_on(
-                                            arrays, near, body, offsets, rooms, cell, other
+                                            arrays, near, body, offsets, rooms, cell, other, d % 2
                                         )
                                     else:
                                         leads = out[cell] >> d & 1 > 0

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from esplanade.planning import Body
 from esplanade.planning.ground.layered import LayeredArrays
-from esplanade.planning.traversal._anchor_kernels import anchor_of, bend_between
+from esplanade.planning.traversal._anchor_kernels import anchor_of
+from esplanade.planning.traversal._way_kernels import bend_between
 from esplanade.planning.traversal.cache import find_traversability
 from esplanade.planning.traversal.stability import Stability
 from esplanade.planning.traversal.traversability import Traversability

@@ -42,13 +42,14 @@ turns = st.builds(
     st.tuples(*[st.integers(-12, 12).map(lambda v: v / 100)] * 2),
 )
 radii = st.integers(20, 40).map(lambda v: v / 100)
+slim_radii = st.integers(15, 40).map(lambda v: v / 100)
 
 
 @st.composite
 def doorways(draw) -> tuple[Scene, object, tuple[float, float], tuple[float, float], float]:
     """A wall across the scene with a door in it, a corridor, and perhaps a pillar beside."""
-    turned, radius_m = draw(turns), draw(radii)
-    width = 2.0 * radius_m + draw(st.sampled_from([-0.1, -0.05, 0.06, 0.1, 0.2]))
+    turned, radius_m = draw(turns), draw(slim_radii)
+    width = 2.0 * radius_m + draw(st.sampled_from([-0.1, -0.05, 0.04, 0.06, 0.1, 0.2]))
     thick = draw(st.sampled_from([0.0, 0.1, 0.3, 1.5]))
     half, far = 0.5 * width, 30.0
     rings, walls = [], []
