@@ -13,9 +13,9 @@ from esplanade.planning.routes.shut_way import Disc
 PERSON_ROOM_M: Final = 0.25
 """Room that a way leaves to people who stand; through narrower gaps hardly anybody presses."""
 ACTOR_ROOM_M: Final = 0.05
-WIDER_M: Final = 0.35
+WIDER_M: Final = 0.25, 0.35
 WIDEST_M: Final = 0.75
-"""A gap is shut by so much more room to whoever stands beside it."""
+"""A gap is shut by so much more room to whoever stands beside it, the more up to that radius."""
 
 
 class Standing(NamedTuple):
@@ -41,7 +41,8 @@ def still_there(known: Sequence[Disc], discs: NDArray[np.float64]) -> tuple[Disc
 def wider(disc: NDArray[np.float64]) -> Disc:
     """The same place with so much room that no gap beside it is left."""
     x, y, z, radius = disc_of(disc)
-    return x, y, z, max(radius, round(min(radius + WIDER_M, WIDEST_M), 2))
+    least, most = WIDER_M
+    return x, y, z, round(max(radius + least, min(radius + most, WIDEST_M)), 2)
 
 
 def widest(discs: set[Disc]) -> set[Disc]:

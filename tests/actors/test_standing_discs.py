@@ -7,9 +7,9 @@ from esplanade.actors.standing_discs import as_known, still_there, wider, widest
 
 
 @pytest.mark.parametrize(
-    ("room_m", "widened_m"), [(0.3, 0.65), (0.5, 0.75), (0.72, 0.75), (0.9, 0.9)]
+    ("room_m", "widened_m"), [(0.3, 0.65), (0.5, 0.75), (0.72, 0.97), (0.95, 1.2)]
 )
-def test_a_disc_is_widened_up_to_a_bound_and_never_narrowed(
+def test_a_disc_is_widened_the_less_the_wider_it_is_but_always(
     room_m: float, widened_m: float
 ) -> None:
     assert wider(np.array([1.0, 2.0, 0.0, room_m])) == (1.0, 2.0, 0.0, widened_m)
