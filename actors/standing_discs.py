@@ -79,9 +79,9 @@ def with_those(discs: set[Disc], others: set[Disc]) -> set[Disc]:
 
 
 def as_known(discs: NDArray[np.float64], known: Sequence[Disc]) -> NDArray[np.float64]:
-    """Discs (K, 4) with the room that those of them have which are known."""
+    """Discs (K, 4) with the room that those of them have which are known, if that is more."""
     rooms = {disc[:3]: disc[3] for disc in known}
     found = discs.copy()
     for k, (x, y, z, room) in enumerate(discs.tolist()):
-        found[k, 3] = rooms.get((x, y, z), room)
+        found[k, 3] = max(rooms.get((x, y, z), 0.0), room)
     return found

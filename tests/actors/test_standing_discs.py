@@ -37,7 +37,7 @@ def test_a_disc_is_narrowed_to_hardly_more_than_the_body_and_stays_so() -> None:
     other = (3.0, 2.0, 0.0, 0.3)
     assert narrowed({narrow, other}, usual) == {narrow}
     assert with_those({wide, other}, {narrow}) == {narrow, other}
-    assert as_known(usual, [narrow])[:, 3].tolist() == [0.35, 0.3]
+    assert as_known(usual, [narrow])[:, 3].tolist() == [0.5, 0.3]
 
 
 def test_a_place_is_known_while_one_stands_there_whatever_room_it_gets() -> None:
