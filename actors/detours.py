@@ -16,9 +16,12 @@ from esplanade.actors.standing_discs import (
     Standing,
     as_known,
     disc_of,
+    narrowed,
+    narrower,
     still_there,
     wider,
     widest,
+    with_those,
 )
 from esplanade.planning import AgentTable, LayeredGrid
 from esplanade.planning.routes.shut_way import REACH_M, Around, Disc, ShutWays
@@ -109,12 +112,13 @@ class Detours:
         trips.look_in_s[going] -= tick_s
         due = going & (trips.look_in_s <= 0.0)
         if due.any() and seen.any():
-            discs, stood_s = np.round(standing.discs[seen], 2), standing.stood_s[seen]
+            bodies = Standing(*(column[seen] for column in standing))
+            bodies = bodies._replace(discs=np.round(bodies.discs, 2))
             self._rooms.clear()
             due &= ~self._potentials.provisional(trips.own_rows)
             for row in np.flatnonzero(due).tolist():
                 trips.look_in_s[row] = LOOK_EVERY_S
-                self._look(table, row, discs, stood_s)
+                self._look(table, row, bodies)
         elif due.any():
             trips.shut[due] = False
             for row in np.flatnonzero(due & trips.detours).tolist():
@@ -250,63 +254,78 @@ class Detours:
     def _ready(self, slot: int) -> bool:
         return not self._potentials.provisional(np.array([slot]))[0]
 
-    def _look(
-        self,
-        table: AgentTable,
-        row: int,
-        discs: NDArray[np.float64],
-        stood_s: NDArray[np.float64],
-    ) -> None:
+    def _look(self, table: AgentTable, row: int, standing: Standing) -> None:
         """Let an actor look along its own way, and along the one around people if it goes there."""
         key = self._key(table, row)
         if key is None:
             return
         trips, own_row = table.trips, int(table.trips.own_rows[row])
+        discs = standing.discs
         away = np.hypot(*(discs[:, :2] - table.agents.positions[row]).T)
         reached = away <= REACH_M + discs[:, 3].max() + 2.0 * WIDEST_M
-        detour, narrow = self._known.get(key), discs[reached]
+        detour, bare = self._known.get(key), Standing(*(column[reached] for column in standing))
         if detour is not None:
             known = key, detour.wanted
             if known not in self._rooms:
                 self._rooms[known] = as_known(discs, detour.wanted.places)
             discs = self._rooms[known]
-        discs, stood_s, away = discs[reached], stood_s[reached], away[reached]
+        discs, away = discs[reached], away[reached]
         shut = self._shut_by(table, row, own_row, discs, AROUND_M)
         trips.shut[row] = shut.any()
         if trips.stalled_s[row] >= STALLED_S and not shut.any():
             shut = self._shut_by(table, row, own_row, discs, 0.0)
-        found = {disc_of(disc) for disc in discs[shut]}
+        found, narrow = {disc_of(disc) for disc in discs[shut]}, set[Disc]()
+        near = np.zeros(len(discs), dtype=np.bool_)
         if trips.stalled_s[row] >= STUCK_S:
             near = (away <= NEAR_M) & (np.abs(discs[:, 2] - table.agents.heights[row]) < NEAR_M)
-            found |= {wider(disc) for disc in narrow[near]}
             shut |= near
+        waits_s = STAYS * float(bare.stood_s[shut].max()) if shut.any() else 0.0
+        if near.any() and self._shut_off(table, row, detour, waits_s):
+            narrow = set(map(narrower, bare.discs[near], bare.radii[near].tolist()))
+        else:
+            found |= {wider(disc) for disc in bare.discs[near]}
         if table.trips.detours[row] and detour is not None and self._ready(detour.row):
             shut_off = np.array(detour.shut.places)[:, :3]
             more = discs[~(discs[:, None, :3] == shut_off).all(axis=2).any(axis=1)]
             marks = self._shut_by(table, row, detour.row, more, AROUND_M)
             found |= {disc_of(disc) for disc in more[marks]}
-        waits_s = STAYS * float(stood_s[shut].max()) if shut.any() else 0.0
-        if found:
-            self._lead_around(table, row, key, found, waits_s)
+        if found or narrow:
+            before = set(detour.wanted.places) if detour else set()
+            narrow |= narrowed(before, standing.discs)
+            places = with_those(widest(found | before), narrow)
+            self._lead_around(table, row, key, tuple(sorted(places)), waits_s)
         self._weigh(table, row, waits_s)
 
     def _lead_around(
-        self, table: AgentTable, row: int, key: GoalKey, found: set[Disc], waits_s: float
+        self, table: AgentTable, row: int, key: GoalKey, places: tuple[Disc, ...], waits_s: float
     ) -> None:
-        """Have the way of an actor's goal lead around more places, from as far as it may pay."""
+        """Have the way of an actor's goal lead around places, from as far as it may pay."""
         detour = self._known.get(key)
         if detour is None and len(self._known) >= MOST_DETOURS:
             self.refused += 1
             return
-        places = tuple(sorted(widest(found | (set(detour.wanted.places) if detour else set()))))
         within_m = 0.0 if detour is None else detour.wanted.within_m
         if detour is None or np.isinf(self._left_m(table, row, detour.row)):
-            speed_mps = float(table.agents.parameters["speed_mps"][row])
-            own_m = self._left_m(table, row, int(table.trips.own_rows[row]))
-            within_m = max(within_m, _enough_m(own_m + waits_s * speed_mps + SPARE_M))
+            within_m = max(within_m, self._pays_within_m(table, row, waits_s))
         wanted = Around(places, within_m)
         if (detour is None or wanted != detour.wanted) and not self._want(key, wanted):
             table.trips.look_in_s[row] = 0.0  # another goal was first in this tick
+
+    def _pays_within_m(self, table: AgentTable, row: int, waits_s: float) -> float:
+        """How far from the goal another way may pay, for an actor that would wait on its own."""
+        speed_mps = float(table.agents.parameters["speed_mps"][row])
+        own_m = self._left_m(table, row, int(table.trips.own_rows[row]))
+        return _enough_m(own_m + waits_s * speed_mps + SPARE_M)
+
+    def _shut_off(
+        self, table: AgentTable, row: int, detour: _Detour | None, waits_s: float
+    ) -> bool:
+        """Whether not even a way around people leads an actor to its goal."""
+        if detour is None or detour.wanted != detour.shut or not self._ready(detour.row):
+            return False
+        if detour.shut.within_m < self._pays_within_m(table, row, waits_s):
+            return False
+        return bool(np.isinf(self._left_m(table, row, detour.row)))
 
     def _shut_by(
         self,

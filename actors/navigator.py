@@ -453,7 +453,7 @@ class Navigator:
 
     def _end_trips(self) -> None:
         """Keep account of trips, of who stands where, and of ways around those who do."""
-        agents, trips, people = self.table.agents, self.table.trips, self._standing
+        trips, people = self.table.trips, self._standing
         people.observe(self._history.ids, self._history.places, self._history.version, self.tick_s)
         bodies = self.bodies(people.ids, self._history.places)
         self._ends.keep(self.table, bodies, people.stood_s, self.tick_s)
@@ -461,16 +461,13 @@ class Navigator:
         on_way = ~np.isnan(trips.wanted[:, 0]) & (trips.outcomes == 0)
         stand_on(places, trips.stood_at, trips.stood_s, self.tick_s)
         trips.stood_at[on_way], trips.stood_s[on_way] = places[on_way], 0.0
-        rooms = np.concatenate(
-            [
-                np.full(len(people.ids), self.person_radius_m + PERSON_ROOM_M),
-                agents.parameters["radius_m"] + ACTOR_ROOM_M,
-            ]
-        )
+        rooms_m = np.full(len(bodies.radii), ACTOR_ROOM_M)
+        rooms_m[: len(people.ids)] = PERSON_ROOM_M
         anchors = np.concatenate([people.anchors, trips.stood_at])
         stood_s = np.concatenate([people.stood_s, trips.stood_s])
         stands = stood_s > 0.0
-        standing = Standing(np.column_stack([anchors, rooms])[stands], stood_s[stands])
+        discs = np.column_stack([anchors, bodies.radii + rooms_m])
+        standing = Standing(discs[stands], stood_s[stands], bodies.radii[stands])
         self.detours.keep(self.table, standing, self.tick_s)
 
     def _wait_for_potentials(self) -> None:

@@ -45,7 +45,7 @@ class ActorParameters(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     radius_m: Annotated[
-        float, _field("body", "m", 0.15, 0.5, "Radius of the disc that stands for the body.")
+        float, _field("body", "m", 0.15, 0.9, "Radius of the disc that stands for the body.")
     ] = 0.25
     speed_mps: Annotated[
         float,

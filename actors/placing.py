@@ -69,7 +69,7 @@ class Placing:
     def beside(
         self, body: Body, place: Place, taken: NDArray[np.float64], passed: dict[Place, int]
     ) -> Place:
-        """The ground nearest to a place that is free of those who stand at x, y, z, `taken` (N, 3).
+        """The ground nearest to a place that is free of those in `taken` (N, 4), x, y, z, radius.
 
         `passed` counts what was tried around each place, so that many who come to one find theirs
         in turn.
@@ -82,14 +82,14 @@ class Placing:
         x, y, z_m = place
         x0, y0, x1, y1 = self._scene.bounds
         apart_m = 2.5 * body.radius_m
-        level = taken[np.abs(taken[:, 2] - z_m) < SAME_FLOOR_M, :2]
+        level = taken[np.abs(taken[:, 2] - z_m) < SAME_FLOOR_M]
         for k in range(passed.get(place, 0), _MOST_BESIDE):
             # Sunflower seeds: evenly apart, the nearest first.
             away_m, angle = apart_m * math.sqrt(k), k * _GOLDEN_RAD
             point = np.array((x + away_m * math.cos(angle), y + away_m * math.sin(angle)))
             if not (x0 <= point[0] <= x1 and y0 <= point[1] <= y1):
                 continue
-            crowded = len(level) and np.hypot(*(level - point).T).min() < 0.9 * apart_m
+            crowded = _crowded(point, level, 1.25 * body.radius_m)
             here = float(point[0]), float(point[1])
             if (
                 not crowded
@@ -103,7 +103,7 @@ class Placing:
     def anywhere(
         self, body: Body, z_m: float, taken: NDArray[np.float64], rng: np.random.Generator
     ) -> Place:
-        """Somewhere free, away from those who stand at x, y, z, `taken` (N, 3).
+        """Somewhere free, away from those in `taken` (N, 4), x, y, z, radius.
 
         It is on the floor at that height unless that is nowhere to be found.
 
@@ -114,11 +114,11 @@ class Placing:
         """
         x0, y0, x1, y1 = self._scene.bounds
         elsewhere = None
-        level = taken[np.abs(taken[:, 2] - z_m) < SAME_FLOOR_M, :2]
+        level = taken[np.abs(taken[:, 2] - z_m) < SAME_FLOOR_M]
         for _ in range(_TRIES):
             point = rng.uniform((x0, y0), (x1, y1))
             place = float(point[0]), float(point[1])
-            crowded = len(level) and np.hypot(*(level - point).T).min() < 2.5 * body.radius_m
+            crowded = _crowded(point, level, 1.5 * body.radius_m)
             if not crowded and self._has_a_way(point, z_m, body):
                 if abs(self._grid.floor_at(place, z_m) - z_m) < SAME_FLOOR_M:
                     return (*place, z_m)
@@ -147,3 +147,9 @@ class Placing:
         if free is None:
             return None
         return Potential(self._grid, free, entry.z_m, kind.radius_m, body=kind)
+
+
+def _crowded(point: NDArray[np.float64], bodies: NDArray[np.float64], room_m: float) -> bool:
+    """Whether a point is nearer than `room_m` to one of the bodies (N, 4), x, y, z, radius."""
+    away_m = np.hypot(bodies[:, 0] - point[0], bodies[:, 1] - point[1])
+    return bool((away_m < bodies[:, 3] + room_m).any())

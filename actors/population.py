@@ -132,7 +132,7 @@ class Population:
             self._check_targets(each.behaviour)
         generators = [self.generator(each.id) for each in newcomers]
         agents = self.table.agents
-        taken = np.column_stack([agents.positions, agents.heights])
+        taken = np.column_stack([agents.positions, agents.heights, agents.parameters["radius_m"]])
         places = self.places(newcomers, self._placing, generators, taken)
         records = np.array([each.parameters.row() for each in newcomers], dtype=PARAMETERS)
         self.navigator.add_actors([each.id for each in newcomers], places, records)
@@ -148,7 +148,10 @@ class Population:
         generators: Sequence[np.random.Generator],
         taken: NDArray[np.float64],
     ) -> list[Goal]:
-        """Places where newcomers can stand, away from each other and from `taken` (N, 3)."""
+        """Places where newcomers can stand, away from each other and from `taken` (N, 4).
+
+        These are x, y, z and the radius of who is there.
+        """
         places: list[Goal] = []
         passed: dict[Goal, int] = {}
         for each, generator in zip(newcomers, generators, strict=True):
@@ -161,7 +164,7 @@ class Population:
                     places.append(placing.near(body, each.place))
             else:
                 places.append(placing.anywhere(body, each.z_m, taken, generator))
-            taken = np.concatenate([taken, [places[-1]]])
+            taken = np.concatenate([taken, [(*places[-1], body.radius_m)]])
         return places
 
     def generator(self, actor_id: Hashable) -> np.random.Generator:

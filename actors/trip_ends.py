@@ -27,6 +27,8 @@ LOOK_M: Final = 3.0
 """An actor this near to its goal looks whether somebody is there; further away for a queue."""
 QUEUE_M: Final = 0.8
 """It looks further by this for the square root of the actors with the same goal."""
+OUTSIDE_M: Final = 1.0
+"""It does not queue where its way is shut by somebody else, further than this from the queue."""
 BESIDE_M: Final = 0.5
 """An actor waits beside a goal that is taken with this much between it and whoever is there."""
 QUEUES_S: Final = 2.0
@@ -141,11 +143,13 @@ class TripEnds:
         takers[people:] = trips.outcomes == Outcome.ARRIVED
         taking = np.flatnonzero(takers)
         sharing = np.bincount(trips.own_rows[going & (trips.own_rows >= 0)])
-        look_m = np.full(len(left_m), LOOK_M)
         shared = trips.own_rows >= 0
         shared &= trips.own_rows < len(sharing)
-        look_m[shared] += QUEUE_M * np.sqrt(sharing[trips.own_rows[shared]])
-        near = going & (left_m <= look_m)
+        queue_m = np.zeros(len(left_m))
+        queue_m[shared] = QUEUE_M * np.sqrt(sharing[trips.own_rows[shared]])
+        outside_m = OUTSIDE_M + agents.parameters["radius_m"] + queue_m
+        kept_out = trips.shut & (np.hypot(*(agents.positions - agents.goals).T) > outside_m)
+        near = going & (left_m <= LOOK_M + queue_m) & ~kept_out
         agents.waits[going & ~near] = False
         trips.queued_s[~near] = 0.0
         taken: dict[int, int] = {}

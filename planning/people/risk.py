@@ -32,7 +32,7 @@ _SIGMA_POINTS = 9
 _RADIUS_M = 0.25
 RADIUS_STEP_M = 0.05
 """Tables are for radii rounded up to this."""
-_WIDEST_M = 0.5
+_WIDEST_M = 0.9
 """Tables have room for agents up to this radius, so that those of others stay as they are."""
 _SIGMA_SPAN = 2.5
 

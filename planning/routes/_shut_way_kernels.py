@@ -80,6 +80,29 @@ def _sample_route(
 
 
 @kernel
+def _without_takers(
+    grid: GridArrays,
+    count: int,
+    bodies: NDArray[np.float64],
+    room_m: float,
+    space: LookingSpace,
+) -> NDArray[np.float64]:
+    """The bodies, those who take the end of the route with no room, by which it is taken anew."""
+    others = bodies.copy()
+    x, y = space.samples[count - 1]
+    floor_m = floor_of(grid, space.cells[count - 1])
+    taker = _taken_by(others, room_m, x, y, floor_m)
+    while taker >= 0:
+        others[taker, 3] = -room_m
+        taker = _taken_by(others, room_m, x, y, floor_m)
+    for k in range(count):
+        x, y = space.samples[k]
+        floor_m = floor_of(grid, space.cells[k])
+        space.taken[k] = _taken_by(others, room_m, x, y, floor_m) >= 0
+    return others
+
+
+@kernel
 def _leads_around(
     grid: GridArrays,
     body: int,
@@ -159,6 +182,8 @@ def look_along(
     if cell < 0:
         return
     count = _sample_route(grid, potential, cell, x, y, bodies, room_m, space)
+    if count < len(space.samples) and space.taken[count - 1]:
+        bodies = _without_takers(grid, count, bodies, room_m, space)
     beside = int(BESIDE_M / SAMPLE_M)
     bumped = np.zeros(len(bodies), dtype=np.bool_)
     k = 0

@@ -73,7 +73,7 @@ class Potential:
             self.values[front.settled == 0, 0] = np.inf
         self.reached_cells = front.reached_cells
         if wave is Wave.SIGHT:
-            if within_m < math.inf:
+            if shut or within_m < math.inf:
                 further = (front.settled == 0) & (front.arrays.kinds.steps[row] != 0)
                 front.settled[further] = _LEFT_ALONE
             if grid.bounds_edges(self.body):

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from esplanade.planning.grid._grid_kernels import GridArrays
 from esplanade.planning.routes import _shut_way_kernels as kernels
 from esplanade.planning.scene.heights import BODIES_OVERLAP_M
+from esplanade.planning.traversal._anchor_kernels import PARTS
 
 Disc = tuple[float, float, float, float]
 """x, y, the height of the feet and a radius, metres: a place where somebody stands."""
@@ -84,13 +85,12 @@ def without_places(
 ) -> GridArrays:
     """The ground as it would be for one kind of body if discs were solid. Cost O(cells × discs).
 
-    A centre keeps `radius_m` to a disc. Only the clearances and steps of the kind in `row` are
-    others.
+    An anchor keeps `radius_m` to a disc, as where a look at ways leads. Only the clearances and
+    steps of the kind in `row` are others.
     """
     layered = grid.layered
     clearance, steps = grid.clearance.copy(), grid.kinds.steps.copy()
-    x = layered.x0 + (layered.places["column"] + 0.5) * layered.cell_m
-    y = layered.y0 + (layered.places["row"] + 0.5) * layered.cell_m
+    x, y = _anchors(grid, row)
     own = clearance[row]
     for at_x, at_y, z_m, disc_m in discs:
         with np.errstate(invalid="ignore"):
@@ -105,3 +105,13 @@ def without_places(
             others = others[others >= 0]
             steps[row, others] &= np.uint8(255 - (1 << ((direction + 4) & 7)))
     return grid._replace(clearance=clearance, kinds=grid.kinds._replace(steps=steps))
+
+
+def _anchors(grid: GridArrays, row: int) -> NDArray[np.float64]:
+    """The points of all cells that paths of one kind of body go through, float64 (2, N), metres."""
+    layered, kinds = grid.layered, grid.kinds
+    places = np.stack([layered.places["column"] + 0.5, layered.places["row"] + 0.5])
+    moved = np.flatnonzero(kinds.first[row] >= 0)
+    entries = kinds.first[row, moved] + kinds.measures[row]["entries"]
+    places[:, moved] += kinds.offsets[entries].T / PARTS
+    return np.array([[layered.x0], [layered.y0]]) + places * layered.cell_m

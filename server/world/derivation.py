@@ -34,7 +34,9 @@ class Derivation:
         self._grid = population.grid
         self._fork = population.grid.fork()
         agents = population.table.agents
-        self._taken = np.column_stack([agents.positions, agents.heights])
+        self._taken = np.column_stack(
+            [agents.positions, agents.heights, agents.parameters["radius_m"]]
+        )
         self._changes: list[tuple[Goal | None, Body]] = []
         self._newcomers: list[Newcomer] = []
         for one in parts_of(command):

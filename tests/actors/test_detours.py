@@ -276,3 +276,10 @@ def test_goals_beyond_the_bound_have_no_way_around_and_are_counted(
     assert len(nav.detours) == 1
     assert nav.table.trips.detours.sum() == 1
     assert nav.detours.refused >= 2
+
+
+def test_where_no_way_leads_with_room_to_people_the_wider_gap_beside_them_is_taken() -> None:
+    walls = Wall(start=(6.99, 5.68), end=(12.0, 6.68)), Wall(start=(5.07, 5.29), end=(0.0, 4.28))
+    nav = navigator(Scene(bounds=(0.0, 0.0, 12.0, 12.0), walls=walls))
+    nav.add_actor("a", (3.55, 6.84), (5.5, 4.07))
+    assert arrival_s(nav, lambda _: {"p": (5.95, 5.47)}, 30.0) < 16.0

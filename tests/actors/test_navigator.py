@@ -405,7 +405,7 @@ def test_saved_actors_of_another_horizon_are_refused_and_nothing_changes() -> No
 
 
 @pytest.mark.parametrize(
-    ("radius_m", "person_radius_m"), [(0.25, 0.25), (0.45, 0.25), (0.25, 0.6), (0.15, 0.25)]
+    ("radius_m", "person_radius_m"), [(0.25, 0.25), (0.9, 0.25), (0.25, 0.6), (0.15, 0.25)]
 )
 def test_room_to_a_person_grows_with_both_radii(radius_m, person_radius_m) -> None:
     """Somebody stands in the middle of the way: how near an actor passes depends on both bodies."""

@@ -4,7 +4,7 @@ import { type Camera, Frustum, Group, Matrix4, MeshLambertMaterial, Sphere } fro
 import type { Side } from "../world/body";
 import type { Avatar } from "../world/world";
 import { Instances } from "./instances";
-import { ACTOR, type Clothing, clothingOf } from "./palette";
+import { ACTOR, type Clothing, clothingOf, IRON } from "./palette";
 import { type PartName, PARTS } from "./parts";
 
 /** Corners around a limb, of figures near by and far away. */
@@ -19,6 +19,11 @@ const MOST_KNOWN = 2000;
 /** A figure reaches this far from its hips, and its shadow on the ground this far. */
 const FIGURE_M = 1.3;
 const SHADOW_M = 5;
+
+/** A wider body, as of a cart or a wheelchair, is shown by a rail around the figure, so high up. */
+const FIGURE_WIDE_M = 0.4;
+const RAIL_UP_M = 0.4;
+const LEVEL = { w: 1, x: 0, y: 0, z: 0 };
 
 type PartMeshes = Record<PartName, Instances>;
 
@@ -108,7 +113,11 @@ export class Figures {
   }
 }
 
-function placeParts(parts: PartMeshes, { id, kind, animator }: Avatar, clothes: Clothing): void {
+function placeParts(
+  parts: PartMeshes,
+  { id, kind, animator, pose, radius }: Avatar,
+  clothes: Clothing,
+): void {
   const {
     body,
     build: { legM, trunkM },
@@ -118,6 +127,10 @@ function placeParts(parts: PartMeshes, { id, kind, animator }: Avatar, clothes: 
   parts.head.put(id, clothes.skin, body.neck, body.head, trunkM);
   parts[clothes.hairdo].put(id, clothes.hair, body.neck, body.head, trunkM);
   if (kind === "actor") parts.hat.put(id, ACTOR, body.neck, body.head, trunkM);
+  if (radius > FIGURE_WIDE_M) {
+    const { x, y, z } = pose;
+    parts.rail.put(id, IRON, { x, y, z: z + RAIL_UP_M }, LEVEL, radius);
+  }
   limbs(parts, id, body.left, clothes, legM, trunkM);
   limbs(parts, id, body.right, clothes, legM, trunkM);
 }

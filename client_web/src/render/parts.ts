@@ -3,12 +3,14 @@
  * Limbs hang down from their joint at the origin; lengths are shares of the leg or of the trunk.
  */
 
-import { type BufferGeometry, Color } from "three";
+import { type BufferGeometry, Color, Float32BufferAttribute, TorusGeometry } from "three";
 import { FOOT, FOREARM, SHIN, THIGH, UPPER_ARM } from "../world/skeleton";
 import { hair, hat, head } from "./heads";
 import { type Section, loft, skin, WHITE } from "./loft";
 
 const BELT = new Color("#4a4038");
+/** Half as thick as the hoop is. */
+const RAIL = 0.035;
 const HEM = new Color("#b9b9b9");
 
 export const PARTS = {
@@ -26,6 +28,7 @@ export const PARTS = {
   shin,
   shoe,
   toes,
+  rail,
 } satisfies Record<string, (corners: number) => BufferGeometry>;
 
 export type PartName = keyof typeof PARTS;
@@ -173,6 +176,13 @@ function toes(corners: number): BufferGeometry {
     slice({ x: 0.068, width: 0.028, bottom: 0.009, top: 0.033 }, corners),
     slice({ x: 0.074, width: 0.012, bottom: 0.016, top: 0.025 }, corners),
   ]);
+}
+
+/** A hoop around a body that is wider than its figure; in shares of the body's radius. */
+function rail(corners: number): BufferGeometry {
+  const hoop = new TorusGeometry(1 - RAIL, RAIL, corners, 3 * corners);
+  const white = new Float32Array(3 * hoop.getAttribute("position").count).fill(1);
+  return hoop.setAttribute("color", new Float32BufferAttribute(white, 3));
 }
 
 /** Across a shoe, seen from behind: arched above from right to left, flat below. */

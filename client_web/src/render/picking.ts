@@ -31,7 +31,7 @@ interface Hit {
 /** A face that slopes more is no floor: 45 degrees. */
 const LEVEL = Math.SQRT1_2;
 const REACH_M = 60;
-/** One may click this far beside a figure: metres plus a part of the screen's height. */
+/** One may click this far beside a figure, or on a wider body: metres plus a part of the screen's height. */
 const BESIDE_M = 0.3;
 const BESIDE_SCREEN = 0.015;
 const GROUND = new Plane(new Vector3(0, 0, 1), 0);
@@ -61,7 +61,7 @@ export class Picking {
         this.beside,
       );
       const distanceM = this.camera.position.distanceTo(this.foot);
-      const allowedM = BESIDE_M + BESIDE_SCREEN * distanceM;
+      const allowedM = Math.max(BESIDE_M, avatar.radius) + BESIDE_SCREEN * distanceM;
       if (distanceM > REACH_M || besideSq > allowedM ** 2) continue;
       if (!best || distanceM < best.distanceM) best = { avatar, distanceM };
     }

@@ -48,7 +48,7 @@ def test_conflicts_are_those_of_looking_at_everyone(seed, actors, fastest) -> No
     r = reserved(
         open_grid(8.0),
         paths,
-        radii_m=rng.uniform(0.15, 0.5, actors),
+        radii_m=rng.uniform(0.15, 0.9, actors),
         ranks=rng.permutation(actors),
         heights=rng.choice([0.0, 1.0, 3.0], actors),
         fastest_m=0.2 * fastest,

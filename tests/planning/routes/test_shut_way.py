@@ -46,6 +46,11 @@ def test_a_goal_that_is_taken_shuts_no_way() -> None:
     assert shut_by(doorway(0.5), (8.0, 5.0, 0.0, 0.4)) == [False]
 
 
+def test_a_doorway_on_the_way_to_a_goal_that_is_taken_is_shut_by_who_stands_in_it() -> None:
+    taker, door = (6.0, 5.0, 0.0, 0.4), (5.0, 5.0, 0.0, 0.4)
+    assert shut_by(doorway(0.5), taker, door, goal=(6.0, 5.0)) == [False, True]
+
+
 def test_ways_lead_around_places_as_if_they_were_solid() -> None:
     grid = LayeredGrid.from_scene(Scene.open_space((0.0, 0.0, 10.0, 10.0)))
     disc = (5.0, 5.0, 0.0, 1.0)
@@ -58,6 +63,19 @@ def test_ways_lead_around_places_as_if_they_were_solid() -> None:
     shortest = 2.0 * tangent + (np.pi - 2.0 * angle) * reach
     assert direct == pytest.approx(6.0, abs=0.05)
     assert shortest - 0.1 <= detour <= shortest + 0.5
+
+
+def test_no_way_leads_past_a_disc_where_less_than_the_body_is_left_beside_it() -> None:
+    # A doorway across the cells, with 0.9 m between the disc's middle and its one side.
+    (ax, ay), (bx, by), side = (5.07, 5.29), (5.95, 5.47), (7.0, 5.68)
+    walls = (Wall(start=(0.0, 4.28), end=(ax, ay)), Wall(start=(bx, by), end=side))
+    walls = (*walls, Wall(start=side, end=(12.0, 6.68)))
+    scene = Scene(bounds=(0.0, 0.0, 12.0, 12.0), walls=walls)
+    shut = [(bx, by, 0.0, 0.5)]
+    potential = Potential(LayeredGrid.from_scene(scene), (5.5, 4.0), 0.0, RADIUS_M, shut=shut)
+    starts = [(4.7, 6.3), (5.13, 5.67), (5.3, 6.0), (6.6, 6.4)]
+    assert np.isinf(potential.distance(starts, [0.0] * 4)).all()
+    assert np.isfinite(potential.distance([(5.5, 3.0)], [0.0])).all()
 
 
 def test_a_way_that_discs_shut_is_none() -> None:

@@ -93,7 +93,7 @@ def test_contacts_are_those_of_everyone_against_everyone(seed: int, wide_m: floa
     def arrive() -> None:
         kind, (x, y) = int(random.integers(2)), random.uniform(0.0, wide_m, 2)
         z = float(random.choice([0.0, 1.0, 3.0]))
-        state.add(kind, "a", (float(x), float(y), z), 0, float(random.uniform(0.1, 0.4)))
+        state.add(kind, "a", (float(x), float(y), z), 0, float(random.uniform(0.1, 0.9)))
 
     for _ in range(25):
         arrive()

@@ -41,19 +41,21 @@ def test_what_is_no_door_and_what_is_so_already_moves_nothing(grid: LayeredGrid)
 
 
 @pytest.mark.parametrize(
-    ("place", "closes"),
+    ("place", "radius_m", "closes"),
     [
-        ((6.1, 4.0, 0.0), False),
-        ((6.0, 5.2, 0.0), False),
-        ((6.4, 4.0, 0.0), True),
-        ((6.1, 4.0, 3.0), True),
+        ((6.1, 4.0, 0.0), 0.25, False),
+        ((6.0, 5.2, 0.0), 0.25, False),
+        ((6.4, 4.0, 0.0), 0.25, True),
+        ((6.1, 4.0, 3.0), 0.25, True),
+        ((6.8, 4.0, 0.0), 0.9, False),
+        ((7.0, 4.0, 0.0), 0.9, True),
     ],
 )
 def test_a_door_closes_on_nobody(
-    grid: LayeredGrid, place: tuple[float, float, float], closes: bool
+    grid: LayeredGrid, place: tuple[float, float, float], radius_m: float, closes: bool
 ) -> None:
     state = State(4)
-    slot = state.add(PERSON, "Ann", place, 0, 0.25)
+    slot = state.add(PERSON, "Ann", place, 0, radius_m)
     doors = Doors(state, grid)
     doors.want("gate", is_open=False)
     assert doors.update() == ({"gate": False} if closes else {})
