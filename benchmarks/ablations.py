@@ -1,4 +1,4 @@
-"""What each rule of planning is for: it is switched off, and actors walk the same ways without it.
+"""The effect of each rule of planning: actors walk the same ways with the rule and without it.
 
     python -m benchmarks.ablations eth.csv hotel.csv zara1.csv students3.csv
     python -m benchmarks.ablations eth.csv --only perturbation lanes --episodes 20 --seeds 0
@@ -96,7 +96,7 @@ ALONE: Final = 3
 
 @dataclass(frozen=True)
 class Figures:
-    """What was measured with some settings: means, and means of R resamples."""
+    """Figures measured with some settings: means, and means of R resamples."""
 
     alone: Floats
     """(3,) or empty."""

@@ -213,7 +213,7 @@ async def _stop(ticker: Ticker, ticking: "asyncio.Task[None]", hub: Hub, gate: G
 
 
 def _loaded(settings: ServerSettings) -> LoadedScene:
-    """What the settings name, with actors; the log says how a recorded crowd was understood."""
+    """The scene of the settings, with actors; the log says how a recorded crowd was understood."""
     loaded = load_scene(settings)
     if settings.crowd is not None and loaded.crowd is not None:
         tell_crowd(settings.crowd, loaded.crowd)

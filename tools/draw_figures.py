@@ -210,7 +210,7 @@ def _ground(title: str, people: Floats) -> Panel:
 
 
 def _question(start: Point, goal: Point, people: Floats) -> tuple[World, PotentialValues, Task]:
-    """What an actor alone among people who stand is asked, at its preferred speed."""
+    """The task of an actor alone among people who stand, at its preferred speed."""
     plan, own, rules = PlanModel(), ActorParameters(), RuleModel()
     grid = LayeredGrid.from_scene(Scene.open_space((0.0, 0.0, 10.0, 8.0)))
     field = RiskField(grid, RiskModel(), plan.slices, PEOPLE)

@@ -176,7 +176,7 @@ def people_risk(
 
 
 class StepParts(NamedTuple):
-    """What a step of a path costs, and where it leads."""
+    """The parts of a step's cost, and the places that it leads to."""
 
     half: int
     """The cell half-way, and that of the end."""

@@ -1,4 +1,4 @@
-"""Who goes before whom, as kernels know it."""
+"""The order in which agents give way to each other, as kernels know it."""
 
 from enum import IntEnum
 from typing import NamedTuple

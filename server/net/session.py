@@ -55,7 +55,7 @@ _CODES_OF_OURS: Final = frozenset(code for code in CloseCode if code >= 4000)
 
 
 class SessionWishes(Protocol):
-    """What a person wants who is in."""
+    """The wishes of a person who is in; `Wishes` takes them."""
 
     def move(self, session: "Session", wish: Move | WalkTo) -> None:
         """Move the person's avatar in the next tick."""

@@ -1,4 +1,4 @@
-"""What people want while they are in: to move, to talk, to watch, doors, reports, silence."""
+"""Wishes of people who are in: to move, to talk, to watch, doors, reports, silence."""
 
 import asyncio
 from collections.abc import Mapping, Sequence

@@ -70,7 +70,7 @@ class Steer:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SteerMany:
-    """What as many `Steer` are, one after the other, of as many people."""
+    """The same as one `Steer` after the other, each of another person."""
 
     ids: tuple[int, ...]
     seqs: tuple[int, ...]

@@ -164,7 +164,7 @@ def crowds(tempers=None, ticks=2, **rules):
 
 
 def order(**rules):
-    """Who goes before whom."""
+    """The ids of actors, first those who go first."""
     nav = crowds(**rules)
     ids = nav.table.ids
     found = [ids[row] for row in nav._batch.zone.order]

@@ -43,7 +43,7 @@ class Fields(NamedTuple):
 
 
 class Chunks(NamedTuple):
-    """What has come in one call at M sockets at most."""
+    """The bytes that came in one call, of M sockets at most."""
 
     entries: Bytes
     """As the system tells which sockets have any."""

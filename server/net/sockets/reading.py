@@ -1,4 +1,4 @@
-"""What clients send is received for all of them at once, and movements are read in a kernel.
+"""Receives for all clients at once, and reads their movements in a kernel.
 
 A connection comes here when a movement of it was taken that nothing else waited before. From then
 on its transport pauses, and its socket stands in an epoll of ours. A chunk that is nothing but
@@ -141,7 +141,7 @@ class Reading:
         chunks = self._receiving.chunks
         counts = chunks.counts[:found]
         moved, others = np.flatnonzero(counts), np.flatnonzero(counts == 0)
-        # What is unusual may end connections, or give descriptors away.
+        # Unusual chunks may end connections, or give descriptors away.
         descriptors = chunks.descriptors[others].tolist()
         unusual = [self._receiving.chunk(place) for place in others.tolist()]
         if len(moved):

@@ -230,7 +230,7 @@ class Direct:
         self.watching = None
 
     def bytes_received(self) -> bytes:
-        """What came at the other end since the last call."""
+        """The bytes that came at the other end since the last call."""
         try:
             return self._there.recv(1 << 20)
         except BlockingIOError:

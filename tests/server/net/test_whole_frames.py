@@ -114,7 +114,7 @@ async def test_messages_are_taken_in_their_order_however_they_come(
         assert traffic.messages_in == 1 + len(sent)
     missing = [message for message in sent if message not in taken]
     assert taken == [message for message in sent if message in taken]
-    # What is not told came in one chunk with a later movement.
+    # Those that are not told came in one chunk with a later movement.
     assert all(isinstance(message, Move) for message in missing)
     assert len(missing) <= traffic.movements_superseded
     assert at_once > 0

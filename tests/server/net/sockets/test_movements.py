@@ -39,7 +39,7 @@ def framed(payload: bytes) -> bytes:
 
 
 def check(chunk: bytes) -> int:
-    """What the kernel reads is what the decoder reads, if it reads anything."""
+    """Check that the kernel reads the same as the decoder, if it reads anything."""
     count, latest = read(chunk)
     if count > 0:
         wanted = movements_in(chunk)
@@ -81,7 +81,7 @@ def test_fields_in_any_order_and_numbers_of_any_kind(
     fields = {name: values[name] for name in order}
     payload = msgpack.packb([int(ClientCode.MOVE), fields], use_single_float=single)
     count = check(framed(payload))
-    # What clients usually write is never left to the parser.
+    # The usual form of clients is never left to the parser.
     usual = movements_in(framed(payload)) is not None and all(
         abs(value) < 2**31 for value in values.values()
     )
