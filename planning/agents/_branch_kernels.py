@@ -14,17 +14,8 @@ from esplanade.planning.compiled.jit import inlined
 from esplanade.planning.grid._grid_kernels import GridArrays, follow, length
 from esplanade.planning.routes._potential_kernels import PotentialValues
 
-HALF_X = 0
-HALF_Y = 1
-X = 2
-Y = 3
-VX = 4
-VY = 5
-STRIDE = 6
-SPEED = 7
-TURNED = 8
-LEFT = 9
-BRANCH_ROWS = 10
+HALF_X, HALF_Y, X, Y, VX, VY, STRIDE, SPEED, TURNED, LEFT = range(10)
+BRANCH_ROWS = LEFT + 1
 """Rows of branches: the places half-way and at the end of a step and the velocity there, the length
 of the step, the mean speed in its second half, by how much the velocity changes, and the metres
 left; metres, seconds."""

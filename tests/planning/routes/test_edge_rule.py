@@ -142,12 +142,13 @@ def test_level_ground_bounds_nobody() -> None:
 
 def test_a_goal_beside_the_anchor_of_its_cell_is_reached() -> None:
     scene, start, _ = kerb(10.0, 0.5, 2.0)
-    goal = (1.22404717, 4.00056280)
-    along = np.array([math.cos(0.28876245), math.sin(0.28876245)])
-    across = 0.5 * 0.55256903 * np.array([-along[1], along[0]])
-    middle = np.array([1.52322427, 4.08943800])
+    goal = (1.742514, 4.262339)
+    along = np.array([math.cos(0.965709), math.sin(0.965709)])
+    across = 0.5 * 0.544295 * np.array([-along[1], along[0]])
+    middle = np.array([1.643018, 4.090775])
+    half = 0.294585 * along
     walls = tuple(
-        Wall(start=tuple(middle + side - 0.4 * along), end=tuple(middle + side + 0.4 * along))
+        Wall(start=tuple(middle + side - half), end=tuple(middle + side + half))
         for side in (across, -across)
     )
     grid = LayeredGrid.from_scene(Scene(bounds=scene.bounds, polygons=scene.polygons, walls=walls))
