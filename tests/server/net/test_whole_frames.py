@@ -11,9 +11,9 @@ from websockets.frames import Frame, Opcode
 
 from esplanade.protocol import encode
 from esplanade.protocol.messages import ClientMessage, Move, Ping
-from esplanade.server.net.hub import Hub
 from esplanade.server.net.session import Session
 from esplanade.server.net.whole_frames import payload_of
+from esplanade.server.net.wishes import Wishes
 from tests.server.client import joined
 from tests.server.conftest import Serving
 
@@ -86,19 +86,19 @@ async def test_messages_are_taken_in_their_order_however_they_come(
         at_once += was_taken
         return was_taken
 
-    moved = Hub.moved
+    moved = Wishes.moved
 
     def note_all(
-        hub: Hub,
+        wishes: Wishes,
         avatars: Sequence[int],
         numbers: Sequence[int],
         directions: Sequence[float],
         speeds: Sequence[float],
     ) -> None:
         taken.append(Move(seq=numbers[0], direction=directions[0], speed=speeds[0]))
-        moved(hub, avatars, numbers, directions, speeds)
+        moved(wishes, avatars, numbers, directions, speeds)
 
-    monkeypatch.setattr(Hub, "moved", note_all)
+    monkeypatch.setattr(Wishes, "moved", note_all)
     monkeypatch.setattr(Session, "_take", note)
     monkeypatch.setattr(Session, "_take_movement", count)
     sent: list[ClientMessage] = [
