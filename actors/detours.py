@@ -43,13 +43,15 @@ STUCK_S: Final = 2.5
 NEAR_M: Final = 2.5
 AGAIN_S: Final = 1.5
 """The way of a goal is derived anew no sooner than this after the last time, so that people who
-come and go cost little. In one tick it is done for one goal only."""
+come and go cost little."""
+PAUSE_S: Final = 0.25
+"""After the way of any goal was derived, that of another has to wait so long."""
 
 LEAST_M: Final = 8.0
 MOST_M: Final = 256.0
-FURTHER: Final = 1.5
+FEW_CELLS: Final = 20_000
 """A way around people is derived for cells no further from the goal than the least distance, times
-a power of `FURTHER`, up to the most; for all cells beyond that."""
+a power of two, up to the most; for all cells beyond that, and where there are few."""
 SPARE_M: Final = 6.0
 """It is derived for so much more than where it may pay."""
 
@@ -83,8 +85,6 @@ class Detours:
         self._ways: ShutWays | None = None
         self._rooms: dict[tuple[GoalKey, Around], NDArray[np.float64]] = {}
         """Of this tick: discs with the room that they have on the ways to each goal."""
-        self._has_derived = False
-        """Whether a potential was asked for in this tick."""
         self.refused = 0
         """Looks at a way that was shut, for whose goal there was no room among `MOST_DETOURS`."""
 
@@ -103,7 +103,6 @@ class Detours:
         if not self._known and not seen.any():
             trips.shut[:] = False
             return
-        self._has_derived = False
         for key, detour in self._known.items():
             self._known[key] = detour._replace(derived_s=detour.derived_s + tick_s)
         self._forget(table, standing)
@@ -185,10 +184,9 @@ class Detours:
         detour = self._known.get(key)
         if detour is not None:
             self._known[key] = detour._replace(wanted=wanted)
-        elif self._has_derived:
+        elif self._has_just_derived():
             return False
         else:
-            self._has_derived = True
             self._restore(key, wanted, wanted, 0.0)
         return True
 
@@ -201,12 +199,15 @@ class Detours:
             and detour.wanted != detour.shut
             and detour.derived_s >= AGAIN_S
         ]
-        if due and not self._has_derived:
+        if due and not self._has_just_derived():
             _, _, key = min(due, key=lambda each: each[:2])
             detour = self._known[key]
             coming = detour.wanted, self._potentials.take((*key, detour.wanted))
             self._known[key] = detour._replace(coming=coming, derived_s=0.0)
-            self._has_derived = True
+
+    def _has_just_derived(self) -> bool:
+        """Whether the way of a goal was asked for a moment ago."""
+        return any(detour.derived_s < PAUSE_S - 1e-9 for detour in self._known.values())
 
     def _take_over(self, table: AgentTable) -> None:
         """Take the ways that have been derived meanwhile."""
@@ -309,12 +310,14 @@ class Detours:
             within_m = max(within_m, self._pays_within_m(table, row, waits_s))
         wanted = Around(places, within_m)
         if (detour is None or wanted != detour.wanted) and not self._want(key, wanted):
-            table.trips.look_in_s[row] = 0.0  # another goal was first in this tick
+            table.trips.look_in_s[row] = PAUSE_S  # another goal was first
 
     def _pays_within_m(self, table: AgentTable, row: int, waits_s: float) -> float:
         """How far from the goal another way may pay, for an actor that would wait on its own."""
         speed_mps = float(table.agents.parameters["speed_mps"][row])
         own_m = self._left_m(table, row, int(table.trips.own_rows[row]))
+        if len(self._grid.layered.floors) <= FEW_CELLS:
+            return math.inf
         return _enough_m(own_m + waits_s * speed_mps + SPARE_M)
 
     def _shut_off(
@@ -407,5 +410,5 @@ def _enough_m(needed_m: float) -> float:
     """The least of the distances that ways are derived for which is enough."""
     within_m = LEAST_M
     while within_m < min(needed_m, MOST_M):
-        within_m *= FURTHER
+        within_m *= 2.0
     return math.inf if needed_m > MOST_M else within_m
