@@ -107,12 +107,15 @@ def test_ctrl_c_keeps_what_was_written(room: Path, tmp_path: Path) -> None:
         [sys.executable, "-m", "esplanade", *words], stderr=subprocess.PIPE, text=True
     )
     begun = time.monotonic()
-    while not (out.exists() and out.stat().st_size > 40_000):
-        assert running.poll() is None
-        assert time.monotonic() - begun < PATIENCE_S
-        time.sleep(0.05)
-    os.kill(running.pid, signal.SIGINT)
-    _, said = running.communicate(timeout=PATIENCE_S)
+    try:
+        while not (out.exists() and out.stat().st_size > 40_000):
+            assert running.poll() is None
+            assert time.monotonic() - begun < PATIENCE_S
+            time.sleep(0.05)
+        os.kill(running.pid, signal.SIGINT)
+        _, said = running.communicate(timeout=PATIENCE_S)
+    finally:
+        running.kill()
     assert running.returncode == 130
     assert f"interrupted; {out.name} has the first " in said
     tracks = read_crowd(out).tracks
