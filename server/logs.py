@@ -13,6 +13,9 @@ import structlog
 from esplanade.server.log_writer import LogWriter
 from esplanade.server.settings import ServerSettings
 
+_PROCESSORS: Final[list[structlog.typing.Processor]] = []
+"""Those that every logger goes by. Loggers hold on to the list of their first line, so that it is
+one list for good."""
 STDERR: Final = 2
 """The process's standard error, where Python's own is no file."""
 
@@ -87,8 +90,9 @@ def _formatter(settings: ServerSettings) -> logging.Formatter:
             # The richer ones print local variables, resume tokens among them.
             exception_formatter=structlog.dev.plain_traceback,
         )
+    _PROCESSORS[:] = [*shared, structlog.stdlib.ProcessorFormatter.wrap_for_formatter]
     structlog.configure(
-        processors=[*shared, structlog.stdlib.ProcessorFormatter.wrap_for_formatter],
+        processors=_PROCESSORS,
         wrapper_class=structlog.stdlib.BoundLogger,
         logger_factory=structlog.stdlib.LoggerFactory(),
         cache_logger_on_first_use=True,
