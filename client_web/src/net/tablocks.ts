@@ -23,7 +23,7 @@ interface Call {
 }
 
 /** Pages that draw a large world in software answer late. */
-const ANSWER_MS = 1000;
+const ANSWER_MS = 2000;
 
 /** The browser's own locks; null where it has none. */
 export function browserLocks(locks: LockManager | undefined): TryLock | null {
