@@ -59,7 +59,7 @@ export class Seats {
     const id = known?.id ?? crypto.getRandomValues(new Uint32Array(3)).join("-");
     this.mine = { id, name, token, seenMs: 0, keptMs };
     this.touch();
-    if (!known) await this.claim(this.mine);
+    if (!known) await this.claim(this.mine, true);
   }
 
   /** Say that this page is alive. */
@@ -79,8 +79,8 @@ export class Seats {
     this.mine = null;
   }
 
-  private async claim(seat: Seat): Promise<boolean> {
-    if (this.tryLock && !(await this.tryLock(`esplanade.seat.${seat.id}`))) return false;
+  private async claim(seat: Seat, isNew = false): Promise<boolean> {
+    if (this.tryLock && !(await this.tryLock(`esplanade.seat.${seat.id}`, isNew))) return false;
     this.mine = seat;
     return true;
   }

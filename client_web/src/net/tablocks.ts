@@ -6,8 +6,11 @@
  * not answer.
  */
 
-/** Takes the lock of that name for the page's life; false if another living page holds it. */
-export type TryLock = (name: string) => Promise<boolean>;
+/**
+ * Takes the lock of that name for the page's life; false if another living page holds it. Nobody is
+ * asked for a lock whose name is new, since no other page can hold it.
+ */
+export type TryLock = (name: string, isNew?: boolean) => Promise<boolean>;
 
 /** The part of a BroadcastChannel that is used here. */
 export interface Channel {
@@ -23,7 +26,7 @@ interface Call {
 }
 
 /** Pages that draw a large world in software answer late. */
-const ANSWER_MS = 2000;
+const ANSWER_MS = 1000;
 
 /** The browser's own locks; null where it has none. */
 export function browserLocks(locks: LockManager | undefined): TryLock | null {
@@ -51,8 +54,12 @@ export function channelLocks(channel: Channel, page: string, answerMs = ANSWER_M
       channel.postMessage({ kind: "mine", name: data.name, from: page } satisfies Call);
     } else refused?.();
   };
-  return (name) => {
+  return (name, isNew = false) => {
     if (held.has(name) || asking.has(name)) return Promise.resolve(false);
+    if (isNew) {
+      held.add(name);
+      return Promise.resolve(true);
+    }
     return new Promise((answer) => {
       const end = (taken: boolean): void => {
         clearTimeout(timer);

@@ -59,6 +59,13 @@ describe("channelLocks", () => {
     expect((await Promise.all(asked)).sort()).toEqual([false, true]);
   });
 
+  it("has a new lock at once, whoever asks in the same moment", async () => {
+    const [first, second] = [page("b"), page("a")];
+    const taken = first.lock("seat", true);
+    expect(await answer(second.lock("seat"))).toBe(false);
+    expect(await taken).toBe(true);
+  });
+
   it("passes over what other scripts say", async () => {
     const { lock } = page("a");
     for (const channel of channels) channel.onmessage?.({ data: "mine" } as MessageEvent);
