@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.actors.potential_pool import GoalKey, PotentialPool
-from esplanade.actors.saved_detours import MOST_DETOURS, SavedDetour
+from esplanade.actors.saved_detours import SavedDetour
 from esplanade.actors.standing_discs import (
     WIDEST_M,
     Standing,
@@ -18,11 +18,11 @@ from esplanade.actors.standing_discs import (
     disc_of,
     narrowed,
     narrower,
-    still_there,
     wider,
     widest,
     with_those,
 )
+from esplanade.actors.ways_around import PAUSE_S, State, WayAround, WaysAround
 from esplanade.planning import AgentTable, LayeredGrid
 from esplanade.planning.routes.shut_way import REACH_M, Around, Disc, ShutWays
 
@@ -41,12 +41,6 @@ STALLED_S: Final = 1.5
 STUCK_S: Final = 2.5
 """For an actor that has not got on for so long the gaps beside those who stand near are shut."""
 NEAR_M: Final = 2.5
-AGAIN_S: Final = 1.5
-"""The way of a goal is derived anew no sooner than this after the last time, so that people who
-come and go cost little."""
-PAUSE_S: Final = 0.25
-"""After the way of any goal was derived, that of another has to wait so long."""
-
 LEAST_M: Final = 8.0
 MOST_M: Final = 256.0
 FEW_CELLS: Final = 20_000
@@ -54,20 +48,6 @@ FEW_CELLS: Final = 20_000
 a power of two, up to the most; for all cells beyond that, and where there are few."""
 SPARE_M: Final = 6.0
 """It is derived for so much more than where it may pay."""
-
-State = tuple[Around, Around, float]
-"""What the way of a goal leads around, what it is to lead around, and `_Detour.derived_s`."""
-
-
-class _Detour(NamedTuple):
-    """A way to a goal around `shut`, whose potential is in a row; another one may be on its way."""
-
-    shut: Around
-    row: int
-    wanted: Around
-    coming: tuple[Around, int] | None
-    derived_s: float
-    """Time since the latest potential was asked for."""
 
 
 class Detours:
@@ -81,7 +61,7 @@ class Detours:
     def __init__(self, grid: LayeredGrid, potentials: PotentialPool) -> None:
         self._grid = grid
         self._potentials = potentials
-        self._known: dict[GoalKey, _Detour] = {}
+        self._around = WaysAround(potentials)
         self._ways: ShutWays | None = None
         self._rooms: dict[tuple[GoalKey, Around], NDArray[np.float64]] = {}
         """Of this tick: discs with the room that they have on the ways to each goal."""
@@ -90,7 +70,7 @@ class Detours:
 
     def __len__(self) -> int:
         """Number of goals with a way around people."""
-        return len(self._known)
+        return len(self._around)
 
     def keep(self, table: AgentTable, standing: Standing, tick_s: float) -> None:
         """Let actors look along their ways, and send them where they get on sooner.
@@ -100,12 +80,13 @@ class Detours:
         """
         trips = table.trips
         seen = standing.stood_s >= SEEN_S
-        if not self._known and not seen.any():
+        if not len(self._around) and not seen.any():
             trips.shut[:] = False
             return
-        for key, detour in self._known.items():
-            self._known[key] = detour._replace(derived_s=detour.derived_s + tick_s)
-        self._forget(table, standing)
+        self._around.pass_time(tick_s)
+        for key in self._around.forget(standing.discs):
+            for row in self._led(table, key):
+                self._return(table, row)
         self._take_over(table)
         going = (trips.own_rows >= 0) & (trips.outcomes == 0) & ~table.agents.waits
         trips.look_in_s[going] -= tick_s
@@ -123,121 +104,52 @@ class Detours:
             for row in np.flatnonzero(due & trips.detours).tolist():
                 trips.look_in_s[row] = LOOK_EVERY_S
                 self._weigh(table, row, 0.0)
-        self._derive_next()
+        self._around.derive_next()
         self._take_over(table)
 
     def save(self, table: AgentTable) -> list[list[Any]]:
         """Return the places that ways lead around, each with the row of an actor of that goal."""
         found = []
-        for key, detour in self._known.items():
+        for key, way in self._around.items():
             rows = np.flatnonzero(table.trips.own_rows == self._potentials.row(key))
             if len(rows):
-                around = detour.shut, detour.wanted, detour.derived_s
-                found.append(SavedDetour(int(rows[0]), *around).plain())
+                state = way.shut, way.wanted, way.derived_s
+                found.append(SavedDetour(int(rows[0]), *state).plain())
         return found
 
     def load(self, table: AgentTable, saved: Sequence[SavedDetour]) -> None:
         """Lead actors as when this was saved."""
-        self.clear()
+        self._around.clear()
         for row, shut, wanted, derived_s in saved:
             key = self._key(table, row)
-            if key is not None and key not in self._known:
-                self._restore(key, shut, wanted, derived_s)
+            if key is not None and key not in self._around:
+                self._around.restore(key, shut, wanted, derived_s)
         self.lead(table)
 
     def lead(self, table: AgentTable) -> None:
         """Let all actors that go around people go by those potentials, as far as they are there."""
         for row in np.flatnonzero(table.trips.detours).tolist():
             detour = self._detour(table, row)
-            if detour is not None and self._ready(detour.row):
+            if detour is not None and self._around.is_there(detour.row):
                 table.agents.potential_rows[row] = detour.row
 
     def undo_point(self) -> Mapping[GoalKey, State]:
         """Return what `put_back` takes."""
-        return {
-            key: (detour.shut, detour.wanted, detour.derived_s)
-            for key, detour in self._known.items()
-        }
+        return self._around.states()
 
     def put_back(self, table: AgentTable, before: Mapping[GoalKey, State]) -> None:
         """Lead actors around the same places as before."""
         if self.undo_point() != before:
-            self.clear()
+            self._around.clear()
             for key, state in before.items():
-                self._restore(key, *state)
+                self._around.restore(key, *state)
         self.lead(table)
 
-    def clear(self) -> None:
-        """Give up all rows."""
-        for key in list(self._known):
-            self._end(key)
-
-    # --- the places of one goal ----------------------------------------------------------
-
-    def _restore(self, key: GoalKey, shut: Around, wanted: Around, derived_s: float) -> None:
-        """Have a way derived as it was, around `shut`; that around `wanted` follows in its turn."""
-        row = self._potentials.take((*key, shut))
-        self._known[key] = _Detour(shut, row, wanted, None, derived_s)
-
-    def _want(self, key: GoalKey, wanted: Around) -> bool:
-        """Have the way of a goal lead around places soon; False if it has none and has to wait."""
-        detour = self._known.get(key)
-        if detour is not None:
-            self._known[key] = detour._replace(wanted=wanted)
-        elif self._has_just_derived():
-            return False
-        else:
-            self._restore(key, wanted, wanted, 0.0)
-        return True
-
-    def _derive_next(self) -> None:
-        """Have the way derived that has to lead around other places for longest, if any is due."""
-        due = [
-            (-detour.derived_s, number, key)
-            for number, (key, detour) in enumerate(self._known.items())
-            if detour.coming is None
-            and detour.wanted != detour.shut
-            and detour.derived_s >= AGAIN_S
-        ]
-        if due and not self._has_just_derived():
-            _, _, key = min(due, key=lambda each: each[:2])
-            detour = self._known[key]
-            coming = detour.wanted, self._potentials.take((*key, detour.wanted))
-            self._known[key] = detour._replace(coming=coming, derived_s=0.0)
-
-    def _has_just_derived(self) -> bool:
-        """Whether the way of a goal was asked for a moment ago."""
-        return any(detour.derived_s < PAUSE_S - 1e-9 for detour in self._known.values())
-
     def _take_over(self, table: AgentTable) -> None:
-        """Take the ways that have been derived meanwhile."""
-        for key, detour in list(self._known.items()):
-            if detour.coming is None or not self._ready(detour.coming[1]):
-                continue
-            shut, row = detour.coming
-            self._potentials.drop(detour.row)
-            self._known[key] = detour._replace(shut=shut, row=row, coming=None)
-            for actor in self._led(table, key):
-                self._lead(table, actor)
-
-    def _forget(self, table: AgentTable, standing: Standing) -> None:
-        """Give up places where nobody stands any more, and goals that nobody has."""
-        if not self._known:
-            return
-        for key, detour in list(self._known.items()):
-            places = still_there(detour.wanted.places, standing.discs)
-            if not places or not self._potentials.used(key):
-                for row in self._led(table, key):
-                    self._return(table, row)
-                self._end(key)
-            elif places != detour.wanted.places:
-                self._want(key, detour.wanted._replace(places=places))
-
-    def _end(self, key: GoalKey) -> None:
-        detour = self._known.pop(key)
-        self._potentials.drop(detour.row)
-        if detour.coming is not None:
-            self._potentials.drop(detour.coming[1])
+        """Send actors the ways that have been derived meanwhile."""
+        for key in self._around.take_over():
+            for row in self._led(table, key):
+                self._lead(table, row)
 
     # --- one actor -----------------------------------------------------------------------
 
@@ -252,9 +164,6 @@ class Detours:
         rows: list[int] = np.flatnonzero(own & table.trips.detours).tolist()
         return rows
 
-    def _ready(self, slot: int) -> bool:
-        return not self._potentials.provisional(np.array([slot]))[0]
-
     def _look(self, table: AgentTable, row: int, standing: Standing) -> None:
         """Let an actor look along its own way, and along the one around people if it goes there."""
         key = self._key(table, row)
@@ -264,7 +173,7 @@ class Detours:
         discs = standing.discs
         away = np.hypot(*(discs[:, :2] - table.agents.positions[row]).T)
         reached = away <= REACH_M + discs[:, 3].max() + 2.0 * WIDEST_M
-        detour, bare = self._known.get(key), Standing(*(column[reached] for column in standing))
+        detour, bare = self._around.of(key), Standing(*(column[reached] for column in standing))
         if detour is not None:
             known = key, detour.wanted
             if known not in self._rooms:
@@ -285,7 +194,7 @@ class Detours:
             narrow = set(map(narrower, bare.discs[near], bare.radii[near].tolist()))
         else:
             found |= {wider(disc) for disc in bare.discs[near]}
-        if table.trips.detours[row] and detour is not None and self._ready(detour.row):
+        if table.trips.detours[row] and detour is not None and self._around.is_there(detour.row):
             shut_off = np.array(detour.shut.places)[:, :3]
             more = discs[~(discs[:, None, :3] == shut_off).all(axis=2).any(axis=1)]
             marks = self._shut_by(table, row, detour.row, more, AROUND_M)
@@ -301,15 +210,15 @@ class Detours:
         self, table: AgentTable, row: int, key: GoalKey, places: tuple[Disc, ...], waits_s: float
     ) -> None:
         """Have the way of an actor's goal lead around places, from as far as it may pay."""
-        detour = self._known.get(key)
-        if detour is None and len(self._known) >= MOST_DETOURS:
+        detour = self._around.of(key)
+        if detour is None and self._around.is_full:
             self.refused += 1
             return
         within_m = 0.0 if detour is None else detour.wanted.within_m
         if detour is None or np.isinf(self._left_m(table, row, detour.row)):
             within_m = max(within_m, self._pays_within_m(table, row, waits_s))
         wanted = Around(places, within_m)
-        if (detour is None or wanted != detour.wanted) and not self._want(key, wanted):
+        if (detour is None or wanted != detour.wanted) and not self._around.want(key, wanted):
             table.trips.look_in_s[row] = PAUSE_S  # another goal was first
 
     def _pays_within_m(self, table: AgentTable, row: int, waits_s: float) -> float:
@@ -321,10 +230,10 @@ class Detours:
         return _enough_m(own_m + waits_s * speed_mps + SPARE_M)
 
     def _shut_off(
-        self, table: AgentTable, row: int, detour: _Detour | None, waits_s: float
+        self, table: AgentTable, row: int, detour: WayAround | None, waits_s: float
     ) -> bool:
         """Whether not even a way around people leads an actor to its goal."""
-        if detour is None or detour.wanted != detour.shut or not self._ready(detour.row):
+        if detour is None or detour.wanted != detour.shut or not self._around.is_there(detour.row):
             return False
         if detour.shut.within_m < self._pays_within_m(table, row, waits_s):
             return False
@@ -357,7 +266,7 @@ class Detours:
         """Send an actor the way on which it arrives sooner; it would wait so long on its own."""
         agents, trips = table.agents, table.trips
         detour = self._detour(table, row)
-        if detour is None or not self._ready(detour.row):
+        if detour is None or not self._around.is_there(detour.row):
             return
         own_m = self._left_m(table, row, int(trips.own_rows[row]))
         other_m = self._left_m(table, row, detour.row)
@@ -380,13 +289,12 @@ class Detours:
         here = table.agents.positions[row].tolist()
         return float(left + np.hypot(x - here[0], y - here[1]))
 
-    def _detour(self, table: AgentTable, row: int) -> _Detour | None:
-        key = self._key(table, row)
-        return None if key is None else self._known.get(key)
+    def _detour(self, table: AgentTable, row: int) -> WayAround | None:
+        return self._around.of(self._key(table, row))
 
     def _lead(self, table: AgentTable, row: int) -> None:
         detour = self._detour(table, row)
-        if detour is not None and self._ready(detour.row):
+        if detour is not None and self._around.is_there(detour.row):
             self._go_by(table, row, detour.row)
 
     def _return(self, table: AgentTable, row: int) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from esplanade.actors import Navigator, Outcome
-from esplanade.actors.detours import AGAIN_S, PAUSE_S
+from esplanade.actors.ways_around import AGAIN_S, PAUSE_S
 from esplanade.planning import AgentTable, PlanModel, Scene, Wall
 from esplanade.planning.routes.shut_way import ShutWays
 from tests.actors.worlds import navigator
@@ -266,7 +266,7 @@ def test_bodies_out_of_reach_are_not_looked_at(monkeypatch: pytest.MonkeyPatch) 
 def test_goals_beyond_the_bound_have_no_way_around_and_are_counted(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("esplanade.actors.detours.MOST_DETOURS", 1)
+    monkeypatch.setattr("esplanade.actors.ways_around.MOST_DETOURS", 1)
     nav = navigator(TWO)
     nav.add_actor("a", START, GOAL)
     nav.add_actor("b", (5.0, 3.0), (14.0, 5.4))
