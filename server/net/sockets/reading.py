@@ -103,15 +103,16 @@ class Reading:
             return
         if not source.prepay(PAID, self._loop.time()):
             return
-        self._sources[descriptor], self._avatars[descriptor] = source, avatar_id
-        self._receiving.pay(descriptor, PAID)
         source.transport.pause_reading()
         try:
             self._epoll.register(descriptor, select.EPOLLIN | select.EPOLLRDHUP)
         except OSError:
             log.exception("a socket cannot be polled")
-            del self._sources[descriptor]
+            source.pay_back(PAID, self._loop.time())
             source.transport.resume_reading()
+            return
+        self._sources[descriptor], self._avatars[descriptor] = source, avatar_id
+        self._receiving.pay(descriptor, PAID)
 
     def leave(self, source: Source) -> None:
         """Let a connection go back to its transport, if it is here."""
@@ -159,12 +160,16 @@ class Reading:
         descriptors = moved.tolist()
         for descriptor in descriptors:
             self._sources[descriptor].heard = True
-        self._take(
-            [self._avatars[descriptor] for descriptor in descriptors],
-            chunks.numbers[places].tolist(),
-            chunks.directions_rad[places].tolist(),
-            chunks.speeds_mps[places].tolist(),
-        )
+        try:
+            self._take(
+                [self._avatars[descriptor] for descriptor in descriptors],
+                chunks.numbers[places].tolist(),
+                chunks.directions_rad[places].tolist(),
+                chunks.speeds_mps[places].tolist(),
+            )
+        except Exception:
+            # A tick begins with this: the world goes on without these movements.
+            log.exception("movements failed", number=number)
         now, purses = self._loop.time(), self._receiving.purses
         for descriptor in moved[purses[moved] < LOW].tolist():
             source = self._sources[descriptor]

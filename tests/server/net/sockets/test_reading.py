@@ -238,6 +238,25 @@ async def test_credit_is_given_back_to_whoever_leaves() -> None:
         assert recorder.broken is None
 
 
+async def test_movements_that_cannot_be_taken_end_nothing() -> None:
+    async with watched() as (recorder, there, reading):
+        there.sendall(frame(Move(seq=0, direction=0.0, speed=1.0)))
+        await until(lambda: recorder in reading)
+        taken: list[int] = []
+
+        def fail_once(*columns: Sequence[float]) -> None:
+            taken.append(int(columns[1][0]))
+            if len(taken) == 1:
+                raise ValueError("it was meant to fail")
+
+        reading._take = fail_once
+        for k in (1, 2):
+            there.sendall(frame(Move(seq=k, direction=0.0, speed=1.0)))
+            await until(lambda k=k: len(taken) == k)
+        assert taken == [1, 2]
+        assert recorder in reading
+
+
 @pytest.mark.parametrize("how", ["end", "reset"])
 async def test_an_end_is_left_to_the_transport(how: str) -> None:
     async with watched() as (recorder, there, reading):
