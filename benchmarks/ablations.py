@@ -38,7 +38,7 @@ from esplanade.evaluation.trials import Source, plan_trials
 
 RESAMPLES: Final = 1000
 OFF: Final = 1_000_000
-"""So many actors never come together."""
+"""A number of actors that never come together."""
 
 
 class Ablation(NamedTuple):

@@ -42,7 +42,7 @@ class Near(NamedTuple):
 
 
 class Counts(NamedTuple):
-    """How many `Near` lists."""
+    """The number of those in each list of `Near`."""
 
     met: int
     crowded: int

@@ -174,7 +174,7 @@ class Batch:
         Parameters
         ----------
         agents : state of A actors after the finished tick, A > 0
-        potentials : float32 (G, N, 3), the potentials that `agents.potential_rows` points into
+        potentials : float32 (G, N, 4), the potentials that `agents.potential_rows` points into
         prediction : people's future, as many slices as the plan has
         tick_s : length of the tick, seconds
 

@@ -153,7 +153,7 @@ class SearchResult:
     """(K, 2) positions, `step_s` / 2 apart, beginning with the start; metres."""
     expansions: int
     cost_s: float
-    """What the search added up for the path; the key of its last node in the printed form."""
+    """Cost of the path as the search added it up; the key of its last node in the printed form."""
 
 
 def uncertain_bfp(

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 LOOK_S: Final = 0.5
 """Figures are looked at so often."""
 TRIES: Final = 5
-"""What finds too much waiting, or a store that cannot be used, is tried so often."""
+"""Work that finds too much waiting, or a store that cannot be used, is tried so often."""
 PAUSE_S: Final = 1.0
 """Time between two tries."""
 

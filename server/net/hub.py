@@ -119,7 +119,7 @@ class Hub:
             self._lines,
             Reporting(moderated, self.moderation.reportable, self.moderation.where),
         )
-        """What people want who have a seat."""
+        """Wishes of the people who have a seat."""
         metrics.gauge("frames_waiting", "Frames that wait for slow clients", self._frames_waiting)
 
     # --- coming and going ---------------------------------------------------------------------

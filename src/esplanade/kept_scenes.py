@@ -13,7 +13,7 @@ MOST_BYTES: Final = 2**30
 MOST_AGE_S: Final = 30 * 86_400.0
 """Scenes that were not used for so long go."""
 _IN_USE_S: Final = 3600.0
-"""What was used within this time may still be made, or be about to be read by another start."""
+"""A scene used within this time may still be made, or be about to be read by another start."""
 UNFINISHED: Final = "unfinished-"
 """The names of folders in which something is still being made begin so."""
 _NAME: Final = re.compile(rf"[0-9a-f]{{16}}|{UNFINISHED}.*")

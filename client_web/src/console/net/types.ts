@@ -178,7 +178,7 @@ export interface WhySpan {
 /** A tick, and when it was: microseconds since 1970. */
 export type Moment = readonly [tick: number, atUs: number];
 
-/** What an actor has done and why; between two of the moments time passed evenly. */
+/** An actor's doings and its reasons; between two of the moments time passed evenly. */
 export interface Why {
   spans: readonly WhySpan[];
   moments: readonly Moment[];
