@@ -96,6 +96,8 @@ class Connection(HeardConnection):
         self._reading = reading
         self.closing: list[Callable[[], None]] = []
         """Called, maybe more than once, when nothing more is to be written but a farewell."""
+        self.when_written: Callable[[], None] | None = None
+        """Called when the library has written to the transport."""
         protocol.when_closing = self._close
         self._deaf = False
         self._held = b""
@@ -108,6 +110,11 @@ class Connection(HeardConnection):
     def client_address(self) -> str:
         """The key of the client's address, by which limits go (`addresses.address_key`)."""
         return self.place.address
+
+    def send_data(self) -> None:
+        super().send_data()
+        if self.when_written is not None:
+            self.when_written()
 
     def grant(self, message_rate: float) -> None:
         """Let the client send so many messages a second from now on."""

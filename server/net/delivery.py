@@ -38,16 +38,17 @@ class Delivery:
         self._packing = Packing()
 
     def deliver(self, news: News, now: float) -> None:
-        """Write doors and changes of view first, then snapshots, then plans and the census."""
+        """Write doors first, then the census, changes of view, snapshots, and then plans."""
         if news.doors:
             self._post_to_all(frames.message(Doors(doors=news.doors)))
-        first = self._changes(news)
-        self._snapshots(news.snapshots, first, now)
+        self._snapshots(news.snapshots, self._changes(news), self._census(news), now)
         self._plans(news)
-        if news.tick % self._census_period == 0:
-            census = frames.message(Census(people=news.people, actors=news.actors))
-            for session in self._sessions.values():
-                session.outbox.offer(census)
+
+    def _census(self, news: News) -> bytes:
+        """The frame of a census, if it is time for one."""
+        if news.tick % self._census_period:
+            return b""
+        return frames.message(Census(people=news.people, actors=news.actors))
 
     def _post_to_all(self, frame: bytes) -> None:
         for session in self._sessions.values():
@@ -82,8 +83,9 @@ class Delivery:
         return first
 
     def _snapshots(
-        self, snapshots: Snapshots, first: Mapping[int, list[bytes]], now: float
+        self, snapshots: Snapshots, first: Mapping[int, list[bytes]], census: bytes, now: float
     ) -> None:
+        """Write to every viewer the census, what else comes first, and then its snapshot."""
         packed, ends = self._packing.pack(snapshots)
         begins, step_begins = _begins(ends), _begins(snapshots.step_ends)
         steps = snapshots.step_ends - step_begins
@@ -94,27 +96,30 @@ class Delivery:
             if session is None:
                 continue
             outbox = session.outbox
-            if outbox.direct != NONE and not outbox.unsent() and not outbox.closing():
+            if outbox.direct != NONE and (outbox.empty or outbox.look()):
                 free.append(place)
                 outboxes.append(outbox)
                 continue
+            if census:
+                outbox.offer(census)
             block = packed[begins[place] : ends[place]].tobytes()
             before = first.get(snapshots.viewers[place], ())
             if outbox.snapshot(block, int(steps[place]), now, before):
                 written.append(place)
         if free:
-            firsts = [first.get(snapshots.viewers[place], ()) for place in free]
-            heads = [b"".join(frames) for frames in firsts]
-            left = send_to_all(
-                [outbox.direct for outbox in outboxes], packed, begins[free], ends[free], heads
-            )
+            ids = [snapshots.viewers[place] for place in free]
+            heads = {k: first[viewer] for k, viewer in enumerate(ids) if viewer in first}
+            number = len(free) + int(np.count_nonzero(steps[free])) + sum(map(len, heads.values()))
+            joined = dict.fromkeys(range(len(free)), census) if census else {}
+            for k, parts in heads.items():
+                joined[k] = b"".join((census, *parts))
+            direct = [outbox.direct for outbox in outboxes]
+            size, left = send_to_all(direct, packed, begins[free], ends[free], joined)
             for k, rest in left.items():
                 outboxes[k].send_rest(rest)
-            outboxes[0].count(
-                len(free) + int(np.count_nonzero(steps[free])) + sum(map(len, firsts)),
-                int((ends - begins)[free].sum()) + sum(map(len, heads)),
-                int(steps[free].sum()),
-            )
+            if census:
+                number += len(free)
+            outboxes[0].count(number, size, int(steps[free].sum()))
         self._audience.wrote(snapshots, written + free)
 
     def _plans(self, news: News) -> None:

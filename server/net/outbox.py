@@ -58,13 +58,13 @@ class Outbox:
         self._transport = connection.transport
         self._descriptor = descriptor
         self.direct = NONE
-        """The descriptor to which the next snapshot may be sent, past the transport, as long as
-        that holds nothing back (`unsent`) and is not closing (`closing`); `NONE` where anything is
-        unusual. A snapshot that was written as usual sets it."""
+        """The descriptor to which the next snapshot may be sent past the transport, once that is
+        known to be `empty`; `NONE` where anything is unusual. A snapshot that was written as usual
+        sets it."""
+        self.empty = False
+        """Whether the transport is known to hold nothing back; see `look`."""
         self.unsent = connection.transport.get_write_buffer_size
         """Returns the bytes that were written and that the client has not taken yet."""
-        self.closing = connection.transport.is_closing
-        """Returns whether the transport is closing."""
         self._policy = policy
         self._traffic = traffic
         self._waiting: deque[bytes] = deque()
@@ -89,8 +89,21 @@ class Outbox:
         """Write everything by the transport from now on, as the connection is closing."""
         self._descriptor = self.direct = NONE
 
+    def look(self) -> bool:
+        """Find out whether the transport holds nothing back and is not closing.
+
+        That stays so until something is written to it, which whoever does so must tell (`fill`).
+        """
+        self.empty = not self.unsent() and not self._transport.is_closing()
+        return self.empty
+
+    def fill(self) -> None:
+        """Note that something was written to the transport."""
+        self.empty = False
+
     def send_rest(self, rest: bytes) -> None:
         """Write what the system did not take at once of a snapshot that was sent."""
+        self.empty = False
         self._transport.write(rest)
 
     def welcome(self, frame: bytes) -> None:
@@ -170,6 +183,7 @@ class Outbox:
             messages += len(first)
         if steps:
             messages += 1
+        self.empty = False
         self._transport.write(block)
         self.count(messages, len(block), steps)
         self.direct = self._descriptor
@@ -203,6 +217,7 @@ class Outbox:
         self._transport.abort()
 
     def _write(self, frame: bytes) -> None:
+        self.empty = False
         self._transport.write(frame)
         self._traffic.messages_out += 1
         self._traffic.bytes_out += len(frame)

@@ -113,6 +113,7 @@ class Session:
             connection, SlowPolicy.of(settings), metrics.traffic, connection.descriptor
         )
         connection.closing.append(self.outbox.use_transport)
+        connection.when_written = self.outbox.fill
         self.address = connection.client_address
         """The key by which limits of the client's address go."""
         self.lease = Lease(connection)

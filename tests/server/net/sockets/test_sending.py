@@ -50,13 +50,14 @@ def test_each_client_gets_its_own_bytes_in_order(
 ) -> None:
     ends = np.cumsum([len(before), *(len(body) for _, body in wanted)])
     block = np.frombuffer(before + b"".join(body for _, body in wanted) + b"end", np.uint8)
-    left = send_to_all(
+    size, left = send_to_all(
         [pairs[k][0].fileno() for k in range(len(wanted))],
         block,
         ends[:-1],
         ends[1:],
-        [head for head, _ in wanted],
+        {k: head for k, (head, _) in enumerate(wanted) if head},
     )
+    assert size == sum(len(head) + len(body) for head, body in wanted)
     assert left == {}
     for (_, there), (head, body) in zip(pairs, wanted, strict=False):
         assert received(there) == head + body
@@ -72,9 +73,13 @@ def test_what_the_system_does_not_take_is_left_for_the_transport(head: bytes) ->
         here, there = ends[::2], ends[1::2]
         there[1].close()
         where = np.array([0, 0, 0]), np.array([len(body), 3, 3])
-        left = send_to_all(
-            [each.fileno() for each in here], np.frombuffer(body, np.uint8), *where, [head] * 3
+        size, left = send_to_all(
+            [each.fileno() for each in here],
+            np.frombuffer(body, np.uint8),
+            *where,
+            dict.fromkeys(range(3), head),
         )
+        assert size == 3 * len(head) + len(body) + 6
         assert set(left) == {0, 1}
         assert received(there[0]) + left[0] == head + body
         assert len(left[0]) > 0
