@@ -15,6 +15,9 @@ CLIENT := server/client_assets/index.html
 CLIENT_SOURCES := $(shell find client_web -type f -not -path '*/node_modules/*' -not -path '*/tests/*')
 BENCHMARKS ?= $(patsubst benchmarks/%.py,%,$(wildcard benchmarks/[a-z]*.py))
 
+# Programs that start often would compile their Python sources each time.
+unexport PYTHONDONTWRITEBYTECODE
+
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PHONY: help serve test test-boundscheck test-nojit fuzz-files test-lowest test-pythons test-base

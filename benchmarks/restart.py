@@ -3,7 +3,8 @@
     python -m benchmarks.restart
 
 Taking is what a tick's thread does; packing and writing happen in other threads. A start is that of
-a process with its kernels compiled, up to the line that says that it is open.
+a process with its kernels and its Python sources compiled, up to the line that says that it is
+open; the one that counts is the second of a world, which goes on.
 """
 
 import argparse
@@ -60,8 +61,11 @@ def started(data: Path, actors: int) -> str:
     begin = time.perf_counter()
     places = ("--host", "127.0.0.1", "--port", "0", "--private-port", "0")
     log = ("--log-format", "json", "--data", str(data), "--actors", str(actors))
+    kept = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
     with subprocess.Popen(
-        [sys.executable, "-m", "esplanade", "serve", *places, *log], stderr=subprocess.PIPE
+        [sys.executable, "-m", "esplanade", "serve", *places, *log],
+        stderr=subprocess.PIPE,
+        env=kept,
     ) as process:
         assert process.stderr is not None
         for line in process.stderr:
