@@ -80,7 +80,12 @@ class ActorAvatars:
         state.scales[slots] = agents.parameters["height_m"] / Body.height_m
         places = np.column_stack([agents.positions, agents.heights])
         slice_s = self._population.navigator.plan.slice_s
-        state.ahead[slots] = planned_places(agents.planned, slice_s, self._tick_s, places)
+        ahead, pushed = planned_places(agents.planned, slice_s, self._tick_s, places)
+        pushed = pushed[agents.cells[pushed] >= 0]
+        if len(pushed):
+            grid, paths = self._population.navigator.grid, ahead[pushed, :, :2]
+            ahead[pushed] = grid.with_heights(paths, agents.cells[pushed])
+        state.ahead[slots] = ahead
         return self._point()
 
     @property

@@ -4,12 +4,21 @@ from __future__ import annotations
 
 import math
 
-from esplanade.planning.compiled.arrays import Floats
+import numpy as np
+
+from esplanade.planning.compiled.arrays import Floats, Ints
 from esplanade.planning.compiled.jit import inlined, kernel
 
 AHEAD_S = 0.2
 AHEAD = 7
 WALKING_MPS = 0.3
+PUSHED_S = 0.6
+"""A body that is pushed off its plan is expected to go on so for this time: about a step."""
+PUSHED_MPS = 0.05
+"""A body whose velocity differs by less is on its plan."""
+BACKWARD_MPS = 0.3
+"""A body that goes backward along its plan by this speed goes on so; one that is only slower, as
+while it starts to walk, does not."""
 
 
 @inlined
@@ -63,3 +72,36 @@ def follow_plans(
             off = places[n, axis] - out[n, 0, axis]
             for k in range(AHEAD):
                 out[n, k, axis] += max(1.0 - k * AHEAD_S, 0.0) * off
+
+
+@kernel
+def go_on_pushed(planned: Floats, slice_s: float, now_s: float, moved: Floats, out: Floats) -> Ints:
+    """Let courses (N, AHEAD, 3) of bodies that are pushed off their plans begin as they go.
+
+    The plans are those of `follow_plans`, and (N, 2) `moved` is how far each body has come since
+    they began. Heights stay. Returns the rows (L,) of these bodies.
+    """
+    rows = np.empty(len(planned), np.int64)
+    count = 0
+    share = min(now_s / slice_s, 1.0) / now_s
+    after = min(1, planned.shape[1] - 1)
+    for n in range(len(planned)):
+        x_mps, y_mps = moved[n, 0] / now_s, moved[n, 1] / now_s
+        plan_x_mps = share * (planned[n, after, 0] - planned[n, 0, 0])
+        plan_y_mps = share * (planned[n, after, 1] - planned[n, 0, 1])
+        speed_mps = math.hypot(plan_x_mps, plan_y_mps)
+        if speed_mps > PUSHED_MPS:
+            ux, uy = plan_x_mps / speed_mps, plan_y_mps / speed_mps
+            along_mps = x_mps * ux + y_mps * uy
+            backward = min(max(-along_mps / BACKWARD_MPS, 0.0), 1.0)
+            kept_mps = along_mps - backward * (along_mps - speed_mps)
+            x_mps, y_mps = x_mps - kept_mps * ux, y_mps - kept_mps * uy
+        if math.hypot(x_mps, y_mps) <= PUSHED_MPS:
+            continue
+        for k in range(AHEAD):
+            seconds = min(k * AHEAD_S, PUSHED_S)
+            out[n, k, 0] += seconds * x_mps
+            out[n, k, 1] += seconds * y_mps
+        rows[count] = n
+        count += 1
+    return rows[:count]

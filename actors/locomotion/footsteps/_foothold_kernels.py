@@ -37,7 +37,12 @@ _TWO_TREADS_M = 0.42
 _HASTY_MPS = 1.6
 """A body faster than this is too fast to take one tread at a time."""
 _CLIMB_M = 0.75
-"""Greatest rise or fall under a body that has gone there."""
+"""Greatest rise or fall under a body that is going there."""
+_LEFT_M = 0.42
+"""A body this far above or below its standing foot has left it, as over the side of a flight."""
+_CATCH_UP_M = 1.5
+"""Greatest rise or fall under a body that has left its standing foot: one foot is behind then,
+where else both would stay and the body had to stand anew."""
 
 _OPENING_RAD = 1.6
 """The greatest angle by which a foot is turned outwards against the other one."""
@@ -129,6 +134,8 @@ def choose_foothold(
     middle = standing[HEADING] + 0.5 * (heading - standing[HEADING])
     hasty = math.hypot(x_mps, y_mps) > _HASTY_MPS
     climb_m = _TWO_TREADS_M if hasty else _TREAD_M
+    has_left = abs(ahead[0, 2] - standing[Z]) > _LEFT_M
+    under_m = _CATCH_UP_M if has_left else _CLIMB_M
 
     landing[HEADING] = heading
     under_x, under_y = hips_x + track * -sin, hips_y + track * cos
@@ -149,7 +156,7 @@ def choose_foothold(
         landing[0], landing[1] = clamped_foot(to_x, to_y, standing, middle, side, leg_m)
         landing[Z] = to_z
         found = settle_foot(ground, covering, landing, FOOT * leg_m)
-        limit_m = climb_m if place < _FAR_UNDER else _CLIMB_M
+        limit_m = climb_m if place < _FAR_UNDER else under_m
         if found and abs(landing[Z] - standing[Z]) <= limit_m:
             break
     # Footprints are sent in tenths of a millimetre; feet would land beside finer ones.

@@ -33,7 +33,11 @@ _TWO_TREADS_M: Final = 0.42
 _HASTY_MPS: Final = 1.6
 """A body faster than this is too fast to take one tread at a time."""
 _CLIMB_M: Final = 0.75
-"""Greatest rise or fall under a body that has gone there."""
+"""Greatest rise or fall under a body that is going there."""
+_LEFT_M: Final = 0.42
+"""A body this far above or below its standing foot has left it, as over the side of a flight."""
+_CATCH_UP_M: Final = 1.5
+"""Greatest rise or fall under a body that has left its standing foot."""
 
 _OPENING_RAD: Final = 1.6
 """The greatest angle by which a foot is turned outwards against the other one."""
@@ -120,7 +124,8 @@ def choose_footholds(
     landing, found = ground.settle(landing, foot_m)
     hasty = np.hypot(velocity[:, 0], velocity[:, 1]) > _HASTY_MPS
     climb_m = np.where(hasty, _TWO_TREADS_M, _TREAD_M)
-    far_m = np.full_like(climb_m, _CLIMB_M)
+    has_left = np.abs(course.ahead[:, 0, 2] - standing[:, Z]) > _LEFT_M
+    far_m = np.where(has_left, _CATCH_UP_M, _CLIMB_M)
     found &= np.abs(landing[:, Z] - standing[:, Z]) <= climb_m
     if not found.all():
         halfway, beside = 0.5 * (landing[:, PLACE] + under), standing[:, PLACE].copy()

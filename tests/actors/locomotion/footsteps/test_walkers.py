@@ -6,7 +6,7 @@ import pytest
 
 from esplanade.actors.locomotion.footsteps.course import AHEAD, Course
 from esplanade.actors.locomotion.footsteps.walkers import JUMP_M
-from esplanade.planning import Scene, Stairs
+from esplanade.planning import Polygon, Scene, Stairs
 from esplanade.planning.compiled.arrays import Floats
 from tests.actors.locomotion.parade import TICK_S, Parade
 
@@ -225,6 +225,24 @@ def test_feet_are_put_on_treads(degrees: float) -> None:
         flat = parade.ground.height(frame.pose.ankles[air][:, :2], frame.pose.ankles[air][:, 2])
         under = frame.pose.ankles[air][:, 2] - flat
         assert np.nanmin(under, initial=0.0) > -0.05
+
+
+@pytest.mark.parametrize("down", [True, False])
+def test_feet_catch_up_with_a_body_that_goes_over_the_side_of_a_flight(down: bool) -> None:
+    block = Polygon(points=((0.0, -2.0), (3.0, -2.0), (3.0, 2.0), (0.0, 2.0)), height_m=0.9)
+    scene = Scene(name="block", bounds=(-12.0, -12.0, 12.0, 12.0), polygons=(block,))
+    parade = Parade(4, scene)
+    x = np.linspace(2.0, 7.0, 80) if down else np.linspace(-4.0, 2.8, 110)
+    way = np.zeros((4, len(x), 3))
+    way[..., 0], way[..., 1] = x, np.linspace(-1.0, 1.0, 4)[:, None]
+    way[..., 2] = np.where((x > 0.0) & (x < 3.0), 0.9, 0.0)
+    parade.positions = way[:, 0].copy()
+    parade.stand()
+    parade.follow(way)
+    assert parade.walkers.lost == 0
+    last = parade.walkers.steps.landing
+    np.testing.assert_allclose(last[:, 2], way[:, -1, 2], atol=MM)
+    assert np.abs(last[:, 0] - way[:, -1, 0]).max() < 0.9
 
 
 def test_a_body_that_jumps_stands_anew_there() -> None:
