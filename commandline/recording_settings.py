@@ -8,7 +8,7 @@ from esplanade.commandline.parser import Parser
 from esplanade.commandline.readers import Choice, Flag, Number, Text
 from esplanade.commandline.settings import Setting
 
-UNITS: Final = ("m", "dm", "cm", "mm", "km", "ft", "in")
+UNITS: Final = ("m", "dm", "cm", "mm", "km", "ft", "in", "yd")
 
 FPS: Final = Setting(
     "frame numbers of the recording in a second, where its file counts frames and does not say it",

@@ -7,7 +7,7 @@ from typing import Final
 MAX_TEXT_BYTES: Final = 256 * 2**20
 """More than a person writes by hand; what must hold more says its own bound."""
 
-_GZIP_MAGIC: Final = b"\x1f\x8b"
+GZIP_MAGIC: Final = b"\x1f\x8b"
 _GZIP_WINDOW: Final = 16 + zlib.MAX_WBITS
 
 
@@ -31,7 +31,7 @@ def read_content(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
         raise ContentError(f"cannot be read: {why}") from None
     if len(content) > most_bytes:
         raise ContentError(f"has more than {most_bytes // 2**20} MiB, the most that is read")
-    return unpacked(content, most_bytes) if content.startswith(_GZIP_MAGIC) else content
+    return unpacked(content, most_bytes) if content.startswith(GZIP_MAGIC) else content
 
 
 def unpacked(content: bytes, most_bytes: int) -> bytes:
@@ -44,7 +44,7 @@ def unpacked(content: bytes, most_bytes: int) -> bytes:
     """
     parts: list[bytes] = []
     room = most_bytes
-    while content.startswith(_GZIP_MAGIC):
+    while content.startswith(GZIP_MAGIC):
         inflater = zlib.decompressobj(_GZIP_WINDOW)
         try:
             part = inflater.decompress(content, room + 1)

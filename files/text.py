@@ -17,6 +17,8 @@ _MARKS: Final = (
 )
 _HEAD_BYTES: Final = 4096
 _LOOKED_AT: Final = 1024
+_MANY_ZEROS: Final = 0.4
+_FEW_ZEROS: Final = 0.05
 MAX_LINES: Final = 8_000_000
 _CONTROLS: Final = re.compile(rb"[\x00-\x08\x0e-\x1a\x1c-\x1f]")
 """Bytes that no text in eight bits holds."""
@@ -104,14 +106,22 @@ def _encoding(content: bytes) -> str:
     head = content[: _HEAD_BYTES - _HEAD_BYTES % 2]
     if len(head) < 4 or b"\0" not in head:
         return "utf-8"
-    even, odd = head[0::2].count(0), head[1::2].count(0)
-    half = len(head) // 2
-    # ASCII in UTF-16 has a zero in every second byte.
-    if odd > 0.4 * half and even < 0.05 * half:
-        return "utf-16-le"
-    if even > 0.4 * half and odd < 0.05 * half:
-        return "utf-16-be"
-    return "utf-8"
+    return _wide_encoding(head) or "utf-8"
+
+
+def _wide_encoding(head: bytes) -> str | None:
+    """UTF-32 or UTF-16 by where zeros are: ASCII has three in four bytes there, or one in two."""
+    quarters = [head[k::4].count(0) / max(1, len(head[k::4])) for k in range(4)]
+    shares = [(quarters[k] + quarters[k + 2]) / 2 for k in range(2)]
+    for name, zeros, letters in (
+        ("utf-32-le", min(quarters[1:]), quarters[0]),
+        ("utf-32-be", min(quarters[:3]), quarters[3]),
+        ("utf-16-le", shares[1], shares[0]),
+        ("utf-16-be", shares[0], shares[1]),
+    ):
+        if zeros > _MANY_ZEROS and letters < _FEW_ZEROS:
+            return name
+    return None
 
 
 def _lines(text: str) -> str:

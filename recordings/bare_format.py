@@ -7,10 +7,10 @@ from typing import Final
 import numpy as np
 
 from esplanade.recordings.cells import Cells, read_cells
+from esplanade.recordings.comments import said_in
 from esplanade.recordings.dialect import Dialect, Table
 from esplanade.recordings.errors import RecordingError
 from esplanade.recordings.rows import Floats, Rows, Whole, numbered_people
-from esplanade.recordings.table_format import said_in
 
 OBSMAT: Final = ("frame", "id", "x", "z", "y", "vx", "vz", "vy")
 _HEIGHTS: Final = {"m": (1.0, 2.3), "cm": (100.0, 230.0), "mm": (1000.0, 2300.0)}
@@ -36,7 +36,10 @@ def read_bare(path: Path, table: Table, dialect: Dialect) -> Rows:
             first.number,
         )
     if width == len(OBSMAT):
-        return _obsmat(path, table, dialect)
+        places = {name: place for place, name in enumerate(OBSMAT)}
+        cells, _ = read_cells(path, table.lines, dialect, places, width, " ".join(OBSMAT))
+        if _is_obsmat(path, cells):
+            return _obsmat(path, table, cells)
     names = "id frame x y z" if width > _FEWEST else "frame id x y"
     places = {"frame": 0, "id": 1, "x": 2, "y": 3, **({"z": 4} if width > _FEWEST else {})}
     cells, _ = read_cells(path, table.lines, dialect, places, width, names)
@@ -58,29 +61,51 @@ def read_bare(path: Path, table: Table, dialect: Dialect) -> Rows:
         y=cells.numbers["y"],
         counts_frames=bool(np.all(clock == np.round(clock))) if len(clock) else True,
         fps=said.fps,
+        samples_per_s=said.samples_per_s,
+        usual_from="as its header says",
         unit=unit,
         unit_from=unit_from if unit else "",
     )
 
 
-def _obsmat(path: Path, table: Table, dialect: Dialect) -> Rows:
-    places = {"frame": 0, "id": 1, "x": 2, "y": 4, "vx": 5, "vy": 7}
-    cells, _ = read_cells(path, table.lines, dialect, places, len(OBSMAT), " ".join(OBSMAT))
-    ids, who = _whole_people(path, cells.lines, _marks(path, cells))
+def _is_obsmat(path: Path, cells: Cells) -> bool:
+    """Whether eight columns begin with frame and person, not with person and frame as Jülich's."""
+    numbers = cells.numbers
+    frames, marks, x = numbers["frame"], _marks(path, cells), numbers["x"]
+    with np.errstate(invalid="ignore"):
+        y = numbers["z"] if np.ptp(numbers["y"]) == 0.0 else numbers["y"]
+        usual = _jump(marks, frames, {"x": x, "y": y})
+        return usual <= _jump(frames, marks, {"x": x, "y": numbers["z"]})
+
+
+def _obsmat(path: Path, table: Table, cells: Cells) -> Rows:
+    """ETH's eight columns; some write y before z, as one sees where nobody moves along the last."""
+    numbers = cells.numbers
+    marks = _marks(path, cells)
+    ids, who = _whole_people(path, cells.lines, marks)
     said = said_in(path, table.comments)
+    y, vy, remarks = numbers["y"], numbers["vy"], list[str]()
+    with np.errstate(invalid="ignore"):
+        swapped = np.ptp(y) == 0.0 and np.ptp(numbers["z"]) > 0.0
+    if swapped:
+        y, vy = numbers["z"], numbers["vz"]
+        remarks.append("its fifth column is the same everywhere: the fourth is read as y")
     return Rows(
         format="ETH obsmat",
         lines=cells.lines,
         ids=ids,
         who=who,
-        clock=cells.numbers["frame"],
-        x=cells.numbers["x"],
-        y=cells.numbers["y"],
+        clock=numbers["frame"],
+        x=numbers["x"],
+        y=y,
         counts_frames=True,
-        velocities=np.stack([cells.numbers["vx"], cells.numbers["vy"]], axis=1),
+        velocities=np.stack([numbers["vx"], vy], axis=1),
         fps=said.fps,
+        samples_per_s=said.samples_per_s,
+        usual_from="as its header says",
         unit=said.unit,
         unit_from="as its header says" if said.unit else "",
+        remarks=tuple(remarks),
     )
 
 

@@ -123,6 +123,8 @@ def _one_by_one(
             if nowhere and role not in _CLOCKS:
                 columns[role].append(math.nan)
             else:
+                if dialect.is_doubtful(cells[places[role]]):
+                    _refuse_doubtful(path, line.number, role, cell)
                 columns[role].append(_value(path, line.number, role, cell))
         names.append(dialect.plain(name))
         kept.append(line)
@@ -130,6 +132,15 @@ def _one_by_one(
     _over_midnight(columns.get("time"), lines, dialect, places)
     numbers = {role: np.array(column, np.float64) for role, column in columns.items()}
     return Cells(_numbers(kept), numbers, ids, who), dropped
+
+
+def _refuse_doubtful(path: Path, line: int, role: str, cell: str) -> None:
+    raise RecordingError(
+        path,
+        f"{role} is {cell!r:.40} in a table with decimal commas: are these thousands or decimals? "
+        "Save it without marks for thousands",
+        line,
+    )
 
 
 def _value(path: Path, line: int, role: str, cell: str) -> float:

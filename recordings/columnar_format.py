@@ -1,6 +1,7 @@
 """Columns in files of numbers: Parquet, and the HDF5 of the Jülich archive."""
 
 import io
+import json
 from collections.abc import Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
@@ -45,8 +46,30 @@ def read_parquet(path: Path, content: bytes, named: Sequence[str] = ()) -> Rows:
         raise RecordingError(
             path, f"is a Parquet file that cannot be read: {error}"[:300]
         ) from None
-    rate = {bytes(key).decode(errors="replace"): value for key, value in said.items()}
-    return _rows(path, "Parquet", columns, found, _rate(path, rate.get("fps")))
+    fps, unit = _said(path, said)
+    return _rows(path, "Parquet", columns, found, fps, unit)
+
+
+def _said(path: Path, metadata: Mapping[Any, Any]) -> tuple[float | None, str | None]:
+    """Frames a second and the unit of length in the metadata of a file, or in pandas' attributes.
+
+    Raises
+    ------
+    RecordingError
+        The rate is none.
+    """
+    known = {_text(key).lower(): _text(value) for key, value in metadata.items()}
+    try:
+        attributes = json.loads(known.get("pandas_attrs", "{}"))
+        units = json.loads(known.get("units", "{}"))
+    except (ValueError, RecursionError):
+        attributes, units = {}, {}
+    if isinstance(attributes, dict):
+        known = {f"{key}".lower(): value for key, value in attributes.items()} | known
+    if isinstance(units, dict) and isinstance(units.get("x"), str):
+        known.setdefault("unit", units["x"])
+    fps = next((known[key] for key in ("fps", "framerate", "frame_rate") if key in known), None)
+    return _rate(path, fps), length_named(f"{known.get('unit', '')}")
 
 
 def read_hdf5(path: Path, content: bytes, named: Sequence[str] = ()) -> Rows:
@@ -145,6 +168,9 @@ def _rows(
         for role, values in found.items()
         if role != "kind"
     }
+    is_moment = np.asarray(found.get("time", 0.0)).dtype.kind in "mM"
+    if is_moment:
+        found["time"] = _seconds(np.asarray(found["time"]))
     for role, values in found.items():
         if role != "id":
             if np.asarray(values).dtype.kind not in "iuf":
@@ -156,7 +182,7 @@ def _rows(
         if marks.dtype.kind in "iuf" and np.all(np.abs(marks.astype(np.float64)) < 2.0**53)
         else people([str(mark) for mark in marks.tolist()])
     )
-    unit_s = time_named(columns.units.get("time", ""))
+    unit_s = 1.0 if is_moment else time_named(columns.units.get("time", ""))
     in_frames = "time" not in numbers or unit_s == FRAMES
     said = length_named(columns.units["x"]) or unit
     velocities = None
@@ -175,13 +201,21 @@ def _rows(
         counts_frames=in_frames,
         velocities=velocities,
         z=numbers.get("z"),
-        times_named=bool(columns.units.get("time")),
+        times_named=is_moment or bool(columns.units.get("time")),
+        unknown_units=columns.unknown_units,
         fps=fps,
         unit=said,
         unit_from="as its columns say" if said else "",
         remarks=(told_others(others),) if others else (),
         dropped=sum(others.values()),
     )
+
+
+def _seconds(moments: Any) -> Any:
+    """Dates with times as seconds since 1970, spans as seconds; NaN where there is none."""
+    kind = "timedelta64[ns]" if moments.dtype.kind == "m" else "datetime64[ns]"
+    seconds = moments.astype(kind).astype(np.int64) * 1e-9
+    return np.where(np.isnat(moments), np.nan, seconds)
 
 
 def _text(value: Any) -> str:

@@ -52,6 +52,8 @@ _TAIL: Final = re.compile(r"(.*?)[_\s.]+(?:in[_\s.]+)?([a-zµμ]+)")
 _MOST_OF_A_NAME: Final = 100
 _NO_TAILS: Final = ("min", "h")
 """What ends a name like x_min is no unit."""
+_NO_UNITS: Final = frozenset(("", "-", "--", "1", "t", "x", "y"))
+"""They stand where others have a unit, and are none."""
 _VADERE: Final = re.compile(r"-PID\d+$", re.IGNORECASE)
 
 
@@ -75,6 +77,17 @@ class Columns(NamedTuple):
         lacking = [] if "time" in found or "frame" in found else ["time or frame"]
         return lacking + [role for role in ("id", "x", "y") if role not in found]
 
+    @property
+    def unknown_units(self) -> dict[str, str]:
+        """The units of time and places that have no known name, by the column."""
+        given = {role: self.units.get(role, "").strip("[]() ") for role in ("time", "x", "y")}
+        return {
+            role: text
+            for role, text in given.items()
+            if text not in _NO_UNITS
+            and (time_named(text) if role == "time" else length_named(text)) is None
+        }
+
 
 def name_of(cell: str) -> Name:
     """The name in a cell of a header."""
@@ -86,6 +99,8 @@ def name_of(cell: str) -> Name:
         found = form.fullmatch(text.lower() if form is _TAIL else text)
         if found and (form is not _TAIL or _is_unit(found[2])):
             stem, unit = found[1], found[2]
+            # As a word of a name, "in" is no inch.
+            unit = "inch" if unit.lower() == "in" and form is not _TAIL else unit
             break
     return Name(re.sub(r"[^a-z0-9]", "", stem.lower()), unit)
 

@@ -12,6 +12,7 @@ _NUMBER: Final = re.compile(
     r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|[-+]?(nan|inf|infinity)", re.IGNORECASE
 )
 _COMMA_NUMBER: Final = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?")
+_THOUSANDS: Final = re.compile(r"[-+]?\d{1,3}(?:\.\d{3})+(,\d+)?")
 _SEPARATOR_LINE: Final = re.compile(r"sep=(.)", re.IGNORECASE)
 _RULE: Final = frozenset("|-+:= \t")
 _MINUS: Final = "\N{MINUS SIGN}"
@@ -44,9 +45,15 @@ class Dialect(NamedTuple):
         """The cell with a decimal point and the minus of ASCII."""
         if cell.startswith(_MINUS):
             cell = f"-{cell[1:]}"
-        if self.decimal_comma and _COMMA_NUMBER.fullmatch(cell):
-            return cell.replace(",", ".")
+        if self.decimal_comma and "," in cell:
+            grouped = _THOUSANDS.fullmatch(cell)
+            if grouped is not None or _COMMA_NUMBER.fullmatch(cell):
+                return cell.replace(".", "").replace(",", ".")
         return cell
+
+    def is_doubtful(self, cell: str) -> bool:
+        """Whether nobody can tell if the points in a cell stand before thousands or decimals."""
+        return self.decimal_comma and "," not in cell and bool(_THOUSANDS.fullmatch(cell))
 
     def is_number(self, cell: str) -> bool:
         """Whether the cell holds a number."""
@@ -97,14 +104,16 @@ def dialect_of(table: Table) -> Dialect:
             and all(_NUMBER.fullmatch(c) or _COMMA_NUMBER.fullmatch(c) for c in cells)
             for cells in spaced
         )
-        return Dialect(None, decimal_comma=True) if is_decimal else Dialect(",", False)
+        return Dialect(None, decimal_comma=True) if is_decimal else _with_decimals(",", sample)
     return Dialect(None, decimal_comma=False)
 
 
 def _with_decimals(delimiter: str, sample: Sequence[str]) -> Dialect:
     cells = [cell for text in sample for cell in _by(text, delimiter)]
-    commas = sum(bool(_COMMA_NUMBER.fullmatch(cell)) for cell in cells)
-    return Dialect(delimiter, decimal_comma=delimiter != "," and commas > 0)
+    commas = any(_COMMA_NUMBER.fullmatch(cell) for cell in cells)
+    # Between commas, numbers with commas stand in quotes: there they may be grouped in thousands.
+    grouped = delimiter == "," and any("." in c and _NUMBER.fullmatch(c) for c in cells)
+    return Dialect(delimiter, decimal_comma=commas and not grouped)
 
 
 def _by(text: str, delimiter: str) -> list[str]:

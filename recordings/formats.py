@@ -9,6 +9,7 @@ from esplanade.files.text import check_lines
 from esplanade.recordings.annotations import looks_annotated, read_annotated
 from esplanade.recordings.bare_format import read_bare
 from esplanade.recordings.columnar_format import HDF5, PARQUET, read_hdf5, read_parquet
+from esplanade.recordings.comments import header_in
 from esplanade.recordings.dialect import Table, dialect_of, table_of
 from esplanade.recordings.errors import RecordingError, read_bytes, text_of
 from esplanade.recordings.folders import read_folder
@@ -25,7 +26,6 @@ from esplanade.recordings.spline_format import looks_like_splines, read_splines
 from esplanade.recordings.sqlite_format import MAGIC, read_sqlite
 from esplanade.recordings.table_format import (
     from_header,
-    header_in,
     is_whole_header,
     names_columns,
     read_named,

@@ -2,7 +2,9 @@
 
 import json
 import math
+import re
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from itertools import compress
 from pathlib import Path
 from typing import Any, Final
@@ -18,7 +20,10 @@ from esplanade.recordings.units import FRAMES, length_named, time_named
 
 MOST_VALUES: Final = 4_000_000
 """Most values of a file that is read as a whole: each takes some hundred bytes."""
-_RATES: Final = ("fps", "framerate", "frame_rate", "frameRate")
+_RATES: Final = ("fps", "framerate")
+_SPANS: Final = ("dt", "frameinterval", "sampleinterval", "samplinginterval", "sampletime")
+_LONGEST_SPAN_S: Final = 10.0
+_UNITS: Final = ("unit", "units", "lengthunit", "unitoflength")
 _PLACES: Final = ("position", "pos", "coordinates", "location", "xy", "point")
 _WILDTRACK: Final = {"personID", "positionID"}
 _WILDTRACK_FPS: Final = 10.0
@@ -46,14 +51,14 @@ def read_json(path: Path, text: str, named: Sequence[str] = ()) -> Rows:
     samples = _Samples(named)
     try:
         records = list(samples.below(content, {}))
-    except (RecursionError, TypeError, ValueError) as error:
+    except (RecursionError, TypeError, ValueError, OverflowError) as error:
         raise RecordingError(path, f"its JSON holds no samples: {error}"[:200]) from None
     if not records:
         raise RecordingError(
             path, "its JSON holds no samples, expected objects with t, id, x, y", 1
         )
     lines = numbers if len(numbers) == len(records) else [*range(1, len(records) + 1)]
-    return _rows(path, records, lines, samples.fps, named)
+    return _rows(path, records, lines, samples, named)
 
 
 def _content(path: Path, text: str) -> tuple[list[int], Any]:
@@ -87,6 +92,8 @@ class _Samples:
 
     def __init__(self, named: Sequence[str]) -> None:
         self.fps: float | None = None
+        self.samples_per_s: float | None = None
+        self.unit: str | None = None
         self._named = named
         self._whole: dict[tuple[str, ...], bool] = {}
 
@@ -106,9 +113,9 @@ class _Samples:
         lists: dict[str, list[Any]] = {}
         inner: list[Any] = []
         for key, value in content.items():
-            if key in _RATES and isinstance(value, int | float):
-                self.fps = float(value)
-            elif key.lower() in _PLACES and (point := _point(value)):
+            if self._says(key, value):
+                continue
+            if key.lower() in _PLACES and (point := _point(value)):
                 own.update(point)
             elif isinstance(value, dict) or _has_parts(key, value):
                 inner.append(value)
@@ -124,6 +131,20 @@ class _Samples:
         for value in inner:
             yield from self.below(value, own, left - 1)
 
+    def _says(self, key: str, value: Any) -> bool:
+        """Whether a value is a rate or a unit of all samples, which are kept."""
+        name = _plain(key)
+        is_number = isinstance(value, int | float) and not isinstance(value, bool)
+        if name in _RATES and is_number:
+            self.fps = float(value)
+        elif name in _SPANS and is_number and 0.0 < value <= _LONGEST_SPAN_S:
+            self.samples_per_s = 1.0 / value
+        elif name in _UNITS and (unit := _length_in(value)) is not None:
+            self.unit = unit
+        else:
+            return False
+        return True
+
     def _is_sample(self, record: _Record) -> bool:
         keys = tuple(record)
         if keys not in self._whole:
@@ -133,6 +154,22 @@ class _Samples:
             except ValueError:
                 self._whole[keys] = False
         return self._whole[keys]
+
+
+@lru_cache(maxsize=256)
+def _plain(key: str) -> str:
+    return re.sub(r"[^a-z]", "", key[:100].lower())
+
+
+def _length_in(value: Any) -> str | None:
+    """The unit of length that a text names, or an object of texts does for places."""
+    if isinstance(value, str):
+        return length_named(value)
+    if isinstance(value, dict):
+        named = {key.lower(): unit for key, unit in value.items() if isinstance(unit, str)}
+        found = (length_named(named[key]) for key in ("x", "length", *_PLACES) if key in named)
+        return next(filter(None, found), None)
+    return None
 
 
 def _has_parts(key: str, value: Any) -> bool:
@@ -197,7 +234,7 @@ def _rows(
     path: Path,
     records: list[_Record],
     lines: list[int],
-    fps: float | None,
+    said: _Samples,
     named: Sequence[str],
 ) -> Rows:
     keys = list(records[0])
@@ -231,7 +268,9 @@ def _rows(
     unit_s = time_named(columns.units.get("time", ""))
     in_frames = "time" not in numbers or unit_s == FRAMES
     clock: Floats = numbers["frame"] if "time" not in numbers else numbers["time"]
-    unit = length_named(columns.units["x"])
+    unit, fps = length_named(columns.units["x"]), said.fps
+    unit_from = "as its keys say" if unit else "as it says"
+    unit = unit or said.unit
     if fps is not None and not 0.0 < fps < 1e6:
         raise RecordingError(path, f"fps is {fps:g}, expected more than 0")
     return Rows(
@@ -248,8 +287,11 @@ def _rows(
         if {"vx", "vy"} <= numbers.keys()
         else None,
         fps=fps,
+        samples_per_s=said.samples_per_s,
+        usual_from="as it says",
         unit=unit,
-        unit_from="as its keys say" if unit else "",
+        unit_from=unit_from if unit else "",
+        unknown_units=columns.unknown_units,
         times_named=bool(columns.units.get("time")),
         remarks=(told_others(others),) if others else (),
         dropped=count - len(records),

@@ -106,6 +106,7 @@ def read_large(path: Path) -> Rows | None:
         times_named=bool(units.get("time")),
         unit=unit,
         unit_from="as its header says" if unit else "",
+        unknown_units=columns.unknown_units,
     )
 
 

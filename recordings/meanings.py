@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 
 from esplanade.recordings.rows import Floats, Rows, Whole
-from esplanade.recordings.units import DEGREES, METRES_A_DEGREE
+from esplanade.recordings.units import DEGREES, MAX_METRES, METRES_A_DEGREE
 
 _SINCE_1970: Final = (
     (1e17, 1e-9, "nanoseconds"),
@@ -14,6 +14,8 @@ _SINCE_1970: Final = (
     (1e11, 1e-3, "milliseconds"),
 )
 """Times beyond the first number are in such a part of a second, if they count from 1970."""
+_FURTHEST_M: Final = 2e7
+"""Coordinates of maps are within this."""
 _LEAST_WAY_M: Final = 1.0
 _TIMES_FLATTER: Final = 10.0
 
@@ -45,6 +47,18 @@ def on_the_ground(rows: Rows, metres: float) -> Rows:
         return rows
     remark = "nobody moves along its y but all along its z: z is read as y, and y as the height"
     return replace(rows, y=rows.z, z=rows.y, remarks=(*rows.remarks, remark))
+
+
+def near_the_origin(rows: Rows) -> Rows:
+    """Places in metres, moved to the origin where they lie as far off as those of maps do."""
+    boxes = [(float(values.min()), float(values.max())) for values in (rows.x, rows.y)]
+    if all(max(-low, high) <= MAX_METRES for low, high in boxes):
+        return rows
+    if not all(high - low <= MAX_METRES and max(-low, high) < _FURTHEST_M for low, high in boxes):
+        return rows
+    east, north = (float(round(0.5 * low + 0.5 * high)) for low, high in boxes)
+    remark = f"({east:.0f}, {north:.0f}) m becomes the origin, for its places lie far from theirs"
+    return replace(rows, x=rows.x - east, y=rows.y - north, remarks=(*rows.remarks, remark))
 
 
 def _longest_way(values: Floats, who: Whole) -> float:

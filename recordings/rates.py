@@ -12,6 +12,8 @@ USUAL_RATES: Final = (5.0, 6.0, 7.5, 8.0, 10.0, 12.5, 15.0, 16.0, 20.0, 25.0, 30
 WALKING_MPS: Final = (0.3, 2.5)
 """The median speed of people in a recording lies between these."""
 
+_GUESSED_MPS: Final = (0.6, 2.5)
+"""A rate is taken for the usual one without a word of warning where people go at such a speed."""
 _FEW_PAIRS: Final = 3
 _LEAST_SPEED_MPS: Final = 0.2
 _LEAST_RATE: Final = 0.5
@@ -82,14 +84,36 @@ def frame_rate(rows: Rows, given: Given, metres: float) -> Rate:
     if shown is not None or rows.usual_fps is not None:
         source = rows.usual_from if shown is None else "as its velocities show"
         return Rate(rows.usual_fps if shown is None else shown, source, remarks)
+    return _usual(step, away, pairs, remarks)
+
+
+def _usual(step: float, away: Floats, pairs: Pairs, remarks: tuple[str, ...]) -> Rate:
+    """The rate of ETH, UCY and TrajNet, unless every frame counts and nobody walks so."""
     usual = USUAL_SAMPLES_PER_S * step
-    speed = float(np.median(away / (pairs.frames / usual))) if len(away) else None
-    if step > 1.0 or speed is None or WALKING_MPS[0] <= speed <= WALKING_MPS[1]:
-        return Rate(
-            usual, f"taken for {1 / USUAL_SAMPLES_PER_S:g} s a sample, as in ETH, UCY and TrajNet; "
-            "--fps says otherwise", remarks
-        )  # fmt: skip
-    return Rate(None, "", remarks)
+    source = (
+        f"taken for {1 / USUAL_SAMPLES_PER_S:g} s a sample, as in ETH, UCY and TrajNet; "
+        "--fps says otherwise"
+    )
+    if not len(away):
+        return Rate(usual, source, remarks)
+    speed = float(np.median(away / pairs.frames)) * usual
+    if _GUESSED_MPS[0] <= speed <= _GUESSED_MPS[1]:
+        return Rate(usual, source, remarks)
+    if step <= 1.0:
+        return Rate(None, "", remarks)
+    others = [
+        f"--fps {rate:g} ({speed * rate / usual:.3g} m/s)" for rate in likely_rates(speed / usual)
+    ]
+    warnings: tuple[str, ...] = ()
+    if others and WALKING_MPS[0] <= speed <= WALKING_MPS[1]:
+        # Beyond these speeds, all recordings are warned of.
+        warnings = (
+            (
+                f"nothing says how many frames make a second: with {usual:g} people go at "
+                f"{speed:.3g} m/s, as in dense crowds; else give {', '.join(others[:4])}"
+            ),
+        )
+    return Rate(usual, source, remarks, warnings)
 
 
 def likely_rates(speed_per_frame: float) -> tuple[float, ...]:

@@ -4,7 +4,7 @@ Each format is one module, which turns a file into rows with the file's own numb
 in seconds and metres, and the checks that apply to all recordings, are here.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
@@ -14,7 +14,7 @@ import numpy as np
 from esplanade.recordings.crowd import Crowd
 from esplanade.recordings.errors import RecordingError
 from esplanade.recordings.formats import read_rows
-from esplanade.recordings.meanings import on_the_ground, since_1970
+from esplanade.recordings.meanings import near_the_origin, on_the_ground, since_1970
 from esplanade.recordings.ordering import in_order
 from esplanade.recordings.plausibility import (
     Report,
@@ -80,6 +80,7 @@ def read_crowd(
         rows = replace(rows, clock=rows.clock / rate.fps)
     if metres != 1.0:
         rows = replace(rows, x=rows.x * metres, y=rows.y * metres)
+    rows = near_the_origin(rows)
     _check_range(path, rows, unit_known=bool(rows.unit or given.unit or given.scale))
     rows, repeats = in_order(path, rows)
     return _crowd(path, rows, repeats, given, rate, unit_source)
@@ -206,7 +207,8 @@ def _crowd(
     path: Path, rows: Rows, repeats: int, given: Given, rate: Rate, unit_source: str
 ) -> Crowd:
     unit_known = bool(rows.unit or given.unit or given.scale)
-    rate_known = not rows.counts_frames or given.fps is not None or rows.fps is not None
+    said = (given.fps, rows.fps, rows.samples_per_s)
+    rate_known = not rows.counts_frames or any(rate is not None for rate in said)
     places = _places(rows)
     steps = Steps(rows, places)
     paces = steps.paces[~np.isnan(steps.paces)]
@@ -252,8 +254,24 @@ def _crowd(
         rate_known=rate_known,
         times_known=rows.counts_frames or rows.times_named,
     )
-    told_of = replace(report, warnings=(*rate.warnings, *warnings))
+    unknown = tuple(_unknown_units(rows, given))
+    told_of = replace(report, warnings=(*unknown, *rate.warnings, *warnings))
     return Crowd(_name(path), tuple(tracks), told_of)
+
+
+def _unknown_units(rows: Rows, given: Given) -> Iterator[str]:
+    """What a unit is taken for that has no known name, and the option that says otherwise."""
+    for column, unit in rows.unknown_units.items():
+        if column == "time":
+            yield (
+                f"its times are in {unit!r:.40}, which is no known unit: taken for seconds; "
+                "--columns says otherwise, as in --columns t=NAME/ms,id=NAME,.."
+            )
+        elif not (given.unit or given.scale):
+            yield (
+                f"its {column} is in {unit!r:.40}, which is no known unit: taken for metres; "
+                "--unit or --scale say otherwise"
+            )
 
 
 def _glitch(rows: Rows, sample: int) -> tuple[str, int]:

@@ -1,7 +1,7 @@
 """Rows: what every format is read into, before times, metres and tracks are made of it."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -70,6 +70,8 @@ class Rows:
     unit: str | None = None
     """The unit of length, as the file says or shows; "px" for pixels."""
     unit_from: str = ""
+    unknown_units: Mapping[str, str] = field(default_factory=dict)
+    """Units that the file gives and that have no known name, by the column."""
     remarks: tuple[str, ...] = ()
     dropped: int = 0
     """Samples that the file itself marks as not those of people, or as not seen."""

@@ -1,80 +1,39 @@
 """Tables with named columns, in any dialect: comma, semicolon, tab or space between the cells."""
 
-import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
 from esplanade.recordings.cells import Cells, read_cells
 from esplanade.recordings.columns import Columns, find_columns, named_by_hand
+from esplanade.recordings.comments import said_in, together
 from esplanade.recordings.dialect import Dialect, Line, Table, dialect_of
 from esplanade.recordings.errors import RecordingError
 from esplanade.recordings.kinds import is_person, others_among, told_others
 from esplanade.recordings.rows import Floats, Rows
-from esplanade.recordings.units import FRAMES, length_named, length_said, time_named
+from esplanade.recordings.units import FRAMES, length_named, time_named
 
-_NUMBER: Final = r"([-+]?[\d.]{1,20}(?:e[-+]?\d{1,3})?)"
-_RATES: Final = (
-    re.compile(rf"\b(?:frame\s*_?rate|fps)\b[^\d+-]{{0,20}}{_NUMBER}", re.IGNORECASE),
-    re.compile(
-        rf"\b(?:sampl\w*|recording|capture)\s*_?(?:rate|frequency)\b[^\d+-]{{0,20}}{_NUMBER}",
-        re.IGNORECASE,
-    ),
-    re.compile(rf"{_NUMBER}\s*(?:fps|hz|frames?\s*(?:/|per)\s*s(?:ec(?:ond)?)?)\b", re.IGNORECASE),
-)
-"""Ways to write frames a second, the surer first."""
 _MOST_LINES_BEFORE: Final = 60
 _CITR: Final = ["frame", "id", "x", "y", "type"]
 
 
-class Said(NamedTuple):
-    """Frames a second and the unit of length, as comments say them."""
-
-    fps: float | None = None
-    unit: str | None = None
-
-
-def said_in(path: Path, comments: Sequence[Line]) -> Said:
-    """Look for a rate and a unit in the comments.
-
-    Raises
-    ------
-    RecordingError
-        The rate is none.
-    """
-    unit = next(filter(None, (length_said(line.text) for line in comments)), None)
-    for form in _RATES:
-        for line in comments:
-            found = form.search(line.text)
-            if not found:
-                continue
-            try:
-                fps = float(found[1])
-            except ValueError:
-                continue
-            if not 0.0 < fps < 1e6:
-                raise RecordingError(
-                    path, f"the frame rate is {found[1]}, expected more than 0", line.number
-                )
-            return Said(fps, unit)
-    return Said(None, unit)
-
-
-def header_in(comments: Sequence[Line], width: int) -> list[str] | None:
-    """The cells of the last comment that names all columns, as PeTrack and JPSreport write it."""
-    for line in reversed(comments):
-        text = line.text.lstrip("#/%* \t")
-        for cells in (text.split(), [c.strip() for c in re.split(r"[,;\t]", text)]):
-            if 4 <= len(cells) <= width and not find_columns(cells).missing:
-                return cells
-    return None
-
-
 def is_whole_header(dialect: Dialect, line: Line) -> bool:
     """Whether the line names all columns that are needed, but perhaps that of people."""
-    return find_columns(dialect.cells(line.text)).missing in ([], ["id"])
+    return find_columns(header_of(dialect, line)).missing in ([], ["id"])
+
+
+def header_of(dialect: Dialect, line: Line) -> list[str]:
+    """The cells of a header, which may be divided by something else than the lines below it."""
+    text = together(line.text) if dialect.delimiter is None else line.text
+    usual = dialect.cells(text)
+    if find_columns(usual).missing:
+        for delimiter in (",", ";", "\t", None):
+            found = Dialect(delimiter, dialect.decimal_comma).cells(together(line.text))
+            if not find_columns(found).missing:
+                return found
+    return usual
 
 
 def read_named(path: Path, table: Table, dialect: Dialect, named: Sequence[str]) -> Rows:
@@ -107,7 +66,7 @@ def read_named(path: Path, table: Table, dialect: Dialect, named: Sequence[str])
 
 def names_columns(dialect: Dialect, line: Line) -> bool:
     """Whether the line is a header rather than a sample."""
-    cells = dialect.cells(line.text)
+    cells = header_of(dialect, line)
     numbers = sum(dialect.is_number(cell) for cell in cells)
     return numbers == 0 or len(find_columns(cells).places) >= 3
 
@@ -120,7 +79,7 @@ def from_header(table: Table) -> Table:
     for place, line in enumerate(table.lines[1:_MOST_LINES_BEFORE], start=1):
         below = table._replace(lines=table.lines[place:])
         dialect = dialect_of(below)
-        if len(below.lines) < 2 or find_columns(cells := dialect.cells(line.text)).missing:
+        if len(below.lines) < 2 or find_columns(cells := header_of(dialect, line)).missing:
             continue
         first = dialect.cells(below.lines[1].text)
         if len(first) >= len(cells) and any(dialect.is_number(cell) for cell in first):
@@ -143,7 +102,7 @@ def read_table(path: Path, table: Table, dialect: Dialect, header: list[str] | N
         head = lines[0]
         lines = [line for line in lines if line.text != head.text]
         repeats = len(table.lines) - len(lines) - 1
-        header = dialect.cells(head.text)
+        header = header_of(dialect, head)
         columns, width = _columns(path, header, head), len(header)
         first = dialect.cells(lines[0].text) if lines else []
         if dialect.delimiter in (None, "\t") and len(first) == width + 1 and first[-1]:
@@ -181,12 +140,14 @@ def read_table(path: Path, table: Table, dialect: Dialect, header: list[str] | N
         counts_frames=in_frames,
         velocities=_velocities(numbers),
         fps=said.fps,
+        samples_per_s=said.samples_per_s,
         usual_fps=30000 / 1001 if is_citr else None,
-        usual_from="as CITR is recorded" if is_citr else "",
+        usual_from="as CITR is recorded" if is_citr else "as its header says",
         unit=unit,
         unit_from="as its header says" if unit else "",
         z=numbers.get("z"),
         times_named=bool(columns.units.get("time")),
+        unknown_units=columns.unknown_units,
         remarks=tuple(remarks),
         dropped=dropped,
     )

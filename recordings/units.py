@@ -11,6 +11,7 @@ UNITS: Final = {
     "km": 1000.0,
     "ft": 0.3048,
     "in": 0.0254,
+    "yd": 0.9144,
 }
 """Metres in each unit that `--unit` takes."""
 PIXELS: Final = "px"
@@ -26,8 +27,10 @@ _LENGTHS: Final = {
     **dict.fromkeys(("decimeter", "decimetre", "decimeters", "decimetres"), "dm"),
     **dict.fromkeys(("centimeter", "centimetre", "centimeters", "centimetres"), "cm"),
     **dict.fromkeys(("millimeter", "millimetre", "millimeters", "millimetres"), "mm"),
+    **dict.fromkeys(("kilometer", "kilometre", "kilometers", "kilometres"), "km"),
     **dict.fromkeys(("foot", "feet"), "ft"),
     **dict.fromkeys(("inch", "inches"), "in"),
+    **dict.fromkeys(("yard", "yards"), "yd"),
     **dict.fromkeys(("px", "pix", "pixel", "pixels"), PIXELS),
     **dict.fromkeys(("deg", "degree", "degrees", "°"), DEGREES),
 }
@@ -42,11 +45,18 @@ _TIMES: Final = {
     **dict.fromkeys(("h", "hour", "hours"), 3600.0),
     **dict.fromkeys(("frame", "frames"), FRAMES),
 }
-_SAID: Final = re.compile(
-    r"\b(?:in|units?\s*(?:of\s+length)?\s*[:=])\s*"
-    r"(m|dm|cm|mm|km|ft|(?:deci|centi|milli)?met(?:er|re)s?|feet|pixels?)\b",
-    re.IGNORECASE,
+_LENGTH: Final = (
+    r"(m|dm|cm|mm|km|ft|yd|(?:deci|centi|milli|kilo)?met(?:er|re)s?|feet|inch(?:es)?|yards?"
+    r"|px|pixels?)"
 )
+_SAID: Final = (
+    re.compile(
+        rf"\b(?:in|units?(?:\s+of\s+length)?\s*(?:[:=]|is|are)?)\s*[\[(\"']?{_LENGTH}\b",
+        re.IGNORECASE,
+    ),
+    re.compile(rf"[\[(]\s*{_LENGTH}\s*[\])]"),
+)
+"""Ways in which comments speak of a unit of length, the surer first."""
 
 
 def length_named(text: str) -> str | None:
@@ -61,5 +71,5 @@ def time_named(text: str) -> float | None:
 
 def length_said(comment: str) -> str | None:
     """The unit of length that a comment speaks of, as in "coordinates in cm"."""
-    found = _SAID.search(comment)
+    found = next(filter(None, (form.search(comment) for form in _SAID)), None)
     return length_named(found[1]) if found else None

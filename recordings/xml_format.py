@@ -26,7 +26,7 @@ def read_xml(path: Path, text: str) -> Rows:
         It is none of these.
     """
     reader = _Reader(path)
-    parser = expat.ParserCreate()
+    parser = expat.ParserCreate("utf-8")
     parser.StartElementHandler = reader.start
     parser.EndElementHandler = reader.end
     parser.CharacterDataHandler = reader.text

@@ -11,6 +11,7 @@ from esplanade.commandline.output import console, made_folder
 from esplanade.commandline.progress import progress
 from esplanade.planning import LayeredGrid, Scene
 from esplanade.planning.ground.surfaces import GroundError
+from esplanade.planning.scene.bounded_reading import suffix_of
 from esplanade.planning.scene.mesh_file import MeshError
 from esplanade.planning.scene.scene_file import SceneError, read_scene
 from esplanade.scenery import inventory, mesh_report, pictures
@@ -18,10 +19,13 @@ from esplanade.scenery.bodies import made_body
 from esplanade.scenery.download import local_file
 from esplanade.scenery.importing import NAME_LENGTH, import_mesh, with_places
 from esplanade.scenery.layer_maps import layer_maps
-from esplanade.scenery.plans.reading import is_plan, read_plan
+from esplanade.scenery.plans.reading import is_plan, read_plan, says_its_unit
 from esplanade.scenery.plans.scene_of_plan import scene_of_plan
 from esplanade.scenery.scene_text import scene_text
 from esplanade.scenery.turning import write_turned
+from esplanade.scenery.values import UNITS
+
+_WITH_UNITS = (".ifc", ".3mf")
 
 
 def check(options: Namespace) -> int:
@@ -70,10 +74,16 @@ def render(options: Namespace) -> int:
 
 def import_(options: Namespace) -> int:
     """Make a scene of a mesh or of plans."""
+    if options.unit is not None and options.scale != 1.0:
+        raise UsageError("--unit and --scale: give one of them, not both")
     if all(is_plan(Path(name)) for name in options.mesh):
         return _import_plans(options)
     if len(options.mesh) > 1:
         raise UsageError("FILE: one mesh is made into a scene; several files are plans of storeys")
+    if options.unit is not None and suffix_of(Path(options.mesh[0])) in _WITH_UNITS:
+        raise UsageError(
+            "--unit: this mesh says its unit itself; --scale makes it larger or smaller"
+        )
     with progress(share=True) as shown:
         task = shown.add_task("", total=1.0)
 
@@ -85,7 +95,7 @@ def import_(options: Namespace) -> int:
                 mesh,
                 options.out,
                 options.up,
-                options.scale,
+                UNITS[options.unit] if options.unit else options.scale,
                 options.cell,
                 options.name,
                 options.spawn,
@@ -105,10 +115,16 @@ def import_(options: Namespace) -> int:
 
 
 def _import_plans(options: Namespace) -> int:
-    storeys = [read_plan(Path(name), options.layer) for name in options.mesh]
+    paths = [Path(name) for name in options.mesh]
+    unit_m = UNITS[options.unit] if options.unit else None
+    own = [says_its_unit(path) for path in paths]
+    if unit_m is not None and any(own) and not all(own):
+        raise UsageError("--unit: these plans are of several forms; import them one by one")
+    storeys = [read_plan(path, options.layer, unit_m) for path in paths]
+    scale = unit_m if unit_m is not None and not any(own) else options.scale
     name = options.name or storeys[0].name
     try:
-        scene = scene_of_plan(storeys, name, options.scale, options.recentre)
+        scene = scene_of_plan(storeys, name, scale, options.recentre)
     except ValueError as error:
         raise UsageError(f"{options.mesh[0]}: {error}") from None
     scene, grid = with_places(scene, options.cell, options.spawn, options.places)

@@ -6,7 +6,7 @@ from typing import Final
 from esplanade.commandline.parser import Parser
 from esplanade.commandline.pictures import add_picture
 from esplanade.commandline.readers import Folder, InputFile, Number, OutputFile, Whole
-from esplanade.scenery.values import body, point, where
+from esplanade.scenery.values import UNITS, body, point, where
 
 DEFAULT_CELL_M: Final = 0.25
 """The width that the server takes."""
@@ -138,6 +138,11 @@ def _import(commands: "SubParsers[Parser]") -> Parser:
         type=Number(1e-6, 1e6),
         default=1.0,
         help="metres in one unit of the mesh [default: 1]",
+    )
+    made.add_argument(
+        "--unit",
+        choices=tuple(UNITS),
+        help="unit of a mesh or plan, whatever it says, instead of --scale",
     )
     made.add_argument("--name", metavar="TEXT", help="name of the scene [default: the mesh's]")
     made.add_argument(

@@ -13,6 +13,12 @@ _MEASURES: Final = {
     "edge": "edge_cells",
 }
 
+UNITS: Final = {
+    "m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "km": 1000.0, "ft": 0.3048, "in": 0.0254,
+    "yd": 0.9144,
+}  # fmt: skip
+"""Metres in each unit of length that `--unit` takes."""
+
 Point = tuple[float, float, float]
 """x, y, z in metres."""
 Where = str | Point

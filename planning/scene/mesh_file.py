@@ -11,10 +11,11 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.planning.scene.bounded_reading import read_bounded
+from esplanade.planning.scene.bounded_reading import read_bounded, suffix_of
 from esplanade.planning.scene.formats.faces import Triangles, cut
 from esplanade.planning.scene.formats.gltf import read_gltf
 from esplanade.planning.scene.formats.ifc import read_ifc
+from esplanade.planning.scene.formats.lengths import metres_in
 from esplanade.planning.scene.formats.obj import read_obj
 from esplanade.planning.scene.formats.off import HEADERS, read_off
 from esplanade.planning.scene.formats.ply import read_ply
@@ -85,6 +86,7 @@ def read_mesh(
 ) -> Mesh:
     """The triangles of a file, each where its transform puts it, checked.
 
+    `metres_a_unit` = 1 leaves it to the file which unit its corners are in, if it says one.
     With `up` = "y", as in glTF and most OBJ files, what the file calls (x, y, z) becomes (x, -z,
     y); None takes what is usual for the format. With `recentre` the middle of the mesh on the
     map and its lowest corner become the origin, to whole metres.
@@ -109,6 +111,10 @@ def read_mesh(
     up = up or _UP.get(kind, "y")
     if up == "y":
         corners = np.stack([corners[..., 0], -corners[..., 2], corners[..., 1]], axis=-1)
+    told = found.told
+    if metres_a_unit == 1.0 and (said_m := metres_in(found.unit)) is not None:
+        metres_a_unit = said_m
+        told = (*told, f"its unit is that of its comment: {found.unit}")
     corners = np.ascontiguousarray(corners * metres_a_unit)
     extent = np.ptp(corners.reshape(-1, 3), axis=0)
     _check_extent(path.name, extent, up)
@@ -121,7 +127,7 @@ def read_mesh(
             "possible. Move it nearer (`esplanade scene import --recentre`)"
         )
     x, y, z = offset.tolist()
-    return Mesh(corners, kind, found.passed, (x, y, z), found.told)
+    return Mesh(corners, kind, found.passed, (x, y, z), told)
 
 
 def _check_extent(name: str, extent: NDArray[np.float64], up: str) -> None:
@@ -176,10 +182,11 @@ def _format_of(path: Path, data: bytes) -> str:
         return "OFF"
     if b"<COLLADA" in data[:4096]:
         raise MeshError(f"{path.name}: Collada is not read; save it as glTF")
-    kind = _SUFFIXES.get(path.suffix.lower())
+    kind = _SUFFIXES.get(suffix_of(path))
     if kind is None:
         known = ", ".join(sorted(suffix[1:] for suffix in _SUFFIXES))
         raise MeshError(
-            f"{path.name}: {path.suffix or 'a file without suffix'} is not read; there are {known}"
+            f"{path.name}: {suffix_of(path) or 'a file without suffix'} is not read; there are "
+            f"{known}"
         )
     return kind

@@ -24,6 +24,9 @@ _DRAWN: Final = frozenset(
      "SOLID", "TRACE")
 )  # fmt: skip
 """Kinds of entities that are drawn as lines; texts, dimensions, hatches and pictures are not."""
+_BINARY: Final = b"AutoCAD Binary DXF"
+_HAS_HEADER: Final = re.compile(r"\n[ \t]*2[ \t]*\n[ \t]*HEADER[ \t]*\n|\0HEADER\0")
+_HEADER: Final = "  0\nSECTION\n  2\nHEADER\n  9\n$ACADVER\n  1\n{}\n  0\nENDSEC\n"
 _FLATTENING: Final = 0.01
 _FLAT_M: Final = 1.0
 MAX_LINES: Final = 50_000
@@ -39,8 +42,10 @@ class _Drawn(NamedTuple):
     block: int
 
 
-def read_dxf(data: bytes, name: str, layers: Sequence[str] = ()) -> Storey:
-    """The storey of a drawing.
+def read_dxf(
+    data: bytes, name: str, layers: Sequence[str] = (), unit_m: float | None = None
+) -> Storey:
+    """The storey of a drawing; `unit_m` is the length of its unit, whatever its header says.
 
     Raises
     ------
@@ -52,10 +57,8 @@ def read_dxf(data: bytes, name: str, layers: Sequence[str] = ()) -> Storey:
     storey = Storey(name)
     if faults:
         storey.remarks.append(f"it is damaged: {faults} faults were mended, or left out")
-    unit = drawing.header.get("$INSUNITS", 0)
-    if unit not in _METRES:
-        storey.remarks.append("it names no unit: taken as metres (--scale says otherwise)")
-    scale = _METRES.get(unit, 1.0)
+    _check_drawn(drawing)
+    scale = unit_m or _metres(drawing, data, storey)
     wanted = {layer.lower() for layer in layers}
     hidden = {
         layer.dxf.name.lower() for layer in drawing.layers if layer.is_off() or layer.is_frozen()
@@ -87,6 +90,20 @@ def read_dxf(data: bytes, name: str, layers: Sequence[str] = ()) -> Storey:
     return storey
 
 
+def _metres(drawing: Any, data: bytes, storey: Storey) -> float:
+    """The metres in a unit of the drawing, as its header says; the library has its own if none."""
+    text = data.decode("latin-1") if data.startswith(_BINARY) else _text(data)
+    if not _HAS_HEADER.search(text):
+        raise ValueError(
+            "it has no header, which would say how long its unit is: give --unit, as in --unit mm "
+            "(esplanade scene import)"
+        )
+    said = drawing.header.get("$INSUNITS", 0) if "$INSUNITS" in text else 0
+    if said not in _METRES:
+        storey.remarks.append("it names no unit: taken as metres (--unit says otherwise)")
+    return _METRES.get(said, 1.0)
+
+
 def _why_passed(layer: str, wanted: set[str], hidden: set[str]) -> str:
     """Why a layer is not drawn; empty where it is."""
     if layer.lower() in hidden:
@@ -113,8 +130,13 @@ def _opened(data: bytes) -> tuple[Any, int]:
     if re.match(rb"AC10\d\d", data):
         raise ValueError("it is a drawing in DWG, which is not read: save it as DXF")
     try:
-        if not data.startswith(b"AutoCAD Binary DXF"):
-            return ezdxf.read(io.StringIO(decoded(data, eight_bit=True).text)), 0
+        if not data.startswith(_BINARY):
+            text = _text(data)
+            if not _HAS_HEADER.search(text):
+                # Without a version, the library would pass over what newer ones mark as theirs.
+                text = _HEADER.format("AC1024" if "AcDb" in text else "AC1009") + text
+                data = text.encode()
+            return ezdxf.read(io.StringIO(text)), 0
     except Exception:  # noqa: BLE001, S110  (the library raises many kinds on damaged files)
         pass
     try:
@@ -122,6 +144,18 @@ def _opened(data: bytes) -> tuple[Any, int]:
     except Exception as error:  # noqa: BLE001
         raise ValueError(f"it is no DXF that can be read: {error}"[:300]) from None
     return drawing, len(auditor.errors) + len(auditor.fixes)
+
+
+def _text(data: bytes) -> str:
+    return decoded(data, eight_bit=True).text
+
+
+def _check_drawn(drawing: Any) -> None:
+    """Check that there is more than definitions of what could be drawn."""
+    if not len(drawing.modelspace()):
+        defined = sum(1 for block in drawing.blocks if len(block) and not block.is_any_layout)
+        told = f": it defines {defined} blocks and places none of them" if defined else ""
+        raise ValueError(f"it draws nothing{told}")
 
 
 class _Drawing:

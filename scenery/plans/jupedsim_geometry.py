@@ -9,29 +9,33 @@ from __future__ import annotations
 
 from xml.parsers import expat
 
+from esplanade.files.text import decoded
 from esplanade.scenery.plans.jupedsim_rooms import Key, Opening, RoomPart, storeys_of_parts
 from esplanade.scenery.plans.storey import Line, Point, Storey
 
-_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
 MAX_PARTS = 2000
 MAX_LINES = 50_000
 
 
-def read_jupedsim(data: bytes, name: str) -> Storey:
+def read_jupedsim(data: bytes, name: str, unit_m: float | None = None) -> Storey:
     """The lowest storey of a geometry, with those above it; crossings are open.
+
+    `unit_m` is the length of its unit, whatever it says.
 
     Raises
     ------
     ValueError
         It is no such XML.
     """
-    reader = _Reader()
-    parser = expat.ParserCreate()
+    reader = _Reader(unit_m)
+    parser = expat.ParserCreate("utf-8")
     parser.StartElementHandler = reader.start
     parser.EndElementHandler = reader.end
     parser.StartDoctypeDeclHandler = _refuse_doctype
     try:
-        parser.Parse(data, True)
+        # The text is decoded already, whatever its declaration says of an encoding.
+        parser.Parse(decoded(data, eight_bit=True).text.encode(), True)
     except expat.ExpatError as error:
         raise ValueError(f"it is no XML: {error}") from None
     if not reader.found:
@@ -56,7 +60,8 @@ def _walls_on_open_ground(name: str, reader: _Reader) -> Storey:
 class _Reader:
     """The parts of a geometry that have been read up to an element."""
 
-    def __init__(self) -> None:
+    def __init__(self, unit_m: float | None) -> None:
+        self._unit_m = unit_m
         self.found = False
         self.parts: list[RoomPart] = []
         self.openings: list[Opening] = []
@@ -74,9 +79,9 @@ class _Reader:
             case "geometry":
                 self.found = True
                 unit = has.get("unit", "m")
-                if unit not in _UNITS:
-                    raise ValueError(f"its unit {unit!r} is unknown")
-                self._metres = _UNITS[unit]
+                if unit not in _UNITS and self._unit_m is None:
+                    raise ValueError(f"its unit {unit!r} is unknown: --unit says what it is")
+                self._metres = self._unit_m or _UNITS[unit]
             case "room":
                 self._room = has.get("id", "")
             case "subroom":

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from esplanade.files.text import decoded
 from esplanade.scenery.plans.storey import Storey, library
 
+_MODES: Final = ("trinary", "scale", "raw")
 MAX_YAML_BYTES: Final = 65_536
 MAX_RUNS: Final = 200_000
 MAX_PIXELS: Final = 16_000_000
@@ -41,21 +42,27 @@ def read_ros_map(path: Path, data: bytes) -> Storey:
         occupied = float(content.get("occupied_thresh", 0.65))
         free = float(content.get("free_thresh", 0.196))
         negate = bool(int(content.get("negate", 0)))
+        mode = str(content.get("mode", "trinary")).lower()
     except (KeyError, TypeError, ValueError) as error:
         raise ValueError(
             f"resolution, origin or a threshold is missing or wrong: {error}"
         ) from None
     if not (0.0 < resolution < 10.0 and math.isfinite(x0 + y0 + yaw) and free < occupied):
         raise ValueError("resolution, origin or thresholds cannot be meant")
+    if mode not in _MODES:
+        raise ValueError(f"its mode {mode!r:.40} is none of {', '.join(_MODES)}")
     light = _light(path.parent / str(content["image"]))
-    darkness = light if negate else 1.0 - light
+    light = 1.0 - light if negate else light
+    # In raw maps a pixel is the occupancy itself, in percent; what is above is unknown.
+    darkness = 255.0 * light / 100.0 if mode == "raw" else 1.0 - light
+    darkness[darkness > 1.0] = np.nan
     walkable = _boxes(darkness[::-1] < free, resolution)
     area = shapely.union_all(walkable)
     affinity = library("shapely.affinity", "plans")
     if yaw:
         area = affinity.rotate(area, yaw, origin=(0.0, 0.0), use_radians=True)
     rows, columns = darkness.shape
-    between = int(((darkness >= free) & (darkness <= occupied)).sum())
+    between = int((~(darkness < free) & ~(darkness > occupied)).sum())
     storey = Storey(path.stem, affinity.translate(area, x0, y0))
     storey.remarks.append(
         f"{rows * columns} pixels of {resolution:g} m; {between / (rows * columns):.1%} of them "
@@ -65,7 +72,7 @@ def read_ros_map(path: Path, data: bytes) -> Storey:
 
 
 def _light(path: Path) -> NDArray[np.float64]:
-    """The pixels of an image, 0 to 1, (rows, columns)."""
+    """The pixels of an image, 0 to 1, (rows, columns); NaN where they are transparent."""
     images: Any = library("PIL.Image", "ROS maps")
     if not path.is_file():
         raise ValueError(f"there is no image {path.name!r} beside it")
@@ -73,7 +80,13 @@ def _light(path: Path) -> NDArray[np.float64]:
         with images.open(path) as image:
             if image.width * image.height > MAX_PIXELS:
                 raise ValueError(f"{path.name} has more than {MAX_PIXELS} pixels")
-            return np.asarray(image.convert("L"), dtype=np.float64) / 255.0
+            if image.mode.startswith(("I", "F")):
+                deep = np.asarray(image, dtype=np.float64)
+                return deep / (65_535.0 if deep.max(initial=0.0) > 255.0 else 255.0)
+            light = np.asarray(image.convert("L"), dtype=np.float64) / 255.0
+            if image.has_transparency_data:
+                light[np.asarray(image.convert("RGBA"))[..., 3] == 0] = np.nan
+            return light
     except (OSError, SyntaxError, images.DecompressionBombError) as error:
         raise ValueError(f"{path.name}: it is no image that can be read: {error}") from None
 

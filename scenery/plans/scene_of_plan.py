@@ -85,7 +85,11 @@ def scene_of_plan(
     except ValidationError as error:
         faults = scene_faults(error)
         more = f" and {len(faults) - 3} others" if len(faults) > 3 else ""
-        hint = "; is its unit right? --scale says otherwise" if "may measure" in faults[0] else ""
+        hint = (
+            "; is its unit right? --unit or --scale say otherwise"
+            if "may measure" in faults[0]
+            else ""
+        )
         raise UsageError(f"it makes no scene: {'; '.join(faults[:3])}{more}{hint}") from None
 
 

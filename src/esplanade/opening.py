@@ -57,6 +57,7 @@ def with_scene(options: Namespace) -> None:
 def is_made_into_a_scene(path: Path) -> bool:
     """Whether a file is a mesh or a plan, by its suffix, and JSON by what it holds."""
     suffix = path.suffix.lower()
+    suffix = Path(path.stem).suffix.lower() if suffix == ".gz" else suffix
     if suffix != ".json":
         return suffix in (*PLANS, *MESHES)
     try:
@@ -69,7 +70,8 @@ def is_made_into_a_scene(path: Path) -> bool:
 def _scene_of(path: Path) -> Path:
     """The scene of a file: one that was made before, or a new one, of which figures are told."""
     folder = _folder(path)
-    made = folder / f"{path.stem}.json"
+    name = Path(path.stem).stem if path.suffix.lower() == ".gz" else path.stem
+    made = folder / f"{name}.json"
     has_others = path.suffix.lower() in _HAS_OTHERS
     mark_used(folder)
     make_room(folder.parent, folder)
@@ -85,7 +87,7 @@ def _scene_of(path: Path) -> Path:
         made = folder / made.name
         new = Path(tempfile.mkdtemp(prefix=UNFINISHED, dir=elsewhere))
     try:
-        _import(path, new, folder)
+        _import(path, new, folder, made.name)
         if has_others:
             shutil.rmtree(folder, ignore_errors=True)
         _put(new, made)
@@ -95,11 +97,11 @@ def _scene_of(path: Path) -> Path:
     return made
 
 
-def _import(path: Path, new: Path, folder: Path) -> None:
-    """Make a scene in a folder that has another name once it is whole."""
+def _import(path: Path, new: Path, folder: Path, name: str) -> None:
+    """Make a scene of this name in a folder that has another one once it is whole."""
     parser: Any = imported("esplanade.scenery.options:parser")()
     import_: Callable[[Namespace], int] = imported("esplanade.scenery.cli:import_")
-    options = parser.parse_args(["import", str(path), "--out", str(new / f"{path.stem}.json")])
+    options = parser.parse_args(["import", str(path), "--out", str(new / name)])
     options.kept_in = folder
     if import_(options):
         raise UsageError(f"{path}: no scene can be made of it")

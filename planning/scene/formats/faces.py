@@ -33,6 +33,8 @@ class Faces:
     """(F,): corners of each face."""
     passed: Counter[str] = field(default_factory=Counter)
     """The parts of the file that are passed over, with their counts."""
+    unit: str = ""
+    """The name of the unit of length that the file says; empty where it says none."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,8 @@ class Triangles:
     passed: Counter[str] = field(default_factory=Counter)
     told: tuple[str, ...] = ()
     """Further facts that the file tells, such as the names of its storeys."""
+    unit: str = ""
+    """The name of the unit of the points; empty where the file says none, or they are in metres."""
 
 
 def cut(faces: Faces) -> Triangles:
@@ -71,7 +75,7 @@ def cut(faces: Faces) -> Triangles:
             places = begins[first : first + each, None] + np.arange(size)
             rings = faces.vertices[faces.corners[places]]
             parts.append(rings if size == 3 else _cut_rings(rings, passed))
-    return Triangles(np.concatenate(parts), +passed)
+    return Triangles(np.concatenate(parts), +passed, unit=faces.unit)
 
 
 def _cut_rings(rings: _Floats, passed: Counter[str]) -> _Floats:

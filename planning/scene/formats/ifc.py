@@ -9,6 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from esplanade.files.text import decoded
 from esplanade.planning.scene.formats.faces import Triangles
 from esplanade.planning.scene.formats.unpacking import extra
 
@@ -34,7 +35,9 @@ def read_ifc(path: Path, data: bytes) -> Triangles:
     if not data.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"ISO-10303-21"):
         raise ValueError("it does not begin as IFC does")
     try:
-        model = library.open(str(path))
+        packed = path.suffix.lower() == ".gz"
+        text = decoded(data, eight_bit=True).text if packed else ""
+        model = library.file.from_string(text) if packed else library.open(str(path))
     except Exception as error:  # noqa: BLE001  (several classes of the library's own)
         raise ValueError(str(error)) from None
     settings = geometry.settings()

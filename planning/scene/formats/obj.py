@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from array import array
 from collections import Counter
 from collections.abc import Iterator
@@ -11,12 +12,17 @@ import numpy as np
 
 from esplanade.files.text import shown
 from esplanade.planning.scene.formats.faces import Faces
+from esplanade.planning.scene.formats.lengths import metres_in
 from esplanade.planning.scene.formats.mesh_text import text_of_mesh
 from esplanade.planning.scene.formats.obj_runs import Run, run_at
 
 MAX_ELEMENTS: Final = 15_000_000
 """Most corners of all faces, and most numbers of all vertices."""
 
+_HEAD: Final = 4096
+_UNIT: Final = re.compile(
+    r"^[ \t]*#.*\bunits?[ \t]*(?:[:=]|is|are)[ \t]*(\w+)", re.IGNORECASE | re.MULTILINE
+)
 _LOOKS: Final = frozenset(
     (
         *("vt", "vn", "vp", "o", "g", "s", "mg", "l", "p"),
@@ -44,7 +50,8 @@ def read_obj(data: bytes) -> Faces:
     numbers, corners, sizes = array("d"), array("q"), array("q")
     lines_of_faces = array("q")
     passed: Counter[str] = Counter()
-    for line, words in _statements(text_of_mesh(data)):
+    text = text_of_mesh(data)
+    for line, words in _statements(text):
         if isinstance(words, Run):
             if words.corners:
                 corners.frombytes((words.numbers.astype(np.int64) - 1).tobytes())
@@ -78,7 +85,13 @@ def read_obj(data: bytes) -> Faces:
             f"line {lines_of_faces[face]}: the face names corner {faces[beyond[0]] + 1}, which is "
             f"out of bounds: there are {len(vertices)}"
         )
-    return Faces(vertices, faces, counts, _one_line_of_unknown(passed))
+    return Faces(vertices, faces, counts, _one_line_of_unknown(passed), _unit_said(text))
+
+
+def _unit_said(text: str) -> str:
+    """The unit of length that a comment at the beginning names, as SketchUp and 3ds Max do."""
+    found = _UNIT.search(text, 0, _HEAD)
+    return found[1] if found and metres_in(found[1]) is not None else ""
 
 
 def _check_count(line: int, numbers: array[float], corners: array[int]) -> None:

@@ -120,7 +120,9 @@ def read_3mf(data: bytes) -> Triangles:
         if unpacked > min(MAX_UNPACKED_BYTES, MAX_RATIO * len(data) + 2**20):
             raise ValueError(f"it grows to {unpacked / 2**20:.0f} MiB when it is unpacked")
         if not names:
-            raise ValueError("the archive holds no model of 3MF")
+            raise ValueError(
+                "the archive holds no model of 3MF: unpack it, if it holds another file"
+            )
         models = [_Model(name) for name in names]
         for model in models:
             with archive.open(model.name) as file:
