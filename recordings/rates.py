@@ -12,8 +12,8 @@ USUAL_RATES: Final = (5.0, 6.0, 7.5, 8.0, 10.0, 12.5, 15.0, 16.0, 20.0, 25.0, 30
 WALKING_MPS: Final = (0.3, 2.5)
 """The median speed of people in a recording lies between these."""
 
-_GUESSED_MPS: Final = (0.6, 2.5)
-"""A rate is taken for the usual one without a word of warning where people go at such a speed."""
+_GUESSED_MPS: Final = 0.6
+"""Slower people may be a crowd, or people whose rate was guessed wrongly."""
 _FEW_PAIRS: Final = 3
 _LEAST_SPEED_MPS: Final = 0.2
 _LEAST_RATE: Final = 0.5
@@ -97,23 +97,21 @@ def _usual(step: float, away: Floats, pairs: Pairs, remarks: tuple[str, ...]) ->
     if not len(away):
         return Rate(usual, source, remarks)
     speed = float(np.median(away / pairs.frames)) * usual
-    if _GUESSED_MPS[0] <= speed <= _GUESSED_MPS[1]:
-        return Rate(usual, source, remarks)
-    if step <= 1.0:
+    walking = WALKING_MPS[0] <= speed <= WALKING_MPS[1]
+    if step <= 1.0 and not walking:
         return Rate(None, "", remarks)
     others = [
         f"--fps {rate:g} ({speed * rate / usual:.3g} m/s)" for rate in likely_rates(speed / usual)
     ]
-    warnings: tuple[str, ...] = ()
-    if others and WALKING_MPS[0] <= speed <= WALKING_MPS[1]:
-        # Beyond these speeds, all recordings are warned of.
-        warnings = (
-            (
-                f"nothing says how many frames make a second: with {usual:g} people go at "
-                f"{speed:.3g} m/s, as in dense crowds; else give {', '.join(others[:4])}"
-            ),
-        )
-    return Rate(usual, source, remarks, warnings)
+    if not walking or speed >= _GUESSED_MPS or not others:
+        return Rate(usual, source, remarks)
+    doubt = (
+        f"nothing says how many frames make a second: with {usual:g} people go at {speed:.3g} m/s, "
+        f"as in dense crowds; else give {', '.join(others[:4])}"
+    )
+    if step <= 1.0:
+        return Rate(usual, source, remarks, (doubt,))
+    return Rate(usual, source, (*remarks, doubt))
 
 
 def likely_rates(speed_per_frame: float) -> tuple[float, ...]:

@@ -5,6 +5,7 @@ in the error of its reader. What is accepted is held against checks of its own.
 """
 
 import argparse
+import gzip
 import io
 import json
 import random
@@ -22,8 +23,10 @@ import numpy as np
 
 from esplanade.commandline.errors import UsageError
 from esplanade.planning.scene.mesh_file import MeshError, read_mesh
+from esplanade.recordings import large_tables
 from esplanade.scenery.plans.reading import read_plan
 from esplanade.scenery.plans.scene_of_plan import scene_of_plan
+from tests.planning.scene.formats.test_ifc import house
 from tests.recordings.forms import FORMS, Form, parquet, walk
 from tests.recordings.fuzz import SOON_S, mutated, tried
 
@@ -40,6 +43,11 @@ JUPEDSIM = (
     '</room></rooms><transitions><transition id="3"><vertex px="10" py="3"/>'
     '<vertex px="10" py="5"/></transition></transitions></geometry>'
 )
+WKT_PARTS = "POLYGON ((0 0, 20 0, 20 10, 0 10)), LINESTRING Z (10 0 1, 10 4 1), POINT EMPTY"
+AS_LARGE = 0.2
+"""The share of recordings that are read as large ones are."""
+MESHOPT = "EXT_meshopt_compression"
+DRACO = "KHR_draco_mesh_compression"
 ROS = "image: map.pgm\nresolution: 0.05\norigin: [-3.0, 2.0, 0.5]\nnegate: 0\n"
 
 
@@ -67,16 +75,65 @@ def gltf(binary: bool) -> bytes:
             {"buffer": 0, "byteLength": 48},
             {"buffer": 0, "byteOffset": 48, "byteLength": 12},
         ],
-        "buffers": [{"byteLength": 60}],
     }
+    return text_or_glb(content, data, binary)
+
+
+def text_or_glb(content: dict[str, object], data: bytes, binary: bool) -> bytes:
+    """The bytes of a glTF file with one buffer."""
+    content["buffers"] = [{"byteLength": len(data)}]
     if not binary:
         uri = "data:," + "".join(f"%{b:02x}" for b in data)
-        content["buffers"] = [{"byteLength": 60, "uri": uri}]
+        content["buffers"] = [{"byteLength": len(data), "uri": uri}]
         return json.dumps(content).encode()
     text = json.dumps(content).encode()
     text += b" " * (-len(text) % 4)
-    body = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", 60, b"BIN\0") + data
+    data += bytes(-len(data) % 4)
+    body = struct.pack("<I4s", len(text), b"JSON") + text
+    body += struct.pack("<I4s", len(data), b"BIN\0") + data
     return struct.pack("<4sII", b"glTF", 2, 12 + len(body)) + body
+
+
+def meshopt() -> bytes:
+    """GLB whose corners and faces meshopt packed."""
+    import meshoptimizer
+
+    faces = np.array([0, 1, 2, 0, 2, 3], np.uint32)
+    parts = (
+        (bytes(meshoptimizer.encode_vertex_buffer(CORNERS, 4, 12)), "ATTRIBUTES", 4, 12),
+        (bytes(meshoptimizer.encode_index_buffer(faces, 6, 4)), "TRIANGLES", 6, 2),
+    )
+    data, views = b"", []
+    for packed, mode, count, stride in parts:
+        place = {"buffer": 0, "byteOffset": len(data), "byteLength": len(packed)}
+        how = {**place, "mode": mode, "count": count, "byteStride": stride}
+        views.append({"buffer": 0, "byteLength": count * stride, "extensions": {MESHOPT: how}})
+        data += packed + bytes(-len(packed) % 4)
+    content = json.loads(gltf(False))
+    content |= {"bufferViews": views, "extensionsUsed": [MESHOPT], "extensionsRequired": [MESHOPT]}
+    return text_or_glb(content, data, True)
+
+
+def draco() -> bytes:
+    """GLB whose mesh Draco packed."""
+    import DracoPy
+
+    data = DracoPy.encode(CORNERS, np.array([[0, 1, 2], [0, 2, 3]], np.uint32))
+    content = json.loads(gltf(False))
+    for accessor in content["accessors"]:
+        del accessor["bufferView"]
+    packed = {DRACO: {"bufferView": 0, "attributes": {"POSITION": 0}}}
+    content["meshes"][0]["primitives"][0]["extensions"] = packed
+    content["bufferViews"] = [{"buffer": 0, "byteLength": len(data)}]
+    content |= {"extensionsUsed": [DRACO], "extensionsRequired": [DRACO]}
+    return text_or_glb(content, data, True)
+
+
+def ifc() -> bytes:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "house.ifc")
+        house(path, "METERS")
+        return path.read_bytes()
 
 
 def threemf() -> bytes:
@@ -178,8 +235,17 @@ def shapes() -> dict[str, Shape]:
         Shape("a.xml", JUPEDSIM.encode(), plan_of),
         Shape("a.yaml", ROS.encode(), plan_of),
         Shape("a.dxf", dxf(), plan_of),
+        Shape("collection.wkt", f"GEOMETRYCOLLECTION ({WKT_PARTS})".encode(), plan_of),
+        Shape("raw.yaml", f"{ROS}mode: raw\n".encode(), plan_of),
+        Shape("a.wkt.gz", gzip.compress(wkt.encode()), plan_of),
     ]  # fmt: skip
     return {shape.name: shape for shape in found}
+
+
+def packed() -> dict[str, Shape]:
+    """Meshes whose libraries are of extras."""
+    made = {"meshopt.glb": meshopt(), "draco.glb": draco(), "a.ifc": ifc()}
+    return {name: Shape(name, content, mesh_of) for name, content in made.items()}
 
 
 def tried_shape(path: Path, shape: Shape, content: bytes) -> str:
@@ -211,9 +277,11 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args()
     recordings = FORMS | columnar()
-    others = shapes()
-    names = [*recordings, *others]
+    others = shapes() | packed()
+    # A building takes a process of its own.
+    names = [name for name in (*recordings, *others) for _ in range(1 if name == "a.ifc" else 5)]
     outcomes: Counter[str] = Counter()
+    usual = large_tables.LARGE_BYTES
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "map.pgm").write_bytes(b"P5 20 10 255\n" + bytes([254] * 150 + [0] * 50))
         for number in range(options.count):
@@ -221,6 +289,8 @@ def main() -> int:
             name = chance.choice(names)
             kept = recordings[name] if name in recordings else others[name]
             content = mutated(kept.content, chance)
+            as_large = chance.random() < AS_LARGE
+            large_tables.LARGE_BYTES = 0 if as_large else usual  # type: ignore[misc]
             if number % 10_000 == 9_999:
                 sys.stderr.write(f"{number + 1} files: {dict(outcomes)}\n")
             try:

@@ -366,6 +366,61 @@ FORMS: dict[str, Form] = {
         "a.txt", text(lines(lambda n, who, x, y: f"7 {y} {x} {who} {n}", 0.04)), 0.04,
         {"columns": ",y,x,id,frame", "fps": 25.0},
     ),
+    "rate with a decimal comma": Form(
+        "a.txt", text(lines(lambda n, who, x, y: f"{who} {n} {x} {y} 1.7", 0.08), "# framerate: 12,5 fps", "# id frame x/m y/m z/m"), 0.08
+    ),
+    "rate as a fraction": Form(
+        "a.csv", text(lines(lambda n, who, x, y: f"{n},{who},{x},{y}", 1001 / 30000), "# frame rate = 30000/1001", "frame,id,x,y"), 1001 / 30000
+    ),
+    "rate by an interval of frames": Form(
+        "a.csv", text(lines(lambda n, who, x, y: f"{n},{who},{x},{y}", 0.1), "# frame interval: 100 ms", "frame,id,x,y"), 0.1
+    ),
+    "rate of samples": Form(
+        "a.csv", text(lines(lambda n, who, x, y: f"{10 * n},{who},{x},{y}"), "# sampling rate: 2.5 Hz", "frame,id,x,y")
+    ),
+    "petrack with units apart": Form(
+        "a.txt",
+        text(lines(lambda n, who, x, y: f"{who} {n} {100 * x:.2f} {100 * y:.2f} 0", 0.04), "# framerate: 25", "# id frame x [cm] y [cm] z [cm]"),
+        0.04,
+    ),
+    "units in a comment of their own": Form(
+        "a.txt",
+        text(lines(lambda n, who, x, y: f"{who} {n} {10 * x:.3f} {10 * y:.3f} 0", 0.04), "# framerate_hz=25", "# id frame x y z", "# - - dm dm dm"),
+        0.04,
+    ),
+    "header with units apart": Form(
+        "a.txt", text(lines(lambda n, who, x, y: f"{0.4 * n:.1f}   {who}   {100 * x:.1f}   {100 * y:.1f}"), "t [s]   id   x [cm]   y [cm]")
+    ),
+    "header divided otherwise": Form("a.txt", text(lines(lambda n, who, x, y: f"{0.4 * n:.1f} {who} {x} {y}"), "t,id,x,y")),
+    "quoted decimal commas": Form(
+        "a.csv", text([f'"{line}"'.replace(";", '","') for line in excel(semicolons)], '"t","id","x","y"')
+    ),
+    "thousands with points": Form(
+        "a.csv",
+        text(
+            lines(lambda n, who, x, y: f"{0.4 * n:.1f};{who};{1000 * x:,.1f};{1000 * y:,.1f}".translate(str.maketrans(",.", ".,"))),
+            "t;id;x/mm;y/mm",
+        ),
+    ),
+    "yards": Form("a.csv", text(lines(lambda n, who, x, y: f"{0.4 * n:.1f},{who},{x / 0.9144},{y / 0.9144}"), "t,id,x [yd],y [yd]")),
+    "inches": Form("a.csv", text(lines(lambda n, who, x, y: f"{0.4 * n:.1f},{who},{x / 0.0254},{y / 0.0254}"), "t,id,x (in),y (in)")),
+    "easting and northing": Form(
+        "a.csv", text(lines(lambda n, who, x, y: f"{0.4 * n:.1f},{who},{x + 367000.5},{y + 5620000.25}"), "t,id,easting,northing")
+    ),
+    "frames from a million": Form("a.txt", text(lines(lambda n, who, x, y: f"{1_000_000 + 10 * n} {who} {x} {y}"))),
+    "obsmat with y before z": Form(
+        "obsmat.txt", text(lines(lambda n, who, x, y: f"{10 * n} {who} {x} {y} 0 {SPEED_MPS * (who == 1)} {SPEED_MPS * (who == 2)} 0"))
+    ),
+    "juelich of eight columns": Form(
+        "a.txt", text(lines(lambda n, who, x, y: f"{who} {n} {x} {y} 1.7 0.2 0.2 12", 0.04)), 0.04, {"fps": 25.0}
+    ),
+    "csv in UTF-32": Form("a.csv", CSV.decode().encode("utf-32-le")),
+    "json with its unit": Form(
+        "a.json",
+        json.dumps({"FPS": 25, "units": {"position": "cm"}, "samples": [{"frame": n, "id": w, "x": 100 * x, "y": 100 * y} for n, w, x, y in walk(0.04)]}).encode(),
+        0.04,
+    ),
+    "jpscore in UTF-16": Form("trajectories.xml", jpscore().decode().replace('"1.0"?', '"1.0" encoding="UTF-16"?').encode("utf-16"), 0.04),
     "jupedsim": Form("trajectory.sqlite", jupedsim(), 0.04),
     "jupedsim packed": Form("trajectory.sqlite.gz", gzip.compress(jupedsim()), 0.04),
 }  # fmt: skip

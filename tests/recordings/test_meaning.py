@@ -75,6 +75,32 @@ def test_units_in_headers(tmp_path: Path, head: str) -> None:
     assert "in cm as its header says" in report.line
 
 
+@pytest.mark.parametrize(
+    ("head", "fault"),
+    [("t,id,x [ell],y [ell]", "its x is in 'ell', which is no known unit: taken for metres"),
+     ("t [jiffies],id,x,y", "its times are in 'jiffies', which is no known unit")],
+)  # fmt: skip
+def test_units_without_a_known_name_are_warned_of(tmp_path: Path, head: str, fault: str) -> None:
+    _, report = read(tmp_path, table(TIMES, 1.25 * TIMES, head=head))
+    assert report.warnings[0].startswith(fault)
+    assert "--" in report.warnings[0]
+
+
+def test_a_rate_that_is_guessed_is_doubted_where_people_are_slow(tmp_path: Path) -> None:
+    each = "\n".join(f"{n} 1 {0.125 * n:.4f} 0" for n in range(20))
+    _, report = read(tmp_path, each)
+    assert "--fps 10 (1.25 m/s)" in report.warnings[0]
+    fifth = "\n".join(f"{5 * n} 1 {0.125 * n:.4f} 0" for n in range(20))
+    _, report = read(tmp_path, fifth)
+    assert report.warnings == ()
+    assert "--fps 50 (1.25 m/s)" in report.remarks[0]
+
+
+def test_a_point_among_decimal_commas_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(RecordingError, match=r"a.txt:2: x is '1\.250' in a table with decimal"):
+        read(tmp_path, "t;id;x;y\n0,0;1;1.250;0\n0,4;1;1.750;0")
+
+
 def test_slow_recordings_are_warned_of(tmp_path: Path) -> None:
     _, report = read(tmp_path, table(TIMES, 0.01 * TIMES))
     assert "the median speed is 0.01 m/s" in report.warnings[0]
