@@ -14,10 +14,11 @@ READY_S = 300.0
 WALK_S = 12.0
 
 
-def photograph(words: Sequence[str], picture: Path, people: int = 0) -> None:
+def photograph(words: Sequence[str], picture: Path, people: int = 0, south_s: float = 0.0) -> None:
     """Run `esplanade demo` with these words, and take a picture of what a visitor sees.
 
-    It is taken once so many people and actors are about.
+    It is taken once so many people and actors are about, and the visitor has walked to the south
+    for so many seconds.
     """
     from playwright.sync_api import sync_playwright  # noqa: PLC0415 - it may not be installed
 
@@ -38,6 +39,10 @@ def photograph(words: Sequence[str], picture: Path, people: int = 0) -> None:
                 "n => Number(document.querySelector('#people-count').textContent) >= n",
                 arg=people,
             )
+            if south_s:
+                page.keyboard.down("s")
+                time.sleep(south_s)
+                page.keyboard.up("s")
             time.sleep(WALK_S)
             page.screenshot(path=picture)
             browser.close()

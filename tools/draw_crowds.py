@@ -16,6 +16,8 @@ TILE = (640, 360)
 CAPTION_HEIGHT = 26
 COLUMNS = 2
 COLOURS = 192
+AMID_S = 4.5
+"""Visitors of recorded people come in at the edge of their ground: walking so long leads amid them."""
 
 
 def sheet(tiles: Sequence[tuple[str, Path]], picture: Path) -> None:
@@ -32,13 +34,15 @@ def sheet(tiles: Sequence[tuple[str, Path]], picture: Path) -> None:
     whole.quantize(COLOURS).save(picture, optimize=True)
 
 
-def photographed(commands: Sequence[tuple[str, Sequence[str], int]], folder: Path) -> Any:
+def photographed(
+    commands: Sequence[tuple[str, Sequence[str], int]], folder: Path, south_s: float = 0.0
+) -> Any:
     """Run each demo, and keep its picture; returns captions and pictures."""
     demo_pictures: Any = import_module("demo_pictures")  # beside this file
     tiles = []
     for number, (caption, words, people) in enumerate(commands):
         file = folder / f"{number}-{words[1].rpartition('/')[2]}.png"
-        demo_pictures.photograph(words, file, people)
+        demo_pictures.photograph(words, file, people, south_s)
         tiles.append((caption, file))
     return tiles
 
@@ -76,5 +80,5 @@ def plans(folder: Path) -> list[tuple[str, Sequence[str], int]]:
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        sheet(photographed(crowds(folder), folder), IMAGES / "import-crowds.png")
+        sheet(photographed(crowds(folder), folder, AMID_S), IMAGES / "import-crowds.png")
         sheet(photographed(plans(folder), folder), IMAGES / "import-plans.png")

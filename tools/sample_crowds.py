@@ -16,6 +16,7 @@ from esplanade.recordings import Crowd, read_crowd
 
 PIXEL_M = 0.05
 _PEOPLE = "22"
+_SQUARE = (0.0, 0.0, 18.0, 12.0)
 
 
 class Sample(NamedTuple):
@@ -31,20 +32,14 @@ class Sample(NamedTuple):
 
 def walk(folder: Path) -> Crowd:
     """People who walk about on a square of 18 m x 12 m for 40 s, at 2.5 samples a second."""
-    return _recorded(folder / "square.csv", Scene.open_space((0.0, 0.0, 18.0, 12.0), "square"), 2.5)
+    return _recorded(folder / "square.csv", Scene.open_space(_SQUARE, name="square"), 2.5)
 
 
 def passage(folder: Path) -> Crowd:
     """People who go through an opening of 1.6 m between two halls, at 10 samples a second."""
-    places = [{"name": f"place {k}", "position": at} for k, at in enumerate(_PLACES)]
     walls = [{"start": a, "end": b} for a, b in (((9, 0), (9, 4.2)), ((9, 5.8), (9, 10)))]
-    scene = Scene.model_validate(
-        {"name": "passage", "bounds": (0, 0, 18, 10), "walls": walls, "places": places}
-    )
+    scene = Scene.model_validate({"name": "passage", "bounds": (0, 0, 18, 10), "walls": walls})
     return _recorded(folder / "passage.csv", scene, 10.0)
-
-
-_PLACES = ((2, 2), (2, 8), (5, 5), (13, 5), (16, 2), (16, 8))
 
 
 def _recorded(path: Path, scene: Scene, hz: float) -> Crowd:

@@ -1,5 +1,6 @@
 """Mesh files as people have them: what is read all the same, and what is refused by name."""
 
+import gzip
 from pathlib import Path
 
 import numpy as np
@@ -207,4 +208,25 @@ def test_a_file_beyond_the_bound_is_not_read(tmp_path: Path) -> None:
     with path.open("wb") as file:
         file.truncate(2**40)
     with pytest.raises(MeshError, match=r"huge.obj: it has more than 384 MiB"):
+        read_mesh(path)
+
+
+def test_a_comment_may_say_the_unit(tmp_path: Path) -> None:
+    square = "v 0 0 0\nv 100 0 0\nv 100 0 -100\nf 1 2 3\n"
+    path = tmp_path / "a.obj"
+    path.write_text(f"# Exported by a modeller\n# File units = centimeters\n{square}")
+    found = read_mesh(path)
+    assert np.ptp(found.triangles[..., 0]) == pytest.approx(1.0)
+    assert found.told == ("its unit is that of its comment: centimeters",)
+    assert np.ptp(read_mesh(path, metres_a_unit=0.1).triangles[..., 0]) == pytest.approx(10.0)
+    path.write_text(f"# units: many\n{square}")
+    assert np.ptp(read_mesh(path).triangles[..., 0]) == pytest.approx(100.0)
+
+
+def test_a_mesh_may_be_packed_by_gzip(tmp_path: Path) -> None:
+    path = tmp_path / "a.OBJ.gz"
+    path.write_bytes(gzip.compress(b"v 0 0 0\nv 10 0 0\nv 10 0 -10\nf 1 2 3\n"))
+    assert len(read_mesh(path).triangles) == 1
+    path.write_bytes(path.read_bytes()[:-9])
+    with pytest.raises(MeshError, match=r"a.OBJ.gz: .* its gzip is damaged"):
         read_mesh(path)

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from esplanade.planning.scene.formats import ifc_triangles
 from esplanade.planning.scene.mesh_file import MeshError, read_mesh
 
 CUBE = [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
@@ -64,4 +65,40 @@ def test_what_is_no_building_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "house.ifc"
     path.write_text("nonsense")
     with pytest.raises(MeshError, match=r"house.ifc: .*(does not begin as IFC|pip install)"):
+        read_mesh(path)
+
+
+def test_feet_are_metres_and_no_unit_is_said(tmp_path: Path) -> None:
+    ifc = pytest.importorskip("ifcopenshell")
+    path = tmp_path / "house.ifc"
+    house(path, "METERS")
+    plain = path.read_text()
+    metre = "IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.)"
+    feet = (
+        "IFCCONVERSIONBASEDUNIT(#901,.LENGTHUNIT.,'FOOT',#902);\n"
+        "#901=IFCDIMENSIONALEXPONENTS(1,0,0,0,0,0,0);\n"
+        f"#902=IFCMEASUREWITHUNIT(IFCLENGTHMEASURE(0.3048),#903);\n#903={metre}"
+    )
+    path.write_text(plain.replace(metre, feet))
+    found = read_mesh(path).triangles.reshape(-1, 3)
+    assert np.ptp(found, axis=0) == pytest.approx([3.048, 2.4384, 0.06096])
+    model = ifc.open(str(path))
+    for project in model.by_type("IfcProject"):
+        project.UnitsInContext = None
+    for units in model.by_type("IfcUnitAssignment"):
+        model.remove(units)
+    model.write(str(path))
+    assert "it names no unit: taken for metres" in read_mesh(path).told[-1]
+
+
+def test_a_library_that_ends_is_a_fault_of_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("ifcopenshell")
+    ending = tmp_path / "ending.py"
+    ending.write_text("import os\nos.abort()\n")
+    monkeypatch.setattr(ifc_triangles, "__file__", str(ending))
+    path = tmp_path / "house.ifc"
+    path.write_text("ISO-10303-21;")
+    with pytest.raises(MeshError, match="IfcOpenShell ended on it with status -6"):
         read_mesh(path)
