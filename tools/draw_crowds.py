@@ -17,7 +17,7 @@ CAPTION_HEIGHT = 26
 COLUMNS = 2
 COLOURS = 192
 AMID_S = 4.5
-"""Visitors of recorded people come in at the edge of their ground: walking so long leads amid them."""
+"""The ground of recorded people is entered at its edge: walking so long leads amid them."""
 
 
 def sheet(tiles: Sequence[tuple[str, Path]], picture: Path) -> None:

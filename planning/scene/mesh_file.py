@@ -102,8 +102,8 @@ def read_mesh(
         raise MeshError(f"{path.name}: up must be 'y' or 'z', got {up!r}")
     kind, found = _read(path)
     if not len(found.points):
-        told = "".join(f"; it has {count} {what}" for what, count in found.passed.items())
-        raise MeshError(f"{path.name}: it holds no triangles{told}")
+        others = "".join(f"; it has {count} {what}" for what, count in found.passed.items())
+        raise MeshError(f"{path.name}: it holds no triangles{others}")
     wrong = np.flatnonzero(~np.isfinite(found.points).all(axis=(1, 2)))
     if len(wrong):
         raise MeshError(f"{path.name}: triangle {wrong[0]} has a corner that is not finite")

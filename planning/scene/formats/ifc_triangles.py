@@ -26,11 +26,12 @@ def convert(building: str, triangles: str) -> dict[str, Any]:
         model: Any = ifcopenshell.open(building)
     except Exception as error:  # noqa: BLE001  (several classes of the library's own)
         return {"fault": str(error)}
-    settings = ifcopenshell.geom.settings()
+    geometry: Any = ifcopenshell.geom
+    settings = geometry.settings()
     settings.set("use-world-coords", True)
     left_out = [part for kind in _NOTHING for part in _by_type(model, kind)]
     doors = _by_type(model, _DOORS)
-    iterator = ifcopenshell.geom.iterator(
+    iterator = geometry.iterator(
         settings, model, multiprocessing.cpu_count(), exclude=[*left_out, *doors] or None
     )
     parts = [np.empty((0, 3, 3))]
