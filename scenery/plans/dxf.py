@@ -6,6 +6,8 @@ import io
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, Final, NamedTuple
 
 from esplanade.files.text import decoded
@@ -25,7 +27,7 @@ _DRAWN: Final = frozenset(
 )  # fmt: skip
 """Kinds of entities that are drawn as lines; texts, dimensions, hatches and pictures are not."""
 _BINARY: Final = b"AutoCAD Binary DXF"
-_HAS_HEADER: Final = re.compile(r"\n[ \t]*2[ \t]*\n[ \t]*HEADER[ \t]*\n|\0HEADER\0")
+_HAS_HEADER: Final = re.compile(r"\n[ \t]*2[ \t]*\n[ \t]*HEADER[ \t]*\n|[\0\2]HEADER\0")
 _HEADER: Final = "  0\nSECTION\n  2\nHEADER\n  9\n$ACADVER\n  1\n{}\n  0\nENDSEC\n"
 _FLATTENING: Final = 0.01
 _FLAT_M: Final = 1.0
@@ -129,14 +131,15 @@ def _opened(data: bytes) -> tuple[Any, int]:
     recover = library("ezdxf.recover", "drawings in DXF")
     if re.match(rb"AC10\d\d", data):
         raise ValueError("it is a drawing in DWG, which is not read: save it as DXF")
+    if data.startswith(_BINARY):
+        return _of_bytes(data), 0
     try:
-        if not data.startswith(_BINARY):
-            text = _text(data)
-            if not _HAS_HEADER.search(text):
-                # Without a version, the library would pass over what newer ones mark as theirs.
-                text = _HEADER.format("AC1024" if "AcDb" in text else "AC1009") + text
-                data = text.encode()
-            return ezdxf.read(io.StringIO(text)), 0
+        text = _text(data)
+        if not _HAS_HEADER.search(text):
+            # Without a version, the library would pass over what newer ones mark as theirs.
+            text = _HEADER.format("AC1024" if "AcDb" in text else "AC1009") + text
+            data = text.encode()
+        return ezdxf.read(io.StringIO(text)), 0
     except Exception:  # noqa: BLE001, S110  (the library raises many kinds on damaged files)
         pass
     try:
@@ -144,6 +147,18 @@ def _opened(data: bytes) -> tuple[Any, int]:
     except Exception as error:  # noqa: BLE001
         raise ValueError(f"it is no DXF that can be read: {error}"[:300]) from None
     return drawing, len(auditor.errors) + len(auditor.fixes)
+
+
+def _of_bytes(data: bytes) -> Any:
+    """The drawing of a binary DXF, which the library only reads from a file."""
+    ezdxf = library("ezdxf", "drawings in DXF")
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "drawing.dxf")
+        path.write_bytes(data)
+        try:
+            return ezdxf.readfile(path)
+        except Exception as error:  # noqa: BLE001
+            raise ValueError(f"it is no binary DXF that can be read: {error}"[:300]) from None
 
 
 def _text(data: bytes) -> str:

@@ -100,7 +100,7 @@ def read_geojson(data: bytes, name: str) -> Storey:
     if sum(data.count(mark) for mark in (b",", b"[", b"{")) > MAX_VALUES:
         raise ValueError(f"it has more than {MAX_VALUES} values")
     try:
-        content = json.loads(decoded(data).text)
+        content = json.loads(decoded(data, eight_bit=True).text)
     except RecursionError:
         raise ValueError("its brackets are too deep") from None
     features = content.get("features", [content]) if isinstance(content, dict) else []
@@ -162,6 +162,8 @@ def _storey_of(name: str, read: list[tuple[Any, Any]], system: str) -> Storey:
 def _take_polygon(
     geometry: Any, kind: str, storey: Storey, areas: list[Any], unknown: Counter[str]
 ) -> None:
+    if not all(map(math.isfinite, geometry.bounds)) and not geometry.is_empty:
+        raise ValueError("a corner of a polygon is not finite")
     if not geometry.is_valid:
         raise ValueError(f"a polygon crosses itself near {geometry.centroid.wkt}")
     if geometry.is_empty:

@@ -22,6 +22,7 @@ _STEPS: Final = 19
 _STEP_M: Final = 0.17
 _HEADROOM_M: Final = 2.0
 _WALL_M: Final = 2.5
+_LONGEST_NAME: Final = 64
 _MOST_CORNERS: Final = 500
 _LEAST_AREA_M2: Final = 1e-4
 
@@ -80,7 +81,12 @@ def scene_of_plan(
         _add_slope(parts, slope, mover)
     try:
         return Scene.model_validate(
-            {"name": name[:64], "bounds": bounds, "origin_m": (*moved, mover.lowest_m), **parts}
+            {
+                "name": name[:_LONGEST_NAME],
+                "bounds": bounds,
+                "origin_m": (*moved, mover.lowest_m),
+                **parts,
+            }
         )
     except ValidationError as error:
         faults = scene_faults(error)
@@ -210,13 +216,26 @@ def _add_storey(
         {**mover.line(wall), **standing, "height_m": _WALL_M} for wall in storey.walls
     ]
     parts["doors"] += [
-        {"name": f"{prefix}{name}"[:64], **mover.line(door), **standing}
-        for name, door in storey.doors
+        {"name": name, **mover.line(door), **standing}
+        for name, (_, door) in zip(_names(prefix, storey.doors), storey.doors, strict=True)
     ]
     parts["places"] += [
-        {"name": f"{prefix}{name}"[:64], "position": mover.point(point), "z_m": floor_m}
-        for name, point in storey.points
+        {"name": name, "position": mover.point(point), "z_m": floor_m}
+        for name, (_, point) in zip(_names(prefix, storey.points), storey.points, strict=True)
     ]
+
+
+def _names(prefix: str, named: Sequence[tuple[str, Any]]) -> list[str]:
+    """Names that differ: where a plan has one twice, the later ones are numbered."""
+    found: dict[str, None] = {}
+    for name, _ in named:
+        own = f"{prefix}{name}"[:_LONGEST_NAME]
+        number = 2
+        while own in found:
+            own = f"{f'{prefix}{name}'[: _LONGEST_NAME - 6]} {number}"
+            number += 1
+        found[own] = None
+    return list(found)
 
 
 def _edges(area: Any) -> list[Line]:

@@ -156,6 +156,16 @@ def stl() -> bytes:
     return bytes(80) + struct.pack("<I", 2) + corners.tobytes()
 
 
+def binary_dxf() -> bytes:
+    import ezdxf
+
+    drawing = ezdxf.new("R2000")  # type: ignore[attr-defined]
+    drawing.modelspace().add_line((0, 0), (10, 5))
+    file = io.BytesIO()
+    drawing.write(file, fmt="bin")
+    return file.getvalue()
+
+
 def dxf() -> bytes:
     import ezdxf
 
@@ -235,6 +245,7 @@ def shapes() -> dict[str, Shape]:
         Shape("a.xml", JUPEDSIM.encode(), plan_of),
         Shape("a.yaml", ROS.encode(), plan_of),
         Shape("a.dxf", dxf(), plan_of),
+        Shape("bytes.dxf", binary_dxf(), plan_of),
         Shape("collection.wkt", f"GEOMETRYCOLLECTION ({WKT_PARTS})".encode(), plan_of),
         Shape("raw.yaml", f"{ROS}mode: raw\n".encode(), plan_of),
         Shape("a.wkt.gz", gzip.compress(wkt.encode()), plan_of),

@@ -13,6 +13,7 @@ from esplanade.cli import main
 from esplanade.commandline.errors import UsageError
 from esplanade.planning.scene.scene_file import read_scene
 from esplanade.scenery.plans.reading import is_plan, read_plan
+from esplanade.scenery.plans.scene_of_plan import scene_of_plan
 from tests.scenery.plans.test_plans import JUPEDSIM
 
 pytest.importorskip("shapely")
@@ -162,6 +163,38 @@ def test_a_drawing_without_a_header_wants_its_unit(tmp_path: Path) -> None:
     assert main([*words, "--unit", "cm"]) == 0
     assert read_scene(scene).bounds == (0.0, 0.0, 20.0, 10.0)
     assert main([*words, "--unit", "cm", "--scale", "2"]) == 2
+
+
+@pytest.mark.parametrize("version", ["R12", "R2000", "R2018"])
+def test_a_drawing_may_be_of_bytes(tmp_path: Path, version: str) -> None:
+    ezdxf = pytest.importorskip("ezdxf")
+    made = ezdxf.new(version)
+    if version != "R12":
+        made.header["$INSUNITS"] = 4
+    made.modelspace().add_line((0, 0), (3000, 4000))
+    path = tmp_path / "a.dxf"
+    made.saveas(path, fmt="bin")
+    storey = read_plan(path)
+    metres = 1.0 if version == "R12" else 1e-3
+    assert storey.bounds() == pytest.approx((0.0, 0.0, 3000 * metres, 4000 * metres))
+    assert any("names no unit" in remark for remark in storey.remarks) == (version == "R12")
+    path.write_bytes(path.read_bytes()[:300])
+    with pytest.raises(UsageError, match=r"a.dxf: it is no binary DXF that can be read"):
+        read_plan(path)
+
+
+def test_names_that_stand_twice_are_numbered(tmp_path: Path) -> None:
+    place = {"type": "Point", "coordinates": [1, 1]}
+    door = {"type": "LineString", "coordinates": [[10, 4], [10, 6]]}
+    named = {"name": "b\u00e4r"}
+    gate = {"kind": "door", "name": "gate"}
+    text = geojson(
+        (polygon(SQUARE), {}), (place, named), (place, named), (door, gate), (door, gate)
+    )
+    path = written(tmp_path / "a.geojson", text.encode().decode("unicode_escape").encode("latin-1"))
+    scene = scene_of_plan([read_plan(path)], "a")
+    assert [each.name for each in scene.places] == ["b\u00e4r", "b\u00e4r 2"]
+    assert [each.name for each in scene.doors] == ["gate", "gate 2"]
 
 
 def test_a_drawing_of_blocks_alone_draws_nothing(tmp_path: Path) -> None:
