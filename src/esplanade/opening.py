@@ -17,6 +17,7 @@ from typing import Any, Final
 
 from esplanade.commandline.errors import UsageError
 from esplanade.commandline.running import imported
+from esplanade.files.content import read_content
 from esplanade.kept_scenes import UNFINISHED, make_room, mark_used
 
 PLANS: Final = (".wkt", ".geojson", ".xml", ".yaml", ".yml", ".dxf")
@@ -55,14 +56,17 @@ def with_scene(options: Namespace) -> None:
 
 
 def is_made_into_a_scene(path: Path) -> bool:
-    """Whether a file is a mesh or a plan, by its suffix, and JSON by what it holds."""
+    """Whether a file is a mesh or a plan, by its suffix, and others by what they hold."""
     suffix = path.suffix.lower()
     suffix = Path(path.stem).suffix.lower() if suffix == ".gz" else suffix
+    if suffix in (*PLANS, *MESHES):
+        return True
     if suffix != ".json":
-        return suffix in (*PLANS, *MESHES)
+        is_plan: Callable[[Path], bool] = imported("esplanade.scenery.plans.reading:is_plan")
+        return path.is_file() and is_plan(path)
     try:
-        content: Any = json.loads(path.read_bytes())
-    except (OSError, ValueError, RecursionError):
+        content: Any = json.loads(read_content(path))
+    except (ValueError, RecursionError):
         return False  # whoever reads it as a scene says what is wrong
     return isinstance(content, dict) and "bounds" not in content and "type" in content
 

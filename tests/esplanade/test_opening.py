@@ -1,5 +1,6 @@
 """Worlds of files that are no scenes: made into scenes once, and then run as any other."""
 
+import gzip
 import json
 import os
 from argparse import Namespace
@@ -138,3 +139,14 @@ def test_a_scene_that_cannot_be_read_is_left_to_its_reader(tmp_path: Path) -> No
     options = Namespace(scene=path)
     opening.with_scene(options)
     assert options.scene == path
+
+
+@pytest.mark.parametrize("name", ["hall.txt", "hall.wkt.gz", "hall.json.gz"])
+def test_a_plan_is_known_by_what_it_holds(tmp_path: Path, name: str) -> None:
+    plan = tmp_path / name
+    text = HALL.encode() if "json" not in name else b'{"type": "Polygon", "coordinates": []}'
+    plan.write_bytes(gzip.compress(text) if name.endswith("gz") else text)
+    assert opening.is_made_into_a_scene(plan)
+    plan.write_bytes(b"neither\n")
+    assert opening.is_made_into_a_scene(plan) == (name == "hall.wkt.gz")
+    assert not opening.is_made_into_a_scene(tmp_path / "absent.txt")
