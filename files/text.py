@@ -47,7 +47,8 @@ def decoded(content: bytes, *, eight_bit: bool = False) -> Text:
 
     With `eight_bit`, what is no UTF-8 but has no control characters is taken for Windows-1252, as
     spreadsheets still write it, and a remark says so. Zeros at the end, with which some programs
-    fill a block, and marks between joined files are left out.
+    fill a block, the mark of the end of old files (Ctrl-Z) and marks between joined files are left
+    out.
 
     Raises
     ------
@@ -125,5 +126,5 @@ def _wide_encoding(head: bytes) -> str | None:
 
 
 def _lines(text: str) -> str:
-    text = text.replace("\ufeff", "")
+    text = text.replace("\ufeff", "").rstrip("\x1a")
     return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text

@@ -31,10 +31,12 @@ def read_xml(path: Path, text: str) -> Rows:
     parser.EndElementHandler = reader.end
     parser.CharacterDataHandler = reader.text
     parser.StartDoctypeDeclHandler = reader.refuse_doctype
-    reader.line = lambda: parser.CurrentLineNumber
+    content = text.lstrip()
+    above = text.count("\n", 0, len(text) - len(content))
+    reader.line = lambda: parser.CurrentLineNumber + above
     try:
         # The text is decoded already, whatever its declaration says of an encoding.
-        parser.Parse(text.encode("utf-8", errors="replace"), True)
+        parser.Parse(content.encode("utf-8", errors="replace"), True)
     except expat.ExpatError as error:
         raise RecordingError(path, f"is no XML that can be read: {error}"[:200]) from None
     return reader.rows()

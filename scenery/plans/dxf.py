@@ -162,7 +162,8 @@ def _of_bytes(data: bytes) -> Any:
 
 
 def _text(data: bytes) -> str:
-    return decoded(data, eight_bit=True).text
+    """The text of a drawing, without spaces behind its values."""
+    return re.sub(r"[ \t]+\n", "\n", decoded(data, eight_bit=True).text)
 
 
 def _check_drawn(drawing: Any) -> None:

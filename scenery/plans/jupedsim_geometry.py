@@ -35,7 +35,7 @@ def read_jupedsim(data: bytes, name: str, unit_m: float | None = None) -> Storey
     parser.StartDoctypeDeclHandler = _refuse_doctype
     try:
         # The text is decoded already, whatever its declaration says of an encoding.
-        parser.Parse(decoded(data, eight_bit=True).text.encode(), True)
+        parser.Parse(decoded(data, eight_bit=True).text.lstrip().encode(), True)
     except expat.ExpatError as error:
         raise ValueError(f"it is no XML: {error}") from None
     if not reader.found:

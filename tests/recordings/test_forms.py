@@ -1,11 +1,13 @@
 """Every form of a recording is read as the same two people at 1.25 m/s."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from esplanade.recordings import RecordingError, formats, read_crowd
+from tests.files.encodings import SAVED, some_of, text_of
 from tests.recordings.forms import FORMS, SAMPLES, SPEED_MPS, Form, jupedsim, parquet, text
 
 
@@ -49,6 +51,21 @@ def test_two_people_walk(tmp_path: Path, form: Form) -> None:
         assert [len(track.times) for track in crowd.tracks] == [SAMPLES, SAMPLES]
     again = read_crowd(write(tmp_path, form), **form.given, strict=True)
     assert again.report == report
+
+
+@pytest.mark.parametrize("number", range(len(FORMS)), ids=list(FORMS))
+def test_a_text_is_read_however_it_is_saved(tmp_path: Path, number: int) -> None:
+    form = list(FORMS.values())[number]
+    content = text_of(form.content)
+    if content is None:
+        return
+    usual = read_crowd(write(tmp_path, form), **form.given).report
+    for way in some_of(number):
+        saved = form._replace(content=SAVED[way](content))
+        report = read_crowd(write(tmp_path, saved), **form.given).report
+        assert usual is not None
+        assert report is not None
+        assert replace(report, remarks=()) == replace(usual, remarks=()), way
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any, Final
 from urllib.parse import unquote, unquote_to_bytes
 
+from esplanade.files.text import decoded
+
 MAX_BYTES: Final = 512 * 2**20
 """Most bytes of all buffers together."""
 MAX_VALUES: Final = 3_000_000
@@ -32,7 +34,8 @@ class Container:
         if text.count(b",") + text.count(b"[") + text.count(b"{") > MAX_VALUES:
             raise ValueError(f"its JSON has more than {MAX_VALUES} values")
         try:
-            content = json.loads(text.decode("utf-8-sig"))
+            # Some programs fill the JSON of a binary file with zeros.
+            content = json.loads(decoded(text).text)
         except RecursionError:
             raise ValueError("its JSON is too deep") from None
         except ValueError as error:

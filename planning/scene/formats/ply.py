@@ -8,7 +8,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.files.text import shown
+from esplanade.files.text import decoded, shown
 from esplanade.planning.scene.formats.faces import Faces
 
 _TYPES: Final = {
@@ -47,7 +47,7 @@ def read_ply(data: bytes) -> Faces:
     ValueError
         The file is none of PLY, or ends too early.
     """
-    data = data.removeprefix(b"\xef\xbb\xbf")
+    data = _with_lines(data.removeprefix(b"\xef\xbb\xbf"))
     end = data.find(b"end_header", 0, _MAX_HEADER_BYTES)
     line_end = data.find(b"\n", end)
     if end < 0 or line_end < 0:
@@ -69,6 +69,14 @@ def read_ply(data: bytes) -> Faces:
     if len(corners) and not 0 <= corners.min() <= corners.max() < len(vertices):
         raise ValueError(f"a face names a corner that is out of bounds: there are {len(vertices)}")
     return Faces(vertices, corners, sizes)
+
+
+def _with_lines(data: bytes) -> bytes:
+    """A text in another encoding, or with other ends of lines, as it is defined; bytes stay."""
+    head = data[:_MAX_HEADER_BYTES]
+    is_wide = not head.startswith(b"ply")
+    is_old = b"\n" not in head and b"format ascii" in head
+    return decoded(data, eight_bit=True).text.encode() if is_wide or is_old else data
 
 
 def _header(text: str) -> tuple[str, list[_Element]]:

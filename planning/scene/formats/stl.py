@@ -9,6 +9,8 @@ from esplanade.planning.scene.formats.faces import Triangles
 from esplanade.planning.scene.formats.mesh_text import text_of_mesh
 
 _HEADER_BYTES: Final = 84
+_WIDE: Final = (b"\xff\xfe", b"\xfe\xff", b"s\0o\0", b"\0s\0o", b"S\0O\0", b"\0S\0O")
+"""Text in UTF-16 begins so, with a byte order mark or with the word `solid`."""
 _ROW: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")])
 
 
@@ -25,7 +27,7 @@ def read_stl(data: bytes) -> Triangles:
     if len(data) >= _HEADER_BYTES and len(data) == length:
         rows = np.frombuffer(data, dtype=_ROW, count=count, offset=_HEADER_BYTES)
         return Triangles(rows["corners"].astype(np.float64))
-    is_text = b"\0" not in data[:_HEADER_BYTES] or data.startswith((b"\xff\xfe", b"\xfe\xff"))
+    is_text = b"\0" not in data[:_HEADER_BYTES] or data.startswith(_WIDE)
     if is_text and data[: 2**10].lstrip(b"\xef\xbb\xbf\xff\xfe \t\r\n\0").lower().startswith(b"s"):
         return _of_text(text_of_mesh(data))
     if len(data) > length >= _HEADER_BYTES:
