@@ -120,7 +120,7 @@ def fault_of(crowd: Crowd) -> str | None:
         return "two people have the same id"
     if not len(every):
         return None
-    if every.max() > 12.5:
+    if every.max() > 12.5 + 1e-9:
         return f"somebody moves at {every.max():.1f} m/s"
     if not 0.3 <= np.median(every) <= 2.5 and not report.warnings:
         return f"a median of {np.median(every):.3g} m/s is not warned of"
