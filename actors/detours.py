@@ -96,9 +96,7 @@ class Detours:
             bodies = bodies._replace(discs=np.round(bodies.discs, 2))
             self._rooms.clear()
             due &= ~self._potentials.provisional(trips.own_rows)
-            for row in np.flatnonzero(due).tolist():
-                trips.look_in_s[row] = LOOK_EVERY_S
-                self._look(table, row, bodies)
+            self._look_all(table, np.flatnonzero(due), bodies)
         elif due.any():
             trips.shut[due] = False
             for row in np.flatnonzero(due & trips.detours).tolist():
@@ -163,6 +161,28 @@ class Detours:
         own = table.trips.own_rows == self._potentials.row(key)
         rows: list[int] = np.flatnonzero(own & table.trips.detours).tolist()
         return rows
+
+    def _look_all(self, table: AgentTable, rows: NDArray[np.int64], standing: Standing) -> None:
+        """Let actors look along their ways; most of these are open, and nobody there is stalled."""
+        agents, trips = table.agents, table.trips
+        trips.look_in_s[rows] = LOOK_EVERY_S
+        shut = self._shut_ways().any_shut(
+            self._grid.arrays,
+            agents.bodies[rows],
+            self._potentials.arrays,
+            trips.own_rows[rows],
+            agents.cells[rows],
+            agents.positions[rows],
+            standing.discs,
+            agents.parameters["radius_m"][rows],
+            AROUND_M,
+        )
+        closely = shut | (trips.stalled_s[rows] >= STALLED_S)
+        for row, looks in zip(rows.tolist(), closely.tolist(), strict=True):
+            if looks or self._detour(table, row) is not None:
+                self._look(table, row, standing)
+            else:
+                trips.shut[row] = False
 
     def _look(self, table: AgentTable, row: int, standing: Standing) -> None:
         """Let an actor look along its own way, and along the one around people if it goes there."""
@@ -248,10 +268,8 @@ class Detours:
         around_m: float,
     ) -> NDArray[np.bool_]:
         agents = table.agents
-        if self._ways is None:
-            self._ways = ShutWays(len(self._grid.layered.floors))
         x, y = agents.positions[row].tolist()
-        return self._ways.shut_by(
+        return self._shut_ways().shut_by(
             self._grid.arrays,
             int(agents.bodies[row]),
             self._potentials.arrays[slot],
@@ -261,6 +279,11 @@ class Detours:
             float(agents.parameters["radius_m"][row]),
             around_m,
         )
+
+    def _shut_ways(self) -> ShutWays:
+        if self._ways is None:
+            self._ways = ShutWays(len(self._grid.layered.floors))
+        return self._ways
 
     def _weigh(self, table: AgentTable, row: int, waits_s: float) -> None:
         """Send an actor the way on which it arrives sooner; it would wait so long on its own."""

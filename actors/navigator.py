@@ -17,6 +17,7 @@ from esplanade.actors.outcomes import InTheWay, Kind, Outcome
 from esplanade.actors.parameter_records import with_values
 from esplanade.actors.parameters import ActorParameters, body_of
 from esplanade.actors.people import ObservedPeople, People
+from esplanade.actors.planning_interval import PlanningInterval
 from esplanade.actors.potential_pool import Goal, GoalKey, PotentialPool, goal_key
 from esplanade.actors.saved_agents import check_saved
 from esplanade.actors.saved_detours import read_detours
@@ -93,6 +94,8 @@ class Navigator:
         self._standing = StandingPeople()
         self.table = AgentTable(self.plan.slices)
         """Every actor's state; read it freely between two ticks."""
+        self.planning_interval = PlanningInterval(self.plan.interval_ticks)
+        """At which actors are planned from the next tick on; its `ticks` may be changed."""
         self.tracing = Tracing(self._batch, self.plan, tick_s)
 
     @property
@@ -338,10 +341,12 @@ class Navigator:
     def undo_point(self) -> Callable[[], None]:
         """Return a call that puts all actors back, if a tick or a change fails half-way."""
         restore, around = self.table.undo_point(), self.detours.undo_point()
+        count = self.planning_interval.count
 
         def undo() -> None:
             self._rows.give_back(self.table)
             restore()
+            self.planning_interval.count = count
             self.tracing.forget()
             self._rows.take_all(self.table)
             self.detours.put_back(self.table, around)
@@ -365,7 +370,9 @@ class Navigator:
         return ActorParameters.of_row(self.table.agents.parameters[self.table.row(actor_id)])
 
     def save(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-        """The table as `AgentTable.save` gives it, with where people stood and ways around them.
+        """The table as `AgentTable.save` gives it, and all else that later ticks depend on.
+
+        That is where people stood, ways around them, and who is due when.
 
         Raises
         ------
@@ -374,7 +381,8 @@ class Navigator:
         """
         header, arrays = self.table.save()
         standing, around = self._standing.save(), self.detours.save(self.table)
-        return {**header, "standing": standing, "detours": around}, arrays
+        due = self.planning_interval.save()
+        return {**header, "standing": standing, "detours": around, "planning": due}, arrays
 
     def load(self, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> None:
         """Take the actors of a saved table (`AgentTable.save`) in the place of those here.
@@ -400,6 +408,7 @@ class Navigator:
             detours = read_detours(header.get("detours", ()), len(table))
         except (TypeError, ValueError) as error:
             raise SavedAgentsError(f"ways around people cannot be read: {error}") from error
+        self.planning_interval.load(header.get("planning", {}))
         self._rows.give_back(self.table)
         self.table, self._standing = table, standing
         self.tracing.forget()
@@ -434,8 +443,10 @@ class Navigator:
                 self.tracing.keep(agents, self.table.version)
             else:
                 self.tracing.forget()
-            self._batch.tick(agents, self.potentials.arrays, self._prediction, self.tick_s)
+            due = self.planning_interval.due(agents.ranks)
+            self._batch.tick(agents, self.potentials.arrays, self._prediction, self.tick_s, due)
             self._batch.settle(self._prediction, self.tick_s)
+            self.planning_interval.count += 1
             self._wait_for_potentials()
             self._end_trips()
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from esplanade.planning import SearchStatus
 
 Floats = NDArray[np.float64]
-Winner = Literal["first", "forced", "search", "perturbation", "kept"]
+Winner = Literal["first", "forced", "search", "perturbation", "kept", "not_due"]
 
 COST_PARTS: Final = (
     *("time", "risk", "others", "turn", "wall", "hurry", "keep_right"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -104,7 +105,10 @@ class Tracing:
             for name, ours, theirs in zip(Decisions._fields, again, zone.decisions, strict=True)
             if name != "reasons"  # the step that follows a decision may change it
         )
+        replanned = bool(again.replanned[row])
         tree = self._tree(memory, int(again.expansions[row]), budget)
+        if not replanned:  # the path that it follows was found in an earlier tick
+            tree = replace(tree, status=SearchStatus.FOUND)
         paths = {"taken": again.paths[row].copy()}
         if memory.ends[2] > 0:
             paths["searched"] = self._path(memory)
@@ -112,7 +116,7 @@ class Tracing:
             paths["previous"] = zone.world.reservations.paths[row]
         found = dict(zip(paths, self._priced(row, list(paths.values())), strict=True))
         previous, perturbed, changed = found.get("previous"), None, False
-        if previous is not None and previous.legal:
+        if replanned and previous is not None and previous.legal:
             bent, changed = self._perturbed(zone, kept, row, prediction)
             (perturbed,) = self._priced(row, [bent])
         return Trace(
@@ -120,7 +124,7 @@ class Tracing:
             Decided(found["taken"], previous),
             found.get("searched"),
             perturbed,
-            _winner(found["taken"], previous, perturbed, changed),
+            _winner(found["taken"], previous, perturbed, changed) if replanned else "not_due",
             float(kept.parameters["hysteresis_s"][row]),
             tree,
             self._risk(kept, row, prediction),
@@ -144,6 +148,7 @@ class Tracing:
             self._searched_in = make_workspace(budget, self._batch.branching)
             self._memory = make_handle(self._searched_in)
         self._searched_in.node_order[:] = -1
+        self._searched_in.ends[:] = 0
         return self._searched_in
 
     def _decide(self, zone: Zone, kept: Agents, row: int, prediction: Prediction) -> Decisions:

@@ -157,8 +157,10 @@ class TripEnds:
             self._let_in(table, np.flatnonzero(near & agents.waits).tolist(), near)
             return taken
         free: list[int] = []
-        for row in np.flatnonzero(near).tolist():
-            by = self._taken_by(table, bodies, taking, row, people)
+        rows = np.flatnonzero(near)
+        perhaps = self._anybody_at(table, bodies, taking, rows)
+        for row, somebody in zip(rows.tolist(), perhaps.tolist(), strict=True):
+            by = self._taken_by(table, bodies, taking, row, people) if somebody else None
             if by is None:
                 if agents.waits[row]:
                     free.append(row)
@@ -190,6 +192,23 @@ class TripEnds:
             if not (near & ~agents.waits & (trips.own_rows == goal)).any():
                 agents.waits[row] = False
                 trips.queued_s[row] = trips.stalled_s[row] = 0.0
+
+    def _anybody_at(
+        self,
+        table: AgentTable,
+        bodies: Bodies,
+        taking: NDArray[np.int64],
+        rows: NDArray[np.int64],
+    ) -> NDArray[np.bool_]:
+        """Whether anybody is near enough to the goals of some actors (N,) to take a place there."""
+        agents = table.agents
+        p = agents.parameters[rows]
+        room_m = np.maximum(p["person_room_m"], ACTOR_ROOM_M) + p["goal_tolerance_m"]
+        reach_m = np.maximum(OWNS_M, bodies.radii[taking].max() + p["radius_m"] + room_m)
+        offsets = bodies.places[None, taking, :2] - agents.goals[rows, None]
+        near = offsets[:, :, 0] ** 2 + offsets[:, :, 1] ** 2 <= reach_m[:, None] ** 2
+        found: NDArray[np.bool_] = near.any(axis=1)
+        return found
 
     def _taken_by(
         self,

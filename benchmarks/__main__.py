@@ -14,6 +14,7 @@ NAMES = (
     "turned",
     "server",
     "live",
+    "crowds",
     "social",
     "doorways",
     "walking",

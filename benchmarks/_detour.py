@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import math
-import subprocess
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Any, Final, Self
+from typing import Final, Self
 
 import numpy as np
-from benchmarks._node import node_missing, node_program
+from benchmarks._node_process import NodeProcess
 from benchmarks._pairs import Answer, Bools, Floats
 
-RECAST: Final = Path(__file__).parent / "recast"
 REACH_M: Final = (0.5, 1.0)
 """The greatest horizontal and vertical distance from a point to the ground that it stands for."""
 LONGEST_EDGE_M: Final = 12.0
@@ -58,17 +54,11 @@ class Detour:
 
     def __init__(self, mesh: Floats, settings: NavMeshSettings) -> None:
         self._mesh, self._settings = mesh, settings
-        self._node = subprocess.Popen(
-            [node_program(), "detour.mjs"],
-            cwd=RECAST,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
+        self._node = NodeProcess("detour.mjs")
         try:
             self.build()
         except RuntimeError:
-            self._node.communicate()
+            self._node.close()
             raise
 
     def build(self) -> None:
@@ -78,7 +68,7 @@ class Detour:
             "indices": list(range(3 * len(self._mesh))),
             "config": self._settings.config(),
         }
-        built = self._ask({"build": geometry})
+        built = self._node.ask({"build": geometry})
         self.build_figures: dict[str, float] = {
             "ms": built["ms"],
             "polygons": built["polygons"],
@@ -94,7 +84,7 @@ class Detour:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._node.communicate()
+        self._node.close()
 
     def relaxed(self) -> Iterator[tuple[str, Detour]]:
         """Yield each rule and a process with the same mesh in which that rule is relaxed."""
@@ -104,41 +94,19 @@ class Detour:
 
     def stands(self, points: Floats) -> Bools:
         """Whether the body can stand near each of the points (N, 3), bool (N,)."""
-        places = self._ask({"stand": y_up(points).tolist(), "reach": _reach()})["places"]
+        places = self._node.ask({"stand": y_up(points).tolist(), "reach": _reach()})["places"]
         return np.array([place is not None for place in places])
 
     def find_paths(self, pairs: Floats) -> list[Answer]:
         """Find a path for every pair, float64 (N, 2, 3)."""
-        paths = self._ask({"paths": y_up(pairs).tolist(), "reach": _reach()})["paths"]
+        paths = self._node.ask({"paths": y_up(pairs).tolist(), "reach": _reach()})["paths"]
         return [Answer(tuple(p["stands"]), z_up(p["points"]), p["us"]) for p in paths]
 
     def triangles(self) -> Floats:
         """The walkable triangles, float64 (T, 3, 3), metres."""
-        reply = self._ask({"triangles": True})
+        reply = self._node.ask({"triangles": True})
         corners = z_up(np.reshape(reply["positions"], (-1, 3)))
         return corners[np.reshape(reply["indices"], (-1, 3))]
-
-    def _ask(self, request: dict[str, Any]) -> dict[str, Any]:
-        assert self._node.stdin is not None
-        assert self._node.stdout is not None
-        self._node.stdin.write(json.dumps(request) + "\n")
-        self._node.stdin.flush()
-        line = self._node.stdout.readline()
-        if not line:
-            raise RuntimeError(f"the Node.js process has ended with code {self._node.wait()}")
-        reply: dict[str, Any] = json.loads(line)
-        if "error" in reply:
-            raise RuntimeError(f"the Node.js process reports: {reply['error']}")
-        return reply
-
-
-def missing() -> str | None:
-    """A message about what must be installed first; None if everything is installed."""
-    if absent := node_missing():
-        return absent
-    if not (RECAST / "node_modules" / "@recast-navigation").is_dir():
-        return "Recast is absent: python tools/npm.py --prefix ../benchmarks/recast ci"
-    return None
 
 
 def y_up(points: Floats) -> Floats:

@@ -119,6 +119,7 @@ def _of_ticks(seen: Seen) -> Iterator[str]:
             f"{1e3 * stages['steps'] / avatars:.1f} µs of steps, "
             f"{1e3 * stages['contacts'] / avatars:.1f} µs of contacts"
         )
+        yield f"each actor is planned once in {ticks.interval_ticks} ticks at the end"
 
 
 def _of_clients(seen: Seen) -> Iterator[str]:

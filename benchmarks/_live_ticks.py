@@ -28,6 +28,8 @@ class Ticks:
     step_bytes_out: int
     skipped: int
     """Snapshots that were left out because a client was slow."""
+    interval_ticks: int
+    """The planning interval of actors at the end."""
 
     @classmethod
     def between(cls, before: Reading, after: Reading) -> "Ticks":
@@ -52,6 +54,7 @@ class Ticks:
             bytes_out=int(grown("bytes_out_total")),
             step_bytes_out=int(grown("step_bytes_out_total")),
             skipped=int(grown("snapshots_skipped_total")),
+            interval_ticks=int(after.metrics["esplanade_planning_interval_ticks"]),
         )
 
 

@@ -24,8 +24,9 @@ from pathlib import Path
 from typing import Any, Final
 
 from benchmarks._comparison import UNEXPLAINED, Comparison, compare, random_pairs
-from benchmarks._detour import Detour, NavMeshSettings, missing
+from benchmarks._detour import Detour, NavMeshSettings
 from benchmarks._esplanade import Esplanade
+from benchmarks._node_process import recast_missing
 from benchmarks._pairs import Finders
 from benchmarks._pictures import draw
 from rich import box
@@ -60,7 +61,7 @@ ROWS: Final = (
 def main(argv: Sequence[str] | None = None) -> int:
     options = parser().parse_args(argv)
     paths = options.mesh or standing_meshes()
-    absent = missing() or (None if paths else "there are no meshes: name some by --mesh")
+    absent = recast_missing() or (None if paths else "there are no meshes: name some by --mesh")
     if absent:
         print(f"skipped: {absent}")
         return 0

@@ -29,7 +29,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from benchmarks._detour import missing
+from benchmarks._node_process import recast_missing
 from benchmarks._turned_meshes import measure_meshes
 from benchmarks._turned_tables import Tables, doors, edges, flights, ramps
 from benchmarks._turned_trials import measure_plans
@@ -45,7 +45,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     unknown = sorted(set(options.parts) - set(PARTS))
     if unknown:
         raise SystemExit(f"{unknown[0]!r} is no part, expected one of {', '.join(PARTS)}")
-    absent = "not asked for" if options.ours else missing()
+    absent = "not asked for" if options.ours else recast_missing()
     console = Console(width=None if sys.stdout.isatty() else WIDTH)
     if absent:
         console.print(f"without Recast: {absent}")

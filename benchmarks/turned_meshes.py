@@ -18,8 +18,9 @@ from typing import Final
 
 import numpy as np
 import trimesh
-from benchmarks._detour import Detour, NavMeshSettings, missing
+from benchmarks._detour import Detour, NavMeshSettings
 from benchmarks._esplanade import Esplanade
+from benchmarks._node_process import recast_missing
 from benchmarks._pairs import SHORTEST_M, Answer, Floats, ground_points, pairs_of
 from benchmarks.meshes import BODIES, standing_meshes
 from rich import box
@@ -42,9 +43,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     if not paths:
         print("skipped: there are no meshes: name some by --mesh")
         return 0
-    with_recast = not options.ours and missing() is None
+    with_recast = not options.ours and recast_missing() is None
     if not with_recast:
-        print(f"without Recast: {missing() or 'not asked for'}")
+        print(f"without Recast: {recast_missing() or 'not asked for'}")
     console = Console()
     for path in paths:
         measure(console, path, options, with_recast)

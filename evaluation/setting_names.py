@@ -41,6 +41,7 @@ NAMES: Final = (
     "prediction.printed",
     "plan.step_s",
     "plan.steps",
+    "plan.interval_ticks",
     "rules.reserves",
     "rules.margin_m",
     "rules.yielding_weight",

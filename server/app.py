@@ -171,9 +171,22 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
         ground_work = GroundWork(world, deriving, tables_ahead(population.navigator))
         gate.console = console
-        ticker = Ticker(
-            world, ground_work, audience, link, hub, delivery, schedule, metrics, thread, console
-        ).keeping(persistence)
+        ticker = (
+            Ticker(
+                world,
+                ground_work,
+                audience,
+                link,
+                hub,
+                delivery,
+                schedule,
+                metrics,
+                thread,
+                console,
+            )
+            .keeping(persistence)
+            .planning(settings.planning_interval)
+        )
         gate.live = live = live_view(world, storeys, console, hub, metrics, settings, bulletin)
         ticker.tap, ticker.trajectories = (
             live.tap,

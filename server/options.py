@@ -39,7 +39,7 @@ _WORLD: Final = {
         "walls around the crowd; without it, NAME.walls.json beside the crowd's file", InputFile()
     ),
     **READING,
-    "actors": Setting("computer-run actors that walk about", Whole(0, 500), 10),
+    "actors": Setting("computer-run actors that walk about", Whole(0, 1000), 10),
     "roster": Setting(
         "which actors walk about instead, what each does and how, a JSON file", InputFile()
     ),
@@ -49,6 +49,13 @@ _WORLD: Final = {
     ),
     "seed": Setting("seed of everything random in the world", Whole(0, SEED_LIMIT), 0),
     "tick_rate": Setting("ticks of the world", Whole(5, 60), 20, "per second"),
+    "planning_interval": Setting(
+        "ticks from one planning of an actor to its next; without it, as few as the machine keeps "
+        "time with",
+        Whole(1, 4),
+        None,
+        "ticks",
+    ),
 }
 _PEOPLE: Final = {
     "person_radius_m": Setting("radius of a person", Number(0.05, 1.0), 0.25, "m"),

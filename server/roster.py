@@ -11,7 +11,7 @@ from esplanade.actors.overrides import WORLD
 from esplanade.files.content import ContentError
 from esplanade.files.text import read_text
 
-MOST_ACTORS = 500
+MOST_ACTORS = 1000
 
 
 class RosterError(ValueError):

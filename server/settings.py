@@ -38,6 +38,7 @@ class ServerSettings(BaseSettings):
     presets: Path | None = _field("presets")
     seed: int = _field("seed")
     tick_rate: int = _field("tick_rate")
+    planning_interval: int | None = _field("planning_interval")
 
     person_radius_m: float = _field("person_radius_m")
     person_max_speed_mps: float = _field("person_max_speed_mps")

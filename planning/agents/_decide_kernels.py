@@ -132,19 +132,20 @@ def decide(
     moves: Moves,
     prediction: Prediction,
     agents: Agents,
+    due: NDArray[np.bool_],
     tick_s: float,
     first: int,
     last: int,
     workspace: Workspace,
     out: Decisions,
 ) -> None:
-    """Perturb the followed path, search anew, keep the better, and wish for a velocity.
+    """Plan a path for each actor that is due, and wish for a velocity along the path of each.
 
-    The search only looks at paths that may be better than the followed one by the hysteresis, so
-    that it costs little while that path is good. The actors are first..last of those listed by
-    their places now: neighbours look at the same ground and people, which stay in the cache.
-    Their followed paths, seen from now, are `world.reservations.paths`. The speeds of `moves` are
-    parts of each actor's own.
+    Actors that are not `due` (A,) go on along their followed paths; those without one, or inside
+    something, are planned in any tick. Followed paths, seen from now, are
+    `world.reservations.paths`. The actors are first..last of those listed by their places now:
+    neighbours look at the same ground and people, which stay in the cache. The speeds of `moves`
+    are parts of each actor's own.
     """
     rules = world.rules[0]
     slices = out.paths.shape[1]
@@ -167,29 +168,23 @@ def decide(
             part = moves.speeds[m]
             speeds[m] = task.max_speed_mps if part > 1.0 else part * task.speed_mps
         own = Moves(moves.cosines, moves.sines, speeds, moves.straight, True)
-        bound = np.inf
-        changed = False
-        if agents.known[a]:
-            kept[:] = world.reservations.paths[a]
-            cost, changed = _improve(world, potential, task, kept, bent, cells, trial)
-            bound = cost - p["hysteresis_s"]
-        found = search(
-            world, potential, own, task, not rules["greedy"], bound, workspace, out.paths[a]
+        kept[:] = world.reservations.paths[a]
+        status = FOUND
+        switched = False
+        out.replanned[a] = (
+            due[a]
+            or not agents.known[a]
+            or clearance_at(world.grid, task.body, task.cell, task.x, task.y) < 0.0
         )
-        status = found.status
-        better = True
-        if bound < np.inf:
-            cost = found.cost
-            if status == PARTIAL or rules["greedy"]:  # it stays where it ends, up to the horizon
-                cost = path_cost(world, potential, task, out.paths[a])[0]
-            better = status != NO_PATH and (cost < bound or not rules["weighs_paths"])
-            if not better:
-                out.paths[a] = kept
-                status = FOUND
+        if out.replanned[a]:
+            status, switched = _replan(
+                world, potential, own, agents, task, kept, bent, cells, trial, workspace, out
+            )
+        else:
+            out.paths[a] = kept
+            out.expansions[a] = 0
+            out.renewed[a] = False
         out.statuses[a] = status
-        out.expansions[a] = found.expansions
-        out.renewed[a] = better or changed
-        switched = better and agents.known[a]
         path = out.paths[a]
         ux, uy = control_toward(task, path[SUB, 0], path[SUB, 1], world.step_s)
         contact = p["radius_m"] + (world.person_radius_m + p["person_room_m"])
@@ -218,6 +213,49 @@ def decide(
         out.reasons[a] = decided_reason(
             agents, task, away, lost, path, status, switched, dodged, world.step_s
         )
+
+
+@kernel
+def _replan(
+    world: World,
+    potential: NDArray[np.float32],
+    own: Moves,
+    agents: Agents,
+    task: Task,
+    kept: NDArray[np.float64],
+    bent: NDArray[np.float64],
+    cells: NDArray[np.int64],
+    trial: NDArray[np.float64],
+    workspace: Workspace,
+    out: Decisions,
+) -> tuple[int, bool]:
+    """Perturb the followed path `kept`, search anew, and keep the better.
+
+    Returns the status, and whether another path than the followed one was taken. The search only
+    looks at paths that may be better than the followed one by the hysteresis, so that it costs
+    little while that path is good.
+    """
+    a = task.me
+    rules = world.rules[0]
+    bound = np.inf
+    changed = False
+    if agents.known[a]:
+        cost, changed = _improve(world, potential, task, kept, bent, cells, trial)
+        bound = cost - agents.parameters[a]["hysteresis_s"]
+    found = search(world, potential, own, task, not rules["greedy"], bound, workspace, out.paths[a])
+    status = found.status
+    better = True
+    if bound < np.inf:
+        cost = found.cost
+        if status == PARTIAL or rules["greedy"]:  # it stays where it ends, up to the horizon
+            cost = path_cost(world, potential, task, out.paths[a])[0]
+        better = status != NO_PATH and (cost < bound or not rules["weighs_paths"])
+        if not better:
+            out.paths[a] = kept
+            status = FOUND
+    out.expansions[a] = found.expansions
+    out.renewed[a] = better or changed
+    return status, bool(better and agents.known[a])
 
 
 @kernel
@@ -259,6 +297,7 @@ def _lead_out(
     out.statuses[a] = FOUND if cell >= 0 else NO_PATH
     out.expansions[a] = 0
     out.renewed[a] = True
+    out.replanned[a] = True
     out.reasons[a] = MOVING
     if cell < 0:
         out.reasons[a] = BLOCKED

@@ -24,8 +24,8 @@ from esplanade.planning.people._risk_kernels import index_people
 class Zone(NamedTuple):
     """Everything that the ticks of a zone work on, except for people's future.
 
-    `order` (A,) and `decisions` are written anew in every tick; `positions` (A, 2) and `cells`
-    (A,) are those after it.
+    `due` (A,) tells whose paths are planned in a tick; `order` (A,) and `decisions` are written
+    anew in every one; `positions` (A, 2) and `cells` (A,) are those after it.
     """
 
     world: World
@@ -34,6 +34,7 @@ class Zone(NamedTuple):
     no_potential: NDArray[np.float32]
     moves: Moves
     agents: Agents
+    due: NDArray[np.bool_]
     order: NDArray[np.int64]
     decisions: Decisions
     positions: NDArray[np.float64]
@@ -102,6 +103,7 @@ def decide_some(
         z.moves,
         prediction,
         z.agents,
+        z.due,
         tick_s,
         first,
         last,

@@ -93,7 +93,8 @@ class Decisions(NamedTuple):
     """Decisions of A agents; every array has A rows.
 
     `paths` (A, K, 2); `wishes` (A, 2) m/s for the next tick; `reasons`; `statuses` of the
-    searches; `expansions`; `renewed` tells that `paths` replaces the followed path.
+    searches; `expansions`; `renewed` tells that `paths` replaces the followed path; `replanned`
+    that a path was looked for at all. Without that the followed path goes on.
     """
 
     paths: NDArray[np.float64]
@@ -102,3 +103,4 @@ class Decisions(NamedTuple):
     statuses: NDArray[np.int64]
     expansions: NDArray[np.int64]
     renewed: NDArray[np.bool_]
+    replanned: NDArray[np.bool_]

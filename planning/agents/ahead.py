@@ -89,8 +89,8 @@ def _reservations() -> Reservations:
 def zone() -> kernels.Zone:
     """A zone that means nothing, of the types of any other."""
     grid, barriers = _ground()
-    integers, places = _array(1, np.int64), _array(2)
-    decisions = Decisions(_array(3), places, integers, integers, integers, _array(1, np.bool_))
+    integers, places, flags = _array(1, np.int64), _array(2), _array(1, np.bool_)
+    decisions = Decisions(_array(3), places, integers, integers, integers, flags, flags)
     return kernels.Zone(
         World(grid, _risk(), _reservations(), RuleModel().row, 0.4, 0.25),
         barriers,
@@ -98,6 +98,7 @@ def zone() -> kernels.Zone:
         _array(2, np.float32),
         compass_moves(),
         AgentTable(1).agents,
+        flags,
         integers,
         decisions,
         places,

@@ -45,8 +45,14 @@ class PlanModel:
     """Time step of the search (delta), seconds; the risk field has two slices in each."""
     steps: int = 9
     """Steps to the horizon."""
+    interval_ticks: int = 1
+    """Ticks from one planning of an agent to its next; in between it follows the path it has."""
     threads: int = 2
     """Threads that share the work; the result does not depend on their number."""
+
+    def __post_init__(self) -> None:
+        if self.interval_ticks < 1:
+            raise ValueError(f"interval_ticks must be at least 1, got {self.interval_ticks}")
 
     @property
     def slices(self) -> int:
@@ -147,6 +153,7 @@ class Batch:
             self._no_potential,
             self._moves,
             agents,
+            np.ones(actors, dtype=np.bool_),
             np.empty(actors, dtype=np.int64),
             Decisions(
                 np.empty((actors, slices, 2)),
@@ -154,6 +161,7 @@ class Batch:
                 np.zeros(actors, dtype=np.int64),
                 np.zeros(actors, dtype=np.int64),
                 np.zeros(actors, dtype=np.int64),
+                np.zeros(actors, dtype=np.bool_),
                 np.zeros(actors, dtype=np.bool_),
             ),
             np.empty((actors, 2)),
@@ -168,6 +176,7 @@ class Batch:
         potentials: NDArray[np.float32],
         prediction: Prediction,
         tick_s: float,
+        due: NDArray[np.bool_] | None = None,
     ) -> tuple[Decisions, NDArray[np.float64], NDArray[np.int64]]:
         """Decide for everyone and take the step.
 
@@ -177,6 +186,7 @@ class Batch:
         potentials : float32 (G, N, 4), the potentials that `agents.potential_rows` points into
         prediction : people's future, as many slices as the plan has
         tick_s : length of the tick, seconds
+        due : bool (A,), whose paths are planned; the others follow those that they have
 
         Returns
         -------
@@ -188,8 +198,11 @@ class Batch:
         parts = agents, potentials, self.grid.arrays, self.field.arrays, tick_s
         if not all(map(is_, parts, self._made_of)):
             self._hand_over(agents, potentials, prediction, tick_s)
+        whose: NDArray[np.bool_] | bool = True if due is None else due
+        self._zone.due[:] = whose
         if not self._plan_and_step(threads, prediction, tick_s):
             self._hand_over(agents, potentials, prediction, tick_s)
+            self._zone.due[:] = whose
             self._plan_and_step(threads, prediction, tick_s)
         return self._zone.decisions, self._zone.positions, self._zone.cells
 

@@ -209,3 +209,49 @@ def look_along(
         k = end
         if space.taken[k]:
             k += 1
+
+
+@kernel
+def look_along_each(
+    grid: GridArrays,
+    rows: NDArray[np.int64],
+    potentials: NDArray[np.float32],
+    slots: NDArray[np.int64],
+    cells: NDArray[np.int64],
+    places: NDArray[np.float64],
+    bodies: NDArray[np.float64],
+    rooms_m: NDArray[np.float64],
+    reach_m: float,
+    detour_m: float,
+    space: LookingSpace,
+    shut: NDArray[np.bool_],
+) -> None:
+    """Tell in `shut` (N,) whether any body shuts the route of each of N that look, as `look_along`.
+
+    Those further away than `reach_m` are not looked at.
+    """
+    near = np.empty_like(bodies)
+    marks = np.empty(len(bodies), dtype=np.bool_)
+    for n in range(len(shut)):
+        x, y = places[n]
+        count = 0
+        for k in range(len(bodies)):
+            if length(bodies[k, 0] - x, bodies[k, 1] - y) <= reach_m:
+                near[count] = bodies[k]
+                count += 1
+        shut[n] = False
+        if count > 0:
+            look_along(
+                grid,
+                rows[n],
+                potentials[slots[n]],
+                cells[n],
+                x,
+                y,
+                near[:count],
+                rooms_m[n],
+                detour_m,
+                space,
+                marks[:count],
+            )
+            shut[n] = marks[:count].any()

@@ -79,6 +79,31 @@ class ShutWays:
         )
         return marks
 
+    def any_shut(
+        self,
+        grid: GridArrays,
+        rows: NDArray[np.int64],
+        potentials: NDArray[np.float32],
+        slots: NDArray[np.int64],
+        cells: NDArray[np.int64],
+        places: NDArray[np.float64],
+        bodies: NDArray[np.float64],
+        rooms_m: NDArray[np.float64],
+        detour_m: float,
+    ) -> NDArray[np.bool_]:
+        """Tell for each of N that look whether any of the bodies (K, 4) shuts its route, bool (N,).
+
+        `rows`, `cells`, `places` and `rooms_m` are those of `shut_by`, for each of them; the route
+        of each is down `potentials[slots]`. Cost as of `shut_by` for each, of bodies in reach.
+        """
+        shut = np.zeros(len(rows), dtype=np.bool_)
+        reach_m = REACH_M + (float(bodies[:, 3].max()) if len(bodies) else 0.0)
+        kernels.look_along_each(
+            *(grid, rows, potentials, slots, cells, places, bodies, rooms_m, reach_m),
+            *(detour_m, self._space, shut),
+        )
+        return shut
+
 
 def without_places(
     grid: GridArrays, row: int, radius_m: float, discs: Sequence[Disc]

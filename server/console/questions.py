@@ -39,6 +39,7 @@ def world(console: Console) -> dict[str, Any]:
         "places": {place.name: [*place.position, place.z_m] for place in zone.scene.places},
         "revision": console.changes.revision,
         "pace": told(console.pace),
+        "planning_interval_ticks": zone.planning_interval,
     }
 
 

@@ -93,6 +93,11 @@ def _told_why(trace: Trace) -> dict[str, Any]:
                 f"the path followed before costs {taken_s:.2f} s; no bend is better, and the "
                 f"search found none that costs less by {margin_s:g} s"
             )
+        case "not_due":
+            text = (
+                "it was not due in this tick, since actors are planned in turns, and goes on "
+                "along the path followed before"
+            )
     arguments = {
         "taken_s": _rounded(taken_s),
         "before_s": _rounded(before_s),

@@ -32,6 +32,11 @@ class Schedule:
     def next_deadline(self) -> float:
         return self._next
 
+    @property
+    def period_s(self) -> float:
+        """Time between two deadlines by the clock, seconds."""
+        return self._period_s / self._rate
+
     def _follow(self, now: float) -> None:
         """Go by the pace that is wanted now: the next tick comes sooner or later than before."""
         state = self.pace.state
@@ -43,7 +48,7 @@ class Schedule:
 
     def begin(self, now: float) -> None:
         """Begin a tick now, and set the deadline of the one after it."""
-        period_s = self._period_s / self._rate
+        period_s = self.period_s
         if self._left_s is not None:
             self._next = now + period_s
             return

@@ -15,11 +15,12 @@ from esplanade.server.metrics import Metrics
 from esplanade.server.net.delivery import Delivery
 from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.hub import Hub
+from esplanade.server.net.interval_choice import IntervalChoice
 from esplanade.server.net.persistence import Persistence
 from esplanade.server.net.schedule import Schedule
 from esplanade.server.trajectories.keeping import WorldTrajectories
 from esplanade.server.world.audience import Audience
-from esplanade.server.world.inputs import Input, Still
+from esplanade.server.world.inputs import Input, PlanEvery, Still
 from esplanade.server.world.zone import Zone
 
 log = structlog.get_logger(__name__)
@@ -51,6 +52,7 @@ class Ticker:
         self._metrics = metrics
         self._thread = thread
         self._console = console
+        self._interval = IntervalChoice(world.planning_interval)
         self.tap: Tap | None = None
         """Where the ticks go that operators see."""
         self.trajectories: WorldTrajectories | None = None
@@ -63,6 +65,11 @@ class Ticker:
             lambda: audience.walkers_shown,
         )
         metrics.total("ticks", "Ticks of the world", lambda: world.tick)
+        metrics.gauge(
+            "planning_interval_ticks",
+            "Ticks from one planning of an actor to its next, 1 where there is time for all",
+            lambda: world.planning_interval,
+        )
         pace = schedule.pace
         metrics.gauge("pace_factor", "Pace that is wanted, 1 as usual", lambda: pace.state.factor)
         metrics.gauge(
@@ -77,6 +84,11 @@ class Ticker:
     def keeping(self, persistence: Persistence) -> Self:
         """The same, seeing between ticks to what outlasts the process."""
         self._persistence = persistence
+        return self
+
+    def planning(self, interval: int | None) -> Self:
+        """The same, planning each actor once in so many ticks; None: as often as there is time."""
+        self._interval = IntervalChoice(self._world.planning_interval, interval)
         return self
 
     def stop(self) -> None:
@@ -129,10 +141,14 @@ class Ticker:
         loop = asyncio.get_running_loop()
         self._schedule.begin(loop.time())
         kept: list[Input] = [] if self._persistence is None else self._persistence.drain()
+        if self._interval.ticks != self._world.planning_interval:
+            kept = [*kept, PlanEvery(self._interval.ticks)]
         given = [*kept, *self._hub.drain(loop.time()), *self._console.drain()]
         await self._run(given, self._ground_work.drain())
         self._schedule.pace.ticked(loop.time(), self._world.tick, self._world.tick_s)
         room_s = self._schedule.next_deadline - loop.time()
+        planning_s = self._world.times.seconds.get("actors", 0.0)
+        self._interval.ticked(room_s, planning_s, self._schedule.period_s)
         if self.tap is not None and self.tap.traces.ticked(room_s):
             # No tick begins meanwhile.
             await loop.run_in_executor(self._thread, self.tap.traces.make_one)

@@ -25,7 +25,7 @@ from esplanade.server.offline.options import SECONDS
 from esplanade.server.offline.settings import OfflineSettings
 from esplanade.server.offline.world import OfflineWorld
 
-_SETTINGS = ("roster", "walls", "tick_rate", *READING)
+_SETTINGS = ("roster", "walls", "tick_rate", "planning_interval", *READING)
 
 
 def run(options: Namespace) -> int:

@@ -64,7 +64,7 @@ def parser() -> Parser:
     world.add_argument(
         "--actors",
         metavar="N",
-        type=Whole(0, 500),
+        type=Whole(0, 1000),
         help="computer-run actors that walk about [default: 10]",
     )
     world.add_argument(
@@ -104,6 +104,12 @@ def parser() -> Parser:
         type=Whole(5, 60),
         default=20,
         help="ticks a second [default: 20]",
+    )
+    world.add_argument(
+        "--planning-interval",
+        metavar="N",
+        type=Whole(1, 4),
+        help="ticks from one planning of an actor to its next [default: 1]",
     )
     made.add_argument(
         "--hz",

@@ -23,7 +23,13 @@ from esplanade.server.trajectories.blocks import write_block
 from esplanade.server.trajectories.provenance import Origin, files_of
 from esplanade.server.trajectories.recorder import Recorder
 from esplanade.server.world.frame import Frame
-from esplanade.server.world.inputs import ActorCommand, Input, MoveDoor, SetParameters
+from esplanade.server.world.inputs import (
+    ActorCommand,
+    Input,
+    MoveDoor,
+    PlanEvery,
+    SetParameters,
+)
 
 FLUSH_TICKS: Final = 200
 """Written rows are handed over to the system after so many ticks."""
@@ -82,7 +88,8 @@ class OfflineWorld:
             files_of(self.settings, self.settings.scene, loaded.scene.mesh)
             | ({} if people is None else {"recording": Path(people)}),
         )
-        self._inputs: list[Input] = []
+        interval = self.settings.planning_interval
+        self._inputs: list[Input] = [] if interval is None else [PlanEvery(interval)]
         self._command = 0
         self._recorder: Recorder | None = None
         self._stream: Stream | None = None

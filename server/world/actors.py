@@ -9,6 +9,7 @@ from esplanade.actors import Explanation, ObservedPeople, Outcome, Population
 from esplanade.actors.blockers import Blocker
 from esplanade.actors.locomotion.footsteps.course import planned_places
 from esplanade.planning import Body
+from esplanade.server.world.inputs import PlanEvery, PotentialDerived
 from esplanade.server.world.routes import Point
 from esplanade.server.world.state import ACTOR, Slots, State
 
@@ -136,6 +137,14 @@ class ActorAvatars:
         self._state.positions[slot] = self._state.before[slot] = agents.positions[row]
         self._state.heights[slot] = agents.heights[row]
         self._state.layers[slot] = agents.layers[row]
+
+    def take(self, item: PotentialDerived | PlanEvery) -> None:
+        """Take in by what, or how often, actors are planned from now on."""
+        match item:
+            case PotentialDerived():
+                self._population.renew_potential(item.potential)
+            case PlanEvery():
+                self._population.navigator.planning_interval.ticks = item.ticks
 
     def stand(self, people: ObservedPeople) -> None:
         """A tick in which nothing is planned."""

@@ -231,6 +231,13 @@ class ActorsStood:
 
 
 @dataclass(frozen=True, slots=True)
+class PlanEvery:
+    """Each actor is planned every so many ticks from this one on."""
+
+    ticks: int
+
+
+@dataclass(frozen=True, slots=True)
 class Still:
     """In this tick nobody moves and nothing is planned, since the world is paused.
 
@@ -288,6 +295,7 @@ Input = (
     | DerivedInput
     | ActorCommand
     | ActorsStood
+    | PlanEvery
     | Still
     | IdsReserved
 )

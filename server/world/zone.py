@@ -36,6 +36,7 @@ from esplanade.server.world.inputs import (
     Join,
     MoveDoor,
     OfPerson,
+    PlanEvery,
     PotentialDerived,
     SetParameters,
     SteerMany,
@@ -275,6 +276,11 @@ class Zone:
         return self._actors.ended
 
     @property
+    def planning_interval(self) -> int:
+        """Ticks from one planning of an actor to its next; `PlanEvery` changes them."""
+        return self._population.navigator.planning_interval.ticks
+
+    @property
     def grid(self) -> LayeredGrid:
         """The ground of the zone; its shape never changes, its doors do, between two ticks."""
         return self._grid
@@ -421,8 +427,8 @@ class Zone:
                 self.doors.want(item.name, item.is_open)
             case DoorDerived():
                 self._moved_doors |= self.doors.take(item.change)
-            case PotentialDerived():
-                self._population.renew_potential(item.potential)
+            case PotentialDerived() | PlanEvery():
+                self._actors.take(item)
             case ActorsDerived():
                 self._persons.gone(self._commands.take_derived(item, self.tick))
             case ActorsStood():

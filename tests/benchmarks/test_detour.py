@@ -5,7 +5,8 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
-from benchmarks._detour import Detour, NavMeshSettings, missing, y_up, z_up
+from benchmarks._detour import Detour, NavMeshSettings, y_up, z_up
+from benchmarks._node_process import recast_missing
 
 SETTINGS = NavMeshSettings(radius_m=0.25, height_m=1.8, climb_m=0.6, cell_m=0.125)
 
@@ -18,7 +19,7 @@ def floor(x0: float, x1: float, z: float) -> np.ndarray:
 
 @contextmanager
 def detour(mesh: np.ndarray, settings: NavMeshSettings = SETTINGS) -> Iterator[Detour]:
-    if absent := missing():
+    if absent := recast_missing():
         pytest.skip(absent)
     with Detour(mesh, settings) as running:
         yield running

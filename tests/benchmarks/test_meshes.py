@@ -5,7 +5,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from benchmarks import _detour, meshes
+from benchmarks import _detour, _node_process, meshes
 
 STEP_M = 0.5
 
@@ -29,7 +29,7 @@ def write_terrace(path: Path) -> Path:
 
 
 def needs_the_navigation_mesh() -> None:
-    if absent := _detour.missing():
+    if absent := _node_process.recast_missing():
         pytest.skip(absent)
 
 
@@ -78,9 +78,9 @@ def test_a_disagreement_is_drawn(tmp_path, monkeypatch) -> None:
 
 def test_skips_in_words_what_is_absent(tmp_path, monkeypatch, capsys) -> None:
     monkeypatch.setenv("ESPLANADE_RECORDINGS", str(tmp_path))
-    monkeypatch.setattr(meshes, "missing", lambda: None)
+    monkeypatch.setattr(meshes, "recast_missing", lambda: None)
     assert meshes.main([]) == 0
     assert "skipped: there are no meshes" in capsys.readouterr().out
-    monkeypatch.setattr(meshes, "missing", lambda: "Recast is absent")
+    monkeypatch.setattr(meshes, "recast_missing", lambda: "Recast is absent")
     assert meshes.main([]) == 0
     assert "skipped: Recast is absent" in capsys.readouterr().out

@@ -258,6 +258,7 @@ def _world(tick: int, actors: int, people: int) -> dict[str, Any]:
         "places": {place["name"]: [place["x"], place["y"], place["z"]] for place in plan["places"]},
         "revision": 1,
         "pace": {"factor": 1.0, "paused": False},
+        "planning_interval_ticks": 1,
     }
 
 

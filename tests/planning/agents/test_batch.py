@@ -315,6 +315,30 @@ def test_behind_walls_there_is_no_way(start) -> None:
     batch.close()
 
 
+def test_who_is_not_due_goes_on_along_the_path_that_it_has(batch) -> None:
+    """It is the search that is left out: people who come near are evaded all the same."""
+    crowd = crowd_of([(2.0, 3.0), (2.0, 5.0)], [(7.0, 3.0), (7.0, 5.0)])
+    guides = guides_of(batch.grid, crowd)
+    nobody = walking([], [])
+    for _ in range(6):
+        crowd.cells[:] = batch.grid.on_ground(crowd.positions, np.zeros(2))[1]
+        step(crowd, *decided(batch, crowd, guides, nobody))
+    crowd.cells[:] = batch.grid.on_ground(crowd.positions, np.zeros(2))[1]
+    due = np.array([True, False])
+    ahead = crowd.positions + np.array([0.7, 0.0])
+    for people in (nobody, walking(ahead, np.zeros((2, 2)))):
+        decisions, _, _ = batch.tick(crowd, guides, people, TICK_S, due)
+        assert np.array_equal(decisions.replanned, due)
+        assert np.array_equal(decisions.paths[1], batch.zone.world.reservations.paths[1])
+        assert not decisions.renewed[1]
+        assert decisions.expansions[1] == 0
+    assert decisions.expansions[0] > 0
+    assert decisions.wishes[1, 0] < crowd.velocities[1, 0] - 0.1
+    crowd.known[1] = False
+    decisions, _, _ = batch.tick(crowd, guides, people, TICK_S, due)
+    assert decisions.replanned.all()
+
+
 def test_an_old_path_is_read_on_and_lengthened(batch) -> None:
     """A path that is almost over goes on straight down the potential."""
     crowd = crowd_of([(1.0, 4.0)], [(7.0, 4.0)], velocities=[(1.3, 0.0)])

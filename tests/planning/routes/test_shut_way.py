@@ -27,6 +27,35 @@ def shut_by(grid: LayeredGrid, *discs, around_m: float = 1.5, goal=GOAL) -> list
     ).tolist()
 
 
+def test_several_who_look_are_told_each_as_if_it_looked_alone() -> None:
+    grid = doorway(0.5)
+    goals = [GOAL, (5.0, 8.0), (2.0, 2.0)]
+    potentials = [Potential(grid, goal, 0.0, RADIUS_M).values for goal in goals]
+    places = np.random.default_rng(1).uniform((0.5, 0.5), (4.5, 9.5), (12, 2))
+    cells, slots = grid.on_ground(places, np.zeros(12))[1], np.arange(12) % 3
+    bodies = np.array([(5.0, 5.0, 0.0, 0.4), (3.0, 5.0, 0.0, 0.4), (80.0, 5.0, 0.0, 0.4)])
+    row, ways = grid.row_of(Body.adult()), ShutWays(len(grid.layered.floors))
+    rows, rooms = np.full(12, row), np.linspace(0.2, 0.4, 12)
+    found = ways.any_shut(
+        grid.arrays, rows, np.stack(potentials), slots, cells, places, bodies, rooms, 1.5
+    )
+    alone = [
+        ways.shut_by(
+            grid.arrays,
+            row,
+            potentials[slots[n]],
+            int(cells[n]),
+            tuple(places[n].tolist()),
+            bodies,
+            float(rooms[n]),
+            1.5,
+        ).any()
+        for n in range(12)
+    ]
+    assert found.tolist() == alone
+    assert 0 < found.sum() < 12
+
+
 @pytest.mark.parametrize(("half_m", "shut"), [(0.45, True), (0.7, True), (1.2, False)])
 def test_one_body_shuts_a_doorway_if_it_leaves_no_room_beside(half_m: float, shut: bool) -> None:
     assert shut_by(doorway(half_m), (5.0, 5.0, 0.0, 0.4)) == [shut]

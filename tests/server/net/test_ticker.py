@@ -6,6 +6,7 @@ import pytest
 
 from esplanade.actors import Population
 from esplanade.protocol.messages import Ping, Pong
+from esplanade.server.console import questions
 from tests.patience import PATIENCE_S
 from tests.server.client import joined
 from tests.server.conftest import Serving
@@ -18,6 +19,19 @@ async def test_ticks_follow_one_another_at_their_rate(serving: Serving) -> None:
             await client.ticks(1)
             ticks.append(client.tick)
         assert ticks == list(range(ticks[0], ticks[0] + 20))
+
+
+@pytest.mark.parametrize(("given", "wanted"), [(None, 1), (2, 2)])
+async def test_the_planning_interval_of_the_settings_is_told(
+    serving: Serving, given: int | None, wanted: int
+) -> None:
+    async with serving(actors=4, planning_interval=given) as server:
+        begun = server.world.tick
+        async with joined(server.port) as client:
+            await client.until_tick(begun + 5)
+        text = server.metrics.exposition().decode()
+        assert f"esplanade_planning_interval_ticks {wanted}.0" in text
+        assert questions.world(server.console)["planning_interval_ticks"] == wanted
 
 
 async def test_when_planning_fails_people_walk_on(

@@ -184,3 +184,9 @@ def test_variables_of_a_server_change_nothing(room: Path, monkeypatch: pytest.Mo
     monkeypatch.setenv("ESPLANADE_CROWD", "no.csv")
     with OfflineWorld(room, actors=0) as world:
         assert world.zone.tick_s == 0.05
+
+
+def test_actors_are_planned_as_often_as_is_asked(room: Path) -> None:
+    with OfflineWorld(room, actors=3, planning_interval=2) as world:
+        world.step()
+        assert world.zone.planning_interval == 2

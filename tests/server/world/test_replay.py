@@ -18,6 +18,7 @@ from esplanade.server.world.inputs import (
     Join,
     MoveDoor,
     PlaceActor,
+    PlanEvery,
     RemoveActors,
     SendActors,
     SetParameters,
@@ -40,10 +41,13 @@ def script() -> dict[int, list[Input]]:
         10: [SetParameters(1, (a1, a2), {"radius_m": 0.4, "speed_mps": [1.0, 1.2]})],
         20: [SetParameters(2, (a3,), {"risk_weight": 25.0, "height_m": 1.2})],
         30: [Steer(4, 1, 0.3, 1.0), MoveDoor("gate", is_open=False)],
+        40: [PlanEvery(2)],
         45: [adding(3, *(spec(k, "wander", place=None) for k in range(4, 7)), radius_m=0.3)],
         60: [ChangeBehaviour(4, (a2,), TOUR), HoldActors(5, (a1,), held=True)],
         75: [MoveDoor("gate", is_open=True), PlaceActor(6, a3, (11.0, 2.0, 0.0))],
+        80: [PlanEvery(3)],
         90: [RemoveActors(7, ("main/a5",)), SendActors(8, (a3,), (3.3, 2.2, 0.0))],
+        105: [PlanEvery(1)],
         110: [HoldActors(9, (a1,), held=False), RemoveActors(10, ("main/a5",))],
     }
 

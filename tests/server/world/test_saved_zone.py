@@ -18,6 +18,7 @@ from esplanade.server.world.inputs import (
     Input,
     Join,
     MoveDoor,
+    PlanEvery,
     RemoveActors,
     SendActors,
     SetParameters,
@@ -55,6 +56,18 @@ def loaded(saved: dict[str, Any], next_id: int, *people: Returning) -> Populated
     set_doors(world.grid, again)
     world.zone.load(again, people)
     return world
+
+
+def test_a_zone_goes_on_with_its_planning_interval() -> None:
+    world = hall()
+    world.frame(PlanEvery(3))
+    world.frames(5)
+    assert world.zone.planning_interval == 3
+    again = loaded(world.zone.save(), 10)
+    for one in (world, again):
+        one.frames(20)
+    assert story(again) == story(world)
+    assert again.zone.planning_interval == 3
 
 
 def _names(world: Populated) -> list[str]:

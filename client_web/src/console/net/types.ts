@@ -50,6 +50,8 @@ export interface World {
   places: Readonly<Record<string, Point>>;
   revision: number;
   pace?: { factor: number; paused: boolean };
+  /** Ticks from one planning of an actor to its next. */
+  planning_interval_ticks?: number;
 }
 
 export type ReasonName =

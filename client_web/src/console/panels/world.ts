@@ -58,6 +58,8 @@ class WorldPanel extends CommandingPanel {
           tick ${world.tick}, ${span(world.tick * world.tick_s)};
           ${paused ? "paused" : `at ${factor}×`}
         </dd>
+        <dt class="soft">Planning</dt>
+        <dd>${planned(world.planning_interval_ticks ?? 1)}</dd>
       </dl>
       <fieldset>
         <legend>Pace</legend>
@@ -147,6 +149,11 @@ class WorldPanel extends CommandingPanel {
     if (found) this.world = found;
     this.requestUpdate();
   }
+}
+
+function planned(interval: number): string {
+  if (interval === 1) return "each actor in every tick";
+  return `each actor once in ${interval} ticks, to keep time`;
 }
 
 function span(seconds: number): string {
