@@ -50,6 +50,15 @@ def _taken_by(
     return -1
 
 
+@inlined
+def _gap(bodies: NDArray[np.float64], room_m: float, x: float, y: float) -> float:
+    """Distance from a centre at a point to where it would touch the nearest body, on any floor."""
+    least = np.inf
+    for k in range(len(bodies)):
+        least = min(least, length(bodies[k, 0] - x, bodies[k, 1] - y) - bodies[k, 3])
+    return least - room_m
+
+
 @kernel
 def _sample_route(
     grid: GridArrays,
@@ -61,13 +70,23 @@ def _sample_route(
     room_m: float,
     space: LookingSpace,
 ) -> int:
-    """Fill the route from a point down a potential; returns the number of its samples."""
+    """Fill the route from a point down a potential; returns the number of its samples.
+
+    Samples that nobody can touch, since the nearest body was further from one before, are free.
+    """
     count = 0
+    clear = 0  # the number of samples up to which nobody can be touched
     while count < len(space.samples) and cell >= 0:
         space.samples[count, 0] = x
         space.samples[count, 1] = y
         space.cells[count] = cell
-        space.taken[count] = _taken_by(bodies, room_m, x, y, floor_of(grid, cell)) >= 0
+        space.taken[count] = False
+        if count >= clear:
+            gap = _gap(bodies, room_m, x, y)
+            if gap > SAMPLE_M:
+                clear = count + int(min(gap / SAMPLE_M, 1e6))
+            else:
+                space.taken[count] = _taken_by(bodies, room_m, x, y, floor_of(grid, cell)) >= 0
         count += 1
         ux, uy, leg = direction_at(grid, potential, cell, x, y)
         if leg <= 1e-4:
@@ -116,24 +135,27 @@ def _leads_around(
 ) -> bool:
     """Whether a way of at most so many metres leads from cell to cell clear of all bodies.
 
-    The bodies that stand in its way are marked in `bumped` (K,).
+    The bodies that stand in its way are marked in `bumped` (K,). Ways whose cells lie nearest to
+    the end are looked at first (A*): where there is room, few cells are.
     """
     space.stamp[0] += 1
     stamp = space.stamp[0]
     ax, ay = anchor_at(grid, body, start)
+    bx, by = anchor_at(grid, body, end)
     steps, links = grid.kinds.steps[body], grid.layered.links
     space.seen[start] = stamp
     space.left[start] = 0.0
-    size = heap_push(space.keys, space.items, 0, 0.0, start)
+    size = heap_push(space.keys, space.items, 0, length(bx - ax, by - ay), start)
     while size > 0:
-        way = space.keys[0]
+        key = space.keys[0]
         cell = space.items[0]
         size = heap_pop(space.keys, space.items, size)
         if cell == end:
             return True
+        x, y = anchor_at(grid, body, cell)
+        way = key - length(bx - x, by - y)
         if way > space.left[cell] + 1e-4:
             continue
-        x, y = anchor_at(grid, body, cell)
         for direction in range(8):
             other = links[cell, direction]
             if other < 0 or not steps[cell] >> direction & 1:
@@ -145,15 +167,16 @@ def _leads_around(
             if space.seen[other] == stamp and space.left[other] <= further + 1e-4:
                 continue
             if other != end:
-                by = _taken_by(bodies, room_m, ox, oy, floor_of(grid, other))
-                if by >= 0:
-                    bumped[by] = True
+                taker = _taken_by(bodies, room_m, ox, oy, floor_of(grid, other))
+                if taker >= 0:
+                    bumped[taker] = True
                     continue
             if size + 1 >= len(space.keys):
                 return True  # it is wide open
             space.seen[other] = stamp
             space.left[other] = further
-            size = heap_push(space.keys, space.items, size, further, other)
+            key = further + length(bx - ox, by - oy)
+            size = heap_push(space.keys, space.items, size, key, other)
     return False
 
 
