@@ -8,8 +8,8 @@ look at nobody. In each tick all movers move their actors one after the other, e
 so that whatever else the machine does disturbs all of them alike. Times are processor time on one
 thread. DetourCrowd runs in WebAssembly, as on npm; its update is timed, with its routes, and the
 part of people in it. Of ORCA only the step is timed, since it finds no routes: it is given ours.
-`met people` and `met actors` are overlaps of discs that begin, `trips` those that end, within half a
-metre of the goal: all by actor and minute. Movers that are not installed are left out, and told.
+`met people` and `met actors` are overlaps of discs that begin, `trips` those that end, within half
+a metre of the goal: all by actor and minute. Movers that are not installed are left out, and told.
 """
 
 import argparse

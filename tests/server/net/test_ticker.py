@@ -1,4 +1,5 @@
 import asyncio
+import statistics
 import threading
 from typing import Any
 
@@ -7,6 +8,7 @@ import pytest
 from esplanade.actors import Population
 from esplanade.protocol.messages import Ping, Pong
 from esplanade.server.console import questions
+from esplanade.server.world.zone import Zone
 from tests.patience import PATIENCE_S
 from tests.server.client import joined
 from tests.server.conftest import Serving
@@ -22,13 +24,25 @@ async def test_ticks_follow_one_another_at_their_rate(serving: Serving) -> None:
 
 
 @pytest.mark.parametrize(("given", "wanted"), [(None, 1), (2, 2)])
-async def test_the_planning_interval_of_the_settings_is_told(
-    serving: Serving, given: int | None, wanted: int
+async def test_the_planning_interval_of_the_settings_is_kept_to_and_told(
+    serving: Serving, monkeypatch: pytest.MonkeyPatch, given: int | None, wanted: int
 ) -> None:
+    planned: list[int] = []
+    think = Zone.think
+
+    def counted(zone: Zone) -> bool:
+        moved = think(zone)
+        decisions = zone._population.navigator._batch.zone.decisions
+        planned.append(int(decisions.replanned.sum()))
+        return moved
+
     async with serving(actors=4, planning_interval=given) as server:
-        begun = server.world.tick
         async with joined(server.port) as client:
-            await client.until_tick(begun + 5)
+            await client.until_tick(server.world.tick + 2)
+            monkeypatch.setattr(Zone, "think", counted)
+            await client.until_tick(server.world.tick + 12)
+        # Who has got a new goal is planned in any tick.
+        assert statistics.median(planned) == 4 // wanted
         text = server.metrics.exposition().decode()
         assert f"esplanade_planning_interval_ticks {wanted}.0" in text
         assert questions.world(server.console)["planning_interval_ticks"] == wanted
