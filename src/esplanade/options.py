@@ -23,7 +23,7 @@ _AMOUNT: Final = Whole(0, 500)
 _DEMO: Final = {
     "port": Setting("port for people", _PORT, 8080),
     "private_port": Setting("port for health and metrics", _PORT, 8081),
-    "actors": Setting("number of actors", _AMOUNT, 12),
+    "actors": Setting("number of actors", Whole(0, 1000), 12),
     "visitors": Setting(
         "number of wandering bots; with --crowd its people come instead, again and again",
         _AMOUNT,

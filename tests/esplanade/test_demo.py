@@ -144,7 +144,7 @@ def test_no_visitors_before_the_world_is_ready() -> None:
     assert visitors._process is None
 
 
-@pytest.mark.parametrize("argument", ["--port=0", "--port=http", "--visitors=-1", "--actors=1000"])
+@pytest.mark.parametrize("argument", ["--port=0", "--port=http", "--visitors=-1", "--actors=1001"])
 def test_numbers_out_of_range_are_refused(
     argument: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
