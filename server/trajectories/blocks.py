@@ -39,6 +39,8 @@ class Block:
     doors: Mapping[str, bool] = field(default_factory=dict)
     parameters: Mapping[Hashable, ActorParameters] = field(default_factory=dict)
     """Of all actors, in the first block."""
+    planning_interval: int | None = None
+    """Ticks from one planning of an actor to its next, in the first block and where they change."""
 
     @property
     def size(self) -> int:
@@ -65,6 +67,8 @@ def _notes(block: Block) -> Iterable[tuple[str, Any]]:
     if block.parameters:
         own = {str(actor): _unusual(values) for actor, values in block.parameters.items()}
         yield "parameters", {"usual": USUAL, "actors": own}
+    if block.planning_interval is not None:
+        yield "planning", {"interval_ticks": block.planning_interval}
     yield from (("avatar", avatar) for avatar in block.avatars)
     for command in block.commands:
         yield from map(_told, parts_of(command))

@@ -2,7 +2,7 @@
 
 import asyncio
 import shlex
-from collections.abc import AsyncIterator, Iterable
+from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 
@@ -34,7 +34,7 @@ class WorldTrajectories:
         self._recorder = recorder
         self._writer = writer
 
-    def take(self, frame: Frame, inputs: Iterable[Input]) -> None:
+    def take(self, frame: Frame, inputs: Sequence[Input]) -> None:
         """Take a tick in that has ended; whatever fails here, the world goes on."""
         if self._writer.fault is not None:
             return

@@ -1,6 +1,6 @@
 """The recorder makes a block of each tick of a zone; it waits for nothing."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -12,7 +12,7 @@ from esplanade.server.trajectories.rates import ticks_between
 from esplanade.server.trajectories.sampling import Sampler
 from esplanade.server.trajectories.walkable import walkable_wkt
 from esplanade.server.world.frame import Frame
-from esplanade.server.world.inputs import Batch, Input, OneActorCommand
+from esplanade.server.world.inputs import Batch, Input, OneActorCommand, PlanEvery
 from esplanade.server.world.state import ACTOR
 from esplanade.server.world.zone import Zone
 
@@ -49,7 +49,7 @@ class Recorder:
         told = provenance_of(origin, self._zone, fps)
         return Head(told, fps, scene.bounds, walkable_wkt(scene))
 
-    def take(self, frame: Frame, inputs: Iterable[Input]) -> Block | None:
+    def take(self, frame: Frame, inputs: Sequence[Input]) -> Block | None:
         """The block of the tick that has ended; None if there is nothing to write of it."""
         for item in inputs:
             if isinstance(item, OneActorCommand | Batch):
@@ -65,12 +65,15 @@ class Recorder:
         due = self._sampler.is_due(frame.tick)
         doors = frame.events.doors
         avatars = [each.id for each in frame.entered] + [each.id for each in frame.reshaped]
-        parameters = {}
+        parameters, interval = {}, None
+        if any(isinstance(item, PlanEvery) for item in inputs):
+            interval = self._zone.planning_interval
         if not self._began:
             self._began = True
             parameters = {actor: self._zone.parameters(str(actor)) for actor in self._zone.actors}
             avatars = np.sort(self._zone.state.ids[self._zone.state.live()]).tolist()
-        if not (due or done or doors or avatars or parameters):
+            interval = self._zone.planning_interval
+        if not (due or done or doors or avatars or parameters or interval):
             return None
         return Block(
             frame.tick,
@@ -80,6 +83,7 @@ class Recorder:
             tuple(done),
             dict(doors),
             parameters,
+            interval,
         )
 
     def _avatar(self, avatar_id: int) -> dict[str, Any]:

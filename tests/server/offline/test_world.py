@@ -84,6 +84,17 @@ def test_changes_of_parameters_stand_at_their_tick(room: Path, tmp_path: Path) -
     assert [float(row[1]) for row in rows[::2]] == pytest.approx(np.arange(1, 21) / 10)
 
 
+def test_the_planning_interval_stands_where_it_holds(room: Path, tmp_path: Path) -> None:
+    for given, wanted in (({}, 1), ({"planning_interval": 3}, 3)):
+        out = tmp_path / f"{wanted}.csv"
+        with OfflineWorld(room, actors=1, seed=1, **given) as world:
+            world.write(out)
+            world.step()
+            world.step()
+        told = [(tick, content) for tick, kind, content in notes(out) if kind == "planning"]
+        assert told == [(1, {"interval_ticks": wanted})]
+
+
 def test_recorded_people_walk_their_tracks_among_actors(
     room: Path, recording: Path, tmp_path: Path
 ) -> None:
