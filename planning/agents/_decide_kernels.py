@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from esplanade.planning.agents._bottleneck_kernels import lane_of, see_passage
 from esplanade.planning.agents._branch_kernels import Moves
+from esplanade.planning.agents._narrow_way_kernels import lead_over_anchors, leads_nowhere
 from esplanade.planning.agents._perturb_kernels import path_cost, update_path
 from esplanade.planning.agents._reason_kernels import decided_reason
 from esplanade.planning.agents._search_kernels import (
@@ -90,7 +91,8 @@ def make_task(
     most_edges = p["edge_cells"]
     if not hold and cell >= 0:
         ahead = float(potentials[slot, cell, EDGES])
-        if on_edges + ahead - 0.5 >= most_edges:
+        # Measured along where it walks the way is some parts of a cell longer than in cells.
+        if on_edges + ahead + (1.0 if on_edges > 0.0 else -0.5) >= most_edges:
             most_edges = on_edges + ahead + rules["dodge_cells"]
     return Task(
         a,
@@ -186,13 +188,23 @@ def decide(
             out.renewed[a] = False
         out.statuses[a] = status
         path = out.paths[a]
-        ux, uy = control_toward(task, path[SUB, 0], path[SUB, 1], world.step_s)
+        need = needed_clearance(world, task)
+        narrow = False
+        if slot >= 0 and leads_nowhere(world, potential, task, path, cells):
+            narrow, ux, uy = lead_over_anchors(world, potential, task, path, bent)
+        if narrow:  # the followed path stays: this one is found anew in every tick
+            path[:] = bent
+            status = FOUND
+            switched = False
+            out.statuses[a] = status
+            out.renewed[a] = not agents.known[a]
+            need = -np.inf  # `walk` keeps it from walls
+        else:
+            ux, uy = control_toward(task, path[SUB, 0], path[SUB, 1], world.step_s)
         contact = p["radius_m"] + (world.person_radius_m + p["person_room_m"])
         dodged = False
         if rules["checks_steps"]:
-            ux, uy, dodged = last_check(
-                world, prediction, task, needed_clearance(world, task), contact, ux, uy
-            )
+            ux, uy, dodged = last_check(world, prediction, task, need, contact, ux, uy)
         wx, wy = limited(task, ux, uy, tick_s)
         out.wishes[a, 0] = wx
         out.wishes[a, 1] = wy

@@ -152,13 +152,14 @@ def last_check(
 ) -> tuple[float, float, bool]:
     """The wish itself if it touches nobody soon, else the evasion that leaves most room.
 
-    `need` is the distance that it keeps from walls. Evasions are stopping and sixteen directions at
+    `need` is the distance that evasions keep from walls; a wish comes from a path that does, and
+    `walk` slides along what it only just meets. Evasions are stopping and sixteen directions at
     two speeds; the third value tells whether they were tried because of people, not only of walls.
     Costs O(people) once and O(people near) for each evasion.
     """
     listed = np.empty(len(prediction.means), dtype=np.int64)
     near = listed[: _people_near(world, prediction, task, listed)]
-    gap = _gap(world, prediction, near, task, need, ux, uy)
+    gap = _gap(world, prediction, near, task, -np.inf, ux, uy)
     if gap >= contact_m:
         return ux, uy, False
     best = min(gap, contact_m) - 1e-6

@@ -87,6 +87,9 @@ def walk(
         part = min(part, 1.0 - done)
         support = _support(grid, cell, x, y, step_on_m)
         floor = float(grid.layered.floors[cell])
+        ahead = follow(grid, cell, x + part * dx, y + part * dy)
+        if ahead >= 0:  # up or down, its head passes what is above from the lower floor
+            floor = min(floor, float(grid.layered.floors[ahead]))
         placement = Placement(floor, support, height_m, step_on_m, leg_length_m)
         nx, ny = slide(index, placement, bounds, x, y, part * dx, part * dy, clearance)
         other = follow(grid, cell, nx, ny)

@@ -11,6 +11,9 @@ LOW_ROOM_M = 0.13
 """Distance that the centre of a body keeps from what it does not step over, but could put a leg
 over: its disc may reach beyond. Moves are looked at every 0.25 m at least, and jump over none."""
 
+_SHORTEST_PIECE_M = 0.01
+"""A move that fails is not tried in pieces shorter than twice this."""
+
 BARRIER = np.dtype(
     [
         ("x0", "f8"),
@@ -276,7 +279,8 @@ def slide(
     """Move a disc by (dx, dy) on one level; it slides along barriers and stays inside the bounds.
 
     Near barriers the movement is cut into pieces of half the clearance, so that no barrier is
-    jumped over. Where no barrier is as near as the movement is long, it is made at once.
+    jumped over, and a piece that fails into shorter ones. Where no barrier is as near as the
+    movement is long, it is made at once.
     """
     length = np.hypot(dx, dy)
     if length == 0.0:
@@ -288,8 +292,13 @@ def slide(
         if done == 0.0 and room > length and in_bounds(bounds, x + dx, y + dy):
             return x + dx, y + dy
         piece = min(length - done, max(room, 0.5 * clearance, 0.02))
-        u = piece / length
-        x, y = slide_step(index, placement, bounds, x, y, dx * u, dy * u, clearance, before)
+        while True:
+            u = piece / length
+            nx, ny = slide_step(index, placement, bounds, x, y, dx * u, dy * u, clearance, before)
+            if nx != x or ny != y or piece <= _SHORTEST_PIECE_M:
+                break
+            piece *= 0.5  # between two barriers a body that is pushed out of both gets on by less
+        x, y = nx, ny
         done += piece
     return x, y
 

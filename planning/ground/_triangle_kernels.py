@@ -201,16 +201,26 @@ def surfaces_at(buckets: TriangleBuckets, x: float, y: float, column: Column) ->
     hits = 0
     for e in range(buckets.starts[bucket], buckets.starts[bucket + 1]):
         t = buckets.members[e]
-        ax, ay, az = buckets.triangles[t, 0]
-        bx, by, bz = buckets.triangles[t, 1]
-        cx, cy, cz = buckets.triangles[t, 2]
-        ux, uy, vx, vy = bx - ax, by - ay, cx - ax, cy - ay
+        corners = buckets.triangles[t]
+        ax, ay = corners[0, 0], corners[0, 1]
+        ux, uy = corners[1, 0] - ax, corners[1, 1] - ay
+        vx, vy = corners[2, 0] - ax, corners[2, 1] - ay
         up = ux * vy - uy * vx
         px, py = x - ax, y - ay
-        b = (px * vy - py * vx) / up
-        c = (ux * py - uy * px) / up
-        if b < -1e-9 or c < -1e-9 or b + c > 1.0 + 1e-9 or hits == _MOST_HITS:
+        b = px * vy - py * vx
+        c = ux * py - uy * px
+        sign = 1.0 if up > 0.0 else -1.0
+        least = -1e-9 * abs(up)  # nothing is divided for the many that the vertical passes by
+        if (
+            sign * b < least
+            or sign * c < least
+            or sign * (up - b - c) < least
+            or hits == _MOST_HITS
+        ):
             continue
+        az, bz, cz = corners[0, 2], corners[1, 2], corners[2, 2]
+        b /= up
+        c /= up
         column.heights[hits] = az + b * (bz - az) + c * (cz - az)
         column.kinds[hits] = buckets.kinds[t]
         hits += 1

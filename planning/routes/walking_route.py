@@ -12,9 +12,13 @@ from numpy.typing import NDArray
 
 from esplanade.planning.grid._side_kernels import cells_to_begin_at
 from esplanade.planning.grid._walking_kernels import GroundArrays
+from esplanade.planning.grid.clearances import kind_of
 from esplanade.planning.grid.grid import LayeredGrid
 from esplanade.planning.routes import _descending_kernels as kernels
+from esplanade.planning.routes._anchor_way_kernels import anchors_ahead
+from esplanade.planning.routes._straightening_kernels import Line, recount
 from esplanade.planning.routes.moved_ends import MovedEnd, moved_end
+from esplanade.planning.routes.straightening import straighten
 from esplanade.planning.routes.wave_front import Wave, WaveFront
 from esplanade.planning.scene.bodies import LIMITS, Body
 from esplanade.planning.scene.heights import SAME_SURFACE_M
@@ -29,6 +33,8 @@ TURN_COS: Final = math.cos(math.radians(2.0))
 
 PIECE_CELLS: Final = 8192
 """A piece of a search settles at most so many cells: some 10 to 20 ms."""
+
+_STRAIGHT_COS: Final = 1.0 - 1e-9
 
 _BEYOND_M: Final = 1.0
 """A wave goes so much further than the start, for whoever walks beside its cells."""
@@ -172,7 +178,7 @@ class RouteSearch:
             corners,
         )
         if count < 0:
-            return None
+            return self._over_anchors(wave, int(self._targets[nearest]), float(left_m[nearest]))
         legs: list[Point] = [(x, y, z) for x, y, z in corners[:count].tolist()]
         if end != self._goal:
             # Somebody else's wave led to another point of the same cell.
@@ -181,8 +187,48 @@ class RouteSearch:
                 legs.append(end)
         return (*legs, self._goal)
 
+    def _over_anchors(self, wave: WaveFront, cell: int, left_m: float) -> Route | None:
+        """The route over the anchors that a wave has reached, straightened.
+
+        Steps between anchors are checked exactly, so that it leads through passages in which a
+        straight walk to a waypoint ends at a corner.
+        """
+        most = 64 + int(8.0 * left_m / self._grid.cell_m)
+        points, cells = np.empty((most, 2)), np.empty(most, dtype=np.int64)
+        row = self._grid.row_of(self._body)
+        count, complete = anchors_ahead(wave.arrays, wave.values, row, cell, points, cells)
+        if not complete:
+            return None
+        points, cells = points[:count], cells[:count].astype(np.int32)
+        traversability = self._grid.traversability.of(kind_of(self._body))
+        line = Line(
+            np.concatenate([[self._start[:2]], points, [self._goal[:2]]]),
+            np.concatenate([[np.int32(self._cell)], cells, cells[-1:]]),
+            np.zeros(count + 2, dtype=np.int32),
+        )
+        if not recount(traversability, line):
+            return None
+        line = straighten(traversability, line)
+        heights = self._grid.layered.floors[line.cells]
+        ends = np.flatnonzero(_turns(line.xy)).tolist()
+        return tuple((*line.xy[k].tolist(), float(heights[k])) for k in ends)
+
     def _straight(self, start: Point, goal: Point) -> bool:
         return leads_straight(self._grid, start, goal, self._clearance_m)
+
+
+def _turns(xy: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether a line (N, 2) turns or ends at each of its points, bool (N,); not at the first."""
+    along = np.diff(xy, axis=0)
+    lengths = np.hypot(*along.T)
+    ends = np.zeros(len(xy), dtype=np.bool_)
+    ends[-1] = True
+    before = 0
+    for k in np.flatnonzero(lengths > 1e-9).tolist():
+        cosine = along[before] @ along[k] / (lengths[before] * lengths[k])
+        ends[k] = k > 0 and lengths[before] > 0.0 and cosine < _STRAIGHT_COS
+        before = k
+    return ends
 
 
 def leads_straight(grid: LayeredGrid, start: Point, goal: Point, clearance_m: float) -> bool:

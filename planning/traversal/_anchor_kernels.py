@@ -33,6 +33,8 @@ _HALF_DIAGONAL = 0.7072
 AIM_M = 0.04
 """A push aims at this much more room than the radius."""
 WITHIN_M = 1e-6
+EXACT_M = 1e-3
+"""Anchors are rounded to parts of a cell, so that their distances are exact to this."""
 _PUSHES = 12
 _HALVINGS = 8
 _ALONG_M = 0.03
@@ -179,7 +181,7 @@ def place_anchors(
     part_m = arrays.cell_m / PARTS
     most_m = _MOST_PARTS * part_m
     reach = np.float32(near.reach_m)
-    enough = body.radius_m - SLACK_M
+    least = body.radius_m - EXACT_M
     for layer in range(arrays.pages.shape[0]):
         for tj in range(box.first_row // TILE, (box.end_row - 1) // TILE + 1):
             for ti in range(box.first_column // TILE, (box.end_column - 1) // TILE + 1):
@@ -209,17 +211,15 @@ def place_anchors(
                         y = arrays.y0 + (j + 0.5) * arrays.cell_m
                         room, qx, qy, second = two_nearest(near, body, cell, floor, x, y)
                         rooms[cell] = min(room, near.reach_m)
-                        if not enough - _HALF_DIAGONAL * arrays.cell_m <= room < body.radius_m:
+                        if not least - _HALF_DIAGONAL * arrays.cell_m <= room < body.radius_m:
                             continue
                         if not _may_fit(near, body, cell, floor, x, y, most_m):
                             continue
                         dx, dy = _push(near, body, cell, floor, x, y, room, qx, qy, second)
                         far = max(abs(dx), abs(dy)) / most_m
-                        least = enough
-                        if far > 1.0:  # it stays in its cell, where the body fits exactly
+                        if far > 1.0:  # it stays in its cell
                             dx /= far
                             dy /= far
-                            least = body.radius_m
                         u, v = int(np.round(dx / part_m)), int(np.round(dy / part_m))
                         px, py = x + u * part_m, y + v * part_m
                         there = room_at(near, body, cell, floor, px, py)[0]

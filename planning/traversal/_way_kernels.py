@@ -13,7 +13,6 @@ from esplanade.planning.ground._barrier_kernels import (
     Measures,
     NearBarriers,
     height_to_climb,
-    segment_barrier_distance,
 )
 from esplanade.planning.ground._geometry_kernels import (
     LOW_ROOM_M,
@@ -24,6 +23,7 @@ from esplanade.planning.ground._geometry_kernels import (
 from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.traversal._anchor_kernels import (
     AIM_M,
+    EXACT_M,
     SLACK_M,
     WITHIN_M,
     anchor_of,
@@ -33,8 +33,6 @@ from esplanade.planning.traversal._anchor_kernels import (
     two_nearest,
 )
 
-_DIAGONAL = 1.41422
-"""Of a cell, in cells."""
 _LEVEL_M = 1e-4
 """Floors that differ by less see the same barriers."""
 
@@ -55,15 +53,19 @@ def way_through(
     by: float,
     aside: float,
     fits: bool,
+    rises: bool,
     but: int,
 ) -> int:
     """Whether a body can go straight from a to b, as far as the list of one cell tells.
 
     Barriers may not be crossed, seen from the `lowest` floor, and distance is kept from what is an
-    obstacle even from the `highest` one: the other end of the way sees to its own. BLOCKED means
-    that a barrier is crossed whose ends are further than `aside` from the middle. With `fits` both
-    ends are known to be far enough from all; what the list of the cell `but` has is left out.
+    obstacle even from the `highest` one: the other end of the way sees to its own. If it `rises`,
+    a is on the lowest floor and b on the highest; what the body passes below on the lowest matters
+    from the middle on. BLOCKED means that a barrier is crossed whose ends are further than `aside`
+    from the middle. With `fits` both ends are known to be far enough from all; what the list of the
+    cell `but` has is left out.
     """
+    from_x, from_y = ax, ay
     length = np.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay))
     found = CLEAR
     entry = near.first[cell]
@@ -81,14 +83,19 @@ def way_through(
             need = body.radius_m - SLACK_M
         elif climb > body.step_on_m + TOLERANCE_M:
             need = min(body.radius_m, LOW_ROOM_M) - SLACK_M
+        full = need + SLACK_M - EXACT_M if need > 0.0 else 0.0
+        if rises:
+            ax, ay = from_x, from_y
+            if barrier["bottom_m"] >= lowest + body.height_m - TOLERANCE_M:
+                ax, ay = 0.5 * (from_x + bx), 0.5 * (from_y + by)
         x0, y0, x1, y1 = barrier["x0"], barrier["y0"], barrier["x1"], barrier["y1"]
         dx, dy = x1 - x0, y1 - y0
         left_a = dx * (ay - y0) - dy * (ax - x0)
         left_b = dx * (by - y0) - dy * (bx - x0)
         least = min(abs(left_a), abs(left_b))
-        if left_a * left_b > 0.0 and least * least >= need * need * (dx * dx + dy * dy):
+        if left_a * left_b > 0.0 and least * least >= full * full * (dx * dx + dy * dy):
             continue  # a and b are far enough from its line, on the same side
-        if nearest_on_segment(ax, ay, x0, y0, x1, y1)[0] > need + length:
+        if nearest_on_segment(ax, ay, x0, y0, x1, y1)[0] > full + length:
             continue
         if but >= 0 and is_listed(near, but, row):
             continue
@@ -97,15 +104,67 @@ def way_through(
             if min(np.hypot(x0 - mx, y0 - my), np.hypot(x1 - mx, y1 - my)) > aside:
                 return BLOCKED
             found = BARRED
-        elif fits:
-            if (
-                point_segment_distance(x0, y0, ax, ay, bx, by) < need
-                or point_segment_distance(x1, y1, ax, ay, bx, by) < need
-            ):
-                found = BARRED
-        elif segment_barrier_distance(barrier, ax, ay, bx, by) < need:
+            continue
+        apart, cx, cy, qx, qy = _closest(x0, y0, x1, y1, ax, ay, bx, by, fits)
+        if apart < need or (
+            apart < full
+            and not _has_room_aside(near, body, cell, highest, cx, cy, qx, qy, need + SLACK_M)
+        ):
             found = BARRED
     return found
+
+
+@inlined
+def _closest(
+    x0: float,
+    y0: float,
+    x1: float,
+    y1: float,
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+    ends_only: bool,
+) -> tuple[float, float, float, float, float]:
+    """Distance of a barrier and a segment ab that do not cross, and the points where they are
+    nearest: that of ab, then that of the barrier; with `ends_only` from the barrier's ends alone.
+    """
+    apart, cx, cy = nearest_on_segment(x0, y0, ax, ay, bx, by)
+    qx, qy = x0, y0
+    d, px, py = nearest_on_segment(x1, y1, ax, ay, bx, by)
+    if d < apart:
+        apart, cx, cy, qx, qy = d, px, py, x1, y1
+    if not ends_only:
+        for x, y in ((ax, ay), (bx, by)):
+            d, px, py = nearest_on_segment(x, y, x0, y0, x1, y1)
+            if d < apart:
+                apart, cx, cy, qx, qy = d, x, y, px, py
+    return apart, cx, cy, qx, qy
+
+
+@inlined
+def _has_room_aside(
+    near: NearBarriers,
+    body: Measures,
+    cell: int,
+    floor: float,
+    cx: float,
+    cy: float,
+    qx: float,
+    qy: float,
+    room: float,
+) -> bool:
+    """Whether a body that comes too near a barrier at c, by less than the slack, may give way.
+
+    The point q of the barrier is nearest to c; `room` is the distance to keep. Without that room a
+    passage is narrower than the body.
+    """
+    apart = np.hypot(cx - qx, cy - qy)
+    if apart < WITHIN_M:
+        return False
+    part = room / apart
+    px, py = qx + part * (cx - qx), qy + part * (cy - qy)
+    return bool(room_at(near, body, cell, floor, px, py)[0] >= body.radius_m - EXACT_M)
 
 
 @inlined
@@ -122,7 +181,8 @@ def is_way_clear(
 ) -> bool:
     """Whether a body can go straight from a to b, as far as the list of one cell tells."""
     return bool(
-        way_through(near, body, cell, lowest, highest, ax, ay, bx, by, 0.0, False, -1) == CLEAR
+        way_through(near, body, cell, lowest, highest, ax, ay, bx, by, 0.0, False, False, -1)
+        == CLEAR
     )
 
 
@@ -144,11 +204,16 @@ def _straight_between(
     lowest, highest = min(a, b), max(a, b)
     ax, ay = anchor_of(arrays, near.first, offsets, first)
     bx, by = anchor_of(arrays, near.first, offsets, second)
+    if a > b:
+        ax, ay, bx, by = bx, by, ax, ay
     aside = max(arrays.cell_m, 0.5 * np.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay)))
-    fits = fit and highest - lowest < _LEVEL_M
-    found = way_through(near, body, first, lowest, highest, ax, ay, bx, by, aside, fits, -1)
+    rises = highest - lowest >= _LEVEL_M
+    fits = fit and not rises
+    found = way_through(near, body, first, lowest, highest, ax, ay, bx, by, aside, fits, rises, -1)
     if found != BLOCKED:
-        then = way_through(near, body, second, lowest, highest, ax, ay, bx, by, aside, fits, first)
+        then = way_through(
+            near, body, second, lowest, highest, ax, ay, bx, by, aside, fits, rises, first
+        )
         found = max(found, then)
     return found
 
@@ -255,7 +320,7 @@ def _bend_from(
     lowest, highest = heights
     ax, ay, bx, by = ends
     px, py, room = pushed(near, body, cells[0], highest, x, y)
-    if room < body.radius_m - SLACK_M:
+    if room < body.radius_m - EXACT_M:
         return False, px, py
     if np.hypot(px - 0.5 * (ax + bx), py - 0.5 * (ay + by)) > arrays.cell_m:
         return False, px, py
@@ -285,20 +350,19 @@ def leads_on(
     Nowhere between two points does a body have less room than half of what it has at both, less
     the way between them.
     """
-    enough = body.radius_m - SLACK_M
+    exact = body.radius_m - EXACT_M
     least = min(rooms[one], rooms[two])
-    if least < enough:
+    if least < exact:
         return False
     if abs(arrays.floors[one] - arrays.floors[two]) < _LEVEL_M:
-        both = rooms[one] + rooms[two] - 2.0 * enough
-        if least > body.radius_m + AIM_M + WITHIN_M:  # neither anchor is off its centre
-            if both >= (_DIAGONAL if aslant else 1.0) * arrays.cell_m:
-                return True
-        elif both > arrays.cell_m:
+        way2 = (2.0 if aslant else 1.0) * arrays.cell_m * arrays.cell_m
+        if least <= body.radius_m + AIM_M + WITHIN_M:  # an anchor may be off its centre
             ax, ay = anchor_of(arrays, near.first, offsets, one)
             bx, by = anchor_of(arrays, near.first, offsets, two)
-            if both >= np.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay)):
-                return True
+            way2 = (bx - ax) * (bx - ax) + (by - ay) * (by - ay)
+        both = rooms[one] + rooms[two] - 2.0 * exact
+        if both > 0.0 and both * both >= way2:
+            return True
     first, second = min(one, two), max(one, two)
     found = _straight_between(arrays, near, body, offsets, first, second, True)
     if found == BARRED:

@@ -31,7 +31,25 @@ HAIR = 1e-4
 FLAT_SLOPE = 0.35
 LINK_ROOM_M = 0.5
 SLACK_M = 0.007
+EXACT_M = 1e-3
 LOW_ROOM_M = 0.13
+
+
+def nearest_points(way: tuple[Point, Point], line: tuple[Point, Point]) -> tuple[Point, Point]:
+    """The points of two segments that do not cross where they are nearest."""
+    pairs = [(foot_on(end, *way), end) for end in line] + [
+        (end, foot_on(end, *line)) for end in way
+    ]
+    return min(pairs, key=lambda pair: math.dist(*pair))
+
+
+def foot_on(point: Point, a: Point, b: Point) -> Point:
+    """The point of a segment that is nearest to a point."""
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    square = dx * dx + dy * dy
+    u = 0.0 if square == 0.0 else ((point[0] - a[0]) * dx + (point[1] - a[1]) * dy) / square
+    u = min(1.0, max(0.0, u))
+    return a[0] + u * dx, a[1] + u * dy
 
 
 def line_of(barrier: Barrier) -> tuple[Point, Point]:
@@ -91,27 +109,60 @@ class Floors:
             return False
         if min(self.ceiling(a), self.ceiling(b)) - high < self.body.height_m - HAIR:
             return False
-        fits = all(self.keeps_clear((self.anchor(c),) * 2, self.floor(c)) for c in (a, b))
+        fits = all(self.fits_at(self.anchor(c), self.floor(c)) for c in (a, b))
         return fits and len(self.way_between(a, b)) > 0
 
+    def fits_at(self, position: Point, floor: float) -> bool:
+        """Whether a body has its exact radius at a position, or the distance of low obstacles."""
+        return all(
+            point_segment_distance(position, *line_of(barrier))
+            >= self.distance_from(barrier, floor) + SLACK_M - EXACT_M
+            for barrier in self.barriers
+            if self.height_to_climb(barrier, floor) > self.body.step_on_m + HAIR
+        )
+
     def way_between(self, a: int, b: int) -> tuple[Point, ...]:
-        """The points of a step between two cells, one bend included; none if barriers bar it."""
-        straight = self.anchor(a), self.anchor(b)
-        if self.keeps_clear(straight, self.floor(a), self.floor(b)):
-            return straight
+        """The points of a step between two cells, one bend included; none if barriers bar it.
+
+        What the body passes below from the lower floor matters from the middle of a straight step.
+        """
+        low, high = sorted((a, b), key=self.floor)
+        p, q = self.anchor(low), self.anchor(high)
+        middle = 0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])
+        rises = self.floor(high) - self.floor(low) >= HAIR
+        floors = self.floor(low), self.floor(high)
+
+        def part(barrier: Barrier) -> tuple[Point, Point]:
+            above = barrier["bottom_m"] >= floors[0] + self.body.height_m - HAIR
+            return (middle, q) if rises and above else (p, q)
+
+        if all(self.passes(barrier, *part(barrier), *floors) for barrier in self.barriers):
+            return p, q
         feet = self.feet
         found, x, y = bend_between(feet.arrays, feet.near, feet.body, feet.offsets, a, b)
-        bent = straight[0], (x, y), straight[1]
-        keeps_clear = found == 2 and self.keeps_clear(bent, self.floor(a), self.floor(b))
-        return bent if keeps_clear else ()
+        bent = p, (x, y), q
+        return bent if found == 2 and self.keeps_clear(bent, *floors) else ()
 
     def keeps_clear(self, way: tuple[Point, ...], *floors: float) -> bool:
         """Whether a body on its way over some floors keeps its distance from all barriers."""
         return all(
-            segment_distance(p, q, *line_of(barrier)) >= self.distance_from(barrier, *floors)
+            self.passes(barrier, p, q, *floors)
             for barrier in self.barriers
             for p, q in pairwise(way)
         )
+
+    def passes(self, barrier: Barrier, p: Point, q: Point, *floors: float) -> bool:
+        """Whether a body passes a barrier between two points, with room to give way if need be."""
+        need, apart = (
+            self.distance_from(barrier, *floors),
+            segment_distance(p, q, *line_of(barrier)),
+        )
+        if apart < need or need <= 1e-9 or apart >= need + SLACK_M - EXACT_M:
+            return apart >= need
+        c, end = nearest_points((p, q), line_of(barrier))
+        part = (need + SLACK_M) / math.dist(c, end)
+        aside = end[0] + part * (c[0] - end[0]), end[1] + part * (c[1] - end[1])
+        return self.fits_at(aside, max(floors))
 
     def distance_from(self, barrier: Barrier, *floors: float) -> float:
         """The distance of the body's centre from a barrier, which it may never cross."""
