@@ -17,14 +17,6 @@ from esplanade.planning.grid._grid_kernels import follow_path, length
 from esplanade.planning.routes._anchor_way_kernels import anchors_ahead, leads_exactly
 from esplanade.planning.routes._potential_kernels import PotentialValues, potential_at
 
-_LEAST_PART = 0.25
-"""A path leads somewhere if it makes this part of the progress that is possible in its time."""
-_STANDS_MPS = 0.05
-_MORE_S = 0.6
-"""For an agent that stands, the way over anchors may cost so much more: its path may well lead
-where it cannot follow, or put off the start from tick to tick."""
-_PACE = 0.5
-"""Part of the preferred speed at which a way over anchors is walked."""
 _MOST_POINTS = 24
 """Points that are looked ahead over: some three metres."""
 _LESS_M = 0.015
@@ -34,8 +26,8 @@ _REACHED_M = 0.01
 
 
 @inlined
-def _stands(task: Task) -> bool:
-    return bool(length(task.vx, task.vy) < _STANDS_MPS)
+def _stands(world: World, task: Task) -> bool:
+    return bool(length(task.vx, task.vy) < world.rules[0]["stands_mps"])
 
 
 @kernel
@@ -53,7 +45,7 @@ def leads_nowhere(
     left_m = potential_at(potential, task.cell, task.x, task.y)
     if task.hold or not np.isfinite(left_m):
         return False
-    if _stands(task):
+    if _stands(world, task):
         return True
     last = len(path) - 1
     far_m = task.speed_mps * last * world.step_s / SUB
@@ -62,7 +54,7 @@ def leads_nowhere(
     cells[0] = task.cell
     follow_path(world.grid, path, cells, 0, last)
     then_m = potential_at(potential, cells[last], path[last, 0], path[last, 1])
-    return bool(not left_m - then_m >= _LEAST_PART * min(left_m, far_m))
+    return bool(not left_m - then_m >= world.rules[0]["narrow_part"] * min(left_m, far_m))
 
 
 @kernel
@@ -78,20 +70,23 @@ def lead_over_anchors(
     If so, the velocity to aim at is returned too: it leads straight to the first point of the way
     that cannot be cut short.
     """
+    rules = world.rules[0]
     points = np.empty((_MOST_POINTS, 2))
     cells = np.empty(_MOST_POINTS, dtype=np.int64)
     count, _ = anchors_ahead(world.grid, potential, task.body, task.cell, points, cells)
     if count == 0:
         return False, 0.0, 0.0
     first = _first_to_go_to(world, task, points, count)
-    slice_m = _PACE * task.speed_mps * world.step_s / SUB
+    slice_m = rules["narrow_pace"] * task.speed_mps * world.step_s / SUB
     _walk_along(task.x, task.y, points[first:count], slice_m, out)
     need = needed_clearance(world, task) - _LESS_M
     last = len(path) - 1
     edges = stretch_edges(world, potential, task, need, task.cell, task.on_edges, out, 0, last)
     if edges == TOO_MANY:
         return False, 0.0, 0.0
-    most_s = path_cost(world, potential, task, path)[0] + (_MORE_S if _stands(task) else 0.0)
+    most_s = path_cost(world, potential, task, path)[0]
+    if _stands(world, task):
+        most_s += rules["narrow_over_s"]
     if not path_cost(world, potential, task, out)[0] < most_s:
         return False, 0.0, 0.0
     px, py = points[first]

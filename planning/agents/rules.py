@@ -450,10 +450,43 @@ class RuleModel(BaseModel):
             0,
             1000,
             "An actor that others have made go to and fro on edges, so that it has used up what "
-            "its body bears, may still go on to where its way leaves them, and so many cells out "
-            "of somebody's way.",
+            "its body bears, or all but a cell of it, may still go on to where its way leaves "
+            "them, and so many cells out of somebody's way.",
         ),
     ] = 3
+    narrow_part: Annotated[
+        float,
+        _rule(
+            "search",
+            "1",
+            0.0,
+            1.0,
+            "A path that makes less than this part of the progress that is possible in its time "
+            "leads nowhere; ways over anchors, through passages hardly wider than the body, are "
+            "weighed against it.",
+        ),
+    ] = 0.25
+    narrow_over_s: Annotated[
+        float,
+        _rule(
+            "search",
+            "s",
+            0.0,
+            10.0,
+            "For an actor that stands, a way over anchors may cost so much more than its path, "
+            "which may lead where it cannot follow, or put off the start from tick to tick.",
+        ),
+    ] = 0.6
+    narrow_pace: Annotated[
+        float,
+        _rule(
+            "search",
+            "1",
+            0.05,
+            1.0,
+            "A way over anchors is walked at this part of the preferred speed.",
+        ),
+    ] = 0.5
 
     perturbs: Annotated[
         bool, _switch("perturbation", "Whether followed paths are bent away from risk, figs. 7-9.")

@@ -13,7 +13,7 @@ from esplanade.planning.scene.mesh_file import MeshError, read_mesh, read_triang
 from tests.planning.ground.test_meshes import block, house, written
 
 BELOW, ABOVE = (6.0, 2.0, 0.0), (6.0, 2.0, 2.7)
-LENGTH_M = 13.66
+LENGTH_M = 13.57
 
 
 def obj_of(vertices: np.ndarray, faces: np.ndarray) -> str:
@@ -76,7 +76,7 @@ def test_far_from_its_origin_a_house_is_the_same(tmp_path, far_m) -> None:
     assert way.length_m == pytest.approx(LENGTH_M, abs=0.01)
     left = Potential(grid, ends[1][:2], ends[1][2], 0.25).distance([ends[0][:2]], [0.0])
     # The potential measures on the plan, the path up the stairs too.
-    assert LENGTH_M - 1.25 < left[0] < LENGTH_M
+    assert LENGTH_M - 1.4 < left[0] < LENGTH_M
 
 
 @pytest.mark.parametrize("thick_m", [0.001, 0.02, 0.3])
