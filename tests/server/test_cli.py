@@ -69,7 +69,7 @@ def test_a_bad_variable_is_named_as_such(
 ) -> None:
     monkeypatch.setenv("ESPLANADE_ACTORS", "-3")
     assert run([]) == 2
-    fault = "esplanade serve: ESPLANADE_ACTORS: '-3' is no whole number from 0 to 500; see"
+    fault = "esplanade serve: ESPLANADE_ACTORS: '-3' is no whole number from 0 to 1000; see"
     assert capsys.readouterr().err.startswith(fault)
 
 

@@ -117,7 +117,8 @@ def test_a_bound_holds_and_saves_work(start, goal, crowd, slack) -> None:
     bounded = found(ground, bound=bound)
     assert bounded.expansions <= free.expansions or free.status is not SearchStatus.FOUND
     if bounded.status is SearchStatus.FOUND:
-        assert cost(bounded.path) < bound
+        # The search adds the same up in another order.
+        assert cost(bounded.path) < bound + 1e-9
 
 
 @given(
