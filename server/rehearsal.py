@@ -18,7 +18,10 @@ from esplanade.server.world.zone import Zone
 SCENE: Final = Scene.open_space(
     (0.0, 0.0, 6.0, 6.0),
     walls=[((3.0, 0.0), (3.0, 2.0))],
-    polygons=[Polygon(points=((4.5, 4.5), (5.5, 4.5), (5.5, 5.5), (4.5, 5.5)), height_m=0.3)],
+    polygons=[
+        Polygon(points=((4.5, 4.5), (5.5, 4.5), (5.5, 5.5), (4.5, 5.5)), height_m=0.3),
+        Polygon(points=((0.4, 5.2), (0.8, 4.8), (1.2, 5.2), (0.8, 5.6)), height_m=0.7),
+    ],
 ).model_copy(update={"doors": (Door(name="door", start=(3.0, 2.0), end=(3.0, 3.0)),)})
 """It is not all level: on level ground some kernels are not called."""
 START: Final = (1.0, 4.0)
@@ -33,8 +36,13 @@ INPUTS: Final[Mapping[int, list[Input]]] = {
     TICKS - 1: [Detach(PERSON)],
     TICKS: [Leave(PERSON)],
 }
-WAYS: Final = (((1.0, 1.0, 0.0), (5.0, 1.0, 0.0)), ((2.9, 1.0, 0.0), (3.05, 1.0, 0.0)))
-"""Starts and goals: one way leads around a wall, the other's ends stand beside one another."""
+WAYS: Final = (
+    ((1.0, 1.0, 0.0), (5.0, 1.0, 0.0)),
+    ((2.9, 1.0, 0.0), (3.05, 1.0, 0.0)),
+    ((1.0, 1.0, 0.0), (0.8, 4.85, 0.0)),
+)
+"""Starts and goals: one way leads around a wall, the ends of another stand beside one another, and
+the goal of the last is inside of something."""
 
 
 def rehearse(rules: Rules, tick_s: float) -> None:

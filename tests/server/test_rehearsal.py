@@ -29,7 +29,7 @@ for tick in range(60):
     inputs = {5: [Join(0, "Ada", None)], 6: [Steer(avatar, 1, 0.3, 1.0)], 50: [Leave(avatar)]}
     inputs[9] = [MoveDoor(name, not is_open) for name, is_open in world.doors.states().items()]
     if tick == 20:
-        for goal in ((30.0, 20.0, 3.5), (13.9, 7.0, 0.0), (-3.0, 0.0, 0.0)):
+        for goal in ((30.0, 20.0, 3.5), (13.9, 7.0, 0.0), (-3.0, 0.0, 0.0), (16.2, 6.0, 0.0)):
             search = world.route_search(avatar, goal)
             while not search.advance():
                 pass
