@@ -57,7 +57,7 @@ class Start:
 
 @dataclass(frozen=True)
 class Figures:
-    """What one mover took and came to."""
+    """Time that one mover took, and the figures of its walk."""
 
     mover: str
     actors: int
@@ -103,7 +103,7 @@ class Watched:
         self._touching = touching
 
     def figures(self) -> Figures:
-        """What it took and came to."""
+        """Time that it took, and the figures of its walk."""
         took_ms = 1e3 * np.array(self.took_s)
         actors = len(self._done)
         minutes = actors * len(took_ms) * self._start.tick_s / 60.0

@@ -46,7 +46,7 @@ LEAST_FLOW: Final = 1.3
 """Persons a second and metre of width."""
 MOST_UNFAIRNESS: Final = 1.5
 QUEUE_S: Final = 10.0
-"""Where nobody waits for so long in the fair order there is no queue, and no ratio to judge."""
+"""There is no queue, and no ratio to judge, if nobody waits for so long in the fair order."""
 MOST_PATIENCE_S: Final = 600.0
 EPILOGUE_S: Final = 2.0
 """The simulation goes on for this long after the last actor has arrived."""
@@ -135,7 +135,7 @@ def walk(
     `esplanade evaluate --set`.
     """
     models = models_of(settings or {})
-    # Whoever is last in a fair order may wait for most of the time, and must not give up.
+    # The last in a fair order may wait for most of the time, and must not give up.
     body = parameters_of(settings or {}, {"patience_s": min(until_s, MOST_PATIENCE_S)})
     grid = LayeredGrid.from_scene(swap.scene, CELL_M)
     plan = replace(models.plan, threads=threads)

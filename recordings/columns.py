@@ -51,7 +51,7 @@ _SLASH: Final = re.compile(r"(.*?)\s*/\s*([^\s/]+)")
 _TAIL: Final = re.compile(r"(.*?)[_\s.]+(?:in[_\s.]+)?([a-zµμ]+)")
 _MOST_OF_A_NAME: Final = 100
 _NO_TAILS: Final = ("min", "h")
-"""What ends a name like x_min is no unit."""
+"""The end of a name like x_min is no unit."""
 _NO_UNITS: Final = frozenset(("", "-", "--", "1", "t", "x", "y"))
 """They stand where others have a unit, and are none."""
 _VADERE: Final = re.compile(r"-PID\d+$", re.IGNORECASE)
@@ -65,7 +65,7 @@ class Name(NamedTuple):
 
 
 class Columns(NamedTuple):
-    """Where the columns stand that count, by what they are, with the names of their units."""
+    """Places of the columns that count, by what they are, with the names of their units."""
 
     places: dict[str, int]
     units: dict[str, str]

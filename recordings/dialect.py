@@ -29,7 +29,7 @@ class Line(NamedTuple):
 
 
 class Dialect(NamedTuple):
-    """How lines become cells; `delimiter` is None for white space."""
+    """The way in which lines become cells; `delimiter` is None for white space."""
 
     delimiter: str | None
     decimal_comma: bool

@@ -23,7 +23,7 @@ MOST_BYTES: Final = 8 * 2**30
 _HEAD_BYTES: Final = 2**16
 _BLOCK_BYTES: Final = 2**18
 _COLUMN: Final = re.compile(r"column #(\d+)")
-"""How pyarrow names the column of a cell that is not as the others are."""
+"""The words in which pyarrow names the column of a cell that is not as the others are."""
 _NOWHERE: Final = ["", "?", "NA", "N/A", "NaN", "nan", "null", "None", "none", "-"]
 _NEEDED: Final = ("time", "frame", "id")
 _PLAIN: Final = frozenset(("time", "frame", "id", "x", "y", "z"))

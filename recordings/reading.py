@@ -260,7 +260,7 @@ def _crowd(
 
 
 def _unknown_units(rows: Rows, given: Given) -> Iterator[str]:
-    """What a unit is taken for that has no known name, and the option that says otherwise."""
+    """Remarks on units without a known name: what they are taken for, and the option for that."""
     for column, unit in rows.unknown_units.items():
         if column == "time":
             yield (

@@ -20,7 +20,7 @@ _SQUARE = (0.0, 0.0, 18.0, 12.0)
 
 
 class Sample(NamedTuple):
-    """Where somebody is: number of the sample, number of the person, metres, metres a second."""
+    """A place of somebody: number of the sample, number of the person, metres, metres a second."""
 
     number: int
     person: int

@@ -7,7 +7,7 @@ from typing import Final
 from esplanade.files.content import GZIP_MAGIC, ContentError, unpacked
 
 MAX_UNPACKED_BYTES: Final = 128 * 2**20
-"""What gzip packed may become this large."""
+"""A file that gzip packed may become this large."""
 
 
 class TooLargeError(OSError):

@@ -16,7 +16,7 @@ ENOUGH_ROOM: Final = 0.3
 ENOUGH_WINDOWS: Final = 10
 """There must be room enough in so many windows, one after the other."""
 LEAST_PLANNING: Final = 0.1
-"""Where planning takes less than this part of a tick, others are to blame for a lack of room."""
+"""Others are to blame for a lack of room if planning takes less than this part of a tick."""
 
 log = structlog.get_logger(__name__)
 

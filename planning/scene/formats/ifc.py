@@ -50,7 +50,7 @@ def read_ifc(path: Path, data: bytes) -> Triangles:
 
 
 def _converted(building: Path, made: Path) -> dict[str, Any]:
-    """What the other process tells of a building whose triangles it has written."""
+    """Facts that the other process tells of a building whose triangles it has written."""
     # With -P, none of the modules beside the script can stand for one of a library.
     command = [sys.executable, "-P", str(ifc_triangles.__file__), str(building), str(made)]
     done = subprocess.run(command, capture_output=True, check=False)

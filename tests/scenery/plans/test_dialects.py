@@ -146,7 +146,7 @@ def drawing(version: str = "R2010") -> str:
 
 
 def entities(text: str) -> str:
-    """What a drawing draws, without any other section."""
+    """The entities of a drawing, without any other section."""
     begin = text.rindex("  0\nSECTION", 0, text.index("ENTITIES"))
     return text[begin : text.index("ENDSEC", begin)] + "ENDSEC\n  0\nEOF\n"
 

@@ -41,7 +41,7 @@ async def test_the_planning_interval_of_the_settings_is_kept_to_and_told(
             await client.until_tick(server.world.tick + 2)
             monkeypatch.setattr(Zone, "think", counted)
             await client.until_tick(server.world.tick + 12)
-        # Who has got a new goal is planned in any tick.
+        # An actor that has got a new goal is planned in any tick.
         assert statistics.median(planned) == 4 // wanted
         text = server.metrics.exposition().decode()
         assert f"esplanade_planning_interval_ticks {wanted}.0" in text
