@@ -13,7 +13,14 @@ from chaos.server import OPERATOR_KEY, Samples, Server, grown, serving, unnamed
 from chaos.wire import ATTACKER
 
 SETTLE_S: Final = 2.0
-"""The world runs this long with the canary before memory is read."""
+"""The world runs at least this long with the canary before memory is read."""
+
+MOST_SETTLE_S: Final = 30.0
+"""It runs no longer than this before the attack, whatever its memory does."""
+
+STEADY: Final = 0.005
+"""Memory is steady if it grows by no more than this part of it in `SETTLE_S`. A server that has
+just opened goes on making tables ahead for some seconds, which no attacker is to blame for."""
 
 AFTER_S: Final = 1.0
 """The server has freed the memory of an attack by then."""
@@ -83,7 +90,7 @@ def run(
         canary_process(server.port, seed) as canary,
     ):
         canary.begin()
-        _pass(SETTLE_S, server, progress)
+        _settle(server, progress)
         alone = canary.tell()
         before = server.read()
         counts: dict[str, int] = {}
@@ -129,6 +136,18 @@ def naming(lines: list[dict[str, Any]]) -> list[str]:
     said = [line for line in lines if line.get("address") == ATTACKER]
     texts = [" ".join(filter(None, (line.get("event"), line.get("why")))) for line in said]
     return list(dict.fromkeys(texts))
+
+
+def _settle(server: Server, progress: Progress) -> None:
+    """Let time pass until the server's memory is steady."""
+    end_s = time.monotonic() + MOST_SETTLE_S
+    before_mb = server.memory_mb()
+    _pass(SETTLE_S, server, progress)
+    while (now_mb := server.memory_mb()) > (1.0 + STEADY) * before_mb:
+        if time.monotonic() >= end_s:
+            return
+        before_mb = now_mb
+        _pass(SETTLE_S, server, lambda _: None)
 
 
 def _pass(seconds: float, server: Server, progress: Progress) -> float:
