@@ -42,7 +42,7 @@ class PlanningInterval:
         self._ticks = ticks
 
     def due(self, ranks: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Tell of all actors, by their ranks (A,), whether each is due in the next tick, bool (A,)."""
+        """Tell by the ranks (A,) of all actors whether each is due in the next tick, bool (A,)."""
         turns: NDArray[np.bool_] = (ranks + self.count) % self._ticks == 0
         return turns
 

@@ -17,6 +17,8 @@ from esplanade.planning.scene.formats import ifc_triangles
 from esplanade.planning.scene.formats.faces import Triangles
 
 _GZIP: Final = ".gz"
+_LONGEST_S: Final = 1800.0
+"""A large building takes minutes; a damaged one might never end."""
 
 
 def read_ifc(path: Path, data: bytes) -> Triangles:
@@ -53,7 +55,10 @@ def _converted(building: Path, made: Path) -> dict[str, Any]:
     """Facts that the other process tells of a building whose triangles it has written."""
     # With -P, none of the modules beside the script can stand for one of a library.
     command = [sys.executable, "-P", str(ifc_triangles.__file__), str(building), str(made)]
-    done = subprocess.run(command, capture_output=True, check=False)
+    try:
+        done = subprocess.run(command, capture_output=True, check=False, timeout=_LONGEST_S)
+    except subprocess.TimeoutExpired:
+        raise ValueError(f"IfcOpenShell was not done with it after {_LONGEST_S:g} s") from None
     try:
         told: dict[str, Any] = json.loads(done.stdout.decode().rpartition("\n")[2])
     except ValueError:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from esplanade.planning.scene.formats import ifc_triangles
+from esplanade.planning.scene.formats import ifc, ifc_triangles
 from esplanade.planning.scene.mesh_file import MeshError, read_mesh
 
 CUBE = [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
@@ -14,7 +14,7 @@ CUBE = [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3
 
 def house(path: Path, unit: str) -> None:
     """A slab of 10 m x 8 m and a door upon it."""
-    ifc = pytest.importorskip("ifcopenshell")
+    ifcopenshell = pytest.importorskip("ifcopenshell")
     call: Any = pytest.importorskip("ifcopenshell.api").run
     model = ifc.file(schema="IFC4")
 
@@ -69,7 +69,7 @@ def test_what_is_no_building_is_refused(tmp_path: Path) -> None:
 
 
 def test_feet_are_metres_and_no_unit_is_said(tmp_path: Path) -> None:
-    ifc = pytest.importorskip("ifcopenshell")
+    ifcopenshell = pytest.importorskip("ifcopenshell")
     path = tmp_path / "house.ifc"
     house(path, "METERS")
     plain = path.read_text()
@@ -82,7 +82,7 @@ def test_feet_are_metres_and_no_unit_is_said(tmp_path: Path) -> None:
     path.write_text(plain.replace(metre, feet))
     found = read_mesh(path).triangles.reshape(-1, 3)
     assert np.ptp(found, axis=0) == pytest.approx([3.048, 2.4384, 0.06096])
-    model = ifc.open(str(path))
+    model = ifcopenshell.open(str(path))
     for project in model.by_type("IfcProject"):
         project.UnitsInContext = None
     for units in model.by_type("IfcUnitAssignment"):
@@ -91,14 +91,18 @@ def test_feet_are_metres_and_no_unit_is_said(tmp_path: Path) -> None:
     assert "it names no unit: taken for metres" in read_mesh(path).told[-1]
 
 
-def test_a_library_that_ends_is_a_fault_of_the_file(
+def test_a_library_that_ends_or_never_does_is_a_fault_of_the_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("ifcopenshell")
-    ending = tmp_path / "ending.py"
-    ending.write_text("import os\nos.abort()\n")
-    monkeypatch.setattr(ifc_triangles, "__file__", str(ending))
+    script = tmp_path / "ending.py"
+    monkeypatch.setattr(ifc_triangles, "__file__", str(script))
     path = tmp_path / "house.ifc"
     path.write_text("ISO-10303-21;")
+    script.write_text("import os\nos.abort()\n")
     with pytest.raises(MeshError, match="IfcOpenShell ended on it with status -6"):
+        read_mesh(path)
+    script.write_text("import time\ntime.sleep(600)\n")
+    monkeypatch.setattr(ifc, "_LONGEST_S", 0.2)
+    with pytest.raises(MeshError, match=r"IfcOpenShell was not done with it after 0\.2 s"):
         read_mesh(path)
