@@ -16,7 +16,7 @@ def house(path: Path, unit: str) -> None:
     """A slab of 10 m x 8 m and a door upon it."""
     ifcopenshell = pytest.importorskip("ifcopenshell")
     call: Any = pytest.importorskip("ifcopenshell.api").run
-    model = ifc.file(schema="IFC4")
+    model = ifcopenshell.file(schema="IFC4")
 
     def made(kind: str, name: str) -> Any:
         return call("root.create_entity", model, ifc_class=kind, name=name)
