@@ -21,6 +21,7 @@ from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIO
 
 from esplanade.server.assets import SECURITY_HEADERS
 from esplanade.server.net.connections import SHUT_S
+from esplanade.server.net.lingering import LingeringTransport
 from esplanade.server.net.listening import bound_sockets
 from esplanade.server.net.tls import Tls
 
@@ -43,6 +44,8 @@ _AT_ONCE: Final = 16
 """Connections that are accepted before any is looked at; the event loop takes them in a row."""
 
 _WAITING_FOR_REQUEST: Final = (h11.IDLE, h11.SEND_BODY)
+
+_UNREAD: Final = (h11.SEND_BODY, h11.ERROR)
 
 
 @asynccontextmanager
@@ -105,7 +108,8 @@ class _BoundedConnection(H11Protocol):
     _is_web_socket = False
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
-        super().connection_made(transport)
+        self._lingering = LingeringTransport(transport, self.loop, self._is_unread)
+        super().connection_made(self._lingering)  # type: ignore[arg-type]
         if len(self.connections) > MAX_CONNECTIONS:
             transport.abort()
         else:
@@ -113,11 +117,17 @@ class _BoundedConnection(H11Protocol):
 
     def connection_lost(self, exc: Exception | None) -> None:
         super().connection_lost(exc)
+        self._lingering.forget()
         self._forget()
 
     def data_received(self, data: bytes) -> None:
+        if self._lingering.drops(data):
+            return
         super().data_received(data)
         self._watch()
+
+    def _is_unread(self) -> bool:
+        return self.conn.their_state in _UNREAD
 
     def handle_websocket_upgrade(self, event: h11.Request) -> None:
         # The library stops reading here, before the end of the request that it has read.
