@@ -16,7 +16,7 @@ from esplanade.server.audit.verifying import FORGET
 from esplanade.server.moderation import rows as moderation
 from esplanade.server.operating.forgetting_operated import forget_operated
 from esplanade.server.store.store import Store
-from esplanade.server.store.tables import ACCOUNTS, BOTS, INVITATIONS, SEATS
+from esplanade.server.store.tables import ACCOUNTS, BOTS, CLUSTER_SEATS, INVITATIONS, SEATS
 
 Forgetter = Callable[[Connection, str, str], int]
 """Forgets in a zone a person of this name, within a write of the store; returns how many rows were
@@ -51,11 +51,20 @@ def _forget_seats(connection: Connection, zone: str, person: str) -> int:
     return count
 
 
+def _forget_cluster_seats(connection: Connection, _: str, person: str) -> int:
+    """Take away seats that bear the name, in whichever zone of the cluster they are."""
+    chosen = CLUSTER_SEATS.c.name == person
+    count = connection.execute(select(func.count()).where(chosen)).scalar() or 0
+    connection.execute(delete(CLUSTER_SEATS).where(chosen))
+    return count
+
+
 FORGETTERS: Final[Mapping[str, Forgetter]] = {
     "accounts": _forget_account,
     "invitations": _forget_invitations,
     "bots": _forget_bots,
     "seats": _forget_seats,
+    "cluster seats": _forget_cluster_seats,
     **moderation.FORGETTERS,
     "operated": forget_operated,
 }

@@ -22,7 +22,7 @@ from sqlalchemy import (
     UniqueConstraint,
 )
 
-REVISION: Final = "0005"
+REVISION: Final = "0006"
 """The newest migration: what the tables below are after it."""
 
 METADATA: Final = MetaData()
@@ -284,3 +284,44 @@ CHAT_LINES: Final = Table(
     Index("chat_lines_by_name", "zone", "name"),
 )
 """Lines of chat, where a server is told to keep them for some days."""
+
+OWNERSHIPS: Final = Table(
+    "ownerships",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("epoch", BigInteger, nullable=False),
+    Column("host", String(64)),
+    Column("until_us", BigInteger, nullable=False),
+    Column("wanted_host", String(64)),
+)
+"""Zones of a world on several machines, and the host that owns each until a moment.
+
+The epoch is the number of the ownership. `wanted_host` is the only host that may claim the zone.
+"""
+
+CLUSTER_SEATS: Final = Table(
+    "cluster_seats",
+    METADATA,
+    Column("zone", String(64), nullable=False),
+    Column(
+        "person",
+        BigInteger().with_variant(Integer, "sqlite"),
+        Identity(always=False),
+        primary_key=True,
+    ),
+    Column("name", Text, nullable=False),
+    Column("newest", String(64), nullable=False, unique=True),
+    Column("used", String(64), unique=True),
+    Column("hops", BigInteger, nullable=False),
+    Column("generation", BigInteger, nullable=False),
+    Column("gateway", String(64)),
+    Column("vacated_us", BigInteger),
+    Column("state", LargeBinary, nullable=False),
+    UniqueConstraint("zone", "person", name="cluster_seats_by_zone"),
+    Index("cluster_seats_by_name", "zone", "name"),
+)
+"""Seats of people in a world on several machines; each is in one zone.
+
+`newest` and `used` are SHA-256 digests of the tokens that take the seat: the newest one, and the
+one that was used to get it, until the newest has arrived.
+"""

@@ -8,6 +8,7 @@ from sqlalchemy import Connection, insert, select
 from esplanade.server.accounts.identity import MACHINE
 from esplanade.server.audit.entries import Entry
 from esplanade.server.audit.log import AuditLog, Filter
+from esplanade.server.cluster import seats
 from esplanade.server.operating import forgetting
 from esplanade.server.operating.forgetting import forget
 from esplanade.server.store.sql_store import SqlStore
@@ -40,6 +41,22 @@ async def test_a_table_of_another_part_is_asked_too(
     assert "Eve" not in str(told)
     assert (eve.person, eve.account, eve.address) == (None, "olga", "192.0.2.7")
     assert (bob.person, bob.note) == ("Bob", "rude")
+
+
+async def test_seats_in_any_zone_of_a_cluster_are_taken_away(
+    store: SqlStore, log: AuditLog
+) -> None:
+    def seat_everyone(connection: Connection) -> None:
+        for zone, name in [("hall", "Eve"), ("plaza", "Eve"), ("plaza", "Bob")]:
+            seats.take(connection, zone, name, "east", name.encode())
+
+    await store.write(seat_everyone)
+    counts = await forget(store, log, MACHINE, "Eve")
+    assert counts["cluster seats"] == 2
+    assert await store.read(lambda to: seats.seats_in(to, "hall")) == []
+    assert [seat.name for seat in await store.read(lambda to: seats.seats_in(to, "plaza"))] == [
+        "Bob"
+    ]
 
 
 async def test_where_one_table_fails_nothing_is_forgotten(

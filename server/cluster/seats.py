@@ -1,0 +1,204 @@
+"""Where each person's one seat in the cluster is: each function is part of one transaction.
+
+A seat is in one zone. Each time somebody takes it, with a token, its generation grows; each time it
+goes to another zone, its number of hops does. Whoever names an older number changes nothing.
+"""
+
+import secrets
+from collections.abc import Collection
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from sqlalchemy import ColumnElement, Connection, Row, delete, insert, or_, select, update
+
+from esplanade.server.accounts.identity import digest_of
+from esplanade.server.cluster.database_time import NOW_US
+from esplanade.server.cluster.ownership import Moment, assert_owned
+from esplanade.server.cluster.tenure import Claim
+from esplanade.server.store.tables import CLUSTER_SEATS
+
+_TOKEN_BYTES: Final = 24
+
+
+@dataclass(frozen=True)
+class ClusterSeat:
+    """A person's seat as the database has it."""
+
+    person: int
+    zone: str
+    name: str
+    generation: int
+    hops: int
+    gateway: str | None
+    vacated_us: int | None
+    """The moment since which nobody steers; None while somebody does."""
+    state: bytes = field(repr=False)
+    """The record of the person, as it was written last."""
+
+
+def take(
+    connection: Connection, zone: str, name: str, gateway: str, state: bytes
+) -> tuple[ClusterSeat, str]:
+    """Make a seat for a new person; returns it with the token that takes it again."""
+    token = _new_token()
+    row = {
+        "zone": zone,
+        "name": name,
+        "newest": digest_of(token),
+        "hops": 0,
+        "generation": 1,
+        "gateway": gateway,
+        "state": state,
+    }
+    made = connection.execute(insert(CLUSTER_SEATS).values(row).returning(CLUSTER_SEATS)).one()
+    return _seat(made), token
+
+
+def resume(
+    connection: Connection, token: str, gateway: str, keep_us: int, *, now: Moment = NOW_US
+) -> tuple[ClusterSeat, str] | None:
+    """Take a seat again, at any gateway; returns it with its next token, or None if it is gone.
+
+    The token that was used remains valid beside the new one until `confirm`: an answer that is lost
+    loses no seat. A seat that has been vacant for longer than `keep_us` is gone.
+    """
+    table, used, renewed = CLUSTER_SEATS.c, digest_of(token), _new_token()
+    changed = (
+        update(CLUSTER_SEATS)
+        .where(
+            or_(table.newest == used, table.used == used),
+            or_(table.vacated_us.is_(None), table.vacated_us > now - keep_us),
+        )
+        .values(
+            generation=table.generation + 1,
+            gateway=gateway,
+            vacated_us=None,
+            used=used,
+            newest=digest_of(renewed),
+        )
+        .returning(CLUSTER_SEATS)
+    )
+    row = connection.execute(changed).one_or_none()
+    return None if row is None else (_seat(row), renewed)
+
+
+def confirm(connection: Connection, person: int, generation: int) -> bool:
+    """Note that the newest token has arrived: the one before takes the seat no more."""
+    changed = update(CLUSTER_SEATS).where(*_held(person, generation)).values(used=None)
+    return connection.execute(changed).rowcount == 1
+
+
+def vacate(connection: Connection, person: int, generation: int, *, now: Moment = NOW_US) -> bool:
+    """Note that nobody steers any more, unless somebody has taken the seat since."""
+    changed = update(CLUSTER_SEATS).where(*_held(person, generation))
+    left = changed.values(vacated_us=now, gateway=None)
+    return connection.execute(left).rowcount == 1
+
+
+def reoccupy(connection: Connection, person: int, generation: int, gateway: str) -> bool:
+    """Note that the client that was thought lost steers after all, if nobody took the seat."""
+    changed = update(CLUSTER_SEATS).where(*_held(person, generation))
+    back = changed.values(vacated_us=None, gateway=gateway)
+    return connection.execute(back).rowcount == 1
+
+
+def leave(connection: Connection, person: int, generation: int) -> bool:
+    """Remove the seat of a person who goes for good."""
+    gone = delete(CLUSTER_SEATS).where(*_held(person, generation))
+    return connection.execute(gone).rowcount == 1
+
+
+def remove_vacant(
+    connection: Connection, owner: Claim, keep_us: int, *, now: Moment = NOW_US
+) -> list[int]:
+    """Remove the seats of a zone that have been vacant for too long; returns their persons.
+
+    Raises
+    ------
+    NotOwnerError
+        The zone is another host's.
+    """
+    assert_owned(connection, owner)
+    table = CLUSTER_SEATS.c
+    gone = (
+        delete(CLUSTER_SEATS)
+        .where(table.zone == owner.zone, table.vacated_us <= now - keep_us)
+        .returning(table.person)
+    )
+    return sorted(connection.execute(gone).scalars())
+
+
+def hop(
+    connection: Connection, owner: Claim, person: int, hops: int, destination: str, state: bytes
+) -> bool:
+    """Move a seat to another zone: the only moment of a hop that counts.
+
+    Returns False if the person has hopped already, or is not in the owner's zone.
+
+    Raises
+    ------
+    NotOwnerError
+        The zone that the person leaves is another host's.
+    """
+    assert_owned(connection, owner)
+    table = CLUSTER_SEATS.c
+    moved = (
+        update(CLUSTER_SEATS)
+        .where(table.person == person, table.hops == hops, table.zone == owner.zone)
+        .values(zone=destination, hops=table.hops + 1, state=state)
+    )
+    return connection.execute(moved).rowcount == 1
+
+
+def keep_states(connection: Connection, owner: Claim, states: Collection[tuple[int, bytes]]) -> int:
+    """Write the records of persons in a zone; returns of how many, leaving out who has gone on.
+
+    Raises
+    ------
+    NotOwnerError
+        The zone is another host's.
+    """
+    assert_owned(connection, owner)
+    table, written = CLUSTER_SEATS.c, 0
+    for person, state in states:
+        chosen = update(CLUSTER_SEATS).where(table.person == person, table.zone == owner.zone)
+        written += connection.execute(chosen.values(state=state)).rowcount
+    return written
+
+
+def seat_of(connection: Connection, person: int) -> ClusterSeat | None:
+    """The seat of a person; None if there is none."""
+    chosen = select(CLUSTER_SEATS).where(CLUSTER_SEATS.c.person == person)
+    row = connection.execute(chosen).one_or_none()
+    return None if row is None else _seat(row)
+
+
+def seats_in(connection: Connection, zone: str) -> list[ClusterSeat]:
+    """The seats of everyone who belongs in a zone, by their numbers.
+
+    A host that has claimed a zone begins with these.
+    """
+    chosen = select(CLUSTER_SEATS).where(CLUSTER_SEATS.c.zone == zone)
+    return [_seat(row) for row in connection.execute(chosen.order_by(CLUSTER_SEATS.c.person))]
+
+
+def _held(person: int, generation: int) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
+    table = CLUSTER_SEATS.c
+    return (table.person == person, table.generation == generation)
+
+
+def _new_token() -> str:
+    return secrets.token_urlsafe(_TOKEN_BYTES)
+
+
+def _seat(row: Row[Any]) -> ClusterSeat:
+    return ClusterSeat(
+        person=row.person,
+        zone=row.zone,
+        name=row.name,
+        generation=row.generation,
+        hops=row.hops,
+        gateway=row.gateway,
+        vacated_us=row.vacated_us,
+        state=row.state,
+    )
