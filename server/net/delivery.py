@@ -5,9 +5,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import numpy.typing as npt
 
-from esplanade.actors import Explanation
-from esplanade.protocol import Outcome, Reason
-from esplanade.protocol.messages import Blocker, Census, Circle, Doors, Plan, Point, Reshape
+from esplanade.protocol.messages import Census, Doors, Point, Reshape
 from esplanade.server.net import frames
 from esplanade.server.net.lines import Lines
 from esplanade.server.net.outbox import Outbox
@@ -136,7 +134,7 @@ class Delivery:
                 self._stop_watching(session)
                 continue
             if actor not in packed:
-                packed[actor] = frames.message(plan(news.tick, actor, plans[actor]))
+                packed[actor] = frames.frame(plans[actor])
             session.outbox.offer(packed[actor])
 
 
@@ -145,47 +143,3 @@ def _begins(ends: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
     begins = np.zeros_like(ends)
     begins[1:] = ends[:-1]
     return begins
-
-
-def plan(tick: int, actor: int, explanation: Explanation) -> Plan:
-    """An actor's explanation as it goes over the wire, to the millimetre."""
-    goal = explanation.goal
-    return Plan(
-        tick=tick,
-        id=actor,
-        reason=Reason(explanation.reason),
-        behaviour=explanation.behaviour,
-        goal=None if goal is None else tuple(np.round(goal, 3).tolist()),
-        path=np.round(explanation.path, 3).tolist(),
-        people=[
-            [
-                Circle(x=x, y=y, z=z, radius=radius)
-                for x, y, z, radius in np.round(circles, 3).tolist()
-            ]
-            for circles in explanation.people
-        ],
-        since_s=round(explanation.since_s, 3),
-        blocker=blocker(explanation),
-        outcome=None if explanation.outcome is None else Outcome(explanation.outcome),
-        in_the_way=in_the_way(explanation),
-    )
-
-
-def blocker(explanation: Explanation) -> Blocker | None:
-    """Return a blocker as it goes over the wire; the ids are those of avatars."""
-    held = explanation.blocker
-    if held is None:
-        return None
-    avatar = held.id if isinstance(held.id, int) else None
-    door = held.id if isinstance(held.id, str) else None
-    return Blocker(kind=held.kind, id=avatar, door=door, away=held.away_m)
-
-
-def in_the_way(explanation: Explanation) -> Blocker | None:
-    """Return whom a trip did not end at its goal for; the ids are those of avatars."""
-    by = explanation.in_the_way
-    if by is None:
-        return None
-    avatar = by.id if isinstance(by.id, int) else None
-    door = by.id if isinstance(by.id, str) else None
-    return Blocker(kind=by.kind, id=avatar, door=door)

@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from esplanade.actors import Explanation
 from esplanade.protocol.entities import Entity, pack_constants
 from esplanade.protocol.snapshot import RECORD, Records, pack_records
 from esplanade.protocol.steps import StepRecords
@@ -58,8 +57,8 @@ class Events:
     """The places that actors point at since this tick, by their ids; None for none any more."""
     chat: list[Line] = field(default_factory=list)
     """In the order in which people spoke; of somebody who left in this tick, before they did."""
-    plans: Mapping[int, Explanation] = field(default_factory=dict)
-    """Of the actors that somebody watches and whose turn it is, by their ids."""
+    plans: Mapping[int, bytes] = field(default_factory=dict)
+    """Of the actors that somebody watches and whose turn it is, by their ids: packed messages."""
 
 
 @dataclass(frozen=True)

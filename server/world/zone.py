@@ -20,6 +20,7 @@ from esplanade.actors.potential_pool import RenewedPotential
 from esplanade.actors.traces import Decided, Trace
 from esplanade.actors.tracing import NotKeptError
 from esplanade.planning import AgentTable, LayeredGrid, Prediction, Scene
+from esplanade.protocol import encode
 from esplanade.server.world.actor_commands import ActorCommands
 from esplanade.server.world.actors import ActorAvatars
 from esplanade.server.world.command_checks import fault_in
@@ -46,6 +47,7 @@ from esplanade.server.world.latest_steps import LatestSteps
 from esplanade.server.world.outcomes import Fault, Outcome
 from esplanade.server.world.people import People
 from esplanade.server.world.person_inputs import PersonInputs
+from esplanade.server.world.plans import plan
 from esplanade.server.world.routes import Point, RouteSearch, SharedWaves
 from esplanade.server.world.rules import Rules
 from esplanade.server.world.saved_zone import Returning, SavedZone
@@ -443,7 +445,9 @@ class Zone:
             case _:
                 self._persons.gone(self._commands.take(item, self.tick))
 
-    def _plans(self) -> dict[int, Explanation]:
-        """Why the watched actors do what they do, of those whose turn it is."""
+    def _plans(self) -> dict[int, bytes]:
+        """Why the watched actors do what they do, of those whose turn it is; packed messages."""
         in_turn = {a for a in self._persons.watched if (self.tick + a) % self._plan_period == 0}
-        return {actor: self.explain(actor) for actor in sorted(in_turn)}
+        return {
+            actor: encode(plan(self.tick, actor, self.explain(actor))) for actor in sorted(in_turn)
+        }

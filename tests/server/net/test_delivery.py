@@ -24,11 +24,12 @@ from esplanade.protocol.messages import (
 )
 from esplanade.protocol.steps import new_step_records, step_records
 from esplanade.server.metrics import Traffic
-from esplanade.server.net.delivery import Delivery, plan
+from esplanade.server.net.delivery import Delivery
 from esplanade.server.net.outbox import Outbox, SlowPolicy
 from esplanade.server.net.sockets.system import AVAILABLE
 from esplanade.server.world.inputs import Input, Say, Steer
 from esplanade.server.world.interest import PERIOD_TICKS
+from esplanade.server.world.plans import plan
 from esplanade.server.world.state import ACTOR
 from esplanade.server.world.walking import Feet
 from tests.server.client import joined

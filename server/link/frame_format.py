@@ -1,0 +1,144 @@
+"""A frame as bytes: arrays as they are in memory, and one list of everything else.
+
+The body begins with a head of counts. Records and steps follow as they go to clients, then the
+acknowledged movements, and then a list in msgpack. What is packed for clients already (constants of
+avatars, plans) is carried as it is. All numbers are little-endian.
+"""
+
+import struct
+from typing import Any, Final
+
+import msgpack
+import numpy as np
+from pydantic import TypeAdapter, ValidationError
+
+from esplanade.protocol.snapshot import RECORD
+from esplanade.protocol.steps import STEP
+from esplanade.server.link.frame_parts import FrameError
+from esplanade.server.world.frame import Entered, Events, Frame, Line, Reshaped, Tickets
+from esplanade.server.world.outcomes import Fault, FaultCode, Outcome
+from esplanade.server.world.routes import Point
+
+ACK: Final = np.dtype([("id", "<u4"), ("seq", "<u4")])
+"""A person and the latest movement that the avatar has begun."""
+
+MOST_BYTES: Final = 16 * 1024 * 1024
+"""No longer body is read."""
+
+_HEAD: Final = struct.Struct("<IIIBxxxIII")
+_ACTORS_STOOD: Final = 1
+
+_Constants = tuple[bytes, bytes]
+_Entered = tuple[int, int, str, _Constants]
+_Reshaped = tuple[int, float, float, float, _Constants]
+_Fault = tuple[FaultCode, str, dict[str, Any]]
+_Rest = tuple[
+    list[int],  # left
+    list[_Entered],
+    list[_Reshaped],
+    Tickets,  # joined
+    Tickets,  # attached
+    list[int],  # detached
+    dict[str, bool],  # doors
+    dict[int, Point | None],  # pointing
+    list[tuple[int, str]],  # chat
+    dict[int, bytes],  # plans
+    list[tuple[int, int, _Fault | None]],  # outcomes
+]
+_REST: Final = TypeAdapter(_Rest)
+
+
+def encode_frame(frame: Frame) -> bytes:
+    """Return the body of a frame."""
+    flags = _ACTORS_STOOD if frame.actors_stood else 0
+    counts = len(frame.records), len(frame.steps), len(frame.acks)
+    head = _HEAD.pack(frame.tick, frame.people, frame.actors, flags, *counts)
+    acks = np.empty(len(frame.acks), dtype=ACK)
+    acks["id"] = list(frame.acks)
+    acks["seq"] = list(frame.acks.values())
+    arrays = frame.records.tobytes() + frame.steps.tobytes() + acks.tobytes()
+    packed: bytes = msgpack.packb(_rest_of(frame))
+    return head + arrays + packed
+
+
+def decode_frame(body: bytes) -> Frame:
+    """Return the frame that the bytes say.
+
+    Raises
+    ------
+    FrameError
+        They say none.
+    """
+    if not _HEAD.size <= len(body) <= MOST_BYTES:
+        raise FrameError(f"a frame has {_HEAD.size} to {MOST_BYTES} bytes, not {len(body)}")
+    tick, people, actors, flags, *counts = _HEAD.unpack_from(body)
+    arrays, at = [], _HEAD.size
+    for kind, count in zip((RECORD, STEP, ACK), counts, strict=True):
+        end = at + count * kind.itemsize
+        if end > len(body):
+            raise FrameError(f"{count} items of {kind.itemsize} bytes do not fit into the frame")
+        arrays.append(np.frombuffer(body, dtype=kind, count=count, offset=at))
+        at = end
+    records, steps, acks = arrays
+    rest = _read_rest(body[at:])
+    left, entered, reshaped, joined, attached, detached = rest[:6]
+    doors, pointing, chat, plans, outcomes = rest[6:]
+    return Frame(
+        tick=tick,
+        people=people,
+        actors=actors,
+        left=left,
+        entered=[Entered(*each) for each in entered],
+        joined=joined,
+        attached=attached,
+        detached=detached,
+        acks=dict(zip(acks["id"].tolist(), acks["seq"].tolist(), strict=True)),
+        records=records,
+        steps=steps,
+        events=Events(doors, pointing, [Line(*each) for each in chat], plans),
+        reshaped=[Reshaped(*each) for each in reshaped],
+        outcomes=[
+            Outcome(command, at_tick, None if fault is None else Fault(*fault))
+            for command, at_tick, fault in outcomes
+        ],
+        actors_stood=bool(flags & _ACTORS_STOOD),
+    )
+
+
+def _rest_of(frame: Frame) -> list[Any]:
+    events = frame.events
+    return [
+        frame.left,
+        [(each.id, each.kind, each.name, each.constants) for each in frame.entered],
+        [
+            (each.id, each.radius_m, each.leg_m, each.stature_m, each.constants)
+            for each in frame.reshaped
+        ],
+        frame.joined,
+        frame.attached,
+        frame.detached,
+        dict(events.doors),
+        dict(events.pointing),
+        [(line.id, line.text) for line in events.chat],
+        dict(events.plans),
+        [
+            (each.command, each.tick, None if each.fault is None else _fault(each.fault))
+            for each in frame.outcomes
+        ],
+    ]
+
+
+def _fault(fault: Fault) -> tuple[str, str, dict[str, Any]]:
+    return fault.code.value, fault.text, dict(fault.arguments)
+
+
+def _read_rest(packed: bytes) -> _Rest:
+    try:
+        # Keys of maps are avatars' ids as well as names.
+        return _REST.validate_python(msgpack.unpackb(packed, strict_map_key=False))
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        where = " / ".join(str(part) for part in first["loc"])
+        raise FrameError(f"the events of the frame: {where}: {first['msg']}") from None
+    except (ValueError, msgpack.UnpackException, TypeError) as error:
+        raise FrameError(f"the events of the frame are not msgpack: {error}") from None
