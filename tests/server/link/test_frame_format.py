@@ -121,9 +121,9 @@ def test_viewers_are_told_the_same_bytes_over_a_network() -> None:
     for tick in range(TICKS):
         for name, (x, y) in list(population.positions.items()):
             population.put(name, (x + 0.05, y + 0.02 * (tick % 3)))
-        frame = trial.frame(*_inputs(trial, tick))
+        frame = trial.frame(*inputs_of(trial, tick))
         here, there = near.take(frame), far.take(decode_frame(encode_frame(frame)))
-        _assert_same(here, there)
+        assert_same(here, there)
         # Every third viewer is not written to: what is due later is the same as well.
         places = [k for k in range(len(here.snapshots.viewers)) if (k + tick) % 3]
         near.wrote(here.snapshots, places)
@@ -136,7 +136,7 @@ def _another_audience(trial: Trial) -> Audience:
     return Audience(trial.world.rules, trial.world.origin_m, trial.world.times)
 
 
-def _inputs(trial: Trial, tick: int) -> list[Input]:
+def inputs_of(trial: Trial, tick: int) -> list[Input]:
     """People who come, walk about, talk, go away and come back."""
     rng = np.random.default_rng(tick)
     state = trial.world.state
@@ -162,7 +162,7 @@ def _persons(trial: Trial) -> set[int]:
     return set(state.ids[state.of_kind(PERSON)].tolist())
 
 
-def _assert_same(here: News, there: News) -> None:
+def assert_same(here: News, there: News) -> None:
     for each in fields(News):
         if each.name != "snapshots":
             assert getattr(here, each.name) == getattr(there, each.name), each.name

@@ -1,0 +1,80 @@
+"""A process's connection to NATS, the broker that carries what may be lost.
+
+Nothing is kept there: JetStream is off, and a frame that did not go out in time is worth nothing.
+The library by itself waits two seconds before it comes back, gives up after a minute, and takes four
+to notice a broker that is silent.
+"""
+
+import asyncio
+from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager, suppress
+from typing import Any, Final
+
+import structlog
+from nats.aio.client import Client
+from nats.errors import Error as NatsError
+
+RETRY_S: Final = 0.1
+"""The library tries to come back after so long."""
+PING_S: Final = 1
+PINGS_UNANSWERED: Final = 2
+"""A broker is given up when so many pings are unanswered."""
+CONNECT_S: Final = 5
+PENDING_BYTES: Final = 2 * 1024 * 1024
+"""So much waits for a broker that does not read; beyond it nothing more is sent."""
+
+log = structlog.get_logger(__name__)
+
+
+class BrokerError(ConnectionError):
+    """The broker cannot be reached; the message says where it was looked for."""
+
+
+@asynccontextmanager
+async def connected(servers: Sequence[str], name: str) -> AsyncIterator[Client]:
+    """A connection that comes back by itself for as long as it is held.
+
+    Raises
+    ------
+    BrokerError
+        None of the servers answers.
+    """
+
+    async def lost() -> None:
+        log.warning("broker lost", servers=list(servers))
+
+    async def back() -> None:
+        log.info("broker back", server=client.connected_url and client.connected_url.netloc)
+
+    async def failed(error: Exception) -> None:
+        log.debug("broker failed", error=str(error) or type(error).__name__)
+
+    client = Client()
+    settings: dict[str, Any] = {
+        "servers": list(servers),
+        "name": name,
+        "reconnect_time_wait": RETRY_S,
+        "max_reconnect_attempts": -1,
+        "ping_interval": PING_S,
+        "max_outstanding_pings": PINGS_UNANSWERED,
+        "connect_timeout": CONNECT_S,
+        "pending_size": PENDING_BYTES,
+        "disconnected_cb": lost,
+        "reconnected_cb": back,
+        "error_cb": failed,
+    }
+    connecting = asyncio.create_task(client.connect(**settings))
+    try:
+        # The library would go on trying for ever here as well.
+        await asyncio.wait_for(connecting, CONNECT_S)
+    except (TimeoutError, OSError, NatsError) as error:
+        await client.close()
+        places = ", ".join(servers)
+        raise BrokerError(
+            f"no NATS server answers at {places}: {str(error) or 'too late'}"
+        ) from None
+    try:
+        yield client
+    finally:
+        with suppress(NatsError, OSError):
+            await client.close()

@@ -1,0 +1,35 @@
+"""The subjects of a world on a message broker."""
+
+import re
+from typing import Final
+
+_NAME: Final = re.compile(r"[a-z0-9-]{1,40}")
+
+
+class Subjects:
+    """Names what hosts and gateways of one world say to each other.
+
+    Raises
+    ------
+    ValueError
+        A name is not made of 1 to 40 lower-case letters, digits and hyphens.
+    """
+
+    def __init__(self, world: str) -> None:
+        self._root = f"e.{_checked('world', world)}"
+
+    def frames(self, zone: str) -> str:
+        """The frames of a zone, from its host to all gateways with viewers there."""
+        return f"{self._root}.z.{_checked('zone', zone)}.f"
+
+    def questions(self, zone: str) -> str:
+        """Questions to the host of a zone, each with the subject on which it is answered."""
+        return f"{self._root}.z.{_checked('zone', zone)}.ask"
+
+
+def _checked(kind: str, name: str) -> str:
+    if _NAME.fullmatch(name) is None:
+        raise ValueError(
+            f"the name of a {kind} has 1 to 40 lower-case letters, digits and hyphens: {name!r}"
+        )
+    return name
