@@ -19,6 +19,7 @@ from pathlib import Path
 
 import numpy as np
 from benchmarks._stages import MEASURED_TICKS, WARM_UP_TICKS, steering
+from tests.server.brokers import nats_server
 
 from esplanade.planning import LayeredGrid, Scene
 from esplanade.server.link.broker import connected
@@ -31,7 +32,6 @@ from esplanade.server.populating import populate
 from esplanade.server.settings import ServerSettings
 from esplanade.server.world.inputs import Join
 from esplanade.server.world.zone import Zone
-from tests.server.brokers import nats_server
 
 SIDE_M = 100.0
 TICK_S = 0.05
@@ -92,7 +92,7 @@ def print_costs(people: int) -> int:
     print(f"  the zone's tick, ms    {1e3 * tick:10.2f}")
     print(f"  to bytes, µs           {1e6 * encode:10.0f}   {encode / tick:.1%} of the tick")
     print(f"  from bytes, µs         {1e6 * decode:10.0f}   {decode / tick:.1%} of the tick")
-    return round(size)
+    return int(size)
 
 
 async def ages_ms(server: str, gateways: int, body: bytes, seconds: float) -> list[float]:

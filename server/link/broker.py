@@ -1,8 +1,8 @@
 """A process's connection to NATS, the broker that carries what may be lost.
 
 Nothing is kept there: JetStream is off, and a frame that did not go out in time is worth nothing.
-The library by itself waits two seconds before it comes back, gives up after a minute, and takes four
-to notice a broker that is silent.
+The library by itself waits two seconds before it comes back, gives up after a minute, and takes
+four to notice a broker that is silent.
 """
 
 import asyncio
@@ -41,7 +41,8 @@ async def connected(servers: Sequence[str], name: str) -> AsyncIterator[Client]:
     """
 
     async def lost() -> None:
-        log.warning("broker lost", servers=list(servers))
+        if not ending:
+            log.warning("broker lost", servers=list(servers))
 
     async def back() -> None:
         log.info("broker back", server=client.connected_url and client.connected_url.netloc)
@@ -49,7 +50,7 @@ async def connected(servers: Sequence[str], name: str) -> AsyncIterator[Client]:
     async def failed(error: Exception) -> None:
         log.debug("broker failed", error=str(error) or type(error).__name__)
 
-    client = Client()
+    client, ending = Client(), False
     settings: dict[str, Any] = {
         "servers": list(servers),
         "name": name,
@@ -63,10 +64,9 @@ async def connected(servers: Sequence[str], name: str) -> AsyncIterator[Client]:
         "reconnected_cb": back,
         "error_cb": failed,
     }
-    connecting = asyncio.create_task(client.connect(**settings))
     try:
         # The library would go on trying for ever here as well.
-        await asyncio.wait_for(connecting, CONNECT_S)
+        await asyncio.wait_for(client.connect(**settings), CONNECT_S)
     except (TimeoutError, OSError, NatsError) as error:
         await client.close()
         places = ", ".join(servers)
@@ -76,5 +76,6 @@ async def connected(servers: Sequence[str], name: str) -> AsyncIterator[Client]:
     try:
         yield client
     finally:
+        ending = True
         with suppress(NatsError, OSError):
             await client.close()
