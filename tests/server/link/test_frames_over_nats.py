@@ -15,10 +15,11 @@ from esplanade.server.link.frame_format import decode_frame, encode_frame
 from esplanade.server.link.frame_parts import FrameKey
 from esplanade.server.link.frames_over_nats import FRAMES_WAITING, FrameReceiver, FrameSender
 from esplanade.server.link.subjects import Subjects
+from esplanade.server.link.whole_state import WholeState
 from esplanade.server.world.audience import Audience
 from tests.patience import PATIENCE_S
 from tests.server.brokers import NatsServer, nats_server
-from tests.server.link.test_frame_format import assert_same, inputs_of
+from tests.server.link.test_frame_format import assert_same, inputs_of, same
 from tests.server.worlds import FIELD, Trial
 
 SUBJECTS: Final = Subjects("town")
@@ -120,6 +121,47 @@ async def test_viewers_are_told_the_same_bytes_over_a_broker(server: NatsServer)
                 far.wrote(there.snapshots, places)
         await sender.stop()
     assert len(trial.world.state.ids[trial.world.state.live()]) > 20
+
+
+async def test_a_broker_that_is_killed_loses_nothing_of_the_state(server: NatsServer) -> None:
+    trial, host, gateway = Trial(FIELD, max_people=40), WholeState(), WholeState()
+    host.take(trial.frame())
+
+    def whole() -> tuple[FrameKey, bytes]:
+        frame = host.whole()
+        return FrameKey(5, frame.tick, is_whole=True), encode_frame(frame)
+
+    async with connected([server.address], "host") as ours, receiving(server) as receiver:
+        sender = FrameSender(ours, SUBJECTS, "hall", whole)
+        await sender.start()
+
+        async def take() -> None:
+            while True:
+                key, body = await receiver.next()
+                frame = decode_frame(body)
+                gateway.take(gateway.difference(frame) if key.is_whole else frame)
+
+        taking = asyncio.create_task(take())
+        for tick in range(160):
+            if tick == 40:
+                server.kill()
+            if tick == 80:
+                server.start()
+            frame = trial.frame(*inputs_of(trial, tick))
+            host.take(frame)
+            await sender.publish(FrameKey(5, frame.tick), encode_frame(frame))
+            await asyncio.sleep(TICK_S)
+        async with asyncio.timeout(PATIENCE_S):
+            while not same(gateway.whole(), host.whole()):
+                # A frame after the gap makes it known.
+                frame = trial.frame()
+                host.take(frame)
+                await sender.publish(FrameKey(5, frame.tick), encode_frame(frame))
+                await asyncio.sleep(TICK_S)
+        taking.cancel()
+        await sender.stop()
+    assert sender.left_out > 10
+    assert len(host.whole().entered) > 20
 
 
 async def test_a_gateway_that_comes_late_begins_with_the_whole_state(server: NatsServer) -> None:
