@@ -1,0 +1,204 @@
+"""A zone as it is served: what simulates it, who is in it, and what operators do with it."""
+
+import asyncio
+from collections.abc import AsyncIterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import AsyncExitStack, asynccontextmanager
+from dataclasses import dataclass
+
+from esplanade.actors import Outcome
+from esplanade.actors.warming import tables_ahead
+from esplanade.server.building import build_world
+from esplanade.server.commanding import commanding, live_view
+from esplanade.server.console.console import Console
+from esplanade.server.console.presets import Presets
+from esplanade.server.kept import Kept
+from esplanade.server.link.local import LocalLink
+from esplanade.server.live.bulletin import Bulletin
+from esplanade.server.live.live import Live
+from esplanade.server.loading import LoadedScene
+from esplanade.server.metrics import Metrics
+from esplanade.server.net.delivery import Delivery
+from esplanade.server.net.entrance import Entrance
+from esplanade.server.net.ground_work import GroundWork
+from esplanade.server.net.hub import Hub
+from esplanade.server.net.route_requests import RouteRequests
+from esplanade.server.net.schedule import Schedule
+from esplanade.server.net.search_budget import SearchBudget
+from esplanade.server.net.ticker import Ticker
+from esplanade.server.recovery import read_recovery
+from esplanade.server.resuming import persistence_of, resume
+from esplanade.server.settings import ServerSettings
+from esplanade.server.trajectories.keeping import trajectories_kept
+from esplanade.server.watching import watch_routes, watch_world
+from esplanade.server.world.audience import Audience
+from esplanade.server.world.zone import Zone
+
+
+@dataclass(frozen=True)
+class Process:
+    """The parts of a server that all of its zones share."""
+
+    kept: Kept
+    entrance: Entrance
+    presets: Presets
+
+
+class ServedZone:
+    """One zone with its hub, its console and its ticker. It ticks from `open` to `close`."""
+
+    def __init__(
+        self,
+        world: Zone,
+        hub: Hub,
+        console: Console,
+        live: Live,
+        metrics: Metrics,
+        ticker: Ticker,
+        route_requests: RouteRequests,
+    ) -> None:
+        self.world = world
+        self.hub = hub
+        self.console = console
+        self.live = live
+        self.metrics = metrics
+        self.ticking: asyncio.Task[None]
+        """Runs as long as the zone does; ends early only by a fault. It is there once open."""
+        self._ticker = ticker
+        self._route_requests = route_requests
+
+    def open(self) -> None:
+        """Begin to tick, and to find routes."""
+        self.ticking = asyncio.create_task(self._ticker.run())
+        self._finding = asyncio.create_task(self._route_requests.run(self.hub.wishes.route_found))
+
+    def stop(self) -> None:
+        """Let the tick that runs be the last."""
+        self._finding.cancel()
+        self._ticker.stop()
+
+    async def close(self) -> None:
+        """Stop, keep what is to outlast the process, and say goodbye to everyone.
+
+        A fault that has ended the ticks is raised.
+        """
+        self.stop()
+        in_order = False
+        try:
+            await self.ticking
+            in_order = True
+        finally:
+            await self._ticker.keep(in_order=in_order)
+            await self.hub.close()
+
+    def summary(self) -> dict[str, int | float]:
+        """The run in figures."""
+        ticks = self.metrics.ticks
+        return {
+            "ticks": self.world.tick,
+            "tick_p50_ms": round(1e3 * ticks.percentile(50), 2),
+            "tick_p99_ms": round(1e3 * ticks.percentile(99), 2),
+            "people_seen": self.world.people_seen,
+            "trips_completed": self.world.trips,
+            **{
+                f"trips_{outcome.name.lower()}": count
+                for outcome, count in self.world.ended.items()
+                if outcome is not Outcome.ARRIVED
+            },
+            "contacts_actor_person": self.world.contacts.actor_person,
+            "contacts_actor_actor": self.world.contacts.actor_actor,
+        }
+
+
+@asynccontextmanager
+async def served_zone(
+    settings: ServerSettings,
+    loaded: LoadedScene,
+    process: Process,
+    metrics: Metrics,
+    described: Mapping[str, object],
+) -> AsyncIterator[ServedZone]:
+    """Build a zone and all that it is served by; it does not tick yet.
+
+    `described` holds what a welcome says of the scene beside what is in its file.
+
+    Raises
+    ------
+    LoadingError
+        The scene has no room for its actors.
+    StoreError
+        What is to be kept cannot be.
+    """
+    kept, loop = process.kept, asyncio.get_running_loop()
+    async with AsyncExitStack() as stack:
+        thread = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="actors"))
+        recovery = await read_recovery(kept, settings, loaded)
+        population, world, storeys = await loop.run_in_executor(
+            thread, build_world, loaded, settings, recovery
+        )
+        stack.callback(population.close)
+        watch_world(world, population, metrics)
+        schedule = Schedule(world.tick_s, loop.time())
+        searching = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="routes"))
+        route_requests = RouteRequests(world, searching, SearchBudget())
+        watch_routes(route_requests, metrics)
+        audience = Audience(world.rules, world.origin_m, world.times)
+        persistence = persistence_of(world, recovery, kept, metrics)
+        hub = Hub(
+            world,
+            audience,
+            route_requests,
+            settings,
+            metrics,
+            lambda: schedule.world_time(world.tick, loop.time()),
+            {"storeys": storeys, **described},
+            kept.moderation,
+            process.entrance,
+            schedule.pace,
+            persistence.seats,
+        )
+        delivery = Delivery(
+            audience,
+            hub.sessions,
+            settings.tick_rate,
+            hub.wishes.stop_watching,
+            hub.moderation.lines,
+        )
+        bulletin = Bulletin()
+        console = await resume(
+            await stack.enter_async_context(
+                commanding(
+                    world, hub, kept, loaded, metrics, process.presets, schedule.pace, bulletin
+                )
+            ),
+            recovery,
+            kept,
+            hub,
+            persistence,
+            thread,
+        )
+        deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
+        ticker = (
+            Ticker(
+                world,
+                GroundWork(world, deriving, tables_ahead(population.navigator)),
+                audience,
+                LocalLink(),
+                hub,
+                delivery,
+                schedule,
+                metrics,
+                thread,
+                console,
+            )
+            .keeping(persistence)
+            .planning(settings.planning_interval)
+        )
+        live = live_view(world, storeys, console, hub, metrics, settings, bulletin)
+        ticker.tap, ticker.trajectories = (
+            live.tap,
+            await stack.enter_async_context(
+                trajectories_kept(settings, loaded, world, metrics, live.bulletin)
+            ),
+        )
+        yield ServedZone(world, hub, console, live, metrics, ticker, route_requests)
