@@ -19,7 +19,17 @@ from esplanade.planning.routes.moved_ends import MovedEnd, MoveReason
 from esplanade.planning.routes.potential import Potential
 from esplanade.planning.routes.wave_front import Wave
 from esplanade.planning.scene.bodies import Body
-from esplanade.planning.scene.scene import Door, Place, Polygon, Ramp, Scene, Spawn, Stairs, Wall
+from esplanade.planning.scene.scene import (
+    Door,
+    Place,
+    Polygon,
+    Portal,
+    Ramp,
+    Scene,
+    Spawn,
+    Stairs,
+    Wall,
+)
 
 __all__ = [
     "GAUSSIAN",
@@ -40,6 +50,7 @@ __all__ = [
     "Place",
     "PlanModel",
     "Polygon",
+    "Portal",
     "Potential",
     "Prediction",
     "PredictionModel",

@@ -14,7 +14,8 @@ from esplanade.planning.ground.surfaces import GroundError
 from esplanade.planning.scene.bounded_reading import suffix_of
 from esplanade.planning.scene.mesh_file import MeshError
 from esplanade.planning.scene.scene_file import SceneError, read_scene
-from esplanade.scenery import inventory, mesh_report, pictures
+from esplanade.planning.scene.world_file import WorldError, read_world
+from esplanade.scenery import inventory, mesh_report, pictures, world_check
 from esplanade.scenery.bodies import made_body
 from esplanade.scenery.download import local_file
 from esplanade.scenery.importing import NAME_LENGTH, import_mesh, with_places
@@ -29,7 +30,9 @@ _WITH_UNITS = (".ifc", ".3mf")
 
 
 def check(options: Namespace) -> int:
-    """Say what is wrong with a scene and where, or what it holds."""
+    """Say what is wrong with a scene or a world and where, or what it holds."""
+    if options.world:
+        return _check_world(options)
     try:
         scene = _read(options.scene)
     except SceneError as error:
@@ -47,6 +50,32 @@ def check(options: Namespace) -> int:
         for fault in found.faults:
             print(f"{options.scene}: {fault}", file=sys.stderr)
     return exit_codes.FAILED if found.faults else exit_codes.OK
+
+
+def _check_world(options: Namespace) -> int:
+    path = options.scene
+    try:
+        world = read_world(path)
+        zones = world_check.check_zones(world, options.cell)
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read: {error.strerror or error}") from None
+    except WorldError as error:
+        if options.json:
+            print(json.dumps({"faults": error.faults, "places": error.spots}, indent=1))
+        else:
+            print(error, file=sys.stderr)
+        return exit_codes.FAILED
+    except (GroundError, MeshError) as error:
+        return _refuse(SceneError(path, (str(error),)))
+    faults = [fault for zone in zones for fault in zone.faults]
+    if options.json:
+        told = {zone.name: zone.figures() for zone in zones}
+        print(json.dumps({"name": world.file.name, "zones": told, "faults": faults}, indent=1))
+    else:
+        world_check.show(console(), world, zones)
+        for fault in faults:
+            print(f"{path}: {fault}", file=sys.stderr)
+    return exit_codes.FAILED if faults else exit_codes.OK
 
 
 def render(options: Namespace) -> int:

@@ -12,7 +12,7 @@ from esplanade.planning import LayeredGrid, Scene
 from esplanade.scenery.bodies import PRESETS
 from esplanade.scenery.reach import Reach, reach_of
 
-_PARTS: Final = ("polygons", "walls", "stairs", "doors", "spawns", "places")
+_PARTS: Final = ("polygons", "walls", "stairs", "doors", "spawns", "places", "portals")
 
 
 @dataclass(frozen=True)

@@ -157,13 +157,19 @@ def walls_on(floors: Floats, traversability: Traversability, body: Body) -> Floa
 
 
 def _markers(scene: Scene, grid: LayeredGrid, layer: int) -> tuple[Marker, ...]:
-    """The markers of the spawns and places on a layer."""
-    spawns = [(f"spawn {i}", spawn, True) for i, spawn in enumerate(scene.spawns)]
-    places = [(place.name, place, False) for place in scene.places]
+    """The markers of the spawns, the places, and where portals let people out, on a layer."""
+    spawns = [
+        (f"spawn {i}", spawn.position, spawn.z_m, True) for i, spawn in enumerate(scene.spawns)
+    ]
+    places = [(place.name, place.position, place.z_m, False) for place in scene.places]
+    portals = [
+        (f"portal {portal.name}", portal.arrival_place[:2], portal.z_m, False)
+        for portal in scene.portals
+    ]
     return tuple(
-        Marker(name, part.position, is_spawn)
-        for name, part, is_spawn in (*spawns, *places)
-        if grid.layer_at(part.position, part.z_m) == layer
+        Marker(name, position, is_spawn)
+        for name, position, z_m, is_spawn in (*spawns, *places, *portals)
+        if grid.layer_at(position, z_m) == layer
     )
 
 

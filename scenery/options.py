@@ -14,6 +14,7 @@ DESCRIPTION: Final = "Check a scene, draw it floor by floor, or make one of a bu
 EPILOG: Final = """\
 examples:
   esplanade scene check scenes/gallery.json
+  esplanade scene check --world scenes/town.json
   esplanade scene render scenes/gallery.json --body child --out pictures
   esplanade scene render my.json --from gate --to 12,3,3.5 --out pictures
   esplanade scene import house.obj --up y --out house.json
@@ -53,9 +54,15 @@ def _check(commands: "SubParsers[Parser]") -> Parser:
         run="esplanade.scenery.cli:check",
         help="say what is wrong and where, or what the scene holds",
         description="Say what is wrong with a scene and where, or what it holds: its extent, "
-        "layers,\ncells, and who gets where from its spawns.",
+        "layers,\ncells, and who gets where from its spawns. With --world, say the same of all "
+        "scenes of a\nworld, and where their portals lead.",
     )
     _add_scene(made)
+    made.add_argument(
+        "--world",
+        action="store_true",
+        help="FILE is a world of several scenes, which portals join",
+    )
     made.add_argument("--json", action="store_true", help="print it as JSON")
     _add_cell(made)
     return made

@@ -39,7 +39,7 @@ _FORBIDDEN: Final = 0
 
 @dataclass(frozen=True)
 class Marker:
-    """A named point, which is a spawn or a place."""
+    """A named point, which is a spawn, a place or the arrival of a portal."""
 
     name: str
     position: tuple[float, float]

@@ -21,7 +21,14 @@ from esplanade.server.settings import ServerSettings
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "src" / "esplanade"
-SCENES = ("gallery.json", "gallery_turned.json", "pavilion.json", "pavilion.obj", "plaza.json")
+SCENES = (
+    "gallery.json",
+    "gallery_turned.json",
+    "pavilion.json",
+    "pavilion.obj",
+    "plaza.json",
+    "town.json",
+)
 
 HOLDERS = ("three.js authors", "The MessagePack Community", "Google LLC")
 """The holders of the code that the web client bundles."""

@@ -31,6 +31,7 @@ MAX_SOLIDS = 30_000
 MAX_WALLS = 50_000
 MAX_SPOTS = 2_000
 """Most doors, spawns or places."""
+MAX_PORTALS = 64
 
 Metres = Annotated[float, Field(allow_inf_nan=False, ge=-1e6, le=1e6)]
 Point = tuple[Metres, Metres]
@@ -219,8 +220,28 @@ class Place(_Spot):
     name: RequiredName
 
 
+class Portal(_Part):
+    """An area of a floor from which one goes to another zone; a world file says to which."""
+
+    name: RequiredName
+    points: Ring
+    """Corners of the area in order, metres. The ring closes itself; it must not cross itself."""
+    z_m: Metres = 0.0
+    """Height of the floor that is meant: the floor nearest to it."""
+    arrival: Point | None = None
+    """The point at which those stand who come out of it; without it, the middle of its corners."""
+
+    @property
+    def arrival_place(self) -> tuple[float, float, float]:
+        """The place x, y, z, metres, nearest to which those stand who come out of it."""
+        if self.arrival is not None:
+            return (*self.arrival, self.z_m)
+        xs, ys = zip(*self.points, strict=True)
+        return sum(xs) / len(xs), sum(ys) / len(ys), self.z_m
+
+
 class Scene(_Part):
-    """The static world: bounds, obstacles, spawn points and named places.
+    """The static world: bounds, obstacles, spawn points, named places and portals.
 
     The bounds are the edge of the walkable ground: centres of avatars stay inside them.
     Read one with `Scene.model_validate_json(text)`; a broken file raises
@@ -236,6 +257,7 @@ class Scene(_Part):
     doors: Annotated[tuple[Door, ...], Field(max_length=MAX_SPOTS)] = ()
     spawns: Annotated[tuple[Spawn, ...], Field(max_length=MAX_SPOTS)] = ()
     places: Annotated[tuple[Place, ...], Field(max_length=MAX_SPOTS)] = ()
+    portals: Annotated[tuple[Portal, ...], Field(max_length=MAX_PORTALS)] = ()
     mesh: Path | None = None
     """A building in metres, y up, whose floors take the place of the ground and of all parts. In a
     file it is named relative to the file."""
@@ -270,6 +292,10 @@ class Scene(_Part):
             for i, (x, y) in enumerate(points):
                 if not (x0 <= x <= x1 and y0 <= y <= y1):
                     yield f"{group}.{i}: ({x:g}, {y:g}) lies outside the bounds"
+        for i, portal in enumerate(self.portals):
+            for x, y in (*portal.points, portal.arrival_place[:2]):
+                if not (x0 <= x <= x1 and y0 <= y <= y1):
+                    yield f"portals.{i}: ({x:g}, {y:g}) lies outside the bounds"
 
     def _wrong_mesh(self) -> Iterator[str]:
         for group in ("polygons", "walls", "stairs", "doors"):
@@ -280,6 +306,7 @@ class Scene(_Part):
         for group, names in (
             ("doors", [door.name for door in self.doors]),
             ("places", [place.name for place in self.places]),
+            ("portals", [portal.name for portal in self.portals]),
         ):
             known: set[str] = set()
             for i, name in enumerate(names):
@@ -338,3 +365,17 @@ class Scene(_Part):
                 return place
         known = ", ".join(p.name for p in self.places) or "none"
         raise KeyError(f"no place named {name!r}; the scene has: {known}")
+
+    def portal(self, name: str) -> Portal:
+        """The portal of that name.
+
+        Raises
+        ------
+        KeyError
+            There is none; the message lists those that exist.
+        """
+        for portal in self.portals:
+            if portal.name == name:
+                return portal
+        known = ", ".join(p.name for p in self.portals) or "none"
+        raise KeyError(f"no portal named {name!r}; the scene has: {known}")

@@ -4,51 +4,21 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from pydantic import ValidationError
 
 from esplanade.files.text import decoded
 from esplanade.planning.scene.bounded_reading import read_bounded
+from esplanade.planning.scene.faults import faults_of, spots_of
 from esplanade.planning.scene.json_places import Path as Loc
-from esplanade.planning.scene.json_places import Spot, find_places
+from esplanade.planning.scene.json_places import Spot
 from esplanade.planning.scene.scene import Scene
 
 MAX_FILE_BYTES: Final = 16 * 2**20
 """A scene of as many parts as are possible has less."""
 
-_GROUPS: Final = ("polygons", "walls", "stairs", "doors", "spawns", "places")
-
-_PHRASES: Final = {
-    "greater_than": "must be > {gt:g}",
-    "greater_than_equal": "must be >= {ge:g}",
-    "less_than": "must be < {lt:g}",
-    "less_than_equal": "must be <= {le:g}",
-    "finite_number": "must be finite",
-    "float_type": "must be a number",
-    "float_parsing": "must be a number",
-    "int_type": "must be a whole number",
-    "int_parsing": "must be a whole number",
-    "int_from_float": "must be a whole number",
-    "bool_type": "must be true or false",
-    "bool_parsing": "must be true or false",
-    "string_type": "must be a text",
-    "tuple_type": "must be a list",
-    "model_type": "must be an object",
-    "literal_error": "must be {expected}",
-    "string_too_long": "must have at most {max_length} characters",
-    "string_too_short": "must not be empty",
-    "too_short": "needs at least {min_length} of them, got {actual_length}",
-    "too_long": "must have at most {max_length} of them",
-    "missing": "is missing",
-    "extra_forbidden": "there is no such key",
-    "json_invalid": "is no JSON: {error}",
-}
-"""Words for the faults that hands make; all other faults keep pydantic's words."""
-_TOLD: Final = frozenset(
-    ("value_error", "missing", "extra_forbidden", "json_invalid", "too_short", "string_too_short")
-)
-"""Faults whose words say all: the value found adds nothing."""
+_GROUPS: Final = ("polygons", "walls", "stairs", "doors", "spawns", "places", "portals")
 
 
 class SceneError(ValueError):
@@ -89,13 +59,13 @@ def read_scene(path: Path) -> Scene:
         scene = Scene.model_validate_json(text)
     except ValidationError as error:
         faults = _all_faults(text, error)
-        raise SceneError(path, tuple(faults), _spots(text, faults)) from None
+        raise SceneError(path, tuple(faults), spots_of(text, faults.values())) from None
     if scene.mesh is None:
         return scene
     mesh = path.parent / scene.mesh
     if not mesh.is_file():
         fault = f"mesh: there is no file {mesh}"
-        raise SceneError(path, (fault,), _spots(text, {fault: ("mesh",)}))
+        raise SceneError(path, (fault,), spots_of(text, [("mesh",)]))
     return scene.model_copy(update={"mesh": mesh})
 
 
@@ -104,7 +74,7 @@ def _all_faults(text: str, error: ValidationError) -> dict[str, Loc]:
 
     The second are looked for in a scene without the parts that are at fault.
     """
-    faults = _faults(error)
+    faults = faults_of(error)
     wrong = {path for path in faults.values() if path}
     if not wrong:
         return faults
@@ -121,7 +91,7 @@ def _all_faults(text: str, error: ValidationError) -> dict[str, Loc]:
     try:
         Scene.model_validate(content)
     except ValidationError as further:
-        for fault, path in _faults(further).items():
+        for fault, path in faults_of(further).items():
             if path and path[0] not in ("bounds", ""):
                 faults.setdefault(*_renumbered(fault, path, kept))
     return faults
@@ -136,56 +106,6 @@ def _renumbered(fault: str, path: Loc, kept: dict[str, list[int]]) -> tuple[str,
     return fault.replace(f"{group}.{path[1]}", f"{group}.{number}", 1), (group, number, *path[2:])
 
 
-def _spots(text: str, faults: dict[str, Loc]) -> tuple[Spot | None, ...]:
-    try:
-        found = find_places(text, faults.values())
-    except (ValueError, IndexError, RecursionError):
-        return (None,) * len(faults)
-    return tuple(found[path] for path in faults.values())
-
-
 def scene_faults(error: ValidationError) -> tuple[str, ...]:
     """One line for each fault, as `polygons.3.height_m: must be > 0, got -1`."""
-    return tuple(_faults(error))
-
-
-def _faults(error: ValidationError) -> dict[str, Loc]:
-    faults: dict[str, Loc] = {}
-    for fault in error.errors(include_url=False):
-        path = fault["loc"]
-        for text in _phrase(fault).split("\n"):
-            if path:
-                faults[f"{'.'.join(map(str, path))}: {text}"] = path
-            else:
-                faults[text] = _path_in(text)
-    return faults
-
-
-def _path_in(text: str) -> Loc:
-    """The path that a fault of the whole scene begins with, as `spawns.0: ...`."""
-    head, found, _ = text.partition(": ")
-    if not found or " " in head:
-        return ()
-    return tuple(int(step) if step.isdecimal() else step for step in head.split("."))
-
-
-def _phrase(fault: Any) -> str:
-    kind, found = fault["type"], fault["input"]
-    phrase = _PHRASES.get(kind)
-    if phrase is not None:
-        text = phrase.format(**fault.get("ctx", {}))
-    else:
-        text = fault["msg"].removeprefix("Value error, ").removeprefix("Input ")
-    return text if kind in _TOLD or not _short(found) else f"{text}, got {_short(found)}"
-
-
-def _short(found: Any) -> str:
-    """A value as it stands in the file; nothing for whole lists and objects."""
-    match found:
-        case bool():
-            return str(found).lower()
-        case int() | float():
-            return f"{found:g}"
-        case str():
-            return repr(found if len(found) <= 40 else found[:39] + "…")
-    return ""
+    return tuple(faults_of(error))
