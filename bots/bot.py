@@ -20,20 +20,16 @@ from esplanade.bots.world_pace import pace_of
 from esplanade.protocol import VERSION, ProtocolError, decode_server
 from esplanade.protocol.messages import (
     Bye,
-    Doors,
-    Enter,
     FromClient,
     Hello,
-    Leave,
     Notice,
     Ping,
-    Point,
     Pong,
-    Reshape,
     ServerMessage,
     SetDoor,
     Snapshot,
     StepBlock,
+    Travel,
     Welcome,
 )
 from esplanade.protocol.snapshot import unpack_block
@@ -57,6 +53,7 @@ class Bot(Person):
         self._pings: dict[int, tuple[float, asyncio.Future[float]]] = {}
         self._ended: Disconnected | None = None
         self._said_bye = False
+        self._travels = False
         self._reader = asyncio.create_task(self._read())
 
     @classmethod
@@ -195,26 +192,27 @@ class Bot(Person):
             case StepBlock():
                 self._mailbox.put(StepsEvent(message.tick, step_records(message.block)))
                 return
-            case Enter():
-                self._view.enter(message)
-            case Leave():
-                self._view.leave(message)
-            case Point():
-                self._view.point(message)
-            case Reshape():
-                self._view.reshape(message)
-            case Doors():
-                self._view.doors.update(message.doors)
             case Pong() | Notice():
                 self._take_time(message)
             case Bye():
                 self._said_bye = True
             case Welcome():
                 self._resume_token = message.resume
+                if self._travels:
+                    self._come_into(message)
                 return
+            case Travel():
+                self._travels = True
             case _:
-                pass
+                self._view.take(message)
         self._mailbox.put(message)
+
+    def _come_into(self, welcome: Welcome) -> None:
+        """Begin to look about anew, in the zone that this welcome is of."""
+        self._travels = False
+        self.welcome = welcome
+        self._view = View(welcome)
+        self._clock.seed(welcome.server_time, time.monotonic())
 
     def _take_time(self, message: Pong | Notice) -> None:
         """Learn the server's time, or the pace at which it goes on."""

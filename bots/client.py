@@ -39,7 +39,8 @@ _CODE_BYTE: Final = 1
 """Position of the message code in a frame."""
 _STEPS: Final = bytes([ServerCode.STEPS])
 _LOOKED_INTO: Final = tuple(
-    bytes([code]) for code in (ServerCode.ERROR, ServerCode.PONG, ServerCode.NOTICE)
+    bytes([code])
+    for code in (ServerCode.ERROR, ServerCode.PONG, ServerCode.NOTICE, ServerCode.WELCOME)
 )
 
 OnSnapshot = Callable[[int, int, bytes], Awaitable[None]]
@@ -47,7 +48,10 @@ OnFrame = Callable[[bytes], None]
 
 
 class Client:
-    """Counts everything that goes in and out into a tally; `clock` is shared by a process."""
+    """Counts everything that goes in and out into a tally; `clock` is shared by a process.
+
+    `welcome` is that of the zone where the client is now.
+    """
 
     def __init__(self, connection: Connection, clock: ServerClock, tally: Tally) -> None:
         self.welcome: Welcome = connection.welcome
@@ -141,7 +145,7 @@ class Client:
         self._due.take(tick, due_s, now_s)
 
     def _take(self, frame: bytes, now_s: float) -> None:
-        """Look into steps, pongs, errors and notices, and into nothing else."""
+        """Look into steps, pongs, errors, notices and welcomes, and into nothing else."""
         code = frame[_CODE_BYTE : _CODE_BYTE + 1]
         if code == _STEPS:
             self._walkers.take(frame)
@@ -149,6 +153,8 @@ class Client:
             message = decode_server(frame)
             if isinstance(message, Error):
                 self._complain(message.error)
+            elif isinstance(message, Welcome):
+                self._come_into(message, now_s)
             elif isinstance(message, Notice) and (pace := pace_of(message)) is not None:
                 self._clock.pace(*pace, now_s)
                 self._due.pace(pace.rate, now_s)
@@ -156,6 +162,15 @@ class Client:
                 sent_s = self._pinged_s.pop(message.nonce)
                 round_trip_s = self._clock.add(sent_s, now_s, message.server_time)
                 self._tally.round_trip_s.add(round_trip_s)
+
+    def _come_into(self, welcome: Welcome, now_s: float) -> None:
+        """Count on in another zone of the world, which has a clock of its own."""
+        self.welcome = welcome
+        self._clock = ServerClock()
+        self._clock.seed(welcome.server_time, now_s)
+        self._due.finish(now_s)
+        self._due = DueTicks(self._tally, welcome.tick_rate, now_s)
+        self._walkers = Walkers(self._tally, welcome.tick_rate)
 
     def _complain(self, code: ErrorCode | str) -> None:
         if code == ErrorCode.NO_PATH:

@@ -16,6 +16,7 @@ from esplanade.protocol.messages import (
     Point,
     Pong,
     Reshape,
+    Travel,
 )
 from esplanade.protocol.snapshot import (
     Floats,
@@ -93,5 +94,6 @@ Event = (
     | Doors
     | Point
     | Reshape
+    | Travel
     | Hide
 )

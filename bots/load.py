@@ -95,11 +95,20 @@ class LoadJob:
         await visit(self.url, hello, clock, tally, stay, self.trust)
 
     def _wander(self, client: Client, index: int) -> "Works":
-        scene = client.welcome.scene
-        x0, y0, x1, y1 = scene["bounds"]
-        floors_m = sorted({0.0, *(place["z_m"] for place in scene.get("places", ()))})
-        acts = wander(self.seed, index, (x0, y0, x1, y1), client.welcome.max_speed, floors_m)
-        return client.read(), _walk(client, acts)
+        return client.read(), _walk(client, self._acts(client, index))
+
+    def _acts(self, client: Client, index: int) -> Iterator[Act]:
+        """Acts in the scene where the client is, also when it has come into another zone."""
+        while True:
+            welcome = client.welcome
+            x0, y0, x1, y1 = welcome.scene["bounds"]
+            places = welcome.scene.get("places", ())
+            floors_m = sorted({0.0, *(place["z_m"] for place in places)})
+            acts = wander(self.seed, index, (x0, y0, x1, y1), welcome.max_speed, floors_m)
+            for act in acts:
+                if client.welcome is not welcome:
+                    break
+                yield act
 
     def _scenario(self, place: str, tally: Tally) -> "Play":
         kind = load_scenario(place)

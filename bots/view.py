@@ -5,7 +5,17 @@ from typing import Final
 
 from esplanade.bots.events import SnapshotEvent
 from esplanade.protocol import Kind, Reason
-from esplanade.protocol.messages import Enter, Entity, Leave, Place, Point, Reshape, Welcome
+from esplanade.protocol.messages import (
+    Doors,
+    Enter,
+    Entity,
+    Leave,
+    Place,
+    Point,
+    Reshape,
+    ServerMessage,
+    Welcome,
+)
 from esplanade.protocol.snapshot import HEADING_RAD, POSITION_M, SPEED_MPS
 
 _REASONS: Final[dict[int, Reason]] = {int(reason): reason for reason in Reason}
@@ -57,6 +67,20 @@ class View:
         self.ack = 0
         self.placed = False
         """Whether the own place is known yet."""
+
+    def take(self, message: ServerMessage) -> None:
+        """Take in what a message says of those in view and of doors, if it says anything."""
+        match message:
+            case Enter():
+                self.enter(message)
+            case Leave():
+                self.leave(message)
+            case Point():
+                self.point(message)
+            case Reshape():
+                self.reshape(message)
+            case Doors():
+                self.doors.update(message.doors)
 
     def enter(self, message: Enter) -> None:
         for entity in message.entities:

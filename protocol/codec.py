@@ -47,6 +47,7 @@ from esplanade.protocol.messages import (
     SetDoor,
     Snapshot,
     StepBlock,
+    Travel,
     WalkTo,
     Watch,
     Welcome,
@@ -60,7 +61,7 @@ SERVER_MESSAGES: Final[dict[int, type[FromServer]]] = {
     int(model.code): model
     for model in (
         *(Welcome, Enter, Leave, Chat, Notice, Error, Bye),
-        *(Pong, Plan, Census, Doors, Point, Reshape, Hide),
+        *(Pong, Plan, Census, Doors, Point, Reshape, Hide, Travel),
     )
 }
 

@@ -58,6 +58,7 @@ class ServerCode(IntEnum):
     POINT = 77
     RESHAPE = 78
     HIDE = 79
+    TRAVEL = 80
 
 
 class Kind(StrEnum):
@@ -164,3 +165,4 @@ class NoticeCode(StrEnum):
     RESUMED = "resumed"
     PACE = "pace"
     GOAL_MOVED = "goal_moved"
+    NOT_LET_IN = "not_let_in"

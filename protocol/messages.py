@@ -390,6 +390,19 @@ class Reshape(FromServer):
     stature_m: float
 
 
+class Travel(FromServer):
+    """The person has come into another zone; the welcome of there follows, on this connection.
+
+    All that was told of the zone before is void. Name, token and id stay as they were.
+    """
+
+    code = ServerCode.TRAVEL
+    zone: str
+    """The name of the zone."""
+    portal: str
+    """The name of the portal there that the person has come out of."""
+
+
 ServerMessage = (
     Welcome
     | Enter
@@ -407,4 +420,5 @@ ServerMessage = (
     | StepBlock
     | Point
     | Reshape
+    | Travel
 )

@@ -2,12 +2,12 @@
 
 import asyncio
 import socket
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Iterable, Mapping, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
+from functools import partial
 
 from esplanade.server.assets import Assets
-from esplanade.server.building import with_roster
 from esplanade.server.commanding import shipped_presets
 from esplanade.server.console.console import Console
 from esplanade.server.console.gate import Gate
@@ -16,18 +16,22 @@ from esplanade.server.entrances import make_gate, people_url, private_certificat
 from esplanade.server.keeping import keeping
 from esplanade.server.kept import Kept
 from esplanade.server.live.live import Live
-from esplanade.server.loading import LoadedScene, load_scene, tell_crowd
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.descriptors import places_for_people
 from esplanade.server.net.entrance import Entrance
+from esplanade.server.net.front_door import FrontDoor
+from esplanade.server.net.hops import Destination, Hops
 from esplanade.server.net.listener import Listener, connections_wanted
 from esplanade.server.net.listening import bound_sockets
+from esplanade.server.net.names import Names
 from esplanade.server.net.private import private_port
 from esplanade.server.net.readiness import Readiness
+from esplanade.server.net.surroundings import Surroundings
 from esplanade.server.net.tls import Tls, renewed
 from esplanade.server.served_zone import Process, ServedZone, served_zone
 from esplanade.server.settings import ServerSettings
 from esplanade.server.world.zone import Zone
+from esplanade.server.zones import ZoneToServe, described_portals, zones_to_serve
 
 
 @dataclass(frozen=True)
@@ -36,25 +40,29 @@ class Running:
 
     port: int
     private_port: int
-    zone: ServedZone
+    zones: Mapping[str, ServedZone]
+    """The zones by their names; newcomers enter the first. A zone that is the whole world has an
+    empty name."""
     metrics: Metrics
     kept: Kept
     gate: Gate
+    ticking: "asyncio.Task[None]"
+    """Runs as long as all zones do; ends early only by a fault."""
+
+    @property
+    def zone(self) -> ServedZone:
+        """The zone that newcomers enter."""
+        return next(iter(self.zones.values()))
 
     @property
     def world(self) -> Zone:
-        """The zone itself, without all that serves it."""
+        """That zone itself, without all that serves it."""
         return self.zone.world
 
     @property
     def console(self) -> Console:
         """The console of its operators."""
         return self.zone.console
-
-    @property
-    def ticking(self) -> "asyncio.Task[None]":
-        """Runs as long as the world does; ends early only by a fault."""
-        return self.zone.ticking
 
     @property
     def live(self) -> Live:
@@ -64,7 +72,7 @@ class Running:
         return self.gate.live
 
     def summary(self) -> dict[str, int | float]:
-        """The run in figures."""
+        """The run of the zone that newcomers enter, in figures."""
         return self.zone.summary()
 
 
@@ -75,7 +83,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     Raises
     ------
     LoadingError
-        The scene or crowd cannot be run.
+        The world, a scene or the crowd cannot be run.
     TlsError
         The certificate and its key cannot be used.
     StoreError
@@ -87,9 +95,9 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
     # A lack of the machine is told now, not after a minute of building the world.
     places = places_for_people(connections_wanted(settings))
     tls = _tls(settings)
-    loaded, presets = _loaded(settings), shipped_presets(settings)
-    assets, mesh = _with_mesh(assets or Assets.load(), loaded)
-    metrics = Metrics()
+    to_serve, presets = zones_to_serve(settings), shipped_presets(settings)
+    assets, meshes = _with_meshes(assets or Assets.load(), to_serve)
+    metrics = Metrics(zone.name for zone in to_serve if zone.name)
     loop = asyncio.get_running_loop()
     readiness = Readiness(metrics)
     async with AsyncExitStack() as stack:
@@ -106,34 +114,70 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             stack.callback(each.close)
         gate.people_url = people_url(settings, sockets[0].getsockname()[1])
         process = Process(kept, Entrance(settings, kept, metrics), presets)
-        zone = await stack.enter_async_context(
-            served_zone(settings, loaded, process, metrics, mesh)
+        zones = await _served(to_serve, process, metrics, meshes, stack)
+        first, *_ = zones.values()
+        gate.console, gate.live = first.console, first.live
+        front_door = FrontDoor(
+            [zone.hub for zone in zones.values()], process.entrance, settings.max_clients
         )
-        gate.console, gate.live = zone.console, zone.live
         await stack.enter_async_context(
-            Listener(zone.hub, assets, settings, metrics, places).listening(sockets, tls)
+            Listener(front_door, assets, settings, metrics, places).listening(sockets, tls)
         )
-        zone.open()
+        for zone in zones.values():
+            zone.open()
+            stack.push_async_callback(zone.close)
+        ticking = asyncio.create_task(_until_one_ends(zones.values()))
         readiness.open()
         try:
-            yield Running(_port_of(sockets), private, zone, metrics, kept, gate)
+            yield Running(_port_of(sockets), private, zones, metrics, kept, gate, ticking)
         finally:
             readiness.close()
             gate.console = gate.live = None
-            await zone.close()
+            for zone in zones.values():
+                zone.stop()
+
+
+async def _served(
+    to_serve: Sequence[ZoneToServe],
+    process: Process,
+    metrics: Metrics,
+    meshes: Mapping[str, Mapping[str, str]],
+    stack: AsyncExitStack,
+) -> dict[str, ServedZone]:
+    """Build all zones, one after the other, and join those of a world by their portals."""
+    hops, names = Hops(metrics), Names()
+    scenes = {zone.name: zone.loaded.scene for zone in to_serve}
+    served: dict[str, ServedZone] = {}
+    for number, zone in enumerate(to_serve):
+        surroundings = None
+        if zone.name:
+            go = partial(hops.begin, zone.name)
+            surroundings = Surroundings(number, names, zone.loaded.scene.portals, go)
+        served[zone.name] = await stack.enter_async_context(
+            served_zone(
+                zone,
+                process,
+                metrics.of_zone(zone.name) if zone.name else metrics,
+                {**described_portals(zone, scenes), **meshes[zone.name]},
+                surroundings,
+            )
+        )
+    for zone in to_serve:
+        exits = {
+            portal: Destination(to, served[to].hub, there)
+            for portal, (to, there) in zone.exits.items()
+        }
+        hops.join(zone.name, served[zone.name].hub, exits)
+    return served
+
+
+async def _until_one_ends(zones: Iterable[ServedZone]) -> None:
+    await asyncio.wait([zone.ticking for zone in zones], return_when=asyncio.FIRST_COMPLETED)
 
 
 def _port_of(sockets: Sequence[socket.socket]) -> int:
     port: int = sockets[0].getsockname()[1]
     return port
-
-
-def _loaded(settings: ServerSettings) -> LoadedScene:
-    """The scene of the settings, with actors; the log says how a recorded crowd was understood."""
-    loaded = load_scene(settings)
-    if settings.crowd is not None and loaded.crowd is not None:
-        tell_crowd(settings.crowd, loaded.crowd)
-    return with_roster(loaded, settings)
 
 
 def _tls(settings: ServerSettings) -> Tls | None:
@@ -143,9 +187,14 @@ def _tls(settings: ServerSettings) -> Tls | None:
     return Tls(settings.tls_cert, settings.tls_key)
 
 
-def _with_mesh(assets: Assets, loaded: LoadedScene) -> tuple[Assets, dict[str, str]]:
-    """The assets with the triangles of a mesh, and what a welcome says of where they are."""
-    if loaded.triangles is None:
-        return assets, {}
-    assets, mesh = assets.with_data("mesh", loaded.triangles)
-    return assets, {"mesh": mesh}
+def _with_meshes(
+    assets: Assets, zones: Iterable[ZoneToServe]
+) -> tuple[Assets, dict[str, dict[str, str]]]:
+    """The assets with the triangles of meshes, and what a welcome to each zone says of them."""
+    meshes: dict[str, dict[str, str]] = {}
+    for zone in zones:
+        meshes[zone.name] = {}
+        if zone.loaded.triangles is not None:
+            assets, address = assets.with_data("mesh", zone.loaded.triangles)
+            meshes[zone.name] = {"mesh": address}
+    return assets, meshes

@@ -68,7 +68,8 @@ async def _serve(settings: ServerSettings, writer: LogWriter) -> None:
         waiting = asyncio.create_task(stop.wait())
         await asyncio.wait([waiting, server.ticking], return_when=asyncio.FIRST_COMPLETED)
         waiting.cancel()
-    log.info("summary", **server.summary())
+    for name, zone in server.zones.items():
+        log.info("summary", **({"zone": name} if name else {}), **zone.summary())
 
 
 def _announce(settings: ServerSettings, server: Running) -> None:
@@ -79,7 +80,7 @@ def _announce(settings: ServerSettings, server: Running) -> None:
         "open",
         url=f"{scheme}://{in_url(host)}:{server.port}{root and f'{root}/'}",
         private=private_url(settings, server.private_port),
-        scene=server.world.scene.name,
+        scene=", ".join(zone.world.scene.name for zone in server.zones.values()),
         actors=settings.actors,
         seed=settings.seed,
     )

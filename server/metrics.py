@@ -4,6 +4,7 @@ A count that grows thousands of times a second is a plain integer in `Traffic`, 
 """
 
 from collections.abc import Callable, Iterable
+from copy import copy
 from dataclasses import dataclass
 from functools import partial
 from time import monotonic
@@ -67,27 +68,45 @@ _TRAFFIC_HELP: Final = {
 
 
 class _Figure(Collector):
-    """A figure that is kept elsewhere: `read` by the world's thread, collected by any."""
+    """A figure that is kept elsewhere: `read` by the world's thread, collected by any.
+
+    In a world of several zones it has a value for each of them, by the zone's name.
+    """
 
     def __init__(
-        self,
-        family: type[CounterMetricFamily] | type[GaugeMetricFamily],
-        name: str,
-        text: str,
-        read: Callable[[], float],
+        self, family: type[CounterMetricFamily] | type[GaugeMetricFamily], name: str, text: str
     ) -> None:
         self._family = family
         self._name = f"{_NAMESPACE}_{name}"
         self._text = text
-        self._read = read
-        self._value = 0.0
+        self._reads: dict[str | None, Callable[[], float]] = {}
+        self._values: dict[str | None, float] = {}
+
+    def add(self, zone: str | None, read: Callable[[], float]) -> None:
+        """Have a value for a zone; None for the whole process.
+
+        Raises
+        ------
+        ValueError
+            It has one already, or one that has no zone.
+        """
+        if self._reads.keys() & {zone, None}:
+            raise ValueError(f"the figure {self._name} is there already")
+        self._reads[zone], self._values[zone] = read, 0.0
 
     def sample(self) -> None:
-        self._value = self._read()
+        for zone, read in self._reads.items():
+            self._values[zone] = read()
 
     def collect(self) -> Iterable[Metric]:
-        family = self._family(self._name, self._text)
-        family.add_metric([], self._value)
+        values = dict(self._values)
+        if None in values:
+            family = self._family(self._name, self._text)
+            family.add_metric([], values[None])
+        else:
+            family = self._family(self._name, self._text, labels=["zone"])
+            for zone, value in values.items():
+                family.add_metric([str(zone)], value)
         yield family
 
 
@@ -107,19 +126,26 @@ class Metrics:
     """The server's metrics; names begin with `esplanade_`.
 
     Figures that are kept elsewhere are read by `sample`, in the thread that changes them; all else
-    is safe in any thread.
+    is safe in any thread. In a world of several zones each has a view of its own (`of_zone`), and
+    what is told of ticks and zones has the label `zone`.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, zones: Iterable[str] = ()) -> None:
+        """`zones` are the names of the zones of a world that has several."""
         self.registry = CollectorRegistry()
-        self._figures: list[_Figure] = []
-        self.sampled_at = self.ticked_at = monotonic()
-        """When the figures were last read, and when a tick last ended, seconds of `monotonic`."""
+        self._zone: str | None = None
+        self._figures: dict[str, _Figure] = {}
+        self._ticked: dict[str | None, float] = dict.fromkeys(zones, monotonic()) or {
+            None: monotonic()
+        }
+        self.sampled_at = monotonic()
+        """When the figures were last read, seconds of `monotonic`."""
         for name, text, since in (
             ("tick_age_seconds", "Time since the last tick ended", lambda: self.ticked_at),
             ("sample_age_seconds", "Time since the world gave figures", lambda: self.sampled_at),
         ):
             self.registry.register(_Age(name, text, since))
+        label = [] if None in self._ticked else ["zone"]
         self.traffic = Traffic()
         self.ticks = Durations()
         for name, text in _TRAFFIC_HELP.items():
@@ -127,12 +153,13 @@ class Metrics:
         self._tick_seconds = Histogram(
             "tick_duration_seconds",
             "Time from the begin of a tick until its last frame is written",
+            label,
             namespace=_NAMESPACE,
             buckets=_TICK_BUCKETS_S,
             registry=self.registry,
         )
         self._stage_seconds = self._counter(
-            "tick_stage_seconds", "Time spent in each stage of the tick", ["stage"]
+            "tick_stage_seconds", "Time spent in each stage of the tick", [*label, "stage"]
         )
         self.errors = self._counter("errors", "Errors told to clients, by code", ["code"])
         self.closes = self._counter("closes", "Connections ended by the server", ["reason"])
@@ -162,6 +189,22 @@ class Metrics:
         self.planning_failures = self._counter(
             "planning_failures", "Ticks in which the actors' planning failed and they stood still"
         )
+        self.hops = self._counter("hops", "People who stepped into portals", ["result"])
+        if not label:
+            self._tell_ticks()
+
+    def of_zone(self, zone: str) -> "Metrics":
+        """The same metrics as one zone of several gives them."""
+        view = copy(self)
+        view._show_zone(zone)  # noqa: SLF001 - of this class
+        return view
+
+    def _show_zone(self, zone: str) -> None:
+        self._zone, self.ticks = zone, Durations()
+        self._tick_seconds = self._tick_seconds.labels(zone)
+        self._tell_ticks()
+
+    def _tell_ticks(self) -> None:
         for percent in (50, 99):
             self.gauge(
                 f"tick_p{percent}_seconds",
@@ -169,28 +212,34 @@ class Metrics:
                 partial(self.ticks.percentile, percent, _WINDOW_TICKS),
             )
 
+    @property
+    def ticked_at(self) -> float:
+        """When a tick last ended, seconds of `monotonic`; of several zones, of the latest one."""
+        return min(self._ticked.values())
+
     def gauge(self, name: str, text: str, read: Callable[[], float]) -> None:
         """Add a value that is read when scraped."""
-        self._add(_Figure(GaugeMetricFamily, name, text, read))
+        self._add(GaugeMetricFamily, name, text, read)
 
     def total(self, name: str, text: str, read: Callable[[], float]) -> None:
         """Add a total that is kept elsewhere and never falls."""
-        self._add(_Figure(CounterMetricFamily, name, text, read))
+        self._add(CounterMetricFamily, name, text, read)
 
     def tick_took(self, seconds: float, stages: dict[str, float]) -> None:
-        self.ticked_at = monotonic()
+        self._ticked[self._zone] = monotonic()
         self.ticks.add(seconds)
         self._tick_seconds.observe(seconds)
+        zone = () if self._zone is None else (self._zone,)
         for stage, stage_seconds in stages.items():
-            self._stage_seconds.labels(stage).inc(stage_seconds)
+            self._stage_seconds.labels(*zone, stage).inc(stage_seconds)
 
     def stood(self) -> None:
         """No tick was due, since the world is paused."""
-        self.ticked_at = monotonic()
+        self._ticked[self._zone] = monotonic()
 
     def sample(self) -> None:
         """Read all figures that are kept elsewhere, in the thread that changes them."""
-        for figure in self._figures:
+        for figure in list(self._figures.values()):
             figure.sample()
         self.sampled_at = monotonic()
 
@@ -203,8 +252,19 @@ class Metrics:
         self.sample()
         return self.render()
 
-    def _add(self, figure: _Figure) -> None:
-        self._figures.append(figure)
+    def _add(
+        self,
+        family: type[CounterMetricFamily] | type[GaugeMetricFamily],
+        name: str,
+        text: str,
+        read: Callable[[], float],
+    ) -> None:
+        figure = self._figures.get(name)
+        if figure is not None:
+            figure.add(self._zone, read)
+            return
+        figure = self._figures[name] = _Figure(family, name, text)
+        figure.add(self._zone, read)
         self.registry.register(figure)
 
     def _counter(self, name: str, text: str, labels: Iterable[str] = ()) -> Counter:

@@ -31,6 +31,11 @@ _WORLD: Final = {
         "one, the gallery that comes along",
         InputFile(),
     ),
+    "world": Setting(
+        "world of several zones that portals join, a JSON file, instead of --scene "
+        "(docs/worlds.md)",
+        InputFile(),
+    ),
     "crowd": Setting(
         "fit the scene to this recorded crowd instead of --scene; docs/files.md lists the formats",
         InputFile(folders=True),
@@ -326,6 +331,7 @@ def check(given: Mapping[str, Any]) -> None:
     """
     if given.get("scene") and given.get("crowd"):
         raise ValueError("scene and crowd: give one of them, not both")
+    _check_world(given)
     if given.get("roster") and given.get("actors") is not None:
         raise ValueError("roster and actors: give one of them, not both")
     if given.get("walls") and not given.get("crowd"):
@@ -351,6 +357,21 @@ def check(given: Mapping[str, Any]) -> None:
     slow_bytes = given.get("slow_bytes", _LIMITS["slow_bytes"].default)
     if given.get("drop_bytes", _LIMITS["drop_bytes"].default) <= slow_bytes:
         raise ValueError("drop_bytes: must be greater than slow_bytes")
+
+
+_SAID_BY_WORLD: Final = ("scene", "crowd", "roster")
+_OF_ONE_ZONE: Final = ("data", "store", "fresh", "trajectories")
+
+
+def _check_world(given: Mapping[str, Any]) -> None:
+    if not given.get("world"):
+        return
+    for name in _SAID_BY_WORLD:
+        if given.get(name) is not None:
+            raise ValueError(f"world and {name}: the world's file says that for each zone")
+    for name in _OF_ONE_ZONE:
+        if given.get(name):
+            raise ValueError(f"world and {name}: only a world of one zone is kept or recorded")
 
 
 def _check_trajectories(given: Mapping[str, Any]) -> None:
@@ -424,6 +445,7 @@ def parser(prog: str = "esplanade serve") -> Parser:
 examples:
   esplanade serve                                  the gallery, with ten actors
   esplanade serve --scene scenes/plaza.json --actors 30 --port 9000
+  esplanade serve --world scenes/town.json         several zones, and portals between them
   esplanade serve --data world                     the world goes on from there after a restart
   esplanade serve --crowd zara1.csv                then `esplanade bots --replay zara1.csv`
 

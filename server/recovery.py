@@ -55,7 +55,7 @@ async def read_recovery(kept: Kept, settings: ServerSettings, loaded: LoadedScen
     StoreError
         The store cannot be used.
     """
-    described = loaded.scene.model_dump_json(exclude={"mesh"})
+    described = loaded.scene.model_dump_json(exclude={"mesh", "portals"})
     scene = SceneKey.of(loaded.scene.name, described, loaded.triangles)
     if kept.store.location.in_memory:
         return Recovery(scene, Parts())

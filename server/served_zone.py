@@ -4,7 +4,7 @@ import asyncio
 from collections.abc import AsyncIterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from esplanade.actors import Outcome
 from esplanade.actors.warming import tables_ahead
@@ -16,7 +16,6 @@ from esplanade.server.kept import Kept
 from esplanade.server.link.local import LocalLink
 from esplanade.server.live.bulletin import Bulletin
 from esplanade.server.live.live import Live
-from esplanade.server.loading import LoadedScene
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.delivery import Delivery
 from esplanade.server.net.entrance import Entrance
@@ -25,14 +24,15 @@ from esplanade.server.net.hub import Hub
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.schedule import Schedule
 from esplanade.server.net.search_budget import SearchBudget
+from esplanade.server.net.surroundings import Surroundings
 from esplanade.server.net.ticker import Ticker
 from esplanade.server.recovery import read_recovery
 from esplanade.server.resuming import persistence_of, resume
-from esplanade.server.settings import ServerSettings
 from esplanade.server.trajectories.keeping import trajectories_kept
 from esplanade.server.watching import watch_routes, watch_world
 from esplanade.server.world.audience import Audience
 from esplanade.server.world.zone import Zone
+from esplanade.server.zones import ZoneToServe, check_portals
 
 
 @dataclass(frozen=True)
@@ -112,31 +112,36 @@ class ServedZone:
 
 @asynccontextmanager
 async def served_zone(
-    settings: ServerSettings,
-    loaded: LoadedScene,
+    zone: ZoneToServe,
     process: Process,
     metrics: Metrics,
     described: Mapping[str, object],
+    surroundings: Surroundings | None = None,
 ) -> AsyncIterator[ServedZone]:
     """Build a zone and all that it is served by; it does not tick yet.
 
-    `described` holds what a welcome says of the scene beside what is in its file.
+    `described` holds what a welcome says of the scene beside what is in its file; without
+    `surroundings` the zone is the whole world.
 
     Raises
     ------
     LoadingError
-        The scene has no room for its actors.
+        The scene has no room for its actors, or nobody gets to one of its portals.
     StoreError
         What is to be kept cannot be.
     """
+    settings, loaded = zone.settings, zone.loaded
     kept, loop = process.kept, asyncio.get_running_loop()
     async with AsyncExitStack() as stack:
         thread = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="actors"))
         recovery = await read_recovery(kept, settings, loaded)
+        if surroundings is not None:
+            recovery = replace(recovery, ids=surroundings.ids)
         population, world, storeys = await loop.run_in_executor(
             thread, build_world, loaded, settings, recovery
         )
         stack.callback(population.close)
+        await loop.run_in_executor(thread, check_portals, zone, world.grid)
         watch_world(world, population, metrics)
         schedule = Schedule(world.tick_s, loop.time())
         searching = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="routes"))
@@ -156,6 +161,7 @@ async def served_zone(
             process.entrance,
             schedule.pace,
             persistence.seats,
+            surroundings,
         )
         delivery = Delivery(
             audience,

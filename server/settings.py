@@ -26,6 +26,7 @@ class ServerSettings(BaseSettings):
     )
 
     scene: Path | None = _field("scene")
+    world: Path | None = _field("world")
     crowd: Path | None = _field("crowd")
     walls: Path | None = _field("walls")
     fps: float | None = _field("fps")

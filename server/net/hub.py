@@ -11,18 +11,22 @@ from esplanade.server.checkpoint.seat_keeper import SeatKeeper
 from esplanade.server.metrics import Metrics
 from esplanade.server.moderation.state import ModerationState
 from esplanade.server.net import frames
+from esplanade.server.net.arrivals import Arrival
 from esplanade.server.net.chat_gate import ChatGate
+from esplanade.server.net.departures import Departures
 from esplanade.server.net.entrance import Entrance
 from esplanade.server.net.leases import ANSWER_S, PING_S, Leases
 from esplanade.server.net.moderation import PeopleModeration
 from esplanade.server.net.operator_keys import SERVICE, OperatorKeys, TooManyKeysError
 from esplanade.server.net.pace_notices import PaceNotices
 from esplanade.server.net.pending_inputs import PendingInputs
+from esplanade.server.net.person import Person
 from esplanade.server.net.reporting import Reporting
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.seating import Seating
 from esplanade.server.net.session import Session
 from esplanade.server.net.sockets.reading import Reading
+from esplanade.server.net.surroundings import Surroundings
 from esplanade.server.net.waiting_lines import WaitingLines
 from esplanade.server.net.walk_outs import WalkOuts
 from esplanade.server.net.welcomes import Welcomes
@@ -56,10 +60,10 @@ class Hub:
         entrance: Entrance | None = None,
         pace: Pace | None = None,
         keeper: SeatKeeper | None = None,
+        surroundings: Surroundings | None = None,
     ) -> None:
-        """Without an entrance nobody is asked what lets them in.
-
-        With a `keeper`, nobody is welcomed before their seat is in the store.
+        """The `entrance` is told of those who go. With a `keeper`, nobody is welcomed before their
+        seat is in the store. Without `surroundings`, the zone is the whole world.
         """
         self.server_time = server_time
         self._world = world
@@ -77,6 +81,8 @@ class Hub:
             greet=self._greet,
             leaving=lambda session: self.moderation.remember(session),  # noqa: PLW0108 - made below
             forget=self._forget,
+            arrived=self._arrived,
+            names=None if surroundings is None else surroundings.names,
         )
         self.sessions = self._seating.sessions
         """Sessions that have been welcomed, by their avatar's id."""
@@ -92,7 +98,8 @@ class Hub:
             self.sessions,
             self._seating.seats,
             self._seating.give_up,
-            lambda: asyncio.get_running_loop().time(),
+            lambda: self.now_s,
+            0 if surroundings is None else surroundings.first_line,
         )
         self._entrance = entrance
         self._pace = pace or Pace()
@@ -105,6 +112,9 @@ class Hub:
             lambda movement: self.wishes.want(movement),  # noqa: PLW0108 - made below
             self.moderation.has_walked_out,
         )
+        self._departures = Departures(world, self.sessions)
+        if surroundings is not None:
+            self._departures.open(surroundings.portals, surroundings.go)
         self._lines = WaitingLines(
             self.moderation, ChatGate(moderated, storeys), self._seating.is_at_the_door, metrics
         )
@@ -116,6 +126,7 @@ class Hub:
             self.sessions,
             self.moderation,
             self._walk_outs,
+            self._departures,
             self._lines,
             Reporting(moderated, self.moderation.reportable, self.moderation.where),
         )
@@ -123,28 +134,6 @@ class Hub:
         metrics.gauge("frames_waiting", "Frames that wait for slow clients", self._frames_waiting)
 
     # --- coming and going ---------------------------------------------------------------------
-
-    async def receive(self, session: Session, hello: Hello) -> None:
-        """Find out whether a client may come in, and admit it.
-
-        Raises
-        ------
-        ProtocolError
-            It may not, or there is no room.
-        """
-        if self._entrance is None:
-            self.admit(session, hello)
-            return
-        has_seat = bool(hello.resume) and self._seating.seats.find(hello.resume or "") is not None
-        session.admitted = admitted = await self._entrance.check(
-            hello.admission, session.address, session.identity, has_seat
-        )
-        session.operator = admitted.operator
-        try:
-            self.admit(session, hello)
-        except ProtocolError:
-            await self._entrance.turn_away(admitted)
-            raise
 
     def admit(self, session: Session, hello: Hello) -> None:
         """Let a newcomer wait to join, or give a person who comes back their own avatar.
@@ -157,6 +146,20 @@ class Hub:
         self.moderation.check_ban(hello.name, session.address, hello.resume)
         self._check_key(session, hello.operator)
         self._seating.admit(session, hello)
+
+    def has_seat(self, token: str) -> bool:
+        """Whether a token takes a seat in this zone."""
+        return self._seating.seats.find(token) is not None
+
+    @property
+    def people(self) -> int:
+        """Those who are in, who wait to come in, and for whom a place is kept."""
+        return self._seating.people
+
+    @property
+    def now_s(self) -> float:
+        """Seconds of the event loop."""
+        return asyncio.get_running_loop().time()
 
     def confirm(self, session: Session) -> None:
         """Note that a client that came back has its new token, so that the old one is void."""
@@ -211,11 +214,60 @@ class Hub:
         """Forget what is under way for an avatar whose connection has ended."""
         self._routes.forget(avatar_id)
         self._walk_outs.forget(avatar_id)
+        self._departures.forget(avatar_id)
         self.moderation.lines.forget(avatar_id)
 
     def _run_for_s(self, now: float) -> float:
         """A clock that stands while the world does: nobody's seat is lost in a pause."""
         return now - self._pace.standing_s(now)
+
+    # --- from zone to zone --------------------------------------------------------------------
+
+    def expect(self, arrival: Arrival) -> None:
+        """Keep a place for somebody who comes from another zone, and let them in.
+
+        Raises
+        ------
+        ProtocolError
+            There is no room.
+        """
+        self._seating.expect(arrival)
+
+    def release(self, session: Session) -> Person | None:
+        """Let somebody out to another zone; None if they do not go any more."""
+        avatar_id = session.avatar_id
+        if avatar_id is None or avatar_id not in self._departures or avatar_id in self._walk_outs:
+            return None
+        muted = self.moderation.lines.muted_by(avatar_id)
+        silent_s = self.moderation.mutes.left_s(avatar_id)
+        seat = self._seating.release(session)
+        if seat is None:
+            return None
+        self.moderation.mutes.put(avatar_id, 0.0)
+        return Person(
+            avatar_id, seat.name, seat.address, tuple(seat.digests), seat.operator, muted, silent_s
+        )
+
+    def stays(self, session: Session) -> None:
+        """Let somebody walk on in this zone whom another one does not let in."""
+        if session.avatar_id is not None:
+            self._departures.stay(session.avatar_id)
+
+    def _arrived(self, session: Session, person: Person) -> None:
+        """Take in all that goes along with somebody who comes from another zone."""
+        session.enter(self)
+        session.watching = None
+        self._departures.arrived(person.id)
+        self.moderation.mutes.put(person.id, person.silent_s)
+        for speaker in person.muted:
+            self.moderation.lines.mute(person.id, speaker, muted=True)
+
+    def _check_departures(self) -> None:
+        """Let those stand who go to another zone, and keep no places for long."""
+        for avatar_id in self._departures.check(self._walk_outs.__contains__):
+            self._routes.forget(avatar_id)
+            self._pending.stand(avatar_id)
+        self._seating.end_arrivals(self.now_s)
 
     # --- requests of the tick -----------------------------------------------------------------
 
@@ -229,6 +281,7 @@ class Hub:
         self._seating.end_waiting(self._run_for_s(now))
         self._check_leases(now)
         self._walk_outs.check(now)
+        self._check_departures()
         return self._pending.drain(self._lines.drain(), self._seating.joins(), still=still)
 
     def _check_leases(self, now: float) -> None:

@@ -39,6 +39,10 @@ class Lines:
             del self._muted[viewer]
         return True
 
+    def muted_by(self, viewer: int) -> frozenset[int]:
+        """Those whom a viewer does not want to hear."""
+        return frozenset(self._muted.get(viewer, ()))
+
     def forget(self, viewer: int) -> None:
         """A viewer's connection has ended: what they muted holds no more."""
         self._muted.pop(viewer, None)

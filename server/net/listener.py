@@ -24,12 +24,12 @@ from esplanade.server.net.checked_identities import CheckedIdentities
 from esplanade.server.net.connection import Connection, WatchedProtocol
 from esplanade.server.net.connections import Connections, Place
 from esplanade.server.net.door import Door
-from esplanade.server.net.hub import Hub
+from esplanade.server.net.front_door import FrontDoor
 from esplanade.server.net.metering import MAX_FRAME_BYTES, Meter
 from esplanade.server.net.refusals import Refusals
 from esplanade.server.net.root_path import RootPath
 from esplanade.server.net.session import Session
-from esplanade.server.net.sockets.reading import reading
+from esplanade.server.net.sockets.reading import Reading, reading
 from esplanade.server.net.tls import Tls
 from esplanade.server.settings import ServerSettings
 
@@ -56,14 +56,15 @@ class Listener:
 
     def __init__(
         self,
-        hub: Hub,
+        front_door: FrontDoor,
         assets: Assets,
         settings: ServerSettings,
         metrics: Metrics,
         places: int,
     ) -> None:
         """`places` connections may be open, no more than there are descriptors for them."""
-        self._hub = hub
+        self._front_door = front_door
+        self._reading: Reading | None = None
         self._assets = assets
         self._settings = settings
         self._metrics = metrics
@@ -105,13 +106,15 @@ class Listener:
         # The library hands over the connections that `_connect` makes.
         handler = cast(Callable[[ServerConnection], Coroutine[Any, Any, None]], self._handle)
         server = Server(lambda: self._open(server, sockets, tls), handler, self._logger)
-        with reading(self._hub.wishes.moved, self._metrics.traffic) as self._hub.reading:
+        with reading(self._front_door.moved, self._metrics.traffic) as self._reading:
+            self._front_door.read_by(self._reading)
             await server
             try:
                 yield server
             finally:
                 await self._connections.shut(server)
-        self._hub.reading = None
+        self._reading = None
+        self._front_door.read_by(None)
 
     async def _open(
         self, server: Server, sockets: list[socket.socket], tls: Tls | None
@@ -130,7 +133,7 @@ class Listener:
         now = asyncio.get_running_loop().time()
         meter = Meter(self._settings.message_rate, now)
         return Connection(
-            protocol, server, place, meter, self._metrics, self._refusals, self._hub.reading
+            protocol, server, place, meter, self._metrics, self._refusals, self._reading
         )
 
     async def _handle(self, connection: Connection) -> None:
@@ -164,7 +167,7 @@ class Listener:
         try:
             async with connection:
                 session = Session(
-                    connection, self._hub, self._settings, self._metrics, self._refusals
+                    connection, self._front_door, self._settings, self._metrics, self._refusals
                 )
                 await session.run()
         finally:

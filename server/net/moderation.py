@@ -37,11 +37,13 @@ class PeopleModeration(PeopleHere):
         seats: Seats[Session],
         kick: Callable[[Session], None],
         now_s: Callable[[], float],
+        first_line: int = 0,
     ) -> None:
-        """`kick` gives up the seat of a session, so that its token opens nothing any more."""
+        """`kick` gives up the seat of a session, so that its token opens nothing any more. Numbers
+        of lines begin with the milliseconds of now, and so many more."""
         super().__init__(world, storeys, sessions, seats, now_s)
         self.state = state
-        self.lines = Lines(state.now_us() // 1000, self._said)
+        self.lines = Lines(state.now_us() // 1000 + first_line, self._said)
         self.mutes = Mutes(state.now_us)
         self.listeners: list[Listener] = []
         """Are told of reports and, where chat is kept, of lines: the kind, and plain data."""

@@ -32,11 +32,16 @@ class _Given(NamedTuple):
 class Names:
     """The names that are taken in one world."""
 
-    def __init__(self, fixed: Iterable[str]) -> None:
+    def __init__(self, fixed: Iterable[str] = ()) -> None:
         """`fixed` holds the names of actors, which are taken for as long as the world lasts."""
-        self._taken = {skeleton(name) for name in fixed}
+        self._taken: set[str] = set()
+        self.reserve(fixed)
         self._given: dict[str, _Given] = {}
         self._numbers: dict[str, set[int]] = {}
+
+    def reserve(self, fixed: Iterable[str]) -> None:
+        """Let nobody have the names of these actors."""
+        self._taken |= {skeleton(name) for name in fixed}
 
     def take(self, wished: str) -> str:
         """Give somebody the name they wish, or with " 2" and so on if another has one like it.

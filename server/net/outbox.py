@@ -114,6 +114,10 @@ class Outbox:
         if self.open:
             self._write(frame)
 
+    def begin_anew(self) -> None:
+        """Forget the frames that wait: they are of a zone where the client is no more."""
+        self._waiting.clear()
+
     def post(self, frame: bytes) -> None:
         """Send a frame that must not be lost; it waits while the client is slow."""
         if not self.open:

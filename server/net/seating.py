@@ -7,15 +7,17 @@ from typing import Any, Final
 import structlog
 
 from esplanade.protocol import ByeCode, CloseCode, ErrorCode, ProtocolError
-from esplanade.protocol.messages import Bye, Error, Hello
+from esplanade.protocol.messages import Bye, Error, Hello, Travel
 from esplanade.server.checkpoint.returning import Left
 from esplanade.server.checkpoint.rows import KeptSeat
 from esplanade.server.checkpoint.seat_keeper import SeatKeeper
 from esplanade.server.metrics import Metrics
 from esplanade.server.net import frames
+from esplanade.server.net.arrivals import Arrival, Arrivals
 from esplanade.server.net.names import Names, ReservedNameError
 from esplanade.server.net.newcomers import Newcomers
 from esplanade.server.net.pending_inputs import PendingInputs
+from esplanade.server.net.person import Person
 from esplanade.server.net.seats import Seat, Seats
 from esplanade.server.net.session import Session
 from esplanade.server.net.welcomes import Welcomes
@@ -35,7 +37,7 @@ class Seating:
     """Gives people seats in a zone, and takes them away. With a `keeper`, nobody is welcomed
     before their seat is in the store."""
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 (those who are told of comings and goings count)
         self,
         world: Zone,
         audience: Audience,
@@ -48,9 +50,13 @@ class Seating:
         greet: Callable[[Session, bool], None],
         leaving: Callable[[Session], None],
         forget: Callable[[int], None],
+        arrived: Callable[[Session, Person], None],
+        names: Names | None = None,
     ) -> None:
         """`greet` is told of each who is welcomed, and whether they came back; `leaving` of a
-        session whose connection ends, and `forget` of the avatar that it has no more."""
+        session whose connection ends, `forget` of the avatar that it has no more, and `arrived` of
+        those who have come from another zone, before they are welcomed. `names` are those of the
+        whole world, where there are other zones."""
         self.sessions: dict[int, Session] = {}
         """Sessions that have been welcomed, by their avatar's id."""
         self.seats: Seats[Session] = Seats()
@@ -64,7 +70,10 @@ class Seating:
         self._greet = greet
         self._leaving = leaving
         self._forget = forget
-        self._names = Names(world.actor_names)
+        self._arrived = arrived
+        self._names = names or Names()
+        self._names.reserve(world.actor_names)
+        self._arrivals = Arrivals()
         self._newcomers = Newcomers(world, anywhere=settings.crowd is not None)
         metrics.gauge("clients", "People connected", lambda: len(self.sessions))
         metrics.gauge(
@@ -86,8 +95,7 @@ class Seating:
         if seat is not None:
             self._resume(seat, session, hello.resume or "")
             return
-        if len(self.seats) + len(self._newcomers) >= self._settings.max_clients:
-            self._make_room()
+        self._find_room()
         try:
             session.name = self._names.take(hello.name)
         except ReservedNameError as error:
@@ -100,13 +108,22 @@ class Seating:
         """Whether somebody waits to join."""
         return session in self._newcomers
 
+    @property
+    def people(self) -> int:
+        """Those who have a seat, who wait to join, or for whom a place is kept."""
+        return len(self.seats) + len(self._newcomers) + len(self._arrivals)
+
     def joins(self) -> list[Join]:
-        """Inputs by which a few of those at the door come in."""
-        return self._newcomers.joins()
+        """Inputs by which those come in who come from other zones, and a few of those who wait."""
+        return [*self._arrivals.joins(), *self._newcomers.joins()]
 
     def welcome(self, frame: Frame) -> None:
         """Welcome the people whom the tick has let in, before anything else is sent to them."""
         for ticket, avatar_id in frame.joined:
+            arrival = self._arrivals.take(ticket)
+            if arrival is not None:
+                self._take_in(arrival, ticket)
+                continue
             session = self._newcomers.let_in(ticket)
             if session is None:
                 # The person went while the zone made the avatar.
@@ -151,14 +168,16 @@ class Seating:
         digests = tuple(seat.digests)
         self._when_kept(self._keeper.change(seat.avatar_id, seat.address, digests), session)
 
-    def _make_room(self) -> None:
-        """Take a vacant seat away, so that a newcomer finds room.
+    def _find_room(self) -> None:
+        """See to it that one more finds room; takes a vacant seat away for that, if need be.
 
         Raises
         ------
         ProtocolError
             None is vacant.
         """
+        if self.people < self._settings.max_clients:
+            return
         seat = self.seats.yielding()
         if seat is None:
             raise ProtocolError(
@@ -171,16 +190,69 @@ class Seating:
         log.info("vacant seat yielded", id=seat.avatar_id, name=seat.name, address=seat.address)
 
     def _bind(self, session: Session, avatar_id: int, resumed: bool) -> None:
-        self.sessions[avatar_id] = session
-        if not session.wants_steps:
-            self._audience.send_no_steps(avatar_id)
-        session.outbox.welcome(self._welcomes.frame(session, avatar_id, resumed))
+        self._show(session, avatar_id, self._welcomes.frame(session, avatar_id, resumed))
         session.unconfirmed = resumed
         self._greet(session, resumed)
         if session.fault_at_welcome is not None:
             session.tell(session.fault_at_welcome)
         self._metrics.joins.labels("resumed" if resumed else "new").inc()
         log.info("person here", id=avatar_id, name=session.name, resumed=resumed)
+
+    def _show(self, session: Session, avatar_id: int, welcome: bytes) -> None:
+        """Let a session look through the eyes of an avatar from now on."""
+        self.sessions[avatar_id] = session
+        if not session.wants_steps:
+            self._audience.send_no_steps(avatar_id)
+        session.outbox.welcome(welcome)
+
+    # --- from zone to zone --------------------------------------------------------------------
+
+    def expect(self, arrival: Arrival) -> None:
+        """Keep a place for somebody who comes from another zone, and let them in.
+
+        Raises
+        ------
+        ProtocolError
+            There is no room.
+        """
+        self._find_room()
+        self._arrivals.expect(self._newcomers.new_ticket(), arrival)
+
+    def release(self, session: Session) -> Seat[Session] | None:
+        """Take the seat of a session that goes to another zone out of this one, and its avatar;
+        None if it has none any more."""
+        seat = None if session.avatar_id is None else self.seats.of(session.avatar_id)
+        if seat is None or seat.occupant is not session:
+            return None
+        self._leaving(session)
+        self._unbind(seat)
+        self.seats.remove(seat)
+        self._pending.come(Leave(seat.avatar_id))
+        return seat
+
+    def end_arrivals(self, now_s: float) -> None:
+        """Keep no places any more for those whom the zone has not let in for long."""
+        for arrival in self._arrivals.end_waiting(now_s):
+            arrival.fail("it does not let you in just now")
+
+    def _take_in(self, arrival: Arrival, ticket: int) -> None:
+        """Give somebody their seat here, whose avatar has come into the zone."""
+        person, session = arrival.release(), arrival.session
+        if person is None:
+            self._pending.come(Leave(arrival.id))
+            return
+        digests = list(person.digests)
+        self.seats.put(
+            Seat(person.id, person.name, person.address, session, digests, person.operator)
+        )
+        session.ticket = ticket
+        self._arrived(session, person)
+        travel = frames.message(Travel(zone=arrival.zone, portal=arrival.portal))
+        session.outbox.begin_anew()
+        self._show(session, person.id, travel + self._welcomes.frame(session, person.id, False))
+        self._greet(session, True)
+        self._metrics.joins.labels("travelled").inc()
+        log.info("person here", id=person.id, name=person.name, zone=arrival.zone)
 
     # --- going --------------------------------------------------------------------------------
 

@@ -56,6 +56,12 @@ class Seats(Generic[Occupant]):
         if operator is not None and operator.via == "pass":
             self._by_avatar[avatar_id].operator = operator
 
+    def put(self, seat: Seat[Occupant]) -> None:
+        """Put in a seat of somebody who has come from another zone, and sits there."""
+        self._by_avatar[seat.avatar_id] = seat
+        for digest in seat.digests:
+            self._by_digest[digest] = seat
+
     def restore(self, seat: Seat[Occupant], vacant_since: float) -> None:
         """Put in a seat from before a restart, whose person is lost since that moment.
 

@@ -87,14 +87,18 @@ class SessionRequests(Protocol):
     def wishes(self) -> SessionWishes:
         """Takes what the person wants."""
 
-    async def receive(self, session: "Session", hello: Hello) -> None:
-        """Give the person a place in the world, or raise ProtocolError."""
-
     def confirm(self, session: "Session") -> None:
         """Note that the client has read its welcome: it has sent something since."""
 
     def depart(self, session: "Session", comes_back: bool) -> None:
         """Let go of a session that has ended."""
+
+
+class Reception(SessionRequests, Protocol):
+    """The requests of a session that is not in yet; the front door fulfils them."""
+
+    async def receive(self, session: "Session", hello: Hello) -> None:
+        """Give the person a place in a zone, or raise ProtocolError."""
 
 
 class Session:
@@ -103,7 +107,7 @@ class Session:
     def __init__(
         self,
         connection: Connection,
-        hub: SessionRequests,
+        reception: Reception,
         settings: ServerSettings,
         metrics: Metrics,
         refusals: Refusals,
@@ -145,7 +149,8 @@ class Session:
         self.unconfirmed = False
         """Whether the client got a renewed token that it may not have read yet."""
         self._connection = connection
-        self._hub = hub
+        self._reception = reception
+        self._hub: SessionRequests = reception
         self._metrics = metrics
         self._refusals = refusals
         self._hello_timeout_s = settings.hello_timeout_s
@@ -161,6 +166,10 @@ class Session:
     def identity(self) -> str | None:
         """The name that a trusted proxy has for the client; None without one."""
         return self._connection.identity
+
+    def enter(self, hub: SessionRequests) -> None:
+        """Have another fulfil the requests from now on: the hub of the zone where the person is."""
+        self._hub = hub
 
     async def run(self) -> None:
         """Serve the connection from its hello to its end."""
@@ -217,7 +226,7 @@ class Session:
         self._connection.place.settle()
         self.name, self.wants_steps = hello.name, hello.steps
         self.wished = hello.name
-        await self._hub.receive(self, hello)
+        await self._reception.receive(self, hello)
         if self.admitted.bot is not None:
             self._connection.grant(self.admitted.bot.message_rate)
 

@@ -26,7 +26,7 @@ class Welcomes:
         self._world = world
         self._settings = settings
         self._server_time = server_time
-        scene = world.scene.model_dump(mode="json", exclude={"mesh"})
+        scene = world.scene.model_dump(mode="json", exclude={"mesh", "portals"})
         self._scene: bytes = msgpack.packb({**scene, **derived})
 
     def frame(self, session: Session, avatar_id: int, resumed: bool) -> bytes:

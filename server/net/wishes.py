@@ -9,6 +9,7 @@ from esplanade.planning import MovedEnd
 from esplanade.protocol import ErrorCode, ProtocolError
 from esplanade.protocol.messages import Move, MutePerson, Report, SetDoor, WalkTo
 from esplanade.server.net import frames
+from esplanade.server.net.departures import Departures
 from esplanade.server.net.door_commands import DoorCommands
 from esplanade.server.net.fair_queue import Asker
 from esplanade.server.net.ground_work import DOOR_PAUSE_S
@@ -41,6 +42,7 @@ class Wishes:
         sessions: Mapping[int, Session],
         moderation: PeopleModeration,
         walk_outs: WalkOuts,
+        departures: Departures,
         lines: WaitingLines,
         reporting: Reporting,
     ) -> None:
@@ -53,6 +55,7 @@ class Wishes:
         self._sessions = sessions
         self._moderation = moderation
         self._walk_outs = walk_outs
+        self._departures = departures
         self._lines = lines
         self._reporting = reporting
         self._door_lines: dict[str, float] = {}
@@ -66,7 +69,7 @@ class Wishes:
     def move(self, session: Session, wish: Move | WalkTo) -> None:
         """Keep the wish for the next tick; it takes the place of an earlier one."""
         avatar_id = session.avatar_id
-        if avatar_id is None or avatar_id in self._walk_outs:
+        if avatar_id is None or avatar_id in self._walk_outs or avatar_id in self._departures:
             return
         if isinstance(wish, Move):
             self.want(Steer(avatar_id, wish.seq, wish.direction, wish.speed))
@@ -92,7 +95,8 @@ class Wishes:
                 wishes.pop(avatar_id, None)
             else:
                 session.last_seq = number
-        for avatar_id in self._walk_outs.among(wishes.keys()):
+        led = self._walk_outs.among(wishes.keys()) | self._departures.among(wishes.keys())
+        for avatar_id in led:
             del wishes[avatar_id]
         self._pending.steer(wishes)
         self._routes.forget_all(wishes.keys())

@@ -99,15 +99,17 @@ class Recorder:
         self._state = state
         self._origin_m = origin_m
         self._records = np.zeros(state.capacity, dtype=RECORD)
-        self._ids = np.zeros(state.capacity, dtype=np.int64)
+        self._arrivals = np.zeros(state.capacity, dtype=np.int64)
         self._bodies = np.zeros((state.capacity, 3))
 
     def entered(self) -> list[Entered]:
         """The avatars that came into the world since the last call."""
         state = self._state
         live = state.live()
-        new = live[self._ids[live] != state.ids[live]]
-        self._ids[new] = state.ids[new]
+        new = live[self._arrivals[live] != state.arrivals[live]]
+        self._arrivals[new] = state.arrivals[new]
+        # Whoever has come back to the same place has its record told all the same.
+        self._records[new] = np.zeros(1, dtype=RECORD)
         self._bodies[new] = self._bodies_of(new)
         return [self._describe(slot) for slot in new[np.argsort(state.ids[new])].tolist()]
 

@@ -24,6 +24,8 @@ class Join:
     """The wished place x, y and height, metres; None for any spawn point."""
     anywhere: bool = True
     """Whether the wished place itself is given; otherwise the spawn point nearest to it is."""
+    id: int | None = None
+    """The id of somebody who comes from another zone and keeps it; None for a new one."""
 
 
 @dataclass(frozen=True, slots=True)

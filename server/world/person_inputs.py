@@ -58,16 +58,19 @@ class PersonInputs:
         return self._watched.values()
 
     def join(self, join: Join) -> None:
-        """Give a newcomer an avatar.
+        """Give a newcomer an avatar, or somebody who comes from another zone the one of there.
 
         Raises
         ------
+        ValueError
+            An avatar with that id is here.
         NoRoomError
             There is no place left to stand.
         """
         place = self._spawning.place(join.at, join.anywhere)
         layer = self._grid.layer_at(place[:2], place[2])
-        slot = self._state.add(PERSON, join.name, place, layer, self._rules.person_radius_m)
+        radius_m = self._rules.person_radius_m
+        slot = self._state.add(PERSON, join.name, place, layer, radius_m, join.id)
         self._people.stop(slot)
         self.joined.append((join.ticket, int(self._state.ids[slot])))
 

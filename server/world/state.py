@@ -31,8 +31,10 @@ class State:
     """Every avatar of the zone.
 
     Arrays are indexed by slot and have a fixed capacity. A slot is used again once its avatar
-    is gone; an id never is. `before` holds the positions of the tick before; `heights` are those of
-    the feet above the scene's ground, metres; `ahead` is where each is going, as in
+    is gone; an id never is, except by an avatar that went to another zone and comes back. So
+    `arrivals` tells the avatars of a slot apart: they are numbered as they come, from 1 on.
+    `before` holds the positions of the tick before; `heights` are those of the feet above the
+    scene's ground, metres; `ahead` is where each is going, as in
     `esplanade.actors.locomotion.Course`; legs and statures are those drawn for an avatar, `scales`
     times as long.
     """
@@ -41,6 +43,7 @@ class State:
         self.capacity = capacity
         self.alive = np.zeros(capacity, dtype=np.bool_)
         self.ids = np.zeros(capacity, dtype=np.int64)
+        self.arrivals = np.zeros(capacity, dtype=np.int64)
         self.kinds = np.zeros(capacity, dtype=np.uint8)
         self.layers = np.zeros(capacity, dtype=np.int64)
         self.positions = np.zeros((capacity, 2))
@@ -56,6 +59,7 @@ class State:
         self.statures_m = np.zeros(capacity)
         self.names = [""] * capacity
         self._slots: dict[int, int] = {}
+        self._arrived = 0
         self._free = list(range(capacity - 1, -1, -1))
         self._next_id, self._ids_end = ANY_ID
         self._more_ids: list[tuple[int, int]] = []
@@ -110,11 +114,15 @@ class State:
 
         Raises
         ------
+        ValueError
+            There is an avatar with that id.
         WorldFullError
             Every slot is taken.
         NoIdError
             No id is left.
         """
+        if avatar_id in self._slots:
+            raise ValueError(f"the avatar {avatar_id} is here already")
         if not self._free:
             raise WorldFullError(f"the world holds {self.capacity} avatars, all slots are taken")
         if avatar_id is None:
@@ -122,6 +130,8 @@ class State:
         slot = self._free.pop()
         self.alive[slot] = True
         self.ids[slot] = avatar_id
+        self._arrived += 1
+        self.arrivals[slot] = self._arrived
         self.kinds[slot] = kind
         self.layers[slot] = layer
         self.positions[slot] = self.before[slot] = place[:2]

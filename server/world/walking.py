@@ -28,7 +28,7 @@ class Feet:
         self._seed = seed
         self._tick = 0
         self._failed = -1
-        self._ids = np.zeros(state.capacity, dtype=np.int64)
+        self._arrivals = np.zeros(state.capacity, dtype=np.int64)
         self._scales = np.ones(state.capacity)
         _warm_up(ground, tick_s)
         self._walkers = Walkers(state.capacity, ground, tick_s, self._publish)
@@ -60,7 +60,8 @@ class Feet:
         state = self._state
         live = state.live()
         new = live[
-            (self._ids[live] != state.ids[live]) | (self._scales[live] != state.scales[live])
+            (self._arrivals[live] != state.arrivals[live])
+            | (self._scales[live] != state.scales[live])
         ]
         of_new = zip(state.ids[new].tolist(), state.scales[new].tolist(), strict=True)
         traits = [scaled(traits_of(self._seed, avatar), scale) for avatar, scale in of_new]
@@ -69,7 +70,7 @@ class Feet:
         try:
             if len(new):
                 self._walkers.join(tick, new, traits, self._course(new))
-                self._ids[new], self._scales[new] = state.ids[new], state.scales[new]
+                self._arrivals[new], self._scales[new] = state.arrivals[new], state.scales[new]
             if not still:
                 self._walkers.update(tick, live, self._course(live))
         except Exception:
@@ -78,7 +79,7 @@ class Feet:
                 log.exception("no steps found", tick=tick)
             self._failed = tick
             self.failures += 1
-            self._ids[:] = 0
+            self._arrivals[:] = 0
 
     def _course(self, slots: Slots) -> Course:
         return Course(self._state.headings[slots], self._state.ahead[slots])

@@ -53,6 +53,7 @@ from esplanade.protocol.messages import (
     Report,
     Reshape,
     SetDoor,
+    Travel,
     WalkTo,
     Watch,
     Welcome,
@@ -154,6 +155,7 @@ FROM_SERVER: Final[tuple[FromServer, ...]] = (
     Point(id=8, target=(4.5, -2.0, 1.25)),
     Point(id=8, target=None),
     Reshape(id=8, radius=0.3, leg_m=0.75, stature_m=1.5),
+    Travel(zone="hall", portal="to the yard"),
 )
 
 

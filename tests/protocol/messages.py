@@ -41,6 +41,7 @@ from esplanade.protocol.messages import (
     SetDoor,
     Snapshot,
     StepBlock,
+    Travel,
     WalkTo,
     Watch,
     Welcome,
@@ -182,4 +183,5 @@ server_messages: st.SearchStrategy[FromServer] = st.one_of(
     st.builds(StepBlock, tick=u32, block=st.binary(max_size=500)),
     st.builds(Point, id=u32, target=st.none() | places),
     st.builds(Reshape, id=u32, radius=floats, leg_m=floats, stature_m=floats),
+    st.builds(Travel, zone=texts, portal=texts),
 )

@@ -57,6 +57,8 @@ export class Session {
   private readonly operator: string | null;
   /** The pass or invitation of this person; null for those who came by an ordinary link. */
   private admission: Admission | null;
+  /** Whether the welcome that comes next is that of another zone of the same world. */
+  private travels = false;
   /** A place that a link names; null once the view was turned to it. */
   private linked: Place | null;
   /** The name that the person gave; the server may have added a number. */
@@ -165,12 +167,11 @@ export class Session {
   private stateChanged(state: ConnectionState): void {
     this.status.show(state);
     if (state.phase === "live" && this.welcome) {
-      const { name, resume, resumed, resume_seconds: keptS } = this.welcome;
+      const { resume, resume_seconds: keptS } = this.welcome;
       void this.seats.keep(this.wishedName, resume, keptS * 1000);
       this.join.close();
-      this.chat.note(
-        resumed ? `Welcome back, ${name}.` : `Welcome, ${name}. See Help for how to get about.`,
-      );
+      this.chat.note(this.travels ? arrivalIn(this.welcome) : greetingOf(this.welcome));
+      this.travels = false;
     }
     if (state.phase === "reconnecting") this.join.wait(state.text);
     if (state.phase === "refused") {
@@ -243,6 +244,9 @@ export class Session {
         break;
       case "doors":
         world?.doorsMoved(message.doors);
+        break;
+      case "travel":
+        this.travels = true;
         break;
       case "bye":
       case "pong":
@@ -347,4 +351,12 @@ export class Session {
     const { avatars, own, doors, plan } = world;
     this.minimap.update(avatars, own, doors, this.view.camera.yaw, plan);
   }
+}
+
+function greetingOf({ name, resumed }: Welcome): string {
+  return resumed ? `Welcome back, ${name}.` : `Welcome, ${name}. See Help for how to get about.`;
+}
+
+function arrivalIn({ scene }: Welcome): string {
+  return `You have come to ${scene.name}.`;
 }

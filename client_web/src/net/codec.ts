@@ -36,6 +36,7 @@ const SERVER_TYPES = new Map<unknown, ServerMessage["type"]>([
   [ServerCode.POINT, "point"],
   [ServerCode.RESHAPE, "reshape"],
   [ServerCode.HIDE, "hide"],
+  [ServerCode.TRAVEL, "travel"],
 ]);
 
 /** Fields that servers before them do not send. */

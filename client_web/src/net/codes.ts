@@ -34,6 +34,7 @@ export const ServerCode = {
   POINT: 77,
   RESHAPE: 78,
   HIDE: 79,
+  TRAVEL: 80,
 } as const;
 
 export const Reason = {

@@ -81,6 +81,16 @@ export interface ScenePlace {
   z_m: number;
 }
 
+/** An area of a floor from which one goes to another zone. */
+export interface ScenePortal {
+  name: string;
+  points: Point[];
+  z_m: number;
+  /** The name of the zone that it leads to, and that of its scene, for people to read. */
+  zone: string;
+  title: string;
+}
+
 export interface SceneData {
   name: string;
   bounds: [x0: number, y0: number, x1: number, y1: number];
@@ -91,6 +101,8 @@ export interface SceneData {
   places: ScenePlace[];
   /** Heights of the storeys, metres, the lowest first. */
   storeys: number[];
+  /** The portals; only a zone of a world of several has them. */
+  portals?: ScenePortal[];
   /** The address of the triangles, relative to the page; only a building that is a mesh has one. */
   mesh?: string;
 }
@@ -224,4 +236,6 @@ export type ServerMessage =
   /** An actor in view points at something from now on, or at nothing any more. */
   | { type: "point"; id: number; target: Place | null }
   /** An avatar in view has another body from now on. */
-  | { type: "reshape"; id: number; radius: number; leg_m: number; stature_m: number };
+  | { type: "reshape"; id: number; radius: number; leg_m: number; stature_m: number }
+  /** The person has come into another zone; the welcome of there follows. */
+  | { type: "travel"; zone: string; portal: string };

@@ -20,6 +20,7 @@ import { PAVING } from "./palette";
 import { bed, hedge, isTree, tree } from "./plants";
 import { merged } from "./shapes";
 import { lowestOf, meshGeometry } from "./meshes";
+import { freeBoard, portals } from "./portals";
 import { signs } from "./signs";
 import { furniture, isHung } from "./furniture";
 import { floor, indoors, isRailing, railing, stairs } from "./storeys";
@@ -72,7 +73,8 @@ export function buildTown(
   const group = new Group();
   group.add(...ground(scene, lowest, mesh === null), ...solid, doors.group);
   const names = signs(scene, floors, cutaway);
-  for (const other of [meshOf(pieces.leaves, leaves), meshOf(pieces.water, water), names]) {
+  const ways = portals(scene, floors);
+  for (const other of [meshOf(pieces.leaves, leaves), meshOf(pieces.water, water), names, ways]) {
     if (other) group.add(other);
   }
   return {
@@ -81,6 +83,7 @@ export function buildTown(
     doors,
     dispose() {
       group.traverse((part) => {
+        freeBoard(part);
         if (!(part instanceof Mesh)) return;
         const { geometry, material } = part as Mesh<PlaneGeometry, MeshLambertMaterial>;
         geometry.dispose();

@@ -17,6 +17,7 @@ const VOID = "#cbc4b6";
 const DEEPER = "#bcb4a5";
 const STEP = "#b9ae9b";
 const SLOPE = "#ddd3c1";
+const PORTAL = "#3aa6b9";
 /** A piece that begins lower than this above a floor stands on it, or in the way. */
 const HEADROOM_M = 2;
 /** A piece that rises less above a floor is part of it. */
@@ -28,7 +29,7 @@ type ToCanvas = (x: number, y: number) => [number, number];
 /** `floorM` is the height of the storey's floor. */
 export function drawFloorplan(
   pen: CanvasRenderingContext2D,
-  { bounds: [x0, y0, x1, y1], polygons, walls, stairs, mesh }: SceneData,
+  { bounds: [x0, y0, x1, y1], polygons, walls, stairs, mesh, portals = [] }: SceneData,
   floorM: number,
   at: ToCanvas,
 ): void {
@@ -51,6 +52,9 @@ export function drawFloorplan(
   }
   for (const flight of stairs) {
     if (touches(flight.bottom_m, flight.top_m, floorM)) steps(pen, flight, at);
+  }
+  for (const { points, z_m } of portals) {
+    if (Math.abs(z_m - floorM) < NEAR_M) fill(points, PORTAL);
   }
   for (const part of polygons) {
     if (part.kind !== "floor" && !part.ramp && stands(bottomOf(part), topOf(part), floorM)) {

@@ -1,0 +1,92 @@
+"""Hops of people from zone to zone, in one process.
+
+The destination keeps a place; its zone makes the avatar; then the seat changes zones in one step,
+and the origin takes its avatar out. Whatever ends the hop before that step leaves the person
+where they are: a connection that was lost, a seat that was taken over or given up, a destination
+that is full or does not answer.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import structlog
+
+from esplanade.planning import Portal
+from esplanade.protocol import NoticeCode, ProtocolError
+from esplanade.protocol.messages import Notice
+from esplanade.server.metrics import Metrics
+from esplanade.server.net import frames
+from esplanade.server.net.arrivals import Arrival
+from esplanade.server.net.hub import Hub
+from esplanade.server.net.person import Person
+from esplanade.server.net.session import Session
+
+LONGEST_S: Final = 5.0
+"""A place is kept for so long for somebody whom the zone has not let in yet."""
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True)
+class Destination:
+    """A portal of a zone, with the hub of the zone."""
+
+    zone: str
+    hub: Hub
+    portal: Portal
+
+
+class Hops:
+    """Lets people go from the zones of one process to others of them."""
+
+    def __init__(self, metrics: Metrics) -> None:
+        self._exits: dict[str, Mapping[str, Destination]] = {}
+        self._hubs: dict[str, Hub] = {}
+        self._ended = metrics.hops
+
+    def join(self, zone: str, hub: Hub, exits: Mapping[str, Destination]) -> None:
+        """Let people leave a zone by these exits, by the names of its portals."""
+        self._hubs[zone], self._exits[zone] = hub, exits
+
+    def begin(self, zone: str, session: Session, portal: str) -> bool:
+        """Ask for a place where a portal of a zone leads to; whether one is kept.
+
+        Somebody who finds none is told so.
+        """
+        origin, to = self._hubs[zone], self._exits[zone][portal]
+        avatar_id = session.avatar_id
+        if avatar_id is None:
+            return False
+
+        def fail(why: str) -> None:
+            self._ended.labels("refused").inc()
+            origin.stays(session)
+            arguments = {"zone": to.zone, "why": why}
+            text = f"you cannot go to {to.zone} now: {why}"
+            notice = Notice(text=text, notice=NoticeCode.NOT_LET_IN, arguments=arguments)
+            session.outbox.post(frames.message(notice))
+
+        def release() -> Person | None:
+            person = origin.release(session)
+            self._ended.labels("given_up" if person is None else "made").inc()
+            return person
+
+        arrival = Arrival(
+            session,
+            avatar_id,
+            session.name,
+            to.portal.arrival_place,
+            to.zone,
+            to.portal.name,
+            until_s=origin.now_s + LONGEST_S,
+            release=release,
+            fail=fail,
+        )
+        try:
+            to.hub.expect(arrival)
+        except ProtocolError as full:
+            fail(full.text)
+            return False
+        log.info("person goes", id=avatar_id, name=session.name, zone=zone, to=to.zone)
+        return True
