@@ -6,6 +6,7 @@ import {
   DoubleSide,
   Float32BufferAttribute,
   Group,
+  LinearFilter,
   Mesh,
   MeshBasicMaterial,
   Shape,
@@ -110,7 +111,7 @@ function board({ title }: ScenePortal, [x, y, floorM]: readonly [number, number,
   }
   const map = new CanvasTexture(canvas);
   map.colorSpace = SRGBColorSpace;
-  map.anisotropy = 8;
+  map.minFilter = LinearFilter;
   const made = new Sprite(new SpriteMaterial({ map, transparent: true, depthWrite: false }));
   made.scale.set(BOARD_M.width, BOARD_M.height, 1);
   made.position.set(x, y, floorM + BOARD_ABOVE_M);

@@ -30,6 +30,11 @@ export function noticeOf({ notice, text, arguments: given }: Notice): Saying | n
         head: "Thank you.",
         words: "The people who look after this place can read your report now.",
       };
+    case "not_let_in":
+      return {
+        head: "You are not let in there just now.",
+        words: `${textOf(given, "why") ?? words}.`,
+      };
     default:
       return null;
   }
@@ -77,6 +82,7 @@ function numberOf(given: Arguments, name: string): number | null {
   return typeof value === "number" ? value : null;
 }
 
-function textOf(given: Arguments): string | null {
-  return typeof given["text"] === "string" ? given["text"] : null;
+function textOf(given: Arguments, name = "text"): string | null {
+  const value = given[name];
+  return typeof value === "string" ? value : null;
 }

@@ -22,6 +22,13 @@ describe("sentences", () => {
       arguments: { text: "Softly, please.", seconds: 600 },
     });
     expect(muted).toEqual({ head: "You are muted for 10 minutes.", words: "Softly, please." });
+    const full = noticeOf({
+      type: "notice",
+      notice: "not_let_in",
+      text: "some text in another language",
+      arguments: { zone: "hall", why: "there is room for 9 people, all taken" },
+    });
+    expect(full?.words).toBe("there is room for 9 people, all taken.");
     const fault = { type: "error" as const, error: "quiet_zone", text: "?", arguments: {} };
     expect(faultOf(fault)).toBe("Nobody heard that: where you stand it is quiet.");
     expect(faultOf({ ...fault, arguments: { name: "library" } })).toContain("(library)");
