@@ -46,12 +46,13 @@ def demo() -> Parser:
         "esplanade demo",
         settings,
         run="esplanade.demo:run",
-        explained=(*_DEMO.keys(), "scene", "crowd"),
+        explained=(*_DEMO.keys(), "scene", "world", "crowd"),
         description="Run the demo world with actors, and with a few visitors made of code.",
         epilog="""\
 examples:
   esplanade demo                             the gallery
   esplanade demo --scene house.ifc           a building, a plan (DXF, WKT, ROS map, ..) or a scene
+  esplanade demo --world scenes/town.json    two scenes, and a portal between them
   esplanade demo --crowd obsmat.txt          recorded people among actors
 
 All other options go to the server: see `esplanade serve --help`.""",

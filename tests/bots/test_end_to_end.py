@@ -1,6 +1,7 @@
 """Bots against the real server, in this process, over real sockets."""
 
 import asyncio
+import json
 import math
 import time
 from collections.abc import AsyncIterator
@@ -13,12 +14,13 @@ from esplanade import bots
 from esplanade.bots.load import LoadJob
 from esplanade.bots.replay import ReplayJob
 from esplanade.bots.tally import Tally
-from esplanade.protocol.messages import Chat
+from esplanade.protocol.messages import Chat, Travel
 from esplanade.recordings import Crowd, read_crowd
 from esplanade.server.app import Running, running
 from esplanade.server.net.schedule import Schedule
 from esplanade.server.settings import ServerSettings
 from tests.bots.scripted import until
+from tests.server.zones import BEFORE_GATE, IN_GATE, YARD, write_town
 
 
 def two_people() -> str:
@@ -54,7 +56,7 @@ class Unhurried(Schedule):
 
 @pytest.fixture
 async def server(recording: Path, monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Running]:
-    monkeypatch.setattr("esplanade.server.app.Schedule", Unhurried)
+    monkeypatch.setattr("esplanade.server.served_zone.Schedule", Unhurried)
     monkeypatch.setattr("esplanade.bots.replay.LEAD_S", 2.0)
     settings = ServerSettings(
         crowd=recording, actors=0, host="127.0.0.1", port=0, private_port=0, resume_seconds=20.0
@@ -65,6 +67,70 @@ async def server(recording: Path, monkeypatch: pytest.MonkeyPatch) -> AsyncItera
 
 def url_of(server: Running) -> str:
     return f"ws://127.0.0.1:{server.port}"
+
+
+@pytest.fixture
+async def town(tmp_path: Path) -> AsyncIterator[Running]:
+    """A world of two zones. Whoever comes in without the key to stand where they wish comes in amid
+    the gate."""
+    world = write_town(tmp_path)
+    spawns = [{"position": IN_GATE[:2], "radius_m": 0.5}]
+    (tmp_path / "yard.json").write_text(json.dumps({**YARD, "spawns": spawns}))
+    settings = ServerSettings(
+        world=world,
+        actors=0,
+        host="127.0.0.1",
+        port=0,
+        private_port=0,
+        operator_key="key",
+    )
+    async with running(settings) as server:
+        yield server
+
+
+async def test_a_bot_walks_through_a_portal_and_looks_about_anew(town: Running) -> None:
+    async with (
+        bots.connect(url_of(town), "Ann", at=BEFORE_GATE, operator="key") as ann,
+        bots.connect(url_of(town), "Bob", at=(14.0, 9.0, 0.0), operator="key") as bob,
+    ):
+        await until(lambda: bob.id in ann.others)
+        token = ann.resume_token
+        await ann.move(0.0, 2.0)
+        async for event in ann.events():
+            if isinstance(event, Travel):
+                assert (event.zone, event.portal) == ("hall", "door")
+                break
+        await until(lambda: math.dist(ann.position[:2], (4.0, 6.0)) < 0.1)
+        assert ann.welcome.scene["name"] == "The hall"
+        assert ann.others == {}
+        assert ann.resume_token == token
+        await ann.move(0.0, 2.0)
+        await until(lambda: ann.position[0] > 6.0)
+
+
+async def test_visitors_go_on_in_the_zone_that_they_have_come_into(town: Running) -> None:
+    tally, stop = Tally(), asyncio.Event()
+    job = LoadJob(url_of(town), count=3, first=0, step=1, seed=1, join_rate=50.0, duration_s=0.0)
+    running = asyncio.create_task(job.run(tally, stop))
+    hall = town.zones["hall"].hub
+    await until(lambda: len(hall.sessions) == 3)
+    ids = list(hall.sessions)
+    places = {one: town.zones["hall"].world.where(one) for one in ids}
+    received = tally.snapshots_received
+    # They walk in the hall as in any scene, and their snapshots are counted on.
+    await until(
+        lambda: (
+            any(
+                one in hall.sessions
+                and math.dist(town.zones["hall"].world.where(one), places[one]) > 1.0
+                for one in ids
+            )
+            and tally.snapshots_received > received + 20
+        )
+    )
+    stop.set()
+    await running
+    assert (tally.joined, tally.left, tally.lost) == (3, 3, 0)
 
 
 async def test_two_bots_meet_walk_and_talk(server: Running) -> None:

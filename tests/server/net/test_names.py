@@ -63,3 +63,11 @@ def test_no_two_who_are_there_look_alike(visits: list[tuple[str, bool]]) -> None
         skeletons = {skeleton(name) for name in [*there, "Bob 2"]}
         assert len(skeletons) == len(there) + 1
         assert all(len(name) <= MAX_NAME_CHARS for name in there)
+
+
+def test_names_of_actors_can_be_reserved_later() -> None:
+    names = Names()
+    assert names.take("Elm") == "Elm"
+    names.reserve(["Alder", "Elm"])
+    names.give_back("Elm")
+    assert names.take("alder") == "alder 2"

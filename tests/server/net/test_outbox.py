@@ -224,3 +224,16 @@ async def test_a_client_that_never_reads_is_dropped_and_nobody_else_waits(
             ticks.append(ann.tick)
         assert ticks == list(range(begin, begin + 6))
         deaf.connection.transport.resume_reading()
+
+
+def test_what_waits_for_a_slow_client_is_void_in_another_zone(
+    outbox: Outbox, line: StuffedConnection
+) -> None:
+    line.unsent = POLICY.slow_bytes + 1
+    outbox.post(b"of the zone before")
+    assert outbox.waiting == 1
+    outbox.begin_anew()
+    outbox.welcome(b"welcome")
+    line.unsent = 0
+    outbox.snapshot(SNAPSHOT, 0, 1.0)
+    assert line.frames == [b"welcome", SNAPSHOT]

@@ -6,8 +6,9 @@ import numpy as np
 from esplanade.actors import Population
 from esplanade.planning import LayeredGrid
 from esplanade.protocol import Kind
+from esplanade.protocol.snapshot import RECORD
 from esplanade.server.populating import populate
-from esplanade.server.world.audience import Audience
+from esplanade.server.world.audience import Audience, News
 from esplanade.server.world.inputs import (
     Attach,
     Detach,
@@ -23,7 +24,7 @@ from esplanade.server.world.stage_times import STAGES
 from esplanade.server.world.state import ACTOR
 from esplanade.server.world.zone import Zone
 from tests.server.doubles import ScriptedPopulation
-from tests.server.worlds import ROOM, TICK_S, Trial, rules
+from tests.server.worlds import ROOM, TICK_S, Trial, block_of, entered_ids, rules
 
 
 def recorded(ticks: int) -> list[list[Input]]:
@@ -234,3 +235,33 @@ def test_who_is_told_to_stand_stands_and_may_walk_again() -> None:
     assert trial.position(walker)[0] > stood[0][0]
     trial.tick(Leave(walker), Stand(walker))
     assert not trial.world.moves(walker)
+
+
+def test_whoever_comes_back_from_another_zone_is_told_of_as_a_newcomer() -> None:
+    trial = Trial()
+    near, far = trial.join((5.0, 5.0), (6.0, 5.0))
+    steps_before = trial.world.feet.begun
+    trial.tick(Leave(far))
+    # The same id, the same place and the same slot, after one tick or within one.
+    news = trial.tick(Join(7, "p1", (6.0, 5.0, 0.0), id=far))
+    assert trial.joined == [(7, far)]
+    assert entered_ids(news, near) == [far]
+    assert far in block_ids(news, near)
+    assert trial.world.feet.begun > steps_before
+    news = trial.tick(Leave(far), Join(8, "p1", (6.0, 5.0, 0.0), id=far))
+    assert (news.left[near], entered_ids(news, near)) == ([far], [far])
+    assert far in block_ids(news, near)
+
+
+def test_nobody_comes_in_who_is_here_already() -> None:
+    trial = Trial()
+    (ann,) = trial.join((5.0, 5.0))
+    trial.tick(Join(7, "p0", (8.0, 5.0, 0.0), id=ann))
+    assert trial.joined == []
+    assert trial.world.failures == 1
+    assert trial.position(ann) == (5.0, 5.0)
+
+
+def block_ids(news: News, viewer: int) -> list[int]:
+    """Ids of the records that this viewer is to be sent."""
+    return list(np.frombuffer(block_of(news, viewer), dtype=RECORD)["id"])
