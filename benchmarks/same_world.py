@@ -32,6 +32,7 @@ from esplanade.server.net.refusals import Refusals
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.search_budget import SearchBudget, Share
 from esplanade.server.net.session import Session
+from esplanade.server.net.sockets.system import NONE
 from esplanade.server.settings import ServerSettings
 from esplanade.server.store.store import Store
 from esplanade.server.world.audience import Audience
@@ -47,9 +48,11 @@ class KeptConnection:
     state = State.OPEN
     close_code = 1006
     client_address = "127.0.0.1"
+    descriptor = NONE
 
     def __init__(self) -> None:
         self.transport = self
+        self.closing: list[object] = []
         self.frames: list[bytes] = []
 
     @property

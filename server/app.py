@@ -168,6 +168,13 @@ async def _served(
             for portal, (to, there) in zone.exits.items()
         }
         hops.join(zone.name, served[zone.name].hub, exits)
+        ways = {
+            portal: (travel, there.arrival_place)
+            for portal, (to, there) in zone.exits.items()
+            if portal in zone.actor_exits and (travel := served[to].travel) is not None
+        }
+        if (own := served[zone.name].travel) is not None:
+            own.open(zone.loaded.scene.portals, ways)
     return served
 
 

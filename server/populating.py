@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 
 from esplanade.actors import ActorSpec, BehaviourSpec, Newcomer, Population
-from esplanade.actors.actor_spec import actor_id
+from esplanade.actors.actor_spec import ZONE, actor_id
 from esplanade.actors.behaviour_spec import GuideSpec, PatrolSpec, WanderSpec
 from esplanade.planning import LayeredGrid, Scene
 from esplanade.server.roster import Roster
@@ -79,7 +79,7 @@ def names_of(roster: Roster) -> Mapping[Hashable, str]:
     return {spec.id: spec.name for spec in roster.actors}
 
 
-def default_roster(scene: Scene, count: int, seed: int) -> Roster:
+def default_roster(scene: Scene, count: int, seed: int, zone: str = ZONE) -> Roster:
     """The roster of `count` actors of a scene without one of its own."""
     random = np.random.default_rng([seed, count])
     order = random.permutation(len(NAMES)).tolist()
@@ -89,7 +89,7 @@ def default_roster(scene: Scene, count: int, seed: int) -> Roster:
         speed_mps = round(float(random.uniform(*SPEEDS_MPS)), 2)
         actors.append(
             ActorSpec(
-                id=actor_id(f"actor-{number + 1}"),
+                id=actor_id(f"actor-{number + 1}", zone),
                 name=f"{name} {again + 1}" if again else name,
                 behaviour=_behaviour(number, scene, random),
                 overrides={"speed_mps": speed_mps},

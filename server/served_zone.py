@@ -5,6 +5,7 @@ from collections.abc import AsyncIterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 
 from esplanade.actors import Outcome
 from esplanade.actors.warming import tables_ahead
@@ -30,6 +31,7 @@ from esplanade.server.recovery import read_recovery
 from esplanade.server.resuming import persistence_of, resume
 from esplanade.server.trajectories.keeping import trajectories_kept
 from esplanade.server.watching import watch_routes, watch_world
+from esplanade.server.world.actor_travel import ActorTravel
 from esplanade.server.world.audience import Audience
 from esplanade.server.world.zone import Zone
 from esplanade.server.zones import ZoneToServe, check_portals
@@ -56,6 +58,7 @@ class ServedZone:
         metrics: Metrics,
         ticker: Ticker,
         route_requests: RouteRequests,
+        travel: ActorTravel | None,
     ) -> None:
         self.world = world
         self.hub = hub
@@ -64,6 +67,8 @@ class ServedZone:
         self.metrics = metrics
         self.ticking: asyncio.Task[None]
         """Runs as long as the zone does; ends early only by a fault. It is there once open."""
+        self.travel = travel
+        """The ways of actors to other zones, in a world that has any."""
         self._ticker = ticker
         self._route_requests = route_requests
 
@@ -200,6 +205,11 @@ async def served_zone(
             .keeping(persistence)
             .planning(settings.planning_interval)
         )
+        travel = None
+        if surroundings is not None:
+            travel = ActorTravel(world)
+            ticker.with_travel(travel)
+            metrics.total("actors_came", "Actors who came from other zones", partial(_came, travel))
         live = live_view(world, storeys, console, hub, metrics, settings, bulletin)
         ticker.tap, ticker.trajectories = (
             live.tap,
@@ -207,4 +217,8 @@ async def served_zone(
                 trajectories_kept(settings, loaded, world, metrics, live.bulletin)
             ),
         )
-        yield ServedZone(world, hub, console, live, metrics, ticker, route_requests)
+        yield ServedZone(world, hub, console, live, metrics, ticker, route_requests, travel)
+
+
+def _came(travel: ActorTravel) -> int:
+    return travel.came

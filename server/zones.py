@@ -1,7 +1,7 @@
 """The zones that a server is to run: one of a scene or a crowd, or those of a world's file."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +10,7 @@ from esplanade.planning.routes.portal_reach import unreached_portals
 from esplanade.planning.scene.world_file import World, WorldError, read_world
 from esplanade.server.building import with_roster
 from esplanade.server.loading import LoadedScene, LoadingError, load_scene, tell_crowd
+from esplanade.server.populating import default_roster
 from esplanade.server.settings import ServerSettings
 
 
@@ -24,6 +25,8 @@ class ZoneToServe:
     """The name of the zone in its world; empty for one that is the whole world."""
     exits: Mapping[str, tuple[str, Portal]] = field(default_factory=dict)
     """The zone and the portal there that each portal leads to, by its name."""
+    actor_exits: frozenset[str] = frozenset()
+    """The names of the portals by which actors leave too."""
     arrivals: Sequence[tuple[float, float, float]] = ()
     """The places x, y, z, metres, at which people come in from other zones."""
 
@@ -99,5 +102,14 @@ def _zone(world: World, place: int, settings: ServerSettings) -> ZoneToServe:
             "max_clients": min(entry.people or settings.max_clients, settings.max_clients),
         }
     )
-    loaded = with_roster(load_scene(own), own)
-    return ZoneToServe(own, loaded, entry.name, world.exits(entry.name), world.arrivals(entry.name))
+    loaded = load_scene(own)
+    # Those of each zone have ids of it, and are others than those of the other zones.
+    roster = default_roster(loaded.scene, own.actors, own.seed + place, entry.name)
+    return ZoneToServe(
+        own,
+        replace(loaded, roster=roster),
+        entry.name,
+        world.exits(entry.name),
+        world.exits_of_actors(entry.name),
+        world.arrivals(entry.name),
+    )

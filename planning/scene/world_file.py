@@ -28,7 +28,7 @@ MAX_FILE_BYTES: Final = 2**20
 MAX_ZONES: Final = 16
 MAX_EXITS: Final = 256
 
-ZoneName = Annotated[str, StringConstraints(pattern=r"^[a-z0-9-]{1,40}$")]
+ZoneName = Annotated[str, StringConstraints(pattern=r"^[a-z0-9][a-z0-9-]{0,31}$")]
 
 
 class _Part(BaseModel):
@@ -63,6 +63,8 @@ class Exit(_Part):
 
     start: Annotated[PortalOfZone, Field(alias="from")]
     to: PortalOfZone
+    actors: bool = False
+    """Whether actors who come to stand in the portal go this way too."""
 
 
 class WorldFile(_Part):
@@ -141,6 +143,12 @@ class World:
             for each in self.file.exits
             if each.start.zone == zone
         }
+
+    def exits_of_actors(self, zone: str) -> frozenset[str]:
+        """The names of the portals of a zone that let actors out."""
+        return frozenset(
+            each.start.portal for each in self.file.exits if each.start.zone == zone and each.actors
+        )
 
     def arrivals(self, zone: str) -> list[tuple[float, float, float]]:
         """The places x, y, z, metres, at which people from other zones come into a zone."""

@@ -19,6 +19,7 @@ from esplanade.server.net.interval_choice import IntervalChoice
 from esplanade.server.net.persistence import Persistence
 from esplanade.server.net.schedule import Schedule
 from esplanade.server.trajectories.keeping import WorldTrajectories
+from esplanade.server.world.actor_travel import ActorTravel
 from esplanade.server.world.audience import Audience
 from esplanade.server.world.inputs import Input, PlanEvery, Still
 from esplanade.server.world.zone import Zone
@@ -59,6 +60,7 @@ class Ticker:
         """Where the ticks go that are written to a file."""
         self._stopping = asyncio.Event()
         self._persistence: Persistence | None = None
+        self._travel: ActorTravel | None = None
         metrics.gauge(
             "walkers_shown",
             "Walkers whose steps are sent, counted for each viewer",
@@ -84,6 +86,11 @@ class Ticker:
     def keeping(self, persistence: Persistence) -> Self:
         """The same, seeing between ticks to what outlasts the process."""
         self._persistence = persistence
+        return self
+
+    def with_travel(self, travel: ActorTravel) -> Self:
+        """The same, letting actors go to other zones and come from there."""
+        self._travel = travel
         return self
 
     def planning(self, interval: int | None) -> Self:
@@ -125,7 +132,7 @@ class Ticker:
     async def _attend(self) -> None:
         """Take in what came to a world that stands, in a tick in which nobody moves, if need be."""
         now = asyncio.get_running_loop().time()
-        given = [*self._hub.drain(now, still=True), *self._console.drain()]
+        given = [*self._hub.drain(now, still=True), *self._console.drain(), *self._travellers()]
         derived = self._ground_work.drain()
         if given or derived or self._console.waits_for_tick:
             await self._run([Still(), *given], derived)
@@ -144,6 +151,7 @@ class Ticker:
         if self._interval.ticks != self._world.planning_interval:
             kept = [*kept, PlanEvery(self._interval.ticks)]
         given = [*kept, *self._hub.drain(loop.time()), *self._console.drain()]
+        given += self._travellers()
         await self._run(given, self._ground_work.drain())
         self._schedule.pace.ticked(loop.time(), self._world.tick, self._world.tick_s)
         room_s = self._schedule.next_deadline - loop.time()
@@ -164,6 +172,8 @@ class Ticker:
         for frame in frames:
             self._hub.welcome(frame)
             self._console.take(frame)
+            if self._travel is not None:
+                self._travel.take(frame)
             news = self._audience.take(frame)
             with self._world.times.stage("write"):
                 self._delivery.deliver(news, loop.time())
@@ -177,6 +187,10 @@ class Ticker:
                 self.trajectories.take(frame, inputs)
         if self._persistence is not None:
             self._persistence.between_ticks(loop.time())
+
+    def _travellers(self) -> Sequence[Input]:
+        """Inputs by which actors go to other zones, or come from there."""
+        return () if self._travel is None else self._travel.drain()
 
     def _think(self) -> bool:
         try:

@@ -12,7 +12,7 @@ from esplanade.server.zones import zones_to_serve
 from tests.server.client import joined
 from tests.server.conftest import NO_CLIENT, Serving
 from tests.server.http import get
-from tests.server.zones import HALL, write_town
+from tests.server.zones import HALL, YARD, until, write_town
 
 
 def test_newcomers_enter_the_first_of_the_zones(tmp_path: Path) -> None:
@@ -102,6 +102,20 @@ async def test_metrics_tell_the_zones_apart(serving: Serving, tmp_path: Path) ->
         )
         assert any(f'tick_duration_seconds_count{{zone="{zone}"}}' in line for line in lines)
         assert any(f'stage="people",zone="{zone}"' in line for line in lines)
+
+
+async def test_actors_walk_from_zone_to_zone(serving: Serving, tmp_path: Path) -> None:
+    world = write_town(tmp_path, with_actors=True, actors=1)
+    # All of the yard is a portal, so that nobody has to walk there first.
+    portal = {**YARD["portals"][0], "points": [[0, 0], [20, 0], [20, 20], [0, 20]]}
+    (tmp_path / "yard.json").write_text(json.dumps({**YARD, "portals": [portal]}))
+    async with serving(scene=None, world=world, actors=3) as server:
+        yard, hall = (server.zones[name].world for name in ("yard", "hall"))
+        await until(lambda: not yard.actors and len(hall.actors) == 4)
+        came = {f"yard/actor-{number}" for number in (1, 2, 3)}
+        assert set(hall.actors) == {"hall/actor-1", *came}
+        metrics = (await get(server.private_port, "/metrics")).body.decode()
+    assert 'esplanade_actors_came_total{zone="hall"} 3.0' in metrics.splitlines()
 
 
 async def test_no_two_people_or_actors_of_a_world_have_one_id(

@@ -47,6 +47,7 @@ def test_a_world_is_read_with_its_scenes(tmp_path: Path) -> None:
     assert [zone.actors for zone in world.file.zones] == [None, None]
     zone, portal = world.exits("yard")["gate"]
     assert (zone, portal.name) == ("hall", "door")
+    assert world.exits_of_actors("yard") == frozenset()
     assert world.arrivals("yard") == [(7.0, 5.0, 0.0)]
     assert world.arrivals("hall") == [(1.5, 5.0, 0.0)]
 
@@ -95,7 +96,7 @@ def exits(**changes: Any) -> list[dict[str, Any]]:
         ),
         (
             {"zones": [{"name": "The Yard", "scene": "yard.json"}], "exits": []},
-            "zones.0.name: must match ^[a-z0-9-]{1,40}$, got 'The Yard'",
+            "zones.0.name: must match ^[a-z0-9][a-z0-9-]{0,31}$, got 'The Yard'",
         ),
         ({"zones": [{"name": "yard"}], "exits": []}, "zones.0.scene: is missing"),
         ({"portals": []}, "portals: there is no such key"),

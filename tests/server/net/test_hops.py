@@ -2,7 +2,7 @@
 
 import asyncio
 import math
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack
 from pathlib import Path
 
@@ -21,11 +21,10 @@ from esplanade.protocol.messages import (
 )
 from esplanade.server.app import Running
 from esplanade.server.net import hops
-from tests.patience import PATIENCE_S
 from tests.server.client import Client, connected, joined
 from tests.server.conftest import Serving
 from tests.server.http import get
-from tests.server.zones import BEFORE_GATE, IN_GATE, write_town
+from tests.server.zones import BEFORE_GATE, IN_GATE, until, write_town
 
 EAST, WEST = 0.0, math.pi
 
@@ -39,13 +38,6 @@ async def travelled(client: Client) -> Welcome:
     welcome = await client.until(Welcome)
     await client.wait_for(lambda: client.id in client.positions)
     return welcome
-
-
-async def until(condition: Callable[[], bool]) -> None:
-    """Let the server run until a condition holds."""
-    async with asyncio.timeout(PATIENCE_S):
-        while not condition():  # noqa: ASYNC110 - nothing tells of it
-            await asyncio.sleep(0.01)
 
 
 def zones_of(server: Running, avatar_id: int) -> list[str]:

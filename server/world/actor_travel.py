@@ -1,0 +1,139 @@
+"""Actors who go from zone to zone, through portals that let them."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import count
+
+import structlog
+
+from esplanade.actors import ActorParameters, ActorSpec
+from esplanade.actors.behaviour_spec import WanderSpec
+from esplanade.planning import Portal
+from esplanade.planning.scene.portal_areas import NO_PORTAL, portals_at
+from esplanade.server.world.frame import Frame
+from esplanade.server.world.inputs import ActorCommand, AddActors, HoldActors, RemoveActors
+from esplanade.server.world.outcomes import Fault, FaultCode
+from esplanade.server.world.routes import Point
+from esplanade.server.world.state import ACTOR
+from esplanade.server.world.zone import Zone
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True)
+class Traveller:
+    """An actor that is to come into a zone: all that goes along, and who waits for the end."""
+
+    spec: ActorSpec
+    parameters: ActorParameters
+    ended: Callable[[Fault | None], None]
+    """Is told whether the actor is in: None, or why it is not."""
+
+
+class ActorTravel:
+    """Lets actors of a zone out through its portals, and takes in those of other zones.
+
+    An actor that comes to stand in a portal is held, and goes once the other zone has taken it
+    in; where it is refused it goes on as before. It keeps its id, and does what it did; where its
+    places are not known it wanders. A ticker calls `drain` between two ticks, and `take` with each
+    frame. Numbers of commands are negative, so that they are not those of operators.
+    """
+
+    def __init__(self, world: Zone) -> None:
+        self._world = world
+        self._portals: Sequence[Portal] = ()
+        self._exits: Mapping[str, tuple[ActorTravel, Point]] = {}
+        self._numbers = count(-1, -1)
+        self._expected: list[Traveller] = []
+        self._asked: dict[int, Traveller] = {}
+        self._inputs: list[ActorCommand] = []
+        self._inside: set[str] = set()
+        """Actors who were in a portal when it was last looked at, or came out of it."""
+        self.came = 0
+        """Actors who have come from other zones."""
+
+    def open(
+        self, portals: Iterable[Portal], exits: Mapping[str, tuple["ActorTravel", Point]]
+    ) -> None:
+        """Let actors leave by some of the portals: to where, by the name of the portal."""
+        self._portals, self._exits = [each for each in portals if each.name in exits], exits
+
+    def expect(self, traveller: Traveller) -> None:
+        """Take in an actor of another zone, in one of the next ticks."""
+        self._expected.append(traveller)
+
+    def drain(self) -> list[ActorCommand]:
+        """Return the inputs of the next tick."""
+        for actor, portal in self._newly_inside():
+            self._send(actor, portal)
+        expected, self._expected = self._expected, []
+        for traveller in expected:
+            self._take_in(traveller)
+        inputs, self._inputs = self._inputs, []
+        return inputs
+
+    def take(self, frame: Frame) -> None:
+        """Learn from a frame who has come in."""
+        if not self._asked:
+            return
+        for outcome in frame.outcomes:
+            traveller = self._asked.pop(outcome.command, None)
+            if traveller is not None:
+                self._end(traveller, outcome.fault)
+
+    def _newly_inside(self) -> list[tuple[str, str]]:
+        """The actors who have come into a portal since the last look, and its name."""
+        if not self._portals:
+            return []
+        state = self._world.state
+        slots = state.of_kind(ACTOR)
+        found = portals_at(self._portals, state.positions[slots], state.heights[slots])
+        inside = found != NO_PORTAL
+        here = {}
+        for avatar, portal in zip(
+            state.ids[slots[inside]].tolist(), found[inside].tolist(), strict=True
+        ):
+            actor = self._world.actor_of(avatar)
+            if actor is not None:
+                here[actor] = self._portals[portal].name
+        came = [(actor, portal) for actor, portal in here.items() if actor not in self._inside]
+        self._inside = set(here)
+        return came
+
+    def _send(self, actor: str, portal: str) -> None:
+        to, arrival = self._exits[portal]
+        spec = self._world.actors[actor].model_copy(update={"place": arrival, "near": True})
+        self._inputs.append(HoldActors(next(self._numbers), (actor,), held=True))
+
+        def ended(fault: Fault | None) -> None:
+            number = next(self._numbers)
+            if fault is None:
+                self._inputs.append(RemoveActors(number, (actor,)))
+            else:
+                self._inputs.append(HoldActors(number, (actor,), held=False))
+
+        to.expect(Traveller(spec, self._world.parameters(actor), ended))
+
+    def _take_in(self, traveller: Traveller) -> None:
+        command = self._command(traveller)
+        fault = self._world.check(command)
+        if fault is not None and fault.code is FaultCode.UNKNOWN_PLACE:
+            wandering = traveller.spec.model_copy(update={"behaviour": WanderSpec()})
+            traveller = replace(traveller, spec=wandering)
+            command = self._command(traveller)
+            fault = self._world.check(command)
+        if fault is not None:
+            traveller.ended(fault)
+            return
+        self._asked[command.command] = traveller
+        self._inputs.append(command)
+
+    def _command(self, traveller: Traveller) -> AddActors:
+        return AddActors(next(self._numbers), (traveller.spec,), (traveller.parameters,))
+
+    def _end(self, traveller: Traveller, fault: Fault | None) -> None:
+        if fault is None:
+            self.came += 1
+            self._inside.add(traveller.spec.id)
+            log.info("actor has travelled", actor=traveller.spec.id)
+        traveller.ended(fault)
