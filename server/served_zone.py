@@ -211,11 +211,11 @@ async def served_zone(
             ticker.with_travel(travel)
             metrics.total("actors_came", "Actors who came from other zones", partial(_came, travel))
         live = live_view(world, storeys, console, hub, metrics, settings, bulletin)
-        ticker.tap, ticker.trajectories = (
-            live.tap,
-            await stack.enter_async_context(
-                trajectories_kept(settings, loaded, world, metrics, live.bulletin)
-            ),
+        if surroundings is None or surroundings.number == 0:
+            # Of several zones, operators see the one that newcomers enter.
+            ticker.tap = live.tap
+        ticker.trajectories = await stack.enter_async_context(
+            trajectories_kept(settings, loaded, world, metrics, live.bulletin)
         )
         yield ServedZone(world, hub, console, live, metrics, ticker, route_requests, travel)
 
