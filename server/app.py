@@ -5,7 +5,6 @@ import socket
 from collections.abc import AsyncIterator, Iterable, Mapping, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
-from functools import partial
 
 from esplanade.server.assets import Assets
 from esplanade.server.commanding import shipped_presets
@@ -16,22 +15,20 @@ from esplanade.server.entrances import make_gate, people_url, private_certificat
 from esplanade.server.keeping import keeping
 from esplanade.server.kept import Kept
 from esplanade.server.live.live import Live
+from esplanade.server.loading import LoadingError
 from esplanade.server.metrics import Metrics
 from esplanade.server.net.descriptors import places_for_people
 from esplanade.server.net.entrance import Entrance
-from esplanade.server.net.front_door import FrontDoor
-from esplanade.server.net.hops import Destination, Hops
 from esplanade.server.net.listener import Listener, connections_wanted
 from esplanade.server.net.listening import bound_sockets
-from esplanade.server.net.names import Names
 from esplanade.server.net.private import private_port
 from esplanade.server.net.readiness import Readiness
-from esplanade.server.net.surroundings import Surroundings
 from esplanade.server.net.tls import Tls, renewed
-from esplanade.server.served_zone import Process, ServedZone, served_zone
+from esplanade.server.served_world import ServedWorld
+from esplanade.server.served_zone import Process, ServedZone
 from esplanade.server.settings import ServerSettings
 from esplanade.server.world.zone import Zone
-from esplanade.server.zones import ZoneToServe, described_portals, zones_to_serve
+from esplanade.server.zones import ZoneToServe, zones_to_serve
 
 
 @dataclass(frozen=True)
@@ -40,19 +37,40 @@ class Running:
 
     port: int
     private_port: int
-    zones: Mapping[str, ServedZone]
-    """The zones by their names; newcomers enter the first. A zone that is the whole world has an
-    empty name."""
+    settings: ServerSettings
+    served: ServedWorld
     metrics: Metrics
     kept: Kept
     gate: Gate
-    ticking: "asyncio.Task[None]"
-    """Runs as long as all zones do; ends early only by a fault."""
+
+    @property
+    def zones(self) -> Mapping[str, ServedZone]:
+        """The zones by their names; newcomers enter the first. A zone that is the whole world has
+        an empty name."""
+        return self.served.zones
+
+    @property
+    def ticking(self) -> "asyncio.Future[None]":
+        """Is under way as long as all zones tick; done early only by a fault."""
+        return self.served.ended
 
     @property
     def zone(self) -> ServedZone:
         """The zone that newcomers enter."""
-        return next(iter(self.zones.values()))
+        return self.served.first
+
+    async def reload(self) -> list[str]:
+        """Read the world's file and its scenes anew; returns the zones whose scenes have changed.
+
+        Raises
+        ------
+        LoadingError
+            They cannot be run, and nothing has changed; or the world has no file.
+        """
+        if self.settings.world is None:
+            raise LoadingError("only a world of a file (--world) can be reloaded")
+        to_serve = await asyncio.to_thread(zones_to_serve, self.settings)
+        return await self.served.reload(to_serve)
 
     @property
     def world(self) -> Zone:
@@ -114,72 +132,26 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             stack.callback(each.close)
         gate.people_url = people_url(settings, sockets[0].getsockname()[1])
         process = Process(kept, Entrance(settings, kept, metrics), presets)
-        zones = await _served(to_serve, process, metrics, meshes, stack)
-        first, *_ = zones.values()
-        gate.console, gate.live = first.console, first.live
-        front_door = FrontDoor(
-            [zone.hub for zone in zones.values()], process.entrance, settings.max_clients
-        )
+        served = ServedWorld(process, metrics, settings.max_clients)
+        stack.push_async_callback(served.end)
+        await served.build(to_serve, meshes)
+
+        def show_operators() -> None:
+            gate.console, gate.live = served.first.console, served.first.live
+
+        show_operators()
+        served.changed.append(show_operators)
         await stack.enter_async_context(
-            Listener(front_door, assets, settings, metrics, places).listening(sockets, tls)
+            Listener(served.front_door, assets, settings, metrics, places).listening(sockets, tls)
         )
-        for zone in zones.values():
-            zone.open()
-            stack.push_async_callback(zone.close)
-        ticking = asyncio.create_task(_until_one_ends(zones.values()))
+        stack.push_async_callback(served.close)
+        served.open()
         readiness.open()
         try:
-            yield Running(_port_of(sockets), private, zones, metrics, kept, gate, ticking)
+            yield Running(_port_of(sockets), private, settings, served, metrics, kept, gate)
         finally:
             readiness.close()
             gate.console = gate.live = None
-            for zone in zones.values():
-                zone.stop()
-
-
-async def _served(
-    to_serve: Sequence[ZoneToServe],
-    process: Process,
-    metrics: Metrics,
-    meshes: Mapping[str, Mapping[str, str]],
-    stack: AsyncExitStack,
-) -> dict[str, ServedZone]:
-    """Build all zones, one after the other, and join those of a world by their portals."""
-    hops, names = Hops(metrics), Names()
-    scenes = {zone.name: zone.loaded.scene for zone in to_serve}
-    served: dict[str, ServedZone] = {}
-    for number, zone in enumerate(to_serve):
-        surroundings = None
-        if zone.name:
-            go = partial(hops.begin, zone.name)
-            surroundings = Surroundings(number, names, zone.loaded.scene.portals, go)
-        served[zone.name] = await stack.enter_async_context(
-            served_zone(
-                zone,
-                process,
-                metrics.of_zone(zone.name) if zone.name else metrics,
-                {**described_portals(zone, scenes), **meshes[zone.name]},
-                surroundings,
-            )
-        )
-    for zone in to_serve:
-        exits = {
-            portal: Destination(to, served[to].hub, there)
-            for portal, (to, there) in zone.exits.items()
-        }
-        hops.join(zone.name, served[zone.name].hub, exits)
-        ways = {
-            portal: (travel, there.arrival_place)
-            for portal, (to, there) in zone.exits.items()
-            if portal in zone.actor_exits and (travel := served[to].travel) is not None
-        }
-        if (own := served[zone.name].travel) is not None:
-            own.open(zone.loaded.scene.portals, ways)
-    return served
-
-
-async def _until_one_ends(zones: Iterable[ServedZone]) -> None:
-    await asyncio.wait([zone.ticking for zone in zones], return_when=asyncio.FIRST_COMPLETED)
 
 
 def _port_of(sockets: Sequence[socket.socket]) -> int:

@@ -3,6 +3,7 @@
 import asyncio
 import gc
 import signal
+from typing import Any
 
 import structlog
 
@@ -10,6 +11,7 @@ from esplanade.commandline import interrupts
 from esplanade.server import logs
 from esplanade.server.app import Running, running
 from esplanade.server.entrances import in_url, private_url
+from esplanade.server.loading import LoadingError
 from esplanade.server.log_writer import LogWriter
 from esplanade.server.settings import ServerSettings
 
@@ -17,7 +19,7 @@ log = structlog.get_logger(__name__)
 
 
 def serve(settings: ServerSettings) -> None:
-    """Run a server until SIGINT or SIGTERM.
+    """Run a server until SIGINT or SIGTERM; SIGUSR1 has a world's file read anew.
 
     Raises
     ------
@@ -59,17 +61,52 @@ async def _serve(settings: ServerSettings, writer: LogWriter) -> None:
             "Lines of the log that were dropped, because nobody read them in time",
             lambda: writer.dropped,
         )
+        reloading = Reloading(server)
         for number in (signal.SIGINT, signal.SIGTERM):
             loop.add_signal_handler(number, on_signal, number)
+        if settings.world is not None and hasattr(signal, "SIGUSR1"):
+            loop.add_signal_handler(signal.SIGUSR1, reloading.begin)
         gc.collect()
         gc.freeze()  # the world stays: looking through it for garbage would only hold up ticks
         _announce(settings, server)
         await _offer_first_link(settings, server)
         waiting = asyncio.create_task(stop.wait())
-        await asyncio.wait([waiting, server.ticking], return_when=asyncio.FIRST_COMPLETED)
+        either: list[asyncio.Future[Any]] = [waiting, server.ticking]
+        await asyncio.wait(either, return_when=asyncio.FIRST_COMPLETED)
         waiting.cancel()
+        await reloading.end()
     for name, zone in server.zones.items():
         log.info("summary", **({"zone": name} if name else {}), **zone.summary())
+
+
+class Reloading:
+    """Reads the world anew when it is asked to, once after the other, and says what came of it."""
+
+    def __init__(self, server: Running) -> None:
+        self._server = server
+        self._running: asyncio.Task[None] | None = None
+
+    def begin(self) -> None:
+        """Read the world anew, unless that is under way."""
+        if self._running is None or self._running.done():
+            self._running = asyncio.create_task(self._reload())
+
+    async def end(self) -> None:
+        """Break off what is under way."""
+        if self._running is not None:
+            self._running.cancel()
+            await asyncio.gather(self._running, return_exceptions=True)
+
+    async def _reload(self) -> None:
+        log.info("reading the world anew")
+        try:
+            zones = await self._server.reload()
+        except LoadingError as error:
+            log.warning("the world stays as it was", fault=str(error))
+        except Exception:
+            log.exception("the world cannot be read anew")
+        else:
+            log.info("read the world anew", changed=", ".join(zones) or "nothing")
 
 
 def _announce(settings: ServerSettings, server: Running) -> None:

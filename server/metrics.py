@@ -3,7 +3,7 @@
 A count that grows thousands of times a second is a plain integer in `Traffic`, read when scraped.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from copy import copy
 from dataclasses import dataclass
 from functools import partial
@@ -93,6 +93,15 @@ class _Figure(Collector):
         if self._reads.keys() & {zone, None}:
             raise ValueError(f"the figure {self._name} is there already")
         self._reads[zone], self._values[zone] = read, 0.0
+
+    def reading(self, zone: str) -> Callable[[], float] | None:
+        """What is read of a zone; None if nothing is."""
+        return self._reads.get(zone)
+
+    def forget(self, zone: str) -> None:
+        """Have no value for a zone any more; another one takes its place."""
+        self._reads.pop(zone, None)
+        self._values.pop(zone, None)
 
     def sample(self) -> None:
         for zone, read in self._reads.items():
@@ -193,8 +202,22 @@ class Metrics:
         if not label:
             self._tell_ticks()
 
+    def readings(self, zone: str) -> dict[str, Callable[[], float]]:
+        """What is read of a zone, by the name of the figure, for `read_again`."""
+        found = ((name, figure.reading(zone)) for name, figure in self._figures.items())
+        return {name: read for name, read in found if read is not None}
+
+    def read_again(self, zone: str, readings: Mapping[str, Callable[[], float]]) -> None:
+        """Read of a zone what was read of it before, and nothing else."""
+        for name, figure in self._figures.items():
+            figure.forget(zone)
+            if name in readings:
+                figure.add(zone, readings[name])
+
     def of_zone(self, zone: str) -> "Metrics":
-        """The same metrics as one zone of several gives them."""
+        """The same metrics as one zone of several gives them, from now on."""
+        for figure in self._figures.values():
+            figure.forget(zone)
         view = copy(self)
         view._show_zone(zone)  # noqa: SLF001 - of this class
         return view

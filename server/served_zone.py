@@ -1,7 +1,7 @@
 """A zone as it is served: what simulates it, who is in it, and what operators do with it."""
 
 import asyncio
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator, Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass, replace
@@ -65,22 +65,32 @@ class ServedZone:
         self.console = console
         self.live = live
         self.metrics = metrics
-        self.ticking: asyncio.Task[None]
-        """Runs as long as the zone does; ends early only by a fault. It is there once open."""
+        self.ticking: asyncio.Task[None] | None = None
+        """Runs as long as the zone does; ends early only by a fault. None before it is open."""
+        self._finding: asyncio.Task[None] | None = None
         self.travel = travel
         """The ways of actors to other zones, in a world that has any."""
         self._ticker = ticker
         self._route_requests = route_requests
 
-    def open(self) -> None:
-        """Begin to tick, and to find routes."""
+    def open(self, ended: Callable[[], None]) -> None:
+        """Begin to tick, and to find routes; `ended` is called when the ticks end."""
         self.ticking = asyncio.create_task(self._ticker.run())
         self._finding = asyncio.create_task(self._route_requests.run(self.hub.wishes.route_found))
 
+        self.ticking.add_done_callback(lambda _: ended())
+
     def stop(self) -> None:
         """Let the tick that runs be the last."""
-        self._finding.cancel()
+        if self._finding is not None:
+            self._finding.cancel()
         self._ticker.stop()
+
+    def close_exits(self) -> None:
+        """Let nobody go to other zones any more by themselves."""
+        self.hub.close_exits()
+        if self.travel is not None:
+            self.travel.open((), {})
 
     async def close(self) -> None:
         """Stop, keep what is to outlast the process, and say goodbye to everyone.
@@ -90,7 +100,8 @@ class ServedZone:
         self.stop()
         in_order = False
         try:
-            await self.ticking
+            if self.ticking is not None:
+                await self.ticking
             in_order = True
         finally:
             await self._ticker.keep(in_order=in_order)
@@ -211,7 +222,7 @@ async def served_zone(
             ticker.with_travel(travel)
             metrics.total("actors_came", "Actors who came from other zones", partial(_came, travel))
         live = live_view(world, storeys, console, hub, metrics, settings, bulletin)
-        if surroundings is None or surroundings.number == 0:
+        if surroundings is None or surroundings.is_first:
             # Of several zones, operators see the one that newcomers enter.
             ticker.tap = live.tap
         ticker.trajectories = await stack.enter_async_context(

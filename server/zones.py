@@ -11,6 +11,7 @@ from esplanade.planning.scene.world_file import World, WorldError, read_world
 from esplanade.server.building import with_roster
 from esplanade.server.loading import LoadedScene, LoadingError, load_scene, tell_crowd
 from esplanade.server.populating import default_roster
+from esplanade.server.roster import Roster
 from esplanade.server.settings import ServerSettings
 
 
@@ -47,6 +48,11 @@ def zones_to_serve(settings: ServerSettings) -> list[ZoneToServe]:
     world = _read(settings.world)
     zones = [_zone(world, place, settings) for place in range(len(world.file.zones))]
     return sorted(zones, key=lambda zone: zone.name != world.file.start_zone)
+
+
+def without_actors(zone: ZoneToServe) -> ZoneToServe:
+    """The same zone, into which actors come from the one before it."""
+    return replace(zone, loaded=replace(zone.loaded, roster=Roster()))
 
 
 def described_portals(zone: ZoneToServe, others: Mapping[str, Scene]) -> dict[str, Any]:

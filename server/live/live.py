@@ -99,6 +99,11 @@ class Live:
             }
         )
 
+    def dismiss(self) -> None:
+        """Close all subscribers, who come again: another zone has taken the place of this one."""
+        for subscriber in self.subscribers:
+            subscriber.too_slow.set()
+
     def goodbye(self, subscriber: Subscriber) -> None:
         """Let a subscriber go."""
         self.subscribers.discard(subscriber)
@@ -159,6 +164,7 @@ async def beating(live_of: Callable[[], Live | None]) -> None:
     """Beat for as long as a server runs; `live_of` gives the live views once there are any."""
     loop = asyncio.get_running_loop()
     due = loop.time()
+    before: Live | None = None
     while True:
         # Beats that cannot be had in time are left out.
         due = max(due + 1.0 / BEATS_A_SECOND, loop.time())
@@ -166,6 +172,9 @@ async def beating(live_of: Callable[[], Live | None]) -> None:
         live = live_of()
         if live is None:
             continue
+        if before is not None and before is not live:
+            before.dismiss()
+        before = live
         try:
             live.beat()
         except Exception:

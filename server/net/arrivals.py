@@ -13,7 +13,8 @@ from esplanade.server.world.routes import Point
 class Arrival:
     """Somebody for whom a place is kept until a moment, seconds of the event loop."""
 
-    session: Session
+    session: Session | None
+    """None for somebody whose connection is lost, and whose avatar waits."""
     id: int
     name: str
     at: Point

@@ -27,8 +27,8 @@ class Departures:
         """Those who were in the area of a portal when it was last looked at, or came out of it."""
         self._under_way: set[int] = set()
 
-    def open(self, portals: Sequence[Portal], go: Go) -> None:
-        """Let people go through these portals."""
+    def open(self, portals: Sequence[Portal], go: Go | None) -> None:
+        """Let people go through these portals; none of them without `go`."""
         self._portals, self._go = portals, go
 
     def __len__(self) -> int:
@@ -50,6 +50,10 @@ class Departures:
         there yet."""
         self._under_way.discard(avatar_id)
         self._inside.discard(avatar_id)
+
+    def go(self, avatar_id: int) -> None:
+        """Let somebody go without any portal: the whole zone does."""
+        self._under_way.add(avatar_id)
 
     def stay(self, avatar_id: int) -> None:
         """Let somebody move again, who was not let in."""
@@ -73,7 +77,11 @@ class Departures:
             )
             if avatar_id in self._sessions
         }
-        came = [one for one in here if one not in self._inside and not staying(one)]
+        came = [
+            one
+            for one in here
+            if one not in self._inside and one not in self._under_way and not staying(one)
+        ]
         self._inside = {one for one in here if one in self._inside} | set(came)
         gone = [one for one in came if self._go(self._sessions[one], here[one])]
         self._under_way.update(gone)

@@ -14,12 +14,23 @@ from esplanade.server.net.wishes import Wishes
 class FrontDoor:
     """Hands each session on to a hub. Who has no seat enters the first of the zones."""
 
-    def __init__(self, hubs: Sequence[Hub], entrance: Entrance, most_people: int) -> None:
+    def __init__(self, entrance: Entrance, most_people: int) -> None:
         """In a world of several zones, no more than `most_people` are in all of them together."""
-        self._hubs = hubs
-        self._first = hubs[0]
+        self._hubs: list[Hub] = []
         self._entrance = entrance
         self._most_people = most_people
+        self._reading: Reading | None = None
+
+    def lead_to(self, hubs: Sequence[Hub], *, and_no_more: bool = False) -> None:
+        """Let newcomers enter the first of these hubs; people may still be in those of before,
+        unless `and_no_more` is said."""
+        before = [] if and_no_more else [hub for hub in self._hubs if hub not in hubs]
+        self._hubs = [*hubs, *before]
+        self.read_by(self._reading)
+
+    @property
+    def _first(self) -> Hub:
+        return self._hubs[0]
 
     @property
     def server_time(self) -> Callable[[], float]:
@@ -33,6 +44,7 @@ class FrontDoor:
 
     def read_by(self, reading: Reading | None) -> None:
         """Let what people send be looked for there too, before each tick."""
+        self._reading = reading
         for hub in self._hubs:
             hub.reading = reading
 

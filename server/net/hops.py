@@ -8,6 +8,7 @@ that is full or does not answer.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Final
 
 import structlog
@@ -21,6 +22,7 @@ from esplanade.server.net.arrivals import Arrival
 from esplanade.server.net.hub import Hub
 from esplanade.server.net.person import Person
 from esplanade.server.net.session import Session
+from esplanade.server.world.routes import Point
 
 LONGEST_S: Final = 5.0
 """A place is kept for so long for somebody whom the zone has not let in yet."""
@@ -49,6 +51,31 @@ class Hops:
         """Let people leave a zone by these exits, by the names of its portals."""
         self._hubs[zone], self._exits[zone] = hub, exits
 
+    def move(
+        self, zone: str, origin: Hub, to: Hub, bounds: tuple[float, float, float, float]
+    ) -> None:
+        """Let everyone of a hub go over to another one of the same zone, whose scene has changed.
+
+        Each stands at the nearest place to where they are now. It is to be called until nobody is
+        left.
+        """
+        for avatar_id, session in origin.send_out():
+            arrival = Arrival(
+                session,
+                avatar_id,
+                origin.name_of(avatar_id),
+                within(bounds, origin.where(avatar_id)),
+                zone,
+                "",
+                until_s=origin.now_s + LONGEST_S,
+                release=partial(origin.release, avatar_id, session),
+                fail=partial(_stays, origin, avatar_id),
+            )
+            try:
+                to.expect(arrival)
+            except ProtocolError:
+                origin.stays(avatar_id)
+
     def begin(self, zone: str, session: Session, portal: str) -> bool:
         """Ask for a place where a portal of a zone leads to; whether one is kept.
 
@@ -61,14 +88,14 @@ class Hops:
 
         def fail(why: str) -> None:
             self._ended.labels("refused").inc()
-            origin.stays(session)
+            origin.stays(avatar_id)
             arguments = {"zone": to.zone, "why": why}
             text = f"you cannot go to {to.zone} now: {why}"
             notice = Notice(text=text, notice=NoticeCode.NOT_LET_IN, arguments=arguments)
             session.outbox.post(frames.message(notice))
 
         def release() -> Person | None:
-            person = origin.release(session)
+            person = origin.release(avatar_id, session)
             self._ended.labels("given_up" if person is None else "made").inc()
             return person
 
@@ -90,3 +117,15 @@ class Hops:
             return False
         log.info("person goes", id=avatar_id, name=session.name, zone=zone, to=to.zone)
         return True
+
+
+def within(bounds: tuple[float, float, float, float], place: Point) -> Point:
+    """The place itself, or the nearest to it on the ground plane within bounds, metres."""
+    x0, y0, x1, y1 = bounds
+    x, y, z_m = place
+    return min(max(x, x0), x1), min(max(y, y0), y1), z_m
+
+
+def _stays(origin: Hub, avatar_id: int, _: str) -> None:
+    """Nobody is told of a try that is made again."""
+    origin.stays(avatar_id)

@@ -36,6 +36,7 @@ from esplanade.server.world.audience import Audience
 from esplanade.server.world.frame import Frame
 from esplanade.server.world.inputs import Input
 from esplanade.server.world.pace import Pace
+from esplanade.server.world.routes import Point
 from esplanade.server.world.zone import Zone
 
 
@@ -233,30 +234,61 @@ class Hub:
         """
         self._seating.expect(arrival)
 
-    def release(self, session: Session) -> Person | None:
+    def release(self, avatar_id: int, session: Session | None) -> Person | None:
         """Let somebody out to another zone; None if they do not go any more."""
-        avatar_id = session.avatar_id
-        if avatar_id is None or avatar_id not in self._departures or avatar_id in self._walk_outs:
+        if avatar_id not in self._departures or avatar_id in self._walk_outs:
             return None
         muted = self.moderation.lines.muted_by(avatar_id)
         silent_s = self.moderation.mutes.left_s(avatar_id)
-        seat = self._seating.release(session)
+        since_s = self._seating.seats.vacant_from(avatar_id)
+        seat = self._seating.release(avatar_id, session)
         if seat is None:
             return None
         self.moderation.mutes.put(avatar_id, 0.0)
         return Person(
-            avatar_id, seat.name, seat.address, tuple(seat.digests), seat.operator, muted, silent_s
+            avatar_id,
+            seat.name,
+            seat.address,
+            tuple(seat.digests),
+            seat.operator,
+            muted,
+            None if since_s is None else self._run_for_s(self.now_s) - since_s,
+            silent_s,
         )
 
-    def stays(self, session: Session) -> None:
-        """Let somebody walk on in this zone whom another one does not let in."""
-        if session.avatar_id is not None:
-            self._departures.stay(session.avatar_id)
+    def where(self, avatar_id: int) -> Point:
+        """Where somebody who has a seat is, x, y and height, metres."""
+        return self._world.where(avatar_id)
 
-    def _arrived(self, session: Session, person: Person) -> None:
+    def name_of(self, avatar_id: int) -> str:
+        """The name of somebody who has a seat."""
+        return self._world.state.names[self._world.state.slot(avatar_id)]
+
+    def stays(self, avatar_id: int) -> None:
+        """Let somebody walk on in this zone whom another one does not let in."""
+        self._departures.stay(avatar_id)
+
+    def close_exits(self) -> None:
+        """Let nobody go through portals any more."""
+        self._departures.open((), None)
+
+    def send_out(self) -> list[tuple[int, Session | None]]:
+        """Let everyone who is in stand and go; returns the avatars, and the sessions of those that
+        have one. Call it again until nobody is left."""
+        found = []
+        for seat in self._seating.seats.all():
+            if seat.avatar_id not in self._departures and seat.avatar_id not in self._walk_outs:
+                self._departures.go(seat.avatar_id)
+                self._routes.forget(seat.avatar_id)
+                self._pending.stand(seat.avatar_id)
+                found.append((seat.avatar_id, seat.occupant))
+        return found
+
+    def _arrived(self, session: Session | None, person: Person) -> None:
         """Take in all that goes along with somebody who comes from another zone."""
-        session.enter(self)
-        session.watching = None
+        if session is not None:
+            session.enter(self)
+            session.watching = None
         self._departures.arrived(person.id)
         self.moderation.mutes.put(person.id, person.silent_s)
         for speaker in person.muted:

@@ -23,5 +23,7 @@ class Person:
     """The operator who has walked in by a pass, as in `Seat`."""
     muted: frozenset[int]
     """Ids of those whom the person does not want to hear."""
+    waited_s: float | None
+    """For how long the avatar has waited for its person; None for one who is there."""
     silent_s: float
     """For how many seconds nobody hears the person yet, since an operator has muted them."""

@@ -50,7 +50,7 @@ class Seating:
         greet: Callable[[Session, bool], None],
         leaving: Callable[[Session], None],
         forget: Callable[[int], None],
-        arrived: Callable[[Session, Person], None],
+        arrived: Callable[[Session | None, Person], None],
         names: Names | None = None,
     ) -> None:
         """`greet` is told of each who is welcomed, and whether they came back; `leaving` of a
@@ -218,13 +218,14 @@ class Seating:
         self._find_room()
         self._arrivals.expect(self._newcomers.new_ticket(), arrival)
 
-    def release(self, session: Session) -> Seat[Session] | None:
-        """Take the seat of a session that goes to another zone out of this one, and its avatar;
-        None if it has none any more."""
-        seat = None if session.avatar_id is None else self.seats.of(session.avatar_id)
+    def release(self, avatar_id: int, session: Session | None) -> Seat[Session] | None:
+        """Take the seat of somebody who goes to another zone out of this one, and the avatar;
+        None if it is not that session's any more."""
+        seat = self.seats.of(avatar_id)
         if seat is None or seat.occupant is not session:
             return None
-        self._leaving(session)
+        if session is not None:
+            self._leaving(session)
         self._unbind(seat)
         self.seats.remove(seat)
         self._pending.come(Leave(seat.avatar_id))
@@ -242,9 +243,17 @@ class Seating:
             self._pending.come(Leave(arrival.id))
             return
         digests = list(person.digests)
-        self.seats.put(
-            Seat(person.id, person.name, person.address, session, digests, person.operator)
+        seat: Seat[Session] = Seat(
+            person.id, person.name, person.address, session, digests, person.operator
         )
+        if session is None:
+            now_s = asyncio.get_running_loop().time()
+            self.seats.restore(seat, now_s - (person.waited_s or 0.0))
+            self._arrived(None, person)
+            # Nobody looks through these eyes yet.
+            self._pending.come(Detach(person.id))
+            return
+        self.seats.put(seat)
         session.ticket = ticket
         self._arrived(session, person)
         travel = frames.message(Travel(zone=arrival.zone, portal=arrival.portal))

@@ -62,6 +62,10 @@ class Seats(Generic[Occupant]):
         for digest in seat.digests:
             self._by_digest[digest] = seat
 
+    def vacant_from(self, avatar_id: int) -> float | None:
+        """Since when a seat is vacant; None for one in use."""
+        return self._vacant.get(avatar_id)
+
     def restore(self, seat: Seat[Occupant], vacant_since: float) -> None:
         """Put in a seat from before a restart, whose person is lost since that moment.
 
@@ -82,6 +86,11 @@ class Seats(Generic[Occupant]):
         """Everyone who has a seat and is there."""
         seats = self._by_avatar.values()
         return [seat.occupant for seat in seats if seat.occupant is not None]
+
+    def all(self) -> list[Seat[Occupant]]:
+        """All seats, those first that were vacated first, as `restore` wants them."""
+        vacant = [self._by_avatar[avatar_id] for avatar_id in self._vacant]
+        return [*vacant, *(seat for seat in self._by_avatar.values() if seat.occupant is not None)]
 
     def find(self, token: str) -> Seat[Occupant] | None:
         return self._by_digest.get(digest_of(token))

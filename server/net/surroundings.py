@@ -9,10 +9,12 @@ from esplanade.server.checkpoint.ids import Block
 from esplanade.server.net.departures import Go
 from esplanade.server.net.names import Names
 
-IDS_OF_A_ZONE: Final = 2**26
+IDS_OF_A_ZONE: Final = 2**22
 """Avatars that can come into being in one zone of a world."""
-LINES_OF_A_ZONE: Final = 2**44
-"""Numbers of lines of a zone, counted from the milliseconds of the start: enough for 500 years."""
+MOST_NUMBERS: Final = 2**32 // IDS_OF_A_ZONE - 1
+"""Zones that can be made while a server runs, those that take the place of others included."""
+LINES_OF_A_ZONE: Final = 2**42
+"""Numbers of lines of a zone, counted from the milliseconds of the start: enough for a century."""
 
 
 @dataclass(frozen=True)
@@ -20,11 +22,13 @@ class Surroundings:
     """The surroundings of a zone in a world of several."""
 
     number: int
-    """The number of the zone among those of its world, from 0 on."""
+    """The number of the zone among all that were made for its world, from 0 on."""
     names: Names
     """The names of people, of whom no two in the world look alike."""
     portals: Sequence[Portal]
     go: Go
+    is_first: bool
+    """Whether newcomers enter it, and operators see it."""
 
     @property
     def ids(self) -> Block:

@@ -49,6 +49,7 @@ class ActorTravel:
         self._inputs: list[ActorCommand] = []
         self._inside: set[str] = set()
         """Actors who were in a portal when it was last looked at, or came out of it."""
+        self._under_way: set[str] = set()
         self.came = 0
         """Actors who have come from other zones."""
 
@@ -62,10 +63,23 @@ class ActorTravel:
         """Take in an actor of another zone, in one of the next ticks."""
         self._expected.append(traveller)
 
+    def move(self, to: "ActorTravel", bounds: tuple[float, float, float, float]) -> None:
+        """Let all actors go over to a zone that takes the place of this one, whose scene has
+        changed. Each stands nearest to where it is now. It is to be called until none is left."""
+        x0, y0, x1, y1 = bounds
+        for actor in map(str, self._world.actors):
+            avatar = self._world.avatar_of(actor)
+            if actor in self._under_way or avatar is None:
+                continue
+            x, y, z_m = self._world.where(avatar)
+            place = min(max(x, x0), x1), min(max(y, y0), y1), z_m
+            self._send(actor, to, place)
+
     def drain(self) -> list[ActorCommand]:
         """Return the inputs of the next tick."""
         for actor, portal in self._newly_inside():
-            self._send(actor, portal)
+            if actor not in self._under_way:
+                self._send(actor, *self._exits[portal])
         expected, self._expected = self._expected, []
         for traveller in expected:
             self._take_in(traveller)
@@ -100,13 +114,14 @@ class ActorTravel:
         self._inside = set(here)
         return came
 
-    def _send(self, actor: str, portal: str) -> None:
-        to, arrival = self._exits[portal]
+    def _send(self, actor: str, to: "ActorTravel", arrival: Point) -> None:
+        self._under_way.add(actor)
         spec = self._world.actors[actor].model_copy(update={"place": arrival, "near": True})
         self._inputs.append(HoldActors(next(self._numbers), (actor,), held=True))
 
         def ended(fault: Fault | None) -> None:
             number = next(self._numbers)
+            self._under_way.discard(actor)
             if fault is None:
                 self._inputs.append(RemoveActors(number, (actor,)))
             else:
