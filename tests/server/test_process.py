@@ -16,10 +16,12 @@ from typing import IO, Any
 
 from websockets.asyncio.client import connect
 
+from esplanade.protocol.messages import Travel, Welcome
 from tests.patience import COMPILING_PATIENCE_S, PATIENCE_S
 from tests.server.certificates import make_pair
 from tests.server.client import Client, joined
 from tests.server.http import get
+from tests.server.zones import YARD, write_town
 
 JOINS = 330
 AT_ONCE = 30
@@ -52,7 +54,10 @@ class Server:
 
 @contextmanager
 def served(
-    room_file: Path, *options: str, prepare: Callable[[], None] | None = None
+    file: Path,
+    *options: str,
+    prepare: Callable[[], None] | None = None,
+    option: str = "--scene",
 ) -> Iterator[Server]:
     """A server of its own with a small pipe for its log."""
     reader, writer = os.pipe()
@@ -60,7 +65,7 @@ def served(
     places = ("--host", "127.0.0.1", "--port", "0", "--private-port", "0")
     process = subprocess.Popen(
         [
-            *(sys.executable, "-m", "esplanade", "serve", "--scene", str(room_file), *places),
+            *(sys.executable, "-m", "esplanade", "serve", option, str(file), *places),
             *("--actors", "1", "--log-format", "json", *options),
         ],
         stderr=writer,
@@ -87,6 +92,23 @@ async def test_a_log_that_nobody_reads_stops_nobody(room_file: Path) -> None:
         assert b"esplanade_log_lines_dropped_total 0.0" in metrics
         # Nobody reads now either: it ends all the same, within a bounded time.
         assert server.stop() == 0
+
+
+async def test_a_signal_has_a_changed_scene_read_anew(tmp_path: Path) -> None:
+    world = write_town(tmp_path, actors=0)
+    with served(world, option="--world") as server:
+        async with joined(server.port, "Ann") as ann:
+            (tmp_path / "yard.json").write_text(json.dumps({**YARD, "name": "Another yard"}))
+            server.process.send_signal(signal.SIGUSR1)
+            assert (await ann.until(Travel)).zone == "yard"
+            assert (await ann.until(Welcome)).scene["name"] == "Another yard"
+            told: dict[str, Any] = {"event": ""}
+            while told["event"] != "read the world anew":
+                told = json.loads(server.log.readline())
+            assert told["changed"] == "yard"
+        assert server.stop() == 0
+        lines = [json.loads(line) for line in server.log.read().splitlines()]
+    assert [line["zone"] for line in lines if line["event"] == "summary"] == ["yard", "hall"]
 
 
 async def test_a_log_that_is_read_late_is_whole(room_file: Path) -> None:
