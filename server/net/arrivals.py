@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from esplanade.server.net.newcomers import MAX_JOINS_PER_TICK
 from esplanade.server.net.person import Person
 from esplanade.server.net.session import Session
 from esplanade.server.world.inputs import Join
@@ -41,14 +42,15 @@ class Arrivals:
         return len(self._expected)
 
     def expect(self, ticket: int, arrival: Arrival) -> None:
-        """Keep a place for somebody, and let them in with the next tick."""
+        """Keep a place for somebody, and let them in with one of the next ticks."""
         self._expected[ticket] = arrival
         self._joins.append(Join(ticket, arrival.name, arrival.at, anywhere=True, id=arrival.id))
 
     def joins(self) -> list[Join]:
-        """Inputs by which they come in, each once."""
-        joins, self._joins = self._joins, []
-        return joins
+        """Inputs by which a few of them come in, each once."""
+        waiting = [join for join in self._joins if join.ticket in self._expected]
+        self._joins = waiting[MAX_JOINS_PER_TICK:]
+        return waiting[:MAX_JOINS_PER_TICK]
 
     def take(self, ticket: int) -> Arrival | None:
         """The one whom the zone has let in; None if the ticket is of nobody who was expected."""

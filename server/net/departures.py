@@ -31,9 +31,6 @@ class Departures:
         """Let people go through these portals; none of them without `go`."""
         self._portals, self._go = portals, go
 
-    def __len__(self) -> int:
-        return len(self._under_way)
-
     def __contains__(self, avatar_id: int | None) -> bool:
         return avatar_id in self._under_way
 
