@@ -5,7 +5,7 @@ import pytest
 
 from esplanade.cli import main
 from esplanade.commandline.settings import given_settings
-from esplanade.server import app
+from esplanade.server import served_zone
 from esplanade.server.options import SETTINGS, parser
 from esplanade.server.settings import ServerSettings
 
@@ -83,7 +83,7 @@ def test_a_taken_port_is_named_before_anything_is_built(
     def build(*_: object) -> None:
         raise AssertionError("it takes about a minute")
 
-    monkeypatch.setattr(app, "build_world", build)
+    monkeypatch.setattr(served_zone, "build_world", build)
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = str(taken.getsockname()[1])
         places = {"--host": "127.0.0.1", "--port": "0", "--private-port": "0", option: port}
