@@ -20,6 +20,8 @@ NEAR_M: Final = 0.3
 """A body that ends so near to the goal has arrived."""
 BLOCKED_TICKS: Final = 20
 """A body that gets nowhere for so long gives up, as people who follow a route do."""
+HELD_UP_M: Final = 0.01
+"""A body that gets no further so near to a corner goes on to the next, as people do."""
 _STEP_SHARE: Final = 0.1
 
 
@@ -91,6 +93,8 @@ def walks(grid: LayeredGrid, case: Case, route: Route) -> bool:
             blocked = blocked + 1 if moved < _STEP_SHARE * share * left else 0
             if blocked >= BLOCKED_TICKS:
                 return False
+            if blocked and math.dist((x, y), corner[:2]) < HELD_UP_M:
+                break
     return _is_near((x, y, z), case.goal)
 
 

@@ -9,7 +9,11 @@ from numpy.typing import NDArray
 
 from esplanade.planning.agents._bottleneck_kernels import lane_of, see_passage
 from esplanade.planning.agents._branch_kernels import Moves
-from esplanade.planning.agents._narrow_way_kernels import lead_over_anchors, leads_nowhere
+from esplanade.planning.agents._narrow_way_kernels import (
+    lead_over_anchors,
+    leads_nowhere,
+    leads_over_edges,
+)
 from esplanade.planning.agents._perturb_kernels import path_cost, update_path
 from esplanade.planning.agents._reason_kernels import decided_reason
 from esplanade.planning.agents._search_kernels import (
@@ -26,6 +30,7 @@ from esplanade.planning.compiled.jit import kernel
 from esplanade.planning.grid._grid_kernels import anchor_at, clearance_at, length
 from esplanade.planning.grid._side_kernels import is_cut_off
 from esplanade.planning.people._prediction_kernels import Prediction
+from esplanade.planning.routes._legal_way_kernels import ROUNDING_CELLS
 from esplanade.planning.routes._potential_kernels import EDGES, potential_at, way_out
 
 
@@ -88,10 +93,9 @@ def make_task(
         gy = y
     keeps_right = contested and left > rules["lane_after_m"]
     on_edges = agents.on_edges[a]
-    most_edges = p["edge_cells"]
+    most_edges = p["edge_cells"] + ROUNDING_CELLS
     if not hold and cell >= 0:
         ahead = float(potentials[slot, cell, EDGES])
-        # Measured along where it walks the way is some parts of a cell longer than in cells.
         if on_edges + ahead + (1.0 if on_edges > 0.0 else -0.5) >= most_edges:
             most_edges = on_edges + ahead + rules["dodge_cells"]
     return Task(
@@ -190,8 +194,11 @@ def decide(
         path = out.paths[a]
         need = needed_clearance(world, task)
         narrow = False
-        if slot >= 0 and leads_nowhere(world, potential, task, path, cells):
-            narrow, ux, uy = lead_over_anchors(world, potential, task, path, bent)
+        if slot >= 0 and (
+            leads_over_edges(world, potential, task, path)
+            or leads_nowhere(world, potential, task, path, cells)
+        ):
+            narrow, ux, uy = lead_over_anchors(world, potential, task, p["edge_cells"], path, bent)
         if narrow:  # the followed path stays: this one is found anew in every tick
             path[:] = bent
             status = FOUND

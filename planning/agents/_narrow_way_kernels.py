@@ -13,14 +13,19 @@ from esplanade.planning.agents._perturb_kernels import path_cost, stretch_edges
 from esplanade.planning.agents._step_kernels import control_toward
 from esplanade.planning.agents._task_kernels import SUB, TOO_MANY, Task, World, needed_clearance
 from esplanade.planning.compiled.jit import inlined, kernel
-from esplanade.planning.grid._grid_kernels import follow_path, length
+from esplanade.planning.grid._grid_kernels import follow, follow_path, length
 from esplanade.planning.routes._anchor_way_kernels import anchors_ahead, leads_exactly
-from esplanade.planning.routes._potential_kernels import PotentialValues, potential_at
+from esplanade.planning.routes._legal_way_kernels import legal_ahead
+from esplanade.planning.routes._potential_kernels import EDGES, PotentialValues, potential_at
 
 _MOST_POINTS = 24
 """Points that are looked ahead over: some three metres."""
 _LESS_M = 0.015
 """A line of sight may pass barriers by this much too closely: the body slides along them."""
+_BRAKING_SLICES = 5
+"""An agent slows down within so many slices from where a way over edges turns."""
+_EVERY = 2
+"""Every such slice of a path is looked at for edges."""
 _REACHED_M = 0.01
 """An agent so near to a point of its way goes on to the next."""
 
@@ -58,36 +63,79 @@ def leads_nowhere(
 
 
 @kernel
+def leads_over_edges(
+    world: World, potential: PotentialValues, task: Task, path: NDArray[np.float64]
+) -> bool:
+    """Whether an agent is on edges whose cells are counted, or its path (K, 2) leads over some."""
+    if world.grid.flat or task.hold or task.cell < 0:
+        return False
+    cell = task.cell
+    for k in range(0, len(path), _EVERY):
+        cell = follow(world.grid, cell, path[k, 0], path[k, 1])
+        if cell < 0:
+            return False
+        if potential[cell, EDGES] > 0.0:
+            return True
+    return False
+
+
+@kernel
 def lead_over_anchors(
     world: World,
     potential: PotentialValues,
     task: Task,
+    most_edges: float,
     path: NDArray[np.float64],
     out: NDArray[np.float64],
 ) -> tuple[bool, float, float]:
     """Fill `out` (K, 2) with a path over anchors; whether it is better than a given path (K, 2).
 
     If so, the velocity to aim at is returned too: it leads straight to the first point of the way
-    that cannot be cut short.
+    that cannot be cut short. Where cells on edges are counted, the way has fewer than `most_edges`,
+    and is better if nobody is nearer to it.
     """
     rules = world.rules[0]
     points = np.empty((_MOST_POINTS, 2))
     cells = np.empty(_MOST_POINTS, dtype=np.int64)
     count, _ = anchors_ahead(world.grid, potential, task.body, task.cell, points, cells)
+    counted = False
+    for cell in cells[:count]:
+        counted = counted or (cell >= 0 and potential[cell, EDGES] > 0.0)
+    if counted:
+        count = legal_ahead(
+            world.grid,
+            potential,
+            task.body,
+            task.cell,
+            task.on_edges,
+            most_edges,
+            points,
+            cells,
+        )
     if count == 0:
         return False, 0.0, 0.0
-    first = _first_to_go_to(world, task, points, count)
     slice_m = rules["narrow_pace"] * task.speed_mps * world.step_s / SUB
-    _walk_along(task.x, task.y, points[first:count], slice_m, out)
     need = needed_clearance(world, task) - _LESS_M
     last = len(path) - 1
-    edges = stretch_edges(world, potential, task, need, task.cell, task.on_edges, out, 0, last)
+    nearest = 0
+    if count > 1 and length(points[0, 0] - task.x, points[0, 1] - task.y) < _REACHED_M:
+        nearest = 1
+    first = count
+    edges = TOO_MANY
+    while edges == TOO_MANY and first > nearest and (counted or first == count):
+        first = _last_to_go_to(world, task, points, nearest, first)
+        if counted:
+            slice_m = _slice_toward(world, task, points[first])
+        _walk_along(task.x, task.y, points[first:count], slice_m, out)
+        edges = stretch_edges(world, potential, task, need, task.cell, task.on_edges, out, 0, last)
     if edges == TOO_MANY:
         return False, 0.0, 0.0
-    most_s = path_cost(world, potential, task, path)[0]
+    most_s, most_risk, _ = path_cost(world, potential, task, path)
     if _stands(world, task):
         most_s += rules["narrow_over_s"]
-    if not path_cost(world, potential, task, out)[0] < most_s:
+    cost_s, risk, _ = path_cost(world, potential, task, out)
+    # What lies ahead of the given path does not know how long the agent was on edges.
+    if not (cost_s < most_s or (counted and risk <= most_risk + rules["least_risk"])):
         return False, 0.0, 0.0
     px, py = points[first]
     away = length(px - task.x, py - task.y)
@@ -99,16 +147,25 @@ def lead_over_anchors(
     return True, ux, uy
 
 
+@inlined
+def _slice_toward(world: World, task: Task, point: NDArray[np.float64]) -> float:
+    """Metres that an agent goes in a slice to a point, at which it may have to turn sharply."""
+    full_m = task.speed_mps * world.step_s / SUB
+    if length(point[0] - task.x, point[1] - task.y) > _BRAKING_SLICES * full_m:
+        return full_m
+    return float(world.rules[0]["narrow_pace"] * full_m)
+
+
 @kernel
-def _first_to_go_to(world: World, task: Task, points: NDArray[np.float64], count: int) -> int:
-    """The furthest of the points ahead that an agent may go to straight; the first without any."""
-    for k in range(count - 1, 0, -1):
+def _last_to_go_to(
+    world: World, task: Task, points: NDArray[np.float64], nearest: int, end: int
+) -> int:
+    """The furthest point before `end` that an agent may go to straight; `nearest` without any."""
+    for k in range(end - 1, nearest, -1):
         px, py = points[k]
         if leads_exactly(world.grid, task.body, task.cell, task.x, task.y, px, py, _LESS_M):
             return k
-    if count > 1 and length(points[0, 0] - task.x, points[0, 1] - task.y) < _REACHED_M:
-        return 1
-    return 0
+    return nearest
 
 
 @kernel

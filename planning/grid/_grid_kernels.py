@@ -10,12 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
-from esplanade.planning.ground._barrier_kernels import (
-    TOLERANCE_M,
-    height_to_climb,
-    point_barrier_distance,
-)
-from esplanade.planning.ground._geometry_kernels import LOW_ROOM_M, crosses
+from esplanade.planning.ground._barrier_kernels import height_to_climb, point_barrier_distance
+from esplanade.planning.ground._geometry_kernels import LOW_ROOM_M, TOLERANCE_M, crosses
 from esplanade.planning.ground.layered import TILE, LayeredArrays, cell_index
 from esplanade.planning.traversal._anchor_kernels import PARTS, SLACK_M
 

@@ -16,8 +16,8 @@ from esplanade.planning.grid._grid_kernels import (
     follow,
     length,
 )
-from esplanade.planning.ground._barrier_kernels import TOLERANCE_M, height_to_climb
-from esplanade.planning.ground._geometry_kernels import LOW_ROOM_M, crosses
+from esplanade.planning.ground._barrier_kernels import height_to_climb
+from esplanade.planning.ground._geometry_kernels import LOW_ROOM_M, TOLERANCE_M, crosses
 
 _HALF_DIAGONAL = 0.7072
 """Of a cell, in cells."""

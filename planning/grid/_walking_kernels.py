@@ -9,13 +9,13 @@ from esplanade.planning.compiled.handle import Handle
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.grid._grid_kernels import GridArrays, corners, follow, surface_at
 from esplanade.planning.ground._barrier_kernels import (
-    TOLERANCE_M,
     Measures,
     height_to_climb,
     point_barrier_distance,
 )
 from esplanade.planning.ground._geometry_kernels import (
     LOW_ROOM_M,
+    TOLERANCE_M,
     BarrierIndex,
     Placement,
     point_segment_distance,
@@ -56,6 +56,14 @@ def _support(grid: GridArrays, cell: int, x: float, y: float, step_on_m: float) 
 
 
 @inlined
+def _may_step(grid: GridArrays, cell: int, other: int, step_on_m: float) -> bool:
+    """Whether the floors of two cells differ by no more than a step; not without a floor."""
+    if other < 0:
+        return False
+    return bool(abs(grid.layered.floors[other] - grid.layered.floors[cell]) <= step_on_m + 1e-4)
+
+
+@inlined
 def walk(
     grid: GridArrays,
     index: BarrierIndex,
@@ -93,14 +101,22 @@ def walk(
         placement = Placement(floor, support, height_m, step_on_m, leg_length_m)
         nx, ny = slide(index, placement, bounds, x, y, part * dx, part * dy, clearance)
         other = follow(grid, cell, nx, ny)
-        if (
-            other < 0
-            or abs(grid.layered.floors[other] - grid.layered.floors[cell]) > step_on_m + 1e-4
-        ):
+        if not _may_step(grid, cell, other, step_on_m):
             if part * way_m > _SHORTEST_M:
                 part *= 0.5  # two treads at once are too high, one after the other they are not
                 continue
-            break
+            # It goes on along the border of the cell that is too high or low.
+            along = (dx, 0.0) if abs(dx) >= abs(dy) else (0.0, dy)
+            for _ in range(2):
+                nx, ny = slide(
+                    index, placement, bounds, x, y, part * along[0], part * along[1], clearance
+                )
+                other = follow(grid, cell, nx, ny)
+                if _may_step(grid, cell, other, step_on_m):
+                    break
+                along = (dx - along[0], dy - along[1])
+            if not _may_step(grid, cell, other, step_on_m):
+                break
         done += part
         cell = other
         x = nx

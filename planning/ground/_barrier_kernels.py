@@ -6,11 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
-from esplanade.planning.ground._geometry_kernels import point_segment_distance
+from esplanade.planning.ground._geometry_kernels import TOLERANCE_M, point_segment_distance
 from esplanade.planning.ground.layered import LINK_M, LayeredArrays, cell_index
-
-TOLERANCE_M = 1e-4
-"""Heights and lengths that differ by less are equal, since floors are rounded to float32."""
 
 LISTED = np.dtype([("barrier", "i4"), ("next", "i4")])
 """An entry of a linked list: the row of a barrier, and the next entry of the same cell or -1."""

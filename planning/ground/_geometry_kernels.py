@@ -11,6 +11,8 @@ LOW_ROOM_M = 0.13
 """Distance that the centre of a body keeps from what it does not step over, but could put a leg
 over: its disc may reach beyond. Moves are looked at every 0.25 m at least, and jump over none."""
 
+TOLERANCE_M = 1e-4
+"""Heights and lengths that differ by less are equal, since floors are rounded to float32."""
 _SHORTEST_PIECE_M = 0.01
 """A move that fails is not tried in pieces shorter than twice this."""
 
@@ -30,7 +32,8 @@ BARRIER = np.dtype(
 It reaches from `bottom_m` to `top_m`. `climb_m` is the greatest height that a body has to climb to
 get past it: infinite for a wall, the difference of the floors for a ledge, 0 for an open door.
 A barrier stops a body of a height and a step-on height that stands on a floor if and only if
-bottom_m < floor + height, top_m > floor + step-on height, and climb_m > step-on height.
+bottom_m < floor + height, top_m > floor + step-on height, and climb_m > step-on height, all of them
+by more than `TOLERANCE_M`.
 """
 
 
@@ -74,9 +77,9 @@ class Placement(NamedTuple):
 def stops(barrier: np.void, placement: Placement) -> bool:
     """Whether a barrier stops a body that can neither step over it nor walk under it."""
     return bool(
-        barrier["bottom_m"] < placement.floor_m + placement.height_m
-        and barrier["top_m"] > placement.support_m + placement.step_on_m
-        and placement.step_on_m < barrier["climb_m"]
+        barrier["bottom_m"] < placement.floor_m + placement.height_m - TOLERANCE_M
+        and barrier["top_m"] > placement.support_m + placement.step_on_m + TOLERANCE_M
+        and barrier["climb_m"] > placement.step_on_m + TOLERANCE_M
     )
 
 
@@ -194,7 +197,10 @@ def nearest_barrier(
         if not stops(b, placement):
             continue
         d, cx, cy = nearest_on_segment(x, y, b["x0"], b["y0"], b["x1"], b["y1"])
-        if min(b["top_m"] - placement.support_m, b["climb_m"]) <= placement.leg_length_m + 1e-4:
+        if (
+            min(b["top_m"] - placement.support_m, b["climb_m"])
+            <= placement.leg_length_m + TOLERANCE_M
+        ):
             d += low_m
         if d < best:
             best = d

@@ -1,4 +1,4 @@
-"""Barriers on bare arrays: outlines of solids, and lintels of meshes between neighbouring cells."""
+"""Barriers on bare arrays: outlines of solids, and what ledges and lintels are written with."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,14 +8,7 @@ from esplanade.planning.ground._surface_kernels import (
     SolidArrays,
     top_at,
 )
-from esplanade.planning.ground.layered import (
-    LINK_COLUMNS,
-    LINK_M,
-    LINK_ROWS,
-    TILE,
-    LayeredArrays,
-    cell_index,
-)
+from esplanade.planning.ground.layered import LINK_M
 
 LEAST_STEP_M = 0.1
 """Floors that differ by less count as level, since everybody steps that high."""
@@ -25,11 +18,6 @@ _BELOW_M = 0.05
 """The barrier of a ledge begins this far below its upper floor."""
 _ABOVE_M = 2.0
 """The barrier of a ledge ends this far above its upper floor, or at the ceiling."""
-_LINTEL_M = 0.2
-"""Height of a lintel's barrier: more than the headroom that a body may lack under the lintel, less
-than the height of a step on top of it."""
-_HIGHEST_M = 2.5
-"""Ceilings further above a floor than this hinder nobody."""
 _SAME_M = 1e-4
 """Heights that differ by less are equal."""
 
@@ -87,21 +75,6 @@ def write_barrier(
 
 
 @inlined
-def _common_edge(
-    arrays: LayeredArrays, j: int, i: int, d: int
-) -> tuple[float, float, float, float]:
-    """The edge x0, y0, x1, y1 between a cell and its neighbour E, N, W or S.
-
-    It leads from south to north, or from west to east.
-    """
-    dj, di = LINK_ROWS[d], LINK_COLUMNS[d]
-    x = arrays.x0 + (i + 0.5 + 0.5 * di) * arrays.cell_m
-    y = arrays.y0 + (j + 0.5 + 0.5 * dj) * arrays.cell_m
-    h = 0.5 * arrays.cell_m
-    return x - h * abs(dj), y - h * abs(di), x + h * abs(dj), y + h * abs(di)
-
-
-@inlined
 def append_barrier(
     out: NDArray[np.void],
     count: int,
@@ -140,60 +113,3 @@ def ledge_heights(floor: float, ceiling: float, climb: float) -> tuple[float, fl
     It ends at the ceiling, since above it would concern nobody.
     """
     return floor - _BELOW_M, min(floor + _ABOVE_M, ceiling), climb
-
-
-@kernel
-def _cells_along(
-    arrays: LayeredArrays,
-    layer: int,
-    line: int,
-    d: int,
-    headroom: float,
-    cells: NDArray[np.int32],
-) -> int:
-    """Write the cells of a column (d = 0 or 4) or row of a layer in order; returns their number.
-
-    Tiles are left out that are level and have at least that headroom.
-    """
-    count = 0
-    by_column = d in (0, 4)
-    length = arrays.ny if by_column else arrays.nx
-    for first in range(0, length, TILE):
-        tj, ti = (first // TILE, line // TILE) if by_column else (line // TILE, first // TILE)
-        page = arrays.pages[layer, tj, ti]
-        if page < 0 or arrays.level_headroom[page // (TILE * TILE)] >= headroom:
-            continue
-        for k in range(first, min(length, first + TILE)):
-            j, i = (k, line) if by_column else (line, k)
-            cell = cell_index(arrays, layer, j, i)
-            if cell >= 0:
-                cells[count] = cell
-                count += 1
-    return count
-
-
-@kernel
-def lintels_between(arrays: LayeredArrays, d: int, out: NDArray[np.void]) -> int:
-    """Write barriers where ceilings change height between linked cells, low enough to hinder.
-
-    Cells are compared with their neighbours to the east (d = 0) or north (d = 2); `out` and the
-    result are those of `outlines`. Only meshes need lintels, since the exact outlines of
-    polygons are known.
-    """
-    count = 0
-    cells = np.empty(max(arrays.ny, arrays.nx), dtype=np.int32)
-    for layer in range(arrays.pages.shape[0]):
-        for line in range(arrays.nx if d == 0 else arrays.ny):
-            for cell in cells[: _cells_along(arrays, layer, line, d, _HIGHEST_M, cells)]:
-                other = arrays.links[cell, d]
-                if other < 0:
-                    continue
-                above, beside = float(arrays.ceilings[cell]), float(arrays.ceilings[other])
-                low, high = min(above, beside), max(above, beside)
-                floor = max(arrays.floors[cell], arrays.floors[other])
-                if high - low >= LEAST_STEP_M and low < floor + _HIGHEST_M:
-                    edge = _common_edge(
-                        arrays, arrays.places[cell]["row"], arrays.places[cell]["column"], d
-                    )
-                    count = append_barrier(out, count, edge, (low, low + _LINTEL_M, np.inf))
-    return count

@@ -82,7 +82,7 @@ def kinds_of(triangles: NDArray[np.float64], kinds: NDArray[np.uint8]) -> None:
 
 
 @inlined
-def _corner_hash(x: float, y: float, z: float) -> int:
+def corner_hash(x: float, y: float, z: float) -> int:
     """A number for a corner, the same for corners that round to the same millimetre."""
     h = np.int64(np.floor(x / _EQUAL_M + 0.5)) * np.int64(73856093)
     h = (h ^ (h >> np.int64(29))) + np.int64(np.floor(y / _EQUAL_M + 0.5)) * np.int64(
@@ -95,7 +95,7 @@ def _corner_hash(x: float, y: float, z: float) -> int:
 
 
 @inlined
-def _edge_key(one: int, two: int) -> int:
+def edge_key(one: int, two: int) -> int:
     """A number for the edge from one corner to another; its reverse has another one."""
     h = one * np.int64(5871781006564002453) + two * np.int64(2862933555777941757)
     h ^= h >> np.int64(28)
@@ -120,12 +120,12 @@ def find_rims(
         for t in range(len(triangles)):
             if not (kinds[t] == UP or (kinds[t] == STEEP and not search)):
                 continue
-            a = _corner_hash(triangles[t, 0, 0], triangles[t, 0, 1], triangles[t, 0, 2])
-            b = _corner_hash(triangles[t, 1, 0], triangles[t, 1, 1], triangles[t, 1, 2])
-            c = _corner_hash(triangles[t, 2, 0], triangles[t, 2, 1], triangles[t, 2, 2])
+            a = corner_hash(triangles[t, 0, 0], triangles[t, 0, 1], triangles[t, 0, 2])
+            b = corner_hash(triangles[t, 1, 0], triangles[t, 1, 1], triangles[t, 1, 2])
+            c = corner_hash(triangles[t, 2, 0], triangles[t, 2, 1], triangles[t, 2, 2])
             for k in range(3):
                 one, two = (a, b) if k == 0 else ((b, c) if k == 1 else (c, a))
-                key = _edge_key(two, one) if search else _edge_key(one, two)
+                key = edge_key(two, one) if search else edge_key(one, two)
                 at = key & np.int64(size - 1)
                 while table[at] != 0 and table[at] != key:
                     at = (at + 1) & np.int64(size - 1)

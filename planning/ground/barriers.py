@@ -9,10 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.ground._geometry_kernels import BARRIER
-from esplanade.planning.ground._ledge_kernels import (
-    lintels_between,
-    outlines,
-)
+from esplanade.planning.ground._ledge_kernels import outlines
 from esplanade.planning.ground._solid_ledge_kernels import (
     SolidBuckets,
     ledges_of_solids,
@@ -55,11 +52,6 @@ def _buckets(solids: SolidArrays, bounds: tuple[float, float, float, float]) -> 
     members = np.empty(starts[-1], dtype=np.int64)
     list_solids(solids, place, starts, members)
     return SolidBuckets(starts, members, *place)
-
-
-def lintels(arrays: LayeredArrays) -> Barriers:
-    """Barriers where ceilings change their height, (S,); needed where no outline is known."""
-    return np.concatenate([filled(BARRIER, lintels_between, arrays, d) for d in (0, 2)])
 
 
 def filled(

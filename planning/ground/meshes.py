@@ -17,6 +17,12 @@ from esplanade.planning.ground._gap_kernels import (
 )
 from esplanade.planning.ground._geometry_kernels import BARRIER
 from esplanade.planning.ground._ledge_kernels import FACE
+from esplanade.planning.ground._lintel_kernels import (
+    find_hems,
+    lintels_between,
+    lintels_of_hems,
+    list_in_columns,
+)
 from esplanade.planning.ground._mesh_kernels import (
     grow_regions,
     hits_of_triangles,
@@ -32,7 +38,7 @@ from esplanade.planning.ground._triangle_kernels import (
     kinds_of,
     list_triangles,
 )
-from esplanade.planning.ground.barriers import Barriers, filled, lintels
+from esplanade.planning.ground.barriers import Barriers, filled
 from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.ground.surfaces import MAX_LAYERS, Surfaces, linked, raster_of
 from esplanade.planning.scene.mesh_file import MeshError
@@ -128,7 +134,23 @@ def barriers_of_triangles(
     buckets = _buckets(triangles, surfaces.bounds)
     place = surfaces.raster, tops, surfaces.floors
     ledges = filled(BARRIER, ledges_of_rims, buckets, *place, room=_MOST_ROOM)
-    return np.concatenate([steep, ledges, lintels(arrays)])
+    hems = np.zeros(len(triangles), dtype=np.uint8)
+    find_hems(triangles, buckets.kinds, hems)
+    hanging = filled(BARRIER, lintels_of_hems, buckets, hems, *place)
+    between = _lintels_between(arrays, surfaces.raster, np.concatenate([steep, hanging]))
+    return np.concatenate([steep, ledges, hanging, between])
+
+
+def _lintels_between(arrays: LayeredArrays, raster: Raster, exact: Barriers) -> Barriers:
+    """Lintels between cells, (S,), where no exact barrier (R,) marks the end of a ceiling."""
+    starts = np.zeros(raster.ny * raster.nx + 1, dtype=np.int64)
+    list_in_columns(raster, exact, starts, np.empty(0, dtype=np.int32))
+    np.cumsum(starts, out=starts)
+    members = np.empty(starts[-1], dtype=np.int32)
+    list_in_columns(raster, exact, starts, members)
+    return np.concatenate(
+        [filled(BARRIER, lintels_between, arrays, d, exact, starts, members) for d in (0, 2)]
+    )
 
 
 def _buckets(

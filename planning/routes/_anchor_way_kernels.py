@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import kernel
 from esplanade.planning.grid._grid_kernels import GridArrays, anchor_at, floor_of, follow, length
-from esplanade.planning.ground._barrier_kernels import TOLERANCE_M, Measures, NearBarriers
+from esplanade.planning.ground._barrier_kernels import Measures, NearBarriers
+from esplanade.planning.ground._geometry_kernels import TOLERANCE_M
 from esplanade.planning.routes._potential_kernels import PotentialValues, potential_at
 from esplanade.planning.traversal._way_kernels import CLEAR, bend_between, way_through
 
@@ -90,8 +91,6 @@ def anchors_ahead(
     step by which the goal is nearest. Returns the number of points, and whether they lead all the
     way to the goal.
     """
-    near, measures = near_of(grid, body), measures_less(grid, body, 0.0)
-    offsets = grid.kinds.offsets[grid.kinds.measures[body]["entries"] :]
     x, y = anchor_at(grid, body, cell)
     left = potential_at(potential, cell, x, y)
     if not np.isfinite(left) or len(points) == 0:
@@ -117,17 +116,35 @@ def anchors_ahead(
             points[count, 1] = potential[cell, 2]
             cells[count] = follow(grid, cell, potential[cell, 1], potential[cell, 2])
             return count + 1, bool(potential[cell, 0] == 0.0)
-        kind, bx, by = bend_between(grid.layered, near, measures, offsets, cell, best)
-        if kind == 2:
-            points[count, 0] = bx
-            points[count, 1] = by
-            cells[count] = follow(grid, cell, bx, by)
-            count += 1
+        count = append_step(grid, body, cell, best, points, cells, count)
         cell = best
         x, y = anchor_at(grid, body, cell)
         left = potential_at(potential, cell, x, y)
-        points[count, 0] = x
-        points[count, 1] = y
-        cells[count] = cell
-        count += 1
     return count, False
+
+
+@kernel
+def append_step(
+    grid: GridArrays,
+    body: int,
+    cell: int,
+    other: int,
+    points: NDArray[np.float64],
+    cells: NDArray[np.int64],
+    count: int,
+) -> int:
+    """Write the points of a step after `count` others: its bend if it has one, and its end.
+
+    Returns the new number of points.
+    """
+    near, measures = near_of(grid, body), measures_less(grid, body, 0.0)
+    offsets = grid.kinds.offsets[grid.kinds.measures[body]["entries"] :]
+    kind, bx, by = bend_between(grid.layered, near, measures, offsets, cell, other)
+    if kind == 2:
+        points[count, 0] = bx
+        points[count, 1] = by
+        cells[count] = follow(grid, cell, bx, by)
+        count += 1
+    points[count] = anchor_at(grid, body, other)
+    cells[count] = other
+    return count + 1

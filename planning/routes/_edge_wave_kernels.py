@@ -87,7 +87,8 @@ def spread_over_edges(
     `settled` (N,) must be as `begin_wave` leaves them. A way is legal in a cell
     if the cells on edges from stable ground to it and from it to stable ground are fewer than
     `most_edges` together; the first legal way to reach a cell is its potential. A cell without one
-    has the first that is legal for a body that begins there; `settled` is 1 in both. Lines of
+    has the first that is legal for a body that begins there; `settled` is 1 in both. The number of
+    cells on edges that is kept with it is the least of any way from there, -1 without any. Lines of
     sight, of at most `longest_sight` metres, lead over stable ground only; the goal's cell is left
     by sight if its anchor has no step at all.
     """
@@ -152,7 +153,7 @@ def spread_over_edges(
             potential[cell, 0] = left
             potential[cell, 1] = wx
             potential[cell, 2] = wy
-            potential[cell, EDGES] = row
+        potential[cell, EDGES] = row  # the numbers of later labels are lower
         if made + 8 > len(labels):
             wider = np.empty(2 * len(labels), dtype=LABEL)
             wider[: len(labels)] = labels
@@ -204,4 +205,6 @@ def spread_over_edges(
     for cell in range(len(settled)):
         if settled[cell] == _BEGUN_AT:
             settled[cell] = _REACHED
+        elif settled[cell] == 0:
+            potential[cell, EDGES] = -1.0
     return reached

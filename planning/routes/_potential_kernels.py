@@ -20,8 +20,9 @@ from esplanade.planning.grid._side_kernels import cells_to_begin_at, is_barred, 
 from esplanade.planning.traversal._anchor_kernels import SLACK_M
 
 PotentialValues = NDArray[np.float32]
-"""(N, 4): metres from the waypoint to the goal, waypoint x, waypoint y, and the number of cells on
-edges in a row from the cell on, 0 where they are not counted; inf where no path leads."""
+"""(N, 4): metres from the waypoint to the goal, waypoint x, waypoint y, and the least number of
+cells on edges in a row from the cell on, on any way to the goal: 0 where they are not counted, less
+where they are and no way leads. The metres are inf where no path leads."""
 EDGES = 3
 """The column of that number."""
 

@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import kernel
-from esplanade.planning.ground._barrier_kernels import TOLERANCE_M, height_to_climb
-from esplanade.planning.ground._geometry_kernels import crosses
+from esplanade.planning.ground._barrier_kernels import height_to_climb
+from esplanade.planning.ground._geometry_kernels import TOLERANCE_M, crosses
 from esplanade.planning.ground.layered import cell_index, cell_near
 from esplanade.planning.routes._straightening_kernels import is_clear
 from esplanade.planning.scene.heights import SAME_SURFACE_M

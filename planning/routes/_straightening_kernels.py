@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
-from esplanade.planning.ground._barrier_kernels import TOLERANCE_M
+from esplanade.planning.ground._geometry_kernels import TOLERANCE_M
 from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.traversal._anchor_kernels import anchor_of
 from esplanade.planning.traversal._stability_kernels import STABLE

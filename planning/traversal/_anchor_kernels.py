@@ -12,13 +12,12 @@ from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.ground._barrier_kernels import (
-    TOLERANCE_M,
     Measures,
     NearBarriers,
     height_to_climb,
     point_barrier_distance,
 )
-from esplanade.planning.ground._geometry_kernels import LOW_ROOM_M, nearest_on_segment
+from esplanade.planning.ground._geometry_kernels import LOW_ROOM_M, TOLERANCE_M, nearest_on_segment
 from esplanade.planning.ground.layered import TILE, LayeredArrays
 from esplanade.planning.traversal.tiles import CellBox
 
@@ -95,10 +94,13 @@ def room_at(
 
 @kernel
 def pushed(
-    near: NearBarriers, body: Measures, cell: int, floor: float, x: float, y: float
+    near: NearBarriers, body: Measures, cell: int, floor: float, x: float, y: float, aim: float
 ) -> tuple[float, float, float]:
-    """A point with more room than a given one, reached without crossing a barrier, and its room."""
-    want = body.radius_m + AIM_M
+    """A point with more room than a given one, reached without crossing a barrier, and its room.
+
+    It is pushed until it has `aim` metres more room than the body's radius, if there is so much.
+    """
+    want = body.radius_m + aim
     best, best_x, best_y = -1.0, x, y
     for _ in range(_PUSHES):
         d, qx, qy = room_at(near, body, cell, floor, x, y)
@@ -285,5 +287,5 @@ def _push(
             or room_at(near, body, cell, floor, x + dx, y + dy)[0] >= room + away - WITHIN_M
         ):
             return dx, dy
-    px, py, _ = pushed(near, body, cell, floor, x, y)
+    px, py, _ = pushed(near, body, cell, floor, x, y, AIM_M)
     return px - x, py - y

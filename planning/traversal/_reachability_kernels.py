@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
-from esplanade.planning.ground._barrier_kernels import TOLERANCE_M, Measures, NearBarriers
+from esplanade.planning.ground._barrier_kernels import Measures, NearBarriers
+from esplanade.planning.ground._geometry_kernels import TOLERANCE_M
 from esplanade.planning.ground.layered import TILE, LayeredArrays
 from esplanade.planning.traversal._anchor_kernels import is_listed
 from esplanade.planning.traversal._way_kernels import leads_on

@@ -5,12 +5,12 @@ from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.ground._barrier_kernels import (
-    TOLERANCE_M,
     Measures,
     NearBarriers,
     height_to_climb,
     point_barrier_distance,
 )
+from esplanade.planning.ground._geometry_kernels import TOLERANCE_M
 from esplanade.planning.ground.layered import LINK_ROOM_M, TILE, LayeredArrays, cell_index
 from esplanade.planning.traversal._anchor_kernels import SLACK_M, anchor_of
 from esplanade.planning.traversal.tiles import TileBox

@@ -8,14 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from esplanade.planning.compiled.jit import inlined, kernel
-from esplanade.planning.ground._barrier_kernels import (
-    TOLERANCE_M,
-    Measures,
-    NearBarriers,
-    height_to_climb,
-)
+from esplanade.planning.ground._barrier_kernels import Measures, NearBarriers, height_to_climb
 from esplanade.planning.ground._geometry_kernels import (
     LOW_ROOM_M,
+    TOLERANCE_M,
     crosses,
     nearest_on_segment,
     point_segment_distance,
@@ -33,6 +29,8 @@ from esplanade.planning.traversal._anchor_kernels import (
     two_nearest,
 )
 
+_LITTLE_M = 0.02
+"""A bend at the tightest point of a step aims at this much more room than the radius."""
 _LEVEL_M = 1e-4
 """Floors that differ by less see the same barriers."""
 
@@ -266,7 +264,12 @@ def _bend_past(
     cells = (first, second)
     heights = (lowest, highest)
     ends = (ax, ay, bx, by)
-    leads, px, py = _bend_from(arrays, near, body, cells, heights, ends, mx, my)
+    leads, px, py = _bend_from(arrays, near, body, cells, heights, ends, mx, my, AIM_M)
+    if leads:
+        return True, px, py
+    # Between corners that lie aslant the middle of the step is pushed out of the passage.
+    tx, ty = _tightest(near, body, cells, heights, ends)
+    leads, px, py = _bend_from(arrays, near, body, cells, heights, ends, tx, ty, _LITTLE_M)
     if leads:
         return True, px, py
     # Past the end of what bars the way there may be a gap, such as a door beside its post.
@@ -291,10 +294,38 @@ def _bend_past(
             sx, sy = x0 + part * (x0 - x1), y0 + part * (y0 - y1)
             if room_at(near, body, first, highest, sx, sy)[0] >= body.radius_m - WITHIN_M:
                 continue  # it is open there, and other steps lead around the end
-            leads, px, py = _bend_from(arrays, near, body, cells, heights, ends, sx, sy)
+            leads, px, py = _bend_from(arrays, near, body, cells, heights, ends, sx, sy, AIM_M)
             if leads:
                 return True, px, py
     return False, 0.0, 0.0
+
+
+@kernel
+def _tightest(
+    near: NearBarriers,
+    body: Measures,
+    cells: tuple[int, int],
+    heights: tuple[float, float],
+    ends: tuple[float, float, float, float],
+) -> tuple[float, float]:
+    """The point of the straight way between two ends that is nearest to what bars it."""
+    ax, ay, bx, by = ends
+    best, x, y = np.inf, 0.5 * (ax + bx), 0.5 * (ay + by)
+    for cell in cells:
+        entry = near.first[cell]
+        while entry >= 0:
+            barrier = near.barriers[near.entries[entry]["barrier"]]
+            entry = near.entries[entry]["next"]
+            climb = height_to_climb(barrier, heights[0], heights[1], body.height_m)
+            if climb <= body.step_on_m + TOLERANCE_M:
+                continue
+            x0, y0, x1, y1 = barrier["x0"], barrier["y0"], barrier["x1"], barrier["y1"]
+            apart, cx, cy, _, _ = _closest(x0, y0, x1, y1, ax, ay, bx, by, False)
+            if climb <= body.leg_length_m + TOLERANCE_M:
+                apart += max(0.0, body.radius_m - LOW_ROOM_M)
+            if apart < best:
+                best, x, y = apart, cx, cy
+    return x, y
 
 
 @inlined
@@ -315,11 +346,12 @@ def _bend_from(
     ends: tuple[float, float, float, float],
     x: float,
     y: float,
+    aim: float,
 ) -> tuple[bool, float, float]:
     """Whether a body gets from one end to the other by the point that (x, y) is pushed to."""
     lowest, highest = heights
     ax, ay, bx, by = ends
-    px, py, room = pushed(near, body, cells[0], highest, x, y)
+    px, py, room = pushed(near, body, cells[0], highest, x, y, aim)
     if room < body.radius_m - EXACT_M:
         return False, px, py
     if np.hypot(px - 0.5 * (ax + bx), py - 0.5 * (ay + by)) > arrays.cell_m:

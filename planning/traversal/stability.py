@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from enum import IntEnum
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,8 @@ from esplanade.planning.scene.bodies import Body
 from esplanade.planning.traversal import _stability_kernels as kernels
 from esplanade.planning.traversal.reachability import measures_of
 from esplanade.planning.traversal.tiles import TileBox, all_tiles
+
+_KINDS_KEPT = 256
 
 
 class Stability(IntEnum):
@@ -31,8 +34,12 @@ class Stability(IntEnum):
     """The same with a layer below."""
 
 
+@lru_cache(maxsize=_KINDS_KEPT)
 def touched_cells(radius_m: float, cell_m: float) -> NDArray[np.void]:
-    """Offsets (K,) of `OFFSET` from a cell to all others that a disc on its centre touches."""
+    """Offsets (K,) of `OFFSET` from a cell to all others that a disc on its centre touches.
+
+    The array is shared by all who ask for it, and nobody writes to it.
+    """
     reach = math.ceil(radius_m / cell_m + 0.5)
     away = cell_m * np.maximum(0.0, np.abs(np.arange(-reach, reach + 1)) - 0.5)
     rows, columns = np.nonzero(np.hypot(away[:, None], away[None, :]) < radius_m - 1e-6)

@@ -19,6 +19,9 @@ BLOCKED_TICKS: Final = 20
 """A person who follows a route but gets nowhere for this long gives it up."""
 AT_CORNER_M: Final = 1e-6
 """A person this near to the next point of a route is there."""
+HELD_UP_M: Final = 0.01
+"""A person who gets no further so near to that point goes on to the one after it: corners may lie
+nearer to barriers than bodies get, by the roundings of a way."""
 _TIMES: Final = np.arange(AHEAD)[:, None]
 
 
@@ -141,7 +144,8 @@ class People:
         for slot in slots[self._blocked[slots] >= BLOCKED_TICKS].tolist():
             self.stop(slot)
         offsets = self._targets[slots] - state.positions[slots]
-        for slot in slots[np.hypot(offsets[:, 0], offsets[:, 1]) < AT_CORNER_M].tolist():
+        left_m = np.hypot(offsets[:, 0], offsets[:, 1])
+        for slot in slots[left_m < np.where(stuck, HELD_UP_M, AT_CORNER_M)].tolist():
             route = self._routes.get(slot)
             if route is None:
                 continue

@@ -89,6 +89,14 @@ def test_a_way_through_a_wall_is_given_up() -> None:
     assert not trial.world.state.speeds.any()
 
 
+def test_a_corner_a_hair_nearer_to_a_wall_than_bodies_get_is_passed() -> None:
+    trial = Trial()
+    (ann,) = trial.join((9.0, 5.0))
+    trial.tick(Follow(ann, 1, ((9.7505, 5.0, 0), (9.0, 6.0, 0))))
+    trial.ticks(60)
+    assert trial.position(ann) == pytest.approx((9.0, 6.0))
+
+
 def test_people_pass_through_each_other() -> None:
     trial = Trial(scene=FIELD)
     ann, ben = trial.join((10.0, 10.0), (11.0, 10.0))
