@@ -11,9 +11,16 @@ from numpy.typing import NDArray
 
 from esplanade.planning.agents._perturb_kernels import path_cost, stretch_edges
 from esplanade.planning.agents._step_kernels import control_toward
-from esplanade.planning.agents._task_kernels import SUB, TOO_MANY, Task, World, needed_clearance
+from esplanade.planning.agents._task_kernels import (
+    SUB,
+    TOO_MANY,
+    Task,
+    World,
+    further_on_edges,
+    needed_clearance,
+)
 from esplanade.planning.compiled.jit import inlined, kernel
-from esplanade.planning.grid._grid_kernels import follow, follow_path, length
+from esplanade.planning.grid._grid_kernels import GridArrays, follow, follow_path, length
 from esplanade.planning.routes._anchor_way_kernels import anchors_ahead, leads_exactly
 from esplanade.planning.routes._legal_way_kernels import legal_ahead
 from esplanade.planning.routes._potential_kernels import EDGES, PotentialValues, potential_at
@@ -98,6 +105,7 @@ def lead_over_anchors(
     points = np.empty((_MOST_POINTS, 2))
     cells = np.empty(_MOST_POINTS, dtype=np.int64)
     count, _ = anchors_ahead(world.grid, potential, task.body, task.cell, points, cells)
+    counts = np.zeros(_MOST_POINTS)
     counted = False
     for cell in cells[:count]:
         counted = counted or (cell >= 0 and potential[cell, EDGES] > 0.0)
@@ -111,6 +119,7 @@ def lead_over_anchors(
             most_edges,
             points,
             cells,
+            counts,
         )
     if count == 0:
         return False, 0.0, 0.0
@@ -123,7 +132,7 @@ def lead_over_anchors(
     first = count
     edges = TOO_MANY
     while edges == TOO_MANY and first > nearest and (counted or first == count):
-        first = _last_to_go_to(world, task, points, nearest, first)
+        first = _last_to_go_to(world, task, points, counts, counted, nearest, first)
         if counted:
             slice_m = _slice_toward(world, task, points[first])
         _walk_along(task.x, task.y, points[first:count], slice_m, out)
@@ -158,14 +167,48 @@ def _slice_toward(world: World, task: Task, point: NDArray[np.float64]) -> float
 
 @kernel
 def _last_to_go_to(
-    world: World, task: Task, points: NDArray[np.float64], nearest: int, end: int
+    world: World,
+    task: Task,
+    points: NDArray[np.float64],
+    counts: NDArray[np.float64],
+    counted: bool,
+    nearest: int,
+    end: int,
 ) -> int:
-    """The furthest point before `end` that an agent may go to straight; `nearest` without any."""
+    """The furthest point before `end` that an agent may go to straight; `nearest` without any.
+
+    If cells on edges are `counted`, it may have come no further on them than by the way.
+    """
     for k in range(end - 1, nearest, -1):
         px, py = points[k]
-        if leads_exactly(world.grid, task.body, task.cell, task.x, task.y, px, py, _LESS_M):
+        if leads_exactly(
+            world.grid, task.body, task.cell, task.x, task.y, px, py, _LESS_M
+        ) and not (counted and _exceeds(world.grid, task, px, py, counts[: k + 1])):
             return k
     return nearest
+
+
+@kernel
+def _exceeds(
+    grid: GridArrays, task: Task, px: float, py: float, counts: NDArray[np.float64]
+) -> bool:
+    """Whether an agent that goes straight to a point comes further on edges than the way to it.
+
+    `counts` (K,) are the cells on edges in a row on the way, the last of them at the point.
+    """
+    most = counts.max()
+    edges = task.on_edges
+    cell = task.cell
+    way = length(px - task.x, py - task.y)
+    pieces = int(way / (0.5 * grid.layered.cell_m)) + 1
+    dx, dy = (px - task.x) / pieces, (py - task.y) / pieces
+    for k in range(1, pieces + 1):
+        there = follow(grid, cell, task.x + k * dx, task.y + k * dy)
+        edges = further_on_edges(grid, task.body, cell, there, dx, dy, edges)
+        if there < 0 or edges > most:
+            return True
+        cell = there
+    return bool(edges > counts[-1])
 
 
 @kernel

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from esplanade.planning.compiled._heap_kernels import heap_pop, heap_push
 from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.grid._grid_kernels import GridArrays, anchor_at, length
-from esplanade.planning.routes._anchor_way_kernels import anchors_ahead, append_step
+from esplanade.planning.routes._anchor_way_kernels import append_step
 from esplanade.planning.routes._potential_kernels import EDGES, PotentialValues, potential_at
 
 STATE = np.dtype(
@@ -59,8 +59,12 @@ def legal_ahead(
     most_edges: float,
     points: NDArray[np.float64],
     cells: NDArray[np.int64],
+    counts: NDArray[np.float64],
 ) -> int:
     """Write the points of the shortest way over anchors that M allows, as `anchors_ahead` does.
+
+    It ends where it leaves edges that it was on; `counts` (K,) receives the cells on edges in a row
+    up to each point.
 
     The body is in a cell and has come `on_edges` cells on edges in a row. Fewer than `most_edges`
     are legal, on edges one more, or as few as possible where these are too few already. Returns the
@@ -100,7 +104,7 @@ def legal_ahead(
             or states[now]["depth"] >= deepest
             or potential[cell, 0] == 0.0
         ):
-            return _write(grid, potential, body, states, now, points, cells)
+            return _write(grid, potential, body, states, now, points, cells, counts)
         x, y = anchor_at(grid, body, cell)
         for direction in range(8):
             if not grid.kinds.steps[body, cell] >> direction & 1:
@@ -139,22 +143,29 @@ def _write(
     last: int,
     points: NDArray[np.float64],
     cells: NDArray[np.int64],
+    counts: NDArray[np.float64],
 ) -> int:
-    """Write the points of the way to a state, and on down the potential if it has left edges."""
+    """Write the points of the way to a state, and at last the goal if that is in its cell."""
     depth = states[last]["depth"]
     way = np.empty(depth + 1, dtype=np.int64)
     state = last
     for k in range(depth, -1, -1):
-        way[k] = states[state]["cell"]
+        way[k] = state
         state = states[state]["parent"]
-    points[0] = anchor_at(grid, body, way[0])
-    cells[0] = way[0]
+    cell = int(states[way[0]]["cell"])
+    points[0] = anchor_at(grid, body, cell)
+    cells[0] = cell
+    counts[0] = states[way[0]]["count"]
     count = 1
     for k in range(1, depth + 1):
-        count = append_step(grid, body, way[k - 1], way[k], points, cells, count)
-    if states[last]["left_edges"] or potential[way[depth], 0] == 0.0:
-        more, _ = anchors_ahead(
-            grid, potential, body, way[depth], points[count - 1 :], cells[count - 1 :]
-        )
-        count += max(0, more - 1)
+        before = count
+        other = int(states[way[k]]["cell"])
+        count = append_step(grid, body, cell, other, points, cells, count)
+        counts[before:count] = states[way[k]]["count"]
+        cell = other
+    if potential[cell, 0] == 0.0 and count < len(points):
+        points[count] = potential[cell, 1:3]
+        cells[count] = cell
+        counts[count] = counts[count - 1]
+        count += 1
     return count
