@@ -31,6 +31,8 @@ _HALF_DIAGONAL = 0.7072
 """Of a cell, in cells."""
 AIM_M = 0.04
 """A push aims at this much more room than the radius."""
+LITTLE_M = 0.02
+"""A push that would leave a narrow passage aims at this much more room."""
 WITHIN_M = 1e-6
 EXACT_M = 1e-3
 """Anchors are rounded to parts of a cell, so that their distances are exact to this."""
@@ -217,23 +219,46 @@ def place_anchors(
                             continue
                         if not _may_fit(near, body, cell, floor, x, y, most_m):
                             continue
-                        dx, dy = _push(near, body, cell, floor, x, y, room, qx, qy, second)
-                        far = max(abs(dx), abs(dy)) / most_m
-                        if far > 1.0:  # it stays in its cell
-                            dx /= far
-                            dy /= far
-                        u, v = int(np.round(dx / part_m)), int(np.round(dy / part_m))
-                        px, py = x + u * part_m, y + v * part_m
-                        there = room_at(near, body, cell, floor, px, py)[0]
+                        away = (room, qx, qy, second)
+                        dx, dy, two = _push(near, body, cell, floor, x, y, away)
+                        u, v, there = _within_cell(near, body, cell, floor, x, y, dx, dy, part_m)
+                        if two and not (there >= least and there > room):
+                            # It was pushed on along the passage, out of its cell.
+                            px, py, _ = pushed(near, body, cell, floor, x, y, LITTLE_M)
+                            dx, dy = px - x, py - y
+                            u, v, there = _within_cell(
+                                near, body, cell, floor, x, y, dx, dy, part_m
+                            )
                         if there >= least and there > room:
                             offsets[entry, 0] = u
                             offsets[entry, 1] = v
                             there = min(
                                 there,
                                 body.radius_m + AIM_M,
-                                near.reach_m - np.hypot(px - x, py - y),
+                                near.reach_m - part_m * np.hypot(u, v),
                             )
                             rooms[cell] = there
+
+
+@inlined
+def _within_cell(
+    near: NearBarriers,
+    body: Measures,
+    cell: int,
+    floor: float,
+    x: float,
+    y: float,
+    dx: float,
+    dy: float,
+    part_m: float,
+) -> tuple[int, int, float]:
+    """A displacement from a centre in parts of a cell, cut off at its edge, and the room there."""
+    far = max(abs(dx), abs(dy)) / (_MOST_PARTS * part_m)
+    if far > 1.0:
+        dx /= far
+        dy /= far
+    u, v = int(np.round(dx / part_m)), int(np.round(dy / part_m))
+    return u, v, room_at(near, body, cell, floor, x + u * part_m, y + v * part_m)[0]
 
 
 @inlined
@@ -269,15 +294,14 @@ def _push(
     floor: float,
     x: float,
     y: float,
-    room: float,
-    qx: float,
-    qy: float,
-    second: float,
-) -> tuple[float, float]:
-    """`pushed` as a displacement; cheap where only one barrier, nearest at (qx, qy), counts.
+    nearest: tuple[float, float, float, float],
+) -> tuple[float, float, bool]:
+    """`pushed` as a displacement, and whether more than one barrier counts; cheap with one.
 
-    `room` is the distance from it, `second` that from the next.
+    `nearest` are the distance of the nearest barrier, the point of it that is, and the distance of
+    the next.
     """
+    room, qx, qy, second = nearest
     away = body.radius_m + AIM_M - room
     apart = np.sqrt((x - qx) * (x - qx) + (y - qy) * (y - qy))
     if apart > WITHIN_M:
@@ -286,6 +310,6 @@ def _push(
             second - away >= room + away
             or room_at(near, body, cell, floor, x + dx, y + dy)[0] >= room + away - WITHIN_M
         ):
-            return dx, dy
+            return dx, dy, False
     px, py, _ = pushed(near, body, cell, floor, x, y, AIM_M)
-    return px - x, py - y
+    return px - x, py - y, True

@@ -20,6 +20,7 @@ from esplanade.planning.ground.layered import LayeredArrays
 from esplanade.planning.traversal._anchor_kernels import (
     AIM_M,
     EXACT_M,
+    LITTLE_M,
     SLACK_M,
     WITHIN_M,
     anchor_of,
@@ -29,8 +30,6 @@ from esplanade.planning.traversal._anchor_kernels import (
     two_nearest,
 )
 
-_LITTLE_M = 0.02
-"""A bend at the tightest point of a step aims at this much more room than the radius."""
 _LEVEL_M = 1e-4
 """Floors that differ by less see the same barriers."""
 
@@ -269,7 +268,7 @@ def _bend_past(
         return True, px, py
     # Between corners that lie aslant the middle of the step is pushed out of the passage.
     tx, ty = _tightest(near, body, cells, heights, ends)
-    leads, px, py = _bend_from(arrays, near, body, cells, heights, ends, tx, ty, _LITTLE_M)
+    leads, px, py = _bend_from(arrays, near, body, cells, heights, ends, tx, ty, LITTLE_M)
     if leads:
         return True, px, py
     # Past the end of what bars the way there may be a gap, such as a door beside its post.
