@@ -1,8 +1,11 @@
 """M in the living world: actors stay on edges no longer than their bodies may."""
 
 import math
+from dataclasses import replace
 
 import pytest
+from benchmarks import _four_answers as four
+from benchmarks._turned_scenes import Case, Turn, low_flight
 
 from esplanade.actors import ActorParameters, Navigator, Reason
 from esplanade.planning import Body, LayeredGrid, PathStatus, PlanModel, Polygon, Scene, find_path
@@ -52,6 +55,24 @@ def test_an_actor_climbs_a_flight_just_where_find_path_does(degrees: int, most: 
         assert counted < most + 2
     else:
         assert reason is Reason.NO_PATH
+
+
+def least_m(case: Case, grid: LayeredGrid) -> int:
+    """The smallest M with which the tool finds the way there and back."""
+    return next(m for m in range(2, 100) if four.tool(grid, replace(case, body=Body(edge_cells=m))))
+
+
+@pytest.mark.parametrize(("steps", "degrees"), [(12, 18.0), (24, 0.0), (24, 45.0), (24, 72.0)])
+def test_an_actor_needs_no_larger_m_than_find_path(steps: int, degrees: float) -> None:
+    case = low_flight(Turn(degrees, (0.06, 0.11)), steps, Body.adult())
+    grid = LayeredGrid.from_scene(case.scene)
+    least = least_m(case, grid)
+    for m in (least, least + 1, least + 3):
+        for each in (case, case.back):
+            reason, counted, _, _ = walk(grid, each.start, each.goal, m, 40.0)
+            assert reason is Reason.ARRIVED
+            assert counted < m + 2
+    assert not four.actor(grid, replace(case, body=Body(edge_cells=least - 1)))
 
 
 def test_an_actor_goes_around_a_kerb_that_its_body_cannot_walk_along() -> None:

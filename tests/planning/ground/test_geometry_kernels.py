@@ -164,10 +164,19 @@ def test_which_barriers_stop_which_bodies(barrier, climb, placement) -> None:
     steps_over = bottom + height - floor <= step
     passes_under = bottom - floor >= tall
     steps_down = climb <= step
-    edge = min(abs(bottom + height - floor - step), abs(bottom - floor - tall))
-    assume(edge > 1e-9 or placement == (0.0, 1.8, 0.6))
+    edge = min(abs(bottom + height - floor - step), abs(bottom - floor - tall), abs(climb - step))
+    assume(edge > 2.0 * kernels.TOLERANCE_M or placement in ((0.0, 1.8, 0.6), (0.0, 1.8, 0.3)))
     free = steps_over or passes_under or steps_down
     assert kernels.stops(row[0], kernels.Placement(floor, floor, tall, step, step)) == (not free)
+
+
+@pytest.mark.parametrize("top", [0.1 * 6, float(np.float32(0.6)), 0.6])
+def test_a_step_as_high_as_the_body_steps_stops_it_in_no_rounding(top: float) -> None:
+    row = np.array([(2.0, 0.0, 2.0, 5.0, 0.0, top, math.inf)], dtype=kernels.BARRIER)
+    row = np.concatenate([row, row])
+    row["climb_m"][1], row["top_m"][1] = top, 2.0
+    for barrier in row:
+        assert not kernels.stops(barrier, kernels.Placement(0.0, 0.0, 1.8, 0.6, 0.9))
 
 
 def test_steps_count_from_the_support_and_heads_from_the_floor() -> None:
