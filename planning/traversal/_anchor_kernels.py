@@ -222,7 +222,8 @@ def place_anchors(
                         away = (room, qx, qy, second)
                         dx, dy, two = _push(near, body, cell, floor, x, y, away)
                         u, v, there = _within_cell(near, body, cell, floor, x, y, dx, dy, part_m)
-                        if two and not (there >= least and there > room):
+                        out = max(abs(dx), abs(dy)) > most_m
+                        if two and out and not (there >= least and there > room):
                             # It was pushed on along the passage, out of its cell.
                             px, py, _ = pushed(near, body, cell, floor, x, y, LITTLE_M)
                             dx, dy = px - x, py - y

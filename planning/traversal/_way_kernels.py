@@ -267,10 +267,11 @@ def _bend_past(
     if leads:
         return True, px, py
     # Between corners that lie aslant the middle of the step is pushed out of the passage.
-    tx, ty = _tightest(near, body, cells, heights, ends)
-    leads, px, py = _bend_from(arrays, near, body, cells, heights, ends, tx, ty, LITTLE_M)
-    if leads:
-        return True, px, py
+    lacks, tx, ty = _tightest(near, body, cells, heights, ends)
+    if lacks < AIM_M:
+        leads, px, py = _bend_from(arrays, near, body, cells, heights, ends, tx, ty, LITTLE_M)
+        if leads:
+            return True, px, py
     # Past the end of what bars the way there may be a gap, such as a door beside its post.
     for cell in cells:
         entry = near.first[cell]
@@ -306,8 +307,11 @@ def _tightest(
     cells: tuple[int, int],
     heights: tuple[float, float],
     ends: tuple[float, float, float, float],
-) -> tuple[float, float]:
-    """The point of the straight way between two ends that is nearest to what bars it."""
+) -> tuple[float, float, float]:
+    """The point of the straight way between two ends that is nearest to what bars it.
+
+    Returns the distance from it that the body lacks there, and the point.
+    """
     ax, ay, bx, by = ends
     best, x, y = np.inf, 0.5 * (ax + bx), 0.5 * (ay + by)
     for cell in cells:
@@ -324,7 +328,7 @@ def _tightest(
                 apart += max(0.0, body.radius_m - LOW_ROOM_M)
             if apart < best:
                 best, x, y = apart, cx, cy
-    return x, y
+    return body.radius_m - best, x, y
 
 
 @inlined
