@@ -99,6 +99,29 @@ def low_flight(turn: Turn, steps: int, body: Body) -> Case:
     return Case(scene, (*turn.at(-half - 1.5), 0.0), (*turn.at(half + 1.0), top), body)
 
 
+def plank(turn: Turn, length_m: float, width_m: float, body: Body, around: bool) -> Case:
+    """A kerb between two walls, on all of which one counts as on an edge, and the way over it.
+
+    With `around` there is a level way past the end of one of the walls.
+    """
+    half, aside = 0.5 * length_m, 0.5 * width_m
+    near, far = aside + 0.1, 2.0 * _FAR_M
+    walls = [turn.rectangle(-half, -far, half, -near)]
+    if around:
+        walls += [
+            turn.rectangle(-half, near, half, near + 3.0),
+            turn.rectangle(-far, near + 4.2, far, near + 4.4),
+        ]
+    else:
+        walls.append(turn.rectangle(-half, near, half, far))
+    kerb = turn.rectangle(-half, -aside, half, aside)
+    solids = [{"points": points, "height_m": WALL_M, "kind": "wall"} for points in walls]
+    solids.append({"points": kerb, "height_m": 0.3, "kind": "floor"})
+    scene = scene_of({"polygons": solids}, half + 7.0)
+    ends = (*turn.at(-half - 1.6), 0.0), (*turn.at(half + 1.6), 0.0)
+    return Case(scene, *ends, body)
+
+
 def ramp(turn: Turn, width_m: float, body: Body) -> Case:
     """A ramp that rises by 1.6 m over 6 m to a floor, and the way up."""
     half = 0.5 * width_m

@@ -5,11 +5,14 @@ from dataclasses import replace
 
 import pytest
 from benchmarks import _four_answers as four
-from benchmarks._turned_scenes import Case, Turn, low_flight
+from benchmarks._turned_scenes import Case, Turn, low_flight, plank
+from hypothesis import given
+from hypothesis import strategies as st
 
 from esplanade.actors import ActorParameters, Navigator, Reason
 from esplanade.planning import Body, LayeredGrid, PathStatus, PlanModel, Polygon, Scene, find_path
 from tests.planning.routes.test_edge_rule import flight, kerb
+from tests.planning.worlds import holds
 
 Place = tuple[float, float, float]
 
@@ -73,6 +76,26 @@ def test_an_actor_needs_no_larger_m_than_find_path(steps: int, degrees: float) -
             assert reason is Reason.ARRIVED
             assert counted < m + 2
     assert not four.actor(grid, replace(case, body=Body(edge_cells=least - 1)))
+
+
+turns = st.builds(Turn, st.floats(0.0, 360.0), st.tuples(*[st.floats(0.0, 0.25)] * 2))
+flights = st.builds(low_flight, turns, st.integers(6, 14), st.just(Body.adult()))
+planks = st.builds(
+    plank,
+    turns,
+    st.floats(1.0, 4.0),
+    st.floats(0.55, 1.0),
+    st.just(Body.adult()),
+    st.booleans(),
+)
+
+
+@given(st.one_of(flights, planks), st.integers(-2, 4))
+@holds(12, 1)
+def test_an_actor_arrives_just_where_find_path_finds_a_way(case: Case, more: int) -> None:
+    grid = LayeredGrid.from_scene(case.scene)
+    asked = replace(case, body=Body(edge_cells=max(2, least_m(case, grid) + more)))
+    assert four.actor(grid, asked) == four.tool(grid, asked) == four.check(grid, asked)
 
 
 def test_an_actor_goes_around_a_kerb_that_its_body_cannot_walk_along() -> None:
