@@ -17,7 +17,13 @@ NO_RULES = {
     "_task_kernels.py": {"SUB", "TOO_MANY"},  # slices that layouts have, and no number
     "_perturb_kernels.py": {"_MOST_EDGES"},  # no number
     "_cost_kernels.py": {"MOST_OTHERS", "MOST_PEOPLE"},  # room
-    "_narrow_way_kernels.py": {"_MOST_POINTS", "_LESS_M", "_REACHED_M"},  # room, tolerances
+    "_narrow_way_kernels.py": {
+        "_MOST_POINTS",
+        "_LESS_M",
+        "_REACHED_M",
+        "_BRAKING_SLICES",
+        "_EVERY",
+    },  # room, tolerances
     "_trace_kernels.py": {"COLUMNS"},
 }
 

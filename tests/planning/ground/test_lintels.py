@@ -14,7 +14,7 @@ from tests.planning.ground.test_turned_meshes import block, plate, turned
 
 LOW_M = 1.5
 FROM, TO = (-3.0, 0.4, 0.0), (3.0, -0.3, 0.0)
-TURNS = [(0.0, (0.0, 0.0)), (9.0, (0.11, 0.07)), (27.0, (0.2, 0.03)), (45.0, (0.06, 0.19))]
+TURNS = [(9.0, (0.11, 0.07)), (27.0, (0.2, 0.03)), (45.0, (0.06, 0.19))]
 
 Sheet = np.ndarray
 
