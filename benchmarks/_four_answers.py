@@ -22,6 +22,8 @@ BLOCKED_TICKS: Final = 20
 """A body that gets nowhere for so long gives up, as people who follow a route do."""
 HELD_UP_M: Final = 0.01
 """A body that gets no further so near to a corner goes on to the next, as people do."""
+ROUNDING_M: Final = 1e-3
+"""A body that is held up keeps so much less room, as people on routes do."""
 _STEP_SHARE: Final = 0.1
 
 
@@ -87,7 +89,8 @@ def walks(grid: LayeredGrid, case: Case, route: Route) -> bool:
         while (left := math.dist((x, y), corner[:2])) > 1e-6:
             share = min(1.0, step / left)
             move = share * (corner[0] - x), share * (corner[1] - y)
-            places, heights = grid.walk([(x, y)], [z], [move], case.body.radius_m)
+            room_m = case.body.radius_m - (ROUNDING_M if blocked else 0.0)
+            places, heights = grid.walk([(x, y)], [z], [move], room_m)
             moved = math.dist((x, y), places[0])
             (x, y), z = places[0].tolist(), float(heights[0])
             blocked = blocked + 1 if moved < _STEP_SHARE * share * left else 0

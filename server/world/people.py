@@ -22,6 +22,10 @@ AT_CORNER_M: Final = 1e-6
 HELD_UP_M: Final = 0.01
 """A person who gets no further so near to that point goes on to the one after it: corners may lie
 nearer to barriers than bodies get, by the roundings of a way."""
+STUCK_SHARE: Final = 0.1
+"""A person who moves by less than this part of what they want gets nowhere."""
+ROUNDING_M: Final = 1e-3
+"""The distances that ways keep from barriers are exact to this."""
 _TIMES: Final = np.arange(AHEAD)[:, None]
 
 
@@ -100,6 +104,9 @@ class People:
         state.positions[moving], state.heights[moving] = self._grid.walk(
             before, state.heights[moving], wanted * self._tick_s, self._rules.person_clearance_m
         )
+        held_up = moving[self._following[moving] & (self._blocked[moving] > 0)]
+        if len(held_up):
+            self._squeeze(held_up, before[np.isin(moving, held_up)])
         cells = self._grid.on_ground(state.positions[moving], state.heights[moving])[1]
         state.layers[moving] = self._grid.layers_of(cells)
         state.headings[moving] = np.arctan2(wanted[:, 1], wanted[:, 0])
@@ -107,6 +114,21 @@ class People:
         state.speeds[moving] = np.hypot(moved_m[:, 0], moved_m[:, 1]) / self._tick_s
         self._look_ahead(moving, moved_m, cells)
         self._pass_targets()
+
+    def _squeeze(self, slots: Slots, before: Floats) -> None:
+        """Move people who were held up on their routes once more from where they were, (N, 2).
+
+        Ways keep the distances of bodies to a millimetre, and a passage may be narrower by that.
+        Whoever gets no further so either stays where they are.
+        """
+        state = self._state
+        wanted = self._velocities[slots] * self._tick_s
+        places, heights = self._grid.walk(
+            before, state.heights[slots], wanted, self._rules.person_clearance_m - ROUNDING_M
+        )
+        moved = np.hypot(*(places - before).T) >= STUCK_SHARE * np.hypot(*wanted.T)
+        state.positions[slots[moved]] = places[moved]
+        state.heights[slots[moved]] = heights[moved]
 
     def _look_ahead(self, moving: Slots, moved_m: Floats, cells: Slots) -> None:
         """Write the places of people who go on by (N, 2) a tick, or along their routes.
@@ -139,7 +161,7 @@ class People:
         slots = np.flatnonzero(self._following)
         state = self._state
         wanted = np.hypot(self._velocities[slots, 0], self._velocities[slots, 1])
-        stuck = state.speeds[slots] < 0.1 * wanted
+        stuck = state.speeds[slots] < STUCK_SHARE * wanted
         self._blocked[slots] = np.where(stuck, self._blocked[slots] + 1, 0)
         for slot in slots[self._blocked[slots] >= BLOCKED_TICKS].tolist():
             self.stop(slot)
