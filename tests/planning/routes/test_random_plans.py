@@ -73,7 +73,7 @@ def test_a_person_gets_past_pillars_that_leave_1_to_3_cm(number, degrees, aside_
     ],
 )
 def test_ways_lead_between_corners_that_lie_aslant(seed, number, degrees, aside_m) -> None:
-    """Steps bend at their tightest point, and anchors stay in passages that lead on to more room."""
+    """Steps bend at their tightest point, and anchors stay in passages that lead to more room."""
     case = random_plan(np.random.default_rng([seed, number])).turned(Turn(degrees, aside_m))
     grid = LayeredGrid.from_scene(case.scene)
     assert four.tool(grid, case)
