@@ -9,6 +9,7 @@ against the path, by the same cost.
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.planning.agents._cost_kernels import room_for_near
 from esplanade.planning.agents._perturb_kernels import path_cost, stretch_edges
 from esplanade.planning.agents._step_kernels import control_toward
 from esplanade.planning.agents._task_kernels import SUB, TOO_MANY, Task, World, needed_clearance
@@ -30,7 +31,7 @@ def _stands(world: World, task: Task) -> bool:
     return bool(length(task.vx, task.vy) < world.rules[0]["stands_mps"])
 
 
-@kernel
+@inlined
 def leads_nowhere(
     world: World,
     potential: PotentialValues,
@@ -84,10 +85,11 @@ def lead_over_anchors(
     edges = stretch_edges(world, potential, task, need, task.cell, task.on_edges, out, 0, last)
     if edges == TOO_MANY:
         return False, 0.0, 0.0
-    most_s = path_cost(world, potential, task, path)[0]
+    near = room_for_near()
+    most_s = path_cost(world, potential, task, path, near).seconds
     if _stands(world, task):
         most_s += rules["narrow_over_s"]
-    if not path_cost(world, potential, task, out)[0] < most_s:
+    if not path_cost(world, potential, task, out, near).seconds < most_s:
         return False, 0.0, 0.0
     px, py = points[first]
     away = length(px - task.x, py - task.y)
