@@ -273,8 +273,8 @@ def _parents_first(memory: Workspace, nodes: list[int]) -> list[int]:
     Steps of the path that a search has gone on from were nodes before they were expanded, if ever.
     """
     found: dict[int, None] = {}
-    for n in nodes:
-        way = []
+    for last in nodes:
+        n, way = last, list[int]()
         while n >= 0 and n not in found:
             way.append(n)
             n = int(memory.node_parent[n])
