@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any, cast
 
@@ -514,29 +514,43 @@ class Navigator:
     def tick(self) -> dict[Hashable, ActorState]:
         """`advance`, then the states of all actors; id -> state."""
         self.advance()
-        return {actor_id: self._shown(row) for row, actor_id in enumerate(self.table)}
+        return dict(zip(self.table.ids, self._states(slice(None)), strict=True))
 
     def state(self, actor_id: Hashable) -> ActorState:
         """One actor's state as of the latest tick, or as it was put there."""
-        return self._shown(self.table.row(actor_id))
+        row = self.table.row(actor_id)
+        return next(self._states(slice(row, row + 1)))
 
-    def _shown(self, row: int) -> ActorState:
-        agents = self.table.agents
-        x, y = agents.positions[row].tolist()
-        vx, vy = agents.velocities[row].tolist()
-        return ActorState(
-            (x, y),
-            int(agents.layers[row]),
-            float(agents.heights[row]),
-            (vx, vy),
-            float(agents.headings[row]),
-            _REASONS[agents.reasons[row]],
-            self.table.wanted(row),
-            self.plan.slice_s,
-            agents.planned[row].copy(),
-            outcome=self.outcome(row),
-            in_the_way=self.in_the_way(row),
+    def _states(self, rows: slice) -> Iterator[ActorState]:
+        """The states of the actors in some rows; whole columns are turned into numbers at once."""
+        agents, trips, table = self.table.agents, self.table.trips, self.table
+        columns = (
+            agents.positions[rows].tolist(),
+            agents.layers[rows].tolist(),
+            agents.heights[rows].tolist(),
+            agents.velocities[rows].tolist(),
+            agents.headings[rows].tolist(),
+            agents.reasons[rows].tolist(),
+            trips.wanted[rows].tolist(),
+            agents.planned[rows],
+            trips.outcomes[rows].tolist(),
         )
+        for row, (place, layer, z_m, velocity, heading, reason, goal, way, outcome) in enumerate(
+            zip(*columns, strict=True), start=rows.start or 0
+        ):
+            yield ActorState(
+                tuple(place),
+                layer,
+                z_m,
+                tuple(velocity),
+                heading,
+                _REASONS[reason],
+                None if math.isnan(goal[0]) else tuple(goal),
+                self.plan.slice_s,
+                way.copy(),
+                outcome=Outcome(outcome) if outcome else None,
+                in_the_way=self.in_the_way(row) if table.in_the_way else None,
+            )
 
     def outcome(self, row: int) -> Outcome | None:
         """How the trip of the actor in a row ended; None while it goes on, and without a goal."""

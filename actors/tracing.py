@@ -213,7 +213,8 @@ class Tracing:
         keys, items = memory.heap_keys[:left], memory.heap_items[:left]
         waiting = items[np.lexsort((items, keys))]
         end = [last] if made and order[last] < 0 else []
-        chosen = np.concatenate([expanded, end, waiting]).astype(np.int64)
+        listed = np.concatenate([expanded, end, waiting]).astype(np.int64)
+        chosen = np.array(_parents_first(memory, listed.tolist()), dtype=np.int64)
         left_out = max(0, len(chosen) - MOST_NODES)
         chosen = chosen[:MOST_NODES]
         rows = np.full(made + 1, -1)
@@ -264,6 +265,21 @@ class Tracing:
             np.arange(self._plan.steps + 1, dtype=np.float64) * self._plan.step_s,
             values.astype(np.float32).reshape(-1, FIELD_CELLS, FIELD_CELLS),
         )
+
+
+def _parents_first(memory: Workspace, nodes: list[int]) -> list[int]:
+    """Nodes in their order, each after those that lead to it.
+
+    Steps of the path that a search has gone on from were nodes before they were expanded, if ever.
+    """
+    found: dict[int, None] = {}
+    for last in nodes:
+        n, way = last, list[int]()
+        while n >= 0 and n not in found:
+            way.append(n)
+            n = int(memory.node_parent[n])
+        found.update(dict.fromkeys(reversed(way)))
+    return list(found)
 
 
 def _winner(

@@ -66,6 +66,8 @@ ABLATIONS: Final = (
     Ablation("walls", {"wall_weight": 0.0}, True, True),
     Ablation("lost time is made up", {"catch_up": 0.0}, True, True),
     Ablation("expected cost ahead", {"rules.likely_part": 0.0}, True, True),
+    Ablation("going on from illegal paths", {"rules.goes_on": False}, True, True),
+    Ablation("fewer moves far ahead", {"rules.fine_steps": 1000}, True, True),
     Ablation("last check", {"rules.checks_steps": False}, True, False),
     Ablation("turned or newest velocity", {"rules.minds_turns": False}, True, False),
     Ablation("slower toward whom it touches", {"contact_closing_s": 0.0}, True, False),

@@ -79,6 +79,8 @@ NAMES: Final = (
     "rules.greedy",
     "rules.weighs_paths",
     "rules.depth_bonus_s",
+    "rules.goes_on",
+    "rules.fine_steps",
     "rules.likely_part",
     "rules.dodge_cells",
     "rules.narrow_part",

@@ -12,7 +12,7 @@ from esplanade.planning.agents._passage_kernels import (
 )
 from esplanade.planning.agents.agents import Agents
 from esplanade.planning.agents.priorities import Priorities, Turn
-from esplanade.planning.compiled.jit import inlined, kernel
+from esplanade.planning.compiled.jit import borrowing, inlined, kernel
 from esplanade.planning.grid._grid_kernels import GridArrays, length
 from esplanade.planning.routes._potential_kernels import PotentialValues
 
@@ -143,7 +143,7 @@ def _alike(rules: np.void, one: PassageShape, other: PassageShape) -> float:
     return 0.0
 
 
-@kernel
+@borrowing
 def see_passage(
     grid: GridArrays,
     potential: PotentialValues,

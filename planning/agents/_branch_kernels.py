@@ -26,19 +26,22 @@ class Moves(NamedTuple):
 
     `cosines` and `sines` (M,) are those of the heading, relative to the descent of the potential
     if `relative`, else to +x; `speeds` (M,) are in metres a second. The first `straight` moves
-    descend the potential and stop at the goal rather than beyond it.
+    descend the potential and stop at the goal rather than beyond it. The first `coarse` of them are
+    enough far ahead.
     """
 
     cosines: NDArray[np.float64]
     sines: NDArray[np.float64]
     speeds: NDArray[np.float64]
     straight: int
+    coarse: int
     relative: bool
 
 
 @inlined
 def branch_out(
     moves: Moves,
+    last: int,
     per_a: float,
     step_s: float,
     half_s: float,
@@ -53,13 +56,12 @@ def branch_out(
     uy: float,
     out: NDArray[np.float64],
 ) -> None:
-    """Fill `out` (`BRANCH_ROWS`, M + 1) with the steps from (x, y) with velocity v.
+    """Fill `out` (`BRANCH_ROWS`, M + 1) with the first steps from (x, y) with velocity v.
 
-    The last of them is standing. The mean velocity of the half step before was u. (gx, gy)
+    They are `last` moves, and standing. The mean velocity of the half step before was u. (gx, gy)
     is the heading that moves are relative to, `away` the metres to the goal, and `per_a` one over
     the greatest acceleration.
     """
-    last = len(moves.speeds)
     for m in range(last + 1):
         wx = 0.0
         wy = 0.0
@@ -96,14 +98,16 @@ def look_up(
     task: Task,
     cell: int,
     branches: NDArray[np.float64],
+    last: int,
     cells: NDArray[np.int64],
 ) -> None:
-    """Fill `cells` (2, M + 1) and the row `LEFT` of the branches of a node that is in `cell`.
+    """Fill `cells` (2, M + 1) and the row `LEFT` of the branches, up to the last, of a node that is
+    in `cell`.
 
     On flat ground the cell half-way is left to those who want it. The cell at the end does not
     depend on it there.
     """
-    for m in range(cells.shape[1]):
+    for m in range(last + 1):
         half = cell
         if not grid.flat:
             half = follow(grid, cell, branches[HALF_X, m], branches[HALF_Y, m])

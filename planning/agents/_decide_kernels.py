@@ -9,24 +9,33 @@ from numpy.typing import NDArray
 
 from esplanade.planning.agents._bottleneck_kernels import lane_of, see_passage
 from esplanade.planning.agents._branch_kernels import Moves
+from esplanade.planning.agents._cost_kernels import Near
 from esplanade.planning.agents._narrow_way_kernels import (
     lead_over_anchors,
     leads_nowhere,
     leads_over_edges,
 )
-from esplanade.planning.agents._perturb_kernels import path_cost, update_path
+from esplanade.planning.agents._perturb_kernels import (
+    PathCost,
+    PerturbationRoom,
+    path_cost,
+    room_to_perturb,
+    update_path,
+)
 from esplanade.planning.agents._reason_kernels import decided_reason
 from esplanade.planning.agents._search_kernels import (
     FOUND,
     NO_PATH,
     PARTIAL,
     Workspace,
+    begin_search,
+    lay_known,
     search,
 )
 from esplanade.planning.agents._step_kernels import control_toward, last_check, limited
 from esplanade.planning.agents._task_kernels import SUB, Task, World, metres_left, needed_clearance
 from esplanade.planning.agents.agents import BLOCKED, GIVING_WAY, MOVING, Agents, Decisions
-from esplanade.planning.compiled.jit import kernel
+from esplanade.planning.compiled.jit import borrowing, inlined, kernel
 from esplanade.planning.grid._grid_kernels import anchor_at, clearance_at, length
 from esplanade.planning.grid._side_kernels import is_cut_off
 from esplanade.planning.people._prediction_kernels import Prediction
@@ -34,7 +43,7 @@ from esplanade.planning.routes._legal_way_kernels import ROUNDING_CELLS
 from esplanade.planning.routes._potential_kernels import EDGES, potential_at, way_out
 
 
-@kernel
+@inlined
 def keep_account(agents: Agents, rules: np.void, a: int, left: float, tick_s: float) -> float:
     """Book the time that an actor lost or made up in the last tick; return its speed from now on.
 
@@ -51,7 +60,7 @@ def keep_account(agents: Agents, rules: np.void, a: int, left: float, tick_s: fl
     return float(min(p["max_speed_mps"], p["speed_mps"] * faster))
 
 
-@kernel
+@borrowing
 def make_task(
     potentials: NDArray[np.float32],
     agents: Agents,
@@ -158,8 +167,8 @@ def decide(
     speeds = np.empty(len(moves.speeds))
     kept = np.empty((slices, 2))
     bent = np.empty((slices, 2))
-    trial = np.empty((slices, 2))
-    cells = np.empty(slices, dtype=np.int64)
+    room = room_to_perturb(slices)
+    listed = np.empty(len(prediction.means), dtype=np.int64)
     for n in range(first, last):
         a = world.reservations.members[0, n]
         p = agents.parameters[a]
@@ -168,12 +177,12 @@ def decide(
         slot = agents.potential_rows[a]
         potential = potentials[slot] if slot >= 0 else no_potential
         if slot >= 0 and is_cut_off(world.grid, task.body, task.cell, task.x, task.y):
-            _lead_out(world, potential, prediction, agents, task, tick_s, out)
+            _lead_out(world, potential, prediction, agents, task, tick_s, listed, out)
             continue
         for m in range(len(moves.speeds)):
             part = moves.speeds[m]
             speeds[m] = task.max_speed_mps if part > 1.0 else part * task.speed_mps
-        own = Moves(moves.cosines, moves.sines, speeds, moves.straight, True)
+        own = Moves(moves.cosines, moves.sines, speeds, moves.straight, moves.coarse, True)
         kept[:] = world.reservations.paths[a]
         status = FOUND
         switched = False
@@ -184,7 +193,7 @@ def decide(
         )
         if out.replanned[a]:
             status, switched = _replan(
-                world, potential, own, agents, task, kept, bent, cells, trial, workspace, out
+                world, potential, own, agents, task, kept, bent, room, workspace, out
             )
         else:
             out.paths[a] = kept
@@ -196,7 +205,7 @@ def decide(
         narrow = False
         if slot >= 0 and (
             leads_over_edges(world, potential, task, path)
-            or leads_nowhere(world, potential, task, path, cells)
+            or leads_nowhere(world, potential, task, path, room.cells)
         ):
             narrow, ux, uy = lead_over_anchors(world, potential, task, p["edge_cells"], path, bent)
         if narrow:  # the followed path stays: this one is found anew in every tick
@@ -211,7 +220,7 @@ def decide(
         contact = p["radius_m"] + (world.person_radius_m + p["person_room_m"])
         dodged = False
         if rules["checks_steps"]:
-            ux, uy, dodged = last_check(world, prediction, task, need, contact, ux, uy)
+            ux, uy, dodged = last_check(world, prediction, task, need, contact, listed, ux, uy)
         wx, wy = limited(task, ux, uy, tick_s)
         out.wishes[a, 0] = wx
         out.wishes[a, 1] = wy
@@ -234,7 +243,7 @@ def decide(
         )
 
 
-@kernel
+@inlined
 def _replan(
     world: World,
     potential: NDArray[np.float32],
@@ -243,8 +252,7 @@ def _replan(
     task: Task,
     kept: NDArray[np.float64],
     bent: NDArray[np.float64],
-    cells: NDArray[np.int64],
-    trial: NDArray[np.float64],
+    room: PerturbationRoom,
     workspace: Workspace,
     out: Decisions,
 ) -> tuple[int, bool]:
@@ -252,25 +260,37 @@ def _replan(
 
     Returns the status, and whether another path than the followed one was taken. The search only
     looks at paths that may be better than the followed one by the hysteresis, so that it costs
-    little while that path is good.
+    little while that path is good. Where that path has become illegal, the search goes on from the
+    steps before.
     """
     a = task.me
     rules = world.rules[0]
     bound = np.inf
+    expected = np.inf
+    begun = 0
     changed = False
+    accumulate = not rules["greedy"]
+    begin_search(task, workspace)
     if agents.known[a]:
-        cost, changed = _improve(world, potential, task, kept, bent, cells, trial)
-        bound = cost - agents.parameters[a]["hysteresis_s"]
-    found = search(world, potential, own, task, not rules["greedy"], bound, workspace, out.paths[a])
+        cost, changed = _improve(world, potential, task, kept, bent, room, workspace.near)
+        if cost.legal:
+            bound = expected = cost.seconds - agents.parameters[a]["hysteresis_s"]
+        elif accumulate and rules["goes_on"]:
+            expected = cost.seconds
+            begun = cost.legal_steps
+            lay_known(world, potential, task, kept, begun, workspace)
+    found = search(
+        world, potential, own, task, accumulate, bound, expected, begun, workspace, out.paths[a]
+    )
     status = found.status
     better = True
     if bound < np.inf:
-        cost = found.cost
+        seconds = found.cost
         if status == PARTIAL or rules["greedy"]:  # it stays where it ends, up to the horizon
-            cost = path_cost(world, potential, task, out.paths[a])[0]
-        better = status != NO_PATH and (cost < bound or not rules["weighs_paths"])
+            seconds = path_cost(world, potential, task, out.paths[a], workspace.near).seconds
+        better = status != NO_PATH and (seconds < bound or not rules["weighs_paths"])
         if not better:
-            out.paths[a] = kept
+            _copy(kept, out.paths[a])
             status = FOUND
     out.expansions[a] = found.expansions
     out.renewed[a] = better or changed
@@ -285,6 +305,7 @@ def _lead_out(
     agents: Agents,
     task: Task,
     tick_s: float,
+    listed: NDArray[np.int64],
     out: Decisions,
 ) -> None:
     """Decide for an actor that a wall cuts off from its cell's anchor: go where it can plan again.
@@ -309,7 +330,7 @@ def _lead_out(
     p = agents.parameters[a]
     contact = p["radius_m"] + (world.person_radius_m + p["person_room_m"])
     ux, uy = control_toward(task, path[SUB, 0], path[SUB, 1], world.step_s)
-    ux, uy, dodged = last_check(world, prediction, task, -np.inf, contact, ux, uy)
+    ux, uy, dodged = last_check(world, prediction, task, -np.inf, contact, listed, ux, uy)
     wx, wy = limited(task, ux, uy, tick_s)
     out.wishes[a, 0] = wx
     out.wishes[a, 1] = wy
@@ -324,29 +345,34 @@ def _lead_out(
         out.reasons[a] = GIVING_WAY
 
 
-@kernel
+@inlined
 def _improve(
     world: World,
     potential: NDArray[np.float32],
     task: Task,
     path: NDArray[np.float64],
     bent: NDArray[np.float64],
-    cells: NDArray[np.int64],
-    trial: NDArray[np.float64],
-) -> tuple[float, bool]:
-    """Perturb a path in place if that pays; return its cost, inf if illegal, and if it changed.
+    room: PerturbationRoom,
+    near: Near,
+) -> tuple[PathCost, bool]:
+    """Perturb a legal path in place if that pays; return its cost, and if it changed.
 
     It pays if both mean risk and cost become less; the cost counts time and length.
     """
-    cost, risk, legal = path_cost(world, potential, task, path)
-    if not legal:
-        return np.inf, False
-    if not world.rules[0]["perturbs"]:
+    cost = path_cost(world, potential, task, path, near)
+    if not cost.legal or not world.rules[0]["perturbs"]:
         return cost, False
-    bent[:] = path
-    if update_path(world, potential, task, bent, cells, trial) > 0:
-        bent_cost, bent_risk, _ = path_cost(world, potential, task, bent)
-        if bent_risk < risk and bent_cost < cost:
-            path[:] = bent
+    _copy(path, bent)
+    if update_path(world, potential, task, bent, room) > 0:
+        bent_cost = path_cost(world, potential, task, bent, near)
+        if bent_cost.mean_risk < cost.mean_risk and bent_cost.seconds < cost.seconds:
+            _copy(bent, path)
             return bent_cost, True
     return cost, False
+
+
+@inlined
+def _copy(path: NDArray[np.float64], to: NDArray[np.float64]) -> None:
+    for k in range(len(path)):
+        to[k, 0] = path[k, 0]
+        to[k, 1] = path[k, 1]

@@ -9,6 +9,7 @@ against the path, by the same cost.
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.planning.agents._cost_kernels import room_for_near
 from esplanade.planning.agents._perturb_kernels import path_cost, stretch_edges
 from esplanade.planning.agents._step_kernels import control_toward
 from esplanade.planning.agents._task_kernels import (
@@ -42,7 +43,7 @@ def _stands(world: World, task: Task) -> bool:
     return bool(length(task.vx, task.vy) < world.rules[0]["stands_mps"])
 
 
-@kernel
+@inlined
 def leads_nowhere(
     world: World,
     potential: PotentialValues,
@@ -139,12 +140,15 @@ def lead_over_anchors(
         edges = stretch_edges(world, potential, task, need, task.cell, task.on_edges, out, 0, last)
     if edges == TOO_MANY:
         return False, 0.0, 0.0
-    most_s, most_risk, _ = path_cost(world, potential, task, path)
+    near = room_for_near()
+    most = path_cost(world, potential, task, path, near)
+    most_s = most.seconds
     if _stands(world, task):
         most_s += rules["narrow_over_s"]
-    cost_s, risk, _ = path_cost(world, potential, task, out)
+    cost = path_cost(world, potential, task, out, near)
     # What lies ahead of the given path does not know how long the agent was on edges.
-    if not (cost_s < most_s or (counted and risk <= most_risk + rules["least_risk"])):
+    calm = counted and cost.mean_risk <= most.mean_risk + rules["least_risk"]
+    if not (cost.seconds < most_s or calm):
         return False, 0.0, 0.0
     px, py = points[first]
     away = length(px - task.x, py - task.y)

@@ -1,9 +1,11 @@
 """Costs of a whole path and its recursive perturbation, Lei & Li, figs. 7-9, on bare arrays."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
-from esplanade.planning.agents._cost_kernels import room_for_near, step_parts
+from esplanade.planning.agents._cost_kernels import Near, step_parts
 from esplanade.planning.agents._reservation_kernels import conflict
 from esplanade.planning.agents._task_kernels import (
     SUB,
@@ -16,7 +18,7 @@ from esplanade.planning.agents._task_kernels import (
     risk_price,
     way_left,
 )
-from esplanade.planning.compiled.jit import inlined, kernel
+from esplanade.planning.compiled.jit import borrowing, inlined, kernel
 from esplanade.planning.grid._grid_kernels import (
     GridArrays,
     clearance_at,
@@ -29,6 +31,43 @@ from esplanade.planning.people._risk_kernels import risk_at
 from esplanade.planning.routes._potential_kernels import PotentialValues, potential_at
 
 _MOST_EDGES = 1e9
+
+
+class PathCost(NamedTuple):
+    """What a whole path costs."""
+
+    seconds: float
+    mean_risk: float
+    legal: bool
+    """Whether all of it is legal, as `stretch_edges` says of a stretch."""
+    legal_steps: int
+    """The number of steps before the first that is not."""
+
+
+class PerturbationRoom(NamedTuple):
+    """Room for perturbing a path of K slices."""
+
+    cells: NDArray[np.int64]
+    """(K,): the cells that the path is in."""
+    risks: NDArray[np.float64]
+    """(K,): its risks."""
+    trial: NDArray[np.float64]
+    """(K, 2): a bend."""
+    trial_risks: NDArray[np.float64]
+    stretches: NDArray[np.int64]
+    """(S, 2): the first and the last slice of each stretch that is still to be looked at."""
+
+
+@kernel
+def room_to_perturb(slices: int) -> PerturbationRoom:
+    """Room for perturbing paths of so many slices."""
+    return PerturbationRoom(
+        np.empty(slices, dtype=np.int64),
+        np.empty(slices),
+        np.empty((slices, 2)),
+        np.empty(slices),
+        np.empty((64, 2), dtype=np.int64),
+    )
 
 
 @inlined
@@ -53,7 +92,7 @@ def slice_risk(
     )
 
 
-@kernel
+@inlined
 def risks_along(
     world: World,
     task: Task,
@@ -112,7 +151,7 @@ def _edges_at(
     return edges
 
 
-@kernel
+@inlined
 def stretch_edges(
     world: World,
     potential: PotentialValues,
@@ -152,20 +191,18 @@ def stretch_edges(
     return edges
 
 
-@kernel
+@borrowing
 def path_cost(
-    world: World, potential: PotentialValues, task: Task, path: NDArray[np.float64]
-) -> tuple[float, float, bool]:
-    """Cost of a whole path, mean risk, and whether it is legal: all of it as `stretch_edges` of a
-    stretch.
+    world: World, potential: PotentialValues, task: Task, path: NDArray[np.float64], near: Near
+) -> PathCost:
+    """Cost of a whole path; `near` is room.
 
-    The cost is that of its steps, and of the way that is left: for the same path it is what the
-    search adds up.
+    It is that of its steps, and of the way that is left: for the same path it is what the search
+    adds up.
     """
     grid = world.grid
     need = needed_clearance(world, task)
     ds = world.step_s / SUB
-    near = room_for_near()
     cell = task.cell
     vx = task.vx
     vy = task.vy
@@ -173,7 +210,7 @@ def path_cost(
     risk = 0.0
     left_m = 0.0
     edges = task.on_edges
-    legal = True
+    legal_steps = 0
     steps = (len(path) - 1) // SUB
     for step in range(steps):
         k = step * SUB
@@ -191,20 +228,21 @@ def path_cost(
         if edges != TOO_MANY:
             edges = count_edges(grid, potential, task, parts.half, parts.end, end_x, end_y, edges)
         if (
-            edges == TOO_MANY
-            or parts.blocked
-            or not _may_go(task, need, length(half_x, half_y), parts.half_room, half_m, ds)
-            or not _may_go(task, need, length(end_x, end_y), parts.end_room, left_m, ds)
+            legal_steps == step
+            and edges != TOO_MANY
+            and not parts.blocked
+            and _may_go(task, need, length(half_x, half_y), parts.half_room, half_m, ds)
+            and _may_go(task, need, length(end_x, end_y), parts.end_room, left_m, ds)
         ):
-            legal = False
+            legal_steps += 1
         cell = parts.end
         vx = end_x / ds
         vy = end_y / ds
     cost += way_left(task, left_m, length(vx, vy))
-    return cost, risk / (steps * SUB), legal
+    return PathCost(cost, risk / (steps * SUB), legal_steps == steps, legal_steps)
 
 
-@kernel
+@inlined
 def _bend(
     old: NDArray[np.float64],
     new: NDArray[np.float64],
@@ -226,27 +264,25 @@ def _bend(
             new[k, 1] = (1.0 - u) * my + u * old[last, 1]
 
 
-@kernel
+@inlined
 def perturb_path(
     world: World,
     potential: PotentialValues,
     task: Task,
     need: float,
     path: NDArray[np.float64],
-    cells: NDArray[np.int64],
     first: int,
     last: int,
-    risks: NDArray[np.float64],
-    trial: NDArray[np.float64],
-    trial_risks: NDArray[np.float64],
+    room: PerturbationRoom,
 ) -> bool:
     """Replace a stretch by the first bend that is legal and less risky by `least_risk`; fig. 8.
 
     Candidates lie on the normal through the chord's midpoint, nearest first, either side in turn.
-    The printed test accepts equal risk too, with which the recursion need not settle. `cells` (K,)
-    are those that the path is in.
+    The printed test accepts equal risk too, with which the recursion need not settle. The cells
+    and risks of `room` are those of the path.
     """
     rules = world.rules[0]
+    cells, risks, trial = room.cells, room.risks, room.trial
     if last - first < 2:  # there is nothing between its ends
         return False
     begin = cells[first]
@@ -270,18 +306,20 @@ def perturb_path(
         my = path[first, 1] + 0.5 * cy + offset * cx / chord
         _bend(path, trial, first, middle, last, mx, my)
         if risks_along(
-            world, task, begin, trial, first, last, total - least, trial_risks
+            world, task, begin, trial, first, last, total - least, room.trial_risks
         ) and stretch_edges(world, potential, task, need, begin, edges, trial, first, last) <= min(
             most_edges + 1.0, _MOST_EDGES
         ):
-            risks[first + 1 : last + 1] = trial_risks[first + 1 : last + 1]
-            path[first : last + 1] = trial[first : last + 1]
+            for k in range(first + 1, last + 1):
+                risks[k] = room.trial_risks[k]
+                path[k, 0] = trial[k, 0]
+                path[k, 1] = trial[k, 1]
             follow_path(world.grid, path, cells, first, last)
             return True
     return False
 
 
-@kernel
+@inlined
 def _arrival(
     potential: PotentialValues, task: Task, path: NDArray[np.float64], cells: NDArray[np.int64]
 ) -> int:
@@ -295,29 +333,25 @@ def _arrival(
     return last
 
 
-@kernel
+@borrowing
 def update_path(
     world: World,
     potential: PotentialValues,
     task: Task,
     path: NDArray[np.float64],
-    cells: NDArray[np.int64],
-    trial: NDArray[np.float64],
+    room: PerturbationRoom,
 ) -> int:
     """Fig. 7: perturb the whole path, else its halves, and so on; returns how many bends held.
 
     The recursion is a stack of stretches; the earlier half comes first, as printed. The
     stretch after the arrival at the goal is left alone: a bend over it would arrive later and
     later.
-    `cells` (K,) are filled with those that the path is in.
     """
+    cells, stack = room.cells, room.stretches
     cells[0] = task.cell
     follow_path(world.grid, path, cells, 0, len(path) - 1)
     need = needed_clearance(world, task)
-    risks = np.empty(len(path))
-    trial_risks = np.empty(len(path))
-    risks_along(world, task, task.cell, path, 0, len(path) - 1, np.inf, risks)
-    stack = np.empty((64, 2), dtype=np.int64)
+    risks_along(world, task, task.cell, path, 0, len(path) - 1, np.inf, room.risks)
     stack[0, 0] = 0
     stack[0, 1] = _arrival(potential, task, path, cells)
     height = 1
@@ -326,9 +360,7 @@ def update_path(
         height -= 1
         first = stack[height, 0]
         last = stack[height, 1]
-        if perturb_path(
-            world, potential, task, need, path, cells, first, last, risks, trial, trial_risks
-        ):
+        if perturb_path(world, potential, task, need, path, first, last, room):
             bends += 1
         elif last - first >= world.rules[0]["shortest_stretch"]:
             middle = (first + last) // 2

@@ -14,12 +14,12 @@ from esplanade.planning.agents.agents import (
     WAITING,
     Agents,
 )
-from esplanade.planning.compiled.jit import kernel
+from esplanade.planning.compiled.jit import inlined, kernel
 from esplanade.planning.people._prediction_kernels import Prediction
 from esplanade.planning.scene.heights import BODIES_OVERLAP_M
 
 
-@kernel
+@inlined
 def decided_reason(
     agents: Agents,
     task: Task,

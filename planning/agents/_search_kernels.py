@@ -26,6 +26,7 @@ from esplanade.planning.agents._cost_kernels import (
     motion_cost,
     others_weight,
     people_risk,
+    step_parts,
 )
 from esplanade.planning.agents._task_kernels import (
     SUB,
@@ -40,7 +41,7 @@ from esplanade.planning.agents._task_kernels import (
     way_left,
 )
 from esplanade.planning.compiled._heap_kernels import heap_pop, heap_push
-from esplanade.planning.compiled.jit import inlined
+from esplanade.planning.compiled.jit import borrowing, inlined
 from esplanade.planning.grid._grid_kernels import clearance_at, follow, length
 from esplanade.planning.routes._potential_kernels import PotentialValues, direction_at
 
@@ -94,6 +95,8 @@ class Workspace(NamedTuple):
     """(`BRANCH_ROWS`, M + 1): the steps that it branches into."""
     branch_cells: NDArray[np.int64]
     """(2, M + 1): the cells half-way and at the end of them."""
+    worths: NDArray[np.float64]
+    """(N,): the cost so far and that left of the nodes that a search begins with."""
     ends: NDArray[np.int64]
     """(3,): nodes that were made, those of them left in the queue, and the last one of the path."""
 
@@ -114,11 +117,12 @@ class Outcome(NamedTuple):
 def depth_bonus(rules: np.void, excess: float, steps: int) -> float:
     """Seconds that each step ahead is expected to cost beyond its time.
 
-    The excess of a known path over its bare time tells how crowded the route is. Since a part of it
-    is expected of every other path, the search ignores most nodes that merely begin well.
+    The excess of a known path over its bare time tells how crowded the route is. Since a part of
+    it, `excess`, is expected of every other path, the search ignores most nodes that merely begin
+    well.
     """
     if excess < np.inf:
-        return float(max(rules["depth_bonus_s"], rules["likely_part"] * excess / steps))
+        return float(max(rules["depth_bonus_s"], excess / steps))
     return float(rules["depth_bonus_s"])
 
 
@@ -141,6 +145,73 @@ def _slot(workspace: Workspace, key: int) -> int:
 
 
 @inlined
+def begin_search(task: Task, workspace: Workspace) -> None:
+    """Make the start the first node of a search."""
+    workspace.stamp[0] += 1
+    _set_node(workspace, 0, task.x, task.y, task.vx, task.vy, task.x, task.y, 0.0)
+    workspace.node_cell[0] = task.cell
+    workspace.node_edge[0] = task.on_edges
+    workspace.node_parent[0] = -1
+    workspace.node_step[0] = 0
+
+
+@borrowing
+def lay_known(
+    world: World,
+    potential: PotentialValues,
+    task: Task,
+    path: NDArray[np.float64],
+    steps: int,
+    workspace: Workspace,
+) -> None:
+    """Make the first `steps` of a path (K, 2), which are legal, the nodes after the start."""
+    ds = world.step_s / SUB
+    cell = task.cell
+    vx, vy = task.vx, task.vy
+    cost = 0.0
+    edges = task.on_edges
+    for n in range(1, steps + 1):
+        k = n * SUB
+        parts = step_parts(world, potential, task, path, n - 1, cell, vx, vy, workspace.near)
+        price = risk_price(task, (n - 1) * world.step_s) * ds
+        cost += parts.seconds + parts.turning + parts.wall + price * (parts.soft + parts.risk)
+        x, y = path[k, 0], path[k, 1]
+        hx, hy = path[k - 1, 0], path[k - 1, 1]
+        dx, dy = x - path[k - 2, 0], y - path[k - 2, 1]
+        edges = count_edges(world.grid, potential, task, cell, parts.end, dx, dy, edges)
+        cell = parts.end
+        vx, vy = (x - hx) / ds, (y - hy) / ds
+        _set_node(workspace, n, x, y, vx, vy, hx, hy, cost)
+        workspace.node_cell[n] = cell
+        workspace.node_edge[n] = edges
+        workspace.node_parent[n] = n - 1
+        workspace.node_step[n] = n
+        workspace.worths[n] = cost + way_left(task, parts.left_m, length(vx, vy))
+
+
+@inlined
+def _set_node(
+    workspace: Workspace,
+    n: int,
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    half_x: float,
+    half_y: float,
+    cost_s: float,
+) -> None:
+    new = workspace.node_state[n]
+    new["x"] = x
+    new["y"] = y
+    new["vx"] = vx
+    new["vy"] = vy
+    new["cost_s"] = cost_s
+    new["half_x"] = half_x
+    new["half_y"] = half_y
+
+
+@inlined
 def search(
     world: World,
     potential: PotentialValues,
@@ -148,6 +219,8 @@ def search(
     task: Task,
     accumulate: bool,
     bound: float,
+    expected: float,
+    begun: int,
     workspace: Workspace,
     path: NDArray[np.float64],
 ) -> Outcome:
@@ -156,6 +229,9 @@ def search(
     With `accumulate` the key of a node is f = cost so far + cost left, where the cost is time plus
     prices of risk, turning, haste and walls; otherwise it is the printed U(q') = potential(q') +
     Risk(q'). Nodes that cannot end below `bound`, in seconds, are left out.
+
+    The start is a node already (`begin_search`), and so are `begun` steps of a path that was known
+    (`lay_known`). That path costs `expected` seconds, and inf if none was known.
     """
     grid = world.grid
     steps = (len(path) - 1) // SUB
@@ -170,26 +246,24 @@ def search(
     near = workspace.near
     capacity = len(node)
     cells = len(grid.layered.floors)
-    workspace.stamp[0] += 1
+    rules = world.rules[0]
     path[:, 0] = task.x
     path[:, 1] = task.y
-    node[0]["x"] = task.x
-    node[0]["y"] = task.y
-    node[0]["vx"] = task.vx
-    node[0]["vy"] = task.vy
-    node[0]["cost_s"] = 0.0
-    workspace.node_cell[0] = task.cell
-    workspace.node_edge[0] = task.on_edges
-    workspace.node_parent[0] = -1
-    workspace.node_step[0] = 0
     workspace.ends[:] = 0
     speed = length(task.vx, task.vy)
     start = way_left(task, metres_left(potential, task, task.cell, task.x, task.y), speed)
     if not np.isfinite(start):
         return Outcome(NO_PATH, 0, np.inf)
-    bonus = depth_bonus(world.rules[0], bound - start, steps)
-    count = 1
+    # Without a legal path any will do: all of what the illegal one costs is expected.
+    part = rules["likely_part"] if bound < np.inf else 1.0
+    bonus = depth_bonus(rules, part * (expected - start), steps)
     size = heap_push(workspace.heap_keys, workspace.heap_items, 0, start, 0)
+    for n in range(1, begun + 1):
+        slot = _slot(workspace, n * cells + workspace.node_cell[n])
+        workspace.table_worth[slot] = workspace.worths[n]
+        key = workspace.worths[n] - bonus * n
+        size = heap_push(workspace.heap_keys, workspace.heap_items, size, key, n)
+    count = begun + 1
     expansions = 0
     best = 0
     best_step = 0
@@ -247,11 +321,12 @@ def search(
         # The rest of the path is expected to cost as much beyond its time as the known path.
         room_s = bound - bonus * (steps - step - 1) if accumulate else bound
         branches = workspace.branches
+        last = len(moves.speeds) if step < rules["fine_steps"] else moves.coarse
         branch_out(
-            moves, per_a, step_s, ds, gx, gy, away, x, y, vx, vy, before_x, before_y, branches
+            moves, last, per_a, step_s, ds, gx, gy, away, x, y, vx, vy, before_x, before_y, branches
         )
-        look_up(grid, potential, task, cell, branches, workspace.branch_cells)
-        for m in range(len(moves.speeds) + 1):
+        look_up(grid, potential, task, cell, branches, last, workspace.branch_cells)
+        for m in range(last + 1):
             hx = branches[HALF_X, m]
             hy = branches[HALF_Y, m]
             ex = branches[X, m]
@@ -325,14 +400,7 @@ def search(
             if count == capacity:
                 continue
             workspace.table_worth[slot] = worth
-            new = node[count]
-            new["x"] = ex
-            new["y"] = ey
-            new["vx"] = branches[VX, m]
-            new["vy"] = branches[VY, m]
-            new["cost_s"] = cost
-            new["half_x"] = hx
-            new["half_y"] = hy
+            _set_node(workspace, count, ex, ey, branches[VX, m], branches[VY, m], hx, hy, cost)
             workspace.node_cell[count] = end
             workspace.node_edge[count] = edge
             workspace.node_parent[count] = n

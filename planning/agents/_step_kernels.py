@@ -11,7 +11,7 @@ from esplanade.planning.agents._task_kernels import (
     further_on_edges,
 )
 from esplanade.planning.agents.agents import GIVING_WAY, WAITING, Agents, Decisions
-from esplanade.planning.compiled.jit import kernel
+from esplanade.planning.compiled.jit import borrowing, inlined, kernel
 from esplanade.planning.grid._grid_kernels import GridArrays, clearance_at, floor_of, follow
 from esplanade.planning.grid._walking_kernels import walk
 from esplanade.planning.ground._geometry_kernels import BarrierIndex, closest_approach
@@ -19,7 +19,7 @@ from esplanade.planning.people._prediction_kernels import Prediction
 from esplanade.planning.scene.heights import BODIES_OVERLAP_M
 
 
-@kernel
+@inlined
 def control_toward(task: Task, x: float, y: float, seconds: float) -> tuple[float, float]:
     """Velocity to aim at so that the actor is at (x, y) after so many seconds."""
     ux = (x - task.x) / seconds
@@ -37,7 +37,7 @@ def control_toward(task: Task, x: float, y: float, seconds: float) -> tuple[floa
     return ux, uy
 
 
-@kernel
+@inlined
 def limited(task: Task, ux: float, uy: float, tick_s: float) -> tuple[float, float]:
     """The velocity nearest to u that the acceleration limit allows within a tick."""
     dx = ux - task.vx
@@ -49,7 +49,7 @@ def limited(task: Task, ux: float, uy: float, tick_s: float) -> tuple[float, flo
     return task.vx + dx * most / change, task.vy + dy * most / change
 
 
-@kernel
+@inlined
 def _people_near(world: World, prediction: Prediction, task: Task, near: NDArray[np.int64]) -> int:
     """List the people near an actor into `near`; returns how many they are."""
     count = 0
@@ -66,7 +66,7 @@ def _people_near(world: World, prediction: Prediction, task: Task, near: NDArray
     return count
 
 
-@kernel
+@inlined
 def _separation(
     prediction: Prediction,
     near: NDArray[np.int64],
@@ -106,7 +106,7 @@ def _separation(
     return best
 
 
-@kernel
+@inlined
 def _gap(
     world: World,
     prediction: Prediction,
@@ -140,13 +140,14 @@ def _gap(
     )
 
 
-@kernel
+@borrowing
 def last_check(
     world: World,
     prediction: Prediction,
     task: Task,
     need: float,
     contact_m: float,
+    listed: NDArray[np.int64],
     ux: float,
     uy: float,
 ) -> tuple[float, float, bool]:
@@ -155,9 +156,9 @@ def last_check(
     `need` is the distance that evasions keep from walls; a wish comes from a path that does, and
     `walk` slides along what it only just meets. Evasions are stopping and sixteen directions at
     two speeds; the third value tells whether they were tried because of people, not only of walls.
+    `listed` is room for all people.
     Costs O(people) once and O(people near) for each evasion.
     """
-    listed = np.empty(len(prediction.means), dtype=np.int64)
     near = listed[: _people_near(world, prediction, task, listed)]
     gap = _gap(world, prediction, near, task, -np.inf, ux, uy)
     if gap >= contact_m:

@@ -51,15 +51,16 @@ def price_paths(
     slot = agents.potential_rows[a]
     potential = z.potentials[slot] if slot >= 0 else z.no_potential
     path = np.empty((paths.shape[1], 2))
+    near = room_for_near()
     for n in range(len(paths)):
         path[:, 0] = paths[n, :, 0]
         path[:, 1] = paths[n, :, 1]
-        total, mean_risk, legal = path_cost(z.world, potential, task, path)
+        cost = path_cost(z.world, potential, task, path, near)
         prices[n] = 0.0
         _price(z.world, potential, task, path, paths[n], prices[n])
-        prices[n, TOTAL] = total
-        prices[n, MEAN_RISK] = mean_risk
-        prices[n, LEGAL] = legal
+        prices[n, TOTAL] = cost.seconds
+        prices[n, MEAN_RISK] = cost.mean_risk
+        prices[n, LEGAL] = cost.legal
 
 
 @kernel

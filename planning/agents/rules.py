@@ -431,6 +431,25 @@ class RuleModel(BaseModel):
             "step than the best, and the search looks at a fraction of the nodes.",
         ),
     ] = 0.01
+    goes_on: Annotated[
+        bool,
+        _switch(
+            "search",
+            "Whether a search goes on from the followed path, as far as that is legal, once "
+            "somebody has got in its way, and expects what that path costs.",
+        ),
+    ] = True
+    fine_steps: Annotated[
+        int,
+        _rule(
+            "search",
+            "steps",
+            0,
+            1000,
+            "Nodes after so many steps branch into fewer moves: what is far ahead will be decided "
+            "anew.",
+        ),
+    ] = 4
     likely_part: Annotated[
         float,
         _rule(

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from esplanade.planning.agents import _search_kernels as kernels
 from esplanade.planning.agents._branch_kernels import BRANCH_ROWS, Moves
 from esplanade.planning.agents._cost_kernels import room_for_near
+from esplanade.planning.agents._perturb_kernels import path_cost
 from esplanade.planning.agents._reservation_kernels import Reservations
 from esplanade.planning.agents._search_kernels import Workspace
 from esplanade.planning.agents._task_kernels import SUB, Task, World
@@ -51,17 +52,19 @@ def compass_moves() -> Moves:
     """Moves of the accumulated form; their `speeds` are parts of an actor's preferred speed.
 
     A part above one stands for the greatest speed. Straight on comes at three speeds, so that an
-    actor may hurry or slow down; staying put is always possible and not listed.
+    actor may hurry or slow down; staying put is always possible and not listed. Far ahead it is
+    enough to go straight on, or 25 or 45 degrees to either side.
     """
     rows = [(0.0, 1.0), (0.0, 0.5), (0.0, 2.0)]
     straight = len(rows)
-    for degrees in (10, 25, 45, 80, 180):
+    coarse = straight + 4
+    for degrees in (25, 45, 10, 80, 180):
         signs = (1, -1) if degrees < 180 else (1,)
         rows.extend((math.radians(sign * degrees), 1.0) for sign in signs)
     for degrees in (25, 60):
         rows.extend((math.radians(sign * degrees), 2.0) for sign in (1, -1))
     headings, parts = np.array(rows).T
-    return Moves(np.cos(headings), np.sin(headings), parts.copy(), straight, True)
+    return Moves(np.cos(headings), np.sin(headings), parts.copy(), straight, coarse, True)
 
 
 def lattice_moves(cell_m: float, step_s: float, max_speed_mps: float) -> Moves:
@@ -75,7 +78,7 @@ def lattice_moves(cell_m: float, step_s: float, max_speed_mps: float) -> Moves:
         if speed <= max_speed_mps + 1e-9:
             headings.append(eighth * math.pi / 4.0)
             speeds.append(speed)
-    return Moves(np.cos(headings), np.sin(headings), np.array(speeds), 0, False)
+    return Moves(np.cos(headings), np.sin(headings), np.array(speeds), 0, len(speeds), False)
 
 
 def make_workspace(max_expansions: int, branching: int) -> Workspace:
@@ -98,6 +101,7 @@ def make_workspace(max_expansions: int, branching: int) -> Workspace:
         room_for_near(),
         np.zeros((BRANCH_ROWS, branching)),
         np.zeros((2, branching), dtype=np.int64),
+        np.zeros(nodes),
         np.zeros(3, dtype=np.int64),
     )
 
@@ -165,6 +169,7 @@ def uncertain_bfp(
     step_s: float,
     form: SearchForm = SearchForm.ACCUMULATED,
     bound: float = math.inf,
+    illegal: NDArray[np.float64] | None = None,
 ) -> SearchResult:
     """Search one path from `task`'s start: Uncertain_BFP of fig. 5.
 
@@ -172,7 +177,8 @@ def uncertain_bfp(
     keep their exact position; with `lattice_moves`, a start at a cell's centre and unbounded
     acceleration they are cells, as printed. A caller that already has a path only wants one that
     costs less than `bound` (seconds): nodes that get below it only if the rest is much easier than
-    on that path are not looked at.
+    on that path are not looked at. A caller whose path has become illegal gives that path, (K, 2)
+    like the result: the search goes on from the steps of it that are still legal.
 
     Raises
     ------
@@ -203,6 +209,12 @@ def uncertain_bfp(
     )
     path = np.zeros((slices + 1, 2))
     workspace = make_workspace(task.max_expansions, len(moves.speeds) + 1)
+    kernels.begin_search(task, workspace)
+    expected, begun = bound, 0
+    if illegal is not None:
+        cost = path_cost(world, potential.values, task, illegal, workspace.near)
+        expected, begun = cost.seconds, cost.legal_steps
+        kernels.lay_known(world, potential.values, task, illegal, begun, workspace)
     outcome = kernels.search(
         world,
         potential.values,
@@ -210,6 +222,8 @@ def uncertain_bfp(
         task,
         form is SearchForm.ACCUMULATED,
         bound,
+        expected,
+        begun,
         workspace,
         path,
     )

@@ -21,6 +21,7 @@ from tests.naive.reservations import conflict
 MARGIN_M = 0.03
 DEPTH_BONUS_S = 0.01
 LIKELY_PART = 0.7
+FINE_STEPS = 4
 
 
 @dataclass(frozen=True)
@@ -83,8 +84,22 @@ class Node:
     middle: Point
 
 
+@dataclass(frozen=True)
+class Known:
+    """A path that has become illegal, the number of its steps that are legal, and what it costs."""
+
+    path: NDArray[np.float64]
+    legal_steps: int
+    cost: float
+
+
 def search(
-    ground: Ground, moves: Moves, steps: int, accumulate: bool, bound: float = math.inf
+    ground: Ground,
+    moves: Moves,
+    steps: int,
+    accumulate: bool,
+    bound: float = math.inf,
+    known: Known | None = None,
 ) -> tuple[SearchStatus, NDArray[np.float64], int]:
     """Status, positions half a step apart, and how many nodes were expanded."""
     task = ground.task
@@ -94,10 +109,13 @@ def search(
         return SearchStatus.NO_PATH, _trace(nodes, 0, steps), 0
     left = ground.seconds_left(start, math.hypot(task.vx, task.vy))
     queue = [(left, 0)]
-    bonus = DEPTH_BONUS_S
-    if bound < math.inf:
-        bonus = max(bonus, LIKELY_PART * (bound - left) / steps)
+    bonus = _bonus(left, steps, bound, known)
     best: dict[tuple[int, tuple[int, int]], float] = {}
+    for n in range(1, known.legal_steps + 1 if known else 0):
+        node = _known_node(ground, nodes[-1], n, known.path)
+        best[n, ground.cell(node.place)] = node.worth
+        heapq.heappush(queue, (node.worth - bonus * n, n))
+        nodes.append(node)
     furthest = (0, math.inf, 0)
     expansions = 0
     while queue:
@@ -132,13 +150,26 @@ def search(
     return status, _trace(nodes, furthest[2], steps), expansions
 
 
+def _bonus(left: float, steps: int, bound: float, known: Known | None) -> float:
+    """Seconds that each step is expected to cost beyond its time."""
+    if bound < math.inf:
+        return max(DEPTH_BONUS_S, LIKELY_PART * (bound - left) / steps)
+    if known is not None and math.isfinite(known.cost):
+        return max(DEPTH_BONUS_S, (known.cost - left) / steps)
+    return DEPTH_BONUS_S
+
+
 def _wishes(ground: Ground, moves: Moves, node: Node) -> list[Point]:
-    """Velocities to turn into: the moves, straight on no further than the goal, and staying."""
+    """Velocities to turn into: the moves, straight on no further than the goal, and staying.
+
+    Far ahead there are only the coarse ones.
+    """
     away = ground.metres_left(node.place)
     x, y = ground.heading_home(node.place) if moves.relative else (1.0, 0.0)
     ahead = math.atan2(y, x)
     wishes = []
-    for m, speed in enumerate(moves.speeds.tolist()):
+    many = len(moves.speeds) if node.step < FINE_STEPS else moves.coarse
+    for m, speed in enumerate(moves.speeds.tolist()[:many]):
         turn = math.atan2(moves.sines[m], moves.cosines[m])
         v = min(speed, away / ground.step_s) if m < moves.straight else speed
         wishes.append((v * math.cos(ahead + turn), v * math.sin(ahead + turn)))
@@ -156,30 +187,51 @@ def _move(
     room = min(ground.clearance(tuple(middle)), ground.clearance(tuple(end)))
     if room < ground.needed() or math.isinf(left := ground.seconds_left(tuple(end))):
         return None
-    k = 2 * node.step
-    (bx, by), (vx, vy), (wx, wy) = _velocities(ground, node, tuple(middle), tuple(end))
-    meetings = [
-        ground.meeting(k, node.place, tuple(middle)),
-        ground.meeting(k + 1, tuple(middle), tuple(end)),
-    ]
-    if any(blocked for blocked, _ in meetings):
+    blocked, priced = _priced_step(ground, node, tuple(middle), tuple(end), accumulate)
+    if blocked:
         return None
-    minded = sum(soft for _, soft in meetings)
-    minded += ground.risk(k + 1, tuple(middle), (vx, vy)) + ground.risk(k + 2, tuple(end), (wx, wy))
-    priced = risk_price(task, node.step * ground.step_s) * half * minded
     made = (node.step + 1, tuple(end), (ux, uy))
     if not accumulate:
         return Node(*made, 0.0, 0.0, n, tuple(middle)), left + priced
-    speed = math.dist(node.place, end) / ground.step_s
-    cost = (
-        node.cost
-        + time_cost(task, ground.metres_left(tuple(end)), speed, ground.step_s)
-        + priced
-        + task.turn_weight * (math.dist((bx, by), (vx, vy)) + math.dist((vx, vy), (wx, wy)))
-        + wall_cost(task, room, ground.step_s)
-    )
-    worth = cost + ground.seconds_left(tuple(end), math.hypot(wx, wy))
+    cost = node.cost + priced
+    speed = math.dist(middle, end) / half
+    worth = cost + ground.seconds_left(tuple(end), speed)
     return Node(*made, cost, worth, n, tuple(middle)), worth
+
+
+def _priced_step(
+    ground: Ground, node: Node, middle: Point, end: Point, accumulate: bool = True
+) -> tuple[bool, float]:
+    """Whether others forbid a step, and what it costs; only its risk with the printed key."""
+    task, half, k = ground.task, ground.step_s / 2, 2 * node.step
+    (bx, by), (vx, vy), (wx, wy) = _velocities(ground, node, middle, end)
+    meetings = [
+        ground.meeting(k, node.place, middle),
+        ground.meeting(k + 1, middle, end),
+    ]
+    if any(blocked for blocked, _ in meetings):
+        return True, math.inf
+    minded = sum(soft for _, soft in meetings)
+    minded += ground.risk(k + 1, middle, (vx, vy)) + ground.risk(k + 2, end, (wx, wy))
+    priced = risk_price(task, node.step * ground.step_s) * half * minded
+    if not accumulate:
+        return False, priced
+    room = min(ground.clearance(middle), ground.clearance(end))
+    speed = math.dist(node.place, end) / ground.step_s
+    turned = math.dist((bx, by), (vx, vy)) + math.dist((vx, vy), (wx, wy))
+    seconds = time_cost(task, ground.metres_left(end), speed, ground.step_s)
+    walls = wall_cost(task, room, ground.step_s)
+    return False, seconds + priced + task.turn_weight * turned + walls
+
+
+def _known_node(ground: Ground, node: Node, n: int, path: NDArray[np.float64]) -> Node:
+    """The node after a legal step of a path; its velocity is the mean one of the second half."""
+    middle, end = (tuple(place) for place in path[2 * n - 1 : 2 * n + 1])
+    _, priced = _priced_step(ground, node, middle, end)
+    velocity = tuple(np.subtract(end, middle) / (ground.step_s / 2))
+    cost = node.cost + priced
+    worth = cost + ground.seconds_left(end, math.hypot(*velocity))
+    return Node(n, end, velocity, cost, worth, n - 1, middle)
 
 
 def _velocities(ground: Ground, node: Node, middle: Point, end: Point) -> list[Point]:

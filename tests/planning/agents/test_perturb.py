@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from esplanade.planning.agents import _perturb_kernels as kernels
+from esplanade.planning.agents._cost_kernels import room_for_near
 from esplanade.planning.agents._task_kernels import TOO_MANY, needed_clearance
 from tests.naive import search as naive
 from tests.planning.agents.test_search import ground_of, people
@@ -26,10 +27,6 @@ def test_a_bend_never_makes_an_actor_arrive_later() -> None:
     arrival = int(np.argmax(np.hypot(*(before - (6.0, 4.0)).T) <= 0.2))
     assert bends >= 1
     assert np.array_equal(path[arrival:], before[arrival:])
-
-
-def room(path):
-    return np.empty(len(path), dtype=np.int64), np.empty_like(path)
 
 
 def mean_risk(world, question, path):
@@ -53,9 +50,9 @@ def test_a_paths_cost_is_its_sum(start, goal, crowd) -> None:
     world, potential = kernel_view(ground)
     path = path_between(start, goal)
     expected = naive.path_cost(ground, path)
-    assert kernels.path_cost(world, potential, ground.task, path)[:2] == pytest.approx(
-        expected, rel=1e-5, abs=1e-5
-    )
+    assert kernels.path_cost(world, potential, ground.task, path, room_for_near())[
+        :2
+    ] == pytest.approx(expected, rel=1e-5, abs=1e-5)
 
 
 @given(starts, goals, lines(0.0, 8.0, 3), st.floats(1.0, 2.0), starts, goals)
@@ -68,7 +65,9 @@ def test_a_cost_tells_whether_the_whole_path_is_legal(
     ground = ground_of(task(start, goal), walls=walls, others=others)
     world, potential = kernel_view(ground)
     legal = is_legal(ground, paths[0])
-    assert kernels.path_cost(world, potential, ground.task, paths[0])[2] == legal
+    assert (
+        kernels.path_cost(world, potential, ground.task, paths[0], room_for_near()).legal == legal
+    )
 
 
 @given(starts, goals, people)
@@ -77,7 +76,9 @@ def test_perturbation_is_its_twin(start, goal, crowd) -> None:
     ground = ground_of(task(start, goal), people=crowd)
     world, potential = kernel_view(ground)
     ours, theirs = path_between(start, goal), path_between(start, goal)
-    bends = kernels.update_path(world, potential, ground.task, ours, *room(ours))
+    bends = kernels.update_path(
+        world, potential, ground.task, ours, kernels.room_to_perturb(len(ours))
+    )
     assert bends == naive.update_path(
         ground, theirs, RULES["offsets"], RULES["offset_m"], RULES["least_risk"]
     )
@@ -99,7 +100,9 @@ def bent(crowd, path=None, walls=(), others=None, question=None):
     world, potential = kernel_view(ground)
     path = path_between((1.0, 4.0), (7.0, 4.0)) if path is None else path
     before = mean_risk(world, ground.task, path)
-    bends = kernels.update_path(world, potential, ground.task, path, *room(path))
+    bends = kernels.update_path(
+        world, potential, ground.task, path, kernels.room_to_perturb(len(path))
+    )
     after = mean_risk(world, ground.task, path)
     legal = is_legal(ground, path)
     return path, bends, before, after, legal

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from esplanade.planning import SearchForm, SearchStatus, uncertain_bfp
 from esplanade.planning.agents._branch_kernels import Moves
+from esplanade.planning.agents._cost_kernels import room_for_near
 from esplanade.planning.agents._perturb_kernels import path_cost
 from esplanade.planning.agents._task_kernels import advance
 from esplanade.planning.agents.search import compass_moves, lattice_moves
@@ -63,7 +64,7 @@ def ground_of(question, steps=12, walls=(), people=(), others=None):
     return naive.Ground(grid, field, potential, others, standing(grid, question), STEP_S)
 
 
-def found(ground, moves=None, form=SearchForm.ACCUMULATED, bound=math.inf):
+def found(ground, moves=None, form=SearchForm.ACCUMULATED, bound=math.inf, illegal=None):
     return uncertain_bfp(
         ground.field,
         ground.potential,
@@ -73,17 +74,28 @@ def found(ground, moves=None, form=SearchForm.ACCUMULATED, bound=math.inf):
         ground.step_s,
         form,
         bound,
+        illegal,
     )
 
 
-def same_as_twin(ground, moves, form, bound=math.inf) -> None:
-    ours = found(ground, moves, form, bound)
+def same_as_twin(ground, moves, form, bound=math.inf, illegal=None):
+    ours = found(ground, moves, form, bound, illegal)
     steps = ground.field.slices // 2
     accumulate = form is SearchForm.ACCUMULATED
-    status, path, expansions = naive.search(ground, moves, steps, accumulate, bound)
+    known = None
+    if illegal is not None:
+        cost = priced(ground, illegal)
+        known = naive.Known(illegal, cost.legal_steps, cost.seconds)
+    status, path, expansions = naive.search(ground, moves, steps, accumulate, bound, known)
     assert ours.status == status
     assert ours.expansions == expansions
     assert ours.path == pytest.approx(path, abs=1e-6)
+    return ours
+
+
+def priced(ground, path):
+    world = world_of(ground.field.grid, ground.field, ground.reservations)
+    return path_cost(world, ground.potential.values, ground.task, path, room_for_near())
 
 
 spots = st.tuples(st.floats(0.5, 2.5), st.floats(0.5, 7.5))
@@ -107,10 +119,9 @@ def test_both_forms_are_their_twins(form, start, goal, crowd, walled) -> None:
 @holds(15, 3)
 def test_a_bound_holds_and_saves_work(start, goal, crowd, slack) -> None:
     ground = ground_of(task(start, goal, max_expansions=5000), 5, (), crowd)
-    world = world_of(ground.field.grid, ground.field, ground.reservations)
 
     def cost(path) -> float:
-        return path_cost(world, ground.potential.values, ground.task, path)[0]
+        return priced(ground, path).seconds
 
     free = found(ground)
     bound = cost(free.path) + slack
@@ -134,10 +145,9 @@ def test_a_path_costs_what_the_search_added_up(start, goal, crowd, walled, v, se
     held.held_up[:], held.courses[:] = True, ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.6, 0.8))
     question = task(start, goal, v)
     ground = ground_of(question, 5, WALLS if walled else (), crowd, held)
-    world = world_of(ground.field.grid, ground.field, ground.reservations)
     result = found(ground)
     if result.status is SearchStatus.FOUND:
-        again = path_cost(world, ground.potential.values, ground.task, result.path)[0]
+        again = priced(ground, result.path).seconds
         assert result.cost_s == pytest.approx(again, abs=1e-12)
 
 
@@ -188,6 +198,39 @@ def test_and_among_certain_obstacles(seed) -> None:
     others = reserved(open_grid(8.0), paths, [0.25] * 4, rng.permutation(4))
     question = task(tuple(start), tuple(goal), max_expansions=40)
     same_as_twin(ground_of(question, 5, others=others), lopsided_moves(), SearchForm.ACCUMULATED)
+
+
+def crossed(seed):
+    """The ground of one whose way others may cross, and the path that leads straight on."""
+    rng = np.random.default_rng(seed)
+    start = (1.0, rng.uniform(3.0, 5.0))
+    slices = 0.2 * np.arange(11)[:, None]
+    straight = np.array(start) + slices * (1.3, 0.0)
+    begin = rng.uniform((1.5, 1.0), (5.0, 7.0), (5, 2))
+    paths = begin[:, None] + slices[None] * rng.uniform(-1.0, 1.0, (5, 1, 2))
+    paths = np.concatenate([straight[None], paths])
+    others = reserved(open_grid(8.0), paths, [0.25] * 6, [5, 0, 1, 2, 3, 4])
+    question = task(start, (7.0137, 4.0071), (1.3, 0.0), max_expansions=40)
+    return ground_of(question, 5, others=others), straight
+
+
+@given(st.integers(0, 1000))
+@holds(25, 4)
+def test_a_search_that_goes_on_from_an_illegal_path_is_its_twin(seed) -> None:
+    ground, straight = crossed(seed)
+    result = same_as_twin(ground, lopsided_moves(), SearchForm.ACCUMULATED, illegal=straight)
+    if result.status is SearchStatus.FOUND:
+        assert result.cost_s == pytest.approx(priced(ground, result.path).seconds, abs=1e-9)
+
+
+def test_going_on_from_the_legal_steps_of_a_path_saves_work() -> None:
+    fresh = gone_on = 0
+    for seed in range(12):
+        ground, straight = crossed(seed)
+        if not priced(ground, straight).legal:
+            fresh += found(ground).expansions
+            gone_on += found(ground, illegal=straight).expansions
+    assert 0 < 2 * gone_on < fresh
 
 
 @given(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0), speeds, st.floats(0.01, 1.0))
