@@ -24,7 +24,7 @@ from esplanade.planning import (
     Scene,
 )
 from esplanade.planning.agents._bottleneck_kernels import Lane
-from esplanade.planning.agents._perturb_kernels import perturb_path, risks_along
+from esplanade.planning.agents._perturb_kernels import perturb_path, risks_along, room_to_perturb
 from esplanade.planning.agents._reservation_kernels import index_paths
 from esplanade.planning.agents._task_kernels import Task, World, needed_clearance
 from esplanade.planning.agents.search import make_reservations
@@ -164,19 +164,16 @@ def figs_7_and_8() -> None:
     seconds = PlanModel().slice_s * np.arange(PlanModel().slices + 1)
     straight = np.array(start) + np.outer(1.3 * seconds, (1.0, 0.0))
     bent, stretches = straight.copy(), []
-    cells = np.zeros(len(bent), dtype=np.int64)
-    cells[0] = task.cell
-    follow_path(world.grid, bent, cells, 0, len(bent) - 1)
+    room = room_to_perturb(len(bent))
+    room.cells[0] = task.cell
+    follow_path(world.grid, bent, room.cells, 0, len(bent) - 1)
     need, rules = needed_clearance(world, task), world.rules[0]
-    risks, trial_risks, trial = np.zeros(len(bent)), np.zeros(len(bent)), np.empty_like(bent)
-    risks_along(world, task, task.cell, bent, 0, len(bent) - 1, np.inf, risks)
+    risks_along(world, task, task.cell, bent, 0, len(bent) - 1, np.inf, room.risks)
     left = [(0, len(bent) - 1)]
     while left:  # as `update_path`, step by step
         first, last = left.pop()
         before = bent.copy()
-        held = perturb_path(
-            world, potential, task, need, bent, cells, first, last, risks, trial, trial_risks
-        )
+        held = perturb_path(world, potential, task, need, bent, first, last, room)
         stretches.append((first, last, before, bent.copy(), bool(held)))
         if not held and last - first >= rules["shortest_stretch"]:
             middle = (first + last) // 2
