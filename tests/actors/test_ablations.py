@@ -113,7 +113,7 @@ def test_planned_paths_keep_clear_of_each_other() -> None:
 def test_a_search_goes_on_from_a_path_that_somebody_has_crossed() -> None:
     """The way of one who walks straight on is crossed by those who go first, again and again."""
     ways = [((2.0, 6.0), (15.0, 6.0))]
-    ways += [((4.0 + k, 1.0), (4.0 + k, 10.0 - 0.3 * k)) for k in range(8)]
+    ways += [((4.0 + 1.25 * k, 1.0), (4.0 + 1.25 * k, 10.0 - 0.3 * k)) for k in range(8)]
 
     def expansions(**rules) -> int:
         nav = Navigator(
@@ -128,11 +128,11 @@ def test_a_search_goes_on_from_a_path_that_somebody_has_crossed() -> None:
         for _ in range(50):
             nav.observe({})
             nav.tick()
-            found += int(nav._batch.zone.decisions.expansions.sum())
+            found += int(nav._batch.zone.decisions.expansions[0])
         nav.close()
         return found
 
-    assert expansions() < 0.9 * expansions(goes_on=False)
+    assert expansions() < 0.6 * expansions(goes_on=False)
 
 
 def test_far_ahead_there_are_fewer_moves() -> None:

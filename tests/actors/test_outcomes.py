@@ -64,19 +64,23 @@ def test_a_trip_has_no_outcome_while_it_goes_on_and_then_it_has_arrived() -> Non
 
 
 @pytest.mark.parametrize("count", [2, scaled(8, 3)])
-def test_of_actors_with_one_goal_one_arrives_and_the_others_end_beside_it(count: int) -> None:
+def test_of_actors_with_one_goal_one_stands_there_and_the_others_end_beside_it(count: int) -> None:
+    """Whoever comes right behind the first may come through the goal too, before it stops."""
     goal = (10.0, 12.0)
     nav = navigator(Scene.open_space((0.0, 0.0, 20.0, 20.0)))
     for k in range(count):
         nav.add_actor(k, (4.0 + 1.5 * k, 6.0), goal, BODY)
     states, _ = run_until_ended(nav, {})
-    outcomes = [state.outcome for state in states.values()]
-    assert outcomes.count(Outcome.ARRIVED) == 1
-    assert outcomes.count(Outcome.NEAR) == count - 1
-    (there,) = (who for who, state in states.items() if state.outcome is Outcome.ARRIVED)
+    arrived = {who for who, state in states.items() if state.outcome is Outcome.ARRIVED}
+    assert 1 <= len(arrived) <= 2
+    assert [state.outcome for state in states.values()].count(Outcome.NEAR) == count - len(arrived)
+    (there,) = (who for who in states if math.dist(states[who].position, goal) < 0.3)
+    assert there in arrived
     for who, state in states.items():
-        if who != there:
-            assert state.in_the_way == ("actor", there)
+        if who not in arrived:
+            assert state.in_the_way is not None
+            assert state.in_the_way.kind == "actor"
+            assert state.in_the_way.id in arrived
             assert math.dist(state.position, goal) < 1.0 + 0.5 * math.sqrt(count)
 
 

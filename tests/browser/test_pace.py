@@ -44,7 +44,7 @@ async def promenade(tmp_path_factory: pytest.TempPathFactory) -> AsyncIterator[R
     """A server of bare ground with actors, on which nothing stops a walk to the south."""
     built("index.html")
     scene = entered_at(PROMENADE, PROMENADE_END, tmp_path_factory.mktemp("promenade"))
-    async with served(scene=scene, actors=12) as server:
+    async with served(scene=scene, actors=4) as server:
         yield server
 
 
