@@ -65,7 +65,7 @@ def test_a_trip_has_no_outcome_while_it_goes_on_and_then_it_has_arrived() -> Non
 
 @pytest.mark.parametrize("count", [2, scaled(8, 3)])
 def test_of_actors_with_one_goal_one_stands_there_and_the_others_end_beside_it(count: int) -> None:
-    """Whoever comes right behind the first may come through the goal too, before it stops."""
+    """One who comes right behind the first may come through the goal too, before it stops."""
     goal = (10.0, 12.0)
     nav = navigator(Scene.open_space((0.0, 0.0, 20.0, 20.0)))
     for k in range(count):

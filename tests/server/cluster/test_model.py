@@ -18,7 +18,7 @@ GATEWAYS: Final = ("east", "west")
 KEEP_US: Final = 600_000_000
 MOST_PEOPLE: Final = 5
 OUTCOMES: Final = ("is answered", "loses its answer", "never arrives")
-"""What may become of the statement that moves a seat."""
+"""The ends that the statement may have that moves a seat."""
 
 hosts = st.sampled_from(HOSTS)
 gateways = st.sampled_from(GATEWAYS)
@@ -210,7 +210,7 @@ class Cluster(RuleBasedStateMachine):
                 assert steered[person] == seat.generation
 
     def _check_silence(self) -> None:
-        """Whoever has no client any more has lost the seat soon, and nobody else has."""
+        """Persons without a client lose their seats soon, and nobody else does."""
         self.truth.now_us += round(1.5 * SILENCE_S * 1e6)
         for gateway in self.gateways.values():
             gateway.tell_presence()

@@ -84,7 +84,7 @@ async def receiving(server: NatsServer) -> AsyncIterator[FrameReceiver]:
 
 
 async def until(receiver: FrameReceiver, done: Callable[[FrameKey], bool]) -> list[FrameKey]:
-    """What comes until then; it comes without a gap, or begins anew with a whole state."""
+    """The frames until then; they come without a gap, or begin anew with a whole state."""
     keys: list[FrameKey] = []
     async with asyncio.timeout(PATIENCE_S):
         while not keys or not done(keys[-1]):
