@@ -95,7 +95,7 @@ class _Figure(Collector):
         self._reads[zone], self._values[zone] = read, 0.0
 
     def reading(self, zone: str) -> Callable[[], float] | None:
-        """What is read of a zone; None if nothing is."""
+        """The function that reads the value of a zone; None if there is none."""
         return self._reads.get(zone)
 
     def forget(self, zone: str) -> None:
@@ -203,7 +203,7 @@ class Metrics:
             self._tell_ticks()
 
     def readings(self, zone: str) -> dict[str, Callable[[], float]]:
-        """What is read of a zone, by the name of the figure, for `read_again`."""
+        """The functions that read figures of a zone, by the figures' names, for `read_again`."""
         found = ((name, figure.reading(zone)) for name, figure in self._figures.items())
         return {name: read for name, read in found if read is not None}
 

@@ -146,7 +146,7 @@ def lead_over_anchors(
     if _stands(world, task):
         most_s += rules["narrow_over_s"]
     cost = path_cost(world, potential, task, out, near)
-    # What lies ahead of the given path does not know how long the agent was on edges.
+    # The potential ahead of the given path does not know how long the agent was on edges.
     calm = counted and cost.mean_risk <= most.mean_risk + rules["least_risk"]
     if not (cost.seconds < most_s or calm):
         return False, 0.0, 0.0

@@ -34,7 +34,7 @@ _MOST_EDGES = 1e9
 
 
 class PathCost(NamedTuple):
-    """What a whole path costs."""
+    """The cost of a whole path."""
 
     seconds: float
     mean_risk: float

@@ -6,7 +6,7 @@ import math
 import unicodedata
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal, Self, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -360,11 +360,7 @@ class Scene(_Part):
         KeyError
             There is none; the message lists those that exist.
         """
-        for place in self.places:
-            if place.name == name:
-                return place
-        known = ", ".join(p.name for p in self.places) or "none"
-        raise KeyError(f"no place named {name!r}; the scene has: {known}")
+        return _named("place", self.places, name)
 
     def portal(self, name: str) -> Portal:
         """The portal of that name.
@@ -374,8 +370,15 @@ class Scene(_Part):
         KeyError
             There is none; the message lists those that exist.
         """
-        for portal in self.portals:
-            if portal.name == name:
-                return portal
-        known = ", ".join(p.name for p in self.portals) or "none"
-        raise KeyError(f"no portal named {name!r}; the scene has: {known}")
+        return _named("portal", self.portals, name)
+
+
+_Named = TypeVar("_Named", Place, Portal)
+
+
+def _named(kind: str, parts: tuple[_Named, ...], name: str) -> _Named:
+    for part in parts:
+        if part.name == name:
+            return part
+    known = ", ".join(part.name for part in parts) or "none"
+    raise KeyError(f"no {kind} named {name!r}; the scene has: {known}")

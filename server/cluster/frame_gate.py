@@ -4,7 +4,7 @@ from enum import Enum, auto
 
 
 class Verdict(Enum):
-    """What a gateway does with a frame."""
+    """A gateway's decision about a frame."""
 
     APPLY = auto()
     DROP = auto()

@@ -1,4 +1,4 @@
-"""Who owns which zone, as the database has it: each function is part of one transaction.
+"""Owners of zones, as the database has them: each function is part of one transaction.
 
 An ownership is a lease with an epoch. A host that claims a zone gets an epoch above all before it,
 and everything that it writes for the zone asks first whether that epoch is still the newest

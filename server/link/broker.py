@@ -21,7 +21,7 @@ PINGS_UNANSWERED: Final = 2
 """A broker is given up when so many pings are unanswered."""
 CONNECT_S: Final = 5
 PENDING_BYTES: Final = 2 * 1024 * 1024
-"""So much waits for a broker that does not read; beyond it nothing more is sent."""
+"""The most bytes that wait for a broker that does not read; beyond them nothing is sent."""
 
 log = structlog.get_logger(__name__)
 

@@ -24,8 +24,8 @@ ASK_S: Final = 0.3
 FRAMES_WAITING: Final = 64
 """A gateway that has taken none of so many frames begins anew with the whole state."""
 FRAMES_HELD: Final = 32
-"""So many of the frames that come while the whole state is waited for are held: it may be overtaken
-by those right after it."""
+"""The most frames that are held while the whole state is waited for, which those right after it may
+overtake."""
 PARTS_WAITING: Final = 1024
 BYTES_WAITING: Final = 64 * 1024 * 1024
 """Bounds of what the library keeps for a receiver that does not read."""

@@ -13,7 +13,7 @@ from esplanade.server.world.frame import Entered, Events, Frame, Reshaped
 from esplanade.server.world.routes import Point
 
 BLOCKS: Final = 64
-"""So many blocks of records are kept until only the newest record of each avatar is."""
+"""The most blocks of records that are kept before they are reduced to the newest of each avatar."""
 
 
 class WholeState:

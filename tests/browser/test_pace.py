@@ -69,7 +69,7 @@ async def test_the_picture_goes_at_the_pace_of_the_world(
     assert _most_moved_m(stood) == 0.0
     tick = promenade.world.tick
     stepped = await _changed(ann, olga, 1.5, step=10)
-    # What Ann's page sends to a world that stands is taken in by ticks in which nobody moves.
+    # Ticks in which nobody moves take in messages that Ann's page sends to a world that stands.
     assert tick + 10 <= promenade.world.tick <= tick + 10 + MOST_STILL
     assert _back_m(stepped) < BACK_M
     assert 0.4 < math.dist(_own(stood[-1]), _own(stepped[-1])) < 1.1

@@ -19,7 +19,7 @@ def test_portals_are_reached_from_the_spawns() -> None:
     spawns = (Spawn(position=(2.0, 8.0)), Spawn(position=(8.0, 8.0)))
     assert unreached(HALVES.model_copy(update={"spawns": spawns})) == []
     assert unreached(HALVES.model_copy(update={"spawns": spawns[:1]})) == ["east"]
-    # Who comes out of a portal that is shut in gets nowhere: spawns count where there are any.
+    # One who comes out of a portal that is shut in gets nowhere: spawns count where there are any.
     scene = HALVES.model_copy(update={"spawns": spawns[:1]})
     assert unreached(scene, (8.5, 5.0, 0.0)) == ["east"]
 
