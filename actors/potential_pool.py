@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from esplanade.actors.rows_to_come import rows_to_come
 from esplanade.planning import Body, LayeredGrid, Potential
 from esplanade.planning.grid.clearances import kind_of
 from esplanade.planning.routes.shut_way import Around
@@ -124,7 +125,7 @@ class PotentialPool:
         wanted = [key for key in dict.fromkeys(goals) if key not in self._slots]
         for *_, body in wanted:
             self._grid.row_of(body)  # derived here, since the threads share the grid
-        # Copying the rows there are whenever one more is needed takes seconds on large ground.
+        # Where rows have to be copied when one more is needed, that takes seconds on large ground.
         fresh = min(len(wanted), max(0, _IDLE_KEPT + 1 - len(self._idle)))
         self._reserve(len(self._keys) + fresh)
         with ThreadPoolExecutor(threads, thread_name_prefix="potentials") as pool:
@@ -248,10 +249,10 @@ class PotentialPool:
         self._reserve(len(self._keys) + rows)
 
     def _reserve(self, rows: int) -> None:
-        """Make room for so many rows; what stands in those there are is copied."""
+        """Make room for so many rows; where it has to grow, what stands in those is copied."""
         before = len(self.arrays)
         if rows > before:
-            grown = np.empty((rows, *self.arrays.shape[1:]), dtype=np.float32)
+            grown = rows_to_come(rows, self.arrays.shape[1:])
             grown[:before] = self.arrays
             self.arrays = grown
 

@@ -4,7 +4,7 @@ import asyncio
 from collections.abc import AsyncIterator, Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 from esplanade.actors import Outcome
@@ -22,6 +22,7 @@ from esplanade.server.net.delivery import Delivery
 from esplanade.server.net.entrance import Entrance
 from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.hub import Hub
+from esplanade.server.net.long_lived import LongLived
 from esplanade.server.net.route_requests import RouteRequests
 from esplanade.server.net.schedule import Schedule
 from esplanade.server.net.search_budget import SearchBudget
@@ -44,6 +45,7 @@ class Process:
     kept: Kept
     entrance: Entrance
     presets: Presets
+    long_lived: LongLived = field(default_factory=LongLived)
 
 
 class ServedZone:
@@ -215,6 +217,7 @@ async def served_zone(
             )
             .keeping(persistence)
             .planning(settings.planning_interval)
+            .sparing(process.long_lived)
         )
         travel = None
         if surroundings is not None:

@@ -16,6 +16,7 @@ from esplanade.server.net.delivery import Delivery
 from esplanade.server.net.ground_work import GroundWork
 from esplanade.server.net.hub import Hub
 from esplanade.server.net.interval_choice import IntervalChoice
+from esplanade.server.net.long_lived import LongLived
 from esplanade.server.net.persistence import Persistence
 from esplanade.server.net.schedule import Schedule
 from esplanade.server.trajectories.keeping import WorldTrajectories
@@ -61,6 +62,7 @@ class Ticker:
         self._stopping = asyncio.Event()
         self._persistence: Persistence | None = None
         self._travel: ActorTravel | None = None
+        self._long_lived: LongLived | None = None
         metrics.gauge(
             "walkers_shown",
             "Walkers whose steps are sent, counted for each viewer",
@@ -86,6 +88,11 @@ class Ticker:
     def keeping(self, persistence: Persistence) -> Self:
         """The same, seeing between ticks to what outlasts the process."""
         self._persistence = persistence
+        return self
+
+    def sparing(self, long_lived: LongLived) -> Self:
+        """The same, keeping what clients need for long out of the search for garbage."""
+        self._long_lived = long_lived
         return self
 
     def with_travel(self, travel: ActorTravel) -> Self:
@@ -187,6 +194,10 @@ class Ticker:
                 self.trajectories.take(frame, inputs)
         if self._persistence is not None:
             self._persistence.between_ticks(loop.time())
+        if self._long_lived is not None:
+            for frame in frames:
+                came, gone = frame.joined + frame.attached, frame.left + frame.detached
+                self._long_lived.between_ticks(len(came), len(gone), frame.people)
 
     def _travellers(self) -> Sequence[Input]:
         """Inputs by which actors go to other zones, or come from there."""

@@ -20,6 +20,8 @@ from esplanade.server.world.state import Slots
 
 RECORD_BYTES = RECORD.itemsize
 STEP_BYTES = STEP.itemsize
+LEAVE_BYTES = 3
+"""Of an id in a leave message; the few bytes around all of them are left out."""
 
 
 @dataclass(frozen=True)
@@ -93,6 +95,7 @@ class Audience:
             heard = self._last_words(frame)
             left = self._come_and_go(frame)
             entered = self._look(frame, left)
+            self._interest.charge(_sizes(left, entered), self._budget)
             pointed = frame.events.pointing
             spoken = [line.id for line in frame.events.chat]
             seen = self._interest.seen_by([*pointed, *spoken, *(r.id for r in frame.reshaped)])
@@ -208,3 +211,11 @@ class Audience:
             records=record_block,
             steps=step_block,
         )
+
+
+def _sizes(left: Mapping[int, list[int]], entered: Mapping[int, list[bytes]]) -> dict[int, int]:
+    """The bytes that changes of view take, by the viewer's id."""
+    sizes = {viewer: LEAVE_BYTES * len(ids) for viewer, ids in left.items()}
+    for viewer, entities in entered.items():
+        sizes[viewer] = sizes.get(viewer, 0) + sum(map(len, entities))
+    return sizes

@@ -1,9 +1,9 @@
 """The bytes that a viewer may be sent, so that a crowd costs it no more than a few near by.
 
-Every tick adds to a viewer's credit. Its own record and step are always sent; the rest goes to
-steps of the nearest first, and then to records. Where credit falls short, what waits is sent in a
-later tick, and steps are sent of fewer avatars from then on: clients draw the others by the gait
-that is common to all.
+Every tick adds to a viewer's credit. Avatars that come into view or go out of it are told of at
+once, and charged. Its own record and step are always sent; the rest goes to steps of the nearest
+first, and then to records. Where credit falls short, what waits is sent in a later tick, and steps
+are sent of fewer avatars from then on: clients draw the others by the gait that is common to all.
 """
 
 from typing import Final

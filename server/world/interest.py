@@ -19,6 +19,7 @@ from esplanade.server.world.compiled._interest_kernels import (
     look,
     settle_all,
 )
+from esplanade.server.world.compiled._snapshot_kernels import Budget
 from esplanade.server.world.rules import Rules
 from esplanade.server.world.state import Slots
 
@@ -115,6 +116,18 @@ class Interest:
         here = self._places.keys() & begun.keys()
         places = [self._places[avatar_id] for avatar_id in here]
         self.views.ack[places] = [begun[avatar_id] for avatar_id in here]
+
+    def charge(self, sizes: Mapping[int, int], budget: Budget) -> None:
+        """Charge viewers, by their ids, for bytes beside snapshots and steps.
+
+        Nobody owes more than was to be saved up, so that a newcomer to a crowd sees it move soon.
+        """
+        here = self._places.keys() & sizes.keys()
+        places = [self._places[viewer] for viewer in here]
+        credit = self.views.credit[places]
+        owed = credit - np.array([sizes[viewer] for viewer in here], dtype=np.int64)
+        lowest = np.minimum(credit, budget.refill - budget.most)
+        self.views.credit[places] = np.maximum(owed, lowest)
 
     def sees(self, viewer_id: int, avatar_id: int) -> bool:
         """Whether that viewer has that avatar in view."""

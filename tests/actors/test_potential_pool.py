@@ -1,6 +1,11 @@
 """The pool of potentials that actors are led by."""
 
+import errno
+import mmap
+import sys
+
 import numpy as np
+import pytest
 
 from esplanade.actors.potential_pool import PotentialPool
 from esplanade.planning import Body, Door, LayeredGrid, Scene
@@ -53,12 +58,37 @@ def test_rows_in_use_stay_while_idle_ones_are_used_again() -> None:
     before = guides.arrays[kept].copy()
     for k in range(200):
         guides.release(guides.take((0.5 + 0.01 * k, 1.0, 0.0, BODY)))
-    assert len(guides.arrays) <= 64
+    assert len(guides.users) <= 64
     assert np.array_equal(guides.arrays[kept], before)
     fresh = guides.take((0.5, 1.0, 0.0, BODY))
     assert fresh != kept
     cell = GRID.on_ground([(0.6, 1.1)], [0.0])[1][0]
     assert guides.arrays[fresh, cell, 0] < 0.5
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere rows are copied")
+def test_no_row_is_copied_when_goals_come() -> None:
+    guides = pool()
+    guides.take((1.0, 1.0, 0.0, BODY))
+    before = guides.arrays
+    for k in range(300):
+        guides.take((0.5 + 0.01 * k, 1.0, 0.0, BODY))
+    assert guides.arrays is before
+    assert len(guides.users) == 300
+
+
+def test_rows_are_copied_where_there_is_no_address_space(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOMEM, "Cannot allocate memory")
+
+    monkeypatch.setattr(mmap, "mmap", refused)
+    guides = pool()
+    kept = guides.take((3.0, 3.0, 0.0, BODY))
+    before = guides.arrays[kept].copy()
+    rows = [guides.take((0.5 + 0.01 * k, 1.0, 0.0, BODY)) for k in range(40)]
+    assert len(set(rows)) == 40
+    assert np.array_equal(guides.arrays[kept], before)
+    assert len(guides.arrays) < 100
 
 
 def test_nobodys_row_may_be_given_back() -> None:
@@ -159,10 +189,10 @@ def test_a_renewed_potential_that_nobody_knows_any_more_is_void() -> None:
 
 
 def test_goals_that_are_prepared_get_their_rows_at_once() -> None:
-    """Room is made once for all of them, and no more than may be kept idle."""
+    """No more rows are taken than may be kept idle."""
     guides, few = pool(), [(0.5 + 0.1 * k, 1.0, 0.0, BODY) for k in range(12)]
     guides.prepare(few, threads=2)
-    assert len(guides.arrays) == 12
+    assert len(guides.users) == 12
     for x, y, z_m, body in few:
         row = guides.take((x, y, z_m, body))
         assert np.array_equal(
@@ -170,4 +200,4 @@ def test_goals_that_are_prepared_get_their_rows_at_once() -> None:
         )
     many = pool()
     many.prepare([(0.3 + 0.05 * k, 2.0, 0.0, BODY) for k in range(60)], threads=2)
-    assert len(many.arrays) == 33
+    assert len(many.users) == 33

@@ -83,6 +83,27 @@ def test_a_crowd_costs_a_viewer_no_more_than_its_budget(viewer_bytes: int) -> No
         assert len([who for who in people[1:] if feet[who] > 5]) < 40, "feet of all cost too much"
 
 
+def test_comings_into_view_and_goings_out_of_it_are_charged() -> None:
+    """In a stream of people who come by, a viewer is sent no more than where nobody does."""
+    viewer_bytes, seconds = 4000, 20
+    trial = Trial(scene=FIELD, view_limit=24, steps_limit=20, viewer_bytes=viewer_bytes)
+    people = crowd(trial, 60)
+    sizes, changes = [], 0
+    for tick in range(round(seconds / TICK_S)):
+        wishes = [
+            Steer(who, tick, 2.1 * who + (math.pi if tick // 40 % 2 else 0.0), 2.4)
+            for who in people[1:]
+            if tick % 40 == 0
+        ]
+        news = trial.tick(*wishes)
+        came, went = news.entered.get(people[0], []), news.left.get(people[0], [])
+        changes += len(came) + len(went)
+        sizes.append(bytes_of(news, people[0]) + sum(map(len, came)) + 3 * len(went))
+    assert changes > 100
+    settled = sizes[100:]
+    assert sum(settled) <= 1.02 * viewer_bytes * len(settled) * TICK_S
+
+
 def test_far_avatars_are_told_of_five_times_a_second_and_near_ones_always() -> None:
     trial = Trial(scene=FIELD, view_limit=100, steps_limit=0)
     people = crowd(trial, 30)
