@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from esplanade.server.assets import Assets
 from esplanade.server.commanding import shipped_presets
 from esplanade.server.console.console import Console
-from esplanade.server.console.gate import Gate
+from esplanade.server.console.gate import Gate, Operated
 from esplanade.server.crowding import warn_of_crowding
 from esplanade.server.entrances import make_gate, people_url, private_certificate
 from esplanade.server.keeping import keeping
@@ -137,7 +137,8 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
         await served.build(to_serve, meshes)
 
         def show_operators() -> None:
-            gate.console, gate.live = served.first.console, served.first.live
+            zones = served.zones.items()
+            gate.zones = {name: Operated(zone.console, zone.live) for name, zone in zones}
 
         show_operators()
         served.changed.append(show_operators)
@@ -151,7 +152,7 @@ async def running(settings: ServerSettings, assets: Assets | None = None) -> Asy
             yield Running(_port_of(sockets), private, settings, served, metrics, kept, gate)
         finally:
             readiness.close()
-            gate.console = gate.live = None
+            gate.zones = {}
 
 
 def _port_of(sockets: Sequence[socket.socket]) -> int:

@@ -12,14 +12,14 @@ from esplanade.server.accounts.sessions import Sessions
 from esplanade.server.accounts.tokens import Tokens
 from esplanade.server.audit.log import AuditLog
 from esplanade.server.moderation.state import ModerationState
-from esplanade.server.store.sql_store import SqlStore
+from esplanade.server.store.store import Store
 
 
 @dataclass(frozen=True)
 class Kept:
     """The store of a server, and all that stands on it."""
 
-    store: SqlStore
+    store: Store
     audit: AuditLog
     passwords: Passwords
     lockout: Lockout

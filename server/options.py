@@ -360,7 +360,6 @@ def check(given: Mapping[str, Any]) -> None:
 
 
 _SAID_BY_WORLD: Final = ("scene", "crowd", "roster")
-_OF_ONE_ZONE: Final = ("data", "store", "fresh", "trajectories")
 
 
 def _check_world(given: Mapping[str, Any]) -> None:
@@ -369,9 +368,6 @@ def _check_world(given: Mapping[str, Any]) -> None:
     for name in _SAID_BY_WORLD:
         if given.get(name) is not None:
             raise ValueError(f"world and {name}: the world's file says that for each zone")
-    for name in _OF_ONE_ZONE:
-        if given.get(name):
-            raise ValueError(f"world and {name}: only a world of one zone is kept or recorded")
 
 
 def _check_trajectories(given: Mapping[str, Any]) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 import structlog
 
 from esplanade.server.checkpoint.errors import WHAT_HELPS, CheckpointError
-from esplanade.server.checkpoint.ids import Block
+from esplanade.server.checkpoint.ids import Block, reserve
 from esplanade.server.checkpoint.parts import Parts, with_faults_told
 from esplanade.server.checkpoint.restoring import restored
 from esplanade.server.checkpoint.returning import Left, those_left
@@ -38,6 +38,8 @@ class Recovery:
     """The number that ticks go on from."""
     tail: Tail = field(default_factory=Tail)
     left: Left = field(default_factory=Left)
+    replaces: bool = False
+    """Whether the world takes the place of one that runs, and is kept only once that has ended."""
 
     @property
     def people(self) -> list[Returning]:
@@ -45,8 +47,11 @@ class Recovery:
         return [Returning(seat.avatar, seat.name, seat.place) for seat, _ in self.left.waiting]
 
 
-async def read_recovery(kept: Kept, settings: ServerSettings, loaded: LoadedScene) -> Recovery:
-    """Read what the store has of the time before this start.
+async def read_recovery(
+    kept: Kept, settings: ServerSettings, loaded: LoadedScene, *, goes_on: bool = True
+) -> Recovery:
+    """Read what the store has of the time before this start; nothing but new ids for a zone that
+    takes the place of one that runs, and does not go on from before.
 
     Raises
     ------
@@ -59,6 +64,10 @@ async def read_recovery(kept: Kept, settings: ServerSettings, loaded: LoadedScen
     scene = SceneKey.of(loaded.scene.name, described, loaded.triangles)
     if kept.store.location.in_memory:
         return Recovery(scene, Parts())
+    if not goes_on:
+        world = kept.store.world
+        ids = await kept.store.write(lambda connection: reserve(connection, world))
+        return Recovery(scene, Parts(), ids, replaces=True)
     found = await restored(kept.store, scene, fresh=settings.fresh)
     parts = found.parts or {}
     if found.parts is not None and not {"zone", "console", "seats"} <= parts.keys():

@@ -14,6 +14,7 @@ from esplanade.server.metrics import Metrics
 from esplanade.server.net.hub import Hub
 from esplanade.server.net.persistence import Persistence, watch
 from esplanade.server.recovery import Recovery, tell_the_lost
+from esplanade.server.world.actor_travel import ActorTravel
 from esplanade.server.world.zone import Zone
 
 log = structlog.get_logger(__name__)
@@ -36,6 +37,7 @@ async def resume(
     hub: Hub,
     persistence: Persistence,
     thread: Executor,
+    travel: ActorTravel | None = None,
 ) -> Console:
     """The console, with everything where the audit says that it was when the server ended.
 
@@ -51,6 +53,8 @@ async def resume(
     console.begun = kept.started
     hub.restore(recovery.left)
     parts.part("zone", console.zone.save)
+    if travel is not None:
+        parts.part("travel", travel.save, travel.load)
     parts.part("seats", hub.save_seats)
     parts.part("mutes", hub.moderation.mutes.save, hub.moderation.mutes.load)
     parts.part("console", console.save, console.load)
@@ -61,6 +65,8 @@ async def resume(
         await console.ongoing.resume(recovery.tail.going_on)
         await tell_the_lost(recovery, kept)
         log.info("goes on", tick=console.zone.tick, people=len(recovery.left.waiting))
+    elif recovery.replaces:
+        persistence.hold()
     else:
         await persistence.begin()
     return console

@@ -17,6 +17,7 @@ from esplanade.server.net.hops import Destination, Hops
 from esplanade.server.net.names import Names
 from esplanade.server.net.surroundings import MOST_NUMBERS, Surroundings
 from esplanade.server.served_zone import Process, ServedZone, served_zone
+from esplanade.server.world.actor_travel import bring_together
 from esplanade.server.world.zone import ROOM_FOR_ACTORS
 from esplanade.server.zones import ZoneToServe, described_portals, without_actors
 
@@ -69,6 +70,7 @@ class ServedWorld:
         for zone in to_serve:
             self.zones[zone.name] = await self._build(zone, scenes, meshes[zone.name])
         self._join()
+        bring_together([zone.travel for zone in self.zones.values() if zone.travel is not None])
 
     def open(self) -> None:
         """Let all zones tick."""
@@ -127,7 +129,7 @@ class ServedWorld:
         made: dict[str, ServedZone] = {}
         try:
             for zone in changed:
-                made[zone.name] = await self._build(without_actors(zone), scenes, {})
+                made[zone.name] = await self._build(without_actors(zone), scenes, {}, replaces=True)
         except BaseException:
             for name, before in readings.items():
                 self._metrics.read_again(name, before)
@@ -157,7 +159,12 @@ class ServedWorld:
         )
 
     async def _build(
-        self, zone: ZoneToServe, scenes: Mapping[str, Scene], mesh: Mapping[str, str]
+        self,
+        zone: ZoneToServe,
+        scenes: Mapping[str, Scene],
+        mesh: Mapping[str, str],
+        *,
+        replaces: bool = False,
     ) -> ServedZone:
         metrics, surroundings = self._metrics, None
         if zone.name:
@@ -166,13 +173,12 @@ class ServedWorld:
                 raise LoadingError("scenes were changed too often; start anew")
             metrics = self._metrics.of_zone(zone.name)
             go = partial(self._hops.begin, zone.name)
-            is_first = zone.name == next(iter(self._to_serve))
             portals = zone.loaded.scene.portals
-            surroundings = Surroundings(number, self._names, portals, go, is_first)
+            surroundings = Surroundings(number, self._names, portals, go)
         described: dict[str, Any] = {**described_portals(zone, scenes), **mesh}
         stack = AsyncExitStack()
         served = await stack.enter_async_context(
-            served_zone(zone, self._process, metrics, described, surroundings)
+            served_zone(zone, self._process, metrics, described, surroundings, replaces=replaces)
         )
         self._stacks[served] = stack
         return served
@@ -213,6 +219,7 @@ class ServedWorld:
         except TimeoutError:
             log.warning("not everybody has come into the changed scene", zone=name)
         self.front_door.lead_to([zone.hub for zone in self.zones.values()], and_no_more=True)
-        await old.close()
+        await old.close(replaced=True)
         await self._stacks.pop(old).aclose()
+        new.keep_from_now()
         log.info("scene changed", zone=name, people=new.hub.people)

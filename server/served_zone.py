@@ -35,6 +35,7 @@ from esplanade.server.watching import watch_routes, watch_world
 from esplanade.server.world.actor_travel import ActorTravel
 from esplanade.server.world.audience import Audience
 from esplanade.server.world.zone import Zone
+from esplanade.server.zone_keeping import kept_of
 from esplanade.server.zones import ZoneToServe, check_portals
 
 
@@ -94,17 +95,21 @@ class ServedZone:
         if self.travel is not None:
             self.travel.open((), {})
 
-    async def close(self) -> None:
+    def keep_from_now(self) -> None:
+        """Keep the zone, which has taken the place of one that has ended."""
+        self._ticker.keep_from_now()
+
+    async def close(self, *, replaced: bool = False) -> None:
         """Stop, keep what is to outlast the process, and say goodbye to everyone.
 
-        A fault that has ended the ticks is raised.
+        Of one that was replaced the other one is kept. A fault that has ended the ticks is raised.
         """
         self.stop()
         in_order = False
         try:
             if self.ticking is not None:
                 await self.ticking
-            in_order = True
+            in_order = not replaced
         finally:
             await self._ticker.keep(in_order=in_order)
             await self.hub.close()
@@ -135,11 +140,14 @@ async def served_zone(
     metrics: Metrics,
     described: Mapping[str, object],
     surroundings: Surroundings | None = None,
+    *,
+    replaces: bool = False,
 ) -> AsyncIterator[ServedZone]:
     """Build a zone and all that it is served by; it does not tick yet.
 
     `described` holds what a welcome says of the scene beside what is in its file; without
-    `surroundings` the zone is the whole world.
+    `surroundings` the zone is the whole world. If it `replaces` a zone that runs, it begins without
+    what is kept, and is kept once it is told so.
 
     Raises
     ------
@@ -149,11 +157,12 @@ async def served_zone(
         What is to be kept cannot be.
     """
     settings, loaded = zone.settings, zone.loaded
-    kept, loop = process.kept, asyncio.get_running_loop()
+    loop = asyncio.get_running_loop()
     async with AsyncExitStack() as stack:
+        kept = await stack.enter_async_context(kept_of(process.kept, zone.name))
         thread = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="actors"))
-        recovery = await read_recovery(kept, settings, loaded)
-        if surroundings is not None:
+        recovery = await read_recovery(kept, settings, loaded, goes_on=not replaces)
+        if surroundings is not None and recovery.ids is None:
             recovery = replace(recovery, ids=surroundings.ids)
         population, world, storeys = await loop.run_in_executor(
             thread, build_world, loaded, settings, recovery
@@ -189,6 +198,7 @@ async def served_zone(
             hub.moderation.lines,
         )
         bulletin = Bulletin()
+        travel = None if surroundings is None else ActorTravel(world)
         console = await resume(
             await stack.enter_async_context(
                 commanding(
@@ -200,6 +210,7 @@ async def served_zone(
             hub,
             persistence,
             thread,
+            travel,
         )
         deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
         ticker = (
@@ -219,15 +230,11 @@ async def served_zone(
             .planning(settings.planning_interval)
             .sparing(process.long_lived)
         )
-        travel = None
-        if surroundings is not None:
-            travel = ActorTravel(world)
+        if travel is not None:
             ticker.with_travel(travel)
             metrics.total("actors_came", "Actors who came from other zones", partial(_came, travel))
         live = live_view(world, storeys, console, hub, metrics, settings, bulletin)
-        if surroundings is None or surroundings.is_first:
-            # Of several zones, operators see the one that newcomers enter.
-            ticker.tap = live.tap
+        ticker.tap = live.tap
         ticker.trajectories = await stack.enter_async_context(
             trajectories_kept(settings, loaded, world, metrics, live.bulletin)
         )

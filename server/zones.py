@@ -106,6 +106,7 @@ def _zone(world: World, place: int, settings: ServerSettings) -> ZoneToServe:
             "scene": world.paths[entry.name],
             "actors": settings.actors if entry.actors is None else entry.actors,
             "max_clients": min(entry.people or settings.max_clients, settings.max_clients),
+            "trajectories": _of_zone(settings.trajectories, entry.name),
         }
     )
     loaded = load_scene(own)
@@ -119,3 +120,8 @@ def _zone(world: World, place: int, settings: ServerSettings) -> ZoneToServe:
         world.exits_of_actors(entry.name),
         world.arrivals(entry.name),
     )
+
+
+def _of_zone(path: Path | None, zone: str) -> Path | None:
+    """The file of one zone, where each writes one of its own."""
+    return None if path is None else path.with_stem(f"{path.stem}-{zone}")

@@ -16,7 +16,7 @@ from esplanade.server.checkpoint.rows import (
     read_seats,
 )
 from esplanade.server.checkpoint.scene import SceneKey
-from esplanade.server.store.sql_store import SqlStore
+from esplanade.server.store.store import Store
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Restored:
     seats: list[KeptSeat] = field(default_factory=list)
 
 
-async def restored(store: SqlStore, scene: SceneKey, *, fresh: bool) -> Restored:
+async def restored(store: Store, scene: SceneKey, *, fresh: bool) -> Restored:
     """Read what a world is to go on from; with `fresh`, take it away.
 
     Raises
@@ -52,7 +52,7 @@ async def restored(store: SqlStore, scene: SceneKey, *, fresh: bool) -> Restored
             raise CheckpointError(
                 f"{store.location}: a seat cannot be read ({error}): {WHAT_HELPS}"
             ) from error
-        return reserve(connection, zone), kept, seats
+        return reserve(connection, store.world), kept, seats
 
     ids, kept, seats = await store.write(work)
     if kept is None:
@@ -68,7 +68,7 @@ async def restored(store: SqlStore, scene: SceneKey, *, fresh: bool) -> Restored
     return Restored(ids, kept.tick, parts, seats)
 
 
-def _check(kept: KeptCheckpoint, scene: SceneKey, store: SqlStore) -> None:
+def _check(kept: KeptCheckpoint, scene: SceneKey, store: Store) -> None:
     where = f"{store.location}: the checkpoint"
     if kept.format != FORMAT:
         raise CheckpointError(

@@ -23,21 +23,22 @@ def those_left(
 ) -> Left:
     """The seats of the store that are still somebody's, those that have waited longest first.
 
-    `saved` is what the hub knew of seats at the checkpoint: a seat from before that it does not
-    name was given up. The time that the server was down does not count.
+    `saved` is what the hub knew of seats at the checkpoint: those that were given up, though the
+    store did not know that yet, and for how long others had waited. The time that the server was
+    down does not count.
 
     Raises
     ------
     ValueError, KeyError, TypeError
         `saved` is not what the hub saves.
     """
-    next_id, vacant = (0, {}) if saved is None else (int(saved["next_id"]), saved["vacant_s"])
+    given_up, vacant = ((), {}) if saved is None else (saved.get("given_up", ()), saved["vacant_s"])
     waiting: list[tuple[KeptSeat, float]] = []
     gone = []
     for seat in seats:
         waited_s = float(vacant.get(seat.avatar) or 0.0)
-        is_given_up = seat.avatar < next_id and seat.avatar not in vacant
-        if is_given_up or seat.avatar in sent_out or not 0.0 <= waited_s < resume_s:
+        is_gone = seat.avatar in given_up or seat.avatar in sent_out
+        if is_gone or not 0.0 <= waited_s < resume_s:
             gone.append(seat.avatar)
         else:
             waiting.append((seat, waited_s))

@@ -22,6 +22,8 @@ class _Change:
     make: Callable[[Connection], Any]
     done: "asyncio.Future[bool] | None"
     """None for a change that nobody waits for: it is tried until it is made."""
+    removes: int | None = None
+    """The avatar whose seat it takes away."""
 
 
 class SeatKeeper:
@@ -33,6 +35,7 @@ class SeatKeeper:
     def __init__(self, store: Store) -> None:
         self._store = store
         self._waiting: list[_Change] = []
+        self._given_up: set[int] = set()
         self._writing: asyncio.Task[None] | None = None
         self._stopped = False
 
@@ -40,6 +43,16 @@ class SeatKeeper:
     def waiting(self) -> int:
         """Changes of seats that wait for the store."""
         return len(self._waiting)
+
+    @property
+    def zone(self) -> str:
+        """The zone that the keys of the seats name."""
+        return self._store.zone
+
+    @property
+    def given_up(self) -> list[int]:
+        """The avatars whose seats are to be taken away, and are not yet."""
+        return sorted(self._given_up)
 
     def add(self, seat: KeptSeat) -> "asyncio.Future[bool]":
         """Write a new seat; done once it is committed, with False if that cannot be."""
@@ -68,7 +81,18 @@ class SeatKeeper:
     def remove(self, avatar: int) -> None:
         """Take a seat away, soon."""
         zone = self._store.zone
-        self._put(_Change(lambda connection: remove_seat(connection, zone, avatar), None))
+        self._given_up.add(avatar)
+        self._put(_Change(lambda connection: remove_seat(connection, zone, avatar), None, avatar))
+
+    def bring(self, seat: KeptSeat, before: str) -> None:
+        """Write, soon, that a seat is in this zone now, and no more in the one of before."""
+        zone = self._store.zone
+
+        def make(connection: Connection) -> None:
+            remove_seat(connection, before, seat.avatar)
+            add_seat(connection, zone, seat)
+
+        self._put(_Change(make, None))
 
     async def stop(self) -> None:
         """Write what waits, and nothing of what comes later: seats outlive the server."""
@@ -110,6 +134,7 @@ class SeatKeeper:
                     _answer(changes, made)
                     await asyncio.sleep(PAUSE_S)
                     continue
+            self._given_up.difference_update(change.removes or 0 for change in changes)
             _answer(changes, made)
 
 

@@ -34,6 +34,7 @@ from esplanade.server.console.routing import (
     told,
 )
 from esplanade.server.console.trace_api import router as traces
+from esplanade.server.console.zones_api import router as zones
 from esplanade.server.live.names import stand_in
 
 
@@ -57,7 +58,8 @@ def add_api(app: FastAPI, gate: Gate) -> None:
     """Let an application answer operators."""
     app.state.gate = gate
     # Paths of the live views below an actor's go before the actor's own.
-    for each in (live, traces, sockets, router, kept, people, auth, accounts, admission, verifying):
+    of_zone = live, traces, sockets, zones, router, kept, people
+    for each in (*of_zone, auth, accounts, admission, verifying):
         app.include_router(each)
     add_refusals(app)
 

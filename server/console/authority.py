@@ -28,7 +28,7 @@ class Authority:
         name = account
         try:
             role = await self._store.read(
-                lambda connection: role_of(connection, self._store.zone, name)
+                lambda connection: role_of(connection, self._store.world, name)
             )
         except AccountError:
             return None

@@ -25,7 +25,7 @@ from esplanade.server.console.scheduler import Scheduler
 from esplanade.server.console.settling import Settling
 from esplanade.server.console.state import OperatedState
 from esplanade.server.console.tick_inputs import TickInputs
-from esplanade.server.store.sql_store import SqlStore
+from esplanade.server.store.store import Store
 from esplanade.server.world.frame import Frame
 from esplanade.server.world.inputs import Input
 from esplanade.server.world.pace import Pace
@@ -44,7 +44,7 @@ class Console:
         self,
         zone: Zone,
         moderation: Moderation,
-        store: SqlStore,
+        store: Store,
         audit: AuditLog,
         overrides: Overrides | None = None,
         presets: Presets | None = None,

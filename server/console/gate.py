@@ -1,9 +1,11 @@
-"""The gate between operators' requests and the zone: the way to the zone's event loop."""
+"""The gate between operators' requests and the zones: the way to the zones' event loop."""
 
 import asyncio
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Mapping
+from copy import copy
+from dataclasses import dataclass
 from http import HTTPStatus
-from typing import Any, Final, TypeVar
+from typing import Any, Final, NamedTuple, TypeVar
 
 from esplanade.server.console.brakes import Brakes
 from esplanade.server.console.callers import Callers
@@ -21,8 +23,20 @@ def _no_link(host: str) -> str:
     raise RefusedError.of("busy", f"the port for people is not open yet, at {host} or elsewhere")
 
 
+class Operated(NamedTuple):
+    """What operators do with a zone, and see of it."""
+
+    console: Console
+    live: Live
+
+
+@dataclass
+class _Requests:
+    under_way: int = 0
+
+
 class Gate:
-    """Lets requests of the private port's thread through to the console in the zone's loop."""
+    """Lets requests of the private port's thread through to the consoles in the zones' loop."""
 
     def __init__(
         self,
@@ -42,13 +56,53 @@ class Gate:
         """Whether browsers may send cookies of this port over encrypted connections only."""
         self.people_url = people_url
         """The address of people's port, as seen by whoever has reached this one by a name."""
-        self.console: Console | None = None
-        """None until the world is built, and again when it ends."""
-        self.live: Live | None = None
-        """As `console`."""
-        self._zone = zone
-        self.under_way = 0
-        """Requests that wait for the zone."""
+        self.zones: Mapping[str, Operated] = {}
+        """The zones by their names, that which newcomers enter first; none until the world is
+        built, and again when it ends."""
+        self._loop = zone
+        self._requests = _Requests()
+        self._whole: Gate = self
+        self._name: str | None = None
+
+    def at(self, zone: str | None) -> "Gate":
+        """The same gate for requests about one zone; without a name, that which newcomers enter.
+
+        Raises
+        ------
+        RefusedError
+            There is no such zone.
+        """
+        if zone is None:
+            return self._whole
+        zones = self._whole.zones
+        if zones and zone not in zones:
+            text = f"there is no zone {zone}; there are: {', '.join(zones)}"
+            raise RefusedError.of("no_such_zone", text, zone=zone)
+        view = copy(self._whole)
+        view._name = zone  # noqa: SLF001 - of this class
+        return view
+
+    @property
+    def name(self) -> str:
+        """The name of the zone; empty for one that is the whole world, and while there is none."""
+        return next(iter(self._whole.zones), "") if self._name is None else self._name
+
+    @property
+    def console(self) -> Console | None:
+        """The console of the zone; None until the world is built, and again when it ends."""
+        operated = self._whole.zones.get(self.name)
+        return None if operated is None else operated.console
+
+    @property
+    def live(self) -> Live | None:
+        """The live views of the zone, as `console`."""
+        operated = self._whole.zones.get(self.name)
+        return None if operated is None else operated.live
+
+    @property
+    def under_way(self) -> int:
+        """Requests that wait for the world."""
+        return self._requests.under_way
 
     async def call(self, work: Callable[[Console], Coroutine[Any, Any, Result]]) -> Result:
         """Do some work on the zone's loop, and return its result.
@@ -65,13 +119,13 @@ class Gate:
             raise RefusedError.of("busy", "the world is not ready")
         if self.under_way >= MOST_UNDER_WAY:
             raise RefusedError.of("busy", f"{MOST_UNDER_WAY} requests wait already")
-        self.under_way += 1
-        running = asyncio.wrap_future(asyncio.run_coroutine_threadsafe(work(console), self._zone))
+        self._requests.under_way += 1
+        running = asyncio.wrap_future(asyncio.run_coroutine_threadsafe(work(console), self._loop))
         running.add_done_callback(self._ended)
         return await asyncio.shield(running)
 
     def _ended(self, running: "asyncio.Future[Any]") -> None:
-        self.under_way -= 1
+        self._requests.under_way -= 1
         if not running.cancelled():
             running.exception()  # whoever asked may be gone
 
@@ -91,6 +145,7 @@ STATUS: Final = {
     "last_admin": HTTPStatus.CONFLICT,
     "unknown_account": HTTPStatus.NOT_FOUND,
     "unknown_token": HTTPStatus.NOT_FOUND,
+    "no_such_zone": HTTPStatus.NOT_FOUND,
     "unknown": HTTPStatus.NOT_FOUND,
     "conflict": HTTPStatus.CONFLICT,
     "taken": HTTPStatus.CONFLICT,

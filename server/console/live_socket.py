@@ -12,7 +12,6 @@ from starlette.websockets import WebSocketDisconnect
 from esplanade.server.accounts.identity import Identity
 from esplanade.server.accounts.rights import Right
 from esplanade.server.console import callers
-from esplanade.server.console.gate import Gate
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.console.routing import PREFIX, REFUSALS, Guarded, caller, gate_of, may
 from esplanade.server.live.live import MOST_SUBSCRIBERS, Live
@@ -33,9 +32,9 @@ router = APIRouter(prefix=PREFIX, route_class=Guarded, responses=REFUSALS)
 @router.websocket("/live")
 async def live_socket(socket: WebSocket) -> None:
     """Tell a console what it subscribes to, for as long as it may watch and reads."""
-    gate: Gate = socket.app.state.gate
-    live = gate.live
     try:
+        gate = gate_of(socket)
+        live = gate.live
         standing = await gate.callers.at_socket(socket)
     except (RefusedError, StoreError):
         await socket.close()  # before it is accepted this answers 403

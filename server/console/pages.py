@@ -3,9 +3,12 @@
 from collections.abc import Mapping
 from http import HTTPStatus
 from typing import Final, Protocol
+from urllib.parse import quote
 
 from fastapi import FastAPI, Request, Response
 from starlette.responses import RedirectResponse
+
+from esplanade.server.console.zone_paths import zone_of
 
 
 class Found(Protocol):
@@ -51,9 +54,11 @@ def add_pages(app: FastAPI, files: Files) -> None:
     Nobody needs to be logged in to load them: there is nothing secret in them.
     """
 
-    async def to_page(_: Request) -> Response:
+    async def to_page(request: Request) -> Response:
         # Without the last slash the page would look for its files one level above.
-        return RedirectResponse(PAGE, HTTPStatus.PERMANENT_REDIRECT)
+        zone = zone_of(request.scope)
+        before = "" if zone is None else f"/zones/{quote(zone)}"
+        return RedirectResponse(before + PAGE, HTTPStatus.PERMANENT_REDIRECT)
 
     async def page(request: Request) -> Response:
         rest = request.path_params.get("rest", "")

@@ -13,8 +13,7 @@ from esplanade.server.audit.log import AuditLog
 from esplanade.server.console.audit_tail import BEGUN
 from esplanade.server.console.operated_rows import OperatedRow, write_rows
 from esplanade.server.console.planned import Planned
-from esplanade.server.store.sql_store import SqlStore
-from esplanade.server.store.store import StoreError
+from esplanade.server.store.store import Store, StoreError
 
 log = structlog.get_logger(__name__)
 
@@ -22,7 +21,7 @@ log = structlog.get_logger(__name__)
 class Records:
     """Writes rows about commands; those of one list are committed together."""
 
-    def __init__(self, store: SqlStore, audit: AuditLog) -> None:
+    def __init__(self, store: Store, audit: AuditLog) -> None:
         self._store = store
         self._audit = audit
 

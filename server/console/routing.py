@@ -10,6 +10,7 @@ from fastapi.responses import JSONResponse
 from fastapi.routing import APIRoute
 from pydantic import BaseModel
 from starlette.exceptions import HTTPException
+from starlette.requests import HTTPConnection
 
 from esplanade.protocol.commands import CommandFault
 from esplanade.server.accounts.identity import AccountError, Identity
@@ -18,6 +19,7 @@ from esplanade.server.accounts.rights import Right
 from esplanade.server.console.console import Console
 from esplanade.server.console.gate import Gate, status_of
 from esplanade.server.console.refusals import RefusedError
+from esplanade.server.console.zone_paths import zone_of
 from esplanade.server.store.store import StoreError
 
 PREFIX: Final = "/api/v1"
@@ -72,10 +74,16 @@ class Open(APIRoute):
         return opened
 
 
-def gate_of(request: Request) -> Gate:
-    """The gate of the application that a request came to."""
+def gate_of(request: HTTPConnection) -> Gate:
+    """The gate to the zone that a request is about.
+
+    Raises
+    ------
+    RefusedError
+        There is no such zone.
+    """
     gate: Gate = request.app.state.gate
-    return gate
+    return gate.at(zone_of(request.scope))
 
 
 def caller(request: Request) -> Identity:

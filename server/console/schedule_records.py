@@ -12,7 +12,7 @@ from esplanade.server.audit.log import AuditLog
 from esplanade.server.console.guards import Guard
 from esplanade.server.console.operated_rows import GUARDS, SCHEDULES, OperatedRow, write_rows
 from esplanade.server.console.schedules import Schedule
-from esplanade.server.store.sql_store import SqlStore
+from esplanade.server.store.store import Store
 
 _WORDS: Final = {
     "missed": "was missed",
@@ -26,7 +26,7 @@ class ScheduleRecords:
     """Writes schedules and guards into the store. `tell` tells the listeners of the console."""
 
     def __init__(
-        self, store: SqlStore, audit: AuditLog, tell: Callable[[str, dict[str, Any]], None]
+        self, store: Store, audit: AuditLog, tell: Callable[[str, dict[str, Any]], None]
     ) -> None:
         self._store = store
         self._audit = audit

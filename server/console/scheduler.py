@@ -23,8 +23,7 @@ from esplanade.server.console.schedule_records import (
 )
 from esplanade.server.console.schedules import LATE_S, Schedule
 from esplanade.server.console.settling import UnkeptError
-from esplanade.server.store.sql_store import SqlStore
-from esplanade.server.store.store import StoreError
+from esplanade.server.store.store import Store, StoreError
 
 if TYPE_CHECKING:
     from esplanade.server.console.console import Console
@@ -47,7 +46,7 @@ class Scheduler:
         console: "Console",
         figures: Figures,
         contacts: ContactRate,
-        store: SqlStore,
+        store: Store,
         audit: AuditLog,
         clock_us: Callable[[], int],
     ) -> None:

@@ -160,24 +160,26 @@ def regrouped(change: Mapping[str, Any]) -> list[str]:
     ]
 
 
-async def beating(live_of: Callable[[], Live | None]) -> None:
-    """Beat for as long as a server runs; `live_of` gives the live views once there are any."""
+async def beating(views: Callable[[], Sequence[Live]]) -> None:
+    """Beat for as long as a server runs; `views` gives those of its zones, once there are any."""
     loop = asyncio.get_running_loop()
     due = loop.time()
-    before: Live | None = None
+    before: Sequence[Live] = ()
     while True:
         # Beats that cannot be had in time are left out.
         due = max(due + 1.0 / BEATS_A_SECOND, loop.time())
         await asyncio.sleep(due - loop.time())
-        live = live_of()
-        if live is None:
+        now = views()
+        if not now:
             continue
-        if before is not None and before is not live:
-            before.dismiss()
-        before = live
-        try:
-            live.beat()
-        except Exception:
-            # The view of operators may lack something then; the world is not touched by it.
-            log.exception("live views failed")
-            live.tap.begin_anew()
+        for live in before:
+            if live not in now:
+                live.dismiss()
+        before = now
+        for live in now:
+            try:
+                live.beat()
+            except Exception:
+                # The view of operators may lack something then; the world is not touched by it.
+                log.exception("live views failed")
+                live.tap.begin_anew()

@@ -1,18 +1,17 @@
 """The metrics of live views."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from esplanade.server.live.live import Live
 from esplanade.server.metrics import Metrics
 
 
-def watch_live(metrics: Metrics, live_of: Callable[[], Live | None]) -> None:
-    """Add figures of the live views, which are there only while a world is."""
+def watch_live(metrics: Metrics, views: Callable[[], Iterable[Live]]) -> None:
+    """Add figures of the live views of all zones, which are there only while a world is."""
 
     def figure(read: Callable[[Live], float]) -> Callable[[], float]:
         def value() -> float:
-            live = live_of()
-            return 0.0 if live is None else read(live)
+            return sum(map(read, views()))
 
         return value
 

@@ -254,6 +254,7 @@ class Hub:
             muted,
             None if since_s is None else self._run_for_s(self.now_s) - since_s,
             silent_s,
+            self._seating.kept_in,
         )
 
     def where(self, avatar_id: int) -> Point:

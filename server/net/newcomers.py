@@ -60,6 +60,15 @@ class Newcomers:
         found = self._waiting.pop(ticket, None)
         return None if found is None else found[0]
 
+    def refused(self) -> list[Session]:
+        """Those whom the zone has not let in, though it was asked to: it had no place for them.
+
+        Call it when `let_in` was called for all whom a tick has let in; they wait no more.
+        """
+        waiting = [ticket for ticket in self._asked if ticket in self._waiting]
+        self._asked.clear()
+        return [self._waiting.pop(ticket)[0] for ticket in waiting]
+
     def drop(self, session: Session) -> bool:
         """Let somebody wait no more; whether they did."""
         return self._waiting.pop(session.ticket, None) is not None

@@ -34,6 +34,7 @@ class Persistence:
         self._store = store
         self.seats = seats
         self._writer = writer
+        self._held = False
         self._reserving: asyncio.Task[None] | None = None
         self._reserved: list[Block] = []
 
@@ -47,9 +48,17 @@ class Persistence:
             self._reserving = asyncio.create_task(self._reserve())
         return [IdsReserved(block.first, block.end) for block in reserved]
 
+    def hold(self) -> None:
+        """Take no checkpoints until `go_on`."""
+        self._held = True
+
+    def go_on(self) -> None:
+        """Take checkpoints again."""
+        self._held = False
+
     def between_ticks(self, now_s: float) -> None:
         """Take a checkpoint, if one is due."""
-        if self._writer is not None:
+        if self._writer is not None and not self._held:
             self._writer.between_ticks(self._zone.tick, now_s)
 
     async def begin(self) -> None:
@@ -64,13 +73,13 @@ class Persistence:
         if self._reserving is not None:
             self._reserving.cancel()
         if self._writer is not None:
-            await self._writer.end(self._zone.tick if in_order else None)
+            await self._writer.end(self._zone.tick if in_order and not self._held else None)
 
     async def _reserve(self) -> None:
-        zone = self._store.zone
+        world = self._store.world
         try:
             self._reserved.append(
-                await self._store.write(lambda connection: reserve(connection, zone))
+                await self._store.write(lambda connection: reserve(connection, world))
             )
         except StoreError as error:
             log.error("no ids can be reserved", fault=str(error))  # noqa: TRY400

@@ -27,3 +27,5 @@ class Person:
     """For how long the avatar has waited for its person; None for one who is there."""
     silent_s: float
     """For how many seconds nobody hears the person yet, since an operator has muted them."""
+    kept_in: str = ""
+    """The zone that the store's row of the seat names; empty where nothing is kept."""

@@ -21,6 +21,7 @@ from esplanade.server.console.gate import Gate
 from esplanade.server.console.pages import add_pages
 from esplanade.server.console.refusals import RefusedError
 from esplanade.server.console.routing import PREFIX, answer_to
+from esplanade.server.console.zone_paths import ZonePaths
 from esplanade.server.live.live import beating
 from esplanade.server.live.metrics import watch_live
 from esplanade.server.metrics import Metrics
@@ -69,7 +70,7 @@ async def private_port(
         lambda: gate.callers.origins.refused,
     )
     loop = asyncio.get_running_loop()
-    watch_live(metrics, lambda: gate.live)
+    watch_live(metrics, lambda: [each.live for each in gate.zones.values()])
     app = operators_api(Figures(metrics, loop), readiness, gate, assets)
     opened: Future[tuple[int, Callable[[], object]]] = Future()
     serve = partial(_serve, app, gate, settings.private_host, settings.private_port, opened, tls)
@@ -97,7 +98,9 @@ async def _serve(
         async with serving(app, host, port, tls) as number:
             stop = partial(asyncio.get_running_loop().call_soon_threadsafe, stopping.set)
             opened.set_result((number, stop))
-            pulse = asyncio.create_task(beating(lambda: gate.live))
+            pulse = asyncio.create_task(
+                beating(lambda: [each.live for each in gate.zones.values()])
+            )
             await stopping.wait()
             pulse.cancel()
     except OSError as error:
@@ -162,6 +165,7 @@ def operators_api(figures: Figures, readiness: Readiness, gate: Gate, assets: As
     async def exposition(_: Request) -> Response:
         return Response(await figures.text(), headers=_UNCACHED, media_type=METRICS_TYPE)
 
+    app.add_middleware(ZonePaths)
     app.add_route("/healthz", alive)
     app.add_route("/readyz", is_ready)
     app.add_route("/metrics", exposition)

@@ -109,6 +109,11 @@ class Seating:
         return session in self._newcomers
 
     @property
+    def kept_in(self) -> str:
+        """The zone that rows of seats in the store name; empty where nothing is kept."""
+        return "" if self._keeper is None else self._keeper.zone
+
+    @property
     def people(self) -> int:
         """Those who have a seat, who wait to join, or for whom a place is kept."""
         return len(self.seats) + len(self._newcomers) + len(self._arrivals)
@@ -133,6 +138,9 @@ class Seating:
             self.seats.walks_in(avatar_id, session.operator)
             session.avatar_id = avatar_id
             self._keep_new(session, avatar_id)
+        for session in self._newcomers.refused():
+            self._names.give_back(session.name)
+            self._turn_away(session, "nobody can stand where people come in just now; come again")
         for ticket, avatar_id in frame.attached:
             seat = self.seats.of(avatar_id)
             # Somebody else may have come back to the avatar since; the later one has it.
@@ -246,6 +254,10 @@ class Seating:
         seat: Seat[Session] = Seat(
             person.id, person.name, person.address, session, digests, person.operator
         )
+        if self._keeper is not None:
+            place, own = self._world.where(person.id), tuple(digests)
+            kept = KeptSeat(person.id, person.name, person.address, own, place)
+            self._keeper.bring(kept, person.kept_in)
         if session is None:
             now_s = asyncio.get_running_loop().time()
             self.seats.restore(seat, now_s - (person.waited_s or 0.0))
@@ -317,7 +329,8 @@ class Seating:
     def save_seats(self) -> dict[str, Any]:
         """The seats there are, and for how long each has waited; their rows say whose they are."""
         now = asyncio.get_running_loop().time()
-        return {"next_id": self._world.state.next_id, "vacant_s": self.seats.vacant_s(now)}
+        given_up = [] if self._keeper is None else self._keeper.given_up
+        return {"given_up": given_up, "vacant_s": self.seats.vacant_s(now)}
 
     def restore(self, left: Left) -> None:
         """Let people come back to seats from before a restart; the world has their avatars."""
@@ -358,6 +371,10 @@ class Seating:
         text = "your seat cannot be kept just now; come again"
         self._unbind(seat)
         self._remove(seat)
+        self._turn_away(session, text)
+
+    def _turn_away(self, session: Session, text: str) -> None:
+        """End the session of somebody who cannot come in now, and tell them why."""
         self._metrics.errors.labels(ErrorCode.SERVER_FULL.value).inc()
         farewell = frames.message(Error(error=ErrorCode.SERVER_FULL, text=text))
         session.dismiss(farewell, CloseCode.SERVER_FULL, ErrorCode.SERVER_FULL.value)

@@ -27,8 +27,6 @@ class Surroundings:
     """The names of people, of whom no two in the world look alike."""
     portals: Sequence[Portal]
     go: Go
-    is_first: bool
-    """Whether newcomers enter it, and operators see it."""
 
     @property
     def ids(self) -> Block:

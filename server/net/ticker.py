@@ -109,6 +109,11 @@ class Ticker:
         """Let the tick that runs be the last."""
         self._stopping.set()
 
+    def keep_from_now(self) -> None:
+        """Keep the zone, which has taken the place of one that has ended."""
+        if self._persistence is not None:
+            self._persistence.go_on()
+
     async def keep(self, *, in_order: bool) -> None:
         """Keep what is to outlast the process, after the last tick."""
         if self._persistence is not None:

@@ -17,9 +17,10 @@ from esplanade.server.moderation import rows as moderation
 from esplanade.server.operating.forgetting_operated import forget_operated
 from esplanade.server.store.store import Store
 from esplanade.server.store.tables import ACCOUNTS, BOTS, CLUSTER_SEATS, INVITATIONS, SEATS
+from esplanade.server.store.zone_store import anywhere_in
 
 Forgetter = Callable[[Connection, str, str], int]
-"""Forgets in a zone a person of this name, within a write of the store; returns how many rows were
+"""Forgets in a world a person of this name, within a write of the store; returns how many rows were
 removed or changed. It asks for no seat, connection or world: those end by themselves when they find
 their rows gone."""
 
@@ -45,7 +46,7 @@ def _forget_bots(connection: Connection, zone: str, person: str) -> int:
 
 def _forget_seats(connection: Connection, zone: str, person: str) -> int:
     """Take away seats that bear the name; a checkpoint knows people by numbers only."""
-    chosen = (SEATS.c.zone == zone, SEATS.c.name == person)
+    chosen = (anywhere_in(SEATS.c.zone, zone), SEATS.c.name == person)
     count = connection.execute(select(func.count()).where(*chosen)).scalar() or 0
     connection.execute(delete(SEATS).where(*chosen))
     return count

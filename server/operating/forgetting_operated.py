@@ -6,6 +6,7 @@ from typing import Any
 from sqlalchemy import Connection, select, update
 
 from esplanade.server.store.tables import OPERATED
+from esplanade.server.store.zone_store import anywhere_in
 
 
 def forget_operated(connection: Connection, zone: str, person: str) -> int:
@@ -14,12 +15,13 @@ def forget_operated(connection: Connection, zone: str, person: str) -> int:
     What has no name acts for nobody: a schedule is refused when it is due. Returns how many rows
     were changed.
     """
-    query = select(OPERATED.c.part, OPERATED.c.name, OPERATED.c.body).where(OPERATED.c.zone == zone)
+    columns = OPERATED.c.zone, OPERATED.c.part, OPERATED.c.name, OPERATED.c.body
+    query = select(*columns).where(anywhere_in(OPERATED.c.zone, zone))
     count = 0
-    for part, name, text in connection.execute(query).all():
+    for there, part, name, text in connection.execute(query).all():
         body = json.loads(text)
         if _without(body, person):
-            key = {"zone": zone, "part": part, "name": name}
+            key = {"zone": there, "part": part, "name": name}
             connection.execute(update(OPERATED).filter_by(**key).values(body=json.dumps(body)))
             count += 1
     return count

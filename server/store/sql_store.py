@@ -48,6 +48,11 @@ class SqlStore:
         self._closed = False
 
     @property
+    def world(self) -> str:
+        """As `zone`: this is the store of a whole world."""
+        return self.zone
+
+    @property
     def waiting(self) -> int:
         """Changes and reads that wait or are under way."""
         return self._writes.waiting + self._reads_waiting

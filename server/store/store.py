@@ -1,14 +1,17 @@
 """The interface of stores for the rest of the server."""
 
 from collections.abc import Callable
-from typing import Final, Protocol, TypeVar
+from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 
 from sqlalchemy import Connection
+
+if TYPE_CHECKING:
+    from esplanade.server.store.location import Location
 
 Result = TypeVar("Result")
 
 ZONE: Final = "main"
-"""The zone that every key names; there is one so far."""
+"""The zone that keys name where there is one, and for all that the zones of a world share."""
 
 
 class StoreError(Exception):
@@ -43,8 +46,18 @@ class Store(Protocol):
     """
 
     @property
+    def location(self) -> "Location":
+        """The place where the tables are."""
+        ...
+
+    @property
     def zone(self) -> str:
         """The zone that keys name."""
+        ...
+
+    @property
+    def world(self) -> str:
+        """The zone that keys name of what all zones of a world share, such as accounts."""
         ...
 
     async def read(self, query: Callable[[Connection], Result]) -> Result:

@@ -23,6 +23,8 @@ from esplanade.server.world.zone import Zone
 
 _TOLD: tuple[str, ...] = ("world", "people")
 """Groups of settings that make a world what it is; others may hold secrets."""
+_SAID_BY_WORLD = frozenset(("scene", "actors", "max_clients"))
+"""Settings of a zone that the file of its world has."""
 
 log = structlog.get_logger(__name__)
 
@@ -93,6 +95,8 @@ def command_of(settings: ServerSettings) -> str:
     for group in _TOLD:
         for name, setting in SETTINGS.groups[group].items():
             value = getattr(settings, name)
+            if settings.world is not None and name in _SAID_BY_WORLD:
+                continue
             if value != setting.default:
                 text = value.name if isinstance(value, Path) else f"{value}"
                 words += [f"--{name.replace('_', '-')}", "yes" if value is True else text]

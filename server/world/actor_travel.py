@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import count
+from typing import Any, Final
 
 import structlog
 
@@ -15,7 +16,11 @@ from esplanade.server.world.inputs import ActorCommand, AddActors, HoldActors, R
 from esplanade.server.world.outcomes import Fault, FaultCode
 from esplanade.server.world.routes import Point
 from esplanade.server.world.state import ACTOR
+from esplanade.server.world.travels import Gone, Lately
 from esplanade.server.world.zone import Zone
+
+REMEMBERED_S: Final = 60.0
+"""Comings and goings are remembered for so long: checkpoints of zones are of different moments."""
 
 log = structlog.get_logger(__name__)
 
@@ -52,6 +57,9 @@ class ActorTravel:
         self._under_way: set[str] = set()
         self.came = 0
         """Actors who have come from other zones."""
+        self._lately = Lately()
+        self.before = Lately()
+        """What the checkpoint knows that the world goes on from."""
 
     def open(
         self, portals: Iterable[Portal], exits: Mapping[str, tuple["ActorTravel", Point]]
@@ -79,7 +87,7 @@ class ActorTravel:
         """Return the inputs of the next tick."""
         for actor, portal in self._newly_inside():
             if actor not in self._under_way:
-                self._send(actor, *self._exits[portal])
+                self._send(actor, *self._exits[portal], portal)
         expected, self._expected = self._expected, []
         for traveller in expected:
             self._take_in(traveller)
@@ -94,6 +102,40 @@ class ActorTravel:
             traveller = self._asked.pop(outcome.command, None)
             if traveller is not None:
                 self._end(traveller, outcome.fault)
+
+    # --- restarts -----------------------------------------------------------------------------
+
+    def save(self) -> dict[str, Any]:
+        """Who is on the way, and has come or gone lately, as plain data."""
+        self._lately.forget(self._world.tick - round(REMEMBERED_S / self._world.tick_s))
+        return {"under_way": sorted(self._under_way), **self._lately.save()}
+
+    def load(self, saved: Mapping[str, Any]) -> None:
+        """Take in what the zone that goes on had saved, before the first tick.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            It is not what `save` gives.
+        """
+        self.before = Lately.load(saved)
+        waiting = tuple(str(actor) for actor in saved["under_way"] if actor in self._world.actors)
+        if waiting:
+            self._world.redo([HoldActors(next(self._numbers), waiting, held=False)])
+
+    def has(self, actor: str) -> bool:
+        """Whether the actor is in this zone."""
+        return actor in self._world.actors
+
+    def give_up(self, actor: str) -> None:
+        """Take an actor out that is in another zone, before the first tick."""
+        self._world.redo([RemoveActors(next(self._numbers), (actor,))])
+
+    def find_again(self, gone: "Gone") -> None:
+        """Let an actor come out of a portal once more by which it had gone."""
+        if gone.portal in self._exits:
+            to = self._exits[gone.portal][0]
+            to.expect(Traveller(gone.spec, gone.parameters, lambda _: None))
 
     def _newly_inside(self) -> list[tuple[str, str]]:
         """The actors who have come into a portal since the last look, and its name."""
@@ -114,20 +156,24 @@ class ActorTravel:
         self._inside = set(here)
         return came
 
-    def _send(self, actor: str, to: "ActorTravel", arrival: Point) -> None:
+    def _send(self, actor: str, to: "ActorTravel", arrival: Point, portal: str = "") -> None:
         self._under_way.add(actor)
         spec = self._world.actors[actor].model_copy(update={"place": arrival, "near": True})
         self._inputs.append(HoldActors(next(self._numbers), (actor,), held=True))
+
+        parameters = self._world.parameters(actor)
 
         def ended(fault: Fault | None) -> None:
             number = next(self._numbers)
             self._under_way.discard(actor)
             if fault is None:
+                self._lately.gone[actor] = Gone(self._world.tick, portal, spec, parameters)
+                self._lately.came.pop(actor, None)
                 self._inputs.append(RemoveActors(number, (actor,)))
             else:
                 self._inputs.append(HoldActors(number, (actor,), held=False))
 
-        to.expect(Traveller(spec, self._world.parameters(actor), ended))
+        to.expect(Traveller(spec, parameters, ended))
 
     def _take_in(self, traveller: Traveller) -> None:
         command = self._command(traveller)
@@ -150,5 +196,25 @@ class ActorTravel:
         if fault is None:
             self.came += 1
             self._inside.add(traveller.spec.id)
+            self._lately.came[traveller.spec.id] = self._world.tick
+            self._lately.gone.pop(traveller.spec.id, None)
             log.info("actor has travelled", actor=traveller.spec.id)
         traveller.ended(fault)
+
+
+def bring_together(zones: Sequence[ActorTravel]) -> None:
+    """Let each actor of a world that goes on be in one of its zones, before the first tick.
+
+    Checkpoints of zones are of different moments, so that an actor that was on its way may be in
+    two of them, or in none. It is where it had come to last.
+    """
+    gone = {actor: (zone, one) for zone in zones for actor, one in zone.before.gone.items()}
+    came = {actor for zone in zones for actor in zone.before.came}
+    for actor in sorted(came | gone.keys()):
+        found = [zone for zone in zones if zone.has(actor)]
+        if not found and actor not in came:
+            origin, one = gone[actor]
+            origin.find_again(one)
+        found.sort(key=lambda zone: (actor in zone.before.came, actor not in zone.before.gone))
+        for other in found[:-1]:
+            other.give_up(actor)

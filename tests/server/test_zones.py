@@ -32,7 +32,7 @@ def test_a_scene_alone_is_the_whole_world(room_file: Path) -> None:
     assert (zone.name, dict(zone.exits)) == ("", {})
 
 
-@pytest.mark.parametrize("other", ["scene", "crowd", "roster", "data", "trajectories"])
+@pytest.mark.parametrize("other", ["scene", "crowd", "roster"])
 def test_what_a_world_of_several_zones_cannot_have_is_refused(tmp_path: Path, other: str) -> None:
     path = tmp_path / ("x.csv" if other == "trajectories" else "x.json")
     with pytest.raises(ValueError, match=f"world and {other}: "):

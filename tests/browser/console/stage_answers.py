@@ -26,6 +26,9 @@ def answers(
             return {"account": ACCOUNT, "role": "admin", "rights": rights, "via": "session"}
         case "world":
             return _world(tick, actors, people)
+        case "zones":
+            zone = {"name": "", "scene": "stage", "people": people, "actors": actors}
+            return {"here": "", "zones": [zone]}
         case "map":
             return ground()
         case "heat":

@@ -11,8 +11,8 @@ def seats(*avatars: int) -> list[KeptSeat]:
     return [KeptSeat(one, f"p{one}", "", (), (0.0, 0.0, 0.0)) for one in avatars]
 
 
-def test_seats_from_before_are_those_that_the_checkpoint_names() -> None:
-    saved = {"next_id": 10, "vacant_s": {3: None, 4: 12.0, 5: 30.0}}
+def test_seats_that_were_given_up_are_gone_though_the_store_has_them() -> None:
+    saved = {"given_up": [2], "vacant_s": {3: None, 4: 12.0, 5: 30.0}}
     left = those_left(seats(2, 3, 4, 5, 11), saved, sent_out=set(), resume_s=30.0, most=9)
     assert [(seat.avatar, waited_s) for seat, waited_s in left.waiting] == [
         (4, 12.0), (3, 0.0), (11, 0.0)
@@ -26,7 +26,7 @@ def test_those_who_were_sent_out_after_it_are_gone() -> None:
 
 
 def test_of_too_many_those_who_waited_longest_are_gone() -> None:
-    saved = {"next_id": 10, "vacant_s": {1: 3.0, 2: 9.0, 3: None}}
+    saved = {"given_up": [], "vacant_s": {1: 3.0, 2: 9.0, 3: None}}
     left = those_left(seats(1, 2, 3), saved, sent_out=set(), resume_s=30.0, most=2)
     assert ([seat.avatar for seat, _ in left.waiting], left.gone) == ([1, 3], [2])
 

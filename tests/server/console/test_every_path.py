@@ -32,6 +32,7 @@ class Row(NamedTuple):
 PATHS: Final[dict[tuple[str, str], Row]] = {
     ("GET", "/schema"): Row(Right.WATCH),
     ("GET", "/world"): Row(Right.WATCH),
+    ("GET", "/zones"): Row(Right.WATCH),
     ("GET", "/actors"): Row(Right.WATCH),
     ("GET", "/actors/{actor_id:path}"): Row(Right.WATCH),
     ("GET", "/people"): Row(Right.WATCH),

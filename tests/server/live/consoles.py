@@ -92,10 +92,12 @@ class LiveConsole:
 
 
 @asynccontextmanager
-async def live_console(port: int, token: str, **options: Any) -> AsyncIterator[LiveConsole]:
-    """A console with an open socket."""
+async def live_console(
+    port: int, token: str, path: str = "", **options: Any
+) -> AsyncIterator[LiveConsole]:
+    """A console with an open socket; the path is that of a zone."""
     async with connect(
-        f"ws://127.0.0.1:{port}/api/v1/live",
+        f"ws://127.0.0.1:{port}{path}/api/v1/live",
         additional_headers={"Authorization": f"Bearer {token}", **options.pop("headers", {})},
         compression=None,
         **options,

@@ -11,6 +11,7 @@ import structlog
 from esplanade.protocol import VERSION, CloseCode, ErrorCode, encode
 from esplanade.protocol.messages import Error, Hello, Ping, Pong, Snapshot, Welcome
 from esplanade.server.net.operator_keys import WRONG_KEYS
+from esplanade.server.world.spawning import NoRoomError
 from tests.server.client import PLACING_KEY, Client, connected, joined
 from tests.server.conftest import Serving
 
@@ -36,6 +37,26 @@ async def test_vacant_seats_yield_to_newcomers_when_the_world_is_full(serving: S
             async with connected(server.port) as late:
                 await late.send(Hello(name="Late", version=VERSION))
                 assert await late.refusal() == ("server_full", CloseCode.SERVER_FULL)
+
+
+async def test_whoever_finds_no_place_to_stand_is_told_so(
+    serving: Serving, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with serving() as server, joined(server.port, "Ann") as ann:
+
+        def nowhere(*_: object) -> None:
+            raise NoRoomError("no place is left")
+
+        with monkeypatch.context() as patch:
+            patch.setattr(server.world._spawning, "place", nowhere)
+            async with connected(server.port) as ben:
+                await ben.send(Hello(name="Ben", version=VERSION))
+                assert await ben.refusal() == ("server_full", CloseCode.SERVER_FULL)
+        # The name is free again, and those who are in notice nothing.
+        async with joined(server.port, "Ben") as again:
+            assert again.welcome is not None
+            assert again.welcome.name == "Ben"
+            await ann.wait_for(lambda: again.id in ann.entities)
 
 
 async def test_a_seat_that_was_given_up_is_a_new_avatar(serving: Serving) -> None:

@@ -4,6 +4,8 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import type { AppContext } from "../context";
 import { type Layout, readLayout, usualLayout, writeLayout } from "../layout/layout";
 import { keepFile, openFile } from "../models/files";
+import { pageOfZone } from "../net/addresses";
+import type { Zones } from "../net/types";
 import { PANELS } from "../panels/registry";
 import { Watching } from "../state/signal";
 import { controls } from "../style/controls";
@@ -73,6 +75,20 @@ class TopBar extends LitElement {
         text-align: left;
       }
 
+      details > div a {
+        display: block;
+        padding: 4px 9px;
+        border-radius: 6px;
+        color: var(--ink);
+        text-decoration: none;
+        white-space: nowrap;
+      }
+
+      details > div a:hover,
+      details > div a[aria-current] {
+        background: var(--raised);
+      }
+
       @media (max-width: 759px) {
         .wide {
           display: none;
@@ -94,6 +110,12 @@ class TopBar extends LitElement {
         summary {
           padding: 3px 6px;
         }
+
+        /* It is the first menu, and would open beyond the left edge. */
+        details.zones > div {
+          right: auto;
+          left: 0;
+        }
       }
     `,
   ];
@@ -112,6 +134,7 @@ class TopBar extends LitElement {
     new Watching(this, () => [
       this.app.state.world,
       this.app.state.me,
+      this.app.state.zones,
       this.app.live.phase,
       this.app.avatars.roster,
     ]);
@@ -120,6 +143,7 @@ class TopBar extends LitElement {
   protected override render(): TemplateResult {
     const { state, live, avatars } = this.app;
     const world = state.world.value;
+    const several = state.zones.value && state.zones.value.zones.length > 1 && state.zones.value;
     const on = live.phase.value === "on";
     const people = [...avatars.byId.values()].filter(({ kind }) => kind === "person").length;
     return html`
@@ -131,12 +155,13 @@ class TopBar extends LitElement {
         >
         ${
           world
-            ? html`<span class="wide">${world.scene}</span>
+            ? html`${several ? nothing : html`<span class="wide">${world.scene}</span>`}
                 <span class="wide">${avatars.byId.size - people} actors, ${people} people</span>
                 ${this.pace()}`
             : nothing
         }
       </div>
+      ${several ? this.menu(world?.scene ?? "Zones", this.zones(several), "zones") : nothing}
       ${this.menu("Panels", this.panels())} ${this.menu("Layout", this.layouts())}
       <button class="plain" @click=${() => this.dispatchEvent(new Event("copylink"))}>
         Copy link
@@ -160,11 +185,22 @@ class TopBar extends LitElement {
     return html`<strong class="warn">${pace.paused ? "paused" : `${pace.factor} ×`}</strong>`;
   }
 
-  private menu(name: string, content: unknown): TemplateResult {
-    return html`<details @focusout=${closeOutside} @keydown=${closeByKey}>
+  private menu(name: string, content: unknown, kind = ""): TemplateResult {
+    return html`<details class=${kind} @focusout=${closeOutside} @keydown=${closeByKey}>
       <summary>${name}</summary>
       <div>${content}</div>
     </details>`;
+  }
+
+  /** The zones of the world, each with a link to its own page. */
+  private zones({ here, zones }: Zones): TemplateResult[] {
+    const page = new URL(window.location.href);
+    return zones.map(
+      ({ name, scene, people, actors }) =>
+        html`<a href=${pageOfZone(page, name)} aria-current=${name === here ? "page" : nothing}>
+          ${scene} <span class="soft">${name}, ${people} people, ${actors} actors</span>
+        </a>`,
+    );
   }
 
   private panels(): TemplateResult[] {

@@ -3,7 +3,7 @@
 import type { AppContext } from "../context";
 import type { MapMessage } from "../map/avatars";
 import { RefusedError } from "../net/api";
-import type { World } from "../net/types";
+import type { World, Zones } from "../net/types";
 import type { Stop } from "../state/signal";
 
 const AGAIN_MS = 5000;
@@ -16,8 +16,12 @@ export function watchWorld(app: AppContext): Stop {
   let settling: ReturnType<typeof setTimeout> | undefined;
   const ask = async (): Promise<void> => {
     try {
-      const world = await api.get<World>("/world");
+      const [world, zones] = await Promise.all([
+        api.get<World>("/world"),
+        api.get<Zones>("/zones"),
+      ]);
       state.world.value = world;
+      state.zones.value = zones;
       state.revision.value = world.revision;
     } catch (error) {
       if (!(error instanceof RefusedError)) throw error;

@@ -29,7 +29,7 @@ export class Api {
   comeBack: () => Promise<boolean> = () => Promise.resolve(false);
 
   constructor(
-    /** The address of the interface, which ends with /api/v1. */
+    /** The address of the interface, which ends with /api/v1, or with a zone behind that. */
     readonly base: string,
     private readonly fetch: typeof globalThis.fetch = (...given) => globalThis.fetch(...given),
   ) {}

@@ -36,6 +36,19 @@ export interface Fault {
 
 export type Point = readonly [x: number, y: number, z: number];
 
+/** A zone of the world; the interface of another one is behind `/api/v1/zones/NAME`. */
+export interface ZoneFacts {
+  name: string;
+  scene: string;
+  people: number;
+  actors: number;
+}
+
+export interface Zones {
+  here: string;
+  zones: readonly ZoneFacts[];
+}
+
 export interface World {
   zone: string;
   scene: string;

@@ -1,6 +1,6 @@
 /** The state that the parts of the page share. */
 
-import type { Me, World } from "../net/types";
+import type { Me, World, Zones } from "../net/types";
 import type { Overlay } from "./overlays";
 import type { Picking } from "./picking";
 import { Signal } from "./signal";
@@ -14,6 +14,7 @@ export interface Draft {
 export class State {
   readonly me = new Signal<Me | null>(null);
   readonly world = new Signal<World | null>(null);
+  readonly zones = new Signal<Zones | null>(null);
   /** Ids of actors (`main/actor-1`), or of people (`person:12`); the first one is inspected. */
   readonly chosen = new Signal<readonly string[]>([]);
   /** A moment under the pointer in one panel, which the others show too; microseconds since 1970. */
