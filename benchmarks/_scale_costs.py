@@ -1,0 +1,45 @@
+"""What a second of a simulated world costs, by the measured constants."""
+
+from typing import NamedTuple
+
+import numpy as np
+from benchmarks._scale_constants import Constants
+from benchmarks._scale_world import Second
+
+
+class Costs(NamedTuple):
+    """Cores, and bytes and transactions a second."""
+
+    zone_cores: float
+    gateway_cores: float
+    inside_bytes: float
+    """Between hosts and gateways, through the broker once."""
+    out_bytes: float
+    """From gateways to people."""
+    commits: float
+    checkpoint_bytes: float
+
+
+def costs_of(second: Second, constants: Constants) -> Costs:
+    """The costs of a second."""
+    one, people = constants, float(second.in_zone.sum())
+    zones, used = len(second.in_zone), float((second.in_zone > 0).sum())
+    ticks = one.tick_hz
+    frames = second.frames
+    made = one.frame_make_us * people + one.message_us * used
+    tick = one.zone_tick_us * zones + one.zone_person_us * people
+    read = one.frame_read_us * second.frame_people + one.message_us * frames
+    seen = np.minimum(second.in_zone - 1, one.most_seen).clip(min=0)
+    viewer_bytes = np.minimum(
+        one.lone_viewer_bytes_s + one.seen_avatar_bytes_s * seen, one.viewer_bytes_s
+    )
+    frame_bytes = one.frame_head_bytes * frames + one.frame_avatar_bytes * second.frame_people
+    upward = one.inputs_s * one.input_bytes * people
+    return Costs(
+        zone_cores=1e-6 * ticks * (tick + made),
+        gateway_cores=1e-6 * ticks * (read + one.viewer_us * people),
+        inside_bytes=ticks * frame_bytes + upward,
+        out_bytes=float((viewer_bytes * second.in_zone).sum()),
+        commits=2.0 * used / one.renew_s + one.hop_commits * second.hops + second.moves,
+        checkpoint_bytes=one.checkpoint_person_bytes * people / one.renew_s,
+    )
