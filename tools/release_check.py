@@ -14,6 +14,7 @@ LEGS: Final = {
     "audit": "known faults of what uv.lock names",
     "lowest": "tests with the oldest releases that pyproject.toml allows",
     "pythons": "an installed wheel on every Python, alone and among strangers",
+    "image": "the image, built and run in a root folder until it is healthy",
 }
 
 
