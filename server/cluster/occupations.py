@@ -31,6 +31,10 @@ class Occupations:
     def __contains__(self, person: int) -> bool:
         return person in self._by_person
 
+    def of(self, person: int) -> Occupation | None:
+        """The newest occupation of a person's seat that is known."""
+        return self._by_person.get(person)
+
     def attach(self, person: int, generation: int, gateway: str, now_s: float) -> bool:
         """Let a gateway's client steer; returns False if a newer one does, or this one has left.
 

@@ -5,11 +5,13 @@ goes to another zone, its number of hops does. Whoever names an older number cha
 """
 
 import secrets
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
+from itertools import islice
 from typing import Any, Final
 
-from sqlalchemy import ColumnElement, Connection, Row, delete, insert, or_, select, update
+from sqlalchemy import ColumnElement, Connection, Row, delete, func, insert, or_, select, update
+from sqlalchemy.exc import IntegrityError
 
 from esplanade.server.accounts.identity import digest_of
 from esplanade.server.cluster.database_time import NOW_US
@@ -17,6 +19,8 @@ from esplanade.server.cluster.ownership import Moment, assert_owned
 from esplanade.server.cluster.tenure import Claim
 from esplanade.server.store.tables import CLUSTER_SEATS
 
+NAMES_TOGETHER: Final = 64
+"""So many names are looked up at once."""
 _TOKEN_BYTES: Final = 24
 
 
@@ -37,13 +41,22 @@ class ClusterSeat:
 
 
 def take(
-    connection: Connection, zone: str, name: str, gateway: str, state: bytes
+    connection: Connection,
+    zone: str,
+    name: str,
+    gateway: str,
+    state: bytes,
+    skeleton: str | None = None,
 ) -> tuple[ClusterSeat, str]:
-    """Make a seat for a new person; returns it with the token that takes it again."""
+    """Make a seat for a new person; returns it with the token that takes it again.
+
+    No two people have the same `skeleton`, the form that names which look alike have in common.
+    """
     token = _new_token()
     row = {
         "zone": zone,
         "name": name,
+        "skeleton": skeleton,
         "newest": digest_of(token),
         "hops": 0,
         "generation": 1,
@@ -52,6 +65,34 @@ def take(
     }
     made = connection.execute(insert(CLUSTER_SEATS).values(row).returning(CLUSTER_SEATS)).one()
     return _seat(made), token
+
+
+def take_named(
+    connection: Connection, zone: str, names: Iterable[tuple[str, str]], gateway: str, state: bytes
+) -> tuple[ClusterSeat, str]:
+    """Make a seat for a new person under the first of some names that nobody has.
+
+    `names` go on for ever, each with its skeleton.
+    """
+    endless = iter(names)
+    while True:
+        tried = list(islice(endless, NAMES_TOGETHER))
+        chosen = select(CLUSTER_SEATS.c.skeleton)
+        skeletons = [skeleton for _, skeleton in tried]
+        taken = set(
+            connection.execute(chosen.where(CLUSTER_SEATS.c.skeleton.in_(skeletons))).scalars()
+        )
+        for name, skeleton in tried:
+            if skeleton in taken:
+                continue
+            savepoint = connection.begin_nested()
+            try:
+                made = take(connection, zone, name, gateway, state, skeleton)
+            except IntegrityError:  # another gateway was quicker
+                savepoint.rollback()
+                continue
+            savepoint.commit()
+            return made
 
 
 def resume(
@@ -171,6 +212,19 @@ def seat_of(connection: Connection, person: int) -> ClusterSeat | None:
     chosen = select(CLUSTER_SEATS).where(CLUSTER_SEATS.c.person == person)
     row = connection.execute(chosen).one_or_none()
     return None if row is None else _seat(row)
+
+
+def seats_of(connection: Connection, persons: Collection[int]) -> list[ClusterSeat]:
+    """The seats of those of some persons who have one, in whatever zone."""
+    chosen = select(CLUSTER_SEATS).where(CLUSTER_SEATS.c.person.in_(persons))
+    return [_seat(row) for row in connection.execute(chosen.order_by(CLUSTER_SEATS.c.person))]
+
+
+def people_by_zone(connection: Connection) -> dict[str, int]:
+    """How many seats each zone has that has any."""
+    zone = CLUSTER_SEATS.c.zone
+    rows = connection.execute(select(zone, func.count()).group_by(zone))
+    return {row[0]: int(row[1]) for row in rows}
 
 
 def seats_in(connection: Connection, zone: str) -> list[ClusterSeat]:

@@ -3,7 +3,8 @@
 What looking alike means is said in `esplanade.server.moderation.skeletons`.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from itertools import count
 from typing import Final, NamedTuple
 
 from esplanade.protocol.codes import MAX_NAME_CHARS
@@ -29,6 +30,29 @@ class _Given(NamedTuple):
     number: int
 
 
+def check_reserved(wished: str) -> str:
+    """The skeleton of a name that somebody wishes.
+
+    Raises
+    ------
+    ReservedNameError
+        Nobody may bear that name.
+    """
+    letters = "".join(char for char in wished if char.isalpha())
+    wished_skeleton = skeleton(wished)
+    if {wished_skeleton, skeleton(letters)} & _RESERVED_SKELETONS:
+        raise ReservedNameError(f"the name {wished!r} is kept for the world itself")
+    return wished_skeleton
+
+
+def like(wished: str) -> Iterator[tuple[str, str]]:
+    """The name that somebody wishes, and then that with " 2" and so on; each with its skeleton."""
+    yield wished, skeleton(wished)
+    for number in count(2):
+        name = _numbered(wished, number)
+        yield name, skeleton(name)
+
+
 class Names:
     """The names that are taken in one world."""
 
@@ -51,10 +75,7 @@ class Names:
         ReservedNameError
             Nobody may bear that name.
         """
-        letters = "".join(char for char in wished if char.isalpha())
-        wished_skeleton = skeleton(wished)
-        if {wished_skeleton, skeleton(letters)} & _RESERVED_SKELETONS:
-            raise ReservedNameError(f"the name {wished!r} is kept for the world itself")
+        wished_skeleton = check_reserved(wished)
         numbers = self._numbers.setdefault(wished_skeleton, set())
         number, name, key = 1, wished, wished_skeleton
         while number in numbers or key in self._taken:

@@ -16,10 +16,14 @@ BUSY_MS: Final = 10_000
 _POSTGRESQL_OPTIONS: Final = f"-c lock_timeout={BUSY_MS} -c timezone=UTC"
 
 
-def writing_engine(location: Location, *, durable: bool, zone: str) -> Engine:
+def writing_engine(
+    location: Location, *, durable: bool, zone: str, idle_ms: int | None = None
+) -> Engine:
     """An engine for transactions that change something, one after the other for a zone.
 
     With `durable`, what is committed survives a loss of power too, not only that of the process.
+    A database ends a transaction in which nothing was asked for `idle_ms`: that of a process which
+    stands still holds nobody up.
 
     Raises
     ------
@@ -32,8 +36,10 @@ def writing_engine(location: Location, *, durable: bool, zone: str) -> Engine:
         return engine
     engine = _postgresql(location)
     kept = "on" if durable else "local"
+    idle = [] if idle_ms is None else [f"SET LOCAL idle_in_transaction_session_timeout = {idle_ms}"]
     _on_begin(
         engine,
+        *idle,
         f"SET LOCAL synchronous_commit = {kept}",
         f"SELECT pg_advisory_xact_lock({zlib.crc32(zone.encode())})",
     )

@@ -28,7 +28,14 @@ class SqlStore:
     thread that writes.
     """
 
-    def __init__(self, location: Location, *, durable: bool = False, zone: str = ZONE) -> None:
+    def __init__(
+        self,
+        location: Location,
+        *,
+        durable: bool = False,
+        zone: str = ZONE,
+        idle_ms: int | None = None,
+    ) -> None:
         """Begin threads; nothing is connected yet. `open_store` also sees to the tables.
 
         Raises
@@ -38,7 +45,7 @@ class SqlStore:
         """
         self.location = location
         self.zone = zone
-        self.engine = writing_engine(location, durable=durable, zone=zone)
+        self.engine = writing_engine(location, durable=durable, zone=zone, idle_ms=idle_ms)
         self._reading: Engine | None = None if location.in_memory else reading_engine(location)
         self._writes = WritingThread(self.engine, location)
         self._reads = ThreadPoolExecutor(READERS, thread_name_prefix="store-reads")
@@ -116,9 +123,14 @@ class SqlStore:
 
 @asynccontextmanager
 async def open_store(
-    location: Location, *, durable: bool = False, upgrading: bool | None = None, zone: str = ZONE
+    location: Location,
+    *,
+    durable: bool = False,
+    upgrading: bool | None = None,
+    zone: str = ZONE,
+    idle_ms: int | None = None,
 ) -> AsyncIterator[SqlStore]:
-    """A store with the tables of this program.
+    """A store with the tables of this program; `idle_ms` is as in `writing_engine`.
 
     An SQLite file is upgraded here; a database, which several servers may use, only where
     `upgrading` says so.
@@ -128,7 +140,7 @@ async def open_store(
     StoreError
         The store cannot be reached, or its tables are older or newer than this program.
     """
-    store = SqlStore(location, durable=durable, zone=zone)
+    store = SqlStore(location, durable=durable, zone=zone, idle_ms=idle_ms)
     try:
         await asyncio.to_thread(
             _see_to_tables, store, location.is_sqlite if upgrading is None else upgrading

@@ -22,7 +22,7 @@ from sqlalchemy import (
     UniqueConstraint,
 )
 
-REVISION: Final = "0006"
+REVISION: Final = "0007"
 """The newest migration: what the tables below are after it."""
 
 METADATA: Final = MetaData()
@@ -317,11 +317,61 @@ CLUSTER_SEATS: Final = Table(
     Column("gateway", String(64)),
     Column("vacated_us", BigInteger),
     Column("state", LargeBinary, nullable=False),
+    Column("skeleton", Text),
     UniqueConstraint("zone", "person", name="cluster_seats_by_zone"),
     Index("cluster_seats_by_name", "zone", "name"),
+    Index("cluster_seats_by_skeleton", "skeleton", unique=True),
 )
 """Seats of people in a world on several machines; each is in one zone.
 
 `newest` and `used` are SHA-256 digests of the tokens that take the seat: the newest one, and the
-one that was used to get it, until the newest has arrived.
+one that was used to get it, until the newest has arrived. No two names have the same skeleton: that
+is what `esplanade.server.moderation.skeletons` makes of a name.
 """
+
+CLUSTER_WORLDS: Final = Table(
+    "cluster_worlds",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("name", Text, nullable=False),
+    Column("subject", String(64), nullable=False),
+    Column("start", String(64), nullable=False),
+    Column("file", Text, nullable=False),
+)
+"""The world of a cluster, one row: the word by which the subjects of its messages begin, the zone
+that newcomers enter, and the name of the world's file among `cluster_files`."""
+
+CLUSTER_FILES: Final = Table(
+    "cluster_files",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("name", String(256), primary_key=True),
+    Column("content", LargeBinary, nullable=False),
+)
+"""The file of the world of a cluster and those of its scenes, by their names."""
+
+CLUSTER_ZONES: Final = Table(
+    "cluster_zones",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("epoch", BigInteger, nullable=False),
+    Column("described", LargeBinary),
+    Column("tick", BigInteger),
+    Column("saved_us", BigInteger),
+    Column("saved", LargeBinary),
+)
+"""The facts of each zone that gateways tell newcomers, and its newest checkpoint: the tick of which
+it is, and when it was written by the clock of the database. Both are of the owner of that epoch."""
+
+CLUSTER_PROCESSES: Final = Table(
+    "cluster_processes",
+    METADATA,
+    Column("zone", String(64), primary_key=True),
+    Column("name", String(64), primary_key=True),
+    Column("kind", String(16), nullable=False),
+    Column("address", Text, nullable=False),
+    Column("seen_us", BigInteger, nullable=False),
+    Column("people", BigInteger, nullable=False),
+    Column("drained", Boolean, nullable=False),
+)
+"""Hosts and gateways that run or have run, when each was last there, and which are to end."""

@@ -20,42 +20,57 @@ REQUIRE_VARIABLE: Final = "ESPLANADE_REQUIRE_POSTGRESQL"
 """With 1, a test that finds no PostgreSQL fails instead of skipping."""
 
 
-@contextmanager
-def postgresql() -> Iterator[str]:
-    """Run a server of its own; yields the address of its first database.
+class PostgresqlServer:
+    """A database server that a test stops and starts again at the same address.
 
     It listens at a socket in its folder only, so that it meets no other and needs no password.
     """
-    binaries = _binaries()
-    owner = _owner()
-    with tempfile.TemporaryDirectory(prefix="esplanade-pg-", dir="/tmp") as name:
-        folder = Path(name)
-        if owner is not None:
-            os.chown(folder, owner.pw_uid, owner.pw_gid)
-        data = folder / "data"
+
+    def __init__(self, folder: Path) -> None:
+        self.address = f"postgresql://esplanade@/postgres?host={folder}"
+        self._binaries = _binaries()
+        self._owner = _owner()
+        self._folder = folder
+        self._data = folder / "data"
+        if self._owner is not None:
+            os.chown(folder, self._owner.pw_uid, self._owner.pw_gid)
         _call(
-            owner,
-            binaries / "initdb",
-            "-D",
-            data,
-            "-A",
-            "trust",
-            "-U",
-            "esplanade",
-            "-N",
-            "-E",
-            "UTF8",
-        )
-        options = f"-k {folder} -c listen_addresses='' -c fsync=off -c max_connections=40"
-        log = folder / "log"
-        _call(
-            owner, binaries / "pg_ctl", "start", "-D", data, "-l", log, "-w",
-            "-t", str(int(PATIENCE_S)), "-o", options,
+            self._owner, self._binaries / "initdb", "-D", self._data, "-A", "trust", "-U",
+            "esplanade", "-N", "-E", "UTF8",
         )  # fmt: skip
+
+    def start(self) -> None:
+        """Begin, and wait until it answers."""
+        options = f"-k {self._folder} -c listen_addresses='' -c fsync=off -c max_connections=60"
+        self._control(
+            "start", "-l", self._folder / "log", "-t", str(int(PATIENCE_S)), "-o", options
+        )
+
+    def stop(self) -> None:
+        """End at once, as if it had crashed."""
+        self._control("stop", "-m", "immediate")
+
+    def _control(self, *words: object) -> None:
+        _call(self._owner, self._binaries / "pg_ctl", words[0], "-D", self._data, "-w", *words[1:])
+
+
+@contextmanager
+def postgresql_server() -> Iterator[PostgresqlServer]:
+    """Run a database server of its own."""
+    with tempfile.TemporaryDirectory(prefix="esplanade-pg-", dir="/tmp") as name:
+        server = PostgresqlServer(Path(name))
+        server.start()
         try:
-            yield f"postgresql://esplanade@/postgres?host={folder}"
+            yield server
         finally:
-            _call(owner, binaries / "pg_ctl", "stop", "-D", data, "-m", "immediate", "-w")
+            server.stop()
+
+
+@contextmanager
+def postgresql() -> Iterator[str]:
+    """Run a server of its own; yields the address of its first database."""
+    with postgresql_server() as server:
+        yield server.address
 
 
 def new_database(address: str) -> str:
