@@ -108,7 +108,8 @@ class FrameReceiver:
         self.refused: Counter[str] = Counter()
         """Frames that were not applied, by why: `stale`, `bad`."""
         self.resyncs: Counter[str] = Counter()
-        """How often the whole state was asked for, by why: `start`, `gap`, `epoch`, `slow`."""
+        """How often the whole state was asked for, by why: `start`, `gap`, `epoch`, `slow`,
+        `bad`."""
 
     async def start(self) -> None:
         """Take in frames from now on, and ask for the whole state."""
@@ -134,6 +135,11 @@ class FrameReceiver:
     async def next(self) -> tuple[FrameKey, Body]:
         """The next frame. A whole state stands for all before it, and ends what was known."""
         return await self._ready.get()
+
+    def begin_anew(self) -> None:
+        """Begin with the whole state again: a frame that came says nothing that can be read."""
+        self._gate.lost()
+        self._begin_anew("bad")
 
     async def _take(self, message: Msg) -> None:
         frame = self._read(self._changes, message)

@@ -26,6 +26,19 @@ class Subjects:
         """Questions to the host of a zone, each with the subject on which it is answered."""
         return f"{self._root}.z.{_checked('zone', zone)}.ask"
 
+    def inputs(self, zone: str) -> str:
+        """The batches of inputs of people, from all gateways to the host of a zone."""
+        return f"{self._root}.z.{_checked('zone', zone)}.in"
+
+    def gateway(self, name: str) -> str:
+        """The answers for people of one gateway, from the hosts of all zones."""
+        return f"{self._root}.g.{_checked('gateway', name)}"
+
+    @property
+    def control(self) -> str:
+        """Hints that something has changed in the database, from any process to all."""
+        return f"{self._root}.ctl"
+
 
 def _checked(kind: str, name: str) -> str:
     if _NAME.fullmatch(name) is None:

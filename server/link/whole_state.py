@@ -1,6 +1,6 @@
 """All that frames have said of a zone: a gateway that has missed some begins anew with it."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any, Final
 
@@ -32,6 +32,23 @@ class WholeState:
         self._records = _Newest(RECORD)
         self._steps = _Newest(STEP)
         self._numbers = (0, 0, 0)
+
+    def __contains__(self, avatar_id: int) -> bool:
+        return avatar_id in self._entered
+
+    @property
+    def doors(self) -> dict[str, bool]:
+        """Whether each door stands open that anything was said of, by name."""
+        return dict(self._doors)
+
+    @property
+    def people(self) -> int:
+        """Number of people in the zone."""
+        return self._numbers[1]
+
+    def begin_with_doors(self, doors: Mapping[str, bool]) -> None:
+        """Take in how all doors stand before the first frame."""
+        self._doors.update(doors)
 
     def take(self, frame: Frame) -> None:
         """Take in the next frame, or a whole one as the first."""
@@ -87,6 +104,11 @@ class WholeState:
         gone = set(left)
         stopped = dict.fromkeys(self._points_at.keys() - whole.events.pointing.keys() - gone)
         pointing: dict[int, Point | None] = {**stopped, **whole.events.pointing}
+        doors = {
+            name: is_open
+            for name, is_open in whole.events.doors.items()
+            if self._doors.get(name) != is_open
+        }
         return replace(
             whole,
             left=left,
@@ -96,7 +118,7 @@ class WholeState:
                 for each in whole.reshaped
                 if self._is_new(each.id, gone) or self._reshaped.get(each.id) != each
             ],
-            events=replace(whole.events, pointing=pointing),
+            events=replace(whole.events, pointing=pointing, doors=doors),
         )
 
     def _is_new(self, avatar_id: int, gone: set[int]) -> bool:

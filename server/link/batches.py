@@ -1,0 +1,135 @@
+"""The inputs of a gateway's people as bytes: one batch for each zone, twenty times a second.
+
+A batch that is lost takes nothing with it that is not said again: the newest movement follows the
+one before, and whom the gateway serves is repeated. All numbers are little-endian.
+"""
+
+import struct
+from dataclasses import dataclass, field
+from typing import Annotated, Any, Final
+
+import msgpack
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, TypeAdapter, ValidationError
+
+from esplanade.protocol.messages import Line, WalkTo
+
+MAGIC: Final = b"EB"
+VERSION: Final = 1
+MOVEMENT: Final = np.dtype(
+    [
+        ("person", "<u4"),
+        ("generation", "<u4"),
+        ("seq", "<u4"),
+        ("direction_rad", "<f8"),
+        ("speed_mps", "<f8"),
+    ]
+)
+"""A person's newest wish to walk, and the occupation of the seat from which it comes."""
+
+MOST_BYTES: Final = 1024 * 1024
+"""No longer batch is read."""
+
+_HEAD: Final = struct.Struct("<2sBxIQQ")
+
+Number = Annotated[int, Field(ge=0, le=2**63 - 1)]
+Held = tuple[Number, Number]
+"""A person, and the generation of the seat."""
+_Rest = tuple[
+    str,  # gateway
+    list[Held],
+    list[tuple[Number, Number, bool]],  # departed
+    list[tuple[Number, Number, WalkTo]],
+    list[tuple[Number, Number, Line]],
+    list[tuple[Number, Number, Number | None]],  # watched
+    list[tuple[Number, Number, str, bool]],  # doors
+    list[Held],  # stood
+]
+_REST: Final = TypeAdapter(_Rest)
+
+
+class BatchError(ValueError):
+    """The bytes are no batch of this version; the message says what is wrong."""
+
+
+@dataclass(frozen=True)
+class Batch:
+    """All that people of one gateway want of one zone since the batch before it."""
+
+    gateway: str
+    """The name of the gateway's process, which no other process has or gets."""
+    number: int
+    """Grows by one with each batch of the gateway for the zone."""
+    epoch: int
+    """The ownership of the zone that the gateway knows; another owner takes nothing of it."""
+    movements: NDArray[np.void] = field(default_factory=lambda: np.zeros(0, dtype=MOVEMENT))
+    held: list[Held] = field(default_factory=list)
+    """Whom the gateway serves: the newest ones in each batch, everyone now and then."""
+    departed: list[tuple[int, int, bool]] = field(default_factory=list)
+    """Persons whose connection has ended, and whether they may come back."""
+    walks: list[tuple[int, int, WalkTo]] = field(default_factory=list)
+    lines: list[tuple[int, int, str]] = field(default_factory=list)
+    watched: list[tuple[int, int, int | None]] = field(default_factory=list)
+    """Actors whose plans somebody wants from now on, or None."""
+    doors: list[tuple[int, int, str, bool]] = field(default_factory=list)
+    """Doors that operators want open or closed."""
+    stood: list[Held] = field(default_factory=list)
+    """Persons whose clients have fallen silent, and whose avatars are to stand."""
+
+
+def encode_batch(batch: Batch) -> bytes:
+    """Return the bytes of a batch."""
+    head = _HEAD.pack(MAGIC, VERSION, len(batch.movements), batch.epoch, batch.number)
+    rest: list[Any] = [
+        batch.gateway,
+        batch.held,
+        batch.departed,
+        [(person, generation, wish.model_dump()) for person, generation, wish in batch.walks],
+        batch.lines,
+        batch.watched,
+        batch.doors,
+        batch.stood,
+    ]
+    packed: bytes = msgpack.packb(rest)
+    return head + batch.movements.tobytes() + packed
+
+
+def decode_batch(message: bytes) -> Batch:
+    """Return the batch that the bytes say.
+
+    Raises
+    ------
+    BatchError
+        They say none.
+    """
+    if not _HEAD.size <= len(message) <= MOST_BYTES:
+        raise BatchError(f"a batch has {_HEAD.size} to {MOST_BYTES} bytes, not {len(message)}")
+    magic, version, count, epoch, number = _HEAD.unpack_from(message)
+    if magic != MAGIC:
+        raise BatchError("the bytes are no batch of inputs")
+    if version != VERSION:
+        raise BatchError(f"the batch has version {version}, and this program reads {VERSION}")
+    end = _HEAD.size + count * MOVEMENT.itemsize
+    if end > len(message):
+        raise BatchError(f"{count} movements do not fit into the batch")
+    movements = np.frombuffer(message, dtype=MOVEMENT, count=count, offset=_HEAD.size)
+    if not (
+        np.isfinite(movements["direction_rad"]).all() and np.isfinite(movements["speed_mps"]).all()
+    ):
+        raise BatchError("a movement is not finite")
+    gateway, held, departed, walks, lines, watched, doors, stood = _read_rest(message[end:])
+    return Batch(
+        gateway, number, epoch, movements, held, departed, walks, lines, watched, doors, stood
+    )
+
+
+def _read_rest(packed: bytes) -> _Rest:
+    try:
+        return _REST.validate_python(msgpack.unpackb(packed))
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        where = " / ".join(str(part) for part in first["loc"])
+        raise BatchError(f"the inputs of the batch: {where}: {first['msg']}") from None
+    except (ValueError, msgpack.UnpackException, TypeError) as error:
+        raise BatchError(f"the inputs of the batch are not msgpack: {error}") from None
