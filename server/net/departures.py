@@ -1,6 +1,7 @@
 """People who stand in a portal, and go to another zone."""
 
 from collections.abc import Callable, Mapping, Sequence, Set
+from typing import Generic, TypeVar
 
 from esplanade.planning import Portal
 from esplanade.planning.scene.portal_areas import NO_PORTAL, portals_at
@@ -11,23 +12,26 @@ from esplanade.server.world.zone import Zone
 Go = Callable[[Session, str], bool]
 """Lets a person go through the portal of that name; whether there is a way now."""
 
+Steering = TypeVar("Steering")
+"""Whoever steers an avatar: a session, or the client of a gateway."""
 
-class Departures:
+
+class Departures(Generic[Steering]):
     """Those who are on their way out through a portal; what they send to move is void meanwhile.
 
     Whoever was let out by a portal, or was refused, goes nowhere before they have left its area.
     """
 
-    def __init__(self, world: Zone, sessions: Mapping[int, Session]) -> None:
+    def __init__(self, world: Zone, sessions: Mapping[int, Steering]) -> None:
         self._world = world
         self._sessions = sessions
         self._portals: Sequence[Portal] = ()
-        self._go: Go | None = None
+        self._go: Callable[[Steering, str], bool] | None = None
         self._inside: set[int] = set()
         """Those who were in the area of a portal when it was last looked at, or came out of it."""
         self._under_way: set[int] = set()
 
-    def open(self, portals: Sequence[Portal], go: Go | None) -> None:
+    def open(self, portals: Sequence[Portal], go: Callable[[Steering, str], bool] | None) -> None:
         """Let people go through these portals; none of them without `go`."""
         self._portals, self._go = portals, go
 

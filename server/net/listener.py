@@ -7,7 +7,7 @@ from collections.abc import AsyncIterator, Callable, Coroutine, Sequence
 from contextlib import asynccontextmanager
 from functools import partial
 from http import HTTPStatus
-from typing import Any, Final, cast
+from typing import Any, Final, Protocol, cast
 
 import structlog
 from websockets.asyncio.server import Server, ServerConnection
@@ -24,11 +24,10 @@ from esplanade.server.net.checked_identities import CheckedIdentities
 from esplanade.server.net.connection import Connection, WatchedProtocol
 from esplanade.server.net.connections import Connections, Place
 from esplanade.server.net.door import Door
-from esplanade.server.net.front_door import FrontDoor
 from esplanade.server.net.metering import MAX_FRAME_BYTES, Meter
 from esplanade.server.net.refusals import Refusals
 from esplanade.server.net.root_path import RootPath
-from esplanade.server.net.session import Session
+from esplanade.server.net.session import Reception, Session
 from esplanade.server.net.sockets.reading import Reading, reading
 from esplanade.server.net.tls import Tls
 from esplanade.server.settings import ServerSettings
@@ -51,12 +50,28 @@ def connections_wanted(settings: ServerSettings) -> int:
     return settings.max_clients + MAX_UNGREETED + MAX_VISITS
 
 
+class Doorkeeper(Reception, Protocol):
+    """The reception behind the port; it also takes movements of many people at once."""
+
+    def moved(
+        self,
+        avatar_ids: Sequence[int],
+        numbers: Sequence[int],
+        directions_rad: Sequence[float],
+        speeds_mps: Sequence[float],
+    ) -> None:
+        """Keep movements of many people for the next ticks."""
+
+    def read_by(self, reading: Reading | None) -> None:
+        """Let what people send be looked for there too."""
+
+
 class Listener:
     """Accepts connections, answers requests for pages, and runs a session for each person."""
 
     def __init__(
         self,
-        front_door: FrontDoor,
+        front_door: Doorkeeper,
         assets: Assets,
         settings: ServerSettings,
         metrics: Metrics,

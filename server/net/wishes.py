@@ -42,7 +42,7 @@ class Wishes:
         sessions: Mapping[int, Session],
         moderation: PeopleModeration,
         walk_outs: WalkOuts,
-        departures: Departures,
+        departures: Departures[Session],
         lines: WaitingLines,
         reporting: Reporting,
     ) -> None:

@@ -28,6 +28,15 @@ COMMANDS: Final = {
     "data": Command(
         "esplanade.server.operating.data_options:parser", "back up, restore, upgrade, forget"
     ),
+    "zone": Command(
+        "esplanade.server.clustering.options:zone", "run a zone of a world on several machines"
+    ),
+    "gateway": Command(
+        "esplanade.server.clustering.options:gateway", "let people into a world on several machines"
+    ),
+    "cluster": Command(
+        "esplanade.server.clustering.cluster_options:parser", "see to a world on several machines"
+    ),
     "evaluate": Command(
         "esplanade.evaluation.options:parser", "measure actors among recorded people"
     ),

@@ -1,0 +1,127 @@
+"""The seats of a cluster as a gateway takes them, with a bound on how long anybody waits."""
+
+import asyncio
+from collections.abc import Callable, Collection, Iterable
+from functools import partial
+from typing import Any, Final, TypeVar
+
+import structlog
+
+from esplanade.protocol import CloseCode, ErrorCode, ProtocolError
+from esplanade.server.cluster import seats
+from esplanade.server.cluster.person_record import PersonRecord, encode_record
+from esplanade.server.cluster.seats import ClusterSeat
+from esplanade.server.store.store import Store, StoreError
+
+ANSWER_S: Final = 5.0
+"""A database that has not answered by then is away, for somebody who wants to come in."""
+
+Result = TypeVar("Result")
+
+log = structlog.get_logger(__name__)
+
+
+class ClusterSeats:
+    """Takes seats for the people of one gateway.
+
+    Raises
+    ------
+    ProtocolError
+        (in `take` and `resume`) The database does not answer; one may come again.
+    """
+
+    def __init__(self, store: Store, gateway: str) -> None:
+        self._store = store
+        self._gateway = gateway
+        self._confirming: dict[int, int] = {}
+        self.failures = 0
+        """Questions that the database has not answered in time."""
+
+    async def take(
+        self, zone: str, names: Iterable[tuple[str, str]], record: PersonRecord
+    ) -> tuple[ClusterSeat, str]:
+        """Make a seat for a newcomer; returns it with the token that takes it again."""
+        return await self._certain(
+            partial(_take, zone, names, self._gateway, encode_record(record))
+        )
+
+    async def resume(self, token: str, keep_us: int) -> tuple[ClusterSeat, str] | None:
+        """Take a seat again; returns it with its next token, or None if it is gone."""
+        return await self._certain(partial(_resume, token, self._gateway, keep_us))
+
+    async def leave(self, person: int, generation: int) -> None:
+        """Give up a seat for which there was no room after all."""
+        try:
+            await self._store.write(partial(_leave, person, generation))
+        except StoreError as error:
+            log.warning("a seat is not given up, it lapses", person=person, why=str(error))
+
+    async def of(self, persons: Collection[int]) -> dict[int, ClusterSeat]:
+        """The seats of those of some persons who have one.
+
+        Raises
+        ------
+        StoreError
+            The database does not answer.
+        """
+        found = await self._store.read(partial(_seats_of, persons))
+        return {seat.person: seat for seat in found}
+
+    def confirm(self, person: int, generation: int) -> None:
+        """Note that a client has its newest token; `run` writes that."""
+        self._confirming[person] = generation
+
+    async def run(self) -> None:
+        """Write what `confirm` was told, until cancelled."""
+        while True:
+            await asyncio.sleep(0.2)
+            confirming = dict(self._confirming)
+            if not confirming:
+                continue
+            try:
+                await self._store.write(partial(_confirm, confirming))
+            except StoreError as error:
+                log.debug("tokens are not confirmed yet", why=str(error))
+                await asyncio.sleep(1.0)
+                continue
+            for person, generation in confirming.items():
+                if self._confirming.get(person) == generation:
+                    del self._confirming[person]
+
+    async def _certain(self, change: Callable[[Any], Result]) -> Result:
+        try:
+            async with asyncio.timeout(ANSWER_S):
+                return await self._store.write(change)
+        except (StoreError, TimeoutError) as error:
+            self.failures += 1
+            log.warning("nobody can come in", why=str(error) or "the database is silent")
+            raise ProtocolError(
+                ErrorCode.SERVER_FULL,
+                "seats cannot be given just now; come again in a moment",
+                CloseCode.SERVER_FULL,
+            ) from None
+
+
+def _take(
+    zone: str, names: Iterable[tuple[str, str]], gateway: str, state: bytes, connection: Any
+) -> tuple[ClusterSeat, str]:
+    return seats.take_named(connection, zone, names, gateway, state)
+
+
+def _resume(
+    token: str, gateway: str, keep_us: int, connection: Any
+) -> tuple[ClusterSeat, str] | None:
+    return seats.resume(connection, token, gateway, keep_us)
+
+
+def _leave(person: int, generation: int, connection: Any) -> None:
+    seats.leave(connection, person, generation)
+
+
+def _confirm(confirming: dict[int, int], connection: Any) -> None:
+    for person, generation in confirming.items():
+        seats.confirm(connection, person, generation)
+
+
+def _seats_of(persons: Collection[int], connection: Any) -> list[ClusterSeat]:
+    return seats.seats_of(connection, persons)

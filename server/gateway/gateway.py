@@ -1,0 +1,116 @@
+"""Puts a gateway together and runs it."""
+
+import asyncio
+import socket
+from collections.abc import AsyncIterator
+from contextlib import AsyncExitStack, asynccontextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from nats.aio.client import Client
+
+from esplanade.server.assets import Assets
+from esplanade.server.cluster.ownership import ownerships
+from esplanade.server.cluster.processes import GATEWAY
+from esplanade.server.cluster.world_rows import world_kept
+from esplanade.server.gateway.reception import Reception
+from esplanade.server.heartbeat import Heartbeat
+from esplanade.server.link.subjects import Subjects
+from esplanade.server.metrics import Metrics
+from esplanade.server.net.descriptors import places_for_people
+from esplanade.server.net.listener import Listener, connections_wanted
+from esplanade.server.net.listening import bound_sockets
+from esplanade.server.net.tls import Tls
+from esplanade.server.settings import ServerSettings
+from esplanade.server.store.store import Store
+
+
+@dataclass(frozen=True)
+class RunningGateway:
+    """A gateway that people can reach."""
+
+    port: int
+    reception: Reception
+    ended: "asyncio.Future[None]"
+    """Is done when the gateway is to end, or a part of it has failed."""
+
+
+@asynccontextmanager
+async def gateway(
+    name: str,
+    settings: ServerSettings,
+    store: Store,
+    broker: Client,
+    assets: Assets | None = None,
+) -> AsyncIterator[RunningGateway]:
+    """Run a gateway; on leaving, everyone is told goodbye and may come back at another one.
+
+    `name` is one that no other process has or gets.
+
+    Raises
+    ------
+    StoreError
+        The database does not answer, or has no world yet.
+    TlsError
+        The certificate and its key cannot be used.
+    OSError
+        The port cannot be had, or too few open files are allowed.
+    """
+    places = places_for_people(connections_wanted(settings))
+    tls = _tls(settings)
+    world = await store.read(world_kept)
+    zones = await store.read(_zones)
+    metrics = Metrics(zones)
+    async with AsyncExitStack() as stack:
+        sockets = await bound_sockets(settings.host, settings.port)
+        for each in sockets:
+            stack.callback(each.close)
+        port = _port_of(sockets)
+        reception = Reception(
+            name, world.start, store, broker, Subjects(world.subject), settings, metrics
+        )
+        address = settings.public_url or f"port {port}"
+        heartbeat = Heartbeat(store, name, GATEWAY, address, lambda: reception.people)
+        await heartbeat.begin()
+        stack.push_async_callback(heartbeat.end)
+        listener = Listener(reception, assets or Assets.load(), settings, metrics, places)
+        await stack.enter_async_context(listener.listening(sockets, tls))
+        ended: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        for work in (reception.run(), heartbeat.run()):
+            task = asyncio.create_task(work)
+            task.add_done_callback(partial(_end, ended))
+            stack.push_async_callback(_cancelled, task)
+        stack.push_async_callback(reception.close)
+        yield RunningGateway(port, reception, ended)
+
+
+def _end(ended: "asyncio.Future[None]", task: "asyncio.Task[None]") -> None:
+    if task.cancelled() or ended.done():
+        return
+    error = task.exception()
+    if error is None:
+        ended.set_result(None)
+    else:
+        ended.set_exception(error)
+
+
+async def _cancelled(task: "asyncio.Task[None]") -> None:
+    task.cancel()
+    await asyncio.gather(task, return_exceptions=True)
+
+
+def _zones(connection: Any) -> list[str]:
+    return [each.zone for each in ownerships(connection)]
+
+
+def _port_of(sockets: list[socket.socket]) -> int:
+    port: int = sockets[0].getsockname()[1]
+    return port
+
+
+def _tls(settings: ServerSettings) -> Tls | None:
+    if settings.tls_cert is None or settings.tls_key is None:
+        return None
+    return Tls(Path(settings.tls_cert), Path(settings.tls_key))

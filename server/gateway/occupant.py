@@ -1,0 +1,25 @@
+"""A person at a gateway: a seat of the cluster, and the session that has it."""
+
+from dataclasses import dataclass, field
+
+from esplanade.server.cluster.person_record import PersonRecord
+from esplanade.server.net.session import Session
+
+
+@dataclass(eq=False)
+class Occupant:
+    """One occupation of a seat, from the moment at which it was written."""
+
+    person: int
+    generation: int
+    session: Session
+    record: PersonRecord
+    resumed: bool
+    since_s: float
+    """When the seat was taken, or the person was seen last in the zone; seconds of the loop."""
+    is_in: bool = False
+    """Whether the client has been welcomed to any zone on this connection."""
+    moves: bool = False
+    """Whether the client has last asked to walk."""
+    lines: list[str] = field(default_factory=list)
+    """Lines of chat that are said once the client has been welcomed."""

@@ -1,0 +1,390 @@
+"""The reception of a gateway: who comes in, to which zone, who goes, and who has gone elsewhere."""
+
+import asyncio
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any, Final
+
+import structlog
+from nats.aio.client import Client
+from nats.aio.msg import Msg
+
+from esplanade.protocol import ByeCode, CloseCode, ErrorCode, ProtocolError
+from esplanade.protocol.messages import Bye, Error, Hello
+from esplanade.server.cluster.person_record import PersonRecord, RecordError, decode_record
+from esplanade.server.cluster.seats import ClusterSeat
+from esplanade.server.cluster.zone_rows import described
+from esplanade.server.gateway.cluster_seats import ClusterSeats
+from esplanade.server.gateway.occupant import Occupant
+from esplanade.server.gateway.zone_view import ZoneView
+from esplanade.server.gateway.zone_wishes import ZoneWishes
+from esplanade.server.link.answers import AnswerError, decode_answers
+from esplanade.server.link.subjects import Subjects
+from esplanade.server.link.zone_description import DescriptionError, decode_description
+from esplanade.server.metrics import Metrics
+from esplanade.server.net import frames
+from esplanade.server.net.names import ReservedNameError, check_reserved, like
+from esplanade.server.net.operator_keys import SERVICE, OperatorKeys, TooManyKeysError
+from esplanade.server.net.session import Session
+from esplanade.server.net.sockets.reading import Reading
+from esplanade.server.settings import ServerSettings
+from esplanade.server.store.store import Store, StoreError
+
+BATCH_S: Final = 0.05
+"""What people want goes to the zones so often."""
+LOOK_S: Final = 0.1
+"""So often the seats of those are read whom no zone shows."""
+PATIENCE_S: Final = 15.0
+"""A newcomer whom no zone has shown by then is sent away; a person who was in is not."""
+
+_REPLACED: Final = frames.message(
+    Bye(reason=ByeCode.REPLACED, text="somebody came in with your resume token")
+)
+
+log = structlog.get_logger(__name__)
+
+
+class ZonesAwayError(ProtocolError):
+    """A zone has not told anything of itself yet."""
+
+    def __init__(self, zone: str) -> None:
+        super().__init__(
+            ErrorCode.SERVER_FULL,
+            f"the zone {zone} is not there just now; come again in a moment",
+            CloseCode.SERVER_FULL,
+        )
+
+
+class Reception:
+    """Hands each session on to the zone where its seat is, and goes with it where the seat goes."""
+
+    def __init__(
+        self,
+        gateway: str,
+        start: str,
+        store: Store,
+        broker: Client,
+        subjects: Subjects,
+        settings: ServerSettings,
+        metrics: Metrics,
+    ) -> None:
+        """`gateway` is the name of this process, `start` the zone that newcomers enter."""
+        self.views: dict[str, ZoneView] = {}
+        self._gateway = gateway
+        self._start = start
+        self._store = store
+        self._broker = broker
+        self._subjects = subjects
+        self._settings = settings
+        self._metrics = metrics
+        self._seats = ClusterSeats(store, gateway)
+        self._keys = OperatorKeys(settings.operator_key.get_secret_value(), metrics)
+        self._places: dict[Session, tuple[ZoneView, Occupant]] = {}
+        self._opening = asyncio.Lock()
+        self._tasks: set[asyncio.Task[Any]] = set()
+        self._reading: Reading | None = None
+        self._closing = False
+        metrics.gauge("clients", "People connected", lambda: self.people)
+
+    @property
+    def people(self) -> int:
+        """The people who are connected here."""
+        return len(self._places)
+
+    # --- requests of sessions that are in no zone ----------------------------------------------
+
+    @property
+    def server_time(self) -> Callable[[], float]:
+        """Returns the seconds of the clock of the zone that newcomers enter."""
+        view = self.views.get(self._start)
+        return (lambda: 0.0) if view is None else view.server_time
+
+    @property
+    def wishes(self) -> ZoneWishes:
+        """The wishes of those who are in the zone that newcomers enter.
+
+        Raises
+        ------
+        ProtocolError
+            The zone is not there.
+        """
+        view = self.views.get(self._start)
+        if view is None:
+            raise ZonesAwayError(self._start)
+        return view.wishes
+
+    def read_by(self, reading: Reading | None) -> None:
+        """Let what people send be looked for there too, before each batch."""
+        self._reading = reading
+
+    def moved(
+        self,
+        avatar_ids: Sequence[int],
+        numbers: Sequence[int],
+        directions_rad: Sequence[float],
+        speeds_mps: Sequence[float],
+    ) -> None:
+        """Take movements of many people, each for the zone where the person is."""
+        for view in self.views.values():
+            view.wishes.moved(avatar_ids, numbers, directions_rad, speeds_mps)
+
+    def confirm(self, session: Session) -> None:
+        """Note that a client has its newest token, so that the old one is void."""
+        session.unconfirmed = False
+        place = self._places.get(session)
+        if place is not None:
+            self._seats.confirm(place[1].person, place[1].generation)
+
+    async def receive(self, session: Session, hello: Hello) -> None:
+        """Give a person a seat, or the one that they had, and a place in its zone.
+
+        Raises
+        ------
+        ProtocolError
+            They may not come in, or cannot just now.
+        """
+        if self._closing:
+            raise ZonesAwayError(self._start)
+        self._check_key(session, hello.operator)
+        resumed = False
+        found: tuple[ClusterSeat, str] | None = None
+        if hello.resume:
+            keep_us = round(self._settings.resume_seconds * 1e6)
+            found = await self._seats.resume(hello.resume, keep_us)
+            resumed = found is not None
+        if found is None:
+            found = await self._take(session, hello)
+        seat, session.token = found
+        session.name, session.resumes = seat.name, resumed
+        now_s = asyncio.get_running_loop().time()
+        record = _record_of(seat)
+        who = Occupant(seat.person, seat.generation, session, record, resumed, now_s)
+        try:
+            view = await self.view(seat.zone)
+        except ProtocolError:
+            if not resumed:
+                await self._seats.leave(seat.person, seat.generation)
+            raise
+        if not self._replace(who):
+            session.dismiss(_REPLACED, CloseCode.REPLACED, ByeCode.REPLACED.value)
+            return
+        self._places[session] = view, who
+        view.add(who)
+
+    def depart(self, session: Session, comes_back: bool) -> None:
+        """Let go of a session that has ended."""
+        place = self._places.pop(session, None)
+        if place is not None:
+            view, who = place
+            view.remove(who, comes_back=comes_back)
+            log.info("person gone", person=who.person, may_come_back=comes_back)
+
+    async def _take(self, session: Session, hello: Hello) -> tuple[ClusterSeat, str]:
+        """Make a seat for a newcomer, where there is room."""
+        try:
+            check_reserved(hello.name)
+        except ReservedNameError as error:
+            raise ProtocolError(
+                ErrorCode.NAME_RESERVED, str(error), CloseCode.NAME_RESERVED
+            ) from None
+        view = await self.view(self._start)
+        too_many = len(self._places) >= self._settings.max_clients
+        if too_many or view.people >= view.most_people:
+            most = self._settings.max_clients if too_many else view.most_people
+            raise ProtocolError(
+                ErrorCode.SERVER_FULL,
+                f"there is room for {most} people, all taken",
+                CloseCode.SERVER_FULL,
+            )
+        record = PersonRecord(
+            address=session.address,
+            place=hello.at,
+            anywhere=session.is_operator,
+            operator=session.is_operator,
+        )
+        return await self._seats.take(self._start, like(hello.name), record)
+
+    def _replace(self, who: Occupant) -> bool:
+        """Part with a session of this gateway whose seat this one has taken; False if that one has
+        taken it later."""
+        for view in self.views.values():
+            other = view.occupants.get(who.person)
+            if other is None:
+                continue
+            if other.generation > who.generation:
+                return False
+            self._places.pop(other.session, None)
+            view.replaced(other)
+        return True
+
+    def _check_key(self, session: Session, key: str | None) -> None:
+        now_s = asyncio.get_running_loop().time()
+        try:
+            if self._keys.opens(key, session.address, now_s):
+                session.operator = SERVICE
+        except TooManyKeysError as error:
+            session.fault_at_welcome = ProtocolError(ErrorCode.KEY_UNREAD, str(error), None)
+
+    # --- zones --------------------------------------------------------------------------------
+
+    async def view(self, zone: str) -> ZoneView:
+        """The view of a zone, which is opened where nobody of this gateway is there yet.
+
+        Raises
+        ------
+        ProtocolError
+            The zone has never been run, or the database does not answer.
+        """
+        async with self._opening:
+            known = self.views.get(zone)
+            if known is not None:
+                return known
+            try:
+                found = await self._store.read(partial(_described, zone))
+                if found is None:
+                    raise ZonesAwayError(zone)
+                description = decode_description(found[1])
+            except (StoreError, DescriptionError) as error:
+                log.warning("a zone cannot be shown", zone=zone, why=str(error))
+                raise ZonesAwayError(zone) from None
+            metrics = self._metrics.of_zone(zone)
+            view = ZoneView(
+                zone,
+                description,
+                self._gateway,
+                self._broker,
+                self._subjects,
+                self._settings,
+                metrics,
+                self.depart,
+                self.confirm,
+            )
+            self.views[zone] = view
+            self._begin(view.run())
+            return view
+
+    async def run(self) -> None:
+        """Send what people want, and look after those whom no zone shows, until cancelled."""
+        answers = await self._broker.subscribe(
+            self._subjects.gateway(self._gateway), cb=self._answered
+        )
+        self._begin(self._seats.run())
+        self._begin(self._look())
+        loop = asyncio.get_running_loop()
+        due = loop.time()
+        try:
+            while True:
+                due = max(due + BATCH_S, loop.time())
+                await asyncio.sleep(due - loop.time())
+                if self._reading is not None:
+                    self._reading.poll()
+                for view in list(self.views.values()):
+                    await view.send()
+        finally:
+            if not self._broker.is_closed:
+                await answers.unsubscribe()
+
+    async def close(self) -> None:
+        """Say goodbye to everyone, who may come back at another gateway, and stop."""
+        self._closing = True
+        text = "this gateway is shutting down; come again"
+        farewell = frames.message(Bye(reason=ByeCode.SHUTDOWN, text=text))
+        ending = []
+        for session in list(self._places):
+            self.depart(session, comes_back=True)
+            ending.append(session.dismiss(farewell, CloseCode.GOING_AWAY, text))
+        for view in self.views.values():
+            await view.send()
+        if ending:
+            await asyncio.wait(ending)
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+
+    async def _answered(self, message: Msg) -> None:
+        try:
+            zone, answers = decode_answers(message.data)
+        except AnswerError as error:
+            log.warning("bad answers", error=str(error))
+            return
+        view = self.views.get(zone)
+        if view is not None:
+            for answer in answers:
+                view.answered(answer)
+
+    # --- seats that are elsewhere -------------------------------------------------------------
+
+    async def _look(self) -> None:
+        """Go with those whom their zone shows no more to where their seats are."""
+        while True:
+            await asyncio.sleep(LOOK_S)
+            now_s = asyncio.get_running_loop().time()
+            missing = [
+                (view, who)
+                for view in self.views.values()
+                for who in view.missing(now_s - LOOK_S / 2)
+            ]
+            if not missing:
+                continue
+            try:
+                found = await self._seats.of([who.person for _, who in missing])
+            except StoreError as error:
+                log.debug("seats are not found", why=str(error))
+                await asyncio.sleep(5 * LOOK_S)
+                continue
+            for view, who in missing:
+                await self._follow(view, who, found.get(who.person), now_s)
+
+    async def _follow(
+        self, view: ZoneView, who: Occupant, seat: ClusterSeat | None, now_s: float
+    ) -> None:
+        if self._places.get(who.session) != (view, who):
+            return
+        if seat is None or seat.generation != who.generation:
+            del self._places[who.session]
+            if seat is not None:
+                view.replaced(who)
+                return
+            view.hand_over(who)
+            text = "your seat has been given up"
+            farewell = frames.message(Bye(reason=ByeCode.SILENT, text=text))
+            who.session.dismiss(farewell, CloseCode.SILENT, ByeCode.SILENT.value)
+        elif seat.zone != view.zone:
+            try:
+                there = await self.view(seat.zone)
+            except ProtocolError:
+                return  # it is tried again
+            who.record = _record_of(seat).model_copy(
+                update={"muted": tuple(view.muted_by(who.person))}
+            )
+            view.hand_over(who)
+            self._places[who.session] = there, who
+            who.since_s = now_s
+            there.add(who)
+        elif not who.is_in and now_s - who.since_s > PATIENCE_S:
+            away = ZonesAwayError(view.zone)
+            self.depart(who.session, comes_back=True)
+            farewell = frames.message(Error(error=away.code, text=away.text))
+            who.session.dismiss(farewell, CloseCode.SERVER_FULL, away.code.value)
+
+    def _begin(self, work: Any) -> None:
+        task = asyncio.create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._ended)
+
+    def _ended(self, task: "asyncio.Task[Any]") -> None:
+        self._tasks.discard(task)
+        if not task.cancelled() and (error := task.exception()) is not None:
+            log.error("a part of the gateway has failed", exc_info=error)
+
+
+def _record_of(seat: ClusterSeat) -> PersonRecord:
+    try:
+        return decode_record(seat.state)
+    except RecordError as error:
+        log.warning("a seat cannot be read", person=seat.person, error=str(error))
+        return PersonRecord()
+
+
+def _described(zone: str, connection: Any) -> tuple[int, bytes] | None:
+    return described(connection, zone)

@@ -1,0 +1,243 @@
+"""A host: claims a zone, runs it, gives it back; waits for one where all have owners."""
+
+import asyncio
+import tempfile
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any, Final
+
+import structlog
+from nats.aio.client import Client
+from nats.aio.msg import Msg
+from nats.errors import Error as NatsError
+
+from esplanade.server.cluster import ownership
+from esplanade.server.cluster.processes import HOST, processes
+from esplanade.server.cluster.tenure import Claim, Tenure
+from esplanade.server.cluster.world_rows import ClusterWorld, world_kept, write_files
+from esplanade.server.heartbeat import Heartbeat
+from esplanade.server.host.hosted_zone import Found, HostedZone, build, hosted_zone
+from esplanade.server.host.renewal import Renewal
+from esplanade.server.link.subjects import Subjects
+from esplanade.server.metrics import Metrics
+from esplanade.server.settings import ServerSettings
+from esplanade.server.store.store import Store, StoreError
+from esplanade.server.zones import ZoneToServe, zones_to_serve
+
+CLAIM_S: Final = 0.5
+"""A host without a zone asks for one so often, and at once where somebody gives one back."""
+LOOK_S: Final = 1.0
+"""So often an owner looks whether another host is to have its zone."""
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True)
+class HostedWorld:
+    """The world of a cluster as a host has read it."""
+
+    kept: ClusterWorld
+    zones: list[ZoneToServe]
+    """All zones, in the order of the world's file."""
+
+    def zone(self, name: str) -> tuple[int, ZoneToServe]:
+        """The place of a zone, and the zone."""
+        return next((k, zone) for k, zone in enumerate(self.zones) if zone.name == name)
+
+
+async def read_world(store: Store, settings: ServerSettings) -> HostedWorld:
+    """Read the world of the cluster from the database.
+
+    Raises
+    ------
+    StoreError
+        The database does not answer, or has no world yet.
+    LoadingError
+        The world cannot be run by this program.
+    """
+    with tempfile.TemporaryDirectory(prefix="esplanade-world-") as folder:
+        path = await store.read(partial(_write_files, Path(folder)))
+        kept = await store.read(world_kept)
+        named = settings.model_copy(update={"world": path})
+        zones = await asyncio.to_thread(zones_to_serve, named)
+    return HostedWorld(kept, sorted(zones, key=lambda zone: zone.name))
+
+
+class Host:
+    """One process that runs one zone at a time, of those that it may claim."""
+
+    def __init__(
+        self,
+        name: str,
+        world: HostedWorld,
+        wanted: Sequence[str],
+        store: Store,
+        broker: Client,
+        stop: asyncio.Event,
+    ) -> None:
+        """`wanted` names the zones that it may claim; all of them where it is empty."""
+        self.name = name
+        self._world = world
+        self._wanted = list(wanted) or [zone.name for zone in world.zones]
+        self._store = store
+        self._broker = broker
+        self._subjects = Subjects(world.kept.subject)
+        self._stop = stop
+        self._hint = asyncio.Event()
+        self.running: HostedZone | None = None
+        """The zone that it runs."""
+
+    async def run(self) -> None:
+        """Claim and run zones until told to stop, or drained.
+
+        Raises
+        ------
+        StoreError
+            The database does not answer at the begin.
+        LoadingError
+            A zone that was claimed cannot be run.
+        """
+        heartbeat = Heartbeat(self._store, self.name, HOST, "", self._people)
+        await heartbeat.begin()
+        beating = asyncio.create_task(heartbeat.run())
+        beating.add_done_callback(lambda _: self._stop.set())
+        hints = await self._broker.subscribe(self._subjects.control, cb=self._hear)
+        try:
+            while not self._stop.is_set():
+                claim = await self._claim()
+                if claim is not None:
+                    await self._own(claim)
+        finally:
+            beating.cancel()
+            if not self._broker.is_closed:
+                await hints.unsubscribe()
+            await heartbeat.end()
+
+    def _people(self) -> int:
+        return 0 if self.running is None else self.running.world.count()[0]
+
+    def warm_up(self) -> None:
+        """Build a zone and let go of it: everything is compiled before anybody waits for that.
+
+        It takes a while, and is meant for a thread.
+
+        Raises
+        ------
+        LoadingError
+            The zone cannot be run.
+        """
+        place, zone = self._world.zone(self._wanted[0])
+        population, _, _ = build(zone, place, Found())
+        population.close()
+        log.info("ready to claim", host=self.name, zones=", ".join(self._wanted))
+
+    async def _claim(self) -> Claim | None:
+        """Claim a zone, or wait for a while."""
+        self._hint.clear()
+        try:
+            claim = await self._store.write(partial(_claim, self.name, self._wanted))
+        except StoreError as error:
+            log.warning("no zone can be claimed", why=str(error))
+            claim = None
+        if claim is None:
+            waits = [asyncio.create_task(each.wait()) for each in (self._hint, self._stop)]
+            await asyncio.wait(waits, timeout=CLAIM_S, return_when=asyncio.FIRST_COMPLETED)
+            for each in waits:
+                each.cancel()
+        return claim
+
+    async def _own(self, claim: Claim) -> None:
+        """Run a zone that was claimed, until it is another's or this process ends."""
+        log.info("claimed", zone=claim.zone, epoch=claim.epoch, host=self.name)
+        await self._tell()
+        tenure = Tenure(claim)
+        renewal = Renewal(self._store, tenure)
+        place, zone = self._world.zone(claim.zone)
+        scenes = {each.name: each.loaded.scene for each in self._world.zones}
+        renewing = asyncio.create_task(renewal.run())
+        metrics = Metrics([zone.name]).of_zone(zone.name)
+        try:
+            async with hosted_zone(
+                zone,
+                place,
+                scenes,
+                tenure,
+                renewal,
+                self._store,
+                self._broker,
+                self._subjects,
+                metrics,
+            ) as hosted:
+                self.running = hosted
+                ending = asyncio.create_task(self._end_when_told(hosted))
+                log.info("open", zone=claim.zone, epoch=claim.epoch, host=self.name)
+                try:
+                    await hosted.run()
+                finally:
+                    ending.cancel()
+        except StoreError as error:
+            log.warning("the zone is not run", zone=claim.zone, why=str(error))
+            await asyncio.sleep(CLAIM_S)
+        finally:
+            self.running = None
+            renewing.cancel()
+            await self._give_back(tenure)
+
+    async def _end_when_told(self, hosted: HostedZone) -> None:
+        """End a zone when this process is to stop, or when another host is to have it."""
+        while not self._stop.is_set():
+            with suppress(TimeoutError):
+                async with asyncio.timeout(LOOK_S):
+                    await self._stop.wait()
+            with suppress(StoreError):
+                if await self._store.read(partial(_moves_on, hosted.tenure.claim)):
+                    log.info("another host is to have the zone", zone=hosted.tenure.claim.zone)
+                    break
+        hosted.ticker.stop()
+
+    async def _give_back(self, tenure: Tenure) -> None:
+        if not tenure.holds:
+            return
+        tenure.release()
+        try:
+            await self._store.write(partial(_release, tenure.claim))
+        except StoreError as error:
+            log.warning("the lease runs out by itself", zone=tenure.claim.zone, why=str(error))
+            return
+        log.info("given back", zone=tenure.claim.zone, host=self.name)
+        await self._tell()
+
+    async def _tell(self) -> None:
+        """Let other hosts look at once; whoever does not hear it looks half a second later."""
+        if self._broker.is_connected:
+            with suppress(NatsError):
+                await self._broker.publish(self._subjects.control, b"ownerships")
+
+    async def _hear(self, _: Msg) -> None:
+        self._hint.set()
+
+
+def _write_files(folder: Path, connection: Any) -> Path:
+    return write_files(connection, folder)
+
+
+def _claim(host: str, zones: list[str], connection: Any) -> Claim | None:
+    claimed = ownership.claim(connection, host, zones)
+    if claimed is not None:
+        # Whoever was to have it has it: from now on any host may follow.
+        ownership.want(connection, claimed.zone, None)
+    return claimed
+
+
+def _release(claim: Claim, connection: Any) -> None:
+    ownership.release(connection, claim)
+
+
+def _moves_on(claim: Claim, connection: Any) -> bool:
+    """Whether another host is to have the zone, and is there."""
+    wanted = {each.zone: each.wanted_host for each in ownership.ownerships(connection)}
+    there = {each.name for each in processes(connection) if each.kind == HOST and each.is_there}
+    return wanted.get(claim.zone) not in {None, claim.host} and wanted[claim.zone] in there

@@ -1,0 +1,321 @@
+"""One zone as its host runs it, from the claim to the day when it is another host's."""
+
+import asyncio
+import hashlib
+from collections.abc import AsyncIterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import AsyncExitStack, asynccontextmanager
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any, Final
+
+import msgpack
+import structlog
+from nats.aio.client import Client
+from nats.aio.msg import Msg
+
+from esplanade.actors.warming import tables_ahead
+from esplanade.planning import Scene
+from esplanade.server.building import build_world
+from esplanade.server.checkpoint.errors import CheckpointError
+from esplanade.server.checkpoint.ids import Block
+from esplanade.server.checkpoint.parts import Parts
+from esplanade.server.checkpoint.returning import Left
+from esplanade.server.checkpoint.rows import KeptSeat
+from esplanade.server.checkpoint.scene import SceneKey
+from esplanade.server.cluster.ownership import NotOwnerError
+from esplanade.server.cluster.seats import ClusterSeat, seats_in
+from esplanade.server.cluster.tenure import Tenure
+from esplanade.server.cluster.zone_rows import SavedZone, keep_described
+from esplanade.server.cluster.zone_rows import saved as saved_in
+from esplanade.server.host import checkpointing
+from esplanade.server.host.answering import Answering
+from esplanade.server.host.checkpointing import Checkpointing
+from esplanade.server.host.gateway_batches import GatewayBatches
+from esplanade.server.host.hosted_people import HostedPeople
+from esplanade.server.host.portals import Portals
+from esplanade.server.host.renewal import Renewal
+from esplanade.server.host.seat_desk import SeatDesk
+from esplanade.server.host.ticking import HostTicker
+from esplanade.server.link.frames_over_nats import FrameSender
+from esplanade.server.link.subjects import Subjects
+from esplanade.server.link.zone_description import ZoneDescription, encode_description, rules_told
+from esplanade.server.loading import LoadedScene
+from esplanade.server.metrics import Metrics
+from esplanade.server.net.ground_work import GroundWork
+from esplanade.server.net.pending_inputs import PendingInputs
+from esplanade.server.net.route_requests import RouteRequests
+from esplanade.server.net.schedule import Schedule
+from esplanade.server.net.search_budget import SearchBudget
+from esplanade.server.recovery import Recovery
+from esplanade.server.store.store import Store, StoreError
+from esplanade.server.watching import watch_routes, watch_world
+from esplanade.server.world.zone import Zone
+from esplanade.server.zones import ZoneToServe, check_portals, described_portals
+
+FIRST_ACTOR_ID: Final = 2**31
+"""Avatars of people have the numbers of their seats, those of actors begin here."""
+IDS_OF_A_ZONE: Final = 2**26
+SKIPPED_IDS: Final = 10_000
+"""Ids that the owner before may have given away since its last checkpoint."""
+SKIPPED_TICKS: Final = 10
+"""Ticks by which the next owner is ahead of what the clock says, so that none comes again."""
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True)
+class Found:
+    """The state of a zone in the database as its new owner finds it."""
+
+    parts: Mapping[str, Any] = field(default_factory=dict)
+    tick: int = 0
+    seats: list[ClusterSeat] = field(default_factory=list)
+
+
+@dataclass(eq=False)
+class HostedZone:
+    """A zone that this process owns: `run` goes on until it is told to stop or owns it no more."""
+
+    world: Zone
+    tenure: Tenure
+    people: HostedPeople
+    batches: GatewayBatches
+    ticker: HostTicker
+    sender: FrameSender
+    desk: SeatDesk
+    portals: Portals
+    checkpoints: Checkpointing
+    routes: RouteRequests
+    broker: Client
+    subjects: Subjects
+
+    async def run(self) -> None:
+        """Simulate the zone; when it ends in order, what is to be kept of it is in the database.
+
+        Raises
+        ------
+        Exception
+            A fault of ours, with which the zone is given up.
+        """
+        loop = asyncio.get_running_loop()
+        zone = self.tenure.claim.zone
+
+        async def take(message: Msg) -> None:
+            self.batches.take_message(message, loop.time())
+
+        inputs = await self.broker.subscribe(self.subjects.inputs(zone), cb=take)
+        questions = await self.broker.subscribe(
+            self.subjects.questions(zone), cb=self.portals.answer
+        )
+        beside = [
+            asyncio.create_task(work)
+            for work in (
+                self.desk.run(lambda found: self.people.take_seats(found, loop.time())),
+                self.checkpoints.run(),
+                self.routes.run(self.people.route_found),
+            )
+        ]
+        ticking = asyncio.create_task(self.ticker.run(self.sender))
+        for task in beside:
+            task.add_done_callback(self._beside_ended)
+        try:
+            await ticking
+        finally:
+            ticking.cancel()
+            for task in beside:
+                task.cancel()
+            await asyncio.gather(ticking, *beside, return_exceptions=True)
+            await self.portals.close()
+            await self.sender.stop()
+            if not self.broker.is_closed:
+                await inputs.unsubscribe()
+                await questions.unsubscribe()
+        if self.tenure.holds:
+            try:
+                await self.desk.flush()
+                await self.checkpoints.write()
+            except StoreError as error:
+                log.warning("the last checkpoint is not written", zone=zone, why=str(error))
+
+    def _beside_ended(self, task: "asyncio.Task[None]") -> None:
+        """Give the zone up where what goes on beside its ticks has ended by itself."""
+        if task.cancelled():
+            return
+        error = task.exception()
+        if isinstance(error, NotOwnerError):
+            log.warning("the zone is another host's", zone=self.tenure.claim.zone)
+            self.tenure.renewed(False)
+        elif error is not None:
+            log.error("a part of the host has failed", exc_info=error)
+            self.ticker.stop()
+
+
+async def found_in(store: Store, zone: str, loaded: LoadedScene, tick_s: float) -> Found:
+    """Read what the owner before has left.
+
+    Raises
+    ------
+    StoreError
+        The database does not answer.
+    """
+    kept, seats = await store.read(partial(_read, zone))
+    parts = checkpointing.unpacked(kept)
+    if kept is None:
+        return Found(seats=seats)
+    tick = kept.tick + round(kept.ago_us / 1e6 / tick_s) + SKIPPED_TICKS
+    if parts and parts[checkpointing.SCENE] != digest_of(loaded.scene):
+        log.info("the scene is another one than before, everybody goes to a spawn", zone=zone)
+        parts = {}
+    return Found(parts, tick, seats)
+
+
+def _read(zone: str, connection: Any) -> tuple[SavedZone | None, list[ClusterSeat]]:
+    return saved_in(connection, zone), seats_in(connection, zone)
+
+
+def digest_of(scene: Scene) -> str:
+    """The digest by which scenes are told apart."""
+    return hashlib.sha256(scene.model_dump_json().encode()).hexdigest()
+
+
+def build(zone: ZoneToServe, place: int, found: Found) -> tuple[Any, Zone, list[float]]:
+    """Build the world of a zone that goes on from what was found; `place` is its place among all.
+
+    It takes a while, and is meant for a thread.
+
+    Raises
+    ------
+    LoadingError
+        The scene cannot be run.
+    """
+    first = FIRST_ACTOR_ID + place * IDS_OF_A_ZONE
+    end = first + IDS_OF_A_ZONE
+    key = SceneKey.of(zone.loaded.scene.name, "", None)
+    if found.parts:
+        known = set(found.parts[checkpointing.ZONE]["people"]["ids"].tolist())
+        waiting = [
+            (KeptSeat(seat.person, seat.name, "", (), (0.0, 0.0, 0.0)), 0.0)
+            for seat in found.seats
+            if seat.person in known
+        ]
+        begin = min(int(found.parts[checkpointing.NEXT_ID]) + SKIPPED_IDS, end - 1)
+        recovery = Recovery(
+            key,
+            Parts(),
+            Block(begin, end),
+            found.parts[checkpointing.ZONE],
+            found.tick,
+            left=Left(waiting),
+        )
+        try:
+            return build_world(zone.loaded, zone.settings, recovery)
+        except CheckpointError as error:
+            log.warning("the checkpoint cannot be used, the zone begins anew", why=str(error))
+    recovery = Recovery(key, Parts(), Block(first, end), None, found.tick)
+    return build_world(zone.loaded, zone.settings, recovery)
+
+
+@asynccontextmanager
+async def hosted_zone(
+    zone: ZoneToServe,
+    place: int,
+    scenes: Mapping[str, Scene],
+    tenure: Tenure,
+    renewal: Renewal,
+    store: Store,
+    broker: Client,
+    subjects: Subjects,
+    metrics: Metrics,
+) -> AsyncIterator[HostedZone]:
+    """Build a zone that was claimed, with all that runs it; it does not tick yet.
+
+    Raises
+    ------
+    LoadingError
+        The scene has no room for its actors, or nobody gets to one of its portals.
+    StoreError
+        The database does not answer, or the zone is another host's already.
+    """
+    loop, settings = asyncio.get_running_loop(), zone.settings
+    claim = tenure.claim
+    found = await found_in(store, zone.name, zone.loaded, settings.tick_s)
+    async with AsyncExitStack() as stack:
+        thread = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="actors"))
+        population, world, storeys = await loop.run_in_executor(thread, build, zone, place, found)
+        stack.callback(population.close)
+        await loop.run_in_executor(thread, check_portals, zone, world.grid)
+        watch_world(world, population, metrics)
+        described = {"storeys": storeys, **described_portals(zone, scenes)}
+        description = _description(zone, world, described)
+        await store.write(partial(_keep_described, tenure, encode_description(description)))
+        searching = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="routes"))
+        routes = RouteRequests(world, searching, SearchBudget())
+        watch_routes(routes, metrics)
+        deriving = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="ground"))
+        ground_work = GroundWork(world, deriving, tables_ahead(population.navigator))
+        packing = stack.enter_context(ThreadPoolExecutor(1, thread_name_prefix="checkpoints"))
+        answering = Answering(broker, subjects, zone.name)
+        desk = SeatDesk(store, claim, round(settings.resume_seconds * 1e6))
+        pending = PendingInputs(metrics)
+        people = HostedPeople(world, routes, pending, desk, answering)
+        batches = GatewayBatches(world, people, routes, pending, answering, claim.epoch)
+        people.take_seats(found.seats, loop.time())
+        portals = Portals(
+            world,
+            people,
+            zone.exits,
+            broker,
+            subjects,
+            store,
+            tenure,
+            metrics,
+            settings.max_clients,
+        )
+        ticker = HostTicker(
+            world,
+            ground_work,
+            batches,
+            people,
+            portals,
+            answering,
+            Schedule(world.tick_s, loop.time()),
+            renewal,
+            metrics,
+            thread,
+        ).planning(settings.planning_interval)
+        sender = FrameSender(broker, subjects, zone.name, ticker.whole)
+        digest = digest_of(zone.loaded.scene)
+        checkpoints = Checkpointing(world, store, claim, digest, packing)
+        yield HostedZone(
+            world=world,
+            tenure=tenure,
+            people=people,
+            batches=batches,
+            ticker=ticker,
+            sender=sender,
+            desk=desk,
+            portals=portals,
+            checkpoints=checkpoints,
+            routes=routes,
+            broker=broker,
+            subjects=subjects,
+        )
+
+
+def _keep_described(tenure: Tenure, described: bytes, connection: Any) -> None:
+    keep_described(connection, tenure.claim, described)
+
+
+def _description(
+    zone: ZoneToServe, world: Zone, described: Mapping[str, object]
+) -> ZoneDescription:
+    scene = world.scene.model_dump(mode="json", exclude={"mesh", "portals"})
+    return ZoneDescription(
+        scene=msgpack.packb({**scene, **described}),
+        title=world.scene.name,
+        rules=rules_told(world.rules),
+        origin_m=world.origin_m,
+        resume_seconds=zone.settings.resume_seconds,
+        people=zone.settings.max_clients,
+    )

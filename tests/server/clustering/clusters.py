@@ -1,0 +1,204 @@
+"""A cluster of real processes for tests: a broker, a database, hosts and gateways of their own."""
+
+import asyncio
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import Connection, create_engine, text
+
+from esplanade.server.store.location import Location
+from tests.patience import COMPILING_PATIENCE_S, PATIENCE_S
+from tests.server.brokers import NatsServer
+from tests.server.client import PLACING_KEY
+
+
+class Process:
+    """A host or a gateway, and the lines of its log."""
+
+    def __init__(self, name: str, words: list[str], environment: dict[str, str]) -> None:
+        self.name = name
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "esplanade", *words],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            env=environment,
+        )
+        self._lines: list[dict[str, Any]] = []
+        self._changed = threading.Condition()
+        self._reading = threading.Thread(target=self._read, daemon=True)
+        self._reading.start()
+        self.is_frozen = False
+
+    @property
+    def lines(self) -> list[dict[str, Any]]:
+        """The lines of its log so far; a line that is no JSON is one of the event `told`."""
+        with self._changed:
+            return list(self._lines)
+
+    @property
+    def is_running(self) -> bool:
+        return self._process.poll() is None
+
+    def wait_for(
+        self, event: str, patience_s: float = PATIENCE_S, **facts: object
+    ) -> dict[str, Any]:
+        """Wait for a line of the log."""
+
+        def found() -> dict[str, Any] | None:
+            for line in self._lines:
+                if line["event"] == event and facts.items() <= line.items():
+                    return line
+            return None
+
+        end = time.monotonic() + patience_s
+        with self._changed:
+            while (line := found()) is None:
+                assert self._reading.is_alive(), self._lines
+                assert time.monotonic() < end, (event, self._lines)
+                self._changed.wait(0.5)
+            return line
+
+    async def told(self, event: str, **facts: object) -> dict[str, Any]:
+        """The same while clients go on."""
+        return await asyncio.to_thread(self.wait_for, event, PATIENCE_S, **facts)
+
+    def kill(self) -> None:
+        """End it at once, if it runs yet, and read its log to the end."""
+        self._process.kill()
+        self._process.wait()
+        self._reading.join()
+
+    def freeze(self) -> None:
+        self._process.send_signal(signal.SIGSTOP)
+        self.is_frozen = True
+
+    def thaw(self) -> None:
+        self._process.send_signal(signal.SIGCONT)
+        self.is_frozen = False
+
+    def stop(self) -> int:
+        """Tell it to end, and wait for that; its exit code."""
+        self._process.send_signal(signal.SIGTERM)
+        return self._process.wait(PATIENCE_S)
+
+    def end(self) -> int:
+        """Wait until it ends by itself; its exit code."""
+        return self._process.wait(PATIENCE_S)
+
+    def _read(self) -> None:
+        assert self._process.stderr is not None
+        with self._process.stderr as log:
+            for raw in log:
+                try:
+                    line = json.loads(raw)
+                except ValueError:
+                    line = {"event": "told", "text": raw.decode().rstrip()}
+                with self._changed:
+                    self._lines.append(line)
+                    self._changed.notify_all()
+
+
+class Gateway(Process):
+    """A gateway, and the port at which people reach it."""
+
+    @property
+    def port(self) -> int:
+        url: str = self.wait_for("open")["url"]
+        return int(url.rsplit(":", 1)[1].strip("/"))
+
+
+class Cluster:
+    """Processes that share a database and a broker; all of them end with the test."""
+
+    def __init__(self, database: str, broker: NatsServer) -> None:
+        self.database = database
+        self.broker = broker
+        self.processes: list[Process] = []
+
+    @property
+    def environment(self) -> dict[str, str]:
+        """The environment that says where database and broker are."""
+        return {
+            **os.environ,
+            "ESPLANADE_STORE": self.database,
+            "ESPLANADE_NATS": self.broker.address,
+            "ESPLANADE_LOG_FORMAT": "json",
+            "ESPLANADE_OPERATOR_KEY": PLACING_KEY,
+        }
+
+    def command(self, *words: str) -> subprocess.CompletedProcess[str]:
+        """Run `esplanade cluster`."""
+        return subprocess.run(
+            [sys.executable, "-m", "esplanade", "cluster", *words],
+            check=False,
+            capture_output=True,
+            text=True,
+            env=self.environment,
+            timeout=PATIENCE_S,
+        )
+
+    def init(self, world: Path) -> None:
+        """Put a world into the database."""
+        done = self.command("init", str(world))
+        assert done.returncode == 0, done.stderr
+
+    def host(self, *words: str, name: str) -> Process:
+        """Begin a host."""
+        return self._begin(Process, name, "zone", *words, "--actors", "1")
+
+    def gateway(self, *words: str, name: str) -> Gateway:
+        """Begin a gateway at a free port."""
+        places = ("--host", "127.0.0.1", "--port", "0")
+        return self._begin(Gateway, name, "gateway", *places, *words)
+
+    def ask(self, query: Callable[[Connection], Any]) -> Any:
+        """Ask the database."""
+        engine = create_engine(Location.of(None, self.database).url)
+        try:
+            with engine.begin() as connection:
+                return query(connection)
+        finally:
+            engine.dispose()
+
+    def owner(self, zone: str) -> tuple[str | None, int]:
+        """The host that the database names for a zone, and the epoch."""
+        statement = text("select host, epoch from ownerships where zone = :zone")
+        row = self.ask(lambda to: to.execute(statement, {"zone": zone}).one())
+        return row.host, row.epoch
+
+    def _begin(self, kind: Any, name: str, *words: str) -> Any:
+        process = kind(name, [*words, "--name", name], self.environment)
+        self.processes.append(process)
+        return process
+
+    def end(self) -> None:
+        for process in self.processes:
+            if process.is_frozen:
+                process.thaw()
+            process.kill()
+
+
+@contextmanager
+def cluster(database: str, broker: NatsServer) -> Iterator[Cluster]:
+    """A cluster of processes that end with it."""
+    made = Cluster(database, broker)
+    try:
+        yield made
+    finally:
+        made.end()
+
+
+def ready(*hosts: Process) -> None:
+    """Wait until hosts have compiled what they need and can claim."""
+    for host in hosts:
+        host.wait_for("ready to claim", COMPILING_PATIENCE_S)
