@@ -21,7 +21,7 @@ unexport PYTHONDONTWRITEBYTECODE
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PHONY: help serve test test-boundscheck test-nojit fuzz-files test-lowest test-pythons test-base
-.PHONY: check release-check audit bench chaos format lock client clean
+.PHONY: check release-check audit bench chaos chaos-cluster cluster format lock client clean
 
 help:  ## show what there is to do
 	@echo "Esplanade: people and computer-run actors walk among each other."
@@ -36,6 +36,9 @@ help:  ## show what there is to do
 
 serve: $(VENV)/.serve $(CLIENT)  ## run the demo world at http://localhost:8080
 	@exec $(RUN) -m esplanade demo $(ARGS)
+
+cluster: $(VENV)/.test $(CLIENT)  ## run a world on several processes of this machine
+	@exec $(RUN) -m tools.local_cluster $(ARGS)
 
 test: $(VENV)/.test $(CLIENT)  ## run all tests, in a real browser too
 	@ESPLANADE_CHROMIUM="$$($(RUN) tools/ensure_browser.py)" $(PYTEST) --numprocesses 2 $(ARGS)
