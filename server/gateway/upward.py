@@ -1,5 +1,8 @@
 """Inputs of a gateway's people that wait for the next batch to the host of a zone."""
 
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -8,12 +11,31 @@ from esplanade.protocol.messages import WalkTo
 from esplanade.server.gateway.occupant import Occupant
 from esplanade.server.link.batches import MOVEMENT, Batch
 
+AGAIN_S: Final = 0.3
+"""A movement that no frame acknowledges is sent again after so long."""
+MOST_TRIES: Final = 10
+"""It is given up after so many times: the zone has refused it, or no way leads to the point."""
 MOST_WAITING: Final = 4096
 """Lines, wishes for doors and plans that wait at once; further ones are left out."""
 
 
+@dataclass
+class _Wish:
+    """The newest wish of a person to walk, until a frame says that the avatar has begun it."""
+
+    seq: int
+    steering: tuple[int, int, int, float, float] | None
+    walk: tuple[int, int, WalkTo] | None
+    sent_s: float = -math.inf
+    tries: int = 0
+
+
 class Upward:
-    """Gathers what people want of one zone: of each person at most the newest movement."""
+    """Gathers what people want of one zone: of each person at most the newest movement.
+
+    A movement goes out again until it is acknowledged, since a batch may be lost; the host takes it
+    once.
+    """
 
     def __init__(self, gateway: str) -> None:
         self._gateway = gateway
@@ -21,8 +43,7 @@ class Upward:
         self._held: list[tuple[int, int]] = []
         self._departed: list[tuple[int, int, bool]] = []
         self._stood: list[tuple[int, int]] = []
-        self._movements: dict[int, tuple[int, int, int, float, float]] = {}
-        self._walks: dict[int, tuple[int, int, WalkTo]] = {}
+        self._wishes: dict[int, _Wish] = {}
         self._watched: dict[int, tuple[int, int, int | None]] = {}
         self._doors: dict[str, tuple[int, int, str, bool]] = {}
         self._lines: list[tuple[int, int, str]] = []
@@ -45,14 +66,18 @@ class Upward:
 
     def steer(self, who: Occupant, seq: int, direction_rad: float, speed_mps: float) -> None:
         """Let somebody walk in a direction."""
-        self._walks.pop(who.person, None)
         movement = (who.person, who.generation, seq, direction_rad, speed_mps)
-        self._movements[who.person] = movement
+        self._wishes[who.person] = _Wish(seq, movement, None)
 
     def walk(self, who: Occupant, wish: WalkTo) -> None:
         """Let somebody walk to a point."""
-        self._movements.pop(who.person, None)
-        self._walks[who.person] = (who.person, who.generation, wish)
+        self._wishes[who.person] = _Wish(wish.seq, None, (who.person, who.generation, wish))
+
+    def acknowledge(self, acks: Mapping[int, int]) -> None:
+        """Take in which movements avatars have begun, by persons."""
+        for person in self._wishes.keys() & acks.keys():
+            if self._wishes[person].seq == acks[person]:
+                del self._wishes[person]
 
     def say(self, who: Occupant, text: str) -> bool:
         """Let somebody say a line; False if too many wait."""
@@ -71,43 +96,39 @@ class Upward:
         if len(self._doors) < MOST_WAITING:
             self._doors[name] = (who.person, who.generation, name, is_open)
 
-    def batch(self, epoch: int, held: list[tuple[int, int]]) -> Batch:
-        """Everything since the last batch, for the owner of that epoch, with whom we serve."""
+    def batch(self, epoch: int, held: list[tuple[int, int]], now_s: float) -> Batch | None:
+        """Everything since the last batch, for the owner of that epoch, with whom we serve.
+
+        None if there is nothing.
+        """
+        due = [wish for wish in self._wishes.values() if now_s - wish.sent_s >= AGAIN_S]
+        for wish in due:
+            wish.sent_s = now_s
+            wish.tries += 1
+        waiting = (self._held, self._departed, self._stood, self._watched, self._doors, self._lines)
+        if not held and not due and not any(waiting):
+            return None
         self._number += 1
         batch = Batch(
             self._gateway,
             self._number,
             epoch,
-            np.array(list(self._movements.values()), dtype=MOVEMENT),
+            np.array([wish.steering for wish in due if wish.steering is not None], dtype=MOVEMENT),
             [*held, *self._held],
             self._departed,
-            list(self._walks.values()),
+            [wish.walk for wish in due if wish.walk is not None],
             self._lines,
             list(self._watched.values()),
             list(self._doors.values()),
             self._stood,
         )
         self._held, self._departed, self._lines, self._stood = [], [], [], []
-        self._movements, self._walks, self._watched, self._doors = {}, {}, {}, {}
+        self._watched, self._doors = {}, {}
+        self._wishes = {
+            person: wish for person, wish in self._wishes.items() if wish.tries < MOST_TRIES
+        }
         return batch
 
-    @property
-    def is_empty(self) -> bool:
-        """Whether nothing waits."""
-        return not any(
-            (
-                self._held,
-                self._departed,
-                self._stood,
-                self._movements,
-                self._walks,
-                self._watched,
-                self._doors,
-                self._lines,
-            )
-        )
-
     def _forget(self, person: int) -> None:
-        self._movements.pop(person, None)
-        self._walks.pop(person, None)
+        self._wishes.pop(person, None)
         self._watched.pop(person, None)

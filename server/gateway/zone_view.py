@@ -1,6 +1,7 @@
 """One zone as a gateway shows it: its frames, their audience, and the people who are in it."""
 
 import asyncio
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from time import perf_counter
@@ -98,7 +99,7 @@ class ZoneView:
         self._epoch = 0
         self._tick = 0
         self._shift = 0
-        self._held_s = 0.0
+        self._held_s = -math.inf
         self.heard_s: float | None = None
         """When the newest frame came, seconds of the loop; None before the first."""
 
@@ -200,6 +201,9 @@ class ZoneView:
         self._clock.take(frame.tick, now_s)
         if key.is_whole:
             frame = self.known.difference(frame)
+            self._held_s = -math.inf  # the zone may have taken everyone here for lost
+        else:
+            self._upward.acknowledge(frame.acks)
         self.known.take(frame)
         self._tick = frame.tick + self._shift
         self._end_replaced(frame)
@@ -318,9 +322,9 @@ class ZoneView:
         if now_s - self._held_s >= HOLD_S:
             self._held_s = now_s
             held = [(who.person, who.generation) for who in self.occupants.values()]
-        if not held and self._upward.is_empty:
+        batch = self._upward.batch(self._epoch, held, now_s)
+        if batch is None:
             return
-        batch = self._upward.batch(self._epoch, held)
         try:
             await self._broker.publish(self._inputs, encode_batch(batch))
         except NatsError as error:

@@ -49,6 +49,7 @@ class GatewayBatches:
         self._epoch = epoch
         self._numbers: dict[str, int] = {}
         self._lines: list[Say] = []
+        self._walks: dict[int, tuple[int, int]] = {}
         self.refused: Counter[str] = Counter()
         """Batches and inputs that had no effect, by why: `bad`, `epoch`, `late`, `generation`,
         `lines`."""
@@ -78,6 +79,7 @@ class GatewayBatches:
         self._take_ways(batch)
         self._take_words(batch)
         for person, generation, comes_back in batch.departed:
+            self._walks.pop(person, None)
             self._people.depart(person, generation, comes_back=comes_back)
 
     def lines(self) -> list[Say]:
@@ -141,6 +143,12 @@ class GatewayBatches:
     def _walk(self, person: int, generation: int, gateway: str, wish: WalkTo) -> None:
         if person in self._people.leaving or not self._people.is_known(person):
             return
+        if self._walks.get(person) == (generation, wish.seq):
+            return  # it has come before
+        if len(self._walks) >= MOST_LINES:
+            known = self._people.is_known
+            self._walks = {one: walk for one, walk in self._walks.items() if known(one)}
+        self._walks[person] = (generation, wish.seq)
         address = self._people.record_of(person).address or str(person)
         try:
             self._routes.ask(Asker(address, person), wish)

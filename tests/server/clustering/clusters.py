@@ -1,6 +1,7 @@
 """A cluster of real processes for tests: a broker, a database, hosts and gateways of their own."""
 
 import asyncio
+import itertools
 import json
 import os
 import signal
@@ -11,7 +12,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, Final, TypeVar
 
 from sqlalchemy import Connection, create_engine, text
 
@@ -20,14 +21,21 @@ from tests.patience import COMPILING_PATIENCE_S, PATIENCE_S
 from tests.server.brokers import NatsServer
 from tests.server.client import PLACING_KEY
 
+ZONES: Final = ("yard", "hall")
+HOSTS: Final = 3
+"""An owner for each zone, and one that stands by."""
+GATEWAYS: Final = 2
+
 
 class Process:
     """A host or a gateway, and the lines of its log."""
 
+    is_host = True
+
     def __init__(self, name: str, words: list[str], environment: dict[str, str]) -> None:
         self.name = name
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "esplanade", *words],
+            [sys.executable, "-m", "esplanade", *words, "--name", name],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
@@ -91,6 +99,11 @@ class Process:
         self._process.send_signal(signal.SIGTERM)
         return self._process.wait(PATIENCE_S)
 
+    def interrupt(self) -> int:
+        """Press Ctrl-C, and wait for the end; its exit code."""
+        self._process.send_signal(signal.SIGINT)
+        return self._process.wait(PATIENCE_S)
+
     def end(self) -> int:
         """Wait until it ends by itself; its exit code."""
         return self._process.wait(PATIENCE_S)
@@ -111,10 +124,15 @@ class Process:
 class Gateway(Process):
     """A gateway, and the port at which people reach it."""
 
+    is_host = False
+
     @property
     def port(self) -> int:
         url: str = self.wait_for("open")["url"]
         return int(url.rsplit(":", 1)[1].strip("/"))
+
+
+Kind = TypeVar("Kind", bound=Process)
 
 
 class Cluster:
@@ -124,6 +142,7 @@ class Cluster:
         self.database = database
         self.broker = broker
         self.processes: list[Process] = []
+        self._numbers = itertools.count(1)
 
     @property
     def environment(self) -> dict[str, str]:
@@ -154,12 +173,12 @@ class Cluster:
 
     def host(self, *words: str, name: str) -> Process:
         """Begin a host."""
-        return self._begin(Process, name, "zone", *words, "--actors", "1")
+        return self._begun(Process(name, ["zone", *words, "--actors", "1"], self.environment))
 
     def gateway(self, *words: str, name: str) -> Gateway:
         """Begin a gateway at a free port."""
         places = ("--host", "127.0.0.1", "--port", "0")
-        return self._begin(Gateway, name, "gateway", *places, *words)
+        return self._begun(Gateway(name, ["gateway", *places, *words], self.environment))
 
     def ask(self, query: Callable[[Connection], Any]) -> Any:
         """Ask the database."""
@@ -170,21 +189,93 @@ class Cluster:
         finally:
             engine.dispose()
 
+    # --- who is there -------------------------------------------------------------------------
+
+    def settle(self) -> None:
+        """Begin what is missing, and wait until every zone has an owner, a host stands by, and
+        nobody is there."""
+        hosts = [each for each in self.processes if each.is_host and each.is_running]
+        more = range(HOSTS - len(hosts))
+        hosts += [self.host(name=f"host-{next(self._numbers)}") for _ in more]
+        gateways = [each for each in self.processes if not each.is_host and each.is_running]
+        more = range(GATEWAYS - len(gateways))
+        gateways += [self.gateway(name=f"gateway-{next(self._numbers)}") for _ in more]
+        for host in hosts:
+            host.wait_for("ready to claim", COMPILING_PATIENCE_S)
+        for gateway in gateways:
+            gateway.wait_for("open")
+        end = time.monotonic() + PATIENCE_S
+        while self.seats or not all(self._has_owner(zone) for zone in ZONES):
+            assert time.monotonic() < end, f"a zone has no owner, or people are left: {self.seats}"
+            time.sleep(0.05)
+
+    @property
+    def seats(self) -> list[str]:
+        """The names of all who have a seat."""
+        return sorted(
+            self.ask(lambda to: to.execute(text("select name from cluster_seats")).scalars().all())
+        )
+
     def owner(self, zone: str) -> tuple[str | None, int]:
         """The host that the database names for a zone, and the epoch."""
         statement = text("select host, epoch from ownerships where zone = :zone")
         row = self.ask(lambda to: to.execute(statement, {"zone": zone}).one())
         return row.host, row.epoch
 
-    def _begin(self, kind: Any, name: str, *words: str) -> Any:
-        process = kind(name, [*words, "--name", name], self.environment)
+    def owning(self, zone: str) -> Process:
+        """The host that owns a zone."""
+        name = self.owner(zone)[0]
+        return next(each for each in self.processes if each.name == name and each.is_running)
+
+    def standing_by(self) -> Process:
+        """A host that owns nothing."""
+        owners = {self.owner(zone)[0] for zone in ZONES}
+        return next(
+            each
+            for each in self.processes
+            if each.is_host and each.is_running and each.name not in owners
+        )
+
+    @property
+    def ports(self) -> list[int]:
+        """The ports of the gateways that run."""
+        return [each.port for each in self.gateways]
+
+    @property
+    def gateways(self) -> list["Gateway"]:
+        """The gateways that run."""
+        return [each for each in self.processes if isinstance(each, Gateway) and each.is_running]
+
+    async def taken_over(self, zone: str, epoch: int) -> Process:
+        """Wait until a zone has another owner than that of an epoch, which runs it."""
+        async with asyncio.timeout(PATIENCE_S):
+            while self.owner(zone)[1] <= epoch or not self._has_owner(zone):  # noqa: ASYNC110
+                await asyncio.sleep(0.05)
+        return self.owning(zone)
+
+    def _has_owner(self, zone: str) -> bool:
+        """Whether a host has a zone, and has begun to run it."""
+        host, epoch = self.owner(zone)
+        return any(
+            line["event"] == "open" and line.get("epoch") == epoch
+            for each in self.processes
+            if each.name == host and each.is_running
+            for line in each.lines
+        )
+
+    def _begun(self, process: Kind) -> Kind:
         self.processes.append(process)
         return process
 
-    def end(self) -> None:
+    def thaw(self) -> None:
+        """Let everything that stands still go on."""
         for process in self.processes:
             if process.is_frozen:
                 process.thaw()
+
+    def end(self) -> None:
+        self.thaw()
+        for process in self.processes:
             process.kill()
 
 
@@ -196,9 +287,3 @@ def cluster(database: str, broker: NatsServer) -> Iterator[Cluster]:
         yield made
     finally:
         made.end()
-
-
-def ready(*hosts: Process) -> None:
-    """Wait until hosts have compiled what they need and can claim."""
-    for host in hosts:
-        host.wait_for("ready to claim", COMPILING_PATIENCE_S)

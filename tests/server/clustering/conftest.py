@@ -1,4 +1,4 @@
-"""A broker, a database and a cluster for each test; the database server is of the session."""
+"""One cluster for all tests of a module: what a test takes away is there again for the next one."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -7,25 +7,47 @@ import pytest
 
 from tests.server.brokers import NatsServer, nats_server
 from tests.server.clustering.clusters import Cluster, cluster
-from tests.server.databases import new_database
+from tests.server.databases import PostgresqlServer, postgresql_server
 from tests.server.zones import write_town
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def broker() -> Iterator[NatsServer]:
     with nats_server() as server:
         yield server
 
 
-@pytest.fixture
-def town(tmp_path: Path) -> Path:
+@pytest.fixture(scope="module")
+def database() -> Iterator[PostgresqlServer]:
+    """A database server that tests may stop."""
+    with postgresql_server() as server:
+        yield server
+
+
+@pytest.fixture(scope="module")
+def town(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The file of a world of two zones; newcomers enter the yard."""
-    return write_town(tmp_path)
+    return write_town(tmp_path_factory.mktemp("town"))
 
 
-@pytest.fixture
-def at_town(database_server: str, broker: NatsServer, town: Path) -> Iterator[Cluster]:
+@pytest.fixture(scope="module")
+def empty(database: PostgresqlServer, broker: NatsServer, town: Path) -> Iterator[Cluster]:
     """A cluster whose database has the town, and no process yet."""
-    with cluster(new_database(database_server), broker) as made:
+    with cluster(database.address, broker) as made:
         made.init(town)
         yield made
+
+
+@pytest.fixture(scope="module")
+def kept(empty: Cluster) -> Cluster:
+    """A cluster with an owner for each zone, one host that stands by, and two gateways."""
+    empty.settle()
+    return empty
+
+
+@pytest.fixture
+def at_town(kept: Cluster) -> Iterator[Cluster]:
+    """The same, whatever the test before has done."""
+    kept.settle()
+    yield kept
+    kept.thaw()
