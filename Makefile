@@ -87,6 +87,9 @@ bench: $(VENV)/.test  ## measure what must stay fast, each part by itself
 chaos: $(VENV)/.test $(CLIENT)  ## attack a server, and tell what a well-behaved client saw
 	@$(RUN) -m chaos $(ARGS)
 
+chaos-cluster: $(VENV)/.test  ## kill and freeze processes of a cluster; SEED=… SECONDS_LONG=…
+	@$(RUN) -m chaos.cluster --seed $(or $(SEED),0) --seconds $(or $(SECONDS_LONG),120) $(ARGS)
+
 format: $(VENV)/.dev client_web/node_modules/.installed  ## format all sources
 	$(RUN) -m ruff check --fix-only
 	$(RUN) -m ruff format

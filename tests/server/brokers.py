@@ -54,6 +54,14 @@ class NatsServer:
             self._process.wait()
             self._process = None
 
+    def freeze(self) -> None:
+        """Let it stand still."""
+        self.signal(signal.SIGSTOP)
+
+    def thaw(self) -> None:
+        """Let it go on."""
+        self.signal(signal.SIGCONT)
+
     def signal(self, number: signal.Signals) -> None:
         if self._process is not None and self._process.poll() is None:
             self._process.send_signal(number)

@@ -1,6 +1,7 @@
 """A cluster of real processes for tests: a broker, a database, hosts and gateways of their own."""
 
 import asyncio
+import io
 import itertools
 import json
 import os
@@ -9,13 +10,14 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
-from typing import Any, Final, TypeVar
+from typing import Any, Final, NamedTuple, TypeVar
 
 from sqlalchemy import Connection, create_engine, text
 
+from esplanade.cli import main
 from esplanade.server.store.location import Location
 from tests.patience import COMPILING_PATIENCE_S, PATIENCE_S
 from tests.server.brokers import NatsServer
@@ -25,6 +27,28 @@ ZONES: Final = ("yard", "hall")
 HOSTS: Final = 3
 """An owner for each zone, and one that stands by."""
 GATEWAYS: Final = 2
+
+RESUME_S: Final = 8.0
+"""Nobody's avatar waits for long, so that the next test begins without anybody."""
+
+
+class Said(NamedTuple):
+    """The exit code of a command, and what it has printed."""
+
+    code: int
+    output: str
+    errors: str
+
+
+def said(words: Sequence[str]) -> Said:
+    """Run a command of `esplanade` in this process."""
+    output, errors = io.StringIO(), io.StringIO()
+    with redirect_stdout(output), redirect_stderr(errors):
+        try:
+            code = main(words)
+        except SystemExit as end:
+            code = int(end.code or 0)
+    return Said(code, output.getvalue(), errors.getvalue())
 
 
 class Process:
@@ -138,11 +162,12 @@ Kind = TypeVar("Kind", bound=Process)
 class Cluster:
     """Processes that share a database and a broker; all of them end with the test."""
 
-    def __init__(self, database: str, broker: NatsServer) -> None:
+    def __init__(self, database: str, broker: NatsServer, resume_s: float) -> None:
         self.database = database
         self.broker = broker
         self.processes: list[Process] = []
         self._numbers = itertools.count(1)
+        self._waiting = ("--resume-seconds", f"{resume_s:g}")
 
     @property
     def environment(self) -> dict[str, str]:
@@ -155,30 +180,27 @@ class Cluster:
             "ESPLANADE_OPERATOR_KEY": PLACING_KEY,
         }
 
-    def command(self, *words: str) -> subprocess.CompletedProcess[str]:
-        """Run `esplanade cluster`."""
-        return subprocess.run(
-            [sys.executable, "-m", "esplanade", "cluster", *words],
-            check=False,
-            capture_output=True,
-            text=True,
-            env=self.environment,
-            timeout=PATIENCE_S,
-        )
+    def command(self, *words: str) -> "Said":
+        """Run `esplanade cluster` in this process."""
+        return said(["cluster", *words, "--store", self.database])
 
     def init(self, world: Path) -> None:
         """Put a world into the database."""
         done = self.command("init", str(world))
-        assert done.returncode == 0, done.stderr
+        assert done.code == 0, done.errors
 
     def host(self, *words: str, name: str) -> Process:
         """Begin a host."""
-        return self._begun(Process(name, ["zone", *words, "--actors", "1"], self.environment))
+        return self._begun(
+            Process(name, ["zone", *words, "--actors", "1", *self._waiting], self.environment)
+        )
 
     def gateway(self, *words: str, name: str) -> Gateway:
         """Begin a gateway at a free port."""
         places = ("--host", "127.0.0.1", "--port", "0")
-        return self._begun(Gateway(name, ["gateway", *places, *words], self.environment))
+        return self._begun(
+            Gateway(name, ["gateway", *places, *words, *self._waiting], self.environment)
+        )
 
     def ask(self, query: Callable[[Connection], Any]) -> Any:
         """Ask the database."""
@@ -192,8 +214,15 @@ class Cluster:
     # --- who is there -------------------------------------------------------------------------
 
     def settle(self) -> None:
-        """Begin what is missing, and wait until every zone has an owner, a host stands by, and
-        nobody is there."""
+        """Have what is missing, and wait until nobody is there."""
+        self.refill()
+        end = time.monotonic() + PATIENCE_S
+        while self.seats:
+            assert time.monotonic() < end, f"people are left: {self.seats}"
+            time.sleep(0.05)
+
+    def refill(self) -> None:
+        """Begin what is missing, and wait until every zone has an owner and a host stands by."""
         hosts = [each for each in self.processes if each.is_host and each.is_running]
         more = range(HOSTS - len(hosts))
         hosts += [self.host(name=f"host-{next(self._numbers)}") for _ in more]
@@ -205,8 +234,8 @@ class Cluster:
         for gateway in gateways:
             gateway.wait_for("open")
         end = time.monotonic() + PATIENCE_S
-        while self.seats or not all(self._has_owner(zone) for zone in ZONES):
-            assert time.monotonic() < end, f"a zone has no owner, or people are left: {self.seats}"
+        while not all(self._has_owner(zone) for zone in ZONES):
+            assert time.monotonic() < end, "a zone has no owner"
             time.sleep(0.05)
 
     @property
@@ -280,9 +309,9 @@ class Cluster:
 
 
 @contextmanager
-def cluster(database: str, broker: NatsServer) -> Iterator[Cluster]:
-    """A cluster of processes that end with it."""
-    made = Cluster(database, broker)
+def cluster(database: str, broker: NatsServer, resume_s: float = RESUME_S) -> Iterator[Cluster]:
+    """A cluster of processes that end with it; avatars of lost people wait for so long."""
+    made = Cluster(database, broker, resume_s)
     try:
         yield made
     finally:
