@@ -5,8 +5,17 @@ import asyncio
 import sys
 import tempfile
 from pathlib import Path
+from typing import Final
 
-from chaos.cluster.trial import Outcome, run_trial
+from tests.server.brokers import nats_server
+from tests.server.clustering.clusters import cluster
+from tests.server.databases import postgresql_server
+from tests.server.zones import write_town
+
+from chaos.cluster.trial import Outcome, drawn, run_trial
+
+AWAY_S: Final = 120.0
+"""Nobody's seat is given up in a trial."""
 
 
 def main() -> int:
@@ -19,8 +28,16 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=120.0, help="of faults [120]")
     parser.add_argument("--bots", type=int, default=20, help="bots that live in it [20]")
     options = parser.parse_args()
-    with tempfile.TemporaryDirectory(prefix="esplanade-chaos-") as folder:
-        trial = run_trial(Path(folder), options.seed, options.seconds, options.bots)
+    with (
+        tempfile.TemporaryDirectory(prefix="esplanade-chaos-") as folder,
+        nats_server() as broker,
+        postgresql_server() as database,
+        cluster(database.address, broker, resume_s=AWAY_S) as made,
+    ):
+        made.init(write_town(Path(folder)))
+        made.refill()
+        kinds = drawn(options.seed, options.seconds)
+        trial = run_trial(made, broker, database, options.seed, options.bots, kinds)
         return report(asyncio.run(trial))
 
 

@@ -13,6 +13,19 @@ FROZEN_S: Final = 5.0
 BROKER_AWAY_S: Final = 1.0
 DATABASE_AWAY_S: Final = 3.0
 
+KINDS: Final = (
+    "host killed",
+    "host frozen",
+    "host ended",
+    "gateway killed",
+    "gateway frozen",
+    "broker killed",
+    "broker frozen",
+    "database killed",
+    "zone fenced",
+    "zone moved",
+)
+
 Fault = Callable[[], Awaitable[None]]
 
 
@@ -30,26 +43,27 @@ class Faults:
         self._broker = broker
         self._database = database
         self._chance = chance
-        self.kinds: Mapping[str, Fault] = {
-            "host killed": self.kill_host,
-            "host frozen": self.freeze_host,
-            "host ended": self.end_host,
-            "gateway killed": self.kill_gateway,
-            "gateway frozen": self.freeze_gateway,
-            "broker killed": self.kill_broker,
-            "broker frozen": self.freeze_broker,
-            "database killed": self.kill_database,
-            "zone fenced": self.fence_zone,
-            "zone moved": self.move_zone,
-        }
+        happen: tuple[Fault, ...] = (
+            self.kill_host,
+            self.freeze_host,
+            self.end_host,
+            self.kill_gateway,
+            self.freeze_gateway,
+            self.kill_broker,
+            self.freeze_broker,
+            self.kill_database,
+            self.fence_zone,
+            self.move_zone,
+        )
+        self.kinds: Mapping[str, Fault] = dict(zip(KINDS, happen, strict=True))
 
     async def kill_host(self) -> None:
         """An owner of a zone is killed."""
         await self._taken_over(lambda zone: self._cluster.owning(zone).kill())
 
     async def end_host(self) -> None:
-        """An owner is told to end."""
-        await self._taken_over(lambda zone: self._cluster.owning(zone).stop())
+        """An owner is drained."""
+        await self._taken_over(self._drain)
 
     async def fence_zone(self) -> None:
         """A zone is taken from its owner."""
@@ -99,6 +113,11 @@ class Faults:
         await asyncio.to_thread(self._database.stop)
         await asyncio.sleep(DATABASE_AWAY_S)
         await asyncio.to_thread(self._database.start)
+
+    def _drain(self, zone: str) -> None:
+        owner = self._cluster.owning(zone)
+        self._cluster.command("drain", owner.name)
+        owner.end()
 
     async def _taken_over(self, take: Callable[[str], object]) -> None:
         zone = self._chance.choice(ZONES)

@@ -3,24 +3,22 @@
 import asyncio
 import random
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Final
 
-from tests.server.brokers import nats_server
-from tests.server.clustering.clusters import cluster
-from tests.server.databases import postgresql_server
-from tests.server.zones import write_town
+from tests.server.brokers import NatsServer
+from tests.server.clustering.clusters import Cluster
+from tests.server.databases import PostgresqlServer
 
 from chaos.cluster.bots import Bot
-from chaos.cluster.faults import Faults
+from chaos.cluster.faults import KINDS, Faults
 from chaos.cluster.ledger import Ledger
 
 BETWEEN_S: Final = (1.0, 3.0)
 """From the end of a fault to the next one."""
 REST_S: Final = 10.0
-"""For so long nothing happens before all is looked at."""
+"""For so long nothing happens before all is looked at, unless somebody says otherwise."""
 BEGIN_S: Final = 60.0
 
 
@@ -37,55 +35,52 @@ class Outcome:
 
 
 async def run_trial(
-    folder: Path,
+    cluster: Cluster,
+    broker: NatsServer,
+    database: PostgresqlServer,
     seed: int,
-    seconds: float,
     bots: int,
-    kinds: Sequence[str] = (),
+    kinds: Iterable[str],
     tell: Callable[[str], None] = print,
+    rest_s: float = REST_S,
 ) -> Outcome:
-    """Run a trial in a cluster of its own. `kinds` names faults that happen in that order, again
-    and again; without them they are drawn by the seed."""
+    """Run a trial in a cluster that has all of its processes; `kinds` names the faults."""
     chance, ledger = random.Random(seed), Ledger()
     outcome = Outcome(seed)
-    with (
-        nats_server() as broker,
-        postgresql_server() as database,
-        cluster(database.address, broker, resume_s=120.0) as made,
-    ):
-        await asyncio.to_thread(made.init, write_town(folder))
-        await asyncio.to_thread(made.refill)
-        faults = Faults(made, broker, database, chance)
-        living = [Bot(f"bot {k}", lambda: made.ports, ledger, seed) for k in range(bots)]
-        tasks = [asyncio.create_task(bot.live()) for bot in living]
-        try:
+    faults = Faults(cluster, broker, database, chance)
+    living = [Bot(f"bot {k}", lambda: cluster.ports, ledger, seed) for k in range(bots)]
+    tasks = [asyncio.create_task(bot.live()) for bot in living]
+    try:
+        await _all_in(ledger, bots)
+        for kind in kinds:
+            await asyncio.sleep(chance.uniform(*BETWEEN_S))
+            ledger.worst_gap_s()
+            await faults.kinds[kind]()
             await _all_in(ledger, bots)
-            end_s = time.monotonic() + seconds
-            number = 0
-            while time.monotonic() < end_s:
-                await asyncio.sleep(chance.uniform(*BETWEEN_S))
-                kind = kinds[number % len(kinds)] if kinds else chance.choice([*faults.kinds])
-                number += 1
-                ledger.worst_gap_s()
-                await faults.kinds[kind]()
-                await _all_in(ledger, bots)
-                gap_s = ledger.worst_gap_s()
-                outcome.gaps_s.setdefault(kind, []).append(gap_s)
-                tell(f"{kind}: {gap_s:.1f} s without a snapshot, {len(ledger.faults)} faults")
-            for bot in living:
-                bot.rests = True
-            await asyncio.sleep(REST_S)
-            await _all_in(ledger, bots)
-            for task in tasks:
-                if task.done():
-                    task.result()
-            ledger.check_rest(made.seats)
-        finally:
-            for task in tasks:
-                task.cancel()
-            await asyncio.gather(*tasks, return_exceptions=True)
+            gap_s = ledger.worst_gap_s()
+            outcome.gaps_s.setdefault(kind, []).append(gap_s)
+            tell(f"{kind}: {gap_s:.1f} s without a snapshot, {len(ledger.faults)} faults")
+        for bot in living:
+            bot.rests = True
+        await asyncio.sleep(rest_s)
+        await _all_in(ledger, bots)
+        ledger.check_rest(await asyncio.to_thread(lambda: cluster.seats))
+    finally:
+        ended = [task for task in tasks if task.done()]
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+    for task in ended:
+        task.result()  # a bot ends by a fault only
     outcome.faults, outcome.counts = ledger.faults, dict(ledger.counts)
     return outcome
+
+
+def drawn(seed: int, seconds: float) -> Iterator[str]:
+    """Faults that are drawn by a seed, for so long."""
+    chance, end_s = random.Random(f"faults {seed}"), time.monotonic() + seconds
+    while time.monotonic() < end_s:
+        yield chance.choice(KINDS)
 
 
 async def _all_in(ledger: Ledger, bots: int) -> None:

@@ -1,4 +1,4 @@
-"""One cluster for all tests of a module: what a test takes away is there again for the next one."""
+"""One cluster for all tests here: what one takes away is there again for the next."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,26 +11,33 @@ from tests.server.databases import PostgresqlServer, postgresql_server
 from tests.server.zones import write_town
 
 
-@pytest.fixture(scope="module")
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Have all tests here run in one process of several, so that they share the cluster."""
+    for item in items:
+        if Path(__file__).parent in item.path.parents:
+            item.add_marker(pytest.mark.xdist_group("cluster"))
+
+
+@pytest.fixture(scope="package")
 def broker() -> Iterator[NatsServer]:
     with nats_server() as server:
         yield server
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="package")
 def database() -> Iterator[PostgresqlServer]:
     """A database server that tests may stop."""
     with postgresql_server() as server:
         yield server
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="package")
 def town(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The file of a world of two zones; newcomers enter the yard."""
     return write_town(tmp_path_factory.mktemp("town"))
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="package")
 def empty(database: PostgresqlServer, broker: NatsServer, town: Path) -> Iterator[Cluster]:
     """A cluster whose database has the town, and no process yet."""
     with cluster(database.address, broker) as made:
@@ -38,7 +45,7 @@ def empty(database: PostgresqlServer, broker: NatsServer, town: Path) -> Iterato
         yield made
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="package")
 def kept(empty: Cluster) -> Cluster:
     """A cluster with an owner for each zone, one host that stands by, and two gateways."""
     empty.settle()
