@@ -238,7 +238,11 @@ class Metrics:
     @property
     def ticked_at(self) -> float:
         """When a tick last ended, seconds of `monotonic`; of several zones, of the latest one."""
-        return min(self._ticked.values())
+        return min(self._ticked.values(), default=monotonic())
+
+    def rests(self, zone: str) -> None:
+        """The zone does not tick in this process now, and its age is told no more."""
+        self._ticked.pop(zone, None)
 
     def gauge(self, name: str, text: str, read: Callable[[], float]) -> None:
         """Add a value that is read when scraped."""

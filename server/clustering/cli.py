@@ -41,7 +41,8 @@ def _settings(options: Namespace, table: Settings) -> tuple[ServerSettings, Memb
         raise CommandError("a world on several machines needs nats-py: install esplanade[cluster]")
     given = given_settings(options, table)
     try:
-        membership = Membership.of(**{name: given.pop(name, "") for name in CLUSTER})
+        said = {name: given.pop(name, each.default) for name, each in CLUSTER.items()}
+        membership = Membership.of(**said)
     except ValueError as error:
         raise UsageError(str(error)) from None
     # Variables of a server that is the whole world mean nothing here.

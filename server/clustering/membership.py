@@ -6,7 +6,6 @@ import socket
 from dataclasses import dataclass
 from typing import Final, Self
 
-from esplanade.server.clustering.options import CLUSTER
 from esplanade.server.store.location import Location
 from esplanade.server.store.store import StoreError
 
@@ -22,9 +21,11 @@ class Membership:
     location: Location
     servers: tuple[str, ...]
     """The brokers, any of which will do."""
+    health_host: str
+    health_port: int
 
     @classmethod
-    def of(cls, store: str, nats: str = "", name: str = "") -> Self:
+    def of(cls, store: str, nats: str, name: str, health_host: str, health_port: int) -> Self:
         """The membership that options say.
 
         Raises
@@ -36,7 +37,7 @@ class Membership:
             raise ValueError(
                 f"name: {name!r} is not made of 1 to 32 lower-case letters, digits and hyphens"
             )
-        servers = tuple(each.strip() for each in (nats or CLUSTER["nats"].default).split(","))
+        servers = tuple(each.strip() for each in nats.split(","))
         for server in servers:
             if _SERVER.fullmatch(server) is None:
                 raise ValueError(f"nats: {server!r} is no address such as nats://127.0.0.1:4222")
@@ -44,7 +45,7 @@ class Membership:
             location = Location.of(None, store)
         except StoreError as error:
             raise ValueError(str(error)) from None
-        return cls(name or _some_name(), location, servers)
+        return cls(name or _some_name(), location, servers, health_host, health_port)
 
 
 def _some_name() -> str:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 from esplanade.commandline.parser import Parser
-from esplanade.commandline.readers import Text
+from esplanade.commandline.readers import Text, Whole
 from esplanade.commandline.settings import Setting, Settings, settings_parser
 from esplanade.server.options import SETTINGS as SERVER
 from esplanade.server.options import check as check_server
@@ -27,6 +27,10 @@ CLUSTER: Final = {
         "name of the machine and a few letters",
         Text(),
         "",
+    ),
+    "health_host": Setting("address of /healthz, /readyz and /metrics", Text(), "127.0.0.1"),
+    "health_port": Setting(
+        "port of /healthz, /readyz and /metrics; 0 takes a free one", Whole(0, 65535), 0
     ),
 }
 

@@ -4,7 +4,7 @@ import asyncio
 import gc
 import secrets
 import signal
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
 from typing import Any, Final
 
@@ -18,6 +18,8 @@ from esplanade.server.gateway.gateway import gateway
 from esplanade.server.host.host import Host, read_world
 from esplanade.server.link.broker import connected
 from esplanade.server.loading import LoadingError
+from esplanade.server.metrics import Metrics
+from esplanade.server.net.health import health_port
 from esplanade.server.settings import ServerSettings
 from esplanade.server.store.sql_store import SqlStore, open_store
 
@@ -48,12 +50,13 @@ async def run_host(settings: ServerSettings, membership: Membership, zones: Sequ
                 raise LoadingError(
                     f"the world has no zone {name!r}; it has: {', '.join(sorted(known))}"
                 )
-        stop = asyncio.Event()
-        host = Host(membership.name, world, zones, store, broker, stop)
-        # Until then there is nothing to put in order, but a thread that cannot be interrupted.
-        await asyncio.to_thread(host.warm_up)
-        _stop_by_signals(stop)
-        await host.run()
+        stop, metrics = asyncio.Event(), _metrics(known, broker)
+        host = Host(membership.name, world, zones, store, broker, metrics, stop)
+        async with _health(membership, metrics, lambda: host.hindrance):
+            # Until then there is nothing to put in order, but a thread that cannot be interrupted.
+            await asyncio.to_thread(host.warm_up)
+            _stop_by_signals(stop)
+            await host.run()
 
 
 async def run_gateway(settings: ServerSettings, membership: Membership) -> None:
@@ -76,6 +79,7 @@ async def run_gateway(settings: ServerSettings, membership: Membership) -> None:
     async with (
         _joined(membership, name) as (store, broker),
         gateway(name, settings, store, broker) as running,
+        _health(membership, running.metrics, lambda: running.reception.hindrance),
     ):
         stop = asyncio.Event()
         _stop_by_signals(stop)
@@ -105,6 +109,25 @@ async def _joined(membership: Membership, name: str) -> AsyncIterator[tuple[SqlS
         connected(membership.servers, name) as broker,
     ):
         yield store, broker
+
+
+@asynccontextmanager
+async def _health(
+    membership: Membership, metrics: Metrics, hindrance: Callable[[], str | None]
+) -> AsyncIterator[None]:
+    host = membership.health_host
+    async with health_port(host, membership.health_port, metrics, hindrance) as port:
+        log.info("health", url=f"http://{in_url(host)}:{port}")
+        yield
+
+
+def _metrics(zones: Sequence[str], broker: Client) -> Metrics:
+    """The metrics of a process in which no zone ticks yet."""
+    metrics = Metrics(zones)
+    for zone in zones:
+        metrics.rests(zone)
+    metrics.gauge("broker_connected", "Whether a broker is there", lambda: int(broker.is_connected))
+    return metrics
 
 
 def _stop_by_signals(stop: asyncio.Event) -> None:

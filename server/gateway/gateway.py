@@ -33,6 +33,7 @@ class RunningGateway:
 
     port: int
     reception: Reception
+    metrics: Metrics
     ended: "asyncio.Future[None]"
     """Is done when the gateway is to end, or a part of it has failed."""
 
@@ -63,6 +64,9 @@ async def gateway(
     world = await store.read(world_kept)
     zones = await store.read(_zones)
     metrics = Metrics(zones)
+    for zone in zones:
+        metrics.rests(zone)
+    metrics.gauge("broker_connected", "Whether a broker is there", lambda: int(broker.is_connected))
     async with AsyncExitStack() as stack:
         sockets = await bound_sockets(settings.host, settings.port)
         for each in sockets:
@@ -83,7 +87,7 @@ async def gateway(
             task.add_done_callback(partial(_end, ended))
             stack.push_async_callback(_cancelled, task)
         stack.push_async_callback(reception.close)
-        yield RunningGateway(port, reception, ended)
+        yield RunningGateway(port, reception, metrics, ended)
 
 
 def _end(ended: "asyncio.Future[None]", task: "asyncio.Task[None]") -> None:

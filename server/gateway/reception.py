@@ -91,6 +91,11 @@ class Reception:
         """The people who are connected here."""
         return len(self._places)
 
+    @property
+    def hindrance(self) -> str | None:
+        """Why nobody should be sent here; None if people may come in."""
+        return "stopping" if self._closing else None
+
     # --- requests of sessions that are in no zone ----------------------------------------------
 
     @property

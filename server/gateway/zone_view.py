@@ -100,6 +100,17 @@ class ZoneView:
         self._tick = 0
         self._shift = 0
         self._held_s = -math.inf
+        receiver = self._receiver
+        metrics.total(
+            "frames_refused",
+            "Frames that were stale or damaged",
+            lambda: sum(receiver.refused.values()),
+        )
+        metrics.total(
+            "resyncs",
+            "Whole states that were asked for after a gap, or at first",
+            lambda: sum(receiver.resyncs.values()),
+        )
         self.heard_s: float | None = None
         """When the newest frame came, seconds of the loop; None before the first."""
 

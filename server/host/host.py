@@ -76,6 +76,7 @@ class Host:
         wanted: Sequence[str],
         store: Store,
         broker: Client,
+        metrics: Metrics,
         stop: asyncio.Event,
     ) -> None:
         """`wanted` names the zones that it may claim; all of them where it is empty."""
@@ -85,10 +86,20 @@ class Host:
         self._store = store
         self._broker = broker
         self._subjects = Subjects(world.kept.subject)
+        self._metrics = metrics
         self._stop = stop
+        self._ready = False
+        self._owned = 0
         self._hint = asyncio.Event()
         self.running: HostedZone | None = None
         """The zone that it runs."""
+        metrics.gauge("zones_owned", "Zones that run here", lambda: int(self.running is not None))
+        metrics.total("ownerships", "Zones that were claimed here", lambda: self._owned)
+
+    @property
+    def hindrance(self) -> str | None:
+        """Why this host can run no zone; None if it can."""
+        return None if self._ready else "starting"
 
     async def run(self) -> None:
         """Claim and run zones until told to stop, or drained.
@@ -132,6 +143,7 @@ class Host:
         place, zone = self._world.zone(self._wanted[0])
         population, _, _ = build(zone, place, Found())
         population.close()
+        self._ready = True
         log.info("ready to claim", host=self.name, zones=", ".join(self._wanted))
 
     async def _claim(self) -> Claim | None:
@@ -158,7 +170,8 @@ class Host:
         place, zone = self._world.zone(claim.zone)
         scenes = {each.name: each.loaded.scene for each in self._world.zones}
         renewing = asyncio.create_task(renewal.run())
-        metrics = Metrics([zone.name]).of_zone(zone.name)
+        metrics = self._metrics.of_zone(zone.name)
+        self._owned += 1
         try:
             async with hosted_zone(
                 zone,
@@ -183,6 +196,7 @@ class Host:
             await asyncio.sleep(CLAIM_S)
         finally:
             self.running = None
+            self._metrics.rests(zone.name)
             renewing.cancel()
             await self._give_back(tenure)
 

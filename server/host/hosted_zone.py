@@ -287,6 +287,8 @@ async def hosted_zone(
         sender = FrameSender(broker, subjects, zone.name, ticker.whole)
         digest = digest_of(zone.loaded.scene)
         checkpoints = Checkpointing(world, store, claim, digest, packing)
+        _watch(metrics, batches=batches, sender=sender, desk=desk, checkpoints=checkpoints)
+        metrics.total("renewals_failed", "Renewals without an answer", lambda: renewal.failures)
         yield HostedZone(
             world=world,
             tenure=tenure,
@@ -301,6 +303,32 @@ async def hosted_zone(
             broker=broker,
             subjects=subjects,
         )
+
+
+def _watch(
+    metrics: Metrics,
+    *,
+    batches: GatewayBatches,
+    sender: FrameSender,
+    desk: SeatDesk,
+    checkpoints: Checkpointing,
+) -> None:
+    """Tell in the metrics how a host and the others understand each other."""
+    refused = batches.refused
+    metrics.total(
+        "inputs_refused",
+        "Batches and inputs that were stale, doubled or damaged",
+        lambda: sum(refused.values()),
+    )
+    metrics.total(
+        "frames_left_out",
+        "Frames that did not go out, since the broker was away",
+        lambda: sender.left_out,
+    )
+    metrics.gauge("seats_waiting", "Changes of seats that wait", lambda: desk.waiting)
+    metrics.total(
+        "checkpoints_failed", "Checkpoints that were not written", lambda: checkpoints.failures
+    )
 
 
 def _keep_described(tenure: Tenure, described: bytes, connection: Any) -> None:

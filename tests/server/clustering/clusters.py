@@ -77,6 +77,12 @@ class Process:
             return list(self._lines)
 
     @property
+    def health_port(self) -> int:
+        """The port at which it says how it is."""
+        url: str = self.wait_for("health")["url"]
+        return int(url.rsplit(":", 1)[1])
+
+    @property
     def is_running(self) -> bool:
         return self._process.poll() is None
 

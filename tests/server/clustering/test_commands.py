@@ -14,6 +14,7 @@ from tests.server.client import joined
 from tests.server.clustering.clusters import Cluster, cluster, said
 from tests.server.clustering.people import back, go_on, sees, walk
 from tests.server.databases import PostgresqlServer, new_database
+from tests.server.http import get
 
 PLACE = (6.0, 10.0, 0)
 OTHER = (6.0, 12.0, 0)
@@ -94,6 +95,10 @@ async def test_zones_move_and_hosts_end_while_people_stay(at_town: Cluster) -> N
     east, west = at_town.ports
     async with joined(east, "Ann", PLACE) as ann, joined(west, "Ben", OTHER) as ben:
         await walk(ben, 1.0)
+        for process in at_town.processes:
+            health = process.health_port
+            assert (await get(health, "/readyz")).status == 200
+            assert b"esplanade_broker_connected 1.0" in (await get(health, "/metrics")).body
         found = json.loads(await done(at_town, "status", "--json"))
         assert found["disagreements"] == []
         assert {zone["zone"]: zone["seats"] for zone in found["zones"]} == {"hall": 0, "yard": 2}

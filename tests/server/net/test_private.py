@@ -71,7 +71,7 @@ async def test_a_stuck_world_is_told_truthfully(
     serving: Serving, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("esplanade.server.net.readiness.STALLED_S", 0.5)
-    monkeypatch.setattr("esplanade.server.net.private.SAMPLE_LIMIT_S", 0.1)
+    monkeypatch.setattr("esplanade.server.net.health.SAMPLE_LIMIT_S", 0.1)
     async with serving() as server, joined(server.port) as client:
         await client.ticks(2)
         await get(server.private_port, "/metrics")
