@@ -3,6 +3,7 @@
 import asyncio
 from collections.abc import Callable, Sequence
 from functools import partial
+from itertools import islice
 from typing import Any, Final
 
 import structlog
@@ -34,6 +35,11 @@ BATCH_S: Final = 0.05
 """What people want goes to the zones so often."""
 LOOK_S: Final = 0.1
 """So often the seats of those are read whom no zone shows."""
+FAREWELLS: Final = 5
+PAUSE_S: Final = 0.1
+LAST_S: Final = 20.0
+"""When a gateway ends it says goodbye to so many at once, or to more so that it takes no longer
+than 20 s, with a pause after them."""
 PATIENCE_S: Final = 15.0
 """A newcomer whom no zone has shown by then is sent away; a person who was in is not."""
 
@@ -290,16 +296,23 @@ class Reception:
                 await answers.unsubscribe()
 
     async def close(self) -> None:
-        """Say goodbye to everyone, who may come back at another gateway, and stop."""
+        """Say goodbye to everyone, who may come back at another gateway, and stop.
+
+        A crowd goes bit by bit, so that it does not come to the others all at once.
+        """
         self._closing = True
         text = "this gateway is shutting down; come again"
         farewell = frames.message(Bye(reason=ByeCode.SHUTDOWN, text=text))
         ending = []
-        for session in list(self._places):
-            self.depart(session, comes_back=True)
-            ending.append(session.dismiss(farewell, CloseCode.GOING_AWAY, text))
-        for view in self.views.values():
-            await view.send()
+        together = max(FAREWELLS, -(-len(self._places) * PAUSE_S // LAST_S))
+        while leaving := list(islice(self._places, int(together))):
+            for session in leaving:
+                self.depart(session, comes_back=True)
+                ending.append(session.dismiss(farewell, CloseCode.GOING_AWAY, text))
+            for view in self.views.values():
+                await view.send()
+            if self._places:
+                await asyncio.sleep(PAUSE_S)
         if ending:
             await asyncio.wait(ending)
         for task in self._tasks:

@@ -16,6 +16,7 @@ from esplanade.protocol import ByeCode, CloseCode, ErrorCode, ProtocolError
 from esplanade.protocol.messages import Bye, Travel, Welcome
 from esplanade.server.gateway.frame_clock import FrameClock
 from esplanade.server.gateway.occupant import Occupant
+from esplanade.server.gateway.silence_notices import SilenceNotices
 from esplanade.server.gateway.upward import Upward
 from esplanade.server.gateway.zone_wishes import ZoneWishes
 from esplanade.server.link.answers import Answer
@@ -95,6 +96,7 @@ class ZoneView:
             self._lines,
         )
         self._leases = Leases(self._moves)
+        self._silence = SilenceNotices(self.sessions, self.server_time)
         self._detached: list[int] = []
         self._epoch = 0
         self._tick = 0
@@ -118,6 +120,8 @@ class ZoneView:
 
     def server_time(self) -> float:
         """Seconds of the zone's clock."""
+        if self._silence.silent:
+            return self._tick * self._tick_s
         return self._clock.at(asyncio.get_running_loop().time()) + self._shift * self._tick_s
 
     def confirm(self, session: Session) -> None:
@@ -217,6 +221,7 @@ class ZoneView:
             self._upward.acknowledge(frame.acks)
         self.known.take(frame)
         self._tick = frame.tick + self._shift
+        self._silence.heard()
         self._end_replaced(frame)
         attached = self._welcome(frame)
         told = replace(
@@ -327,6 +332,7 @@ class ZoneView:
         """Send what people want since the last call, and now and then who is here."""
         now_s = asyncio.get_running_loop().time()
         self._check_leases(now_s)
+        self._silence.check(self.heard_s, now_s)
         if self._epoch == 0 or not self._broker.is_connected:
             return  # nobody would take it; the newest of everything waits
         held: list[tuple[int, int]] = []
