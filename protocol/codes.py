@@ -114,6 +114,7 @@ class ErrorCode(StrEnum):
     SLOW_MODE = "slow_mode"
     WORD_REFUSED = "word_refused"
     QUIET_ZONE = "quiet_zone"
+    BUSY = "busy"
 
 
 class CloseCode(IntEnum):
@@ -122,6 +123,7 @@ class CloseCode(IntEnum):
     NORMAL = 1000
     GOING_AWAY = 1001
     TOO_LARGE = 1009
+    BUSY = 1013
     UNSUPPORTED_VERSION = 4001
     MALFORMED = 4002
     INVALID = 4003

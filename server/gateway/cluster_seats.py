@@ -96,9 +96,9 @@ class ClusterSeats:
             self.failures += 1
             log.warning("nobody can come in", why=str(error) or "the database is silent")
             raise ProtocolError(
-                ErrorCode.SERVER_FULL,
+                ErrorCode.BUSY,
                 "seats cannot be given just now; come again in a moment",
-                CloseCode.SERVER_FULL,
+                CloseCode.BUSY,
             ) from None
 
 

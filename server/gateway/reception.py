@@ -55,9 +55,9 @@ class ZonesAwayError(ProtocolError):
 
     def __init__(self, zone: str) -> None:
         super().__init__(
-            ErrorCode.SERVER_FULL,
+            ErrorCode.BUSY,
             f"the zone {zone} is not there just now; come again in a moment",
-            CloseCode.SERVER_FULL,
+            CloseCode.BUSY,
         )
 
 
@@ -383,7 +383,7 @@ class Reception:
             away = ZonesAwayError(view.zone)
             self.depart(who.session, comes_back=True)
             farewell = frames.message(Error(error=away.code, text=away.text))
-            who.session.dismiss(farewell, CloseCode.SERVER_FULL, away.code.value)
+            who.session.dismiss(farewell, CloseCode.BUSY, away.code.value)
 
     def _begin(self, work: Any) -> None:
         task = asyncio.create_task(work)

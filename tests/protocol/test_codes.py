@@ -48,7 +48,7 @@ def test_codes_of_both_directions_never_meet_and_are_one_byte() -> None:
 
 
 def test_close_codes_of_ours_lie_in_the_private_range() -> None:
-    standard = {CloseCode.NORMAL, CloseCode.GOING_AWAY, CloseCode.TOO_LARGE}
+    standard = {CloseCode.NORMAL, CloseCode.GOING_AWAY, CloseCode.TOO_LARGE, CloseCode.BUSY}
     assert all(4000 <= code < 5000 for code in set(CloseCode) - standard)
 
 

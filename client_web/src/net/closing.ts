@@ -11,6 +11,7 @@ const CLOSINGS = new Map<number, Closing>([
   [CloseCode.NORMAL, { text: "The server ended the connection.", retry: true }],
   [CloseCode.GOING_AWAY, { text: "The server is going down for a moment.", retry: true }],
   [CloseCode.TOO_LARGE, { text: "This page sent a message that is too large.", retry: true }],
+  [CloseCode.BUSY, { text: "The place does not answer just now.", retry: true }],
   [
     CloseCode.UNSUPPORTED_VERSION,
     { text: "The server speaks another version. Please reload this page.", retry: false },

@@ -185,7 +185,7 @@ async def test_people_walk_on_while_the_database_is_away(
         await sees(ann, ben)
         async with connected(east) as eve:
             await eve.send(Hello(name="Eve", version=VERSION))
-            assert await eve.refusal() == ("server_full", CloseCode.SERVER_FULL)
+            assert await eve.refusal() == ("busy", CloseCode.BUSY)
         await asyncio.sleep(LEASE_S + 1.0)
         await walk(ben, 0.5)
         await asyncio.to_thread(database.start)
